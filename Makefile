@@ -1,0 +1,28 @@
+# Two commands carry the house: `make demo` shows it at work, `make test` proves it.
+PYTHON ?= python3
+BIN := .venv/bin
+
+.PHONY: demo test validate lint clean
+
+.venv/installed: pyproject.toml
+	test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	touch $@
+
+demo: .venv/installed
+	$(BIN)/loaded-tca demo
+
+lint: .venv/installed
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+test: lint
+	$(BIN)/python -m pytest
+
+validate: .venv/installed
+	$(BIN)/python -m validation
+
+clean:
+	rm -rf .venv loaded-tca-demo .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -1,0 +1,1 @@
+"""Semi-analytical loaded tooth contact analysis of gears."""

@@ -1,0 +1,60 @@
+"""Every error and warning of the package, in one place."""
+
+from collections.abc import Iterable
+from typing import Any
+
+
+class LoadedTCAError(Exception):
+    """What every error of this package has in common: one ``except`` catches them all."""
+
+
+class InputError(LoadedTCAError, ValueError):
+    """An input that cannot be used; tells every problem at once.
+
+    Parameters
+    ----------
+    problems : str or iterable of str
+        One sentence per problem: the key, the value found, and what is allowed.
+
+    Examples
+    --------
+    >>> raise InputError(["load: -1 N is negative", "cells: 0 is not positive"])
+    Traceback (most recent call last):
+    ...
+    loaded_tca.errors.InputError: load: -1 N is negative
+    cells: 0 is not positive
+    """
+
+    def __init__(self, problems: str | Iterable[str]) -> None:
+        self.problems = (problems,) if isinstance(problems, str) else tuple(problems)
+        super().__init__("\n".join(self.problems))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.problems,)
+
+
+class GeometryError(LoadedTCAError, ValueError):
+    """Gears or flanks that cannot exist or cannot touch; says which flank, and where."""
+
+
+class ConvergenceError(LoadedTCAError, RuntimeError):
+    """An iteration that did not reach its tolerance.
+
+    Parameters
+    ----------
+    message : str
+        What did not converge, how far it came, and what to try.
+    last : object, optional
+        The last iterate, to look at or to go on from.
+    """
+
+    def __init__(self, message: str, last: Any = None) -> None:
+        self.last = last
+        super().__init__(message)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (str(self), self.last)
+
+
+class AccuracyWarning(UserWarning):
+    """A converged answer that is doubtful: the model, not the solver, is at its limit."""

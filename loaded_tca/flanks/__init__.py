@@ -1,0 +1,1 @@
+"""Tooth flanks, each a function theta = Theta(rho, z)."""

@@ -1,0 +1,1 @@
+"""Macro geometry of gears."""

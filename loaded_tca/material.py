@@ -1,0 +1,63 @@
+"""Elastic materials and the contact modulus of two of them."""
+
+from dataclasses import dataclass
+
+from loaded_tca.errors import InputError
+
+
+@dataclass(frozen=True)
+class Material:
+    """Isotropic, linearly elastic material, with an optional cap on the pressure it carries.
+
+    Parameters
+    ----------
+    youngs_modulus : float [MPa]
+        Young's modulus, positive. Default: steel.
+    poisson_ratio : float
+        Between 0 and 0.5.
+    max_pressure : float [MPa], optional
+        Pressure at which the surface yields (elastic-perfectly plastic cap); None: elastic.
+
+    Raises
+    ------
+    InputError
+        If a value is outside its range.
+    """
+
+    youngs_modulus: float = 206000.0
+    poisson_ratio: float = 0.3
+    max_pressure: float | None = None
+
+    def __post_init__(self) -> None:
+        problems = []
+        if not 0.0 < self.youngs_modulus < float("inf"):
+            problems.append(f"youngs_modulus: {self.youngs_modulus} MPa is not positive and finite")
+        if not 0.0 <= self.poisson_ratio <= 0.5:
+            problems.append(f"poisson_ratio: {self.poisson_ratio} is not between 0 and 0.5")
+        if self.max_pressure is not None and not self.max_pressure > 0.0:
+            problems.append(f"max_pressure: {self.max_pressure} MPa is not positive")
+        if problems:
+            raise InputError(problems)
+
+    @property
+    def plane_strain_modulus(self) -> float:
+        """E/(1 - nu^2) [MPa]."""
+        return self.youngs_modulus / (1.0 - self.poisson_ratio**2)
+
+
+def contact_modulus(first: Material, second: Material) -> float:
+    r"""Contact modulus E* of two half-spaces [MPa].
+
+    .. math:: 1/E^* = (1 - \nu_1^2)/E_1 + (1 - \nu_2^2)/E_2
+
+    References
+    ----------
+    Johnson 1985, Contact Mechanics, eq. 4.10.
+
+    Examples
+    --------
+    >>> steel = Material(206000.0, 0.3)
+    >>> round(contact_modulus(steel, steel), 1)
+    113186.8
+    """
+    return 1.0 / (1.0 / first.plane_strain_modulus + 1.0 / second.plane_strain_modulus)

@@ -1,0 +1,1 @@
+"""Comparisons with numbers from outside the project, and studies of speed against error."""
