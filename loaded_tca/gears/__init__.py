@@ -1,1 +1,5 @@
 """Macro geometry of gears."""
+
+from loaded_tca.gears.cylindrical import CylindricalGear, CylindricalMesh
+
+__all__ = ["CylindricalGear", "CylindricalMesh"]

@@ -1,0 +1,85 @@
+r"""What a tooth flank is: one function theta = Theta(rho, z) in the gear's own cylindrical frame.
+
+Every solver of the package sees flanks through this class alone; a new gear type is a new subclass.
+
+The tooth has two flanks, told apart by ``side`` (s = +1: the outward normal has a positive azimuthal part).
+With F = theta - Theta the unit normal out of the material is s grad F/|grad F|, where in the cylindrical
+basis grad F = (-Theta_rho, 1/rho, -Theta_z).
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any
+
+import numpy as np
+
+from loaded_tca.flanks.jet import Array, Jet
+
+BORDER_NAMES = ("tip", "root", "lower side", "upper side")
+"""Names of the borders, in the order of ``Flank.borders``; the sides are the ends of the face, lower at
+small z (toe), upper at large z (heel)."""
+
+
+class Flank(ABC):
+    """One side of a tooth: theta = Theta(rho, z) on a region of (rho, z) with four borders.
+
+    Attributes
+    ----------
+    side : int
+        s = +1 or -1, the sign of the azimuthal part of the outward normal.
+    extent : (float, float)
+        Height of the region in rho and its width in z [mm], the natural lengths of steps on the flank.
+    """
+
+    side: int
+    extent: tuple[float, float]
+
+    @abstractmethod
+    def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:
+        """Theta [rad] with its derivatives.
+
+        Parameters
+        ----------
+        rho, z : (...) array [mm]
+            Cylindrical coordinates in the gear's own frame.
+        beyond : (..., creases) bool array, optional
+            The side of each crease whose smooth continuation is wanted; None: the side a point lies on.
+        """
+
+    @abstractmethod
+    def borders(self, rho: Array, z: Array) -> tuple[Jet, ...]:
+        """Distance to each border [mm], positive inside, in the order of ``BORDER_NAMES``."""
+
+    def creases(self, rho: Array, z: Array) -> tuple[Jet, ...]:  # noqa: ARG002 (most flanks have none)
+        """Signed distance to each crease (a line where the slope jumps) [mm], positive beyond it."""
+        return ()
+
+    @abstractmethod
+    def grid(self, profile: int, lengthwise: int) -> tuple[Array, Array]:
+        """(rho, z) on a grid over the region, borders included, each (profile, lengthwise) [mm]."""
+
+    @abstractmethod
+    def profile_coordinate(self, rho: Array, z: Array) -> Jet:
+        """Roll length or the unwound arc, the coordinate of profile modifications [mm or rad]."""
+
+    @abstractmethod
+    def lengthwise_coordinate(self, rho: Array, z: Array) -> Jet:
+        """Distance from the middle of the face, the coordinate of lengthwise modifications [mm]."""
+
+    @abstractmethod
+    def gradient_norm(self, rho: Array, z: Array) -> Jet:
+        """|grad F| of the unmodified flank [1/mm]: what turns a distance along the normal into an angle."""
+
+    def inside(self, rho: Array, z: Array, tolerance: float = 0.0) -> Any:
+        """Whether (rho, z) lies in the region, borders included, to within ``tolerance`` [mm]."""
+        values = [jet.value for jet in self.borders(rho, z)]
+        return np.min(np.stack(np.broadcast_arrays(*values)), axis=0) >= -tolerance
+
+
+def outward_normal(flank: Flank, rho: Array, z: Array) -> Array:
+    """Unit normal out of the material, (..., 3), components along e_rho, e_theta, e_z of the gear's frame."""
+    jet = flank.theta(rho, z)
+    parts = np.broadcast_arrays(-jet.rho, 1.0 / rho, -jet.z)
+    gradient = np.stack(parts, axis=-1) * flank.side
+    return gradient / np.linalg.norm(gradient, axis=-1, keepdims=True)

@@ -1,0 +1,249 @@
+r"""Flank modifications: crownings, reliefs, slopes, as amounts of material removed along the normal.
+
+Every modification of the seeds is a function of one coordinate, the roll length along the profile or the
+distance from the middle of the face, so each is a ``Term``: an amount times a shape of
+t = (coordinate - origin)/length. Terms add up to delta(rho, z) > 0 where material is off, and the flank
+becomes Theta - s delta |grad F| with |grad F| of the unmodified flank.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from loaded_tca.errors import InputError
+from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.jet import Array, Jet
+
+Shape = Callable[[Any], tuple[Any, Any, Any]]
+"""t -> (f, f', f'')."""
+
+CrowningForm = Literal["parabolic", "circular", "logarithmic"]
+ReliefForm = Literal["parabolic", "linear"]
+
+LOGARITHMIC_STEEPNESS = 0.99
+"""k of the logarithmic crowning C ln(1 - k t^2)/ln(1 - k)."""
+
+
+def linear(t: Any) -> tuple[Any, Any, Any]:
+    """f = t."""
+    return t, 1.0, 0.0
+
+
+def parabola(t: Any) -> tuple[Any, Any, Any]:
+    """f = t^2."""
+    return t**2, 2.0 * t, 2.0
+
+
+def one_sided_parabola(t: Any) -> tuple[Any, Any, Any]:
+    """f = t^2 for t > 0, else 0."""
+    positive = np.maximum(t, 0.0)
+    return positive**2, 2.0 * positive, 2.0 * (t > 0.0)
+
+
+def circular_arc(amount: float, half_width: float) -> Shape:
+    """f = (R - sqrt(R^2 - y^2))/C with y = half_width t and R = half_width^2/(2 C) + C/2."""
+    radius = half_width**2 / (2.0 * amount) + 0.5 * amount
+
+    def shape(t: Any) -> tuple[Any, Any, Any]:
+        y = half_width * t
+        root = np.sqrt(np.maximum(radius**2 - y**2, (1e-3 * radius) ** 2))
+        drop = y**2 / (radius + root)
+        return drop / amount, half_width * y / root / amount, (half_width * radius) ** 2 / root**3 / amount
+
+    return shape
+
+
+def logarithmic(t: Any) -> tuple[Any, Any, Any]:
+    """f = ln(1 - k t^2)/ln(1 - k) for |t| <= 1, continued as its own parabola beyond."""
+    k, scale = LOGARITHMIC_STEEPNESS, np.log1p(-LOGARITHMIC_STEEPNESS)
+    inner = np.clip(t, -1.0, 1.0)
+    rest, over = 1.0 - k * inner**2, t - inner
+    slope, bend = -2.0 * k * inner / rest, -2.0 * k * (1.0 + k * inner**2) / rest**2
+    value = np.log1p(-k * inner**2) + slope * over + 0.5 * bend * over**2
+    return value / scale, (slope + bend * over) / scale, bend / scale
+
+
+@dataclass(frozen=True)
+class Term:
+    """amount * shape((coordinate - origin)/length); ``shape`` None is the ramp max(t, 0), which has a crease."""
+
+    direction: Literal["profile", "lengthwise"]
+    amount: float
+    origin: float
+    length: float
+    shape: Shape | None
+
+    def coordinate(self, flank: Flank, rho: Array, z: Array) -> Jet:
+        """T = (coordinate - origin)/length with its derivatives."""
+        along = flank.profile_coordinate if self.direction == "profile" else flank.lengthwise_coordinate
+        return along(rho, z).shifted_scaled(self.origin, self.length)
+
+    def removal(self, flank: Flank, rho: Array, z: Array, beyond: Any) -> Jet:
+        """Material removed [mm]; ``beyond`` picks the branch of a ramp (None: where the point lies)."""
+        t = self.coordinate(flank, rho, z)
+        if self.shape is not None:
+            return t.compose(*self.shape(t.value)) * self.amount
+        on = (t.value > 0.0) if beyond is None else beyond
+        return t * (self.amount * np.where(on, 1.0, 0.0))
+
+
+@dataclass(frozen=True)
+class FlankModifications:
+    """Amounts of the standard modifications, in mm removed along the normal (ISO 21771 names beside).
+
+    Parameters
+    ----------
+    lead_crowning : float [mm]
+        C_beta, at the ends of the face; ``lead_crowning_form``: parabolic, circular or logarithmic.
+    end_relief, end_relief_length : float [mm]
+        C_betaI = C_betaII at both ends, parabolic over the length.
+    profile_crowning : float [mm]
+        C_alpha, at both ends of the active profile.
+    tip_relief, tip_relief_start : float [mm]
+        C_alpha_a at the tip; the **diameter** where it starts. ``tip_relief_form``: parabolic or linear in
+        the roll length.
+    root_relief, root_relief_start : float [mm]
+        C_alpha_f at the start of the active profile; the diameter where it starts.
+    helix_slope, profile_slope : float [mm]
+        C_H_beta and C_H_alpha; may be negative.
+
+    References
+    ----------
+    ISO 21771, clause 5 (flank modifications).
+    """
+
+    lead_crowning: float = 0.0
+    lead_crowning_form: CrowningForm = "parabolic"
+    end_relief: float = 0.0
+    end_relief_length: float = 0.0
+    profile_crowning: float = 0.0
+    tip_relief: float = 0.0
+    tip_relief_start: float = 0.0
+    tip_relief_form: ReliefForm = "parabolic"
+    root_relief: float = 0.0
+    root_relief_start: float = 0.0
+    root_relief_form: ReliefForm = "parabolic"
+    helix_slope: float = 0.0
+    profile_slope: float = 0.0
+
+    def terms(
+        self, face_width: float, profile: tuple[float, float], coordinate: Callable[[float], float]
+    ) -> tuple[Term, ...]:
+        """Terms of every amount that is not zero.
+
+        Parameters
+        ----------
+        face_width : float [mm]
+        profile : (float, float)
+            Profile coordinate at the start of the active profile and at the tip.
+        coordinate : callable
+            Diameter [mm] -> profile coordinate, for the starts of the reliefs.
+        """
+        candidates = (
+            *self._lengthwise(face_width),
+            *self._profile(*profile),
+            *self._reliefs(*profile, coordinate),
+        )
+        return tuple(term for term in candidates if term.amount != 0.0)
+
+    def _lengthwise(self, width: float) -> list[Term]:
+        half, crowning = 0.5 * width, self.lead_crowning
+        shapes: dict[str, Shape] = {"parabolic": parabola, "logarithmic": logarithmic}
+        if self.lead_crowning_form == "circular" and crowning != 0.0:
+            shapes["circular"] = circular_arc(crowning, half)
+        shape = shapes.get(self.lead_crowning_form, parabola)
+        terms = [
+            Term("lengthwise", crowning, 0.0, half, shape),
+            Term("lengthwise", self.helix_slope, -half, width, linear),
+        ]
+        if self.end_relief != 0.0:
+            _require_between("end_relief_length", self.end_relief_length, 0.0, half * (1.0 + 1e-12))
+            start = half - self.end_relief_length
+            for end in (1.0, -1.0):
+                length = end * self.end_relief_length
+                terms.append(Term("lengthwise", self.end_relief, end * start, length, one_sided_parabola))
+        return terms
+
+    def _profile(self, start: float, tip: float) -> list[Term]:
+        middle = 0.5 * (start + tip)
+        return [
+            Term("profile", self.profile_crowning, middle, tip - middle, parabola),
+            Term("profile", self.profile_slope, start, tip - start, linear),
+        ]
+
+    def _reliefs(self, start: float, tip: float, coordinate: Callable[[float], float]) -> list[Term]:
+        reliefs = (
+            ("tip_relief", self.tip_relief, self.tip_relief_start, self.tip_relief_form, tip),
+            ("root_relief", self.root_relief, self.root_relief_start, self.root_relief_form, start),
+        )
+        terms = []
+        for name, amount, diameter, form, end in reliefs:
+            if amount != 0.0:
+                origin = coordinate(diameter)
+                _require_between(f"{name}_start (as roll length, from {diameter:g} mm)", origin, start, tip)
+                shape = one_sided_parabola if form == "parabolic" else None
+                terms.append(Term("profile", amount, origin, end - origin, shape))
+        return terms
+
+
+def _require_between(name: str, value: float, low: float, high: float) -> None:
+    if not low < value < high:
+        raise InputError(f"{name}: {value:.6g} mm is not between {low:.6g} and {high:.6g} mm")
+
+
+class ModifiedFlank(Flank):
+    """A flank with material removed along its normal: Theta - s delta |grad F|.
+
+    Parameters
+    ----------
+    nominal : Flank
+        The unmodified flank, whose region, coordinates and |grad F| are kept.
+    terms : sequence of Term
+        Modifications, added up.
+    """
+
+    def __init__(self, nominal: Flank, terms: tuple[Term, ...]) -> None:
+        self.nominal, self.terms = nominal, terms
+        self.side, self.extent = nominal.side, nominal.extent
+        self._ramps = tuple(term for term in terms if term.shape is None)
+
+    def removal(self, rho: Array, z: Array, beyond: Any = None) -> Jet:
+        """Material removed [mm] by all modifications together."""
+        total = Jet(np.zeros(np.broadcast(rho, z).shape))
+        for term in self.terms:
+            branch = None if beyond is None or term.shape is not None else beyond[..., self._ramps.index(term)]
+            total = total + term.removal(self.nominal, rho, z, branch)
+        return total
+
+    def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:
+        """Theta of the modified flank."""
+        off = self.removal(rho, z, beyond).times(self.nominal.gradient_norm(rho, z))
+        return self.nominal.theta(rho, z) + off * (-float(self.side))
+
+    def creases(self, rho: Array, z: Array) -> tuple[Jet, ...]:
+        """Starts of the linear reliefs, in millimetres of roll length beyond them."""
+        return tuple(term.coordinate(self.nominal, rho, z) * abs(term.length) for term in self._ramps)
+
+    def borders(self, rho: Array, z: Array) -> tuple[Jet, ...]:
+        """Borders of the nominal flank."""
+        return self.nominal.borders(rho, z)
+
+    def grid(self, profile: int, lengthwise: int) -> tuple[Array, Array]:
+        """Grid of the nominal flank."""
+        return self.nominal.grid(profile, lengthwise)
+
+    def profile_coordinate(self, rho: Array, z: Array) -> Jet:
+        """Profile coordinate of the nominal flank."""
+        return self.nominal.profile_coordinate(rho, z)
+
+    def lengthwise_coordinate(self, rho: Array, z: Array) -> Jet:
+        """Lengthwise coordinate of the nominal flank."""
+        return self.nominal.lengthwise_coordinate(rho, z)
+
+    def gradient_norm(self, rho: Array, z: Array) -> Jet:
+        """|grad F| of the nominal flank."""
+        return self.nominal.gradient_norm(rho, z)

@@ -1,0 +1,648 @@
+"""Spur and helical gears and their mesh: external, parallel axes, geometry of ISO 21771.
+
+Lengths are in mm, angles in rad. Tooth thickness, roll lengths and the path of contact are those of the
+transverse section.
+"""
+
+# ruff: noqa: N802  -- the points of the path of contact keep their letters
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import asin, atan, ceil, cos, degrees, hypot, isclose, isfinite, pi, radians, sin, sqrt, tan
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from loaded_tca.errors import GeometryError, InputError
+
+# In modules: a shorter piece of undercut flank is below what gear making can hold (0.3 um at module 3).
+_NEGLIGIBLE_UNDERCUT = 1e-4
+_MAX_PRESSURE_ANGLE = radians(45)
+_MAX_HELIX_ANGLE = radians(60)
+
+
+def involute(angle: float) -> float:
+    """Involute function inv(alpha) = tan(alpha) - alpha [rad]."""
+    return tan(angle) - angle
+
+
+def inverse_involute(value: float) -> float:
+    r"""Angle whose involute function is the value given, to machine precision.
+
+    Newton on :math:`t - \arctan t = \mathrm{inv}\,\alpha` with t = tan(alpha): convex, and started above the
+    root, so that the iterates fall until rounding stops them.
+
+    Parameters
+    ----------
+    value : float [rad]
+        inv(alpha), not negative.
+
+    Examples
+    --------
+    >>> round(degrees(inverse_involute(involute(radians(20)))), 10)
+    20.0
+    """
+    if not 0.0 <= value < float("inf"):
+        raise InputError(f"value: an involute function of {value} rad has no angle between 0 and 90 deg")
+    if value == 0.0:
+        return 0.0
+    tangent = float("inf")
+    smaller = (3.0 * value) ** (1.0 / 3.0) + value
+    while smaller < tangent:
+        tangent = smaller
+        smaller = tangent - (tangent - atan(tangent) - value) * (1.0 + tangent**-2)
+    return atan(tangent)
+
+
+@dataclass(frozen=True)
+class CylindricalGear:
+    """External spur or helical gear, cut by the basic rack of ISO 53.
+
+    The rounded tip of the rack shapes the fillet; where the asked radius does not fit on that tip, the tip is
+    fully rounded (:attr:`rack_tip_radius`).
+
+    Parameters
+    ----------
+    teeth : int
+        Number of teeth z, at least 3.
+    normal_module : float [mm]
+        m_n.
+    face_width : float [mm]
+        b.
+    pressure_angle : float [rad]
+        Normal pressure angle alpha_n at the reference cylinder.
+    helix_angle : float [rad]
+        beta at the reference cylinder; right hand positive, left hand negative.
+    profile_shift : float
+        Coefficient x, in normal modules.
+    tip_diameter : float [mm], optional
+        d_a; None: d + 2 m_n (1 + x), no tip alteration.
+    dedendum_coefficient : float
+        h_fP/m_n of the basic rack.
+    root_radius_coefficient : float
+        rho_fP/m_n of the basic rack.
+    bore_diameter : float [mm], optional
+        For the compliance of the body.
+    name : str
+        What messages call this gear.
+
+    Raises
+    ------
+    InputError
+        If values are out of range; every one is told.
+    GeometryError
+        If the tooth is pointed, or the tip circle lies inside the base circle or the form circle.
+
+    References
+    ----------
+    ISO 21771:2007, Gears - Cylindrical involute gears and gear pairs - Concepts and geometry; ISO 53:1998,
+    profile A.
+
+    Examples
+    --------
+    >>> gear = CylindricalGear(teeth=16, normal_module=4.5, face_width=14.0, profile_shift=0.1817)
+    >>> round(gear.base_radius, 4), round(gear.tip_radius, 3)
+    (33.8289, 41.318)
+    """
+
+    teeth: int
+    normal_module: float
+    face_width: float
+    pressure_angle: float = radians(20)
+    helix_angle: float = 0.0
+    profile_shift: float = 0.0
+    tip_diameter: float | None = None
+    dedendum_coefficient: float = 1.25
+    root_radius_coefficient: float = 0.38
+    bore_diameter: float | None = None
+    name: str = "gear"
+
+    def __post_init__(self) -> None:
+        problems = self._input_problems() or self._rack_problems()
+        if problems:
+            raise InputError(f"{self.name}: {problem}" for problem in problems)
+        self._check_tooth()
+
+    def _input_problems(self) -> list[str]:
+        """Every value that is out of its own range."""
+        problems = []
+        if not (isfinite(self.teeth) and self.teeth == int(self.teeth) and self.teeth >= 3):
+            problems.append(f"teeth: {self.teeth} is not a whole number from 3 on")
+        for key in ("normal_module", "face_width", "tip_diameter", "dedendum_coefficient", "bore_diameter"):
+            value = getattr(self, key)
+            if value is not None and not 0.0 < value < float("inf"):
+                problems.append(f"{key}: {value} is not positive and finite")
+        if not 0.0 < self.pressure_angle < _MAX_PRESSURE_ANGLE:
+            problems.append(f"pressure_angle: {self.pressure_angle:.6g} rad is not between 0 and 0.785 rad (45 deg)")
+        if not abs(self.helix_angle) < _MAX_HELIX_ANGLE:
+            problems.append(f"helix_angle: {self.helix_angle:.6g} rad is not within 1.047 rad (60 deg)")
+        if not isfinite(self.profile_shift):
+            problems.append(f"profile_shift: {self.profile_shift} is not finite")
+        if not 0.0 <= self.root_radius_coefficient < float("inf"):
+            problems.append(f"root_radius_coefficient: {self.root_radius_coefficient} is negative or not finite")
+        return problems
+
+    def _rack_problems(self) -> list[str]:
+        """Tell what values that are fine each on its own cannot do together."""
+        problems = []
+        deepest = pi / 4.0 / tan(self.pressure_angle)
+        if self.dedendum_coefficient >= deepest:
+            problems.append(
+                f"dedendum_coefficient: {self.dedendum_coefficient:.6g} is beyond the point of the rack's"
+                f" tooth; at this pressure angle it must be below {deepest:.4f}"
+            )
+        if self.root_radius <= 0.0:
+            problems.append(
+                f"profile_shift: {self.profile_shift:.6g} makes the root diameter {2.0 * self.root_radius:.6g} mm"
+            )
+        elif self.bore_diameter is not None and self.bore_diameter >= 2.0 * self.root_radius:
+            problems.append(
+                f"bore_diameter: {self.bore_diameter:.6g} mm is not below the root diameter"
+                f" {2.0 * self.root_radius:.6g} mm"
+            )
+        return problems
+
+    def _check_tooth(self) -> None:
+        """Refuse a tooth without flank or without tip."""
+        tip = f"{self.name}: the tip circle, diameter {2.0 * self.tip_radius:.4f} mm,"
+        base = f"the base circle, diameter {2.0 * self.base_radius:.4f} mm"
+        if self.tip_radius <= self.base_radius:
+            raise GeometryError(f"{tip} lies inside {base}")
+        if self.half_thickness_angle_at_base <= 0.0:
+            raise GeometryError(f"{self.name}: pointed tooth: no thickness is left at {base}; increase profile_shift")
+        if self.tooth_thickness_at(self.tip_radius) <= 0.0:
+            raise GeometryError(
+                f"{tip} cannot be reached: pointed tooth, its flanks meet at diameter"
+                f" {2.0 * self.pointed_radius:.4f} mm; reduce tip_diameter or profile_shift"
+            )
+        if self.tip_radius <= self.form_radius:
+            raise GeometryError(
+                f"{tip} lies inside the form circle, diameter {2.0 * self.form_radius:.4f} mm: no flank left"
+            )
+
+    @property
+    def transverse_module(self) -> float:
+        """m_t = m_n/cos(beta) [mm]."""
+        return self.normal_module / cos(self.helix_angle)
+
+    @property
+    def transverse_pressure_angle(self) -> float:
+        """alpha_t, tan(alpha_t) = tan(alpha_n)/cos(beta) [rad]."""
+        return atan(tan(self.pressure_angle) / cos(self.helix_angle))
+
+    @property
+    def base_helix_angle(self) -> float:
+        """beta_b, sin(beta_b) = sin(beta) cos(alpha_n), signed as the helix angle [rad]."""
+        return asin(sin(self.helix_angle) * cos(self.pressure_angle))
+
+    @property
+    def base_pitch(self) -> float:
+        """Transverse base pitch p_et = pi m_t cos(alpha_t) [mm]."""
+        return pi * self.transverse_module * cos(self.transverse_pressure_angle)
+
+    @property
+    def reference_radius(self) -> float:
+        """Reference radius r = d/2 = z m_t/2 [mm]."""
+        return 0.5 * self.teeth * self.transverse_module
+
+    @property
+    def base_radius(self) -> float:
+        """r_b = r cos(alpha_t) [mm]."""
+        return self.reference_radius * cos(self.transverse_pressure_angle)
+
+    @property
+    def tip_radius(self) -> float:
+        """r_a = d_a/2 [mm]."""
+        if self.tip_diameter is not None:
+            return 0.5 * self.tip_diameter
+        return self.reference_radius + self.normal_module * (1.0 + self.profile_shift)
+
+    @property
+    def tip_alteration(self) -> float:
+        """Tip alteration k m_n = r_a - r - m_n (1 + x), negative for a shortened tooth [mm]."""
+        return self.tip_radius - self.reference_radius - self.normal_module * (1.0 + self.profile_shift)
+
+    @property
+    def root_radius(self) -> float:
+        """r_f = r - m_n (h_fP/m_n - x) [mm]."""
+        return self.reference_radius - self.normal_module * (self.dedendum_coefficient - self.profile_shift)
+
+    @property
+    def pointed_radius(self) -> float:
+        """Radius at which the two flanks of a tooth meet [mm]."""
+        return self.base_radius / cos(inverse_involute(self.half_thickness_angle_at_base))
+
+    @property
+    def tooth_thickness(self) -> float:
+        """Transverse tooth thickness s_t at the reference cylinder, an arc [mm]."""
+        return self.transverse_module * (0.5 * pi + 2.0 * self.profile_shift * tan(self.pressure_angle))
+
+    @property
+    def half_thickness_angle_at_base(self) -> float:
+        """Half tooth thickness angle at the base circle, psi_b = s_t/(2 r) + inv(alpha_t) [rad]."""
+        return 0.5 * self.tooth_thickness / self.reference_radius + involute(self.transverse_pressure_angle)
+
+    def tooth_thickness_at(self, radius: float) -> float:
+        """Transverse tooth thickness at a radius, an arc: 2 r (psi_b - inv(alpha_r)) [mm]."""
+        tangent = self.roll_length(radius) / self.base_radius
+        return 2.0 * radius * (self.half_thickness_angle_at_base - (tangent - atan(tangent)))
+
+    def roll_length(self, radius: float) -> float:
+        """Roll length of the involute at a radius, sqrt(r^2 - r_b^2) [mm]; zero at the base circle."""
+        if radius < self.base_radius * (1.0 - 1e-12):
+            raise InputError(
+                f"{self.name}: radius {radius:.6g} mm lies inside the base circle, radius {self.base_radius:.6g} mm"
+            )
+        return sqrt(max(0.0, (radius - self.base_radius) * (radius + self.base_radius)))
+
+    def radius_at_roll_length(self, roll_length: float) -> float:
+        """Radius of the involute at a roll length, sqrt(a^2 + r_b^2) [mm]."""
+        return hypot(roll_length, self.base_radius)
+
+    @property
+    def rack_tip_radius(self) -> float:
+        """Tip rounding rho_fP of the basic rack, at most the full rounding of its tip [mm]."""
+        sine, cosine = sin(self.pressure_angle), cos(self.pressure_angle)
+        tip_half_width = pi / 4.0 - self.dedendum_coefficient * sine / cosine
+        full_rounding = tip_half_width * cosine / (1.0 - sine)
+        return self.normal_module * min(self.root_radius_coefficient, full_rounding)
+
+    @property
+    def rack_form_depth(self) -> float:
+        """Depth h_FfP = h_fP - rho_fP (1 - sin(alpha_n)) of the straight part of the basic rack [mm]."""
+        dedendum = self.normal_module * self.dedendum_coefficient
+        return dedendum - self.rack_tip_radius * (1.0 - sin(self.pressure_angle))
+
+    @property
+    def rack_form_roll_length(self) -> float:
+        """Roll length where the straight part of the rack ends; negative if the rack undercuts [mm]."""
+        depth = self.rack_form_depth - self.normal_module * self.profile_shift
+        sine = sin(self.transverse_pressure_angle)
+        return self.reference_radius * sine - depth / sine
+
+    @property
+    def is_undercut(self) -> bool:
+        """Whether the rounded tip of the rack cuts into the involute."""
+        return self.rack_form_roll_length < 0.0
+
+    @property
+    def smallest_profile_shift(self) -> float:
+        """Profile shift x below which the basic rack undercuts this gear."""
+        sine = sin(self.transverse_pressure_angle)
+        return (self.rack_form_depth - self.reference_radius * sine**2) / self.normal_module
+
+    @cached_property
+    def form_radius(self) -> float:
+        """r_Ff = d_Ff/2, where fillet and involute meet; never inside the base circle [mm]."""
+        if not self.is_undercut:
+            return self.radius_at_roll_length(self.rack_form_roll_length)
+        return max(self.base_radius, float(self._fillet(self._fillet_start)[0]))
+
+    def root_fillet(self, points: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Transverse root fillet that the rounded tip of the rack cuts, from form circle to root circle.
+
+        Parameters
+        ----------
+        points : int
+            Number of points.
+
+        Returns
+        -------
+        radius, half_thickness_angle : (points,) [mm], (points,) [rad]
+            Polar coordinates about the gear's axis, the angle counted from the middle of the tooth.
+        """
+        return self._fillet(np.linspace(self._fillet_start, 0.5 * pi, points))
+
+    def _fillet(self, slope: float | NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Radius and half thickness angle that a point of the rack's rounding cuts.
+
+        ``slope`` is the angle of its normal to the rack's reference line in the normal section, from alpha_n
+        (end of the straight flank) to pi/2 (tip). The circle of the normal section, stretched by 1/cos(beta),
+        is an ellipse in the transverse one; its point cuts when the transverse normal meets the pitch point.
+        """
+        rounding, twist = self.rack_tip_radius, cos(self.helix_angle)
+        flank_end = pi / 4.0 * self.normal_module - self.rack_form_depth * tan(self.pressure_angle)
+        along = (flank_end + rounding * (np.cos(slope) - cos(self.pressure_angle))) / twist
+        above = (
+            self.normal_module * self.profile_shift
+            - self.rack_form_depth
+            - rounding * (np.sin(slope) - sin(self.pressure_angle))
+        )
+        offset = -above * twist * np.cos(slope) / np.sin(slope)
+        space = np.arctan2(offset, self.reference_radius + above) - (offset - along) / self.reference_radius
+        return np.hypot(self.reference_radius + above, offset), pi / self.teeth - space
+
+    @cached_property
+    def _fillet_start(self) -> float:
+        """Slope of the rack's normal where the fillet leaves the involute.
+
+        That is at the end of the straight flank if there is no undercut; also, or at the base circle, if the
+        undercut is so slight that rounding hides it.
+        """
+        flank_end = self.pressure_angle
+        if not self.is_undercut or self._above_base(flank_end) <= 0.0:
+            return flank_end
+        if self._cut_into_flank(flank_end) >= 0.0:
+            return flank_end
+        at_base: float = brentq(self._above_base, flank_end, 0.5 * pi)
+        if self._cut_into_flank(at_base) <= 0.0:
+            return at_base
+        crossing: float = brentq(self._cut_into_flank, flank_end, at_base)
+        return crossing
+
+    def _above_base(self, slope: float) -> float:
+        """Height of a point of the fillet above the base circle [mm]."""
+        return float(self._fillet(slope)[0]) - self.base_radius
+
+    def _cut_into_flank(self, slope: float) -> float:
+        """Angle by which the fillet lies behind the involute; negative: in front of it, in the space."""
+        radius, half_thickness_angle = self._fillet(slope)
+        tangent = sqrt(max(0.0, (float(radius) / self.base_radius) ** 2 - 1.0))
+        return self.half_thickness_angle_at_base - (tangent - atan(tangent)) - float(half_thickness_angle)
+
+
+@dataclass(frozen=True)
+class ActiveProfile:
+    """The part of a flank that the mate uses at nominal mounting.
+
+    Parameters
+    ----------
+    start_radius, end_radius : float [mm]
+        d_Nf/2, where the mate's tip ends on this flank, or the form circle if larger; d_Na/2, the own tip.
+    start_roll_length, end_roll_length : float [mm]
+        The same as lengths on the line of action.
+    fillet_interference : bool
+        The mate's tip reaches below the form circle.
+    """
+
+    start_radius: float
+    end_radius: float
+    start_roll_length: float
+    end_roll_length: float
+    fillet_interference: bool
+
+
+@dataclass(frozen=True)
+class PathOfContact:
+    """Points of the path of contact in the transverse section, as lengths from T1 on the line of action [mm].
+
+    T1, T2: the line of action touches the base circles. A, E: contact starts and ends (pinion driving). B, D:
+    beginning and end of single contact, a base pitch before E and behind A. C: pitch point.
+    """
+
+    A: float
+    B: float
+    C: float
+    D: float
+    E: float
+    T2: float
+    T1: float = 0.0
+
+    @property
+    def T1T2(self) -> float:
+        """Whole line of action between the base circles [mm]."""
+        return self.T2 - self.T1
+
+    @property
+    def AB(self) -> float:
+        """Length of the first double contact, negative for a contact ratio below 1 [mm]."""
+        return self.B - self.A
+
+    @property
+    def AC(self) -> float:
+        """Length of approach [mm]."""
+        return self.C - self.A
+
+    @property
+    def AD(self) -> float:
+        """A base pitch [mm]."""
+        return self.D - self.A
+
+    @property
+    def AE(self) -> float:
+        """Length of the path of contact g_alpha [mm]."""
+        return self.E - self.A
+
+
+@dataclass(frozen=True)
+class CylindricalMesh:
+    """Two cylindrical gears on parallel axes.
+
+    Parameters
+    ----------
+    pinion, wheel : CylindricalGear
+        Of one normal module and normal pressure angle, with opposite hands.
+    centre_distance : float [mm], optional
+        a; None: the one without backlash (:attr:`working_centre_distance`). Never refused for its backlash.
+
+    Raises
+    ------
+    InputError
+        If the gears do not fit each other.
+    GeometryError
+        If the centre distance leaves no common flank, or an undercut takes away flank that the mate uses.
+
+    References
+    ----------
+    ISO 21771:2007, Gears - Cylindrical involute gears and gear pairs - Concepts and geometry.
+
+    Examples
+    --------
+    >>> pinion = CylindricalGear(teeth=16, normal_module=4.5, face_width=14.0, profile_shift=0.1817)
+    >>> wheel = CylindricalGear(teeth=24, normal_module=4.5, face_width=14.0, profile_shift=0.1715)
+    >>> mesh = CylindricalMesh(pinion, wheel, centre_distance=91.5)
+    >>> round(mesh.transverse_contact_ratio, 2), round(degrees(mesh.working_pressure_angle), 5)
+    (1.46, 22.43879)
+    """
+
+    pinion: CylindricalGear
+    wheel: CylindricalGear
+    centre_distance: float | None = None
+
+    def __post_init__(self) -> None:
+        problems = self._input_problems()
+        if problems:
+            raise InputError(problems)
+        self._check_centre_distance()
+        for gear, mate in self._both_ways:
+            self._check_undercut(gear, mate)
+        if self.path_of_contact.AE <= 0.0:
+            raise GeometryError(
+                f"{self.pinion.name} and {self.wheel.name}: no common flank at centre distance"
+                f" {self.working_centre_distance:.6g} mm: on the line of action the usable flanks end"
+                f" {-self.path_of_contact.AE:.4f} mm apart"
+            )
+
+    @property
+    def _both_ways(
+        self,
+    ) -> tuple[tuple[CylindricalGear, CylindricalGear], tuple[CylindricalGear, CylindricalGear]]:
+        """(gear, its mate), from either side."""
+        return (self.pinion, self.wheel), (self.wheel, self.pinion)
+
+    def _input_problems(self) -> list[str]:
+        """Every reason why the two gears are no pair."""
+        first, second = self.pinion, self.wheel
+        problems = []
+        if not isclose(first.normal_module, second.normal_module, rel_tol=1e-12):
+            problems.append(f"normal_module: {first.normal_module} and {second.normal_module} mm must be equal")
+        if not isclose(first.pressure_angle, second.pressure_angle, rel_tol=1e-12):
+            angles = f"{degrees(first.pressure_angle):.6g} and {degrees(second.pressure_angle):.6g} deg"
+            problems.append(f"pressure_angle: {angles} must be equal")
+        if not isclose(first.helix_angle, -second.helix_angle, rel_tol=1e-12):
+            angles = f"{degrees(first.helix_angle):.6g} and {degrees(second.helix_angle):.6g} deg"
+            problems.append(f"helix_angle: {angles} must be opposite hands of one angle")
+        if self.centre_distance is not None and not 0.0 < self.centre_distance < float("inf"):
+            problems.append(f"centre_distance: {self.centre_distance} mm is not positive and finite")
+        return problems
+
+    def _check_centre_distance(self) -> None:
+        """Refuse base circles that overlap or only touch."""
+        smallest = self.pinion.base_radius + self.wheel.base_radius
+        if self.centre_distance is None and self._involute_without_backlash <= 0.0:
+            raise GeometryError(
+                f"profile_shift: for the sum {self._profile_shift_sum:.6g} no centre distance is without"
+                f" backlash; give a centre_distance above {smallest:.4f} mm"
+            )
+        if self.working_centre_distance <= smallest:
+            raise GeometryError(
+                f"centre_distance: {self.working_centre_distance:.6g} mm is not above {smallest:.4f} mm,"
+                " the sum of the base radii"
+            )
+
+    def _check_undercut(self, gear: CylindricalGear, mate: CylindricalGear) -> None:
+        """Refuse an undercut that takes away flank which the mate uses."""
+        wanted = gear.radius_at_roll_length(max(0.0, self._roll_length_at_tip_of(mate)))
+        if gear.is_undercut and gear.form_radius - wanted > _NEGLIGIBLE_UNDERCUT * gear.normal_module:
+            enough = ceil(1e4 * gear.smallest_profile_shift) / 1e4
+            raise GeometryError(
+                f"{gear.name}: undercut up to diameter {2.0 * gear.form_radius:.4f} mm, where the tip of the"
+                f" {mate.name} needs the flank down to {2.0 * wanted:.4f} mm; a profile_shift of at least"
+                f" {enough:.4f} avoids it"
+            )
+
+    def _roll_length_at_tip_of(self, mate: CylindricalGear) -> float:
+        """Roll length on a gear where the tip of its mate touches; negative beyond the base circle [mm]."""
+        return self._line_of_action - mate.roll_length(mate.tip_radius)
+
+    @property
+    def _line_of_action(self) -> float:
+        """T1T2 = a sin(alpha_wt) [mm], without the loss of digits of the sine near alpha_wt = 0."""
+        base = self.pinion.base_radius + self.wheel.base_radius
+        return sqrt((self.working_centre_distance - base) * (self.working_centre_distance + base))
+
+    @property
+    def _profile_shift_sum(self) -> float:
+        return self.pinion.profile_shift + self.wheel.profile_shift
+
+    @property
+    def _involute_without_backlash(self) -> float:
+        """inv(alpha_wt) at which the profile shifts leave no backlash [rad]."""
+        teeth = self.pinion.teeth + self.wheel.teeth
+        shift = 2.0 * self._profile_shift_sum * tan(self.pinion.pressure_angle) / teeth
+        return involute(self.pinion.transverse_pressure_angle) + shift
+
+    @property
+    def gear_ratio(self) -> float:
+        """Gear ratio u = z2/z1."""
+        return self.wheel.teeth / self.pinion.teeth
+
+    @cached_property
+    def working_centre_distance(self) -> float:
+        """Centre distance as given, or without backlash from the profile shifts [mm]."""
+        if self.centre_distance is not None:
+            return self.centre_distance
+        base = self.pinion.base_radius + self.wheel.base_radius
+        return base / cos(inverse_involute(self._involute_without_backlash))
+
+    @property
+    def working_pressure_angle(self) -> float:
+        """Transverse working pressure angle alpha_wt, cos(alpha_wt) = (r_b1 + r_b2)/a [rad]."""
+        return atan(self._line_of_action / (self.pinion.base_radius + self.wheel.base_radius))
+
+    @property
+    def profile_shift_sum_without_backlash(self) -> float:
+        """x1 + x2 that would leave no backlash at this centre distance."""
+        difference = involute(self.working_pressure_angle) - involute(self.pinion.transverse_pressure_angle)
+        return 0.5 * (self.pinion.teeth + self.wheel.teeth) * difference / tan(self.pinion.pressure_angle)
+
+    @property
+    def pinion_working_radius(self) -> float:
+        """r_w1 = a z1/(z1 + z2) [mm]."""
+        return self.working_centre_distance / (1.0 + self.gear_ratio)
+
+    @property
+    def wheel_working_radius(self) -> float:
+        """r_w2 = a z2/(z1 + z2) [mm]."""
+        return self.working_centre_distance * self.gear_ratio / (1.0 + self.gear_ratio)
+
+    @property
+    def backlash(self) -> float:
+        """Circumferential backlash j_wt at the working circles; negative where the teeth overlap [mm]."""
+        pitch = 2.0 * pi * self.pinion_working_radius / self.pinion.teeth
+        first = self.pinion.tooth_thickness_at(self.pinion_working_radius)
+        return pitch - first - self.wheel.tooth_thickness_at(self.wheel_working_radius)
+
+    @property
+    def pinion_active_profile(self) -> ActiveProfile:
+        """Part of the pinion's flank that the wheel uses."""
+        return self._active_profile(self.pinion, self.wheel)
+
+    @property
+    def wheel_active_profile(self) -> ActiveProfile:
+        """Part of the wheel's flank that the pinion uses."""
+        return self._active_profile(self.wheel, self.pinion)
+
+    def _active_profile(self, gear: CylindricalGear, mate: CylindricalGear) -> ActiveProfile:
+        form, wanted = gear.roll_length(gear.form_radius), self._roll_length_at_tip_of(mate)
+        start = max(form, wanted)
+        return ActiveProfile(
+            start_radius=gear.radius_at_roll_length(start),
+            end_radius=gear.tip_radius,
+            start_roll_length=start,
+            end_roll_length=gear.roll_length(gear.tip_radius),
+            fillet_interference=wanted < form,
+        )
+
+    @property
+    def path_of_contact(self) -> PathOfContact:
+        """Points T1, A, B, C, D, E, T2 on the line of action."""
+        start = self.pinion_active_profile.start_roll_length
+        end = self._line_of_action - self.wheel_active_profile.start_roll_length
+        return PathOfContact(
+            A=start,
+            B=end - self.pinion.base_pitch,
+            C=self._line_of_action / (1.0 + self.gear_ratio),
+            D=start + self.pinion.base_pitch,
+            E=end,
+            T2=self._line_of_action,
+        )
+
+    @property
+    def common_face_width(self) -> float:
+        """Face width that both gears cover, mid-faces together [mm]."""
+        return min(self.pinion.face_width, self.wheel.face_width)
+
+    @property
+    def transverse_contact_ratio(self) -> float:
+        """eps_alpha = g_alpha/p_et."""
+        return self.path_of_contact.AE / self.pinion.base_pitch
+
+    @property
+    def overlap_ratio(self) -> float:
+        """eps_beta = b sin(|beta|)/(pi m_n), b the common face width."""
+        return self.common_face_width * sin(abs(self.pinion.helix_angle)) / (pi * self.pinion.normal_module)
+
+    @property
+    def total_contact_ratio(self) -> float:
+        """eps_gamma = eps_alpha + eps_beta."""
+        return self.transverse_contact_ratio + self.overlap_ratio
+
+    def base_tangential_force(self, pinion_torque: float) -> float:
+        """F_bt = T1/r_b1, along the line of action in the transverse section [N]; torque in N mm."""
+        return pinion_torque / self.pinion.base_radius
+
+    def normal_force(self, pinion_torque: float) -> float:
+        """F_bn = F_bt/cos(beta_b), the force normal to the flanks [N]; torque in N mm."""
+        return self.base_tangential_force(pinion_torque) / cos(self.pinion.base_helix_angle)

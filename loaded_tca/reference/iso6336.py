@@ -1,0 +1,292 @@
+"""Closed forms of ISO 6336 for external cylindrical gears: contact stress at the pitch point, mesh stiffness.
+
+Plain numbers in, plain numbers out: lengths in mm, angles in rad, forces in N, moduli and stresses in MPa,
+stiffnesses in N/(mm um), that is N/um per mm of face width. Formulas as in the editions from 2006 on;
+the examples are the numbers of ISO/TR 6336-30:2017, example 1.
+"""
+
+from math import asin, cos, degrees, inf, pi, radians, sin, sqrt
+
+from loaded_tca.errors import InputError
+
+_STEEL = 206000.0
+_THEORETICAL_TO_REAL = 0.8  # C_M: measured single stiffness over the theoretical one, for solid discs
+
+
+def zone_factor(transverse_pressure_angle: float, working_pressure_angle: float, base_helix_angle: float) -> float:
+    r"""Zone factor Z_H: curvature at the pitch point.
+
+    .. math:: Z_H = \sqrt{\frac{2 \cos\beta_b \cos\alpha_{wt}}{\cos^2\alpha_t \sin\alpha_{wt}}}
+
+    Parameters
+    ----------
+    transverse_pressure_angle, working_pressure_angle, base_helix_angle : float [rad]
+        alpha_t, alpha_wt, beta_b.
+
+    References
+    ----------
+    ISO 6336-2:2006, zone factor.
+
+    Examples
+    --------
+    >>> angles = [radians(angle) for angle in (20.719712, 21.066100, 14.824535)]
+    >>> round(zone_factor(*angles), 5)
+    2.39533
+    """
+    if not 0.0 < working_pressure_angle < 0.5 * pi:
+        raise InputError(f"working_pressure_angle: {working_pressure_angle} rad is not between 0 and 90 deg")
+    curvature = cos(base_helix_angle) * cos(working_pressure_angle) / sin(working_pressure_angle)
+    return sqrt(2.0 * curvature) / cos(transverse_pressure_angle)
+
+
+def elasticity_factor(contact_modulus: float) -> float:
+    r"""Elasticity factor Z_E [MPa^0.5].
+
+    .. math:: Z_E = \sqrt{E^*/\pi},\qquad 1/E^* = (1 - \nu_1^2)/E_1 + (1 - \nu_2^2)/E_2
+
+    Parameters
+    ----------
+    contact_modulus : float [MPa]
+        E*.
+
+    References
+    ----------
+    ISO 6336-2:2006, elasticity factor.
+
+    Examples
+    --------
+    >>> round(elasticity_factor(206000.0 / (2.0 * (1.0 - 0.3**2))), 4)
+    189.8117
+    """
+    _require_positive(contact_modulus=contact_modulus)
+    return sqrt(contact_modulus / pi)
+
+
+def contact_ratio_factor(transverse_contact_ratio: float, overlap_ratio: float) -> float:
+    r"""Contact ratio factor Z_eps: length of the lines of contact.
+
+    .. math::
+        Z_\varepsilon = \sqrt{\frac{4 - \varepsilon_\alpha}{3} (1 - \varepsilon_\beta)
+        + \frac{\varepsilon_\beta}{\varepsilon_\alpha}}
+
+    with 1 in the place of an overlap ratio above 1.
+
+    References
+    ----------
+    ISO 6336-2:2006, contact ratio factor.
+
+    Examples
+    --------
+    >>> round(contact_ratio_factor(1.549090, 1.083369), 3)
+    0.803
+    """
+    _require_positive(transverse_contact_ratio=transverse_contact_ratio)
+    if not 0.0 <= overlap_ratio < float("inf"):
+        raise InputError(f"overlap_ratio: {overlap_ratio} is negative or not finite")
+    overlap = min(1.0, overlap_ratio)
+    return sqrt((4.0 - transverse_contact_ratio) / 3.0 * (1.0 - overlap) + overlap / transverse_contact_ratio)
+
+
+def helix_angle_factor(helix_angle: float) -> float:
+    r"""Helix angle factor Z_beta of the editions from 2006 on.
+
+    .. math:: Z_\beta = 1/\sqrt{\cos\beta}
+
+    References
+    ----------
+    ISO 6336-2:2006, helix angle factor.
+
+    Examples
+    --------
+    >>> round(helix_angle_factor(radians(15.8)), 5)
+    1.01944
+    """
+    return 1.0 / sqrt(cos(helix_angle))
+
+
+def nominal_contact_stress(
+    tangential_force: float,
+    pinion_reference_diameter: float,
+    face_width: float,
+    gear_ratio: float,
+    factors: float,
+) -> float:
+    r"""Nominal contact stress at the pitch point sigma_H0 [MPa].
+
+    .. math::
+        \sigma_{H0} = Z_H Z_E Z_\varepsilon Z_\beta \sqrt{\frac{F_t}{d_1 b}\,\frac{u + 1}{u}}
+
+    Parameters
+    ----------
+    tangential_force : float [N]
+        F_t at the reference cylinder, 2 T_1/d_1.
+    pinion_reference_diameter, face_width : float [mm]
+        d_1, b.
+    gear_ratio : float
+        Teeth of the wheel over teeth of the pinion, u.
+    factors : float [MPa^0.5]
+        Product of Z_H, Z_E, Z_eps and Z_beta.
+
+    References
+    ----------
+    ISO 6336-2:2006, nominal contact stress.
+
+    Examples
+    --------
+    >>> factors = 2.39533 * 189.81170 * 0.803456 * 1.01944
+    >>> round(nominal_contact_stress(127352.0, 141.340, 100.0, 103 / 17, factors), 1)
+    1206.6
+    """
+    _require_positive(
+        tangential_force=tangential_force,
+        pinion_reference_diameter=pinion_reference_diameter,
+        face_width=face_width,
+        gear_ratio=gear_ratio,
+        factors=factors,
+    )
+    load = tangential_force / (pinion_reference_diameter * face_width)
+    return factors * sqrt(load * (gear_ratio + 1.0) / gear_ratio)
+
+
+def virtual_teeth(teeth: int, helix_angle: float, pressure_angle: float) -> float:
+    r"""Teeth z_n of the spur gear with the tooth of a helical gear's normal section.
+
+    .. math:: z_n = \frac{z}{\cos^2\beta_b \cos\beta},\qquad \sin\beta_b = \sin\beta \cos\alpha_n
+
+    Parameters
+    ----------
+    teeth : int
+        z.
+    helix_angle, pressure_angle : float [rad]
+        beta, alpha_n.
+
+    References
+    ----------
+    ISO 6336-3:2006, virtual number of teeth.
+
+    Examples
+    --------
+    >>> round(virtual_teeth(17, radians(15.8), radians(20)), 3)
+    18.905
+    """
+    base_helix_angle = asin(sin(helix_angle) * cos(pressure_angle))
+    return teeth / (cos(base_helix_angle) ** 2 * cos(helix_angle))
+
+
+def theoretical_single_stiffness(virtual_teeth: tuple[float, float], profile_shifts: tuple[float, float]) -> float:
+    r"""Theoretical single stiffness c'_th of a steel tooth pair of the basic rack of ISO 53 [N/(mm um)].
+
+    .. math::
+        1/c'_{th} = 0.04723 + \frac{0.15551}{z_{n1}} + \frac{0.25791}{z_{n2}} - 0.00635\,x_1
+        - 0.11654\,\frac{x_1}{z_{n1}} - 0.00193\,x_2 - 0.24188\,\frac{x_2}{z_{n2}}
+        + 0.00529\,x_1^2 + 0.00182\,x_2^2
+
+    The series was fitted for :math:`x_1 \ge x_2` and :math:`-0.5 \le x_1 + x_2 \le 2`.
+
+    Parameters
+    ----------
+    virtual_teeth, profile_shifts : (float, float)
+        z_n and x of pinion and wheel.
+
+    References
+    ----------
+    ISO 6336-1:2006, tooth stiffness parameters, method B.
+
+    Examples
+    --------
+    >>> round(theoretical_single_stiffness((18.905, 114.543), (0.145, 0.0)), 4)
+    17.8558
+    """
+    (z1, z2), (x1, x2) = virtual_teeth, profile_shifts
+    _require_positive(pinion_virtual_teeth=z1, wheel_virtual_teeth=z2)
+    teeth = 0.15551 / z1 + 0.25791 / z2 - 0.11654 * x1 / z1 - 0.24188 * x2 / z2
+    return 1.0 / (0.04723 + teeth - 0.00635 * x1 - 0.00193 * x2 + 0.00529 * x1**2 + 0.00182 * x2**2)
+
+
+def basic_rack_factor(dedendum_coefficient: float = 1.25, pressure_angle: float = radians(20)) -> float:
+    r"""Factor C_B of the basic rack: deeper teeth are softer, greater pressure angles stiffer.
+
+    .. math:: C_B = [1 + 0.5\,(1.2 - h_{fP}/m_n)]\,[1 - 0.02\,(20° - \alpha_n)]
+
+    Parameters
+    ----------
+    dedendum_coefficient : float
+        h_fP/m_n.
+    pressure_angle : float [rad]
+        alpha_n.
+
+    References
+    ----------
+    ISO 6336-1:2006, tooth stiffness parameters, method B.
+
+    Examples
+    --------
+    >>> round(basic_rack_factor(1.4), 12)
+    0.9
+    """
+    depth = 1.0 + 0.5 * (1.2 - dedendum_coefficient)
+    return depth * (1.0 - 0.02 * (20.0 - degrees(pressure_angle)))
+
+
+def single_stiffness(
+    theoretical_single_stiffness: float,
+    helix_angle: float,
+    *,
+    basic_rack_factor: float = 1.0,
+    gear_blank_factor: float = 1.0,
+    youngs_modulus: float = _STEEL,
+) -> float:
+    r"""Single stiffness c' of a tooth pair under more than 100 N/mm of load [N/(mm um)].
+
+    .. math:: c' = 0.8\,c'_{th} C_R C_B \cos\beta\,E/E_{St}
+
+    Parameters
+    ----------
+    theoretical_single_stiffness : float [N/(mm um)]
+        c'_th.
+    helix_angle : float [rad]
+        beta.
+    basic_rack_factor, gear_blank_factor : float
+        C_B; C_R, 1 for solid discs.
+    youngs_modulus : float [MPa]
+        E of both gears; of different materials, 2 E1 E2/(E1 + E2).
+
+    References
+    ----------
+    ISO 6336-1:2006, tooth stiffness parameters, method B.
+
+    Examples
+    --------
+    >>> round(single_stiffness(17.85584, radians(15.8), basic_rack_factor=0.9), 5)
+    12.37047
+    """
+    _require_positive(theoretical_single_stiffness=theoretical_single_stiffness, youngs_modulus=youngs_modulus)
+    solid = _THEORETICAL_TO_REAL * theoretical_single_stiffness * cos(helix_angle) * youngs_modulus / _STEEL
+    return solid * gear_blank_factor * basic_rack_factor
+
+
+def mesh_stiffness(single_stiffness: float, transverse_contact_ratio: float) -> float:
+    r"""Mean mesh stiffness c_gamma_alpha [N/(mm um)].
+
+    .. math:: c_{\gamma\alpha} = c'\,(0.75\,\varepsilon_\alpha + 0.25)
+
+    for a transverse contact ratio of at least 1.2.
+
+    References
+    ----------
+    ISO 6336-1:2006, tooth stiffness parameters, method B.
+
+    Examples
+    --------
+    >>> round(mesh_stiffness(12.37047, 1.549090), 4)
+    17.4648
+    """
+    _require_positive(single_stiffness=single_stiffness, transverse_contact_ratio=transverse_contact_ratio)
+    return single_stiffness * (0.75 * transverse_contact_ratio + 0.25)
+
+
+def _require_positive(**values: float) -> None:
+    """Raise one InputError naming every value that is not positive and finite."""
+    problems = [f"{key}: {value} is not positive and finite" for key, value in values.items() if not 0.0 < value < inf]
+    if problems:
+        raise InputError(problems)

@@ -1,0 +1,192 @@
+"""What a key of a scene file may hold: a kind of value with its range, told in the same words everywhere."""
+
+from __future__ import annotations
+
+import difflib
+import unicodedata
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from numbers import Integral, Real
+from typing import Any, Protocol
+
+from loaded_tca.scene.text import shown
+
+REQUIRED: Any = object()
+"""Default of a key that has none."""
+
+
+class Kind(Protocol):
+    """Turns a value found in a file into the value of a scene, or refuses it with a ValueError."""
+
+    @property
+    def allowed(self) -> str:
+        """What the key may hold, to be read after the word "allowed"."""
+
+    def read(self, value: Any) -> Any:
+        """Return the value in its canonical type; ValueError: "found ...; allowed ..."."""
+
+
+def _is_a(value: Any, number: type) -> bool:
+    return isinstance(value, number) and not isinstance(value, bool)
+
+
+def _refusal(kind: Kind, value: Any, hint: str = "") -> ValueError:
+    return ValueError(f"found {shown(value)}; allowed {kind.allowed}{hint}")
+
+
+@dataclass(frozen=True)
+class Number:
+    """A finite number between two limits; ``above`` leaves the lower limit itself out."""
+
+    low: float
+    high: float
+    above: bool = False
+
+    @property
+    def allowed(self) -> str:
+        """The range in words."""
+        if self.above:
+            return f"a number above {self.low:g}, up to {self.high:g}"
+        return f"a number from {self.low:g} to {self.high:g}"
+
+    def read(self, value: Any) -> float:
+        """Take whole numbers and floats, no booleans, NaN or infinities."""
+        if not _is_a(value, Real) or not self.low <= value <= self.high or (self.above and value == self.low):
+            raise _refusal(self, value)
+        return float(value)
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A whole number between two limits, both allowed."""
+
+    low: int
+    high: int
+
+    @property
+    def allowed(self) -> str:
+        """The range in words."""
+        return f"a whole number from {self.low} to {self.high}"
+
+    def read(self, value: Any) -> int:
+        """Take whole numbers only; 3.0 is none."""
+        if not _is_a(value, Integral) or not self.low <= value <= self.high:
+            raise _refusal(self, value)
+        return int(value)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of a few words (or of true and false); ``later`` are known but not available in this version."""
+
+    options: tuple[str | bool, ...]
+    later: tuple[str | bool, ...] = ()
+
+    @property
+    def allowed(self) -> str:
+        """The options in words."""
+        return " or ".join(shown(option) for option in self.options)
+
+    def read(self, value: Any) -> str | bool:
+        """Return the option that equals the value."""
+        for option in self.options:
+            if type(value) is type(option) and value == option:
+                return option
+        if any(type(value) is type(option) and value == option for option in self.later):
+            raise ValueError(f"{shown(value)} is not available in this version; allowed {self.allowed}")
+        raise _refusal(self, value, self._hint(value))
+
+    def _hint(self, value: Any) -> str:
+        words = [option for option in self.options if isinstance(option, str)]
+        return did_you_mean(nearest(value, words)) if isinstance(value, str) else ""
+
+
+@dataclass(frozen=True)
+class Line:
+    """One line of text."""
+
+    longest: int = 200
+
+    @property
+    def allowed(self) -> str:
+        """The limit in words."""
+        return f"one line of text of up to {self.longest} characters"
+
+    def read(self, value: Any) -> str:
+        """Refuse line breaks, control characters and lone surrogates: plots and reports show this text."""
+        if not isinstance(value, str) or len(value) > self.longest:
+            raise _refusal(self, value)
+        if any(unicodedata.category(character) in ("Cc", "Cs", "Zl", "Zp") for character in value):
+            raise _refusal(self, value)
+        return str(value)
+
+
+@dataclass(frozen=True)
+class List:
+    """A list of values of one kind, as long as allowed."""
+
+    kind: Kind
+    shortest: int
+    longest: int
+
+    @property
+    def allowed(self) -> str:
+        """Length and entries in words."""
+        lengths = f"{self.shortest}" if self.shortest == self.longest else f"{self.shortest} to {self.longest}"
+        return f"a list of {lengths} values, each {self.kind.allowed}"
+
+    def read(self, value: Any) -> tuple[Any, ...]:
+        """Return a tuple."""
+        if not isinstance(value, list | tuple) or not self.shortest <= len(value) <= self.longest:
+            raise _refusal(self, value)
+        try:
+            return tuple(self.kind.read(entry) for entry in value)
+        except ValueError as refused:
+            raise _refusal(self, value, f" ({refused})") from None
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key of a section: the kind of its value, its default (None: not given) and its meaning."""
+
+    kind: Kind
+    about: str
+    default: Any = REQUIRED
+    absent: str = ""
+
+    @property
+    def required(self) -> bool:
+        """Whether a scene must give it."""
+        return self.default is REQUIRED
+
+
+def key(kind: Kind, about: str, default: Any = REQUIRED, absent: str = "") -> Any:
+    """Dataclass field that is a key of a scene file; ``absent`` says what holds where it is not given."""
+    entry = {"entry": Key(kind, about, default, absent)}
+    return field(metadata=entry) if default is REQUIRED else field(default=default, metadata=entry)
+
+
+def above_zero(high: float) -> Number:
+    """Return the kind of lengths and other positive numbers."""
+    return Number(0.0, high, above=True)
+
+
+def nearest(word: str, words: Iterable[str]) -> str | None:
+    """Return the word that the given one was probably meant to be, or None.
+
+    Examples
+    --------
+    >>> nearest("Teth", ["teeth", "face_width_mm"]), nearest("width", ["teeth", "face_width_mm"])
+    ('teeth', 'face_width_mm')
+    """
+    by_lower = {candidate.lower(): candidate for candidate in words}
+    wanted = word[:60].lower()
+    found = difflib.get_close_matches(wanted, by_lower, n=1)
+    if not found and len(wanted) > 3:
+        found = [candidate for candidate in by_lower if wanted in candidate]
+    return by_lower[found[0]] if found else None
+
+
+def did_you_mean(word: str | None) -> str:
+    """Return the end of a message, empty where there is nothing to propose."""
+    return "" if word is None else f'; did you mean "{word}"?'

@@ -1,0 +1,178 @@
+"""Sections of a scene: frozen dataclasses whose fields say what a file may hold.
+
+One table (the fields) drives the parser, its messages, the canonical text and the reference of the keys. A
+new gear type is a new set of sections; nothing here needs to know it.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, TypeVar
+
+from loaded_tca.errors import InputError
+from loaded_tca.scene.keys import Key, did_you_mean, nearest
+from loaded_tca.scene.text import shown, shown_key
+
+SectionType = TypeVar("SectionType", bound="Section")
+
+MOST_UNKNOWN_KEYS = 20
+"""Unknown keys told one by one; of the rest of a section only the number is told."""
+
+
+@dataclass(frozen=True)
+class Subsection:
+    """A section inside a section; ``optional`` ones may be absent, others then take their defaults."""
+
+    section: type[Section]
+    about: str
+    optional: bool = False
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What several keys must fulfil together; looked at only where each of them is sound by itself.
+
+    ``complain`` takes the values of ``keys`` and returns None or the rest of a message about the first key.
+    """
+
+    keys: tuple[str, ...]
+    complain: Callable[..., str | None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Section:
+    """What all sections share: every way to make one checks all its values, every problem is told."""
+
+    rules: ClassVar[tuple[Rule, ...]] = ()
+
+    def __post_init__(self) -> None:
+        values, problems = check(type(self), contents(self))
+        if problems:
+            raise InputError(problems)
+        for name, (attribute, _) in entries(type(self)).items():
+            object.__setattr__(self, attribute, values[name])
+
+
+def subsection(section: type[Section], about: str, optional: bool = False, name: str = "") -> Any:
+    """Dataclass field that is a section of a file, under ``name`` where that is not the field's own."""
+    entry = {"entry": Subsection(section, about, optional, name)}
+    return field(default=None, metadata=entry) if optional else field(default_factory=dict, metadata=entry)
+
+
+def entries(section: type[Section]) -> dict[str, tuple[str, Key | Subsection]]:
+    """Name in a file -> (attribute, entry), in the order in which they are written."""
+    table = {}
+    for each in dataclasses.fields(section):
+        entry = each.metadata["entry"]
+        name = entry.name if isinstance(entry, Subsection) and entry.name else each.name
+        table[name] = (each.name, entry)
+    return table
+
+
+def contents(section: Section) -> dict[str, Any]:
+    """Name in a file -> value; values that are sections stay what they are."""
+    return {name: getattr(section, attribute) for name, (attribute, _) in entries(type(section)).items()}
+
+
+def as_table(section: Section) -> dict[str, Any]:
+    """Return the section as nested dictionaries, as a file would give it, without the keys that hold None."""
+    return {
+        name: as_table(value) if isinstance(value, Section) else value
+        for name, value in contents(section).items()
+        if value is not None
+    }
+
+
+def check(section: type[Section], found: Mapping[str, Any], place: str = "") -> tuple[dict[str, Any], list[str]]:
+    """Check a table against a section.
+
+    Parameters
+    ----------
+    section : type of Section
+    found : mapping
+        Names -> values; sections inside are mappings or made already. None counts as not given.
+    place : str
+        Prefix of the keys in messages, empty or ending in a dot.
+
+    Returns
+    -------
+    values : dict
+        The values that are sound, with defaults for the keys not given: the section's own names, and the
+        names inside its sections with dots.
+    problems : list of str
+        One line per problem.
+    """
+    values: dict[str, Any] = {}
+    problems = list(_unknown(section, found, place))
+    for name, (_, entry) in entries(section).items():
+        given = found.get(name)
+        if isinstance(entry, Key):
+            new_values, new_problems = _check_key(name, entry, given, place)
+        else:
+            new_values, new_problems = _check_subsection(name, entry, given, place)
+        values |= new_values
+        problems += new_problems
+    return values, problems + list(_broken(section.rules, values, place))
+
+
+def _check_key(name: str, entry: Key, given: Any, place: str) -> tuple[dict[str, Any], list[str]]:
+    if given is None and entry.required:
+        return {}, [f"{place}{name}: missing; allowed {entry.kind.allowed}"]
+    if given is None:
+        return {name: entry.default}, []
+    try:
+        return {name: entry.kind.read(given)}, []
+    except ValueError as refused:
+        return {}, [f"{place}{name}: {refused}"]
+
+
+def _check_subsection(name: str, entry: Subsection, given: Any, place: str) -> tuple[dict[str, Any], list[str]]:
+    if given is None and entry.optional:
+        return {name: None}, []
+    if isinstance(given, Section):
+        given = contents(given) if isinstance(given, entry.section) else shown(given)
+    if not isinstance(given, Mapping | None):
+        return {}, [f"{place}{name}: found {shown(given)}; allowed a section [{place}{name}]"]
+    values, problems = check(entry.section, given or {}, f"{place}{name}.")
+    inner = {f"{name}.{key}": value for key, value in values.items()}
+    if not problems:
+        inner[name] = made(entry.section, values)
+    return inner, problems
+
+
+def made(section: type[SectionType], values: Mapping[str, Any]) -> SectionType:
+    """Return the section that holds checked values."""
+    return section(**{attribute: values[name] for name, (attribute, _) in entries(section).items()})
+
+
+def _broken(rules: tuple[Rule, ...], values: Mapping[str, Any], place: str) -> Iterator[str]:
+    for rule in rules:
+        if all(name in values for name in rule.keys):
+            complaint = rule.complain(*(values[name] for name in rule.keys))
+            if complaint is not None:
+                yield f"{place}{rule.keys[0]}: {complaint}"
+
+
+def _unknown(section: type[Section], found: Mapping[str, Any], place: str) -> Iterator[str]:
+    known = entries(section)
+    unknown = [name for name in found if name not in known]
+    homes = _homes(section)
+    for name in unknown[:MOST_UNKNOWN_KEYS]:
+        meant = nearest(name, homes)
+        hint = did_you_mean(place + homes[meant]) if meant else "; allowed " + ", ".join(known)
+        yield f"{place}{shown_key(name)}: unknown key{hint}"
+    if len(unknown) > MOST_UNKNOWN_KEYS:
+        more = len(unknown) - MOST_UNKNOWN_KEYS
+        yield f"{place.rstrip('.') or 'scene'}: {more} more unknown keys"
+
+
+def _homes(section: type[Section]) -> dict[str, str]:
+    """Name of every key and section inside -> where it belongs, seen from the section."""
+    inner: dict[str, str] = {}
+    for name, (_, entry) in reversed(entries(section).items()):
+        if isinstance(entry, Subsection):
+            inner |= {key: f"{name}.{home}" for key, home in _homes(entry.section).items()}
+    return inner | {name: name for name in entries(section)}

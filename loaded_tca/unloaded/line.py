@@ -1,0 +1,158 @@
+"""Line contact: where the ridge of the ease-off is flat from border to border, its ends and its middle.
+
+The solver knows no lines: on a flat ridge it stops somewhere. Here the ridge (the points where the ease-off is
+stationary across the soft direction, or the edge that the contact rests on) is followed to the borders by a Newton
+iteration on two equations, *on the ridge* and *on border k*; if the ease-off does not fall towards either end, the
+contact is a line.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from loaded_tca.flanks.jet import Array
+from loaded_tca.unloaded.ease_off import EaseOff
+from loaded_tca.unloaded.reduced import FEASIBLE
+
+FLATNESS = 1e-9
+"""Fall of the ease-off towards the borders, relative to the module, below which a contact is called a line."""
+WORTH_FOLLOWING = 1e-6
+"""Predicted fall over the flank, relative to the module, above which the ridge need not be followed."""
+RIDGE_STEPS = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """Which contacts are lines, and where.
+
+    Attributes
+    ----------
+    rows : (m,) int array
+        Positions whose contact is a line.
+    rho, z : (m,) array [mm]
+        Middle of each line on the pinion flank.
+    ends : (m, 2, 3) array [mm]
+        Its ends in the fixed frame.
+    """
+
+    rows: Array
+    rho: Array
+    z: Array
+    ends: Array
+
+
+def find_lines(field: EaseOff, phi1: Array, rho: Array, z: Array, multipliers: Array) -> Lines:
+    """Lines among the first touches (n,); ``multipliers`` (n, borders) tell the borders they rest on."""
+    along, fall = _soft_direction(field, phi1, rho, z, multipliers)
+    corner = (multipliers > 0.0).sum(axis=-1) > 1
+    rows = np.flatnonzero((fall <= WORTH_FOLLOWING * field.pair.module) & ~corner)
+    ridge = _Ridge(
+        field.restricted(rows), phi1[rows], np.stack([rho, z], axis=-1)[rows], along[rows], multipliers[rows]
+    )
+    first, second, found = ridge.ends()
+    limit = FLATNESS * field.pair.module
+    keep = found & (ridge.fall(first) <= limit) & (ridge.fall(second) <= limit)
+    points = np.stack([ridge.in_space(end) for end in (first, second)], axis=1)
+    x, y, z_middle = points.mean(axis=1).T
+    middle = ridge.nearest(np.stack([np.hypot(x, y), z_middle], axis=-1))[keep]
+    return Lines(rows[keep], *middle.T, points[keep])
+
+
+def _soft_direction(field: EaseOff, phi1: Array, rho: Array, z: Array, multipliers: Array) -> tuple[Array, Array]:
+    """Direction of least curvature in (rho, z), (n, 2), and the fall [mm] it promises over half the flank."""
+    station = field.station(phi1, rho, z)
+    bend = field.hessian(station) + field.border_hessian(station, multipliers)
+    height, width = field.pair.pinion.extent
+    scale = np.array([height, width])
+    values, vectors = np.linalg.eigh(bend * np.outer(scale, scale))
+    rows, soft = np.arange(len(rho)), np.argmin(np.abs(values), axis=-1)
+    along = vectors[rows, :, soft] * scale
+    held = np.flatnonzero((multipliers > 0.0).any(axis=-1))
+    _, slopes = field.borders(station)
+    edge = slopes[held, multipliers[held].argmax(axis=-1)]
+    along[held] = np.stack([-edge[:, 1], edge[:, 0]], axis=-1) * width
+    fall = np.abs(np.einsum("ni,nij,nj->n", along, bend, along)) / 8.0
+    return along / np.linalg.norm(along, axis=-1, keepdims=True), fall
+
+
+@dataclass(frozen=True, eq=False)
+class _Ridge:
+    """Ridges (m,) through given points, each with its direction and the border it is bound to, if any."""
+
+    field: EaseOff
+    phi1: Array
+    start: Array
+    along: Array
+    multipliers: Array
+
+    def fall(self, points: Array) -> Array:
+        """How far the ease-off falls from the start to the points [mm]."""
+        heights = [self.field.heights(self.phi1, *where.T)[0] for where in (self.start, points)]
+        return heights[0] - heights[1]
+
+    def in_space(self, points: Array) -> Array:
+        """The points in the fixed frame (m, 3) [mm]."""
+        return self.field.station(self.phi1, *points.T).point
+
+    def ends(self) -> tuple[Array, Array, Array]:
+        """Where the ridge leaves the region on either side, (m, 2) each, and whether both ends were found."""
+        count, borders = len(self.phi1), len(self.field.border_owner())
+        crossings, met = np.empty((count, borders, 2)), np.empty((count, borders), dtype=bool)
+        for k in range(borders):
+            crossings[:, k], met[:, k] = self._follow(self.start, np.full(count, k))
+        travel = ((crossings - self.start[:, None]) * self.along[:, None]).sum(axis=-1)
+        rows = np.arange(count)
+        first = np.argmin(np.where(met, travel, np.inf), axis=1)
+        second = np.argmax(np.where(met, travel, -np.inf), axis=1)
+        length = travel[rows, second] - travel[rows, first]
+        found = (met.sum(axis=1) > 1) & (length > FEASIBLE * self.field.pair.pinion.extent[1])
+        return crossings[rows, first], crossings[rows, second], found
+
+    def nearest(self, points: Array) -> Array:
+        """Points of the ridge beside the given ones, moved across the ridge only."""
+        return self._follow(points, np.full(len(self.phi1), -1))[0]
+
+    def _follow(self, points: Array, border: Array) -> tuple[Array, Array]:
+        """Newton iteration for a point on the ridge and on a border (-1: on the normal through ``points``)."""
+        x, extent = points.copy(), np.asarray(self.field.pair.pinion.extent)
+        lowest, highest = self._bounds()
+        residual = np.zeros(len(x))
+        for _ in range(RIDGE_STEPS):
+            residual, step = self._newton(x, points, border)
+            x = np.clip(x + np.clip(step, -extent, extent), lowest, highest)
+        _, distances = self.field.heights(self.phi1, *x.T)
+        inside = distances.min(axis=-1, initial=np.inf) >= -FEASIBLE * extent[1]
+        return x, inside & (residual <= FEASIBLE * extent[1])
+
+    def _bounds(self) -> tuple[Array, Array]:
+        rho, z = self.field.pair.pinion.grid(2, 2)
+        margin = 0.5 * np.asarray(self.field.pair.pinion.extent)
+        return np.array([rho.min(), z.min()]) - margin * [0.2, 1.0], np.array([rho.max(), z.max()]) + margin
+
+    def _newton(self, x: Array, points: Array, border: Array) -> tuple[Array, Array]:
+        """Residual [mm] of the target equation, and the step of the two equations together."""
+        station = self.field.station(self.phi1, *x.T)
+        distances, slopes = self.field.borders(station)
+        across = np.stack([-self.along[:, 1], self.along[:, 0]], axis=-1)
+        value = (across * self.field.gradient(station)).sum(axis=-1)
+        row = np.einsum("ni,nij->nj", across, self.field.hessian(station))
+        held, rows = (self.multipliers > 0.0).any(axis=-1), np.arange(len(x))
+        edge = self.multipliers.argmax(axis=-1) if self.multipliers.size else rows
+        value = np.where(held, distances[rows, edge], value)
+        row = np.where(held[:, None], slopes[rows, edge], row)
+        free = border < 0
+        target = np.where(free, ((x - points) * self.along).sum(axis=-1), distances[rows, border])
+        target_row = np.where(free[:, None], self.along, slopes[rows, border])
+        return np.abs(target), -_solve_pair(row, target_row, value, target)
+
+
+def _solve_pair(first: Array, second: Array, one: Array, two: Array) -> Array:
+    """Solutions (m, 2) of [first; second] x = [one, two]; parallel rows give a far point, not an error."""
+    size = np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1)
+    determinant = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+    determinant = np.where(np.abs(determinant) > 1e-9 * size, determinant, 1e-9 * size + 1e-300)
+    x = (one * second[:, 1] - two * first[:, 1]) / determinant
+    y = (first[:, 0] * two - second[:, 0] * one) / determinant
+    return np.stack([x, y], axis=-1)

@@ -1,0 +1,252 @@
+"""The contact path: where one tooth pair touches over the rotation, and what the wheel lags behind."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from loaded_tca.errors import AccuracyWarning, GeometryError, InputError
+from loaded_tca.flanks.base import BORDER_NAMES, outward_normal
+from loaded_tca.flanks.jet import Array
+from loaded_tca.pair import GearPair, cylindrical_basis
+from loaded_tca.unloaded.ease_off import EaseOff, Station
+from loaded_tca.unloaded.line import find_lines
+from loaded_tca.unloaded.reduced import FEASIBLE
+from loaded_tca.unloaded.search import FirstTouch, first_touch
+
+POSITIONS = 21
+"""Positions over a pitch if none are asked for."""
+EDGE_SLOPE = 1e-9
+"""Slope of the ease-off against a border above which the contact is held by it: far above rounding (1e-13), far
+below any slope that an engineer's modification or mounting error gives."""
+
+Bools = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class ContactPoint:
+    """First touch of one tooth pair at one position; the fields of ``ContactPath`` without their first axis."""
+
+    pinion_angle: float
+    wheel_angle: float
+    transmission_error: float
+    point: Array
+    normal: Array
+    pinion_radius: float
+    pinion_axial: float
+    wheel_radius: float
+    wheel_axial: float
+    pinion_lever: float
+    wheel_lever: float
+    touches: bool
+    on_edge: bool
+    on_crease: bool
+    on_line: bool
+    line_ends: Array
+    edges: Bools
+    iterations: int
+    residual: float
+
+
+@dataclass(frozen=True, eq=False)
+class ContactPath:
+    """First touches of one tooth pair over the pinion angles, n positions.
+
+    Rows where no point of the tooth pair can touch are NaN, with ``touches`` False.
+
+    Attributes
+    ----------
+    pinion_angle, wheel_angle : (n,) array [rad]
+        phi1 and phi2, positive in the sense of motion.
+    transmission_error : (n,) array [rad]
+        phi2 - (z1/z2) phi1; negative where the wheel lags.
+    point : (n, 3) array [mm]
+        In the fixed frame; the middle of the line for a line contact.
+    normal : (n, 3) array
+        Unit, out of the pinion; on an edge, of the flank that does not end there.
+    pinion_radius, pinion_axial, wheel_radius, wheel_axial : (n,) array [mm]
+        (rho, z) of the point on each flank.
+    pinion_lever, wheel_lever : (n,) array [mm]
+        Torque of a unit normal force about each axis.
+    touches, on_edge, on_crease, on_line : (n,) bool array
+        Whether the pair touches; whether the point lies on a tip, root or side border; on the start of a linear
+        relief; whether the contact is a line.
+    line_ends : (n, 2, 3) array [mm]
+        Ends of the line; NaN for a point contact.
+    edges : (n, 8) bool array
+        The borders that hold the point: ``BORDER_NAMES`` of the pinion, then of the wheel.
+    iterations : (n,) int array
+        Newton steps of the ascent that found it.
+    residual : (n,) array
+        Sine of the angle between the two normals; on an edge, of its part along the edge.
+    """
+
+    pinion_angle: Array
+    wheel_angle: Array
+    transmission_error: Array
+    point: Array
+    normal: Array
+    pinion_radius: Array
+    pinion_axial: Array
+    wheel_radius: Array
+    wheel_axial: Array
+    pinion_lever: Array
+    wheel_lever: Array
+    touches: Bools
+    on_edge: Bools
+    on_crease: Bools
+    on_line: Bools
+    line_ends: Array
+    edges: Bools
+    iterations: NDArray[np.int_]
+    residual: Array
+
+    def __len__(self) -> int:
+        return len(self.pinion_angle)
+
+    def __getitem__(self, position: int) -> ContactPoint:
+        """One position of the path."""
+        return ContactPoint(**{field.name: getattr(self, field.name)[position] for field in fields(self)})
+
+    def __repr__(self) -> str:
+        edge = int(self.on_edge.sum())
+        return f"ContactPath({len(self)} positions, {int(self.touches.sum())} touch, {edge} on an edge)"
+
+
+def trace_contact(pair: GearPair, pinion_angles: ArrayLike | None = None) -> ContactPath:
+    """Unloaded contact of one tooth pair at each pinion angle.
+
+    Parameters
+    ----------
+    pair : GearPair
+    pinion_angles : (n,) array [rad], optional
+        phi1; default: 21 positions over one pitch about phi1 = 0, both ends included.
+
+    Returns
+    -------
+    ContactPath
+
+    Raises
+    ------
+    InputError
+        If an angle is not finite or the array not one-dimensional.
+    GeometryError
+        If the flanks share no region at any position.
+
+    Examples
+    --------
+    >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
+    >>> from loaded_tca.pair import cylindrical_pair
+    >>> gears = [CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)]
+    >>> path = trace_contact(cylindrical_pair(CylindricalMesh(*gears)), [0.0])
+    >>> [round(float(x), 6) for x in (*path.pinion_radius, *path.wheel_radius)]
+    [51.0, 85.5]
+    """
+    phi1 = _checked_angles(pair, pinion_angles)
+    touch = first_touch(pair, phi1)
+    if not touch.touches.any():
+        raise GeometryError(
+            f"no common flank: at none of the {len(phi1)} pinion angles between {phi1.min():.6g} and {phi1.max():.6g} "
+            "rad do the two flanks cover a common region; check tip diameters, centre distance and axial offset"
+        )
+    path = _assemble(pair, phi1, touch)
+    root = BORDER_NAMES.index("root")
+    fillet = int((path.edges[:, root] | path.edges[:, len(BORDER_NAMES) + root]).sum())
+    if fillet:
+        message = f"fillet interference: at {fillet} of {len(path)} positions the contact lies on a root form circle"
+        warnings.warn(message + ", below which the flank is not an involute", AccuracyWarning, stacklevel=2)
+    return path
+
+
+def _checked_angles(pair: GearPair, pinion_angles: ArrayLike | None) -> Array:
+    if pinion_angles is None:
+        return np.linspace(-0.5 * pair.pitch, 0.5 * pair.pitch, POSITIONS)
+    phi1 = np.asarray(pinion_angles, dtype=float)
+    if phi1.ndim != 1 or not phi1.size or not np.isfinite(phi1).all():
+        raise InputError(f"pinion_angles: shape {phi1.shape} with finite numbers only in one dimension is asked for")
+    return phi1
+
+
+def _assemble(pair: GearPair, phi1: Array, touch: FirstTouch) -> ContactPath:
+    rows = np.flatnonzero(touch.touches)
+    angle, rho, z = phi1[rows], touch.rho[rows].copy(), touch.z[rows].copy()
+    field = EaseOff(pair, touch.beyond[rows] if touch.beyond.shape[1] else None)
+    multipliers = np.where(touch.multipliers[rows] > EDGE_SLOPE, touch.multipliers[rows], 0.0)
+    lines = find_lines(field, angle, rho, z, multipliers)
+    rho[lines.rows], z[lines.rows] = lines.rho, lines.z
+    line_ends = np.full((len(rows), 2, 3), np.nan)
+    line_ends[lines.rows] = lines.ends
+    station = field.station(angle, rho, z)
+    crease = field.border_is_crease()
+    known = _contact(pair, field, station, multipliers > 0.0)
+    known |= {
+        "wheel_angle": field.wheel_angle(station),
+        "transmission_error": pair.driving * field.value(station, angle) / pair.base_radii[1],
+        "pinion_radius": rho,
+        "pinion_axial": z,
+        "on_crease": (multipliers[:, crease] > 0.0).any(axis=-1),
+        "on_line": np.isin(np.arange(len(rows)), lines.rows),
+        "line_ends": line_ends,
+        "touches": np.ones(len(rows), dtype=bool),
+        "iterations": touch.iterations[rows],
+    }
+    return ContactPath(pinion_angle=phi1, **{name: _spread(part, rows, len(phi1)) for name, part in known.items()})
+
+
+def _spread(part: Array, rows: Array, count: int) -> Array:
+    """Rows of a full-length array; the others NaN, False or zero."""
+    full = np.full((count, *part.shape[1:]), np.nan if part.dtype.kind == "f" else 0, dtype=part.dtype)
+    full[rows] = part
+    return full
+
+
+def _contact(pair: GearPair, field: EaseOff, station: Station, held: Bools) -> dict[str, Any]:
+    """Normals, levers, edges and residual of the points; ``held`` tells the borders and creases they rest on."""
+    pinion_basis = cylindrical_basis(np.arctan2(station.point[:, 1], station.point[:, 0]))
+    out_of_pinion = _in_space(outward_normal(pair.pinion, station.rho, station.z), pinion_basis)
+    out_of_wheel = _in_space(outward_normal(pair.wheel, station.wheel_rho, station.wheel_z), station.wheel_basis)
+    edges = held[:, ~field.border_is_crease()]
+    use_wheel = _ends(field, station, held, 0) & ~_ends(field, station, held, 1)
+    normal = np.where(use_wheel[:, None], -out_of_wheel, out_of_pinion)
+    arm = station.point - pair.wheel_origin
+    return {
+        "point": station.point,
+        "normal": normal,
+        "wheel_radius": station.wheel_rho,
+        "wheel_axial": station.wheel_z,
+        "pinion_lever": np.abs(np.cross(station.point, normal)[:, 2]),
+        "wheel_lever": np.abs(np.cross(arm, normal) @ pair.wheel_axes[2]),
+        "edges": edges,
+        "on_edge": edges.any(axis=-1),
+        "residual": _residual(field, station, (out_of_pinion, out_of_wheel), held),
+    }
+
+
+def _in_space(components: Array, basis: Array) -> Array:
+    return np.einsum("nk,nkj->nj", components, basis)
+
+
+def _ends(field: EaseOff, station: Station, held: Bools, member: int) -> Array:
+    """Whether the flank of one gear ends, or has its crease, at the contact."""
+    own, crease = field.border_owner() == member, field.border_is_crease()
+    distances, _ = field.borders(station)
+    near = distances <= FEASIBLE * field.pair.pinion.extent[0]
+    on_border = held[:, ~crease].any(axis=-1) & (near & own & ~crease).any(axis=-1)
+    return on_border | (held & own).any(axis=-1)
+
+
+def _residual(field: EaseOff, station: Station, normals: tuple[Array, Array], held: Bools) -> Array:
+    """Sine of the angle between the normals; along the edge if one border holds the point; zero in a corner."""
+    residual = np.linalg.norm(np.cross(*normals), axis=-1)
+    residual[held.sum(axis=-1) > 1] = 0.0
+    for border, own in enumerate(field.border_owner()):
+        rows = np.flatnonzero((held.sum(axis=-1) == 1) & held[:, border])
+        if rows.size:
+            edge = np.cross(normals[own][rows], field.border_normal(station, border)[rows])
+            edge /= np.linalg.norm(edge, axis=-1, keepdims=True)
+            residual[rows] = np.abs((edge * normals[1 - own][rows]).sum(axis=-1))
+    return residual

@@ -1,0 +1,255 @@
+r"""The reduced solver: the maximum of the ease-off over the region that both flanks cover, from any start.
+
+Two unknowns (rho, z) on the pinion flank, a smooth objective e and a handful of smooth borders c_k >= 0: a
+sequential quadratic programme, all starts advanced together. In two dimensions the quadratic subproblem is solved
+exactly by listing its candidates (free, on one border, in one corner), so that no active set is carried along.
+
+Safeguards: Newton on the absolute values of the curvatures (always uphill), steps below half the flank, a border
+met is kept to second order, and a step is accepted only if the merit e - mu * violation does not fall.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from itertools import combinations
+
+import numpy as np
+
+from loaded_tca.flanks.jet import Array
+from loaded_tca.unloaded.ease_off import EaseOff, Station
+
+LARGEST_STEP = 0.5
+"""Longest step, as a fraction of the flank."""
+MOST_STEPS = 60
+MOST_HALVINGS = 12
+SHORT_STEP = 1e-9
+"""Fraction of the flank below which a Newton step is the last: the next would be its square."""
+PARALLEL = 1e-9
+"""Sine of the angle between two borders below which they have no corner."""
+TIE = 1e-12
+"""Relative rise by which a corner must beat a single border: on a flat edge all of it is equally high."""
+MERIT_SLACK = 1e-15
+"""Rounding of the ease-off relative to r_b2, not to be mistaken for a fall."""
+CURVATURE_FLOOR = 1e-12
+"""Smallest curvature taken for real, relative to the largest: below it the ridge is flat to rounding."""
+SMALLEST_GAIN = 1e-18
+"""Predicted rise of the ease-off, relative to r_b2, at which an ascent ends: far below rounding of e itself, so that
+the quadratic convergence of the last step has placed the point, too."""
+FEASIBLE = 1e-9
+"""Distance [mm, relative to the flank's height] within which a border counts as met."""
+
+
+@dataclass(frozen=True, eq=False)
+class Maxima:
+    """Where each ascent ended.
+
+    Attributes
+    ----------
+    rho, z : (n,) array [mm]
+        On the pinion flank.
+    value : (n,) array [mm]
+        Ease-off there.
+    multipliers : (n, borders) array
+        Slope of the ease-off against each border that holds the point back, >= 0.
+    iterations : (n,) int array
+    converged : (n,) bool array
+        Whether a feasible stationary point was reached.
+    """
+
+    rho: Array
+    z: Array
+    value: Array
+    multipliers: Array
+    iterations: Array
+    converged: Array
+
+    def joined(self, other: Maxima) -> Maxima:
+        """These ascents and some more."""
+        return Maxima(*(np.concatenate([getattr(self, f.name), getattr(other, f.name)]) for f in fields(self)))
+
+
+@dataclass(frozen=True, eq=False)
+class _Local:
+    """The field at the current points, lengths scaled by the flank's extent."""
+
+    station: Station
+    gradient: Array
+    borders: Array
+    slopes: Array
+
+
+def climb(field: EaseOff, phi1: Array, rho: Array, z: Array) -> Maxima:
+    """Climb the ease-off field from every start at once.
+
+    Parameters
+    ----------
+    field : EaseOff
+    phi1, rho, z : (n,) array [rad, mm, mm]
+        Pinion angle and start on the pinion flank of each ascent.
+
+    Returns
+    -------
+    Maxima
+    """
+    scale = np.asarray(field.pair.pinion.extent)
+    points = np.stack([rho, z], axis=-1) / scale
+    count, borders = len(phi1), len(field.border_owner())
+    multipliers, penalty = np.zeros((count, borders)), np.ones(count)
+    iterations, converged = np.zeros(count, dtype=int), np.zeros(count, dtype=bool)
+    rows = np.arange(count)
+    for number in range(1, MOST_STEPS + 1):
+        part, angle = field.restricted(rows), phi1[rows]
+        here = _look(part, angle, points[rows], scale)
+        step, multipliers[rows] = _propose(part, here, multipliers[rows], scale)
+        penalty[rows] = np.maximum(penalty[rows], 2.0 * multipliers[rows].max(axis=-1))
+        settled = _settled(part, here, step)
+        iterations[rows] = number
+        points[rows], moved = _advance(part, angle, points[rows], step, here, multipliers[rows], penalty[rows])
+        converged[rows] = settled
+        rows = rows[~settled & moved]
+        if not rows.size:
+            break
+    value, distances = field.heights(phi1, *(points * scale).T)
+    converged &= _violation(distances) <= FEASIBLE * scale[0]
+    return Maxima(*(points * scale).T, value, multipliers, iterations, converged)
+
+
+def _look(field: EaseOff, phi1: Array, points: Array, scale: Array) -> _Local:
+    station = field.station(phi1, *(points * scale).T)
+    borders, slopes = field.borders(station)
+    return _Local(station, field.gradient(station) * scale, borders, slopes * scale)
+
+
+def _violation(borders: Array) -> Array:
+    return np.maximum(0.0, -borders).max(axis=-1)
+
+
+def _settled(field: EaseOff, here: _Local, step: Array) -> Array:
+    """Whether the step is the last: no rise left, or too short to matter, and the borders kept."""
+    gain = np.abs((here.gradient * step).sum(axis=-1))
+    small = (gain <= SMALLEST_GAIN * field.pair.base_radii[1]) | (np.abs(step).max(axis=-1) <= SHORT_STEP)
+    return small & (_violation(here.borders) <= FEASIBLE * field.pair.pinion.extent[0])
+
+
+def _advance(
+    field: EaseOff, phi1: Array, points: Array, step: Array, here: _Local, multipliers: Array, penalty: Array
+) -> tuple[Array, Array]:
+    """Points after the longest step, halved as often as needed, that does not lower the merit; whether it moved."""
+    scale = np.asarray(field.pair.pinion.extent)
+
+    def merit(rows: Array, trial: Array) -> tuple[Array, Array]:
+        value, borders = field.restricted(rows).heights(phi1[rows], *(trial * scale).T)
+        return value - penalty[rows] * np.maximum(0.0, -borders).sum(axis=-1), borders
+
+    rows = np.arange(len(points))
+    before = merit(rows, points)[0] - MERIT_SLACK * field.pair.base_radii[1]
+    moved, result = np.zeros(len(points), dtype=bool), points.copy()
+    for halving in range(MOST_HALVINGS):
+        trial = points[rows] + step[rows] * 0.5**halving
+        after, borders = merit(rows, trial)
+        bent = np.flatnonzero((after < before[rows]) & ((multipliers[rows] > 0.0).sum(axis=-1) == 1))
+        if bent.size:
+            trial[bent] += _back_to_border(here.slopes[rows[bent]], borders[bent], multipliers[rows[bent]])
+            after[bent], _ = merit(rows[bent], trial[bent])
+        good = after >= before[rows]
+        result[rows[good]] = trial[good]
+        moved[rows[good]] = True
+        rows = rows[~good]
+        if not rows.size:
+            break
+    return result, moved
+
+
+def _back_to_border(slopes: Array, borders: Array, multipliers: Array) -> Array:
+    """Second-order correction: from a trial point back to the one border it is held by."""
+    held = multipliers.argmax(axis=-1)
+    rows = np.arange(len(held))
+    slope = slopes[rows, held]
+    return -slope * (borders[rows, held] / np.maximum((slope**2).sum(axis=-1), 1e-300))[:, None]
+
+
+def _propose(field: EaseOff, here: _Local, multipliers: Array, scale: Array) -> tuple[Array, Array]:
+    """Step (n, 2) of the quadratic model within the linearised borders, and its multipliers (n, borders)."""
+    bend = field.hessian(here.station)
+    held = (multipliers > 0.0).any(axis=-1)
+    if held.any():
+        bend = bend + field.border_hessian(here.station, multipliers)
+    inverse, curvature = _positive(-bend * np.outer(scale, scale))
+    step = (inverse @ here.gradient[..., None])[..., 0]
+    found = np.zeros_like(multipliers)
+    tolerance = FEASIBLE * scale[0]
+    out = np.flatnonzero((here.borders + (here.slopes @ step[..., None])[..., 0] < -tolerance).any(axis=-1))
+    if out.size:
+        problem = (here.gradient[out], inverse[out], curvature[out], here.borders[out], here.slopes[out])
+        step[out], found[out] = _solve_quadratic(*problem, tolerance)
+    length = np.linalg.norm(step, axis=-1, keepdims=True)
+    return step * np.minimum(1.0, LARGEST_STEP / np.maximum(length, 1e-300)), found
+
+
+def _positive(matrix: Array) -> tuple[Array, Array]:
+    """Inverse of, and itself, a symmetric 2 x 2 matrix whose eigenvalues are made positive: (n, 2, 2) each."""
+    mean = 0.5 * (matrix[..., 0, 0] + matrix[..., 1, 1])
+    half, off = 0.5 * (matrix[..., 0, 0] - matrix[..., 1, 1]), matrix[..., 0, 1]
+    radius = np.maximum(np.hypot(half, off), 1e-300)
+    pointer = np.stack([np.stack([half, off], -1), np.stack([off, -half], -1)], -2) / radius[..., None, None]
+    high, low = np.abs(mean + radius), np.abs(mean - radius)
+    floor = CURVATURE_FLOOR * np.maximum(np.maximum(high, low), 1e-200)
+    high, low = np.maximum(high, floor), np.maximum(low, floor)
+
+    def function(first: Array, second: Array) -> Array:
+        even, odd = 0.5 * (first + second), 0.5 * (first - second)
+        return even[..., None, None] * np.eye(2) + odd[..., None, None] * pointer
+
+    return function(1.0 / high, 1.0 / low), function(high, low)
+
+
+def _solve_quadratic(
+    gradient: Array, inverse: Array, curvature: Array, borders: Array, slopes: Array, tolerance: float
+) -> tuple[Array, Array]:
+    """Maximise g.s - s.N.s/2 subject to c + J s >= 0 by listing the points where it can lie."""
+    free = (inverse @ gradient[..., None])[..., 0]
+    pull = slopes @ inverse
+    stiffness = np.maximum((pull * slopes).sum(axis=-1), 1e-300)
+    need = (-borders - (slopes @ free[..., None])[..., 0]) / stiffness
+    candidates = [free[:, None, :], free[:, None, :] + pull * need[..., None]]
+    pairs = np.array(list(combinations(range(borders.shape[-1]), 2)))
+    corners, parallel = _corners(borders, slopes, pairs)
+    steps = np.concatenate([*candidates, corners], axis=1)
+    room = (steps @ np.swapaxes(slopes, -1, -2) + borders[:, None, :]).min(axis=-1)
+    room[:, -len(pairs) :][parallel] = -np.inf
+    rise = (steps @ gradient[..., None])[..., 0] - 0.5 * ((steps @ curvature) * steps).sum(axis=-1)
+    rise[:, -len(pairs) :] -= TIE * np.abs(rise[:, -len(pairs) :])
+    feasible = room >= -tolerance
+    best = np.where(feasible.any(axis=1), np.argmax(np.where(feasible, rise, -np.inf), 1), np.argmax(room, 1))
+    step = steps[np.arange(len(best)), best]
+    return step, _multipliers(gradient - (curvature @ step[..., None])[..., 0], slopes, best, pairs)
+
+
+def _corners(borders: Array, slopes: Array, pairs: Array) -> tuple[Array, Array]:
+    """Steps to the crossings of two linearised borders: (n, pairs, 2), and which pairs are parallel."""
+    first, second = slopes[:, pairs[:, 0]], slopes[:, pairs[:, 1]]
+    c1, c2 = -borders[:, pairs[:, 0]], -borders[:, pairs[:, 1]]
+    cross = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
+    size = np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1)
+    parallel = np.abs(cross) <= PARALLEL * size
+    cross = np.where(parallel, 1.0, cross)
+    x = (c1 * second[..., 1] - c2 * first[..., 1]) / cross
+    y = (first[..., 0] * c2 - second[..., 0] * c1) / cross
+    return np.stack([x, y], axis=-1), parallel
+
+
+def _multipliers(rest: Array, slopes: Array, best: Array, pairs: Array) -> Array:
+    """Lambda of rest + J^T lambda = 0 for the borders of the chosen candidate, clipped at zero."""
+    count = slopes.shape[1]
+    multipliers = np.zeros(slopes.shape[:2])
+    single = np.flatnonzero((best >= 1) & (best <= count))
+    k = best[single] - 1
+    own = slopes[single, k]
+    multipliers[single, k] = -(own * rest[single]).sum(-1) / np.maximum((own**2).sum(-1), 1e-300)
+    double = np.flatnonzero(best > count)
+    if double.size:
+        chosen = pairs[best[double] - 1 - count]
+        matrix = np.take_along_axis(slopes[double], chosen[..., None], axis=1)
+        solution = np.linalg.solve(np.swapaxes(matrix, -1, -2), -rest[double][..., None])[..., 0]
+        multipliers[double[:, None], chosen] = solution
+    return np.maximum(multipliers, 0.0)

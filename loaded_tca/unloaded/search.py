@@ -1,0 +1,130 @@
+"""Where the flanks touch first: a coarse scan names the basins, the reduced solver climbs each, the best one wins.
+
+A crease (the start of a linear relief) splits a flank into smooth pieces. An ascent stays on its piece, with the smooth
+continuation of that piece; if it is held by a crease, the piece beyond is climbed from there. A contact that rests on
+a crease is thus found like one that rests on a border.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from loaded_tca.errors import ConvergenceError
+from loaded_tca.flanks.jet import Array
+from loaded_tca.pair import GearPair
+from loaded_tca.unloaded.ease_off import EaseOff
+from loaded_tca.unloaded.reduced import FEASIBLE, Maxima, climb
+
+SCAN = (9, 9)
+"""Points of the scan along the profile and along the face."""
+BLOCKS = (2, 3)
+"""Blocks of the scan, each of which sends its best point up the hill: several basins are found by this."""
+CERTIFICATE = 1e-13
+"""How far, relative to r_b2, a scanned point may rise above the maximum found: rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class FirstTouch:
+    """The highest point of the ease-off at each position.
+
+    Attributes
+    ----------
+    rho, z : (n,) array [mm]
+        On the pinion flank; arbitrary where nothing touches.
+    value : (n,) array [mm]
+        Ease-off.
+    multipliers : (n, borders) array
+        Slope against each border or crease that holds the point.
+    beyond : (n, creases) bool array
+        The smooth piece it belongs to.
+    iterations : (n,) int array
+        Steps of the winning ascent.
+    touches : (n,) bool array
+        False where the two flanks share no region at all.
+    """
+
+    rho: Array
+    z: Array
+    value: Array
+    multipliers: Array
+    beyond: Array
+    iterations: Array
+    touches: Array
+
+
+def first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
+    """Global maximum of the ease-off at each pinion angle (n,) [rad].
+
+    Raises
+    ------
+    ConvergenceError
+        If a position has a common region but no ascent reached the height of the scan.
+    """
+    rho, z, scanned = _starts(pair, phi1)
+    owner = np.repeat(np.arange(len(phi1)), rho.shape[1])
+    rho, z = rho.ravel(), z.ravel()
+    beyond = EaseOff(pair).sides(phi1[owner], rho, z)
+    peaks = _climb(pair, phi1[owner], rho, z, beyond)
+    for crease in range(beyond.shape[1]):
+        held = np.flatnonzero(peaks.multipliers[:, _crease_columns(pair)[crease]] > 0.0)
+        across = beyond[held].copy()
+        across[:, crease] ^= True
+        more = _climb(pair, phi1[owner[held]], peaks.rho[held], peaks.z[held], across)
+        owner, beyond = np.concatenate([owner, owner[held]]), np.concatenate([beyond, across])
+        peaks = peaks.joined(more)
+    return _best(pair, phi1, owner, beyond, peaks, scanned)
+
+
+def _climb(pair: GearPair, phi1: Array, rho: Array, z: Array, beyond: Array) -> Maxima:
+    return climb(EaseOff(pair, beyond if beyond.shape[1] else None), phi1, rho, z)
+
+
+def _crease_columns(pair: GearPair) -> Array:
+    """Columns of the multipliers that belong to creases, the pinion's first."""
+    field = EaseOff(pair)
+    return np.flatnonzero(EaseOff(pair, np.zeros((1, field.creases), dtype=bool)).border_is_crease())
+
+
+def _starts(pair: GearPair, phi1: Array) -> tuple[Array, Array, Array]:
+    """Best point of each block of the scan, rho and z (n, blocks) [mm], and the best feasible height (n,)."""
+    rho, z = pair.pinion.grid(*SCAN)
+    shape, field = (len(phi1), *SCAN), EaseOff(pair)
+    full = [np.broadcast_to(part, shape) for part in (rho, z)]
+    value, borders = field.heights(np.broadcast_to(phi1[:, None, None], shape), *full)
+    lack = np.maximum(0.0, -borders).sum(axis=-1)
+    feasible = lack <= FEASIBLE
+    score = np.where(feasible, value, np.minimum(value.min() - 1.0, -1.0) * (1.0 + lack))
+    picks = []
+    for rows in np.array_split(np.arange(SCAN[0]), BLOCKS[0]):
+        for columns in np.array_split(np.arange(SCAN[1]), BLOCKS[1]):
+            block = score[:, rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1].reshape(len(phi1), -1)
+            best = np.argmax(block, axis=1)
+            picks.append((rows[best // len(columns)], columns[best % len(columns)]))
+    i, j = (np.stack([pick[k] for pick in picks], axis=1) for k in (0, 1))
+    return rho[i, j], z[i, j], np.where(feasible, value, -np.inf).max(axis=(1, 2))
+
+
+def _best(pair: GearPair, phi1: Array, owner: Array, beyond: Array, peaks: Maxima, scanned: Array) -> FirstTouch:
+    """The highest converged ascent of each position, certified against the scan."""
+    height = np.where(peaks.converged, peaks.value, -np.inf)
+    order = np.lexsort((height, owner))
+    last = np.searchsorted(owner[order], np.arange(len(phi1)), side="right") - 1
+    winner = order[last]
+    touches = np.isfinite(height[winner])
+    short = np.isfinite(scanned) & (height[winner] < scanned - CERTIFICATE * pair.base_radii[1])
+    result = FirstTouch(
+        peaks.rho[winner],
+        peaks.z[winner],
+        peaks.value[winner],
+        peaks.multipliers[winner],
+        beyond[winner],
+        peaks.iterations[winner],
+        touches,
+    )
+    if short.any():
+        row = int(np.flatnonzero(short)[0])
+        message = f"unloaded contact: no ascent reached the height of the scan at pinion angle {phi1[row]:.6g} rad"
+        raise ConvergenceError(message, result)
+    return result

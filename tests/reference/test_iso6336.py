@@ -1,0 +1,122 @@
+from math import cos, pi, radians, sqrt
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+from loaded_tca.errors import InputError
+from loaded_tca.reference import iso6336
+from loaded_tca.reference.hertz import line_contact
+
+ROUNDING = 1e-12  # a few dozen floating point operations
+STEEL = 206000.0 / (2.0 * (1.0 - 0.3**2))
+STRESS = {
+    "tangential_force": 127352.0,
+    "pinion_reference_diameter": 141.34,
+    "face_width": 100.0,
+    "gear_ratio": 103 / 17,
+    "factors": 372.4,
+}
+
+
+def test_virtual_teeth_as_printed_in_iso_tr_6336_30():
+    helix, pressure = radians(15.8), radians(20)
+    assert_allclose(iso6336.virtual_teeth(17, helix, pressure), 18.905, atol=5e-4)
+    assert_allclose(iso6336.virtual_teeth(103, helix, pressure), 114.543, atol=5e-4)
+
+
+def test_virtual_teeth_of_a_spur_gear_are_its_teeth():
+    assert iso6336.virtual_teeth(23, 0.0, radians(20)) == 23
+
+
+def test_stiffness_chain_as_printed_in_iso_tr_6336_30():
+    virtual = [iso6336.virtual_teeth(teeth, radians(15.8), radians(20)) for teeth in (17, 103)]
+    theoretical = iso6336.theoretical_single_stiffness((virtual[0], virtual[1]), (0.145, 0.0))
+    single = iso6336.single_stiffness(theoretical, radians(15.8), basic_rack_factor=iso6336.basic_rack_factor(1.4))
+    mean = iso6336.mesh_stiffness(single, 1.549090)
+    assert_allclose([theoretical, single, mean], [17.85584, 12.37047, 17.46485], atol=5e-6)
+
+
+@given(st.floats(0.2, 0.6), st.floats(10.0, 500.0), st.floats(5.0, 100.0), st.floats(1.0, 8.0))
+def test_contact_stress_of_a_spur_gear_is_line_contact_hertz(angle, force, radius, ratio):
+    """At a contact ratio of 1 the standard's formula is Hertz at the pitch point of a pair without shift."""
+    width = 10.0
+    factors = (
+        iso6336.zone_factor(angle, angle, 0.0)
+        * iso6336.elasticity_factor(STEEL)
+        * iso6336.contact_ratio_factor(1.0, 0.0)
+        * iso6336.helix_angle_factor(0.0)
+    )
+    stress = iso6336.nominal_contact_stress(force, 2.0 * radius, width, ratio, factors)
+    curvature = (1.0 + 1.0 / ratio) / (radius * sqrt(1.0 - cos(angle) ** 2))
+    hertz = line_contact(force / cos(angle) / width, curvature, STEEL)
+    assert_allclose(stress, hertz.max_pressure, rtol=ROUNDING)
+
+
+@given(st.floats(1.0, 2.5))
+def test_contact_ratio_factor_is_continuous_in_the_overlap_and_constant_above_1(ratio):
+    assert_allclose(iso6336.contact_ratio_factor(ratio, 0.0), sqrt((4.0 - ratio) / 3.0), rtol=ROUNDING)
+    at_one = iso6336.contact_ratio_factor(ratio, 1.0)
+    assert_allclose(at_one, 1.0 / sqrt(ratio), rtol=ROUNDING)
+    assert iso6336.contact_ratio_factor(ratio, 3.0) == at_one
+    assert_allclose(iso6336.contact_ratio_factor(ratio, 1.0 - 1e-9), at_one, rtol=1e-8)
+
+
+def test_helix_angle_factor_is_that_of_2006_and_not_its_inverse():
+    assert iso6336.helix_angle_factor(0.0) == 1.0
+    assert iso6336.helix_angle_factor(0.3) == iso6336.helix_angle_factor(-0.3) > 1.0
+
+
+@given(st.floats(1e2, 1e6))
+def test_contact_stress_grows_with_the_root_of_the_force(force):
+    once, twice = (
+        iso6336.nominal_contact_stress(**{**STRESS, "tangential_force": load}) for load in (force, 4.0 * force)
+    )
+    assert_allclose(twice, 2.0 * once, rtol=ROUNDING)
+
+
+def test_basic_rack_factor_is_1_for_the_reference_rack():
+    assert iso6336.basic_rack_factor(1.2, radians(20)) == 1.0
+    assert_allclose(iso6336.basic_rack_factor(1.2, radians(25)), 1.1, rtol=ROUNDING)
+
+
+def test_stiffness_grows_with_the_modulus_and_the_blank_factor():
+    steel = iso6336.single_stiffness(17.0, 0.0)
+    assert_allclose(steel, 13.6, rtol=ROUNDING)
+    assert_allclose(iso6336.single_stiffness(17.0, 0.0, youngs_modulus=103000.0), 0.5 * steel, rtol=ROUNDING)
+    assert_allclose(iso6336.single_stiffness(17.0, 0.0, gear_blank_factor=0.9), 0.9 * steel, rtol=ROUNDING)
+
+
+def test_mesh_stiffness_of_one_pair_is_the_single_stiffness():
+    assert iso6336.mesh_stiffness(14.0, 1.0) == 14.0
+
+
+@pytest.mark.parametrize("angle", [0.0, -0.1, pi / 2.0])
+def test_zone_factor_refuses_an_impossible_angle(angle):
+    with pytest.raises(InputError, match=r"working_pressure_angle: .* rad is not between 0 and 90 deg"):
+        iso6336.zone_factor(radians(20), angle, 0.0)
+
+
+def test_factors_refuse_what_is_not_positive():
+    with pytest.raises(InputError, match=r"contact_modulus: 0.0 is not positive and finite"):
+        iso6336.elasticity_factor(0.0)
+    with pytest.raises(InputError, match=r"transverse_contact_ratio: -1.0 is not positive"):
+        iso6336.contact_ratio_factor(-1.0, 0.0)
+    with pytest.raises(InputError, match=r"overlap_ratio: -0.1 is negative or not finite"):
+        iso6336.contact_ratio_factor(1.5, -0.1)
+    with pytest.raises(InputError, match=r"wheel_virtual_teeth: 0.0 is not positive"):
+        iso6336.theoretical_single_stiffness((17.0, 0.0), (0.0, 0.0))
+    with pytest.raises(InputError, match=r"youngs_modulus: nan is not positive"):
+        iso6336.single_stiffness(17.0, 0.0, youngs_modulus=float("nan"))
+    with pytest.raises(InputError, match=r"single_stiffness: 0.0 is not positive"):
+        iso6336.mesh_stiffness(0.0, 1.5)
+
+
+def test_contact_stress_tells_every_problem_at_once():
+    with pytest.raises(InputError) as refused:
+        iso6336.nominal_contact_stress(**{**STRESS, "tangential_force": -1.0, "face_width": 0.0})
+    assert refused.value.problems == (
+        "tangential_force: -1.0 is not positive and finite",
+        "face_width: 0.0 is not positive and finite",
+    )

@@ -1,0 +1,46 @@
+"""A small scene to change and to break."""
+
+from pathlib import Path
+
+import pytest
+
+from loaded_tca.scene import Scene, parse_scene
+
+ROOT = Path(__file__).parents[2]
+
+SMALL = """
+title = "Small"
+[pair]
+type = "cylindrical"
+normal_module_mm = 3
+helix_angle_deg = 15.0
+[pinion]
+teeth = 34
+face_width_mm = 25.0
+[wheel]
+teeth = 57
+face_width_mm = 20.0
+[material]
+youngs_modulus_MPa = 206000.0
+poisson_ratio = 0.3
+[load]
+pinion_torque_Nm = 130.0
+"""
+
+
+@pytest.fixture
+def scene() -> Scene:
+    return parse_scene(SMALL)
+
+
+@pytest.fixture
+def table() -> dict:
+    """The same scene as nested dictionaries."""
+    return {
+        "title": "Small",
+        "pair": {"type": "cylindrical", "normal_module_mm": 3, "helix_angle_deg": 15.0},
+        "pinion": {"teeth": 34, "face_width_mm": 25.0},
+        "wheel": {"teeth": 57, "face_width_mm": 20.0},
+        "material": {"youngs_modulus_MPa": 206000.0, "poisson_ratio": 0.3},
+        "load": {"pinion_torque_Nm": 130.0},
+    }

@@ -1,0 +1,270 @@
+"""The scene itself: defaults, canonical text, functional changes, and the pair that it builds."""
+
+import pickle
+from dataclasses import FrozenInstanceError, fields, replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca import InputError
+from loaded_tca.scene import (
+    Analysis,
+    ElasticMaterial,
+    Gear,
+    Geometry,
+    Load,
+    Modifications,
+    MountingErrors,
+    Scene,
+    parse_scene,
+    read_scene,
+)
+from loaded_tca.scene.build import in_base_units
+from tests.scene.conftest import ROOT, SMALL
+
+SCENES = ROOT / "examples" / "scenes"
+ROUNDING = 1e-14  # one multiplication by a unit
+
+EVERY_KEY = {
+    "title": 'Naïve "quoted" \\ title, 5 µm, ∞',
+    "pair.pressure_angle_deg": 17.5,
+    "pair.centre_distance_mm": 142.0,
+    "pair.driving": "wheel",
+    "pair.sense": "negative",
+    "pair.dedendum_coefficient": 1.4,
+    "pair.root_radius_coefficient": 0.25,
+    "pinion.hand": "left",
+    "wheel.hand": "right",
+    "pinion.profile_shift": 0.1 + 0.2,
+    "pinion.tip_diameter_mm": 111.6,
+    "pinion.bore_diameter_mm": 40.0,
+    "pinion.modifications.lead_crowning_um": 5.0,
+    "pinion.modifications.lead_crowning_form": "logarithmic",
+    "pinion.modifications.end_relief_um": 4.0,
+    "pinion.modifications.end_relief_length_mm": 3.0,
+    "pinion.modifications.profile_crowning_um": 2.0,
+    "pinion.modifications.tip_relief_um": 20.0,
+    "pinion.modifications.tip_relief_start_mm": 109.0,
+    "pinion.modifications.tip_relief_form": "linear",
+    "pinion.modifications.root_relief_um": 10.0,
+    "pinion.modifications.root_relief_start_mm": 103.0,
+    "pinion.modifications.root_relief_form": "linear",
+    "pinion.modifications.helix_slope_um": -3.0,
+    "pinion.modifications.profile_slope_um": -2.0,
+    "pinion.material.youngs_modulus_MPa": 210000,
+    "pinion.material.poisson_ratio": 0.28,
+    "pinion.material.max_pressure_MPa": 4000,
+    "mounting.in_plane_deg": 0.01,
+    "mounting.out_of_plane_deg": -0.02,
+    "mounting.centre_distance_error_mm": 0.03,
+    "mounting.axial_offset_mm": -1e-7,
+    "analysis.positions": 1,
+    "analysis.accuracy": None,
+    "analysis.cells": [32, 64],
+    "analysis.tolerance": 1e-8,
+    "analysis.torques_Nm": [0, 20, 130.5],
+}
+
+
+def test_defaults_are_those_of_the_documentation(scene):
+    assert scene.geometry.pressure_angle_deg == 20.0
+    assert scene.geometry.centre_distance_mm is None
+    assert (scene.geometry.driving, scene.geometry.sense) == ("pinion", "positive")
+    assert (scene.geometry.dedendum_coefficient, scene.geometry.root_radius_coefficient) == (1.25, 0.38)
+    assert scene.pinion.modifications == Modifications()
+    assert scene.mounting == MountingErrors()
+    assert scene.analysis == Analysis(
+        positions=21, accuracy=1e-3, cells=None, tolerance=1e-6, load_sharing=False, compliance="contact"
+    )
+
+
+def test_accuracy_is_none_where_cells_are_given():
+    analysis = parse_scene(SMALL + "[analysis]\ncells = [32, 16]").analysis
+    assert (analysis.accuracy, analysis.cells) == (None, (32, 16))
+
+
+def test_whole_numbers_become_floats_where_floats_are_meant(scene):
+    assert isinstance(scene.geometry.normal_module_mm, float)
+    assert isinstance(scene.pinion.teeth, int)
+
+
+def test_numpy_numbers_become_plain_ones(scene):
+    changed = scene.with_changes({"pinion.teeth": np.int64(35), "load.pinion_torque_Nm": np.float32(0.5)})
+    assert type(changed.pinion.teeth) is int
+    assert type(changed.load.pinion_torque_Nm) is float
+
+
+def test_zero_torque_is_allowed(scene):
+    assert scene.with_changes({"load.pinion_torque_Nm": 0}).torques == (0.0,)
+
+
+def test_torques_are_the_one_of_the_load_unless_listed(scene):
+    assert scene.torques == (130000.0,)
+    assert scene.with_changes({"analysis.torques_Nm": [20.0, 130]}).torques == (20000.0, 130000.0)
+
+
+def test_hands_are_opposite(scene):
+    assert scene.pinion_hand == "right"
+    assert scene.with_changes({"pinion.hand": "left"}).pinion_hand == "left"
+    assert scene.with_changes({"wheel.hand": "right"}).pinion_hand == "left"
+    assert scene.with_changes({"wheel.hand": "left"}).pinion_hand == "right"
+
+
+def test_hand_of_a_spur_gear_has_no_meaning(scene):
+    spur = scene.with_changes({"pair.helix_angle_deg": 0.0, "pinion.hand": "left"})
+    assert spur.mesh().pinion.helix_angle == spur.mesh().wheel.helix_angle == 0.0
+
+
+def test_own_material_overrides_the_common_one(scene):
+    brass = ElasticMaterial(youngs_modulus_MPa=1e5, poisson_ratio=0.35)
+    changed = replace(scene, wheel=replace(scene.wheel, material=brass))
+    assert changed.materials == (scene.material, brass)
+    each = replace(changed, pinion=replace(scene.pinion, material=brass), material=None)
+    assert each.materials == (brass, brass)
+
+
+def test_text_of_the_smallest_scene_has_every_key(scene):
+    text = scene.to_toml()
+    for section in (Geometry, Gear, Modifications, MountingErrors, ElasticMaterial, Load, Analysis):
+        for field in fields(section):
+            assert field.name in text
+
+
+def test_text_makes_the_same_scene(scene):
+    assert parse_scene(scene.to_toml()) == scene
+
+
+def test_text_with_every_key_set_makes_the_same_scene(scene):
+    full = scene.with_changes(EVERY_KEY)
+    again = parse_scene(full.to_toml())
+    assert again == full
+    assert hash(again) == hash(full)
+    assert again.to_toml() == full.to_toml()
+
+
+def test_scene_survives_pickling(scene):
+    assert pickle.loads(pickle.dumps(scene)) == scene
+
+
+def test_scene_is_frozen(scene):
+    with pytest.raises(FrozenInstanceError):
+        scene.pinion.teeth = 3
+
+
+def test_replace_checks_again(scene):
+    with pytest.raises(InputError, match=r"^teeth: found 2; allowed a whole number from 3 to 10000$"):
+        replace(scene.pinion, teeth=2)
+    with pytest.raises(InputError, match=r"^material: missing"):
+        replace(scene, material=None)
+    with pytest.raises(InputError, match=r"^wheel: found .*; allowed a section \[wheel\]$"):
+        replace(scene, wheel=scene.mounting)
+
+
+def test_replace_may_leave_a_default(scene):
+    assert replace(scene, mounting=MountingErrors(in_plane_deg=1.0)).mounting.in_plane_deg == 1.0
+
+
+def test_changes_leave_the_scene_as_it_is(scene):
+    changed = scene.with_changes({"pinion.teeth": 35})
+    assert (scene.pinion.teeth, changed.pinion.teeth) == (34, 35)
+    assert changed.with_changes({"pinion.teeth": 34}) == scene
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"pinion.teth": 35}, 'pinion.teth: unknown key; did you mean "pinion.teeth"?'),
+        ({"pinion.teeth.number": 35}, "pinion.teeth: found a table; allowed a whole number"),
+        ({"pinion.teeth": None}, "pinion.teeth: missing"),
+        ({"analysis.cells": (8, 8)}, "analysis.cells: found beside accuracy"),
+    ],
+)
+def test_changes_are_checked(scene, changes, message):
+    with pytest.raises(InputError) as raised:
+        scene.with_changes(changes)
+    assert str(raised.value).startswith(message)
+
+
+def test_units_are_converted_by_the_end_of_the_key():
+    modifications = in_base_units(Modifications(tip_relief_um=20.0, tip_relief_start_mm=109.0))
+    assert_allclose(modifications["tip_relief"], 0.02, rtol=ROUNDING)
+    assert modifications["tip_relief_start"] == 109.0
+    assert modifications["tip_relief_form"] == "parabolic"
+    assert_allclose(in_base_units(MountingErrors(in_plane_deg=9.0))["in_plane"], np.pi / 20, rtol=ROUNDING)
+    assert in_base_units(Load(pinion_torque_Nm=2.0)) == {"pinion_torque": 2000.0}
+
+
+def test_mesh_has_the_geometry_of_the_scene(scene):
+    mesh = scene.with_changes(EVERY_KEY).mesh()
+    assert (mesh.pinion.teeth, mesh.wheel.teeth) == (34, 57)
+    assert (mesh.pinion.name, mesh.wheel.name) == ("pinion", "wheel")
+    assert mesh.pinion.helix_angle == -mesh.wheel.helix_angle == -np.deg2rad(15.0)
+    assert_allclose(mesh.pinion.pressure_angle, np.deg2rad(17.5), rtol=ROUNDING)
+    assert mesh.pinion.profile_shift == 0.1 + 0.2
+    assert (mesh.pinion.tip_diameter, mesh.wheel.tip_diameter) == (111.6, None)
+    assert (mesh.pinion.face_width, mesh.wheel.face_width) == (25.0, 20.0)
+    assert (mesh.pinion.dedendum_coefficient, mesh.wheel.root_radius_coefficient) == (1.4, 0.25)
+    assert mesh.pinion.bore_diameter == 40.0
+    assert mesh.centre_distance == 142.0
+
+
+def test_pair_stands_where_the_scene_puts_it(scene):
+    pair = scene.with_changes(
+        {
+            "pair.driving": "wheel",
+            "pair.sense": "negative",
+            "mounting.centre_distance_error_mm": 0.5,
+            "mounting.axial_offset_mm": 0.25,
+            "wheel.material": {"youngs_modulus_MPa": 1e5, "poisson_ratio": 0.25, "max_pressure_MPa": 900.0},
+        }
+    ).pair()
+    assert pair.teeth == (34, 57)
+    assert (pair.driving, pair.sense) == (-1, -1)
+    centre_distance = scene.mesh().working_centre_distance
+    assert_allclose(pair.wheel_origin, [centre_distance + 0.5, 0.0, 0.25], rtol=ROUNDING)
+    assert [material.youngs_modulus for material in pair.materials] == [206000.0, 1e5]
+    assert pair.max_pressure == 900.0
+
+
+@pytest.mark.parametrize(
+    ("error", "axis"),
+    [("in_plane_deg", [1.0, 0.0]), ("out_of_plane_deg", [0.0, -1.0])],
+)
+def test_pair_tilts_the_axis_of_the_wheel_as_defined(scene, error, axis):
+    pair = scene.with_changes({f"mounting.{error}": 1.0}).pair()
+    tilt = np.deg2rad(1.0)
+    assert_allclose(pair.wheel_axes[2], [*np.sin(tilt) * np.array(axis), np.cos(tilt)], atol=ROUNDING)
+
+
+@pytest.mark.parametrize(("member", "other"), [("pinion", "wheel"), ("wheel", "pinion")])
+def test_pair_has_the_modifications_of_each_gear(scene, member, other):
+    nominal, crowned = scene.pair(), scene.with_changes({f"{member}.modifications.lead_crowning_um": 5.0}).pair()
+    rho, z = np.array([scene.mesh().pinion_working_radius, scene.mesh().wheel_working_radius]), 10.0
+    radius = rho[0] if member == "pinion" else rho[1]
+    flank = getattr(crowned, member)
+    removed = getattr(nominal, member).theta(radius, z).value - flank.theta(radius, z).value
+    width = {"pinion": 25.0, "wheel": 20.0}[member]
+    expected = 5e-3 * (2 * z / width) ** 2 * flank.gradient_norm(radius, z).value
+    assert_allclose(np.abs(removed), expected, rtol=1e-9)
+    assert getattr(crowned, other).theta(radius, z).value == getattr(nominal, other).theta(radius, z).value
+
+
+def test_geometry_that_cannot_be_is_told_by_the_gears(scene):
+    with pytest.raises(InputError, match="pinion: bore_diameter"):
+        scene.with_changes({"pinion.bore_diameter_mm": 104.0}).pair()
+
+
+def test_fzg_example_has_its_published_geometry():
+    mesh = read_scene(SCENES / "fzg_c14.toml").mesh()
+    # published to 5 decimals of a degree, 2 decimals of a mm, 2 decimals of a contact ratio
+    assert_allclose(np.rad2deg(mesh.working_pressure_angle), 22.43934, atol=0.5e-5)
+    assert_allclose(mesh.path_of_contact.AE, 19.43, atol=0.5e-2)
+    assert_allclose(mesh.transverse_contact_ratio, 1.46, atol=0.5e-2)
+
+
+@pytest.mark.parametrize("name", ["spur", "helical", "fzg_c14", "misaligned"])
+def test_example_makes_a_pair_and_holds_the_pitch_point(name):
+    scene = read_scene(SCENES / f"{name}.toml")
+    assert scene.pair().teeth == (scene.pinion.teeth, scene.wheel.teeth)
+    assert scene.analysis.positions % 2 == 1
