@@ -30,9 +30,9 @@ _forked = False
 
 def _mark_fork() -> None:
     """FFTW's threads do not survive a fork: the child works with one, and plans anew."""
-    global _forked
+    global _forked, _cache
     _forked = True
-    _cache.__dict__.clear()
+    _cache = _Cache()
 
 
 class _Cache(threading.local):
@@ -68,7 +68,7 @@ def default_threads() -> int:
 
 
 def fast_length(least: int) -> int:
-    """Smallest length 2^k (8, 9, 10, 12, 14) not below ``least``: few sizes, all fast, at most 1/8 too long.
+    """Smallest even length 2^k (8, 9, 10, 12, 14) not below ``least``: few, fast, at most 1/5 too long.
 
     Examples
     --------
@@ -77,8 +77,9 @@ def fast_length(least: int) -> int:
     """
     if least <= 8:
         return max(2, least + least % 2)
-    power = 2 ** max(1, math.ceil(math.log2(least)) - 4)
-    return next(power * m for m in (8, 9, 10, 12, 14, 16) if power * m >= least)
+    power = 1 << (math.ceil(math.log2(least)) - 4)
+    lengths = (power * m for m in (8, 9, 10, 12, 14, 16))
+    return next(length for length in lengths if length >= least and length % 2 == 0)
 
 
 class _Transform:
@@ -92,7 +93,7 @@ class _Transform:
     def __init__(self, rows: tuple[int, int], box: tuple[int, int], dtype: str, threads: int) -> None:
         complex_type = "complex64" if dtype == "float32" else "complex128"
         self.data = pyfftw.zeros_aligned((rows[0], box[1]), dtype=dtype)
-        self.result = pyfftw.zeros_aligned((rows[1], box[1]), dtype=dtype)
+        self.result: Array = pyfftw.zeros_aligned((rows[1], box[1]), dtype=dtype)
         # Rows a power of two apart share their place in the cache: a few unused columns keep them apart.
         padded = pyfftw.zeros_aligned((box[1] // 2 + 1, box[0] + 8), dtype=complex_type)
         self.spectrum = padded[:, : box[0]]

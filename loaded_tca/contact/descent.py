@@ -1,9 +1,6 @@
-"""Projected, preconditioned conjugate gradients for one grid of a contact problem.
+"""Projected, preconditioned conjugate gradients for a contact problem on one grid."""
 
-Dimensionless inside: lengths over the reference approach, pressures p dx/(E* reference).
-"""
-
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,24 +8,36 @@ from numpy.typing import NDArray
 from loaded_tca.contact.convolution import Convolution, Preconditioner
 
 Array = NDArray[np.float64]
+Single = NDArray[np.float32]
 Mask = NDArray[np.bool_]
+
+# Steps in single precision let the displacement drift; it is computed anew after so many of them.
+REFRESH = 25
+# A search along a projected step shorter than this part of it is worth doing, a longer one is not: taking the
+# whole step sets the cells that reach a bound exactly on it.
+WHOLE_STEP = 0.5
+MOST_PROJECTIONS = 100
+# Relative error of the sum of some thousand pressures.
+ROUNDING = 1e-15
 
 
 @dataclass(frozen=True)
 class Grid:
     """A contact problem on one grid: minimise p.Kp/2 + h.p over 0 <= p <= cap.
 
+    Pressures are p dx/E* here, a length, so that K depends on the shape of a cell only.
+
     Parameters
     ----------
-    gap : (nx, ny) array
-        Gap h before loading, its smallest value near 0, a huge value where there is no material.
+    gap : (nx, ny) array [mm]
+        Gap h before loading, its smallest value near 0, :data:`NO_MATERIAL` where there is none.
     aspect : float
         dy/dx.
-    total : float or None
-        Sum of the pressures; None if ``approach`` is prescribed.
-    approach : float
-        Prescribed approach; ignored if the total is given.
-    cap : float
+    total : float or None [mm]
+        Sum of the pressures; None if the approach is prescribed.
+    approach : float [mm]
+        Prescribed approach, counted as ``gap`` is; of no meaning if the total is given.
+    cap : float [mm]
         Largest pressure, infinity if there is none.
     """
 
@@ -38,33 +47,216 @@ class Grid:
     approach: float
     cap: float
 
+    def clip(self, pressure: Array, movable: Mask) -> Array:
+        """Nearest pressure within the bounds (and with the right sum) that moves only the movable cells."""
+        clipped = np.clip(pressure, 0.0, self.cap)
+        if self.total is None:
+            return clipped
+        if np.isinf(self.cap):
+            clipped *= self.total / clipped.sum()
+            return clipped
+        values = pressure[movable]
+        if not values.size:
+            return clipped
+        clipped[movable] = _project(values, self.total - float(clipped[~movable].sum()), self.cap)
+        return clipped
 
-@dataclass
-class Iterate:
-    """Pressure p and displacement u = Kp of a grid, and what follows from them.
 
-    ``excess`` is u + h - approach (the gap of the deformed bodies), ``free`` the cells that may move: those
-    strictly between the bounds, and those at a bound that the excess pushes off it.
+NO_MATERIAL = 1e300
+
+
+def _project(values: Array, total: float, cap: float) -> Array:
+    """Project onto 0 <= p <= cap, sum p = total: p = clip(values - shift), the shift by safeguarded Newton steps."""
+    low, high = float(values.min()) - cap, float(values.max())
+    shift = 0.0
+    for _ in range(MOST_PROJECTIONS):
+        projected = np.clip(values - shift, 0.0, cap)
+        surplus = float(projected.sum()) - total
+        if abs(surplus) <= ROUNDING * total:
+            break
+        low, high = (shift, high) if surplus > 0.0 else (low, shift)
+        inner = np.count_nonzero((projected > 0.0) & (projected < cap))
+        shift = shift + surplus / inner if inner else low
+        if not low < shift < high:
+            shift = 0.5 * (low + high)
+    return projected
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """How far a pressure is from solving its problem.
+
+    Parameters
+    ----------
+    approach : float [mm]
+        Mean of u + h over the cells strictly between the bounds, or as prescribed.
+    residual : float
+        Largest of: mean excess where the pressure is between the bounds, weighted with it; deepest penetration
+        where the pressure is zero; widest gap where it is at the cap. All over the approach.
+    free : (nx, ny) array of bool
+        Cells between the bounds, and cells that the excess pushes off a bound.
     """
 
-    pressure: Array
-    displacement: Array
-    excess: Array
+    approach: float
+    residual: float
     free: Mask
-    approach: float = 0.0
-    residual: float = np.inf
-    iterations: int = 0
+
+
+def judge(grid: Grid, pressure: Array, excess: Array) -> Judgement:
+    """Check the Kuhn-Tucker conditions; turns ``excess``, given as u + h, into u + h - approach in place."""
+    touching, capped = pressure > 0.0, pressure >= grid.cap
+    inner = touching & ~capped
+    approach = grid.approach if grid.total is None else _mean_level(excess, touching, inner, capped)
+    excess -= approach
+    misfit = float(np.vdot(pressure, np.abs(excess * inner))) / max(float(pressure.sum()), np.finfo(float).tiny)
+    penetrating, parting = ~touching & (excess < 0.0), capped & (excess > 0.0)
+    deepest = -float(excess[penetrating].min(initial=0.0))
+    widest = float(excess[parting].max(initial=0.0))
+    residual = max(misfit, deepest, widest) / approach if approach > 0.0 else np.inf
+    return Judgement(approach, residual, inner | penetrating | parting)
+
+
+def _mean_level(level: Array, touching: Mask, inner: Mask, capped: Mask) -> float:
+    """Approach that fits u + h best; with every cell at a bound any value between two limits is right."""
+    count = np.count_nonzero(inner)
+    if count:
+        return float(np.vdot(level, inner) / count)
+    lower = float(level[capped].max())
+    apart = level[~touching]
+    upper = float(apart.min()) if apart.size else lower
+    return 0.5 * (lower + upper) if upper < NO_MATERIAL else lower
 
 
 class Descent:
-    """Projected conjugate gradients on a grid; :meth:`run` goes on from where it stands."""
+    """Projected conjugate gradients on one grid; :meth:`run` goes on from where it stands.
 
-    def __init__(self, grid: Grid, pressure: Array, threads: int | None) -> None:
-        shape = grid.gap.shape
+    Directions and their convolutions are in single precision, relative to the approach: they correct a
+    displacement that is computed in double precision, so their rounding errors shrink with the residual.
+
+    Parameters
+    ----------
+    grid : Grid
+        The problem.
+    pressure : (nx, ny) array [mm]
+        Start, within the bounds and with the right sum.
+    displacement : (nx, ny) array [mm], optional
+        K times the start, if known.
+    threads : int, optional
+        Threads of a transform.
+
+    References
+    ----------
+    Polonsky & Keer 1999, Wear 231, 206-219 (conjugate gradients under the load constraint); Vollebregt 2014,
+    J. Comput. Phys. 257, 333-351 (Fourier preconditioner).
+    """
+
+    def __init__(
+        self, grid: Grid, pressure: Array, displacement: Array | None = None, threads: int | None = None
+    ) -> None:
+        shape = pressure.shape
         self.grid = grid
-        self.exact = Convolution(shape, grid.aspect, threads=threads)
-        self.fast = Convolution(shape, grid.aspect, dtype="float32", threads=threads)
-        self.precondition = Preconditioner(shape, grid.aspect, threads)
-        self.at = Iterate(pressure, np.empty(shape), np.empty(shape), np.zeros(shape, dtype=bool))
+        self.pressure = pressure
+        self.iterations = 0
+        self._exact = Convolution(shape, grid.aspect, threads=threads)
+        self._fast = Convolution(shape, grid.aspect, dtype="float32", threads=threads)
+        self._precondition = Preconditioner(shape, grid.aspect, threads)
+        self._displacement = self._exact(pressure, np.empty(shape)) if displacement is None else displacement
+        self._excess = np.empty(shape)
+        self._scale = 0.0
         self._direction = np.zeros(shape, dtype=np.float32)
-        self._previous: tuple[NDArray[np.float32], NDArray[np.float32]] | None = None
+        self._image = np.empty(shape, dtype=np.float32)
+        self._last: tuple[Single, float] | None = None
+
+    @property
+    def convolutions(self) -> int:
+        """Convolutions so far."""
+        return self._exact.count + self._fast.count
+
+    def run(self, tolerance: float, limit: int) -> Judgement:
+        """Iterate until the residual is below the tolerance or ``limit`` iterations are done."""
+        for step in range(limit + 1):
+            np.add(self._displacement, self.grid.gap, out=self._excess)
+            state = judge(self.grid, self.pressure, self._excess)
+            if state.residual <= tolerance or step == limit:
+                break
+            self._scale = state.approach if state.approach > 0.0 else float(np.abs(self._displacement).max())
+            self._iterate(state.free)
+            self.iterations += 1
+            if (step + 1) % REFRESH == 0:
+                self._exact(self.pressure, self._displacement)
+                self._last = None
+        return state
+
+    def settle(self) -> Array:
+        """Take the rounding errors of the steps off the sum of the pressures; return these."""
+        self.pressure = self.grid.clip(self.pressure, (self.pressure > 0.0) & (self.pressure < self.grid.cap))
+        return self.pressure
+
+    def _iterate(self, free: Mask) -> None:
+        """One step along the conjugate direction, projected where it leaves the bounds."""
+        residual = (self._excess * (free / self._scale)).astype(np.float32)
+        direction = self._conjugate(self._level(residual, free), free)
+        image = self._fast(direction, self._image)
+        curvature = float(np.vdot(direction, image))
+        if not curvature > 0.0:
+            self._last = None
+            return
+        length = self._scale * float(np.vdot(direction, residual)) / curvature
+        trial = self.pressure - length * direction
+        if float(trial.min()) >= 0.0 and float(trial.max()) <= self.grid.cap:
+            self.pressure = trial
+            self._displacement -= length * image
+        elif not self._move(self.grid.clip(trial, free)):
+            self._last = None
+            self._project_gradient(residual, free)
+
+    def _conjugate(self, residual: Single, free: Mask) -> Single:
+        """Direction of Polak and Ribiere from the preconditioned residual; a restart where it does not descend."""
+        preconditioned = self._precondition(residual, np.empty_like(residual))
+        preconditioned *= free
+        self._level(preconditioned, free)
+        descent = float(np.vdot(preconditioned, residual))
+        direction = self._direction
+        if self._last is None:
+            direction[:] = preconditioned
+        else:
+            ahead = descent - float(np.vdot(preconditioned, self._last[0]))
+            direction *= np.float32(max(0.0, ahead / self._last[1]))
+            direction += preconditioned
+            direction *= free
+            self._level(direction, free)
+            if not float(np.vdot(direction, residual)) > 0.0:
+                direction[:] = preconditioned
+        self._last = (residual, descent) if descent > 0.0 else None
+        return direction
+
+    def _level(self, values: Single, free: Mask) -> Single:
+        """Take the mean off the free cells, so that the sum of the pressures stays; nothing without a given sum."""
+        if self.grid.total is not None:
+            values -= free * np.float32(values.sum(dtype=np.float64) / np.count_nonzero(free))
+        return values
+
+    def _move(self, target: Array) -> bool:
+        """Go towards a pressure within the bounds as far as the energy falls; False if it does not fall at all."""
+        step = ((target - self.pressure) / self._scale).astype(np.float32)
+        image = self._fast(step, self._image)
+        slope = float(np.vdot(step, self._excess * (step != 0.0))) / self._scale
+        curvature = float(np.vdot(step, image))
+        if not (slope < 0.0 < curvature):
+            return False
+        best = -slope / curvature
+        if best < WHOLE_STEP:
+            self.pressure = self.pressure + best * (target - self.pressure)
+            self._displacement += (best * self._scale) * image
+        else:
+            self.pressure = target
+            self._displacement += self._scale * image
+        return True
+
+    def _project_gradient(self, residual: Single, free: Mask) -> None:
+        """One projected step down the plain gradient, which always descends."""
+        image = self._fast(residual, self._image)
+        curvature = float(np.vdot(residual, image))
+        if curvature > 0.0:
+            length = self._scale * float(np.vdot(residual, residual)) / curvature
+            self._move(self.grid.clip(self.pressure - length * residual, free))

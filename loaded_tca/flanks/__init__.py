@@ -1,1 +1,7 @@
 """Tooth flanks, each a function theta = Theta(rho, z)."""
+
+from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.involute import InvoluteFlank
+from loaded_tca.flanks.modification import FlankModifications, ModifiedFlank
+
+__all__ = ["Flank", "FlankModifications", "InvoluteFlank", "ModifiedFlank"]

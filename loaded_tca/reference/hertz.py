@@ -263,9 +263,7 @@ def _axis_ratio(curvature_ratio: float) -> float:
 def _require_positive(**values: float) -> None:
     """Raise one InputError naming every value that is not positive and finite."""
     problems = [
-        f"{name}: {value} is not positive and finite"
-        for name, value in values.items()
-        if not 0.0 < value < math.inf
+        f"{name}: {value} is not positive and finite" for name, value in values.items() if not 0.0 < value < math.inf
     ]
     if problems:
         raise InputError(problems)

@@ -150,6 +150,17 @@ class Scene(Section):
         ----------
         changes : mapping
             Key as in a file, with dots (``"pinion.modifications.tip_relief_um"``) -> value; None: not given.
+
+        Raises
+        ------
+        InputError
+            Every problem at once, as for a file.
+
+        Examples
+        --------
+        A grid of one's own instead of an accuracy::
+
+            scene.with_changes({"analysis.cells": (32, 32)})
         """
         table = as_table(self)
         for path, value in changes.items():

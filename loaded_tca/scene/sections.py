@@ -10,7 +10,6 @@ from typing import ClassVar, Literal
 from loaded_tca.scene.keys import Choice, List, Number, Whole, above_zero, key
 from loaded_tca.scene.section import Rule, Section, subsection
 
-STANDARD_ACCURACY = 1e-3
 """Relative error of the peak pressure that is aimed at where a scene asks for neither accuracy nor cells."""
 
 Hand = Literal["right", "left"]
@@ -165,12 +164,6 @@ class Load(Section):
     pinion_torque_Nm: float = key(TORQUE_Nm, "magnitude of the torque on the pinion")
 
 
-def _one_way_to_the_grid(cells: tuple[int, int] | None, accuracy: float | None) -> str | None:
-    if cells is None or accuracy is None:
-        return None
-    return f"found beside accuracy = {accuracy:g}; allowed one of the two, each chooses the grid"
-
-
 @dataclass(frozen=True, kw_only=True)
 class Analysis(Section):
     """[analysis]: how finely it is computed."""
@@ -178,15 +171,12 @@ class Analysis(Section):
     positions: int = key(
         Whole(1, 10000), "mesh positions over one pitch, both ends included; 1 = the pitch point alone", 21
     )
-    accuracy: float | None = key(
-        Number(1e-6, 0.5),
-        "wanted relative error of the peak pressure; chooses the grid",
-        None,
-        f"{STANDARD_ACCURACY:g}, unless cells are given",
+    accuracy: float = key(
+        Number(1e-6, 0.5), "wanted relative error of the peak pressure; chooses the grid unless cells do", 1e-3
     )
     cells: tuple[int, int] | None = key(
-        List(Whole(1, 16384), 2, 2),
-        "cells across and along the contact; chooses the grid",
+        List(Whole(1, 1000000), 2, 2),
+        "cells across and along the contact; chooses the grid instead of the accuracy",
         None,
         "follows from accuracy",
     )
@@ -200,10 +190,3 @@ class Analysis(Section):
     torques_Nm: tuple[float, ...] | None = key(
         List(TORQUE_Nm, 1, 1000), "several pinion torques, all analysed", None, "the one of [load]"
     )
-
-    rules: ClassVar[tuple[Rule, ...]] = (Rule(("cells", "accuracy"), _one_way_to_the_grid),)
-
-    def __post_init__(self) -> None:
-        if self.accuracy is None and self.cells is None:
-            object.__setattr__(self, "accuracy", STANDARD_ACCURACY)
-        super().__post_init__()

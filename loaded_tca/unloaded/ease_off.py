@@ -1,4 +1,4 @@
-r"""The rotary ease-off: at which angle must the mate stand to pass through a point of the pinion flank?
+r"""The rotary ease-off: the angle at which the mate must stand to pass through a point of the pinion flank.
 
 Turn the pinion by phi1 and take the point P = (rho, z) of its flank. The wheel's flank passes through P at
 
@@ -80,7 +80,7 @@ class Station:
 def _combine(vectors: Array, jet: Jet, turn: float, radius: Array) -> Array:
     """Vectors (..., k, 3) in the wheel's basis dotted with the gradient of jet + turn theta: (..., k)."""
     parts = [jet.rho, turn / radius, jet.z]
-    return sum(vectors[..., k] * np.asarray(part)[..., None] for k, part in enumerate(parts))  # type: ignore[return-value]
+    return sum(vectors[..., k] * np.asarray(part)[..., None] for k, part in enumerate(parts))
 
 
 def _cylindrical_hessian(jet: Jet, turn: float, radius: Array) -> Array:

@@ -57,7 +57,7 @@ def find_lines(field: EaseOff, phi1: Array, rho: Array, z: Array, multipliers: A
     points = np.stack([ridge.in_space(end) for end in (first, second)], axis=1)
     x, y, z_middle = points.mean(axis=1).T
     middle = ridge.nearest(np.stack([np.hypot(x, y), z_middle], axis=-1))[keep]
-    return Lines(rows[keep], *middle.T, points[keep])
+    return Lines(rows[keep], middle[:, 0], middle[:, 1], points[keep])
 
 
 def _soft_direction(field: EaseOff, phi1: Array, rho: Array, z: Array, multipliers: Array) -> tuple[Array, Array]:

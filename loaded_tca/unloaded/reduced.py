@@ -111,7 +111,8 @@ def climb(field: EaseOff, phi1: Array, rho: Array, z: Array) -> Maxima:
             break
     value, distances = field.heights(phi1, *(points * scale).T)
     converged &= _violation(distances) <= FEASIBLE * scale[0]
-    return Maxima(*(points * scale).T, value, multipliers, iterations, converged)
+    rho, z = (points * scale).T
+    return Maxima(rho, z, value, multipliers, iterations, converged)
 
 
 def _look(field: EaseOff, phi1: Array, points: Array, scale: Array) -> _Local:

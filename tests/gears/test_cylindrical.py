@@ -8,7 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.errors import GeometryError, InputError, LoadedTCAError
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.gears.cylindrical import inverse_involute, involute
 
@@ -231,7 +231,7 @@ def test_sharp_cornered_rack_undercuts_more_than_a_rounded_one():
         ({"dedendum_coefficient": 0.0}, "dedendum_coefficient: 0.0 is not positive"),
         ({"dedendum_coefficient": 2.2}, "dedendum_coefficient: 2.2 is beyond the point of the rack's tooth"),
         ({"root_radius_coefficient": -0.1}, "root_radius_coefficient: -0.1 is negative"),
-        ({"pressure_angle": 20.0}, r"pressure_angle: 20 rad is not between 0 and 0.785 rad \(45 deg\)"),
+        ({"pressure_angle": 20.0}, r"pressure_angle: 20 rad is not between 0.0175 and 0.785 rad \(1 to 45 deg\)"),
         ({"helix_angle": -15.0}, r"helix_angle: -15 rad is not within 1.047 rad \(60 deg\)"),
         ({"profile_shift": nan}, "profile_shift: nan is not finite"),
         ({"profile_shift": -14.0}, "profile_shift: -14 makes the root diameter -1 mm"),
@@ -240,6 +240,29 @@ def test_sharp_cornered_rack_undercuts_more_than_a_rounded_one():
 def test_gear_refuses_an_impossible_value(changes, message):
     with pytest.raises(InputError, match=f"gear: {message}"):
         gear(**changes)
+
+
+@given(
+    teeth=st.integers(-1, 60),
+    normal_module=st.floats(0.01, 50.0),
+    pressure_angle=st.floats(-0.1, 1.0),
+    helix_angle=st.floats(-1.2, 1.2),
+    profile_shift=st.floats(-3.0, 3.0),
+    dedendum_coefficient=st.floats(0.0, 3.0),
+    root_radius_coefficient=st.floats(-0.1, 1.0),
+)
+def test_any_input_makes_a_sound_gear_or_a_clear_error(**sizes):
+    try:
+        made = CylindricalGear(face_width=10.0, **sizes)
+    except LoadedTCAError:
+        return
+    assert made.base_radius <= made.form_radius < made.tip_radius
+    assert made.tooth_thickness_at(made.tip_radius) > 0.0
+    radius, half_angle = made.root_fillet(20)
+    assert np.isfinite(half_angle).all()
+    assert_allclose(radius[-1], made.root_radius, rtol=ROUNDING)
+    # not closer: the form circle is the base circle where rounding hides a slight undercut
+    assert_allclose(radius[0], made.form_radius, rtol=1e-9)
 
 
 def test_gear_tells_every_problem_at_once():

@@ -62,9 +62,7 @@ def test_slender_ellipse_tends_to_line_contact(aspect):
     line = hertz.line_contact(line_load, 0.2, STEEL)
     assert_allclose(contact.ratio, aspect, rtol=1e-3)
     # the strip is disturbed by (b/a)^2 log(a/b)
-    assert_allclose(
-        contact.max_pressure, line.max_pressure, rtol=10 * math.log(aspect) / aspect**2 + ROOT_SOLVED
-    )
+    assert_allclose(contact.max_pressure, line.max_pressure, rtol=10 * math.log(aspect) / aspect**2 + ROOT_SOLVED)
 
 
 @pytest.mark.parametrize("excess", [0.0, 1e-15, 1e-12, 1e-8, 1e-4])
@@ -159,9 +157,7 @@ def test_line_contact_agrees_with_published_gear_value():
 def test_line_pressure_integrates_to_the_line_load():
     line = hertz.line_contact(500.0, 0.1, STEEL)
     angle = np.linspace(0.0, math.pi, 4001)
-    integral = (
-        np.trapezoid(line.pressure(line.half_width * np.cos(angle)) * np.sin(angle), angle) * line.half_width
-    )
+    integral = np.trapezoid(line.pressure(line.half_width * np.cos(angle)) * np.sin(angle), angle) * line.half_width
     assert_allclose(integral, 500.0, rtol=1e-6)  # trapezium rule of 4000 steps
     assert_allclose(line.mean_pressure, math.pi / 4 * line.max_pressure, rtol=EXACT)
 

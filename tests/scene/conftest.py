@@ -1,12 +1,8 @@
 """A small scene to change and to break."""
 
-from pathlib import Path
-
 import pytest
 
 from loaded_tca.scene import Scene, parse_scene
-
-ROOT = Path(__file__).parents[2]
 
 SMALL = """
 title = "Small"
@@ -26,6 +22,11 @@ poisson_ratio = 0.3
 [load]
 pinion_torque_Nm = 130.0
 """
+
+
+@pytest.fixture
+def small() -> str:
+    return SMALL
 
 
 @pytest.fixture

@@ -1,12 +1,14 @@
 """Files and texts: what is read, and what can go wrong before there are keys to check."""
 
 import re
+from pathlib import Path
 
 import pytest
 
-from loaded_tca import InputError
+from loaded_tca.errors import InputError
 from loaded_tca.scene import parse_scene, read_scene
-from tests.scene.conftest import ROOT, SMALL
+
+ROOT = Path(__file__).parents[2]
 
 
 def refusal(function, *arguments):
@@ -16,15 +18,15 @@ def refusal(function, *arguments):
     return problem
 
 
-def test_file_gives_the_scene_of_its_text(tmp_path, scene):
+def test_file_gives_the_scene_of_its_text(tmp_path, scene, small):
     path = tmp_path / "scene.toml"
-    path.write_text(SMALL, encoding="utf-8")
+    path.write_text(small, encoding="utf-8")
     assert read_scene(path) == read_scene(str(path)) == scene
 
 
-def test_file_may_start_with_a_byte_order_mark_and_end_lines_as_windows_does(tmp_path, scene):
+def test_file_may_start_with_a_byte_order_mark_and_end_lines_as_windows_does(tmp_path, scene, small):
     path = tmp_path / "scene.toml"
-    path.write_bytes(b"\xef\xbb\xbf" + SMALL.replace("\n", "\r\n").encode())
+    path.write_bytes(b"\xef\xbb\xbf" + small.replace("\n", "\r\n").encode())
     assert read_scene(path) == scene
 
 
@@ -87,18 +89,18 @@ def test_whole_number_of_too_many_digits_is_told():
     assert refusal(parse_scene, "a = " + "1" * 5000).startswith("scene: not a TOML file: Exceeds the limit")
 
 
-def test_lone_surrogate_in_a_title_is_told_in_plain_characters():
-    assert r"\ud800" in refusal(parse_scene, SMALL.replace("Small", "\ud800"))
+def test_lone_surrogate_in_a_title_is_told_in_plain_characters(small):
+    assert r"\ud800" in refusal(parse_scene, small.replace("Small", "\ud800"))
 
 
-def test_date_is_no_number():
-    text = SMALL.replace("130.0", "2024-02-29")
+def test_date_is_no_number(small):
+    text = small.replace("130.0", "2024-02-29")
     expected = "load.pinion_torque_Nm: found 2024-02-29; allowed a number from 0 to 1e+09"
     assert refusal(parse_scene, text) == expected
 
 
-def test_nothing_in_a_file_is_evaluated():
-    assert "found" in refusal(parse_scene, SMALL.replace("130.0", "\"__import__('os').getpid()\""))
+def test_nothing_in_a_file_is_evaluated(small):
+    assert "found" in refusal(parse_scene, small.replace("130.0", "\"__import__('os').getpid()\""))
 
 
 EXAMPLES = sorted((ROOT / "examples" / "scenes").glob("*.toml"))

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from loaded_tca import InputError
+from loaded_tca.errors import InputError
 from loaded_tca.scene import scene_from_table
 
 
@@ -56,7 +56,7 @@ ONE_PROBLEM = [
     ({"wheel.modifications": [1]}, "wheel.modifications: found [1]; allowed a section [wheel.modifications]"),
     (
         {"analysis.cells": 32},
-        "analysis.cells: found 32; allowed a list of 2 values, each a whole number from 1 to 16384",
+        "analysis.cells: found 32; allowed a list of 2 values, each a whole number from 1 to 1000000",
     ),
     # out of range
     ({"pinion.teeth": -34}, "pinion.teeth: found -34; allowed a whole number from 3 to 10000"),
@@ -86,9 +86,9 @@ ONE_PROBLEM = [
         "pinion.modifications.lead_crowning_um: found -5.0; allowed a number from 0 to 10000",
     ),
     (
-        {"analysis.cells": [32, 20000]},
-        "analysis.cells: found [32, 20000]; allowed a list of 2 values, each a whole number from 1 to 16384"
-        " (found 20000; allowed a whole number from 1 to 16384)",
+        {"analysis.cells": [32, 2000000]},
+        "analysis.cells: found [32, 2000000]; allowed a list of 2 values, each a whole number from 1 to 1000000"
+        " (found 2000000; allowed a whole number from 1 to 1000000)",
     ),
     (
         {"analysis.torques_Nm": []},
@@ -117,10 +117,6 @@ ONE_PROBLEM = [
         'analysis.compliance: "contact+tooth" is not available in this version; allowed "contact"',
     ),
     # together
-    (
-        {"analysis.cells": [32, 32], "analysis.accuracy": 0.01},
-        "analysis.cells: found beside accuracy = 0.01; allowed one of the two, each chooses the grid",
-    ),
     (
         {"wheel.modifications.tip_relief_um": 20.0},
         "wheel.modifications.tip_relief_start_mm: missing or 0; tip_relief_um = 20 needs a value above 0",

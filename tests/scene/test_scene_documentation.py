@@ -1,12 +1,14 @@
 """docs/scene.md says what the parser does."""
 
 import re
+from pathlib import Path
 
 import pytest
 
-from loaded_tca import InputError
+from loaded_tca.errors import InputError
 from loaded_tca.scene import describe_keys, parse_scene
-from tests.scene.conftest import ROOT
+
+ROOT = Path(__file__).parents[2]
 
 PAGE = (ROOT / "docs" / "scene.md").read_text(encoding="utf-8")
 

@@ -1,0 +1,92 @@
+"""From grid to grid: coarser gaps, pressures carried to a finer grid, windows around a contact."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loaded_tca.contact.convolution import Window, fast_length
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+COARSEST = 16
+MARGIN = 3
+
+
+def coarsening(shape: tuple[int, int]) -> tuple[int, int]:
+    """Cells to merge along each axis; (1, 1) if the grid is as coarse as it should be."""
+    return (2 if shape[0] >= 2 * COARSEST else 1, 2 if shape[1] >= 2 * COARSEST else 1)
+
+
+def coarsen(gap: Array, merge: tuple[int, int]) -> Array:
+    """Mean gap of blocks of cells; infinite only where a whole block has no material.
+
+    An odd last row or column makes a block of its own.
+    """
+    for axis in (0, 1):
+        if merge[axis] == 2:
+            gap = _merge_pairs(gap, axis)
+    return gap
+
+
+def _merge_pairs(gap: Array, axis: int) -> Array:
+    """Mean of neighbours along an axis; of one of them where the other is infinite."""
+    even = gap[::2] if axis == 0 else gap[:, ::2]
+    odd = gap[1::2] if axis == 0 else gap[:, 1::2]
+    if odd.shape != even.shape:
+        last = gap[-1:] if axis == 0 else gap[:, -1:]
+        odd = np.concatenate((odd, last), axis=axis)
+    lowest = np.minimum(even, odd)
+    both = np.isfinite(even) & np.isfinite(odd)
+    return np.asarray(np.add(0.5 * even, 0.5 * odd, out=lowest, where=both))
+
+
+def prolong(pressure: Array, shape: tuple[int, int], merge: tuple[int, int]) -> Array:
+    """Pressure on the next finer grid: its square interpolated linearly, continued below zero across the edge.
+
+    Near a smooth edge the pressure grows as the root of the distance to it, so that its square is smooth there.
+    """
+    square = _continue_outside(pressure * pressure)
+    for axis in (0, 1):
+        if merge[axis] == 2:
+            square = _split(square, axis)
+    return np.asarray(np.sqrt(np.maximum(square[: shape[0], : shape[1]], 0.0)))
+
+
+def _continue_outside(square: Array) -> Array:
+    """Give cells beside the contact the value on the line through their next two neighbours in it."""
+    padded = np.pad(square, 2)
+    rows, columns = square.shape
+    best = np.full(square.shape, -np.inf)
+    for down, right in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+        near, far = (
+            padded[2 + k * down : 2 + k * down + rows, 2 + k * right : 2 + k * right + columns] for k in (1, 2)
+        )
+        np.maximum(best, 2.0 * near - far, out=best, where=near > 0.0)
+    outside = (square <= 0.0) & np.isfinite(best)
+    return np.where(outside, best, square)
+
+
+def _split(values: Array, axis: int) -> Array:
+    """Linear interpolation to the centres of half cells along an axis, constant beyond the last centres."""
+    lines = values if axis == 0 else values.T
+    padded = np.concatenate((lines[:1], lines, lines[-1:]))
+    fine = np.empty((2 * lines.shape[0], lines.shape[1]))
+    fine[0::2] = 0.75 * lines + 0.25 * padded[:-2]
+    fine[1::2] = 0.75 * lines + 0.25 * padded[2:]
+    return fine if axis == 0 else fine.T
+
+
+def window_around(cells: Mask) -> Window:
+    """Window of a grid that holds the marked cells and a margin, with a first row that is a multiple of 4.
+
+    Rounded up to the size that the transform of it would have anyway; the whole axis if it is nearly that.
+    """
+    spans = []
+    for axis, step in ((0, 4), (1, 1)):
+        marked = np.flatnonzero(cells.any(axis=1 - axis))
+        size = cells.shape[axis]
+        start = max(0, (int(marked[0]) - MARGIN) // step * step)
+        stop = min(size, int(marked[-1]) + 1 + MARGIN)
+        stop = min(size, start + fast_length(2 * (stop - start)) // 2)
+        spans.append(slice(start, stop))
+    return spans[0], spans[1]

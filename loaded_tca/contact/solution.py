@@ -1,0 +1,158 @@
+"""What the contact solver returns."""
+
+import enum
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loaded_tca.contact import patch
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+# Fewer cells than this across a contact leave errors above 1 % in its pressure.
+FEWEST_CELLS = 8
+
+
+class ContactStatus(enum.Enum):
+    """How a solution ended; the value is the sentence for the user."""
+
+    CONVERGED = "The contact conditions hold on the whole grid within the tolerance."
+    NO_LOAD = "No load is carried: the surfaces touch in a point at most."
+    NOT_CONVERGED = "The iteration ended before the contact conditions held within the tolerance."
+
+
+@dataclass(frozen=True)
+class ErrorEstimate:
+    """Relative discretisation errors, from the two finest grids; NaN where there was one grid only.
+
+    Parameters
+    ----------
+    peak_pressure, approach : float
+        Difference of the two grids over 3 (the error falls with the square of the cell), or the difference
+        itself where the contact ends at a border (the error falls with the cell).
+    """
+
+    peak_pressure: float
+    approach: float
+
+
+@dataclass(frozen=True, eq=False)
+class ContactSolution:
+    """Pressure and gap of two elastic half-spaces pressed together.
+
+    Parameters
+    ----------
+    pressure : (nx, ny) array [MPa]
+        Contact pressure, zero where the surfaces part.
+    gap : (nx, ny) array [mm]
+        Gap after loading: as given + displacement - approach; infinite where there is no material.
+    approach : float [mm]
+        Approach of the bodies, counted as the gap that was given.
+    load : float [N]
+        Sum of the pressures.
+    iterations, convolutions : int
+        On the grid given; the coarser ones before it are not counted.
+    residual : float
+        Largest violation of the contact conditions on the whole grid, over the approach from first touch.
+    status : ContactStatus
+        How it ended.
+    spacing : (float, float) [mm]
+        Width of a cell along the two axes.
+    contact_modulus : float [MPa]
+        E*.
+    max_pressure : float or None [MPa]
+        The cap on the pressure, if there was one.
+    error_estimate : ErrorEstimate
+        Discretisation error of the peak and of the approach.
+    """
+
+    pressure: Array
+    gap: Array
+    approach: float
+    load: float
+    iterations: int
+    convolutions: int
+    residual: float
+    status: ContactStatus
+    spacing: tuple[float, float]
+    contact_modulus: float
+    max_pressure: float | None
+    error_estimate: ErrorEstimate
+
+    def __repr__(self) -> str:
+        cells = "x".join(str(n) for n in self.pressure.shape)
+        return (
+            f"ContactSolution({cells} cells, load {self.load:.6g} N, approach {self.approach:.6g} mm, "
+            f"peak {self.pressure.max():.6g} MPa, {self.status.name.lower()}, residual {self.residual:.1e})"
+        )
+
+    @cached_property
+    def peak_pressure(self) -> float:
+        """Largest pressure [MPa], between the cells where the contact is a smooth patch (see ``patch``)."""
+        if self.max_pressure is not None or self.bounded:
+            return float(self.pressure.max())
+        return patch.peak_pressure(self.pressure)
+
+    @property
+    def in_contact(self) -> Mask:
+        """Cells under pressure, (nx, ny) array of bool."""
+        return self.pressure > 0.0
+
+    @property
+    def cell_area(self) -> float:
+        """Area of a cell [mm^2]."""
+        return self.spacing[0] * self.spacing[1]
+
+    @property
+    def reaches_border(self) -> bool:
+        """Whether the outermost cells of the grid carry pressure: the grid, not the bodies, bounds the contact."""
+        rim = (self.pressure[[0, -1]], self.pressure[:, [0, -1]])
+        return any(bool((cells > 0.0).any()) for cells in rim)
+
+    @property
+    def reaches_material_edge(self) -> bool:
+        """Whether a cell under pressure lies beside one without material."""
+        void = np.isinf(self.gap)
+        beside = np.zeros_like(void)
+        beside[1:] |= void[:-1]
+        beside[:-1] |= void[1:]
+        beside[:, 1:] |= void[:, :-1]
+        beside[:, :-1] |= void[:, 1:]
+        return bool((beside & self.in_contact).any())
+
+    @cached_property
+    def bounded(self) -> bool:
+        """Whether the grid or the material ends the contact, where theory has an infinite pressure."""
+        return self.reaches_border or self.reaches_material_edge
+
+    @cached_property
+    def cells_across(self) -> tuple[int, int]:
+        """Extent of the contact along the two axes, in cells."""
+        spans = (np.flatnonzero(self.in_contact.any(axis=axis)) for axis in (1, 0))
+        first, second = (int(span[-1] - span[0]) + 1 if span.size else 0 for span in spans)
+        return first, second
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Sentences on why the model, not the solver, may be at its limit; empty if there is no reason."""
+        found = []
+        if self.reaches_border:
+            found.append("contact reaches the box: the pressure at its border is that of a body ending there")
+        if 0 < min(self.cells_across) < FEWEST_CELLS:
+            across = min(self.cells_across)
+            found.append(f"contact is {across} cells across: fewer than {FEWEST_CELLS} are no sound answer")
+        return tuple(found)
+
+    def estimate_error(self, coarse_peak: float, coarse_approach: float, approach: float) -> ErrorEstimate:
+        """Relative errors from the peak [MPa] and the approach [mm] on a grid of twice the spacing.
+
+        Approaches are counted from first touch here, to be errors of what the load does.
+        """
+        share = 1.0 if self.bounded else 1.0 / 3.0
+        return ErrorEstimate(
+            peak_pressure=share * abs(self.peak_pressure / coarse_peak - 1.0),
+            approach=share * abs(approach / coarse_approach - 1.0),
+        )

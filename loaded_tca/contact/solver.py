@@ -1,0 +1,360 @@
+r"""The contact of two elastic half-spaces over a gap that is known on a grid of rectangular cells.
+
+The pressures p, constant on a cell, minimise
+
+.. math:: \tfrac12 p^T K p + h^T p,\qquad 0 \le p \le p_Y,\qquad \sum p\,dA = F
+
+(K: Love's influence coefficients, h: gap before loading). The multiplier of the last condition is the approach
+of the bodies. The minimum is found on nested grids, the coarser ones giving the start of the finer ones, each by
+projected conjugate gradients in the neighbourhood of the contact; the contact conditions are checked with one
+convolution on the whole grid before a result is believed.
+
+References
+----------
+Polonsky & Keer 1999, Wear 231, 206-219; Liu, Wang & Liu 2000, Wear 243, 101-111 (convolution by FFT); Almqvist,
+Sahlin, Larsson & Glavatskih 2007, Tribol. Int. 40, 574-579 (cap on the pressure).
+"""
+
+import math
+import warnings
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from loaded_tca.contact import checks
+from loaded_tca.contact.convolution import Convolution, Window
+from loaded_tca.contact.descent import NO_MATERIAL, Descent, Grid, Judgement, judge
+from loaded_tca.contact.levels import coarsen, coarsening, prolong, window_around
+from loaded_tca.contact.patch import peak_pressure
+from loaded_tca.contact.solution import ContactSolution, ContactStatus, ErrorEstimate
+from loaded_tca.errors import AccuracyWarning, ConvergenceError
+
+Array = NDArray[np.float64]
+Spacing = tuple[float, float]
+
+# Iterations on one grid. Rough surfaces need about a hundred, smooth ones less than ten.
+MOST_ITERATIONS = 500
+# Checks on the whole grid; every one that fails widens the window or starts from an exact displacement.
+MOST_CHECKS = 20
+# A coarse grid is solved four times less closely than the next finer one, its own error being four times larger.
+COARSE_FACTOR = 4.0
+COARSE_TOLERANCE = 1e-3
+# The iteration stops a little below the tolerance, so that the check in double precision finds it kept.
+RESERVE = 0.8
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """What is asked for, on the grid of one level; lengths in mm, pressures in MPa."""
+
+    gap: Array
+    spacing: Spacing
+    contact_modulus: float
+    load: float | None
+    approach: float
+    max_pressure: float
+    threads: int | None
+
+    @property
+    def unit(self) -> float:
+        """Pressure of the grid (p dx/E*) for 1 MPa [mm/MPa]."""
+        return self.spacing[0] / self.contact_modulus
+
+    def grid(self, window: Window | None = None) -> Grid:
+        """The problem in the terms of :class:`Grid`, on the whole grid or on a window of it."""
+        gap = self.gap if window is None else self.gap[window]
+        total = None if self.load is None else self.load / (self.spacing[1] * self.contact_modulus)
+        gap = np.where(np.isinf(gap), NO_MATERIAL, gap)
+        return Grid(gap, self.spacing[1] / self.spacing[0], total, self.approach, self.max_pressure * self.unit)
+
+    def coarser(self, merge: tuple[int, int]) -> "_Problem":
+        """The same problem on the next coarser grid."""
+        spacing = (self.spacing[0] * merge[0], self.spacing[1] * merge[1])
+        return replace(self, gap=coarsen(self.gap, merge), spacing=spacing)
+
+
+def solve_contact(
+    gap: ArrayLike,
+    spacing: Spacing,
+    contact_modulus: float,
+    *,
+    load: float | None = None,
+    approach: float | None = None,
+    max_pressure: float | None = None,
+    tolerance: float = 1e-6,
+    on_failure: Literal["raise", "return"] = "raise",
+    initial_pressure: ArrayLike | None = None,
+    threads: int | None = None,
+    warn: bool = True,
+) -> ContactSolution:
+    r"""Press two elastic half-spaces together over a gap.
+
+    Parameters
+    ----------
+    gap : (nx, ny) array_like [mm]
+        Gap between the surfaces before loading; +inf where there is no material. A constant in it moves the
+        approach by as much and changes nothing else.
+    spacing : (float, float) [mm]
+        Width of a cell along the first and the second axis.
+    contact_modulus : float [MPa]
+        E*, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
+    load : float, optional [N]
+        Normal load, not negative; zero gives zero pressure and the smallest gap as the approach.
+    approach : float, optional [mm]
+        Approach of the bodies, counted as ``gap`` is. Exactly one of load and approach has to be given.
+    max_pressure : float, optional [MPa]
+        Cap on the pressure: elastic, perfectly plastic surface.
+    tolerance : float
+        Largest violation of the contact conditions over the approach from first touch.
+    on_failure : {"raise", "return"}
+        What to do without convergence: raise, or return the last iterate with its status.
+    initial_pressure : (nx, ny) array_like, optional [MPa]
+        Where to start from, such as the solution of a neighbouring position; nested grids if absent.
+    threads : int, optional
+        Threads of a transform; default: two for large grids.
+    warn : bool
+        Whether to give an AccuracyWarning for each of ``solution.doubts``.
+
+    Returns
+    -------
+    ContactSolution
+        ``pressure`` [MPa], ``gap`` [mm] after loading, ``approach`` [mm], ``load`` [N] and how they were found.
+
+    Raises
+    ------
+    InputError
+        Before work starts, with every problem of the arguments.
+    ConvergenceError
+        If the tolerance is not reached within a bounded number of iterations; ``last`` holds the last iterate.
+
+    Warns
+    -----
+    AccuracyWarning
+        If the contact reaches the border of the grid, or is fewer than 8 cells across.
+
+    Examples
+    --------
+    A sphere of 10 mm radius on a plane; Hertz: 1420.7 MPa.
+
+    >>> import numpy as np
+    >>> x = np.linspace(-0.3, 0.3, 64)
+    >>> gap = (x[:, None] ** 2 + x**2) / (2 * 10.0)
+    >>> solution = solve_contact(gap, (x[1] - x[0],) * 2, 115e3, load=112.0)
+    >>> bool(abs(solution.peak_pressure - 1420.7) < 1.0)
+    True
+    """
+    gap, start = np.asarray(gap, dtype=np.float64), _optional_array(initial_pressure)
+    spacing = (float(spacing[0]), float(spacing[1]))
+    checks.raise_if(
+        checks.check_grid(gap, spacing, contact_modulus) + checks.check_run(tolerance, on_failure, start, gap.shape)
+    )
+    material = np.isfinite(gap)
+    area = np.count_nonzero(material) * spacing[0] * spacing[1]
+    checks.raise_if(checks.check_demand(load, approach, max_pressure, area))
+    lowest = float(gap[material].min())
+    problem = _Problem(
+        gap=gap - lowest,
+        spacing=spacing,
+        contact_modulus=contact_modulus,
+        load=load,
+        approach=0.0 if approach is None else approach - lowest,
+        max_pressure=math.inf if max_pressure is None else max_pressure,
+        threads=threads,
+    )
+    solution = _solve(problem, lowest, tolerance, start)
+    if warn:
+        for doubt in solution.doubts:
+            warnings.warn(doubt, AccuracyWarning, stacklevel=2)
+    if solution.status is ContactStatus.NOT_CONVERGED and on_failure == "raise":
+        raise ConvergenceError(_failure(solution, tolerance), last=solution)
+    return solution
+
+
+def contact_stiffness(solution: ContactSolution, tolerance: float = 1e-6) -> float:
+    """Tangent stiffness dF/d(approach) of a solved contact [N/mm].
+
+    The pressure q that moves every cell between the bounds by one, K q = 1 there and q = 0 elsewhere, carries the
+    load that an approach of one would add if no cell changed sides; in the limit of a small approach none does.
+
+    Parameters
+    ----------
+    solution : ContactSolution
+        A solution of :func:`solve_contact`.
+    tolerance : float
+        Relative residual of K q = 1.
+
+    Returns
+    -------
+    float [N/mm]
+        Zero where nothing touches, or where every cell in contact is at the cap.
+
+    Raises
+    ------
+    ConvergenceError
+        If the tolerance is not reached.
+    """
+    cap = math.inf if solution.max_pressure is None else solution.max_pressure
+    active = solution.in_contact & (solution.pressure < cap)
+    if not active.any():
+        return 0.0
+    window = window_around(active)
+    # A flat punch of the shape of the cells between the bounds, pressed in by one: its load is the stiffness.
+    gap = np.where(active[window], 0.0, NO_MATERIAL)
+    grid = Grid(gap, solution.spacing[1] / solution.spacing[0], None, 1.0, math.inf)
+    descent = Descent(grid, np.zeros(gap.shape))
+    state = descent.run(tolerance, MOST_ITERATIONS)
+    if state.residual > tolerance:
+        raise ConvergenceError(f"contact_stiffness: residual {state.residual:.1e} > tolerance {tolerance:.1e}")
+    return float(descent.pressure.sum()) * solution.spacing[1] * solution.contact_modulus
+
+
+def _optional_array(values: ArrayLike | None) -> Array | None:
+    return None if values is None else np.asarray(values, dtype=np.float64)
+
+
+def _failure(solution: ContactSolution, tolerance: float) -> str:
+    return (
+        f"contact not converged: residual {solution.residual:.1e} > tolerance {tolerance:.1e} after "
+        f"{solution.iterations} iterations; try a larger tolerance, or on_failure='return' to look at it"
+    )
+
+
+@dataclass(frozen=True)
+class _Level:
+    """What the last two grids leave behind for the error estimate."""
+
+    peak: float
+    approach: float
+
+
+def _solve(problem: _Problem, lowest: float, tolerance: float, start: Array | None) -> ContactSolution:
+    """Solve on nested grids, or from a start; no load is answered at once."""
+    if problem.load == 0.0 or (problem.load is None and problem.approach <= 0.0):
+        return _no_load(problem, lowest)
+    if start is not None and start.any():
+        pressure, coarse = _fitted(problem, start), None
+    else:
+        pressure, coarse = _from_coarser(problem, tolerance)
+    return _finest(problem, lowest, tolerance, pressure, coarse)
+
+
+def _no_load(problem: _Problem, lowest: float) -> ContactSolution:
+    """Zero pressure; the approach is the smallest gap, or as prescribed."""
+    approach = 0.0 if problem.load == 0.0 else problem.approach
+    return ContactSolution(
+        pressure=np.zeros(problem.gap.shape),
+        gap=problem.gap - approach,
+        approach=lowest + approach,
+        load=0.0,
+        iterations=0,
+        convolutions=0,
+        residual=0.0,
+        status=ContactStatus.NO_LOAD,
+        spacing=problem.spacing,
+        contact_modulus=problem.contact_modulus,
+        max_pressure=None if math.isinf(problem.max_pressure) else problem.max_pressure,
+        error_estimate=ErrorEstimate(0.0, 0.0),
+    )
+
+
+def _fitted(problem: _Problem, pressure: Array) -> Array:
+    """A pressure within the bounds and with the load of the problem, none where there is no material."""
+    pressure = np.where(np.isfinite(problem.gap), np.minimum(pressure, problem.max_pressure), 0.0)
+    if problem.load is None:
+        return pressure
+    if not pressure.any():
+        pressure = np.isfinite(problem.gap).astype(np.float64)
+    pressure *= problem.load / (float(pressure.sum()) * problem.spacing[0] * problem.spacing[1])
+    if pressure.max() > problem.max_pressure:
+        unit = problem.unit
+        pressure = problem.grid().clip(pressure * unit, np.isfinite(problem.gap)) / unit
+    return pressure
+
+
+def _from_coarser(problem: _Problem, tolerance: float) -> tuple[Array, _Level | None]:
+    """Start for a grid from the solution on the next coarser one, solved in the same way."""
+    merge = coarsening((problem.gap.shape[0], problem.gap.shape[1]))
+    if merge == (1, 1):
+        uniform = (
+            np.isfinite(problem.gap).astype(np.float64) if problem.load is not None else np.zeros(problem.gap.shape)
+        )
+        return _fitted(problem, uniform), None
+    coarse = problem.coarser(merge)
+    tolerance = max(tolerance, min(COARSE_TOLERANCE, COARSE_FACTOR * tolerance))
+    pressure, _ = _from_coarser(coarse, tolerance)
+    window = _window(coarse, pressure)
+    grid = coarse.grid(window)
+    descent = Descent(grid, pressure[window] * coarse.unit, threads=problem.threads)
+    state = descent.run(tolerance, MOST_ITERATIONS)
+    pressure = np.zeros(coarse.gap.shape)
+    pressure[window] = descent.pressure / coarse.unit
+    level = _Level(peak_pressure(pressure), state.approach)
+    return _fitted(problem, prolong(pressure, problem.gap.shape, merge)), level
+
+
+def _window(problem: _Problem, pressure: Array) -> Window:
+    """Window around the contact; the whole grid where nothing is in contact yet."""
+    touching = pressure > 0.0
+    return window_around(touching if touching.any() else np.isfinite(problem.gap))
+
+
+def _finest(
+    problem: _Problem, lowest: float, tolerance: float, pressure: Array, coarse: _Level | None
+) -> ContactSolution:
+    """Solve in a window around the contact, check on the whole grid, widen the window where the check says so."""
+    whole = problem.grid()
+    pressure, displacement = pressure * problem.unit, None
+    window = _window(problem, pressure)
+    iterations = convolutions = 0
+    for _ in range(MOST_CHECKS):
+        part = None if displacement is None else np.ascontiguousarray(displacement[window])
+        descent = Descent(problem.grid(window), np.ascontiguousarray(pressure[window]), part, problem.threads)
+        descent.run(RESERVE * tolerance, MOST_ITERATIONS - iterations)
+        check = Convolution(whole.gap.shape, whole.aspect, window, threads=problem.threads)
+        displacement = check(descent.settle(), np.empty(whole.gap.shape))
+        pressure = np.zeros(whole.gap.shape)
+        pressure[window] = descent.pressure
+        excess = displacement + whole.gap
+        state = judge(whole, pressure, excess)
+        iterations += descent.iterations
+        convolutions += descent.convolutions + check.count
+        if state.residual <= tolerance or iterations >= MOST_ITERATIONS:
+            break
+        window = window_around(state.free | (pressure > 0.0))
+    return _solution(problem, lowest, tolerance, pressure, excess, state, (iterations, convolutions), coarse)
+
+
+def _solution(
+    problem: _Problem,
+    lowest: float,
+    tolerance: float,
+    pressure: Array,
+    excess: Array,
+    state: Judgement,
+    counts: tuple[int, int],
+    coarse: _Level | None,
+) -> ContactSolution:
+    """Put a solution together in the units of the user."""
+    pressure = pressure / problem.unit
+    load = float(pressure.sum()) * problem.spacing[0] * problem.spacing[1]
+    excess[np.isinf(problem.gap)] = np.inf
+    solution = ContactSolution(
+        pressure=pressure,
+        gap=excess,
+        approach=lowest + state.approach,
+        load=load if problem.load is None else problem.load,
+        iterations=counts[0],
+        convolutions=counts[1],
+        residual=state.residual,
+        status=ContactStatus.CONVERGED if state.residual <= tolerance else ContactStatus.NOT_CONVERGED,
+        spacing=problem.spacing,
+        contact_modulus=problem.contact_modulus,
+        max_pressure=None if math.isinf(problem.max_pressure) else problem.max_pressure,
+        error_estimate=ErrorEstimate(math.nan, math.nan),
+    )
+    if coarse is None:
+        return solution
+    estimate = solution.estimate_error(coarse.peak, coarse.approach, state.approach)
+    return replace(solution, error_estimate=estimate)

@@ -1,0 +1,302 @@
+"""The mesh of two cylindrical gears on parallel axes: working circles, active profiles, contact ratios (ISO 21771).
+
+Lengths are in mm, angles in rad; the path of contact is that of the transverse section.
+"""
+
+# ruff: noqa: N802  -- the points of the path of contact keep their letters
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import atan, ceil, cos, degrees, isclose, pi, sin, sqrt, tan
+
+from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.gears.cylindrical import CylindricalGear, inverse_involute, involute
+
+# In modules: a shorter piece of undercut flank is below what gear making can hold (0.3 um at module 3).
+_NEGLIGIBLE_UNDERCUT = 1e-4
+
+
+@dataclass(frozen=True)
+class ActiveProfile:
+    """The part of a flank that the mate uses at nominal mounting.
+
+    Parameters
+    ----------
+    start_radius, end_radius : float [mm]
+        d_Nf/2, where the mate's tip ends on this flank, or the form circle if larger; d_Na/2, the own tip.
+    start_roll_length, end_roll_length : float [mm]
+        The same as lengths on the line of action.
+    fillet_interference : bool
+        The mate's tip reaches below the form circle.
+    """
+
+    start_radius: float
+    end_radius: float
+    start_roll_length: float
+    end_roll_length: float
+    fillet_interference: bool
+
+
+@dataclass(frozen=True)
+class PathOfContact:
+    """Points of the path of contact in the transverse section, as lengths from T1 on the line of action [mm].
+
+    T1, T2: the line of action touches the base circles. A, E: contact starts and ends (pinion driving). B, D:
+    beginning and end of single contact, a base pitch before E and behind A. C: pitch point.
+    """
+
+    A: float
+    B: float
+    C: float
+    D: float
+    E: float
+    T2: float
+    T1: float = 0.0
+
+    @property
+    def T1T2(self) -> float:
+        """Whole line of action between the base circles [mm]."""
+        return self.T2 - self.T1
+
+    @property
+    def AB(self) -> float:
+        """Length of the first double contact, negative for a contact ratio below 1 [mm]."""
+        return self.B - self.A
+
+    @property
+    def AC(self) -> float:
+        """Length of approach [mm]."""
+        return self.C - self.A
+
+    @property
+    def AD(self) -> float:
+        """A base pitch [mm]."""
+        return self.D - self.A
+
+    @property
+    def AE(self) -> float:
+        """Length of the path of contact g_alpha [mm]."""
+        return self.E - self.A
+
+
+@dataclass(frozen=True)
+class CylindricalMesh:
+    """Two cylindrical gears on parallel axes.
+
+    Parameters
+    ----------
+    pinion, wheel : CylindricalGear
+        Of one normal module and normal pressure angle, with opposite hands.
+    centre_distance : float [mm], optional
+        a; None: the one without backlash (:attr:`working_centre_distance`). Never refused for its backlash.
+
+    Raises
+    ------
+    InputError
+        If the gears do not fit each other.
+    GeometryError
+        If the centre distance leaves no common flank, or an undercut takes away flank that the mate uses.
+
+    References
+    ----------
+    ISO 21771:2007, Gears - Cylindrical involute gears and gear pairs - Concepts and geometry.
+
+    Examples
+    --------
+    >>> pinion = CylindricalGear(teeth=16, normal_module=4.5, face_width=14.0, profile_shift=0.1817)
+    >>> wheel = CylindricalGear(teeth=24, normal_module=4.5, face_width=14.0, profile_shift=0.1715)
+    >>> mesh = CylindricalMesh(pinion, wheel, centre_distance=91.5)
+    >>> round(mesh.transverse_contact_ratio, 2), round(degrees(mesh.working_pressure_angle), 5)
+    (1.46, 22.43879)
+    """
+
+    pinion: CylindricalGear
+    wheel: CylindricalGear
+    centre_distance: float | None = None
+
+    def __post_init__(self) -> None:
+        problems = self._input_problems()
+        if problems:
+            raise InputError(problems)
+        self._check_centre_distance()
+        for gear, mate in self._both_ways:
+            self._check_undercut(gear, mate)
+        if self.path_of_contact.AE <= 0.0:
+            raise GeometryError(
+                f"{self.pinion.name} and {self.wheel.name}: no common flank at centre distance"
+                f" {self.working_centre_distance:.6g} mm: on the line of action the usable flanks end"
+                f" {-self.path_of_contact.AE:.4f} mm apart"
+            )
+
+    @property
+    def _both_ways(
+        self,
+    ) -> tuple[tuple[CylindricalGear, CylindricalGear], tuple[CylindricalGear, CylindricalGear]]:
+        """(gear, its mate), from either side."""
+        return (self.pinion, self.wheel), (self.wheel, self.pinion)
+
+    def _input_problems(self) -> list[str]:
+        """Every reason why the two gears are no pair."""
+        first, second = self.pinion, self.wheel
+        problems = []
+        if not isclose(first.normal_module, second.normal_module, rel_tol=1e-12):
+            problems.append(f"normal_module: {first.normal_module} and {second.normal_module} mm must be equal")
+        if not isclose(first.pressure_angle, second.pressure_angle, rel_tol=1e-12):
+            angles = f"{degrees(first.pressure_angle):.6g} and {degrees(second.pressure_angle):.6g} deg"
+            problems.append(f"pressure_angle: {angles} must be equal")
+        if not isclose(first.helix_angle, -second.helix_angle, rel_tol=1e-12):
+            angles = f"{degrees(first.helix_angle):.6g} and {degrees(second.helix_angle):.6g} deg"
+            problems.append(f"helix_angle: {angles} must be opposite hands of one angle")
+        if self.centre_distance is not None and not 0.0 < self.centre_distance < float("inf"):
+            problems.append(f"centre_distance: {self.centre_distance} mm is not positive and finite")
+        return problems
+
+    def _check_centre_distance(self) -> None:
+        """Refuse base circles that overlap or only touch."""
+        smallest = self.pinion.base_radius + self.wheel.base_radius
+        if self.centre_distance is None and self._involute_without_backlash <= 0.0:
+            raise GeometryError(
+                f"profile_shift: for the sum {self._profile_shift_sum:.6g} no centre distance is without"
+                f" backlash; give a centre_distance above {smallest:.4f} mm"
+            )
+        if self.working_centre_distance <= smallest:
+            raise GeometryError(
+                f"centre_distance: {self.working_centre_distance:.6g} mm is not above {smallest:.4f} mm,"
+                " the sum of the base radii"
+            )
+
+    def _check_undercut(self, gear: CylindricalGear, mate: CylindricalGear) -> None:
+        """Refuse an undercut that takes away flank which the mate uses."""
+        wanted = gear.radius_at_roll_length(max(0.0, self._roll_length_at_tip_of(mate)))
+        if gear.is_undercut and gear.form_radius - wanted > _NEGLIGIBLE_UNDERCUT * gear.normal_module:
+            enough = ceil(1e4 * gear.smallest_profile_shift) / 1e4
+            raise GeometryError(
+                f"{gear.name}: undercut up to diameter {2.0 * gear.form_radius:.4f} mm, where the tip of the"
+                f" {mate.name} needs the flank down to {2.0 * wanted:.4f} mm; a profile_shift of at least"
+                f" {enough:.4f} avoids it"
+            )
+
+    def _roll_length_at_tip_of(self, mate: CylindricalGear) -> float:
+        """Roll length on a gear where the tip of its mate touches; negative beyond the base circle [mm]."""
+        return self._line_of_action - mate.roll_length(mate.tip_radius)
+
+    @property
+    def _line_of_action(self) -> float:
+        """T1T2 = a sin(alpha_wt) [mm], without the loss of digits of the sine near alpha_wt = 0."""
+        base = self.pinion.base_radius + self.wheel.base_radius
+        return sqrt((self.working_centre_distance - base) * (self.working_centre_distance + base))
+
+    @property
+    def _profile_shift_sum(self) -> float:
+        return self.pinion.profile_shift + self.wheel.profile_shift
+
+    @property
+    def _involute_without_backlash(self) -> float:
+        """inv(alpha_wt) at which the profile shifts leave no backlash [rad]."""
+        teeth = self.pinion.teeth + self.wheel.teeth
+        shift = 2.0 * self._profile_shift_sum * tan(self.pinion.pressure_angle) / teeth
+        return involute(self.pinion.transverse_pressure_angle) + shift
+
+    @property
+    def gear_ratio(self) -> float:
+        """Gear ratio u = z2/z1."""
+        return self.wheel.teeth / self.pinion.teeth
+
+    @cached_property
+    def working_centre_distance(self) -> float:
+        """Centre distance as given, or without backlash from the profile shifts [mm]."""
+        if self.centre_distance is not None:
+            return self.centre_distance
+        base = self.pinion.base_radius + self.wheel.base_radius
+        return base / cos(inverse_involute(self._involute_without_backlash))
+
+    @property
+    def working_pressure_angle(self) -> float:
+        """Transverse working pressure angle alpha_wt, cos(alpha_wt) = (r_b1 + r_b2)/a [rad]."""
+        return atan(self._line_of_action / (self.pinion.base_radius + self.wheel.base_radius))
+
+    @property
+    def profile_shift_sum_without_backlash(self) -> float:
+        """x1 + x2 that would leave no backlash at this centre distance."""
+        difference = involute(self.working_pressure_angle) - involute(self.pinion.transverse_pressure_angle)
+        return 0.5 * (self.pinion.teeth + self.wheel.teeth) * difference / tan(self.pinion.pressure_angle)
+
+    @property
+    def pinion_working_radius(self) -> float:
+        """r_w1 = a z1/(z1 + z2) [mm]."""
+        return self.working_centre_distance / (1.0 + self.gear_ratio)
+
+    @property
+    def wheel_working_radius(self) -> float:
+        """r_w2 = a z2/(z1 + z2) [mm]."""
+        return self.working_centre_distance * self.gear_ratio / (1.0 + self.gear_ratio)
+
+    @property
+    def backlash(self) -> float:
+        """Circumferential backlash j_wt at the working circles; negative where the teeth overlap [mm]."""
+        pitch = 2.0 * pi * self.pinion_working_radius / self.pinion.teeth
+        first = self.pinion.tooth_thickness_at(self.pinion_working_radius)
+        return pitch - first - self.wheel.tooth_thickness_at(self.wheel_working_radius)
+
+    @property
+    def pinion_active_profile(self) -> ActiveProfile:
+        """Part of the pinion's flank that the wheel uses."""
+        return self._active_profile(self.pinion, self.wheel)
+
+    @property
+    def wheel_active_profile(self) -> ActiveProfile:
+        """Part of the wheel's flank that the pinion uses."""
+        return self._active_profile(self.wheel, self.pinion)
+
+    def _active_profile(self, gear: CylindricalGear, mate: CylindricalGear) -> ActiveProfile:
+        form, wanted = gear.roll_length(gear.form_radius), self._roll_length_at_tip_of(mate)
+        start = max(form, wanted)
+        return ActiveProfile(
+            start_radius=gear.radius_at_roll_length(start),
+            end_radius=gear.tip_radius,
+            start_roll_length=start,
+            end_roll_length=gear.roll_length(gear.tip_radius),
+            fillet_interference=wanted < form,
+        )
+
+    @property
+    def path_of_contact(self) -> PathOfContact:
+        """Points T1, A, B, C, D, E, T2 on the line of action."""
+        start = self.pinion_active_profile.start_roll_length
+        end = self._line_of_action - self.wheel_active_profile.start_roll_length
+        return PathOfContact(
+            A=start,
+            B=end - self.pinion.base_pitch,
+            C=self._line_of_action / (1.0 + self.gear_ratio),
+            D=start + self.pinion.base_pitch,
+            E=end,
+            T2=self._line_of_action,
+        )
+
+    @property
+    def common_face_width(self) -> float:
+        """Face width that both gears cover, mid-faces together [mm]."""
+        return min(self.pinion.face_width, self.wheel.face_width)
+
+    @property
+    def transverse_contact_ratio(self) -> float:
+        """eps_alpha = g_alpha/p_et."""
+        return self.path_of_contact.AE / self.pinion.base_pitch
+
+    @property
+    def overlap_ratio(self) -> float:
+        """eps_beta = b sin(|beta|)/(pi m_n), b the common face width."""
+        return self.common_face_width * sin(abs(self.pinion.helix_angle)) / (pi * self.pinion.normal_module)
+
+    @property
+    def total_contact_ratio(self) -> float:
+        """eps_gamma = eps_alpha + eps_beta."""
+        return self.transverse_contact_ratio + self.overlap_ratio
+
+    def base_tangential_force(self, pinion_torque: float) -> float:
+        """F_bt = T1/r_b1, along the line of action in the transverse section [N]; torque in N mm."""
+        return pinion_torque / self.pinion.base_radius
+
+    def normal_force(self, pinion_torque: float) -> float:
+        """F_bn = F_bt/cos(beta_b), the force normal to the flanks [N]; torque in N mm."""
+        return self.base_tangential_force(pinion_torque) / cos(self.pinion.base_helix_angle)

@@ -1,0 +1,123 @@
+"""The planned convolution against plain summation, under threads and forks, and the bound of its cache."""
+
+import concurrent.futures
+import multiprocessing
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca.contact import convolution
+from loaded_tca.contact.convolution import Convolution, Preconditioner, fast_length
+from loaded_tca.contact.love import influence_coefficients
+
+DOUBLE = 1e-13  # some hundred roundings of a transform, relative to the largest value
+SINGLE = 1e-5
+
+
+def summed(pressure, aspect):
+    """The same by summation over all pairs of cells."""
+    nx, ny = pressure.shape
+    love = influence_coefficients((nx, ny), aspect)
+    i, j = np.arange(nx), np.arange(ny)
+    kernel = love[np.abs(i[:, None] - i)[:, None, :, None], np.abs(j[:, None] - j)[None, :, None, :]]
+    return np.einsum("abcd,cd->ab", kernel, pressure)
+
+
+@pytest.mark.parametrize("aspect", [1.0, 0.02, 500.0])
+@pytest.mark.parametrize("shape", [(5, 7), (1, 9), (9, 1), (1, 1), (16, 16), (17, 33)])
+def test_convolution_agrees_with_summation(shape, aspect, rng):
+    pressure = rng.random(shape)
+    expected = summed(pressure, aspect)
+    found = Convolution(shape, aspect)(pressure, np.empty(shape))
+    assert_allclose(found, expected, rtol=DOUBLE)
+
+
+@pytest.mark.parametrize(
+    "window", [(slice(4, 11), slice(9, 20)), (slice(20, 24), slice(0, 1)), (slice(0, 24), slice(29, 30))]
+)
+def test_pressure_on_a_window_displaces_the_whole_grid(window, rng):
+    pressure = np.zeros((24, 30))
+    pressure[window] = rng.random(pressure[window].shape)
+    found = Convolution(pressure.shape, 0.7, window)(np.ascontiguousarray(pressure[window]), np.empty(pressure.shape))
+    assert_allclose(found, summed(pressure, 0.7), rtol=DOUBLE)
+
+
+def test_single_precision_agrees_to_its_digits(rng):
+    pressure = rng.random((40, 30)).astype(np.float32)
+    found = Convolution((40, 30), 2.0, dtype="float32")(pressure, np.empty((40, 30), dtype=np.float32))
+    assert_allclose(found, summed(pressure.astype(float), 2.0), rtol=SINGLE)
+
+
+def test_convolution_counts_and_leaves_its_input_alone(rng):
+    pressure = rng.random((8, 8))
+    before = pressure.copy()
+    convolve = Convolution((8, 8), 1.0)
+    first = convolve(pressure, np.empty((8, 8)))
+    second = convolve(pressure, np.empty((8, 8)))
+    assert convolve.count == 2
+    assert np.array_equal(pressure, before)
+    assert np.array_equal(first, second)
+
+
+def test_preconditioner_nearly_inverts_the_convolution_in_the_middle(rng):
+    """A local pressure without mean comes back from its displacement, but for the periodic images."""
+    pressure = np.zeros((64, 64))
+    pressure[24:40, 24:40] = rng.standard_normal((16, 16))
+    pressure[24:40, 24:40] -= pressure[24:40, 24:40].mean()
+    displacement = Convolution((64, 64), 1.0)(pressure, np.empty((64, 64)))
+    back = Preconditioner((64, 64), 1.0)(displacement.astype(np.float32), np.empty((64, 64), dtype=np.float32))
+    back -= back[24:40, 24:40].mean()
+    assert_allclose(back[24:40, 24:40], pressure[24:40, 24:40], atol=0.05 * np.abs(pressure).max())
+
+
+@pytest.mark.parametrize("aspect", [1.0, 0.001, 1000.0])
+@pytest.mark.parametrize("box", [(2, 2), (16, 16), (32, 48), (10, 128)])
+def test_symbol_of_the_periodic_kernel_is_positive(box, aspect):
+    assert convolution._inverse_symbol(box, aspect).min() > 0.0
+
+
+def test_fast_lengths_are_even_few_and_hardly_too_long():
+    lengths = [fast_length(n) for n in range(1, 3000)]
+    assert all(length >= n and length % 2 == 0 for n, length in enumerate(lengths, 1))
+    assert max(length / n for n, length in enumerate(lengths, 1) if n > 16) <= 1.2
+    assert len(set(lengths)) < 60
+
+
+def test_results_do_not_depend_on_threads_beyond_rounding(rng):
+    pressure = rng.random((100, 90))
+    one, two = (Convolution((100, 90), 1.0, threads=n)(pressure, np.empty((100, 90))) for n in (1, 2))
+    assert_allclose(one, two, rtol=DOUBLE)
+
+
+def test_cache_stays_bounded(monkeypatch, rng):
+    monkeypatch.setattr(convolution, "CACHE_BYTES", 300_000)
+    cache = convolution._Cache()
+    monkeypatch.setattr(convolution, "_cache", cache)
+    for n in range(20, 60, 4):
+        pressure = rng.random((n, n))
+        assert_allclose(Convolution((n, n), 1.0)(pressure, np.empty((n, n)))[0], summed(pressure, 1.0)[0], rtol=DOUBLE)
+        assert cache.bytes == sum(item.nbytes for item in cache.items.values())
+        assert cache.bytes <= 300_000 or len(cache.items) == 1
+
+
+def _centre_displacement(n):
+    return float(Convolution((n, n), 1.0, threads=1)(np.ones((n, n)), np.empty((n, n)))[n // 2, n // 2])
+
+
+def test_threads_of_one_process_do_not_disturb_each_other():
+    sizes = [16, 24, 33, 40] * 6
+    expected = [_centre_displacement(n) for n in sizes]
+    with concurrent.futures.ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(_centre_displacement, sizes)) == expected
+
+
+@pytest.mark.parametrize("method", sorted(set(multiprocessing.get_all_start_methods()) & {"fork", "spawn"}))
+@pytest.mark.filterwarnings("ignore:This process .* is multi-threaded:DeprecationWarning")
+def test_workers_convolve_after_their_parent_used_threads(method):
+    """A child of fork must neither use the plans of its parent nor wait for threads it does not have."""
+    Convolution((600, 600), 1.0, threads=2)(np.ones((600, 600)), np.empty((600, 600)))
+    context = multiprocessing.get_context(method)
+    with concurrent.futures.ProcessPoolExecutor(1, mp_context=context) as pool:
+        assert pool.submit(_centre_displacement, 33).result(timeout=60) == _centre_displacement(33)
+        assert pool.submit(convolution.default_threads).result(timeout=60) == 1
