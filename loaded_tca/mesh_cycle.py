@@ -1,7 +1,5 @@
 """The mesh cycle: what the tooth pairs carry, and how far the wheel lags, over the positions of a pitch."""
 
-# ruff: noqa: RUF009  -- the calls make dataclass fields
-
 from __future__ import annotations
 
 import math
@@ -311,11 +309,11 @@ def _key_figures(cycle: MeshCycle, torque: int) -> dict[str, float]:
         **_error_figures(cycle, "transmission_error", row["transmission_error"]),
         **_error_figures(cycle, "unloaded_error", cycle.path.transmission_error),
         "mesh_stiffness_mean_N_per_mm_um": _reduced(np.mean, row["mesh_stiffness"]),
-        "most_solver_iterations": int(row["iterations"].max()),
+        "most_solver_iterations": _reduced(np.max, row["iterations"]),
         "worst_solver_residual": _reduced(np.max, row["residual"]),
         "positions": len(cycle.path),
         "touching_positions": int(cycle.path.touches.sum()),
-        "edge_positions": int(row["on_edge"].sum()),
+        "edge_positions": int((row["on_edge"] > 0).sum()),
         "line_positions": int(cycle.path.on_line.sum()),
     }
 
@@ -359,7 +357,7 @@ def _scope(cycle: MeshCycle) -> str:
 
 def _notes(cycle: MeshCycle) -> list[str]:
     """Sentences on what limits the figures; none for an ordinary point contact."""
-    edge = cycle.by_torque("on_edge").any(axis=0)
+    edge = (cycle.by_torque("on_edge") > 0).any(axis=0)
     sentences = (
         (~cycle.path.touches, "the tooth pair does not touch"),
         (cycle.path.on_line, "the unloaded contact is a line"),

@@ -27,6 +27,7 @@ from loaded_tca.contact import checks
 from loaded_tca.contact.convolution import Convolution, Window
 from loaded_tca.contact.descent import NO_MATERIAL, Descent, Grid, Judgement, judge
 from loaded_tca.contact.levels import coarsen, coarsening, prolong, window_around
+from loaded_tca.contact.love import influence_coefficients
 from loaded_tca.contact.patch import peak_pressure
 from loaded_tca.contact.solution import ContactSolution, ContactStatus, ErrorEstimate
 from loaded_tca.errors import AccuracyWarning, ConvergenceError
@@ -68,6 +69,22 @@ class _Problem:
         total = None if self.load is None else self.load / (self.spacing[1] * self.contact_modulus)
         gap = np.where(np.isinf(gap), NO_MATERIAL, gap)
         return Grid(gap, self.spacing[1] / self.spacing[0], total, self.approach, self.max_pressure * self.unit)
+
+    def within_reach(self) -> "_Problem":
+        """The same problem without the cells that cannot touch.
+
+        No displacement exceeds that of the whole load on one cell, and some cell below the cap has a gap of at
+        most the (k + 1)-th smallest, k the number of cells that the load could fill to the cap: with a gap of more
+        than both together a cell is never in contact.
+        """
+        farthest = self.approach
+        if self.load is not None:
+            grid = self.grid()
+            total = self.load / (self.spacing[1] * self.contact_modulus)
+            full = min(int(total / grid.cap), grid.gap.size - 1)
+            own = float(influence_coefficients((1, 1), grid.aspect)[0, 0])
+            farthest = total * own + float(np.partition(grid.gap, full, axis=None)[full])
+        return replace(self, gap=np.where(self.gap <= farthest, self.gap, np.inf))
 
     def coarser(self, merge: tuple[int, int]) -> "_Problem":
         """The same problem on the next coarser grid."""
@@ -236,7 +253,7 @@ def _solve(problem: _Problem, lowest: float, tolerance: float, start: Array | No
     if start is not None and start.any():
         pressure, coarse = _fitted(problem, start), None
     else:
-        pressure, coarse = _from_coarser(problem, tolerance)
+        pressure, coarse = _from_coarser(problem.within_reach(), tolerance)
     return _finest(problem, lowest, tolerance, pressure, coarse)
 
 

@@ -1,7 +1,5 @@
 """The scene: two gears, their mounting errors, a material, a load, and what is asked about them."""
 
-# ruff: noqa: RUF009  -- the calls make dataclass fields
-
 from __future__ import annotations
 
 from collections.abc import Mapping

@@ -1,6 +1,6 @@
 """The sections of a scene of two cylindrical gears, key by key."""
 
-# ruff: noqa: N815, RUF009  -- names are the keys of the file, units included; the calls make dataclass fields
+# ruff: noqa: N815  -- names are the keys of the file, units included; the calls make dataclass fields
 
 from __future__ import annotations
 

@@ -138,7 +138,7 @@ class _Ridge:
         across = np.stack([-self.along[:, 1], self.along[:, 0]], axis=-1)
         value = (across * self.field.gradient(station)).sum(axis=-1)
         row = np.einsum("ni,nij->nj", across, self.field.hessian(station))
-        held, rows = (self.multipliers > 0.0).any(axis=-1), np.arange(len(x))
+        held, rows = np.asarray((self.multipliers > 0.0).any(axis=-1)), np.arange(len(x))
         edge = self.multipliers.argmax(axis=-1) if self.multipliers.size else rows
         value = np.where(held, distances[rows, edge], value)
         row = np.where(held[:, None], slopes[rows, edge], row)
