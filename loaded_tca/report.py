@@ -92,11 +92,11 @@ def _columns(result: MeshCycle) -> dict[str, Array]:
     shape = len(result.torque), len(result.path)
     torque = np.repeat(result.torque[:, None], shape[1], axis=1)
     position = np.arange(1, shape[1] + 1)
-    loaded = {
-        _header(entry.name, entry.metadata["unit"]): result.by_torque(entry.name) * _factor(entry.metadata["unit"])
-        for entry in fields(result)
-        if entry.metadata
-    }
+    loaded = {}
+    for entry in fields(result):
+        if entry.metadata:
+            factor, unit = _engineers_unit(entry.metadata["unit"])
+            loaded[entry.name + unit] = result.by_torque(entry.name) * factor
     path = result.path
     per_position = {
         "position": position,
@@ -114,17 +114,14 @@ def _columns(result: MeshCycle) -> dict[str, Array]:
         "pinion_torque_Nm": torque * 1e-3,
         **{name: np.broadcast_to(values, shape) for name, values in per_position.items()},
         **loaded,
-        **{f"load_share_pair_{pair:+d}": shares[..., column] for column, pair in enumerate(result.pairs)},
+        **{f"load_share_pair_{pair}": shares[..., column] for column, pair in enumerate(result.pairs)},
     }
 
 
-def _header(name: str, unit: str) -> str:
-    shown = ENGINEERS_UNITS.get(unit, (1.0, unit))[1]
-    return f"{name}_{shown}" if shown else name
-
-
-def _factor(unit: str) -> Any:
-    return ENGINEERS_UNITS[unit][0] if unit in ENGINEERS_UNITS else 1.0
+def _engineers_unit(unit: str) -> tuple[float, str]:
+    """Factor to the unit of the table, and what a header says of it."""
+    factor, name = ENGINEERS_UNITS.get(unit, (1.0, unit))
+    return factor, f"_{name}" if name else ""
 
 
 def _cell(value: Any) -> str:

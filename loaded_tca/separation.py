@@ -35,6 +35,10 @@ PEAK_ERROR = 0.26
 circles and ellipses: 1e-3 at 16 cells, 2.5e-4 at 32)."""
 MARGIN = 1.25
 """Box over estimated contact."""
+SPIKE_MARGIN = 1.75
+"""The same across a contact that ends with its flank, where the half-space gives a spike and a wider contact."""
+CERTAINLY_INSIDE = 0.97
+"""Contacts shorter than this fraction of the material are taken to end of themselves."""
 PROBE = (17, 33)
 """Cells of the coarse grids on which the contact is estimated."""
 MOST_PROBES = 16
@@ -202,8 +206,9 @@ def estimate_box(pair: GearPair, contact: ContactPoint, load: float) -> tuple[tu
         if all(fits):
             break
         window = (_resized(needed[0], window[0]), min(_resized(needed[1], window[1]), longest))
-    half = (MARGIN * needed[0], MARGIN * needed[1])
-    return half, _material_length(gap, half[1])
+    material = _material_length(gap, MARGIN * needed[1])
+    spiked = needed[1] > CERTAINLY_INSIDE * material
+    return ((SPIKE_MARGIN if spiked else MARGIN) * needed[0], MARGIN * needed[1]), material
 
 
 def _first_window(curvature: RelativeCurvature, load: float, modulus: float, longest: float) -> tuple[float, float]:

@@ -23,8 +23,9 @@ Array = NDArray[Any]
 Window = tuple[slice, slice]
 
 CACHE_BYTES = 192 * 2**20
-# Two threads pay from about this many points of a transform.
-THREADED_POINTS = 10**12
+# Two threads pay from about this many points of a transform; where the other core is busy they cost more than
+# they bring, so that small transforms, and those of workers, keep to one.
+THREADED_POINTS = 1024 * 1024
 _forked = False
 
 

@@ -83,8 +83,9 @@ class _Problem:
             total = self.load / (self.spacing[1] * self.contact_modulus)
             full = min(int(total / grid.cap), grid.gap.size - 1)
             own = float(influence_coefficients((1, 1), grid.aspect)[0, 0])
-            farthest = total * own + float(np.partition(grid.gap, full, axis=None)[full])
-        return replace(self, gap=np.where(self.gap <= farthest, self.gap, np.inf))
+            farthest = total * own + (float(np.partition(grid.gap, full, axis=None)[full]) if full else 0.0)
+        beyond = self.gap > farthest
+        return replace(self, gap=np.where(beyond, np.inf, self.gap)) if beyond.any() else self
 
     def coarser(self, merge: tuple[int, int]) -> "_Problem":
         """The same problem on the next coarser grid."""

@@ -1,0 +1,34 @@
+"""The validation table holds, row by row."""
+
+import pytest
+
+from validation.__main__ import collect
+from validation.table import Row, render
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return collect()
+
+
+def test_validation_rows_hold(rows):
+    failed = [row for row in rows if not row.holds]
+    assert not failed, render(failed)
+
+
+def test_validation_table_has_a_line_for_every_row(rows):
+    assert len(render(rows).splitlines()) == len(rows) + 2
+
+
+@pytest.mark.parametrize(
+    ("expected", "obtained", "tolerance", "holds"),
+    [
+        (2.0, 2.002, 1e-3, True),
+        (2.0, 2.0021, 1e-3, False),
+        (0.0, 1e-10, 1e-9, True),
+        (1.0, float("nan"), 1e-3, False),
+        (1.0, 2.0, None, True),
+    ],
+)
+def test_row_holds_within_its_tolerance(expected, obtained, tolerance, holds):
+    assert Row("case", "source", "quantity", expected, obtained, tolerance).holds is holds

@@ -1,0 +1,32 @@
+"""Two steel spheres of radius 20 mm under 100 N: the closed form and the pressure map against Hertz.
+
+p0 = 1353.415 MPa and a = 0.187826 mm were computed independently from Johnson 1985, eqs. 4.22 to 4.24.
+"""
+
+import numpy as np
+
+from loaded_tca import solve_contact
+from loaded_tca.material import Material, contact_modulus
+from loaded_tca.reference.hertz import point_contact
+from validation.table import Row
+
+CASE, SOURCE = "spheres R 20/20, 100 N", "Hertz; Johnson 1985"
+LOAD, CURVATURE = 100.0, 2.0 / 20.0
+CELLS = 64
+
+
+def rows() -> list[Row]:
+    """Closed form to the printed digits; the map on 64 x 64 cells within its discretisation error (1e-4)."""
+    modulus = contact_modulus(Material(), Material())
+    hertz = point_contact(LOAD, (CURVATURE, CURVATURE), modulus)
+    step = 2.5 * hertz.semi_major / CELLS
+    x = (np.arange(CELLS) - 0.5 * (CELLS - 1)) * step
+    gap = 0.5 * CURVATURE * (x[:, None] ** 2 + x[None, :] ** 2)
+    solution = solve_contact(gap, (step, step), modulus, load=LOAD)
+    return [
+        Row(CASE, SOURCE, "closed form p0 [MPa]", 1353.415, hertz.max_pressure, 4e-7),
+        Row(CASE, SOURCE, "closed form a [mm]", 0.187826, hertz.semi_major, 3e-6),
+        Row(CASE, SOURCE, "map p0 [MPa]", 1353.415, solution.peak_pressure, 5e-4),
+        Row(CASE, SOURCE, "map approach [mm]", hertz.approach, solution.approach, 5e-4),
+        Row(CASE, "equilibrium", "sum of pressure [N]", LOAD, solution.pressure.sum() * step**2, 1e-10),
+    ]
