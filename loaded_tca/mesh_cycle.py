@@ -337,14 +337,14 @@ def _reduced(reduction: Any, values: Array) -> float:
 
 
 def _cell(figures: Mapping[str, float], names: tuple[str, ...]) -> str:
-    return " | ".join(_shown(figures[name]) for name in names)
+    return " | ".join(_shown(figures[name], is_residual="residual" in name) for name in names)
 
 
-def _shown(value: float) -> str:
+def _shown(value: float, is_residual: bool) -> str:
     """Four digits; a dash for what is not known, zero for what is rounding."""
     if math.isnan(value):
         return "-"
-    return f"{value if abs(value) > 1e-9 else 0.0:.4g}"
+    return f"{value:.1e}" if is_residual else f"{value if abs(value) > 1e-6 else 0.0:.4g}"
 
 
 def _scope(cycle: MeshCycle) -> str:

@@ -14,6 +14,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize, to_hex
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Ellipse, Patch, Rectangle
 
 from loaded_tca.flanks.jet import Array
@@ -25,9 +26,10 @@ from loaded_tca.storage import FilePath, replacing
 
 COLOURS = "viridis"
 """Even in lightness, and told apart by colour-blind readers and in grey."""
-ACCENT, NO_MATERIAL = "#d55e00", "0.8"
+ACCENT, NO_MATERIAL, NO_MATE = "#d55e00", "0.8", "0.9"
 MARKERS = "osD^vP*X"
 MOST_LABELS = 8
+MOST_AREAS = 7
 SMALLEST_SPAN_ARCSEC = 0.02
 """Height of a transmission error axis below which a curve would be rounding."""
 DOTS_PER_INCH = 150
@@ -100,15 +102,18 @@ def plot_pressure_map(result: MeshCycle, position: int | None = None, torque: in
     one = None if position is None else result.maps[torque][position]
     if position is None or one is None:
         raise IndexError("no pressure map: the tooth pair does not touch at this position")
-    figure = Figure(figsize=(9.0, 5.0), layout="constrained")
+    scale, height = _scale_factor(one)
+    figure = Figure(figsize=(9.0, 1.8 + height), layout="constrained")
     axes = figure.add_subplot()
     _draw_pressure(figure, axes, one)
-    scale = _scale_factor(one)
+    _draw_ellipse(axes, result, (torque, position))
+    if axes.get_legend_handles_labels()[0]:
+        figure.legend(loc="outside lower center", ncols=2, fontsize="small")
     axes.set_aspect(scale)
     axes.set_xlabel("along the contact [mm]")
     axes.set_ylabel("across the contact [mm]" + (f"\n(drawn {scale:g} times larger)" if scale != 1.0 else ""))
-    _draw_ellipse(axes, result, torque, position)
-    _title(figure, result, f"contact pressure, {_load(result, torque)}, {_place(result, position)}")
+    what = "contact pressure" if one.pressure.any() else "no contact pressure"
+    _title(figure, result, f"{what}, {_load(result, torque)}", _place(result, position))
     return figure
 
 
@@ -135,14 +140,14 @@ def plot_transmission_error(result: MeshCycle) -> Figure:
         absolute.plot(angle, error * ARCSEC, color=colour, marker=marker, markersize=4.0, label=label)
         about_mean.plot(angle, (error - mean) * ARCSEC, color=colour, marker=marker, markersize=4.0)
     absolute.set_ylabel("transmission error [arcsec]")
-    about_mean.set_ylabel("less its mean [arcsec]")
+    about_mean.set_ylabel("the same, less its mean [arcsec]")
     about_mean.set_xlabel("pinion angle [deg]")
-    absolute.legend(fontsize="small")
+    figure.legend(*absolute.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize="small")
     for axes in (absolute, about_mean):
         _widen(axes, SMALLEST_SPAN_ARCSEC)
         _add_length_axis(axes, result.wheel_base_radius)
         axes.grid(alpha=0.3)
-    _title(figure, result, f"transmission error, {_loads(result)}, {_range(result)}")
+    _title(figure, result, f"transmission error, {_loads(result)}", _range(result))
     return figure
 
 
@@ -176,12 +181,14 @@ def plot_peak_pressure(result: MeshCycle) -> Figure:
     axes.grid(alpha=0.3)
     axes.legend(fontsize="small")
     _widen(axes, 0.02 * max(1.0, float(np.nanmax(peak, initial=0.0))))
-    _title(figure, result, f"peak contact pressure, {_loads(result)}, {_range(result)}")
+    _title(figure, result, f"peak contact pressure, {_loads(result)}", _range(result))
     return figure
 
 
 def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
-    """Path of contact and areas under pressure on both flanks, diameter against face width.
+    """Path of contact on both flanks, diameter against face width, with some of the areas under pressure.
+
+    White is the part of a flank that the mate reaches at nominal mounting.
 
     Parameters
     ----------
@@ -195,7 +202,7 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     """
     torque = _highest_torque(result) if torque is None else torque
     figure = Figure(figsize=(11.0, 5.5), layout="constrained")
-    panels = figure.subplots(1, 2)
+    panels, drawn = figure.subplots(1, 2), 0
     scene = parse_scene(result.scene_toml)
     mesh, pair, path = scene.mesh(), scene.pair(), result.path
     sides = (
@@ -205,39 +212,59 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     peaks = result.by_torque("peak_pressure")[torque]
     colours = ScalarMappable(Normalize(*_range_of(peaks)), COLOURS)
     for axes, (name, gear, start, radius, axial) in zip(panels, sides, strict=True):
-        _draw_borders(axes, gear, start)
-        _draw_areas(axes, result, torque, pair, name, colours)
-        axes.plot(axial, 2.0 * radius, ".", color=ACCENT, markersize=4.0, label="unloaded contact")
-        axes.set_xlabel(f"axial place on the {name} [mm]")
-        axes.set_ylabel(f"diameter on the {name} [mm]")
-    panels[0].legend(fontsize="small", loc="lower left")
+        outline = _draw_flank(axes, name, gear, start)
+        areas = _areas(result, torque, pair, name, colours)
+        axes.add_collection(areas)
+        areas.set_clip_path(outline)
+        drawn = len(areas.get_paths())
+        axes.plot(axial, 2.0 * radius, ".", color=ACCENT, markersize=4.0)
     figure.colorbar(colours, ax=panels, label="peak contact pressure of the position [MPa]")
-    _title(figure, result, f"contact on the flanks, {_load(result, torque)}, {_range(result)}")
+    _explain(figure, drawn, len(path))
+    _title(figure, result, f"contact on the flanks, {_load(result, torque)}", _range(result))
     return figure
 
 
-def _draw_borders(axes: Axes, gear: CylindricalGear, start_radius: float) -> None:
-    """The flank from form circle to tip as a box, its part that the mate reaches in white."""
+def _explain(figure: Figure, drawn: int, positions: int) -> None:
+    """The legend of the picture of the flanks."""
+    handles = [
+        Line2D([], [], color=ACCENT, marker=".", linestyle="", label="unloaded contact"),
+        Patch(facecolor=colormaps[COLOURS](0.5), label=f"under pressure ({drawn} of {positions} positions)"),
+        Patch(facecolor=NO_MATE, edgecolor="black", label="flank that the mate does not reach"),
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize="small")
+
+
+def _draw_flank(axes: Axes, name: str, gear: CylindricalGear, start_radius: float) -> Patch:
+    """The flank from form circle to tip, with the part that the mate reaches in white; returns its outline."""
     half = 0.5 * gear.face_width
     form, start, tip = (2.0 * radius for radius in (gear.form_radius, start_radius, gear.tip_radius))
-    axes.add_patch(Rectangle((-half, form), 2.0 * half, tip - form, facecolor="0.9", edgecolor="black"))
-    label = f"active flank, d {start:.2f} to {tip:.2f} mm"
-    axes.add_patch(
-        Rectangle((-half, start), 2.0 * half, tip - start, facecolor="white", edgecolor="black", label=label)
-    )
+    whole = Rectangle((-half, form), 2.0 * half, tip - form, facecolor=NO_MATE, edgecolor="black")
+    axes.add_patch(whole)
+    axes.add_patch(Rectangle((-half, start), 2.0 * half, tip - start, facecolor="white", edgecolor="black"))
     axes.set_xlim(-1.08 * half, 1.08 * half)
     axes.set_ylim(form - 0.08 * (tip - form), tip + 0.08 * (tip - form))
+    axes.set_title(f"{name}, active flank from diameter {start:.2f} to {tip:.2f} mm", fontsize="small")
+    axes.set_xlabel("axial place, from mid-face [mm]")
+    axes.set_ylabel("diameter [mm]")
+    return whole
 
 
-def _draw_areas(axes: Axes, result: MeshCycle, torque: int, pair: GearPair, gear: str, colours: ScalarMappable) -> None:
-    """Areas under pressure of all positions, coloured by their peak pressure."""
+def _drawn(result: MeshCycle) -> list[int]:
+    """Positions whose areas are drawn: few enough to be told apart."""
+    last = len(result.path) - 1
+    return sorted({round(last * part / (MOST_AREAS - 1)) for part in range(MOST_AREAS)})
+
+
+def _areas(result: MeshCycle, torque: int, pair: GearPair, gear: str, colours: ScalarMappable) -> PolyCollection:
+    """Areas under pressure on a flank, coloured by their peak pressure."""
     outlines, peaks = [], []
-    for one, peak in zip(result.maps[torque], result.by_torque("peak_pressure")[torque], strict=True):
+    for position in _drawn(result):
+        one = result.maps[torque][position]
         if one is not None and one.pressure.max() > 0.0:
             radius, axial = _on_gear(pair, gear, _outline(one))
             outlines.append(np.column_stack([axial, 2.0 * radius]))
-            peaks.append(peak)
-    axes.add_collection(PolyCollection(outlines, facecolors=colours.to_rgba(np.array(peaks)), edgecolors="none"))
+            peaks.append(result.by_torque("peak_pressure")[torque, position])
+    return PolyCollection(outlines, facecolors=colours.to_rgba(np.array(peaks)), edgecolors="none")
 
 
 def _on_gear(pair: GearPair, gear: str, point: Array) -> tuple[Array, Array]:
@@ -264,27 +291,25 @@ def _outline(one: PressureMap) -> Array:
 def _draw_pressure(figure: Figure, axes: Axes, one: PressureMap) -> None:
     """Pressure of each cell; white without pressure, grey without material."""
     y, x = (_borders(centres, step) for centres, step in ((one.y, one.spacing[1]), (one.x, one.spacing[0])))
+    void = np.isinf(one.gap)
     axes.set_facecolor(NO_MATERIAL)
-    axes.pcolormesh(y, x, np.where(np.isinf(one.gap), np.nan, 0.0), cmap="Greys", vmin=0.0, vmax=1.0)
+    axes.pcolormesh(y, x, np.where(void, np.nan, 0.0), cmap="Greys", vmin=0.0, vmax=1.0)
+    if void.any():
+        axes.plot([], [], "s", color=NO_MATERIAL, label="no material")
     loaded = np.where(one.pressure > 0.0, one.pressure, np.nan)
     scale = Normalize(0.0, max(1.0, float(one.pressure.max())))
     mesh = axes.pcolormesh(y, x, loaded, cmap=COLOURS, norm=scale)
     figure.colorbar(mesh, ax=axes, label="contact pressure [MPa]")
 
 
-def _draw_ellipse(axes: Axes, result: MeshCycle, torque: int, position: int) -> None:
-    """The contact ellipse after Hertz, where it is known, and the legend."""
-    minor, major, pressure = (
-        float(result.by_torque(name)[torque, position])
-        for name in ("hertz_semi_minor", "hertz_semi_major", "hertz_pressure")
-    )
-    handles: list[Patch] = [Patch(color=NO_MATERIAL, label="no material")]
+def _draw_ellipse(axes: Axes, result: MeshCycle, place: tuple[int, int]) -> None:
+    """The contact ellipse after Hertz, where it is known."""
+    names = ("hertz_semi_minor", "hertz_semi_major", "hertz_pressure")
+    minor, major, pressure = (float(result.by_torque(name)[place]) for name in names)
     if math.isfinite(pressure):
-        label = f"ellipse after Hertz, peak {pressure:.4g} MPa"
+        label = f"ellipse after Hertz, peak pressure {pressure:.4g} MPa"
         ellipse = Ellipse((0.0, 0.0), 2.0 * major, 2.0 * minor, fill=False, color=ACCENT, linestyle="--", label=label)
         axes.add_patch(ellipse)
-        handles.insert(0, ellipse)
-    axes.legend(handles=handles, fontsize="small", loc="upper right")
 
 
 def _borders(centres: Array, step: float) -> Array:
@@ -292,12 +317,13 @@ def _borders(centres: Array, step: float) -> Array:
     return np.append(centres, centres[-1] + step) - 0.5 * step
 
 
-def _scale_factor(one: PressureMap) -> float:
-    """How much larger to draw the direction across, so that the map is about twice as long as wide."""
-    length, width = (float(np.ptp(_borders(*side))) for side in ((one.y, one.spacing[1]), (one.x, one.spacing[0])))
+def _scale_factor(one: PressureMap) -> tuple[float, float]:
+    """How much larger to draw the direction across, for a map of 7 inches by what is returned beside it."""
+    length, width = len(one.y) * one.spacing[1], len(one.x) * one.spacing[0]
     wanted = 0.5 * length / width
     power = 10.0 ** math.floor(math.log10(wanted))
-    return max(factor * power for factor in (1.0, 2.0, 5.0) if factor * power <= wanted)
+    scale = max(factor * power for factor in (1.0, 2.0, 5.0) if factor * power <= wanted)
+    return scale, 7.0 * scale * width / length
 
 
 def _torque_styles(result: MeshCycle) -> Iterator[tuple[int, str, str, str]]:
@@ -326,9 +352,10 @@ def _widen(axes: Axes, smallest: float) -> None:
 
 
 def _range_of(values: Array) -> tuple[float, float]:
-    """Least and greatest finite value; 0 and 1 if there is none."""
+    """Least and greatest finite value, apart in any case."""
     finite = values[np.isfinite(values)]
-    return (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
+    return low, max(high, low + 1.0)
 
 
 def _highest_torque(result: MeshCycle) -> int:
@@ -347,7 +374,7 @@ def _loads(result: MeshCycle) -> str:
 def _place(result: MeshCycle, position: int) -> str:
     where = result.path[position]
     return (
-        f"position {position + 1} of {len(result.path)}: pinion angle {_degrees(where.pinion_angle)}, "
+        f"position {position + 1} of {len(result.path)}: pinion angle {_degrees(where.pinion_angle)} deg, "
         f"diameter {2.0 * where.pinion_radius:.4g} mm"
     )
 
@@ -355,15 +382,15 @@ def _place(result: MeshCycle, position: int) -> str:
 def _range(result: MeshCycle) -> str:
     first, last = (_degrees(result.pinion_angle[end]) for end in (0, -1))
     if len(result.path) == 1:
-        return f"pinion angle {first}"
-    return f"{len(result.path)} positions, pinion angle {first} to {last}"
+        return f"pinion angle {first} deg"
+    return f"{len(result.path)} positions, pinion angle {first} to {last} deg"
 
 
 def _degrees(angle: float) -> str:
-    return f"{round(math.degrees(angle), 3) + 0.0:.4g} deg"
+    return f"{round(math.degrees(angle), 3) + 0.0:.4g}"
 
 
-def _title(figure: Figure, result: MeshCycle, about: str) -> None:
+def _title(figure: Figure, result: MeshCycle, *about: str) -> None:
     """Title of the scene and what is shown; taken literally, signs of TeX too."""
-    lines = [*textwrap.wrap(result.title, 90), *textwrap.wrap(about, 100)]
+    lines = [*textwrap.wrap(result.title, 90), ", ".join(about)]
     figure.suptitle("\n".join(lines), fontsize="medium", parse_math=False)

@@ -41,6 +41,8 @@ CERTAINLY_INSIDE = 0.97
 """Contacts shorter than this fraction of the material are taken to end of themselves."""
 PROBE = (17, 33)
 """Cells of the coarse grids on which the contact is estimated."""
+SMALLEST_LOAD = 1e-6
+"""Load [N] that sizes the box of an unloaded contact: small enough for its smallest gap to be rounding."""
 MOST_PROBES = 16
 MOST_NEWTON_STEPS = 30
 ROUNDING = 1e-13
@@ -75,6 +77,11 @@ class Separation:
     axes: Array
     curvatures: tuple[float, float]
 
+    @property
+    def half_lengths(self) -> tuple[float, float]:
+        """Half lengths of the box across and along [mm]."""
+        return 0.5 * self.gap.shape[0] * self.spacing[0], 0.5 * self.gap.shape[1] * self.spacing[1]
+
     def __repr__(self) -> str:
         nx, ny = self.gap.shape
         return f"Separation({nx} x {ny} cells of {self.spacing[0]:.3g} x {self.spacing[1]:.3g} mm)"
@@ -104,7 +111,7 @@ def sample_separation(
     cells : (int, int), optional
         Cells across and along; default: what ``accuracy`` asks for.
     load : float [N], optional
-        Normal force that the box must hold; not needed if ``box`` is given. A load of zero gets the box of 1 N.
+        Normal force that the box must hold; not needed if ``box`` is given. A load of zero gets the box of 1e-6 N.
     accuracy : float
         Relative error of the peak pressure of a smooth contact that chooses the cells.
     box : (float, float) [mm], optional
@@ -137,7 +144,7 @@ def sample_separation(
     curvature = relative_curvature(pair, contact)
     gap = _Gap(pair, contact, curvature.axes)
     shape = cells or (cells_for_accuracy(accuracy),) * 2
-    half = box or _box_of_whole_cells(*estimate_box(pair, contact, load if load else 1.0), shape[1])
+    half = box or _box_of_whole_cells(*estimate_box(pair, contact, load if load else SMALLEST_LOAD), shape[1])
     spacing = (2.0 * half[0] / shape[0], 2.0 * half[1] / shape[1])
     x, y = ((np.arange(n) - 0.5 * (n - 1)) * step for n, step in zip(shape, spacing, strict=True))
     curvatures = (curvature.across, curvature.along)

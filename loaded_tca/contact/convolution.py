@@ -25,7 +25,7 @@ Window = tuple[slice, slice]
 CACHE_BYTES = 192 * 2**20
 # Two threads pay from about this many points of a transform; where the other core is busy they cost more than
 # they bring, so that small transforms, and those of workers, keep to one.
-THREADED_POINTS = 1024 * 1024
+THREADED_POINTS = 2**19
 _forked = False
 
 
@@ -118,17 +118,10 @@ class _Transform:
         self.spectrum[:, :top] = 0.0
         self.spectrum[:, top + rows :] = 0.0
         self.forward.execute()
-        self._multiply(symbol)
+        self.spectrum *= symbol
         self.backward.execute()
         self.rows_backward.execute()
         return self.result
-
-    def _multiply(self, symbol: Array) -> None:
-        """Multiply by an even real symbol; it holds each value twice, for the real and the imaginary part."""
-        parts = self.spectrum.view(self.data.dtype)
-        width = symbol.shape[1]
-        parts[:, :width] *= symbol
-        parts[:, width:] *= symbol[:, width - 3 : 1 : -1]
 
 
 class Convolution:
@@ -198,10 +191,12 @@ class Preconditioner:
 
 
 class _Symbol:
-    """Real even transform of a kernel, normalised, each value twice."""
+    """Real even transform of a kernel, from a quadrant of it, as the spectrum is laid out."""
 
-    def __init__(self, values: Array, dtype: str) -> None:
-        self.values = np.repeat(values.T.astype(dtype), 2, axis=1)
+    def __init__(self, quadrant: Array, dtype: str) -> None:
+        half = quadrant.T[:, : quadrant.shape[0] - 1].astype(dtype)
+        mirrored = quadrant.T[:, :0:-1].astype(dtype)
+        self.values = np.concatenate((half, mirrored), axis=1)
         self.nbytes = self.values.nbytes
 
 

@@ -1,6 +1,7 @@
 """Projected, preconditioned conjugate gradients for a contact problem on one grid."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,17 @@ MOST_PROJECTIONS = 100
 ROUNDING = 1e-15
 
 
+# BLAS starts threads for products of vectors from this length.
+THREADED_BLAS = 10_000
+
+
+def dot(one: NDArray[Any], other: NDArray[Any]) -> float:
+    """Scalar product; large ones without BLAS, whose threads wait for each other on a busy machine."""
+    if one.size < THREADED_BLAS:
+        return float(np.vdot(one, other))
+    return float(np.einsum("ij,ij->", one, other))
+
+
 @dataclass(frozen=True)
 class Grid:
     """A contact problem on one grid: minimise p.Kp/2 + h.p over 0 <= p <= cap.
@@ -30,7 +42,7 @@ class Grid:
     Parameters
     ----------
     gap : (nx, ny) array [mm]
-        Gap h before loading, its smallest value near 0, :data:`NO_MATERIAL` where there is none.
+        Gap h before loading, its smallest value near 0; any value that cannot close where there is no material.
     aspect : float
         dy/dx.
     total : float or None [mm]
@@ -60,9 +72,6 @@ class Grid:
             return clipped
         clipped[movable] = _project(values, self.total - float(clipped[~movable].sum()), self.cap)
         return clipped
-
-
-NO_MATERIAL = 1e300
 
 
 def _project(values: Array, total: float, cap: float) -> Array:
@@ -104,27 +113,33 @@ class Judgement:
 
 def judge(grid: Grid, pressure: Array, excess: Array) -> Judgement:
     """Check the Kuhn-Tucker conditions; turns ``excess``, given as u + h, into u + h - approach in place."""
-    touching, capped = pressure > 0.0, pressure >= grid.cap
-    inner = touching & ~capped
+    inner = touching = pressure > 0.0
+    capped: Mask | None = None
+    if not np.isinf(grid.cap):
+        capped = pressure >= grid.cap
+        inner = touching & ~capped
     approach = grid.approach if grid.total is None else _mean_level(excess, touching, inner, capped)
     excess -= approach
-    misfit = float(np.vdot(pressure, np.abs(excess * inner))) / max(float(pressure.sum()), np.finfo(float).tiny)
-    penetrating, parting = ~touching & (excess < 0.0), capped & (excess > 0.0)
-    deepest = -float(excess[penetrating].min(initial=0.0))
-    widest = float(excess[parting].max(initial=0.0))
-    residual = max(misfit, deepest, widest) / approach if approach > 0.0 else np.inf
-    return Judgement(approach, residual, inner | penetrating | parting)
+    free = inner | (excess < 0.0)
+    widest = 0.0
+    misfit = np.abs(excess)
+    if capped is not None:
+        widest = float(excess[capped].max(initial=0.0))
+        free = free & ~capped | (capped & (excess > 0.0))
+        misfit *= inner
+    deepest = -float(excess[free & ~touching].min(initial=0.0))
+    weighted = dot(pressure, misfit) / max(float(pressure.sum()), np.finfo(float).tiny)
+    residual = max(weighted, deepest, widest) / approach if approach > 0.0 else np.inf
+    return Judgement(approach, residual, free)
 
 
-def _mean_level(level: Array, touching: Mask, inner: Mask, capped: Mask) -> float:
+def _mean_level(level: Array, touching: Mask, inner: Mask, capped: Mask | None) -> float:
     """Approach that fits u + h best; with every cell at a bound any value between two limits is right."""
     count = np.count_nonzero(inner)
-    if count:
-        return float(np.vdot(level, inner) / count)
+    if count or capped is None:
+        return float((level * inner).sum() / count)
     lower = float(level[capped].max())
-    apart = level[~touching]
-    upper = float(apart.min()) if apart.size else lower
-    return 0.5 * (lower + upper) if upper < NO_MATERIAL else lower
+    return 0.5 * (lower + float(level[~touching].min(initial=2.0 * np.abs(level).max() - lower)))
 
 
 class Descent:
@@ -194,16 +209,17 @@ class Descent:
 
     def _iterate(self, free: Mask) -> None:
         """One step along the conjugate direction, projected where it leaves the bounds."""
-        residual = (self._excess * (free / self._scale)).astype(np.float32)
+        residual = (self._excess * (1.0 / self._scale)).astype(np.float32)
+        residual *= free
         direction = self._conjugate(self._level(residual, free), free)
         image = self._fast(direction, self._image)
-        curvature = float(np.vdot(direction, image))
+        curvature = dot(direction, image)
         if not curvature > 0.0:
             self._last = None
             return
-        length = self._scale * float(np.vdot(direction, residual)) / curvature
+        length = self._scale * dot(direction, residual) / curvature
         trial = self.pressure - length * direction
-        if float(trial.min()) >= 0.0 and float(trial.max()) <= self.grid.cap:
+        if float(trial.min()) >= 0.0 and (np.isinf(self.grid.cap) or float(trial.max()) <= self.grid.cap):
             self.pressure = trial
             self._displacement -= length * image
         elif not self._move(self.grid.clip(trial, free)):
@@ -215,17 +231,17 @@ class Descent:
         preconditioned = self._precondition(residual, np.empty_like(residual))
         preconditioned *= free
         self._level(preconditioned, free)
-        descent = float(np.vdot(preconditioned, residual))
+        descent = dot(preconditioned, residual)
         direction = self._direction
         if self._last is None:
             direction[:] = preconditioned
         else:
-            ahead = descent - float(np.vdot(preconditioned, self._last[0]))
+            ahead = descent - dot(preconditioned, self._last[0])
             direction *= np.float32(max(0.0, ahead / self._last[1]))
             direction += preconditioned
             direction *= free
             self._level(direction, free)
-            if not float(np.vdot(direction, residual)) > 0.0:
+            if not dot(direction, residual) > 0.0:
                 direction[:] = preconditioned
         self._last = (residual, descent) if descent > 0.0 else None
         return direction
@@ -240,8 +256,8 @@ class Descent:
         """Go towards a pressure within the bounds as far as the energy falls; False if it does not fall at all."""
         step = ((target - self.pressure) / self._scale).astype(np.float32)
         image = self._fast(step, self._image)
-        slope = float(np.vdot(step, self._excess * (step != 0.0))) / self._scale
-        curvature = float(np.vdot(step, image))
+        slope = dot(step, self._excess) / self._scale
+        curvature = dot(step, image)
         if not (slope < 0.0 < curvature):
             return False
         best = -slope / curvature
@@ -256,7 +272,7 @@ class Descent:
     def _project_gradient(self, residual: Single, free: Mask) -> None:
         """One projected step down the plain gradient, which always descends."""
         image = self._fast(residual, self._image)
-        curvature = float(np.vdot(residual, image))
+        curvature = dot(residual, image)
         if curvature > 0.0:
-            length = self._scale * float(np.vdot(residual, residual)) / curvature
+            length = self._scale * dot(residual, residual) / curvature
             self._move(self.grid.clip(self.pressure - length * residual, free))

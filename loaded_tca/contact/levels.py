@@ -18,26 +18,30 @@ def coarsening(shape: tuple[int, int]) -> tuple[int, int]:
 
 
 def coarsen(gap: Array, merge: tuple[int, int]) -> Array:
-    """Mean gap of blocks of cells; infinite only where a whole block has no material.
+    """Gap at the centres of the merged cells; infinite only where a whole block has no material.
 
-    An odd last row or column makes a block of its own.
+    Cubic interpolation inside, so that a smooth gap is sampled rather than blurred; the mean at borders and beside
+    cells without material. An odd last row or column makes a block of its own.
     """
     for axis in (0, 1):
         if merge[axis] == 2:
-            gap = _merge_pairs(gap, axis)
+            gap = _merge_pairs(gap if axis == 0 else gap.T)
+            gap = gap if axis == 0 else gap.T
     return gap
 
 
-def _merge_pairs(gap: Array, axis: int) -> Array:
-    """Mean of neighbours along an axis; of one of them where the other is infinite."""
-    even = gap[::2] if axis == 0 else gap[:, ::2]
-    odd = gap[1::2] if axis == 0 else gap[:, 1::2]
+def _merge_pairs(gap: Array) -> Array:
+    """Value between the rows 2i and 2i + 1: (9 (f_2i + f_2i+1) - f_2i-1 - f_2i+2)/16, or their mean, or one."""
+    even, odd = gap[::2], gap[1::2]
     if odd.shape != even.shape:
-        last = gap[-1:] if axis == 0 else gap[:, -1:]
-        odd = np.concatenate((odd, last), axis=axis)
-    lowest = np.minimum(even, odd)
-    both = np.isfinite(even) & np.isfinite(odd)
-    return np.asarray(np.add(0.5 * even, 0.5 * odd, out=lowest, where=both))
+        odd = np.concatenate((odd, gap[-1:]))
+    merged = np.minimum(even, odd)
+    finite = np.isfinite(even) & np.isfinite(odd)
+    np.add(0.5 * even, 0.5 * odd, out=merged, where=finite)
+    inner = finite[1:-1] & np.isfinite(odd[:-2]) & np.isfinite(even[2:])
+    outer = np.add(0.5 * odd[:-2], 0.5 * even[2:], out=np.zeros_like(merged[1:-1]), where=inner)
+    np.add(1.125 * merged[1:-1], -0.125 * outer, out=merged[1:-1], where=inner)
+    return merged
 
 
 def prolong(pressure: Array, shape: tuple[int, int], merge: tuple[int, int]) -> Array:
@@ -45,14 +49,14 @@ def prolong(pressure: Array, shape: tuple[int, int], merge: tuple[int, int]) -> 
 
     Near a smooth edge the pressure grows as the root of the distance to it, so that its square is smooth there.
     """
-    square = _continue_outside(pressure * pressure)
+    square = continue_outside(pressure * pressure)
     for axis in (0, 1):
         if merge[axis] == 2:
-            square = _split(square, axis)
+            square = split(square, axis)
     return np.asarray(np.sqrt(np.maximum(square[: shape[0], : shape[1]], 0.0)))
 
 
-def _continue_outside(square: Array) -> Array:
+def continue_outside(square: Array) -> Array:
     """Give cells beside the contact the value on the line through their next two neighbours in it."""
     padded = np.pad(square, 2)
     rows, columns = square.shape
@@ -66,7 +70,7 @@ def _continue_outside(square: Array) -> Array:
     return np.where(outside, best, square)
 
 
-def _split(values: Array, axis: int) -> Array:
+def split(values: Array, axis: int) -> Array:
     """Linear interpolation to the centres of half cells along an axis, constant beyond the last centres."""
     lines = values if axis == 0 else values.T
     padded = np.concatenate((lines[:1], lines, lines[-1:]))

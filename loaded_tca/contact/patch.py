@@ -7,7 +7,11 @@ an ellipse it is a quadratic.
 import numpy as np
 from numpy.typing import NDArray
 
+from loaded_tca.contact.levels import continue_outside, split, window_around
+
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Mask = NDArray[np.bool_]
 
 # The fit is that of a quadratic if it leaves this part of the squared peak unexplained (root mean square);
 # a peak of another shape is taken from its cell.
@@ -16,11 +20,15 @@ GOOD_FIT = 2e-3
 FEWEST = 12
 # Rows and columns that enter the fit at most: more change its result by less than the solver's tolerance does.
 SAMPLES = 48
+# A cell is cut into 4 x 4 to find how much of it is in contact.
+HALVINGS = 2
 
 
 def peak_pressure(pressure: Array) -> float:
     """Largest pressure: the top of a quadratic through p^2 over p > p_max/2, or the largest cell where none fits."""
     largest = float(pressure.max())
+    if largest == 0.0:
+        return 0.0
     square, x, y = _upper_part(pressure / largest)
     if square.size < FEWEST:
         return largest
@@ -39,6 +47,24 @@ def peak_pressure(pressure: Array) -> float:
     return largest * float(np.sqrt(fitted[0] + 0.5 * fitted[1:3] @ top))
 
 
+def area_and_semi_axes(pressure: Array, spacing: tuple[float, float]) -> tuple[float, float, float]:
+    """Area [mm^2], semi-minor and semi-major axis [mm] of the contact, its edge where p^2 passes through zero.
+
+    The axes are those of the ellipse with the same second moments of area, at any angle to the grid.
+    """
+    window = window_around(pressure > 0.0)
+    square = continue_outside(pressure[window] ** 2)
+    for _ in range(HALVINGS):
+        square = split(split(square, 0), 1)
+    inside = square > 0.0
+    width, length = spacing[0] / 2**HALVINGS, spacing[1] / 2**HALVINGS
+    count = np.count_nonzero(inside)
+    x, y = (np.nonzero(inside)[axis] * step for axis, step in ((0, width), (1, length)))
+    moments = np.cov(np.stack((x, y)), bias=True) + np.diag([width**2, length**2]) / 12.0
+    minor, major = 2.0 * np.sqrt(np.linalg.eigvalsh(moments))
+    return count * width * length, float(minor), float(major)
+
+
 def _upper_part(pressure: Array) -> tuple[Array, Array, Array]:
     """Square of the pressures above a half, and their places, both axes scaled to -1 ... 1; thinned if many."""
     high = pressure > 0.5
@@ -54,3 +80,19 @@ def _centred(index: NDArray[np.intp]) -> Array:
     """Positions scaled to -1 ... 1."""
     low, high = int(index[0]), int(index[-1])
     return np.asarray((2.0 * index - (low + high)) / max(1, high - low), dtype=np.float64)
+
+
+def ends_at_material(pressure: Array, void: Mask) -> bool:
+    """Whether the contact goes on to where the material ends.
+
+    At a smooth end of a contact p^2 falls linearly with the distance. Where the last cell beside a void has less than a
+    third of the p^2 of the cell before it, that line reaches zero inside the last cell: the contact ends of itself.
+    """
+    square = pressure**2
+    for axis in (0, 1):
+        for direction in (1, -1):
+            beyond, before = np.roll(void, -direction, axis), np.roll(square, direction, axis)
+            np.moveaxis(beyond, axis, 0)[-1 if direction > 0 else 0] = False
+            if (beyond & (square > 0.0) & (3.0 * square >= before)).any():
+                return True
+    return False

@@ -25,15 +25,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from loaded_tca.contact import checks
 from loaded_tca.contact.convolution import Convolution, Window
-from loaded_tca.contact.descent import NO_MATERIAL, Descent, Grid, Judgement, judge
-from loaded_tca.contact.levels import coarsen, coarsening, prolong, window_around
-from loaded_tca.contact.love import influence_coefficients
-from loaded_tca.contact.patch import peak_pressure
+from loaded_tca.contact.descent import Descent, Grid, Judgement, judge
+from loaded_tca.contact.levels import coarsening, prolong, window_around
+from loaded_tca.contact.problem import OUT_OF_REACH, Problem, Spacing
 from loaded_tca.contact.solution import ContactSolution, ContactStatus, ErrorEstimate
 from loaded_tca.errors import AccuracyWarning, ConvergenceError
 
 Array = NDArray[np.float64]
-Spacing = tuple[float, float]
 
 # Iterations on one grid. Rough surfaces need about a hundred, smooth ones less than ten.
 MOST_ITERATIONS = 500
@@ -44,53 +42,6 @@ COARSE_FACTOR = 4.0
 COARSE_TOLERANCE = 1e-3
 # The iteration stops a little below the tolerance, so that the check in double precision finds it kept.
 RESERVE = 0.8
-
-
-@dataclass(frozen=True)
-class _Problem:
-    """What is asked for, on the grid of one level; lengths in mm, pressures in MPa."""
-
-    gap: Array
-    spacing: Spacing
-    contact_modulus: float
-    load: float | None
-    approach: float
-    max_pressure: float
-    threads: int | None
-
-    @property
-    def unit(self) -> float:
-        """Pressure of the grid (p dx/E*) for 1 MPa [mm/MPa]."""
-        return self.spacing[0] / self.contact_modulus
-
-    def grid(self, window: Window | None = None) -> Grid:
-        """The problem in the terms of :class:`Grid`, on the whole grid or on a window of it."""
-        gap = self.gap if window is None else self.gap[window]
-        total = None if self.load is None else self.load / (self.spacing[1] * self.contact_modulus)
-        gap = np.where(np.isinf(gap), NO_MATERIAL, gap)
-        return Grid(gap, self.spacing[1] / self.spacing[0], total, self.approach, self.max_pressure * self.unit)
-
-    def within_reach(self) -> "_Problem":
-        """The same problem without the cells that cannot touch.
-
-        No displacement exceeds that of the whole load on one cell, and some cell below the cap has a gap of at
-        most the (k + 1)-th smallest, k the number of cells that the load could fill to the cap: with a gap of more
-        than both together a cell is never in contact.
-        """
-        farthest = self.approach
-        if self.load is not None:
-            grid = self.grid()
-            total = self.load / (self.spacing[1] * self.contact_modulus)
-            full = min(int(total / grid.cap), grid.gap.size - 1)
-            own = float(influence_coefficients((1, 1), grid.aspect)[0, 0])
-            farthest = total * own + (float(np.partition(grid.gap, full, axis=None)[full]) if full else 0.0)
-        beyond = self.gap > farthest
-        return replace(self, gap=np.where(beyond, np.inf, self.gap)) if beyond.any() else self
-
-    def coarser(self, merge: tuple[int, int]) -> "_Problem":
-        """The same problem on the next coarser grid."""
-        spacing = (self.spacing[0] * merge[0], self.spacing[1] * merge[1])
-        return replace(self, gap=coarsen(self.gap, merge), spacing=spacing)
 
 
 def solve_contact(
@@ -172,7 +123,7 @@ def solve_contact(
     area = np.count_nonzero(material) * spacing[0] * spacing[1]
     checks.raise_if(checks.check_demand(load, approach, max_pressure, area))
     lowest = float(gap[material].min())
-    problem = _Problem(
+    problem = Problem(
         gap=gap - lowest,
         spacing=spacing,
         contact_modulus=contact_modulus,
@@ -219,7 +170,7 @@ def contact_stiffness(solution: ContactSolution, tolerance: float = 1e-6) -> flo
         return 0.0
     window = window_around(active)
     # A flat punch of the shape of the cells between the bounds, pressed in by one: its load is the stiffness.
-    gap = np.where(active[window], 0.0, NO_MATERIAL)
+    gap = np.where(active[window], 0.0, OUT_OF_REACH)
     grid = Grid(gap, solution.spacing[1] / solution.spacing[0], None, 1.0, math.inf)
     descent = Descent(grid, np.zeros(gap.shape))
     state = descent.run(tolerance, MOST_ITERATIONS)
@@ -243,22 +194,22 @@ def _failure(solution: ContactSolution, tolerance: float) -> str:
 class _Level:
     """What the last two grids leave behind for the error estimate."""
 
-    peak: float
+    largest: float
     approach: float
 
 
-def _solve(problem: _Problem, lowest: float, tolerance: float, start: Array | None) -> ContactSolution:
+def _solve(problem: Problem, lowest: float, tolerance: float, start: Array | None) -> ContactSolution:
     """Solve on nested grids, or from a start; no load is answered at once."""
     if problem.load == 0.0 or (problem.load is None and problem.approach <= 0.0):
         return _no_load(problem, lowest)
     if start is not None and start.any():
-        pressure, coarse = _fitted(problem, start), None
+        pressure, coarse = problem.fitted(start), None
     else:
-        pressure, coarse = _from_coarser(problem.within_reach(), tolerance)
+        pressure, coarse = _from_coarser(problem, tolerance)
     return _finest(problem, lowest, tolerance, pressure, coarse)
 
 
-def _no_load(problem: _Problem, lowest: float) -> ContactSolution:
+def _no_load(problem: Problem, lowest: float) -> ContactSolution:
     """Zero pressure; the approach is the smallest gap, or as prescribed."""
     approach = 0.0 if problem.load == 0.0 else problem.approach
     return ContactSolution(
@@ -274,31 +225,16 @@ def _no_load(problem: _Problem, lowest: float) -> ContactSolution:
         contact_modulus=problem.contact_modulus,
         max_pressure=None if math.isinf(problem.max_pressure) else problem.max_pressure,
         error_estimate=ErrorEstimate(0.0, 0.0),
+        first_touch=lowest,
     )
 
 
-def _fitted(problem: _Problem, pressure: Array) -> Array:
-    """A pressure within the bounds and with the load of the problem, none where there is no material."""
-    pressure = np.where(np.isfinite(problem.gap), np.minimum(pressure, problem.max_pressure), 0.0)
-    if problem.load is None:
-        return pressure
-    if not pressure.any():
-        pressure = np.isfinite(problem.gap).astype(np.float64)
-    pressure *= problem.load / (float(pressure.sum()) * problem.spacing[0] * problem.spacing[1])
-    if pressure.max() > problem.max_pressure:
-        unit = problem.unit
-        pressure = problem.grid().clip(pressure * unit, np.isfinite(problem.gap)) / unit
-    return pressure
-
-
-def _from_coarser(problem: _Problem, tolerance: float) -> tuple[Array, _Level | None]:
+def _from_coarser(problem: Problem, tolerance: float) -> tuple[Array, _Level | None]:
     """Start for a grid from the solution on the next coarser one, solved in the same way."""
     merge = coarsening((problem.gap.shape[0], problem.gap.shape[1]))
     if merge == (1, 1):
-        uniform = (
-            np.isfinite(problem.gap).astype(np.float64) if problem.load is not None else np.zeros(problem.gap.shape)
-        )
-        return _fitted(problem, uniform), None
+        uniform = problem.reachable.astype(np.float64) if problem.load is not None else np.zeros(problem.gap.shape)
+        return problem.fitted(uniform), None
     coarse = problem.coarser(merge)
     tolerance = max(tolerance, min(COARSE_TOLERANCE, COARSE_FACTOR * tolerance))
     pressure, _ = _from_coarser(coarse, tolerance)
@@ -308,48 +244,49 @@ def _from_coarser(problem: _Problem, tolerance: float) -> tuple[Array, _Level | 
     state = descent.run(tolerance, MOST_ITERATIONS)
     pressure = np.zeros(coarse.gap.shape)
     pressure[window] = descent.pressure / coarse.unit
-    level = _Level(peak_pressure(pressure), state.approach)
-    return _fitted(problem, prolong(pressure, problem.gap.shape, merge)), level
+    level = _Level(float(pressure.max()), state.approach)
+    return problem.fitted(prolong(pressure, problem.gap.shape, merge)), level
 
 
-def _window(problem: _Problem, pressure: Array) -> Window:
+def _window(problem: Problem, pressure: Array) -> Window:
     """Window around the contact; the whole grid where nothing is in contact yet."""
     touching = pressure > 0.0
-    return window_around(touching if touching.any() else np.isfinite(problem.gap))
+    return window_around(touching if touching.any() else problem.reachable)
 
 
 def _finest(
-    problem: _Problem, lowest: float, tolerance: float, pressure: Array, coarse: _Level | None
+    problem: Problem, lowest: float, tolerance: float, pressure: Array, coarse: _Level | None
 ) -> ContactSolution:
     """Solve in a window around the contact, check on the whole grid, widen the window where the check says so."""
     whole = problem.grid()
-    pressure, displacement = pressure * problem.unit, None
+    pressure = pressure * problem.unit
     window = _window(problem, pressure)
+    descent = Descent(problem.grid(window), pressure[window], threads=problem.threads)
     iterations = convolutions = 0
     for _ in range(MOST_CHECKS):
-        part = None if displacement is None else np.ascontiguousarray(displacement[window])
-        descent = Descent(problem.grid(window), np.ascontiguousarray(pressure[window]), part, problem.threads)
         descent.run(RESERVE * tolerance, MOST_ITERATIONS - iterations)
         check = Convolution(whole.gap.shape, whole.aspect, window, threads=problem.threads)
         displacement = check(descent.settle(), np.empty(whole.gap.shape))
         pressure = np.zeros(whole.gap.shape)
         pressure[window] = descent.pressure
-        excess = displacement + whole.gap
-        state = judge(whole, pressure, excess)
+        state = judge(whole, pressure, displacement + whole.gap)
         iterations += descent.iterations
         convolutions += descent.convolutions + check.count
         if state.residual <= tolerance or iterations >= MOST_ITERATIONS:
             break
         window = window_around(state.free | (pressure > 0.0))
-    return _solution(problem, lowest, tolerance, pressure, excess, state, (iterations, convolutions), coarse)
+        part = np.ascontiguousarray(displacement[window])
+        descent = Descent(problem.grid(window), pressure[window], part, problem.threads)
+    displacement += problem.gap - state.approach
+    return _solution(problem, lowest, tolerance, pressure, displacement, state, (iterations, convolutions), coarse)
 
 
 def _solution(
-    problem: _Problem,
+    problem: Problem,
     lowest: float,
     tolerance: float,
     pressure: Array,
-    excess: Array,
+    gap: Array,
     state: Judgement,
     counts: tuple[int, int],
     coarse: _Level | None,
@@ -357,10 +294,9 @@ def _solution(
     """Put a solution together in the units of the user."""
     pressure = pressure / problem.unit
     load = float(pressure.sum()) * problem.spacing[0] * problem.spacing[1]
-    excess[np.isinf(problem.gap)] = np.inf
     solution = ContactSolution(
         pressure=pressure,
-        gap=excess,
+        gap=gap,
         approach=lowest + state.approach,
         load=load if problem.load is None else problem.load,
         iterations=counts[0],
@@ -371,8 +307,9 @@ def _solution(
         contact_modulus=problem.contact_modulus,
         max_pressure=None if math.isinf(problem.max_pressure) else problem.max_pressure,
         error_estimate=ErrorEstimate(math.nan, math.nan),
+        first_touch=lowest,
     )
-    if coarse is None:
+    if coarse is None or coarse.largest == 0.0:
         return solution
-    estimate = solution.estimate_error(coarse.peak, coarse.approach, state.approach)
+    estimate = solution.estimate_error(coarse.largest, lowest + coarse.approach)
     return replace(solution, error_estimate=estimate)

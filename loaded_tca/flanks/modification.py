@@ -8,9 +8,10 @@ becomes Theta - s delta |grad F| with |grad F| of the unmodified flank.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, Literal
+from dataclasses import dataclass, fields
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -23,6 +24,12 @@ Shape = Callable[[Any], tuple[Any, Any, Any]]
 
 CrowningForm = Literal["parabolic", "circular", "logarithmic"]
 ReliefForm = Literal["parabolic", "linear"]
+
+_FORMS = {
+    "lead_crowning_form": get_args(CrowningForm),
+    "tip_relief_form": get_args(ReliefForm),
+    "root_relief_form": get_args(ReliefForm),
+}
 
 LOGARITHMIC_STEEPNESS = 0.99
 """k of the logarithmic crowning C ln(1 - k t^2)/ln(1 - k)."""
@@ -45,7 +52,7 @@ def one_sided_parabola(t: Any) -> tuple[Any, Any, Any]:
 
 
 def circular_arc(amount: float, half_width: float) -> Shape:
-    """f = (R - sqrt(R^2 - y^2))/C with y = half_width t and R = half_width^2/(2 C) + C/2."""
+    """f = (R - sqrt(R^2 - y^2))/C with y = half_width t and R = half_width^2/(2 C) + C/2; C > 0."""
     radius = half_width**2 / (2.0 * amount) + 0.5 * amount
 
     def shape(t: Any) -> tuple[Any, Any, Any]:
@@ -111,6 +118,11 @@ class FlankModifications:
     helix_slope, profile_slope : float [mm]
         C_H_beta and C_H_alpha; may be negative.
 
+    Raises
+    ------
+    InputError
+        If an amount is not finite or a form is unknown.
+
     References
     ----------
     ISO 21771, clause 5 (flank modifications).
@@ -129,6 +141,17 @@ class FlankModifications:
     root_relief_form: ReliefForm = "parabolic"
     helix_slope: float = 0.0
     profile_slope: float = 0.0
+
+    def __post_init__(self) -> None:
+        problems = []
+        for name, value in ((entry.name, getattr(self, entry.name)) for entry in fields(self)):
+            forms = _FORMS.get(name)
+            if forms is None and not math.isfinite(value):
+                problems.append(f"{name}: {value} mm is not finite")
+            elif forms is not None and value not in forms:
+                problems.append(f"{name}: {str(value)!r} is not {', '.join(map(repr, forms[:-1]))} or {forms[-1]!r}")
+        if problems:
+            raise InputError(problems)
 
     def terms(
         self, face_width: float, profile: tuple[float, float], coordinate: Callable[[float], float]
@@ -154,7 +177,10 @@ class FlankModifications:
         half, crowning = 0.5 * width, self.lead_crowning
         shapes: dict[str, Shape] = {"parabolic": parabola, "logarithmic": logarithmic}
         if self.lead_crowning_form == "circular" and crowning != 0.0:
-            shapes["circular"] = circular_arc(crowning, half)
+            if abs(crowning) > half:
+                message = f"lead_crowning: {crowning:.6g} mm is more than a circular arc over {width:.6g} mm can fall"
+                raise InputError(message)
+            shapes["circular"] = circular_arc(abs(crowning), half)
         shape = shapes.get(self.lead_crowning_form, parabola)
         terms = [
             Term("lengthwise", crowning, 0.0, half, shape),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -108,9 +108,16 @@ class ContactPath:
     def __len__(self) -> int:
         return len(self.pinion_angle)
 
-    def __getitem__(self, position: int) -> ContactPoint:
-        """One position of the path."""
-        return ContactPoint(**{field.name: getattr(self, field.name)[position] for field in fields(self)})
+    @overload
+    def __getitem__(self, position: int) -> ContactPoint: ...
+
+    @overload
+    def __getitem__(self, position: slice) -> ContactPath: ...
+
+    def __getitem__(self, position: int | slice) -> ContactPoint | ContactPath:
+        """One position of the path, or a stretch of it."""
+        part = {field.name: getattr(self, field.name)[position] for field in fields(self)}
+        return ContactPath(**part) if isinstance(position, slice) else ContactPoint(**part)
 
     def __repr__(self) -> str:
         edge = int(self.on_edge.sum())

@@ -5,7 +5,7 @@ sequential quadratic programme, all starts advanced together. In two dimensions 
 exactly by listing its candidates (free, on one border, in one corner), so that no active set is carried along.
 
 Safeguards: Newton on the absolute values of the curvatures (always uphill), steps below half the flank, a border
-met is kept to second order, and a step is accepted only if the merit e - mu * violation does not fall.
+or a bent ridge is kept to second order, and a step is accepted only if the merit e - mu * violation does not fall.
 """
 
 from __future__ import annotations
@@ -28,6 +28,8 @@ PARALLEL = 1e-9
 """Sine of the angle between two borders below which they have no corner."""
 TIE = 1e-12
 """Relative rise by which a corner must beat a single border: on a flat edge all of it is equally high."""
+RIDGE_CORRECTIONS = 3
+"""Newton steps back across a bent ridge: half a face width along it leaves it by 0.1 mm, then 1e-3, 1e-7."""
 MERIT_SLACK = 1e-15
 """Rounding of the ease-off relative to r_b2, not to be mistaken for a fall."""
 CURVATURE_FLOOR = 1e-12
@@ -152,6 +154,11 @@ def _advance(
         if bent.size:
             trial[bent] += _back_to_border(here.slopes[rows[bent]], borders[bent], multipliers[rows[bent]])
             after[bent], _ = merit(rows[bent], trial[bent])
+        astray = np.flatnonzero((after < before[rows]) & (multipliers[rows] == 0.0).all(axis=-1))
+        if astray.size:
+            part = rows[astray]
+            trial[astray] = _back_to_ridge(field.restricted(part), phi1[part], trial[astray], scale)
+            after[astray], _ = merit(part, trial[astray])
         good = after >= before[rows]
         result[rows[good]] = trial[good]
         moved[rows[good]] = True
@@ -167,6 +174,19 @@ def _back_to_border(slopes: Array, borders: Array, multipliers: Array) -> Array:
     rows = np.arange(len(held))
     slope = slopes[rows, held]
     return -slope * (borders[rows, held] / np.maximum((slope**2).sum(axis=-1), 1e-300))[:, None]
+
+
+def _back_to_ridge(field: EaseOff, phi1: Array, points: Array, scale: Array) -> Array:
+    """Trial points moved across the ridge to its top: a flat ridge (a nearly unmodified helical pair) is bent, and a
+    straight step along it falls by more than its end rises."""
+    for _ in range(RIDGE_CORRECTIONS):
+        here = _look(field, phi1, points, scale)
+        values, vectors = np.linalg.eigh(field.hessian(here.station) * np.outer(scale, scale))
+        rows, steep = np.arange(len(points)), np.abs(values).argmax(axis=-1)
+        across, bend = vectors[rows, :, steep], np.maximum(np.abs(values[rows, steep]), 1e-300)
+        shift = np.clip((across * here.gradient).sum(axis=-1) / bend, -LARGEST_STEP, LARGEST_STEP)
+        points = points + across * shift[:, None]
+    return points
 
 
 def _propose(field: EaseOff, here: _Local, multipliers: Array, scale: Array) -> tuple[Array, Array]:
@@ -209,10 +229,7 @@ def _solve_quadratic(
 ) -> tuple[Array, Array]:
     """Maximise g.s - s.N.s/2 subject to c + J s >= 0 by listing the points where it can lie."""
     free = (inverse @ gradient[..., None])[..., 0]
-    pull = slopes @ inverse
-    stiffness = np.maximum((pull * slopes).sum(axis=-1), 1e-300)
-    need = (-borders - (slopes @ free[..., None])[..., 0]) / stiffness
-    candidates = [free[:, None, :], free[:, None, :] + pull * need[..., None]]
+    candidates = [free[:, None, :], _on_single_borders(gradient, curvature, borders, slopes)]
     pairs = np.array(list(combinations(range(borders.shape[-1]), 2)))
     corners, parallel = _corners(borders, slopes, pairs)
     steps = np.concatenate([*candidates, corners], axis=1)
@@ -224,6 +241,19 @@ def _solve_quadratic(
     best = np.where(feasible.any(axis=1), np.argmax(np.where(feasible, rise, -np.inf), 1), np.argmax(room, 1))
     step = steps[np.arange(len(best)), best]
     return step, _multipliers(gradient - (curvature @ step[..., None])[..., 0], slopes, best, pairs)
+
+
+def _on_single_borders(gradient: Array, curvature: Array, borders: Array, slopes: Array) -> Array:
+    """Best step onto each linearised border: (n, borders, 2).
+
+    From the foot of the border along its tangent: the free step is not used, since on a flat ridge it is so long that
+    nothing would be left of its difference to the border.
+    """
+    foot = -slopes * (borders / np.maximum((slopes**2).sum(axis=-1), 1e-300))[..., None]
+    tangent = np.stack([-slopes[..., 1], slopes[..., 0]], axis=-1)
+    rise = ((gradient[:, None, :] - foot @ curvature) * tangent).sum(axis=-1)
+    bend = np.maximum(((tangent @ curvature) * tangent).sum(axis=-1), 1e-300)
+    return foot + tangent * (rise / bend)[..., None]
 
 
 def _corners(borders: Array, slopes: Array, pairs: Array) -> tuple[Array, Array]:

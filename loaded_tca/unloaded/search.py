@@ -1,8 +1,8 @@
 """Where the flanks touch first: a coarse scan names the basins, the reduced solver climbs each, the best one wins.
 
 A crease (the start of a linear relief) splits a flank into smooth pieces. An ascent stays on its piece, with the smooth
-continuation of that piece; if it is held by a crease, the piece beyond is climbed from there. A contact that rests on
-a crease is thus found like one that rests on a border.
+continuation of that piece; if it is held by a crease, the piece beyond is climbed from there, and so on from piece to
+piece. A contact that rests on a crease is thus found like one that rests on a border.
 """
 
 from __future__ import annotations
@@ -67,18 +67,28 @@ def first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
     rho, z = rho.ravel(), z.ravel()
     beyond = EaseOff(pair).sides(phi1[owner], rho, z)
     peaks = _climb(pair, phi1[owner], rho, z, beyond)
-    for crease in range(beyond.shape[1]):
-        held = np.flatnonzero(peaks.multipliers[:, _crease_columns(pair)[crease]] > 0.0)
-        across = beyond[held].copy()
-        across[:, crease] ^= True
-        more = _climb(pair, phi1[owner[held]], peaks.rho[held], peaks.z[held], across)
-        owner, beyond = np.concatenate([owner, owner[held]]), np.concatenate([beyond, across])
+    columns, latest, last = _crease_columns(pair), np.arange(len(owner)), np.full(len(owner), -1)
+    for _ in columns:
+        row, crease = _crossings(peaks.multipliers[np.ix_(latest, columns)], last)
+        row = latest[row]
+        across = beyond[row]
+        across[np.arange(len(row)), crease] ^= True
+        more = _climb(pair, phi1[owner[row]], peaks.rho[row], peaks.z[row], across)
+        latest, last = len(owner) + np.arange(len(row)), crease
+        owner, beyond = np.concatenate([owner, owner[row]]), np.concatenate([beyond, across])
         peaks = peaks.joined(more)
     return _best(pair, phi1, owner, beyond, peaks, scanned)
 
 
 def _climb(pair: GearPair, phi1: Array, rho: Array, z: Array, beyond: Array) -> Maxima:
     return climb(EaseOff(pair, beyond if beyond.shape[1] else None), phi1, rho, z)
+
+
+def _crossings(multipliers: Array, last: Array) -> tuple[Array, Array]:
+    """Rows of ascents that are held by a crease other than the last one they crossed, and that crease."""
+    held = (multipliers > 0.0) & (np.arange(multipliers.shape[1]) != last[:, None])
+    row, crease = np.nonzero(held)
+    return row, crease
 
 
 def _crease_columns(pair: GearPair) -> Array:

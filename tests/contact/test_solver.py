@@ -94,14 +94,28 @@ def test_pressure_error_is_of_second_order_in_the_approach():
     assert orders.min() > 1.3
 
 
-def test_error_estimate_bounds_the_error_within_a_factor():
+@pytest.mark.parametrize("ratio", [1.0, 30.0])
+@pytest.mark.parametrize("n", [32, 64, 128])
+def test_error_estimate_bounds_the_error_of_the_peak(n, ratio):
+    contact, gap, spacing = hertz_problem((n, n), (0.1, 0.1 / ratio**1.5))
+    solution = solve_contact(gap, spacing, E_STAR, load=LOAD, tolerance=1e-8)
+    error = abs(solution.peak_pressure / contact.max_pressure - 1.0)
+    # measured on 150 ellipses: 1 to 15 times the error of the fitted peak
+    assert error < solution.error_estimate.peak_pressure < 50.0 * error
+
+
+def test_error_estimate_of_the_approach_is_of_its_size():
     for n in (32, 64, 128):
         contact, gap, spacing = hertz_problem((n, n), (0.1, 0.01))
         solution = solve_contact(gap, spacing, E_STAR, load=LOAD, tolerance=1e-8)
-        # wanted: its size; a factor of 5 either way is what the scatter with the place of the edge allows
         error = abs(solution.approach / contact.approach - 1.0)
-        assert error / 5.0 < solution.error_estimate.approach < 20.0 * error
-        assert abs(solution.peak_pressure / contact.max_pressure - 1.0) < 5.0 * solution.error_estimate.peak_pressure
+        # the error itself changes sign with the place of the edge in its cell
+        assert error / 10.0 < solution.error_estimate.approach < 30.0 * error
+
+
+def test_one_grid_alone_has_no_error_estimate():
+    _, gap, spacing = hertz_problem((30, 30))
+    assert math.isnan(solve_contact(gap, spacing, E_STAR, load=LOAD).error_estimate.peak_pressure)
 
 
 @given(factor=st.floats(1e-2, 1e2), unit=st.sampled_from([1.0, 1e-3, 1e3, 1e-9]), offset=st.floats(-1e3, 1e3))

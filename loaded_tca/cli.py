@@ -1,0 +1,281 @@
+"""The command ``loaded-tca``: a scene file in; results, pictures or one line that says what is wrong out.
+
+Exit codes: 0; 1 a fault of the program; 2 bad input; 3 no convergence; 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import math
+import os
+import sys
+import traceback
+import warnings
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+from loaded_tca.errors import ConvergenceError, InputError, LoadedTCAError
+
+if TYPE_CHECKING:
+    from loaded_tca.gears import CylindricalMesh
+    from loaded_tca.mesh_cycle import MeshCycle
+    from loaded_tca.scene import Scene
+
+# The modules that compute and draw take most of a second to import: each command imports what it needs.
+
+OK, FAULT, BAD_INPUT, NO_CONVERGENCE, INTERRUPTED = 0, 1, 2, 3, 130
+DEMO_DIRECTORY = Path("loaded-tca-demo")
+DEMO_SCENE = Path(__file__).with_name("demo.toml")
+
+DESCRIPTION = "Loaded tooth contact analysis of gears."
+EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Default: those of the process.
+
+    Returns
+    -------
+    int
+        The exit code.
+    """
+    arguments = list(sys.argv[1:] if arguments is None else arguments)
+    _print_any_character()
+    try:
+        with _warnings_in_one_line_each():
+            options = _parser().parse_args(arguments)
+            options.command(options)
+    except KeyboardInterrupt:
+        return _failure(INTERRUPTED, ["interrupted; no file is half written"])
+    except Exception as error:  # whatever happens ends in one line
+        if "--traceback" in arguments:
+            traceback.print_exc()
+        return _failure(*_told(error))
+    return OK
+
+
+def _told(error: Exception) -> tuple[int, list[str]]:
+    """Exit code and lines of an error."""
+    if isinstance(error, ConvergenceError):
+        return NO_CONVERGENCE, str(error).splitlines()
+    if isinstance(error, InputError):
+        return BAD_INPUT, [" ".join(problem.split()) for problem in error.problems]
+    if isinstance(error, LoadedTCAError):
+        return BAD_INPUT, [" ".join(str(error).split())]
+    if isinstance(error, MemoryError):
+        return BAD_INPUT, [
+            "out of memory; ask for fewer analysis.cells, a larger analysis.accuracy, or fewer positions"
+        ]
+    what = f"{type(error).__name__}: {error}".splitlines()[0]
+    return FAULT, [f"a fault of the program, please report it with the output of --traceback: {what}"]
+
+
+def _failure(code: int, lines: list[str]) -> int:
+    for line in lines:
+        print(f"loaded-tca: {line}", file=sys.stderr)
+    return code
+
+
+class _Parser(argparse.ArgumentParser):
+    """Tells a wrong command line as any other bad input."""
+
+    def error(self, message: str) -> NoReturn:
+        raise InputError(f"{message}; see '{self.prog} --help'")
+
+
+def _parser() -> argparse.ArgumentParser:
+    common = _Parser(add_help=False)
+    common.add_argument("--traceback", action="store_true", default=argparse.SUPPRESS, help="show where an error arose")
+    parser = _Parser("loaded-tca", description=DESCRIPTION, epilog=EXAMPLE, parents=[common])
+    parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
+    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+
+    def command(name: str, run: Callable[[argparse.Namespace], None], text: str) -> argparse.ArgumentParser:
+        added = commands.add_parser(name, help=text, description=text, parents=[common])
+        added.set_defaults(command=run)
+        return added
+
+    command("demo", _demo, f"analyse a crowned helical pair; writes to ./{DEMO_DIRECTORY}")
+    run = command("run", _run, "analyse a scene; writes result.nc, summary.json, positions.csv and pictures")
+    run.add_argument("scene", metavar="SCENE.toml", help="scene file")
+    run.add_argument("--out", metavar="DIR", required=True, type=Path, help="directory for the results")
+    plot = command("plot", _plot, "draw the pictures of a result again")
+    plot.add_argument("result", metavar="DIR|FILE", type=Path, help="result.nc, or the directory that holds it")
+    plot.add_argument("--out", metavar="DIR", type=Path, help="directory for the pictures; default: beside the result")
+    check = command("check", _check, "read a scene and show its geometry, without computing a contact")
+    check.add_argument("scene", metavar="SCENE.toml", help="scene file")
+    return parser
+
+
+class _Version(argparse.Action):
+    """Looks the version up only when asked."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        from importlib.metadata import version
+
+        print(f"loaded-tca {version('loaded_tca')}")
+        parser.exit()
+
+
+def _demo(_: argparse.Namespace) -> None:
+    from loaded_tca.report import make_directory
+    from loaded_tca.storage import replacing
+
+    make_directory(DEMO_DIRECTORY)
+    scene, content = DEMO_DIRECTORY / "scene.toml", DEMO_SCENE.read_bytes()
+    if scene.exists() and scene.read_bytes() != content:
+        again = f"'loaded-tca run {scene} --out {DEMO_DIRECTORY}'"
+        raise InputError(f"{scene}: has been changed, and the demo would replace it; rename it, or use {again}")
+    with replacing(scene) as temporary:
+        temporary.write_bytes(content)
+    _analyse_to(str(scene), DEMO_DIRECTORY)
+    print(f"Next: change {scene}, for instance its lead_crowning_um, then try\n")
+    print(f"  loaded-tca run {scene} --out my-pair")
+
+
+def _run(options: argparse.Namespace) -> None:
+    _analyse_to(options.scene, options.out)
+
+
+def _analyse_to(scene_file: str, directory: Path) -> None:
+    """Read, analyse, write everything, and show the summary."""
+    from loaded_tca.analysis import analyse
+    from loaded_tca.report import write_report
+    from loaded_tca.scene import read_scene
+
+    scene = read_scene(scene_file)
+    _check_place(directory)
+    with _progress_bar() as progress:
+        result = analyse(scene, progress=progress)
+    written = [*write_report(result, directory), *_draw(result, directory)]
+    print(result.summary(), end="\n\n")
+    _print_files(written)
+
+
+def _plot(options: argparse.Namespace) -> None:
+    from loaded_tca.mesh_cycle import MeshCycle
+    from loaded_tca.report import RESULT, make_directory
+
+    path = options.result / RESULT if options.result.is_dir() else options.result
+    result = MeshCycle.load(path)
+    directory = options.out or path.parent
+    make_directory(directory)
+    _print_files(_draw(result, directory))
+
+
+def _check(options: argparse.Namespace) -> None:
+    from loaded_tca.scene import read_scene
+
+    scene = read_scene(options.scene)
+    scene.pair()
+    print(_geometry(scene))
+
+
+def _draw(result: MeshCycle, directory: Path) -> tuple[Path, ...]:
+    from loaded_tca.plots import plot_all
+
+    return plot_all(result, directory)
+
+
+def _print_files(paths: Sequence[Path]) -> None:
+    print(f"Written to {paths[0].parent}: {', '.join(path.name for path in paths)}")
+
+
+def _check_place(directory: Path) -> None:
+    """Refuse a directory that cannot be written before the analysis rather than after it; makes nothing."""
+    existing = next(place for place in (directory, *directory.absolute().parents) if place.exists())
+    if not existing.is_dir():
+        raise InputError(f"--out {directory}: {existing} is a file; give a directory")
+    if not os.access(existing, os.W_OK):
+        raise InputError(f"--out {directory}: {existing} cannot be written to; give another directory")
+
+
+@contextmanager
+def _progress_bar() -> Iterator[Callable[[int, int], None] | None]:
+    """A bar on a terminal; nothing in a file or a pipe."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    from tqdm import tqdm
+
+    with tqdm(desc="pressure maps", unit="map") as bar:
+
+        def show(done: int, total: int) -> None:
+            bar.total = total
+            bar.update(done - bar.n)
+
+        yield show
+
+
+@contextmanager
+def _warnings_in_one_line_each() -> Iterator[None]:
+    """Collect warnings and tell each once, with its count, also if an error follows."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            yield
+        finally:
+            for message, count in Counter(" ".join(str(entry.message).split()) for entry in caught).items():
+                print(f"warning: {message}" + (f" ({count} times)" if count > 1 else ""), file=sys.stderr)
+
+
+def _print_any_character() -> None:
+    """Titles may hold characters that the terminal does not know: show their codes instead of failing."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")
+
+
+def _geometry(scene: Scene) -> str:
+    """Key figures of the macro geometry, one line each."""
+    mesh = scene.mesh()
+    rows = [*_mesh_rows(mesh), *_gear_rows(scene, mesh)]
+    lines = [f"{label:<44}" + "".join(f"{cell:>14}" for cell in cells) for label, *cells in rows]
+    return "\n".join([scene.title or "Scene", *lines])
+
+
+def _mesh_rows(mesh: CylindricalMesh) -> list[tuple[str, ...]]:
+    path = mesh.path_of_contact
+    return [
+        ("working centre distance a_w [mm]", f"{mesh.working_centre_distance:.4f}"),
+        ("working pressure angle alpha_wt [deg]", f"{math.degrees(mesh.working_pressure_angle):.4f}"),
+        ("backlash j_wt at the working circles [mm]", f"{mesh.backlash:.4f}"),
+        ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:.4f}"),
+        ("overlap ratio eps_beta", f"{mesh.overlap_ratio:.4f}"),
+        ("total contact ratio eps_gamma", f"{mesh.total_contact_ratio:.4f}"),
+        ("path of contact: length AE, approach AC [mm]", f"{path.AE:.4f}", f"{path.AC:.4f}"),
+        ("common face width b [mm]", f"{mesh.common_face_width:.4f}"),
+    ]
+
+
+def _gear_rows(scene: Scene, mesh: CylindricalMesh) -> list[tuple[str, ...]]:
+    gears = (mesh.pinion, mesh.wheel)
+    active = (mesh.pinion_active_profile, mesh.wheel_active_profile)
+    working = (mesh.pinion_working_radius, mesh.wheel_working_radius)
+    diameters = (
+        ("reference diameter d [mm]", [gear.reference_radius for gear in gears]),
+        ("base diameter d_b [mm]", [gear.base_radius for gear in gears]),
+        ("working diameter d_w [mm]", working),
+        ("tip diameter d_a [mm]", [gear.tip_radius for gear in gears]),
+        ("start of active profile d_Nf [mm]", [profile.start_radius for profile in active]),
+        ("root form diameter d_Ff [mm]", [gear.form_radius for gear in gears]),
+        ("root diameter d_f [mm]", [gear.root_radius for gear in gears]),
+    )
+    hands = ("none", "none")
+    if scene.geometry.helix_angle_deg:
+        hands = ("right", "left") if scene.pinion_hand == "right" else ("left", "right")
+    return [
+        ("", "pinion", "wheel"),
+        ("teeth z", *(str(gear.teeth) for gear in gears)),
+        ("hand of the helix", *hands),
+        *((label, *(f"{2.0 * radius:.4f}" for radius in radii)) for label, radii in diameters),
+        ("mate's tip reaches below d_Ff", *("yes" if profile.fillet_interference else "no" for profile in active)),
+    ]

@@ -1,0 +1,76 @@
+"""The algebra of values, gradients and Hessians, against polynomials differentiated by hand."""
+
+import math
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+from loaded_tca.flanks.jet import Jet, weighted_sum
+
+ROUNDING = 1e-12  # a handful of products of numbers of order 10
+
+coordinates = st.floats(-3.0, 3.0)
+PARTS = ("value", "rho", "z", "rho_rho", "rho_z", "z_z")
+
+
+def cubic(r, z):
+    """r^3 + 2 r z - z^2."""
+    return Jet(r**3 + 2 * r * z - z**2, 3 * r**2 + 2 * z, 2 * r - 2 * z, 6 * r, 2.0, -2.0)
+
+
+def saddle(r, z):
+    """r z^2 - r."""
+    return Jet(r * z**2 - r, z**2 - 1, 2 * r * z, 0.0, 2 * z, 2 * r)
+
+
+def parts(jet):
+    return [float(getattr(jet, name)) for name in PARTS]
+
+
+@given(coordinates, coordinates)
+def test_product_obeys_leibniz(r, z):
+    """(r^3 + 2 r z - z^2)(r z^2 - r) = r^4 z^2 - r^4 + 2 r^2 z^3 - 2 r^2 z - r z^4 + r z^2."""
+    expected = [
+        r**4 * z**2 - r**4 + 2 * r**2 * z**3 - 2 * r**2 * z - r * z**4 + r * z**2,
+        4 * r**3 * z**2 - 4 * r**3 + 4 * r * z**3 - 4 * r * z - z**4 + z**2,
+        2 * r**4 * z + 6 * r**2 * z**2 - 2 * r**2 - 4 * r * z**3 + 2 * r * z,
+        12 * r**2 * z**2 - 12 * r**2 + 4 * z**3 - 4 * z,
+        8 * r**3 * z + 12 * r * z**2 - 4 * r - 4 * z**3 + 2 * z,
+        2 * r**4 + 12 * r**2 * z - 12 * r * z**2 + 2 * r,
+    ]
+    assert_allclose(parts(cubic(r, z).times(saddle(r, z))), expected, atol=ROUNDING * 1e3)
+
+
+@given(coordinates, coordinates)
+def test_composition_with_the_square_is_the_product_with_itself(r, z):
+    inner = cubic(r, z)
+    squared = inner.compose(inner.value**2, 2.0 * inner.value, 2.0)
+    assert_allclose(parts(squared), parts(inner.times(inner)), rtol=ROUNDING, atol=ROUNDING * 1e3)
+
+
+@given(coordinates, coordinates)
+def test_composition_with_the_exponential_turns_sums_into_products(r, z):
+    def exponential(jet):
+        return jet.compose(*[math.exp(0.1 * jet.value) * 0.1**k for k in range(3)])
+
+    whole = exponential(cubic(r, z) + saddle(r, z))
+    assert_allclose(
+        parts(whole), parts(exponential(cubic(r, z)).times(exponential(saddle(r, z)))), rtol=1e-10, atol=1e-10
+    )
+
+
+def test_weighted_sum_weighs_each_row_by_its_own_numbers():
+    r, z = np.array([1.0, 2.0]), np.array([0.5, -1.0])
+    weights = np.array([[1.0, 2.0], [3.0, -1.0]])
+    total = weighted_sum((cubic(r, z), saddle(r, z)), weights)
+    for row in range(2):
+        own = cubic(r[row], z[row]) * weights[row, 0] + saddle(r[row], z[row]) * weights[row, 1]
+        found = [np.broadcast_to(getattr(total, name), 2)[row] for name in PARTS]
+        assert_allclose(found, parts(own), rtol=ROUNDING)
+
+
+def test_shift_and_scale_is_the_linear_map_of_the_value_and_scales_the_derivatives():
+    jet = cubic(1.5, 0.5)
+    assert_allclose(parts(jet.shifted_scaled(2.0, 4.0)), [(jet.value - 2.0) / 4.0, *[v / 4.0 for v in parts(jet)[1:]]])

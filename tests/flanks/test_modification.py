@@ -1,0 +1,323 @@
+"""Modifications: their definitions at the ends and in the middle, their derivatives, and what is refused."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+from pairs import cylindrical_mesh, gear_pair, meshes, modifications
+
+from loaded_tca.errors import InputError
+from loaded_tca.flanks import FlankModifications, InvoluteFlank, ModifiedFlank
+from loaded_tca.flanks.base import outward_normal
+from loaded_tca.flanks.modification import circular_arc, linear, logarithmic, one_sided_parabola, parabola
+from loaded_tca.pair import cylindrical_basis, cylindrical_pair
+
+ROUNDING = 1e-12
+AMOUNT = 0.02
+MESH = cylindrical_mesh(helix_deg=15.0)
+GEAR, ACTIVE = MESH.pinion, MESH.pinion_active_profile
+HALF = 0.5 * GEAR.face_width
+WORKING, TIP = MESH.pinion_working_radius, ACTIVE.end_radius
+
+
+def modified(side_of="pinion", **amounts):
+    """Pinion flank with modifications; the wheel drives to get the other side."""
+    pair = cylindrical_pair(MESH, modifications=(FlankModifications(**amounts), FlankModifications()), driving=side_of)
+    return pair.pinion
+
+
+def removed(flank, radius, z):
+    return float(flank.removal(np.array(float(radius)), np.array(float(z))).value)
+
+
+def radius_at(share):
+    """Radius at a share of the active profile, 0 at its start, 1 at the tip, counted in roll length."""
+    roll = ACTIVE.start_roll_length + share * (ACTIVE.end_roll_length - ACTIVE.start_roll_length)
+    return GEAR.radius_at_roll_length(roll)
+
+
+# Definitions
+
+
+@pytest.mark.parametrize("form", ["parabolic", "circular", "logarithmic"])
+@pytest.mark.parametrize("amount", [AMOUNT, -AMOUNT, 1.0])
+def test_lead_crowning_is_nothing_in_the_middle_and_its_amount_at_the_ends(form, amount):
+    flank = modified(lead_crowning=amount, lead_crowning_form=form)
+    for radius in (WORKING, TIP):
+        assert removed(flank, radius, 0.0) == 0.0
+        assert_allclose([removed(flank, radius, end) for end in (-HALF, HALF)], amount, rtol=ROUNDING)
+
+
+def test_lead_crowning_between_the_ends_follows_its_formula():
+    z = 0.4 * HALF
+    radius = GEAR.face_width**2 / (8.0 * AMOUNT) + 0.5 * AMOUNT
+    expected = {
+        "parabolic": AMOUNT * 0.16,
+        "circular": radius - math.sqrt(radius**2 - z**2),
+        "logarithmic": AMOUNT * math.log(1.0 - 0.99 * 0.16) / math.log(0.01),
+    }
+    for form, value in expected.items():
+        flank = modified(lead_crowning=AMOUNT, lead_crowning_form=form)
+        # the circular formula as written loses eps * radius = 2e-13 mm
+        assert_allclose(removed(flank, WORKING, z), value, rtol=1e-9)
+
+
+def test_profile_crowning_is_nothing_midway_in_roll_length_and_its_amount_at_both_ends_of_the_active_profile():
+    flank = modified(profile_crowning=AMOUNT)
+    found = [removed(flank, radius_at(share), 3.0) for share in (0.0, 0.25, 0.5, 1.0)]
+    assert_allclose(found, [AMOUNT, 0.25 * AMOUNT, 0.0, AMOUNT], rtol=1e-10, atol=1e-17)
+
+
+@pytest.mark.parametrize(("form", "power"), [("linear", 1), ("parabolic", 2)])
+def test_tip_relief_grows_by_roll_length_from_its_start_to_its_amount_at_the_tip(form, power):
+    flank = modified(tip_relief=AMOUNT, tip_relief_start=2.0 * radius_at(0.6), tip_relief_form=form)
+    found = [removed(flank, radius_at(share), 0.0) for share in (0.0, 0.59, 0.7, 0.8, 1.0)]
+    assert_allclose(found, [0.0, 0.0, AMOUNT * 0.25**power, AMOUNT * 0.5**power, AMOUNT], rtol=1e-10)
+
+
+@pytest.mark.parametrize(("form", "power"), [("linear", 1), ("parabolic", 2)])
+def test_root_relief_grows_from_its_start_to_its_amount_at_the_start_of_the_active_profile(form, power):
+    flank = modified(root_relief=AMOUNT, root_relief_start=2.0 * radius_at(0.4), root_relief_form=form)
+    found = [removed(flank, radius_at(share), 0.0) for share in (1.0, 0.41, 0.3, 0.2, 0.0)]
+    assert_allclose(found, [0.0, 0.0, AMOUNT * 0.25**power, AMOUNT * 0.5**power, AMOUNT], rtol=1e-10)
+
+
+def test_active_profile_starts_where_the_tip_of_the_mate_reaches():
+    """g = a sin(alpha_wt) - sqrt(r_a2^2 - r_b2^2), above the form circle for this pair."""
+    reach = MESH.working_centre_distance * math.sin(MESH.working_pressure_angle)
+    start = reach - math.sqrt(MESH.wheel.tip_radius**2 - MESH.wheel.base_radius**2)
+    assert_allclose(ACTIVE.start_roll_length, start, rtol=1e-11)
+    assert ACTIVE.start_radius > GEAR.form_radius
+
+
+@pytest.mark.parametrize("amount", [AMOUNT, -AMOUNT])
+def test_slopes_grow_from_nothing_to_their_amount(amount):
+    helix, profile = modified(helix_slope=amount), modified(profile_slope=amount)
+    assert_allclose([removed(helix, WORKING, z) for z in (-HALF, 0.0, HALF)], [0.0, 0.5 * amount, amount], atol=1e-16)
+    found = [removed(profile, radius_at(share), 0.0) for share in (0.0, 0.5, 1.0)]
+    assert_allclose(found, [0.0, 0.5 * amount, amount], atol=1e-15)
+
+
+@pytest.mark.parametrize("length", [4.0, HALF])
+def test_end_relief_is_a_parabola_over_its_length_at_both_ends(length):
+    flank = modified(end_relief=AMOUNT, end_relief_length=length)
+    for end in (1.0, -1.0):
+        distances = np.array([length, 0.5 * length, 0.0])
+        found = [removed(flank, WORKING, end * (HALF - distance)) for distance in distances]
+        assert_allclose(found, [0.0, 0.25 * AMOUNT, AMOUNT], rtol=1e-10)
+
+
+@given(st.data(), meshes())
+@settings(max_examples=40)
+def test_modifications_add_up(data, mesh):
+    whole = data.draw(modifications(mesh.pinion, mesh.pinion_active_profile))
+    names = ("lead_crowning", "end_relief", "profile_crowning", "tip_relief", "root_relief", "helix_slope")
+    nothing = dict.fromkeys((*names, "profile_slope"), 0.0)
+    single = [replace(whole, **{**nothing, name: getattr(whole, name)}) for name in nothing]
+
+    def field(choice):
+        pair = cylindrical_pair(mesh, modifications=(choice, FlankModifications()))
+        rho, z = pair.pinion.grid(7, 7)
+        return pair.pinion.removal(rho, z).value if isinstance(pair.pinion, ModifiedFlank) else 0.0 * rho
+
+    assert_allclose(field(whole), sum(field(one) for one in single), rtol=0, atol=1e-15)
+
+
+def test_no_modification_leaves_the_nominal_flank():
+    assert isinstance(modified(), InvoluteFlank)
+
+
+# What they do to the flank
+
+
+@pytest.mark.parametrize("driver", ["pinion", "wheel"])
+@pytest.mark.parametrize("amount", [1e-3, 1e-5])
+def test_amount_is_the_distance_along_the_normal_in_the_limit_of_small_amounts(driver, amount):
+    """The distance is found by stepping along the nominal normal until the modified flank is met."""
+    amounts = {"lead_crowning": amount, "profile_slope": 0.5 * amount}
+    flank, nominal = modified(driver, **amounts), modified(driver)
+    rho, z = np.array(52.0), np.array(7.0)
+    theta = nominal.theta(rho, z).value
+    basis = cylindrical_basis(theta)
+    normal = outward_normal(nominal, rho, z) @ basis
+    start = rho * basis[0] + z * basis[2]
+
+    def excess(inward):
+        x, y, height = start - inward * normal
+        return float(flank.theta(np.array(math.hypot(x, y)), np.array(height)).value) - math.atan2(y, x)
+
+    low, high = 0.0, 3.0 * amount
+    sign = math.copysign(1.0, excess(low))
+    assert excess(high) * sign < 0.0, "the flank recedes into the tooth"
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if excess(middle) * sign > 0.0 else (low, middle)
+    # second order: the amount changes along the normal and the flank curves, about amount^2/1 mm
+    assert_allclose(low, removed(flank, rho, z), rtol=1e-2 * amount / 1e-3)
+
+
+@given(st.data(), st.floats(0.02, 0.98), st.floats(-0.49, 0.49))
+@settings(max_examples=60)
+def test_derivatives_of_every_modified_flank_agree_with_differences(data, height, place):
+    mesh = data.draw(meshes())
+    choice = data.draw(modifications(mesh.wheel, mesh.wheel_active_profile))
+    driver = data.draw(st.sampled_from(["pinion", "wheel"]))
+    flank = cylindrical_pair(mesh, modifications=(FlankModifications(), choice), driving=driver).wheel
+    low, high = (mesh.wheel.form_radius, mesh.wheel.tip_radius)
+    rho, z = low + height * (high - low), place * mesh.wheel.face_width
+    step = 1e-4  # mm; the parabolas that start at a line and the ramps switch within it at worst
+    points = np.array([(rho + i * step, z + j * step) for i in (-1, 0, 1) for j in (-1, 0, 1)])
+    beyond = [jet.value > 0.0 for jet in flank.creases(np.array(rho), np.array(z))]
+    jet = flank.theta(points[:, 0], points[:, 1], np.array([beyond]).reshape(1, -1))
+    slopes = [np.broadcast_to(part, 9).reshape(3, 3) for part in (jet.rho, jet.z)]
+    value = jet.value.reshape(3, 3)
+    first = [(value[2, 1] - value[0, 1]) / (2 * step), (value[1, 2] - value[1, 0]) / (2 * step)]
+    # rounding 1e-16/1e-4, truncation third derivative * 1e-8
+    assert_allclose([slopes[0][1, 1], slopes[1][1, 1]], first, rtol=0, atol=5e-9)
+    second = [
+        (slopes[0][2, 1] - slopes[0][0, 1]) / (2 * step),
+        (slopes[0][1, 2] - slopes[0][1, 0]) / (2 * step),
+        (slopes[1][2, 1] - slopes[1][0, 1]) / (2 * step),
+        (slopes[1][1, 2] - slopes[1][1, 0]) / (2 * step),
+    ]
+    here = [np.broadcast_to(part, 9)[4] for part in (jet.rho_rho, jet.rho_z, jet.rho_z, jet.z_z)]
+    # where a one-sided parabola starts within the step its second derivative jumps: by 2 C/length^2/r_b at most
+    jumps = _jump_near(flank, rho, z, step)
+    assert_allclose(here, second, rtol=1e-5, atol=1e-8 + jumps)
+
+
+def _jump_near(flank, rho, z, step):
+    """1e-3 1/mm^2 where a one-sided parabola starts within the step, else nothing."""
+    for term in getattr(flank, "terms", ()):
+        if term.shape is one_sided_parabola:
+            t = float(term.coordinate(flank.nominal, np.array(rho), np.array(z)).value)
+            if abs(t * term.length) < 10.0 * step:
+                return 1.0
+    return 0.0
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [linear, parabola, one_sided_parabola, logarithmic, circular_arc(0.02, 12.5), circular_arc(1.0, 12.5)],
+)
+@given(t=st.floats(-1.6, 1.6))
+def test_shape_derivatives_agree_with_differences(shape, t):
+    step = 1e-5
+    if min(abs(t), abs(abs(t) - 1.0)) < 2.0 * step:
+        t = 0.5  # the joints are looked at below
+    values = np.array([[float(part) for part in shape(np.array(t + k * step))] for k in (-1, 0, 1)])
+    differences = (values[2] - values[0]) / (2.0 * step)
+    # logarithmic: f''' is 1e4 near the ends of the face
+    assert_allclose(values[1, 1:], differences[:2], rtol=2e-5, atol=1e-7)
+
+
+@pytest.mark.parametrize(("shape", "joint"), [(logarithmic, 1.0), (logarithmic, -1.0), (one_sided_parabola, 0.0)])
+def test_shapes_of_two_pieces_join_with_equal_value_and_slope(shape, joint):
+    before, after = (shape(np.array(joint + d))[:2] for d in (-1e-12, 1e-12))
+    assert_allclose(before, after, atol=1e-9)  # slopes of up to 43 with bends of 4000 over 2e-12
+
+
+# Creases
+
+
+def test_creases_are_the_starts_of_the_linear_reliefs_only():
+    both = modified(
+        tip_relief=AMOUNT,
+        tip_relief_start=2.0 * radius_at(0.7),
+        tip_relief_form="linear",
+        root_relief=AMOUNT,
+        root_relief_start=2.0 * radius_at(0.3),
+        root_relief_form="linear",
+    )
+    for share, expected in ((0.8, (True, False)), (0.5, (False, False)), (0.2, (False, True))):
+        distances = both.creases(np.array(radius_at(share)), np.array(0.0))
+        assert tuple(bool(jet.value > 0.0) for jet in distances) == expected
+        length = ACTIVE.end_roll_length - ACTIVE.start_roll_length
+        assert_allclose([jet.value for jet in distances], [length * (share - 0.7), length * (0.3 - share)], atol=1e-12)
+    assert (
+        modified(tip_relief=AMOUNT, tip_relief_start=2.0 * radius_at(0.7)).creases(np.array(52.0), np.array(0.0)) == ()
+    )
+
+
+def test_flank_continues_smoothly_beyond_a_crease_if_told_so():
+    flank = modified(tip_relief=AMOUNT, tip_relief_start=2.0 * radius_at(0.7), tip_relief_form="linear")
+    rho, z = np.array([radius_at(0.6), radius_at(0.9)]), np.zeros(2)
+    ramp, none = (flank.removal(rho, z, np.full((2, 1), side)).value for side in (True, False))
+    assert_allclose(ramp, [-AMOUNT / 3.0, AMOUNT * 2.0 / 3.0], rtol=1e-10)
+    assert_allclose(none, 0.0)
+    assert_allclose(flank.removal(rho, z).value, [0.0, AMOUNT * 2.0 / 3.0], rtol=1e-10)
+
+
+@pytest.mark.parametrize("form", ["linear", "parabolic"])
+def test_value_is_continuous_at_the_start_of_a_relief(form):
+    flank = modified(tip_relief=AMOUNT, tip_relief_start=2.0 * radius_at(0.7), tip_relief_form=form)
+    values = flank.theta(radius_at(0.7) + np.array([-1e-10, 1e-10]), np.zeros(2)).value
+    assert_allclose(values[0], values[1], atol=1e-11)
+
+
+# Symmetry
+
+
+@given(st.data(), st.floats(0.05, 0.95), st.floats(-0.5, 0.5))
+@settings(max_examples=40)
+def test_modified_flank_of_the_other_side_is_the_mirror_image_of_the_other_hand(data, height, place):
+    helix = data.draw(st.sampled_from([0.0, 15.0, -25.0]))
+    one, other = (cylindrical_mesh(helix_deg=sign * helix) for sign in (1.0, -1.0))
+    choice = data.draw(modifications(one.pinion, one.pinion_active_profile))
+    both = (choice, FlankModifications())
+    first = cylindrical_pair(one, modifications=both).pinion
+    second = cylindrical_pair(other, modifications=both, driving="wheel").pinion
+    rho = np.array(GEAR.form_radius + height * (TIP - GEAR.form_radius))
+    z = np.array(place * GEAR.face_width)
+    assert_allclose(first.theta(rho, z).value, -second.theta(rho, z).value, rtol=0, atol=1e-16)
+
+
+# Failure paths
+
+
+@pytest.mark.parametrize("relief", ["tip_relief", "root_relief"])
+@pytest.mark.parametrize("diameter", [0.0, 90.0, 2.0 * ACTIVE.start_radius, 2.0 * TIP, 130.0])
+def test_relief_that_starts_off_the_active_profile_is_refused(relief, diameter):
+    with pytest.raises(InputError, match=rf"{relief}_start .*from {diameter:g} mm.* is not between"):
+        modified(**{relief: AMOUNT, f"{relief}_start": diameter})
+
+
+@pytest.mark.parametrize("length", [0.0, -1.0, 1.01 * HALF])
+def test_end_relief_longer_than_half_the_face_or_without_length_is_refused(length):
+    with pytest.raises(InputError, match="end_relief_length: .* mm is not between 0 and 12.5 mm"):
+        modified(end_relief=AMOUNT, end_relief_length=length)
+
+
+def test_starts_of_reliefs_that_are_not_there_are_not_looked_at():
+    assert isinstance(modified(tip_relief_start=3.0, end_relief_length=999.0), InvoluteFlank)
+
+
+@pytest.mark.parametrize("name", ["lead_crowning", "tip_relief", "end_relief_length", "profile_slope"])
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_amount_that_is_not_finite_is_refused(name, value):
+    with pytest.raises(InputError, match=f"{name}: {value} mm is not finite"):
+        FlankModifications(**{name: value})
+
+
+def test_unknown_forms_are_refused_all_at_once():
+    with pytest.raises(InputError) as caught:
+        FlankModifications(lead_crowning_form="round", tip_relief_form="quadratic")
+    assert caught.value.problems == (
+        "lead_crowning_form: 'round' is not 'parabolic', 'circular' or 'logarithmic'",
+        "tip_relief_form: 'quadratic' is not 'parabolic' or 'linear'",
+    )
+
+
+def test_circular_crowning_of_more_than_half_the_face_is_refused():
+    with pytest.raises(InputError, match="lead_crowning: 13 mm is more than a circular arc over 25 mm can fall"):
+        modified(lead_crowning=13.0, lead_crowning_form="circular")
+
+
+def test_gear_pair_of_the_helpers_has_the_modified_flank_on_the_gear_asked_for():
+    pair = gear_pair(wheel=FlankModifications(lead_crowning=AMOUNT))
+    assert isinstance(pair.pinion, InvoluteFlank)
+    assert isinstance(pair.wheel, ModifiedFlank)

@@ -1,0 +1,117 @@
+"""Gear pairs that the tests of the geometry share, and what is computed about them apart from the package."""
+
+import math
+
+import numpy as np
+from hypothesis import strategies as st
+
+from loaded_tca.flanks import FlankModifications
+from loaded_tca.gears import CylindricalGear, CylindricalMesh
+from loaded_tca.pair import Mounting, cylindrical_pair
+
+NONE = FlankModifications()
+
+
+def cylindrical_mesh(teeth=(34, 57), module=3.0, width=25.0, helix_deg=0.0, shifts=(0.0, 0.0), distance=None, **gear):
+    """Pinion of the helix angle given, right-handed if positive, and its mate."""
+    gears = [
+        CylindricalGear(
+            z, module, width, helix_angle=math.radians(sign * helix_deg), profile_shift=x, name=name, **gear
+        )
+        for z, sign, x, name in zip(teeth, (1, -1), shifts, ("pinion", "wheel"), strict=True)
+    ]
+    return CylindricalMesh(*gears, distance)
+
+
+def gear_pair(pinion=NONE, wheel=NONE, mounting=None, driving="pinion", sense="positive", **mesh):
+    return cylindrical_pair(
+        cylindrical_mesh(**mesh),
+        modifications=(pinion, wheel),
+        mounting=mounting or Mounting(),
+        driving=driving,
+        sense=sense,
+    )
+
+
+def seed_002(helix_deg=0.0, **changes):
+    """The crowned pair of seed 002: its Hertz ellipse is a little shorter than the face."""
+    return gear_pair(FlankModifications(lead_crowning=0.005), helix_deg=helix_deg, **changes)
+
+
+SEED_002_TORQUE = 130e3  # N mm, inferred (REFERENCES.md)
+
+
+def amounts(largest):
+    return st.one_of(st.just(0.0), st.floats(1e-6, largest))
+
+
+@st.composite
+def modifications(draw, gear, active):
+    """Every modification, each present or not, within the active profile and the face."""
+    low, high = 2.0 * active.start_radius, 2.0 * active.end_radius
+    slope = st.one_of(st.just(0.0), st.floats(-0.03, 0.03))
+    return FlankModifications(
+        lead_crowning=draw(amounts(0.05)),
+        lead_crowning_form=draw(st.sampled_from(["parabolic", "circular", "logarithmic"])),
+        end_relief=draw(amounts(0.03)),
+        end_relief_length=draw(st.floats(0.1, 0.5)) * gear.face_width,
+        profile_crowning=draw(amounts(0.03)),
+        tip_relief=draw(amounts(0.05)),
+        tip_relief_start=low + (high - low) * draw(st.floats(0.3, 0.95)),
+        tip_relief_form=draw(st.sampled_from(["parabolic", "linear"])),
+        root_relief=draw(amounts(0.05)),
+        root_relief_start=low + (high - low) * draw(st.floats(0.05, 0.6)),
+        root_relief_form=draw(st.sampled_from(["parabolic", "linear"])),
+        helix_slope=draw(slope),
+        profile_slope=draw(slope),
+    )
+
+
+@st.composite
+def meshes(draw):
+    """Macro geometries that exist: no undercut from 20 teeth on."""
+    return cylindrical_mesh(
+        (draw(st.integers(20, 60)), draw(st.integers(20, 90))),
+        3.0,
+        draw(st.floats(5.0, 40.0)),
+        draw(st.sampled_from([0.0, 6.0, 15.0, -20.0, 28.0])),
+        (draw(st.floats(-0.1, 0.4)), draw(st.floats(-0.1, 0.4))),
+    )
+
+
+@st.composite
+def pairs(draw):
+    """Pairs of every kind: modifications of both gears, mounting errors up to 1 deg, both drives, both senses."""
+    mesh = draw(meshes())
+    error = st.one_of(st.just(0.0), st.floats(-math.radians(1.0), math.radians(1.0)))
+    mounting = Mounting(draw(error), draw(error), draw(st.floats(-0.1, 0.1)), draw(st.floats(-2.0, 2.0)))
+    return cylindrical_pair(
+        mesh,
+        modifications=(
+            draw(modifications(mesh.pinion, mesh.pinion_active_profile)),
+            draw(modifications(mesh.wheel, mesh.wheel_active_profile)),
+        ),
+        mounting=mounting,
+        driving=draw(st.sampled_from(["pinion", "wheel"])),
+        sense=draw(st.sampled_from(["positive", "negative"])),
+    )
+
+
+def wheel_lag(pair, phi1, rho, z):
+    """Transmission error [rad] that lets the flanks meet at points of the pinion, and whether the wheel is there.
+
+    Written from the definitions of the frames, without the ease-off field of the package.
+    """
+    theta = pair.pinion.theta(rho, z).value + pair.sense * phi1
+    offset = np.stack([rho * np.cos(theta), rho * np.sin(theta), z + 0.0 * rho], axis=-1) - pair.wheel_origin
+    x, y, along = (offset @ axis for axis in pair.wheel_axes)
+    radius = np.hypot(x, y)
+    angle = pair.sense * (pair.wheel.theta(radius, along).value - np.arctan2(y, x))
+    return angle - pair.ratio * phi1, pair.wheel.inside(radius, along)
+
+
+def highest_on_grid(pair, phi1, counts=(60, 60)):
+    """First touch on a dense grid: the transmission error of the point that touches first; -inf if none can [rad]."""
+    rho, z = pair.pinion.grid(*counts)
+    lag, there = wheel_lag(pair, phi1, rho, z)
+    return pair.driving * np.where(there, pair.driving * lag, -np.inf).max()

@@ -1,0 +1,223 @@
+"""The whole line, from a scene to the loaded contact over a pitch."""
+
+import math
+import warnings
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca import AccuracyWarning, GeometryError, InputError, analyse
+from loaded_tca.reference import hertz
+from loaded_tca.scene import parse_scene
+from loaded_tca.unloaded import relative_curvature
+
+EQUILIBRIUM = 1e-10
+"""Asked for: the pressures sum up to the load; rounding of a sum of 1e4 cells is 1e-13."""
+MAP_ERROR = 5e-3
+"""Asked for between the pressure map and Hertz at accuracy 1e-3; flanks are no paraboloids to about 1e-3."""
+DIFFERENCE = 2e-3
+"""A chord of 2 % in the torque against the tangent: approach ~ F^(2/3) bends by 1e-4, the grids differ by 1e-3."""
+
+SMALLEST_ORDER = 1.5
+"""The largest cell of a smooth contact is off by the square of the cell; where it lies adds scatter."""
+
+SCENE = """
+title = "Crowned helical pair"
+[pair]
+type = "cylindrical"
+normal_module_mm = 3.0
+pressure_angle_deg = 20.0
+helix_angle_deg = 15.0
+centre_distance_mm = 141.315
+driving = "pinion"
+sense = "positive"
+[pinion]
+teeth = 34
+face_width_mm = 25.0
+hand = "right"
+profile_shift = 0.0
+tip_diameter_mm = 111.6
+bore_diameter_mm = 40.0
+[pinion.modifications]
+lead_crowning_um = 10.0
+lead_crowning_form = "parabolic"
+end_relief_um = 0.0
+end_relief_length_mm = 0.0
+profile_crowning_um = 0.0
+tip_relief_um = 0.0
+tip_relief_start_mm = 0.0
+tip_relief_form = "parabolic"
+root_relief_um = 0.0
+root_relief_start_mm = 0.0
+helix_slope_um = 0.0
+profile_slope_um = 0.0
+[wheel]
+teeth = 57
+face_width_mm = 25.0
+[mounting]
+in_plane_deg = 0.0
+out_of_plane_deg = 0.0
+centre_distance_error_mm = 0.0
+axial_offset_mm = 0.0
+[material]
+youngs_modulus_MPa = 206000.0
+poisson_ratio = 0.3
+max_pressure_MPa = 4000.0
+[load]
+pinion_torque_Nm = 130.0
+[analysis]
+positions = 3
+accuracy = 1e-3
+cells = [32, 32]
+tolerance = 1e-6
+load_sharing = false
+compliance = "contact"
+torques_Nm = [20.0, 130.0]
+"""
+
+
+@pytest.fixture
+def scene():
+    return parse_scene(SCENE).with_changes({"analysis.torques_Nm": None, "analysis.cells": None})
+
+
+def test_several_torques_give_a_leading_axis():
+    result = analyse(parse_scene(SCENE))
+    assert_allclose(result.torque, [20e3, 130e3])
+    assert result.peak_pressure.shape == result.transmission_error.shape == result.mesh_stiffness.shape == (2, 3)
+    assert result.load_share.shape == (2, 3, 1)
+    assert [len(row) for row in result.maps] == [3, 3]
+    assert result.maps[0][0].pressure.shape == (32, 32)
+
+
+def test_one_torque_gives_none(scene):
+    result = analyse(scene)
+    assert result.peak_pressure.shape == result.pinion_angle.shape == (3,)
+    assert_allclose(result.load_share, np.ones((3, 1)), rtol=0)
+
+
+def test_positions_cover_one_pitch_with_both_ends(scene):
+    assert_allclose(analyse(scene).pinion_angle, np.pi / 34 * np.array([-1.0, 0.0, 1.0]), atol=1e-15)
+
+
+def test_one_position_is_the_pitch_point(scene):
+    result = analyse(scene.with_changes({"analysis.positions": 1}))
+    assert_allclose(result.pinion_angle, [0.0], atol=0)
+
+
+def test_pressures_sum_up_to_the_normal_force_of_the_torque(scene):
+    result = analyse(scene)
+    for force, mapped, lever in zip(result.normal_force, result.maps[0], result.path.pinion_lever, strict=True):
+        assert_allclose(mapped.pressure.sum() * math.prod(mapped.spacing), force, rtol=EQUILIBRIUM)
+        assert_allclose(force * lever, 130e3, rtol=EQUILIBRIUM)
+
+
+def test_gap_is_closed_where_there_is_pressure(scene):
+    result = analyse(scene)
+    for mapped, approach in zip(result.maps[0], result.approach, strict=True):
+        pressed = mapped.pressure > 0.0
+        assert np.abs(mapped.gap[pressed]).max() <= 10 * scene.analysis.tolerance * approach
+        assert mapped.gap.min() >= -10 * scene.analysis.tolerance * approach
+
+
+def test_peak_pressure_is_that_of_hertz(scene):
+    result = analyse(scene)
+    assert_allclose(result.peak_pressure, result.hertz_pressure, rtol=MAP_ERROR)
+
+
+def test_loaded_transmission_error_lags_by_the_approach(scene):
+    result = analyse(scene)
+    lag = result.approach / result.path.wheel_lever
+    assert_allclose(result.path.transmission_error - result.transmission_error, lag, rtol=1e-9)
+
+
+def test_load_makes_the_transmission_error_grow_where_the_wheel_drives(scene):
+    result = analyse(scene.with_changes({"pair.driving": "wheel"}))
+    assert (result.transmission_error > result.path.transmission_error).all()
+
+
+def test_mesh_stiffness_is_the_tangent_of_force_over_transmission_error(scene):
+    torques = (129.0, 130.0, 131.0)
+    result = analyse(scene.with_changes({"analysis.torques_Nm": torques, "analysis.cells": (64, 64)}))
+    pair = scene.pair()
+    force = 1e3 * (torques[2] - torques[0]) / pair.base_radii[0] / pair.face_width
+    turned = pair.base_radii[1] * (result.transmission_error[0] - result.transmission_error[2])
+    assert_allclose(result.mesh_stiffness[1], 1e-3 * force / turned, rtol=DIFFERENCE)
+
+
+def test_zero_torque_gives_no_pressure_and_the_unloaded_transmission_error(scene):
+    result = analyse(scene.with_changes({"load.pinion_torque_Nm": 0.0}))
+    assert_allclose(result.peak_pressure, 0.0, atol=0)
+    assert np.isnan(result.hertz_pressure).all()
+    assert_allclose(result.transmission_error, result.path.transmission_error, atol=1e-10)
+
+
+def test_small_torque_tends_to_the_unloaded_transmission_error(scene):
+    result = analyse(scene.with_changes({"analysis.torques_Nm": (1e-6, 1e-3, 1.0)}))
+    lag = np.abs(result.transmission_error - result.path.transmission_error).max(axis=1)
+    assert lag[0] < lag[1] < lag[2]
+    assert lag[0] < 1e-9
+
+
+def test_edge_contact_warns_and_has_no_hertz_value(scene):
+    misaligned = scene.with_changes({"mounting.out_of_plane_deg": 0.3, "analysis.positions": 1})
+    with pytest.warns(AccuracyWarning, match=r"reaches a border of a flank.*1 of 1 positions"):
+        result = analyse(misaligned)
+    assert result.on_edge[0] == 1.0
+    assert np.isnan(result.hertz_pressure[0])
+    assert result.peak_pressure[0] == result.maps[0][0].pressure.max()
+
+
+def test_unmodified_pair_carries_line_contact_hertz_in_the_middle(scene):
+    line = scene.with_changes({"pinion.modifications": {}, "analysis.positions": 1, "analysis.cells": (48, 48)})
+    with pytest.warns(AccuracyWarning, match="reaches a border"):
+        result = analyse(line)
+    mapped, pair = result.maps[0][0], line.pair()
+    middle = mapped.pressure[:, 23:25].mean(axis=1)
+    assert result.path[0].on_line
+    curvature = relative_curvature(pair, result.path[0]).across
+    expected = hertz.line_contact(middle.sum() * mapped.spacing[0], curvature, pair.contact_modulus)
+    assert_allclose(middle.max(), expected.max_pressure, rtol=1e-2)
+
+
+def test_pressure_is_capped_by_the_material(scene):
+    soft = scene.with_changes({"material.max_pressure_MPa": 600.0, "analysis.positions": 1})
+    result = analyse(soft)
+    assert_allclose(result.peak_pressure, 600.0, rtol=1e-12)
+
+
+def test_peak_pressure_converges_with_the_order_of_a_smooth_contact(scene):
+    peaks = []
+    for cells in (16, 32, 64):
+        fine = scene.with_changes({"analysis.cells": (cells, cells), "analysis.tolerance": 1e-9})
+        peaks.append(analyse(fine.with_changes({"analysis.positions": 1})).maps[0][0].pressure.max())
+    assert abs(peaks[1] - peaks[0]) > 2.0**SMALLEST_ORDER * abs(peaks[2] - peaks[1])
+
+
+def test_grid_beyond_memory_is_refused_with_the_size_it_needs(scene):
+    with pytest.raises(InputError, match="GiB"):
+        analyse(scene.with_changes({"analysis.cells": (200000, 200000)}))
+
+
+def test_gears_that_never_touch_are_refused(scene):
+    apart = scene.with_changes({"mounting.centre_distance_error_mm": 20.0})
+    with pytest.raises(GeometryError, match="no common flank"):
+        analyse(apart)
+
+
+def test_progress_is_told_after_every_map(scene):
+    told = []
+    analyse(scene, progress=lambda done, total: told.append((done, total)))
+    assert told == [(1, 3), (2, 3), (3, 3)]
+
+
+def test_result_is_the_same_from_run_to_run(scene):
+    first, second = analyse(scene), analyse(scene)
+    assert_allclose(first.peak_pressure, second.peak_pressure, rtol=0)
+
+
+def test_no_warning_for_a_contact_inside_the_flank(scene):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        analyse(scene.with_changes({"analysis.positions": 1}))

@@ -1,0 +1,287 @@
+import io
+import json
+import os
+import subprocess
+import sys
+import warnings
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+
+import loaded_tca.analysis
+import loaded_tca.plots
+from loaded_tca import cli
+from loaded_tca.errors import AccuracyWarning, ConvergenceError, GeometryError, InputError
+
+SCENES = Path(__file__).parents[1] / "examples" / "scenes"
+HELICAL = str(SCENES / "helical.toml")
+REPORT = {"result.nc", "summary.json", "positions.csv"}
+PICTURES = {"contact_path.png", "transmission_error.png", "peak_pressure.png", "pressure_map.png"}
+
+
+@pytest.fixture(autouse=True)
+def _in_an_empty_directory(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture
+def run(capsys):
+    """Run the command; returns exit code, stdout and the lines of stderr."""
+
+    def run(*arguments):
+        code = cli.main([str(argument) for argument in arguments])
+        captured = capsys.readouterr()
+        return code, captured.out, captured.err.splitlines()
+
+    return run
+
+
+def scene(name="quick", **changes):
+    """A scene file that takes a moment, with other values where asked."""
+    text = (SCENES / "helical.toml").read_text(encoding="utf-8")
+    quick = {"positions = 21": "positions = 3", "accuracy = 1e-3": "cells = [16, 16]"}
+    changes = {**quick, "pinion_torque_Nm = 130.0": "pinion_torque_Nm = 40.0", **changes}
+    for old, new in changes.items():
+        assert old in text
+        text = text.replace(old, new)
+    path = Path(f"{name}.toml")
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def fail_with(monkeypatch, error):
+    def analyse(*_, **__):
+        raise error
+
+    monkeypatch.setattr(loaded_tca.analysis, "analyse", analyse)
+
+
+def test_demo_needs_no_file_and_tells_what_to_try_next(run):
+    code, out, _ = run("demo")
+    assert code == 0
+    assert set(os.listdir("loaded-tca-demo")) == REPORT | PICTURES | {"scene.toml"}
+    assert "peak pressure [MPa]" in out
+    assert out.rstrip().endswith("loaded-tca run loaded-tca-demo/scene.toml --out my-pair")
+    assert run("demo")[0] == 0
+
+
+def test_demo_scene_is_the_example():
+    assert cli.DEMO_SCENE.read_bytes() == (SCENES / "helical.toml").read_bytes()
+
+
+def test_demo_does_not_replace_a_changed_scene(run):
+    changed = Path("loaded-tca-demo") / "scene.toml"
+    changed.parent.mkdir()
+    changed.write_text("title = 'mine'")
+    code, _, err = run("demo")
+    assert code == 2
+    assert "scene.toml: has been changed, and the demo would replace it" in err[0]
+    assert changed.read_text() == "title = 'mine'"
+
+
+def test_run_writes_report_and_pictures_and_shows_the_summary(run):
+    code, out, _ = run("run", scene(), "--out", "new/place")
+    assert code == 0
+    assert set(os.listdir("new/place")) == REPORT | PICTURES
+    assert out.startswith("Crowned helical pair 34/57\n3 positions")
+    assert "Written to new/place: result.nc" in out
+
+
+def test_plot_draws_a_result_again(run):
+    run("run", scene(), "--out", "out")
+    for picture in PICTURES:
+        Path("out", picture).unlink()
+    assert run("plot", "out")[0] == 0
+    assert set(os.listdir("out")) == REPORT | PICTURES
+    assert run("plot", "out/result.nc", "--out", "elsewhere")[0] == 0
+    assert set(os.listdir("elsewhere")) == PICTURES
+
+
+def test_check_shows_the_geometry_and_writes_nothing(run):
+    code, out, err = run("check", HELICAL)
+    assert (code, err, os.listdir()) == (0, [], [])
+    rows = {line[:44].strip(): line[44:].split() for line in out.splitlines()[1:]}
+    assert rows["working pressure angle alpha_wt [deg]"] == ["20.6469"]
+    assert rows["hand of the helix"] == ["right", "left"]
+    assert rows["transverse contact ratio eps_alpha"] == ["1.6445"]
+    assert rows["start of active profile d_Nf [mm]"] == ["101.1985", "172.4189"]
+    assert rows["root form diameter d_Ff [mm]"] == ["100.8631", "171.7720"]
+
+
+def test_check_of_a_spur_pair_names_no_hand(run):
+    assert "none          none" in run("check", SCENES / "spur.toml")[1]
+
+
+def test_edge_contact_warns_once_and_exits_0(run):
+    text = (SCENES / "misaligned.toml").read_text(encoding="utf-8").replace("positions = 21", "positions = 3")
+    Path("edge.toml").write_text(text, encoding="utf-8")
+    code, out, err = run("run", "edge.toml", "--out", "out")
+    assert code == 0
+    assert len(err) == 1
+    assert err[0].startswith("warning: the contact reaches a border of a flank")
+    assert "note: at 3 of 3 positions the contact reaches a border" in out
+
+
+def test_no_load_exits_0(run):
+    changes = {"pinion_torque_Nm = 130.0": "pinion_torque_Nm = 0.0"}
+    assert run("run", scene(**changes), "--out", "out")[0] == 0
+    (figures,) = json.loads(Path("out/summary.json").read_text())["torques"]
+    assert figures["peak_pressure_MPa"] == 0.0
+
+
+def test_equal_warnings_are_told_once_with_their_count(run, monkeypatch):
+    def analyse(*_, **__):
+        for _ in range(3):
+            warnings.warn("a doubt\nin two lines", AccuracyWarning, stacklevel=1)
+        raise GeometryError("no common flank")
+
+    monkeypatch.setattr(loaded_tca.analysis, "analyse", analyse)
+    code, _, err = run("run", scene(), "--out", "out")
+    assert code == 2
+    assert err == ["warning: a doubt in two lines (3 times)", "loaded-tca: no common flank"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "the following arguments are required: COMMAND; see 'loaded-tca --help'"),
+        (["paint"], "'paint'"),
+        (["run", HELICAL], "the following arguments are required: --out; see 'loaded-tca run --help'"),
+        (["check", HELICAL, "--fast"], "unrecognized arguments: --fast; see 'loaded-tca --help'"),
+        (["check", "absent.toml"], "absent.toml: cannot be read: No such file or directory"),
+        (["run", "absent.toml", "--out", "out"], "absent.toml: cannot be read: No such file or directory"),
+        (["check", SCENES], "cannot be read: Is a directory"),
+        (["check", __file__], "not a TOML file"),
+        (["plot", "absent.nc"], "absent.nc: cannot be read: No such file or directory"),
+        (["plot", "."], "result.nc: cannot be read: No such file or directory"),
+        (["plot", HELICAL], "not a NetCDF-3 file; expected a result file written by loaded_tca"),
+        (["run", HELICAL, "--out", __file__], "is a file; give a directory"),
+        (["run", HELICAL, "--out", f"{__file__}/below"], "is a file; give a directory"),
+    ],
+)
+def test_bad_input_is_told_in_one_line(run, arguments, message):
+    code, out, err = run(*arguments)
+    assert (code, out, os.listdir()) == (2, "", [])
+    assert len(err) == 1
+    assert err[0].startswith("loaded-tca: ")
+    assert message in err[0]
+
+
+def test_every_problem_of_a_scene_gets_its_line(run):
+    changes = {"teeth = 34": "teeth = 2", "poisson_ratio = 0.3": "poison_ratio = 0.3"}
+    code, _, err = run("check", scene(**changes))
+    assert code == 2
+    assert len(err) == 3
+    assert any('did you mean "material.poisson_ratio"' in line for line in err)
+    assert any("pinion.teeth" in line for line in err)
+
+
+def test_pair_that_cannot_mesh_is_bad_input(run):
+    changes = {"helix_angle_deg = 15.0": "helix_angle_deg = 15.0\ncentre_distance_mm = 500.0"}
+    code, _, err = run("check", scene(**changes))
+    assert code == 2
+    assert "no common flank" in err[0]
+
+
+def test_grid_too_large_for_the_memory_is_refused_with_its_size(run):
+    changes = {"accuracy = 1e-3": "cells = [16384, 16384]", "positions = 21": "positions = 1"}
+    code, _, err = run("run", scene(**changes), "--out", "out")
+    if code == 0:
+        pytest.skip("this machine has the memory")
+    assert code == 2
+    assert len(err) == 1
+    assert "16384" in err[0]
+    assert "GB" in err[0] or "GiB" in err[0]
+    assert not Path("out").exists()
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "line"),
+    [
+        (ConvergenceError("residual 1e-3 after 500 iterations"), 3, "residual 1e-3 after 500 iterations"),
+        (GeometryError("pinion: undercut\nat 5 mm"), 2, "pinion: undercut at 5 mm"),
+        (InputError("load: -1 N is negative"), 2, "load: -1 N is negative"),
+        (MemoryError(), 2, "out of memory; ask for fewer analysis.cells"),
+        (KeyboardInterrupt(), 130, "interrupted; no file is half written"),
+        (ZeroDivisionError("division by zero"), 1, "a fault of the program"),
+    ],
+)
+def test_each_failure_has_its_exit_code_and_one_line(run, monkeypatch, error, code, line):
+    fail_with(monkeypatch, error)
+    found, out, err = run("run", scene(), "--out", "out")
+    assert (found, out) == (code, "")
+    assert len(err) == 1
+    assert line in err[0]
+    assert not Path("out").exists()
+
+
+@pytest.mark.parametrize("arguments", [["--traceback", "run"], ["run", "--traceback"]])
+def test_traceback_is_shown_when_asked_for(run, monkeypatch, arguments):
+    fail_with(monkeypatch, ConvergenceError("not converged"))
+    code, _, err = run(*arguments, scene(), "--out", "out")
+    assert code == 3
+    assert err[0] == "Traceback (most recent call last):"
+    assert err[-1] == "loaded-tca: not converged"
+
+
+def test_interrupt_while_writing_leaves_whole_files_only(run, monkeypatch):
+    def interrupted(_, path, **__):
+        Path(path).write_bytes(b"half a picture")
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(loaded_tca.plots.Figure, "savefig", interrupted)
+    assert run("run", scene(), "--out", "out")[0] == 130
+    assert set(os.listdir("out")) == REPORT
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+def test_progress_is_shown_on_a_terminal_only(run, monkeypatch):
+    assert run("run", scene(), "--out", "out")[2] == []
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    assert cli.main(["run", str(scene()), "--out", "out"]) == 0
+    assert "pressure maps: 100%" in terminal.getvalue()
+    assert "3/3" in terminal.getvalue()
+
+
+def test_version_is_that_of_the_package(capsys):
+    with pytest.raises(SystemExit) as caught:
+        cli.main(["--version"])
+    assert caught.value.code == 0
+    assert capsys.readouterr().out == f"loaded-tca {version('loaded_tca')}\n"
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"]])
+def test_help_exits_0(arguments, capsys):
+    with pytest.raises(SystemExit) as caught:
+        cli.main(arguments)
+    assert caught.value.code == 0
+    assert "usage: loaded-tca" in capsys.readouterr().out
+
+
+def command(*arguments, **environment):
+    return subprocess.run(
+        [sys.executable, "-m", "loaded_tca", *arguments],
+        capture_output=True,
+        env={**os.environ, **environment},
+        check=False,
+        timeout=60,
+    )
+
+
+def test_title_that_the_terminal_cannot_show_is_no_failure():
+    title = {'title = "Crowned helical pair 34/57"': 'title = "歯車"'}
+    done = command("check", str(scene(**title)), PYTHONIOENCODING="ascii")
+    assert done.returncode == 0
+    assert b"\\u6b6f" in done.stdout
+
+
+def test_process_ends_with_the_exit_code():
+    done = command("check", "absent.toml")
+    assert done.returncode == 2
+    assert done.stderr.count(b"\n") == 1

@@ -1,0 +1,160 @@
+import os
+import sys
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from numpy.testing import assert_allclose
+from results import result, with_a_gap
+
+from loaded_tca.errors import InputError
+from loaded_tca.mesh_cycle import ARCSEC
+from loaded_tca.plots import (
+    plot_all,
+    plot_contact_path,
+    plot_peak_pressure,
+    plot_pressure_map,
+    plot_transmission_error,
+    save_figure,
+)
+
+PLOTS = [plot_contact_path, plot_peak_pressure, plot_pressure_map, plot_transmission_error]
+
+
+def nothing_touches():
+    cycle = result()
+    nothing = {entry.name: np.full(5, np.nan) for entry in fields(cycle) if entry.metadata}
+    return replace(cycle, **nothing, maps=((None,) * 5,))
+
+
+CASES = {
+    "point contact": result,
+    "several torques": lambda: result(torques=(20.0, 50.0, 80.0)),
+    "positions without contact": with_a_gap,
+    "edge contact, no Hertz": lambda: result("misaligned", positions=2),
+    "line contact": lambda: result("fzg_c14", positions=3),
+    "no load": lambda: result(torques=(0.0,), positions=2),
+    "one position": lambda: result(positions=1),
+    "title with signs of TeX": lambda: replace(result(), title="$x_1 \\frac{ 100 %, " + 15 * "a long title "),
+}
+
+
+def texts(figure):
+    figure.draw_without_rendering()
+    found = [figure.get_suptitle()]
+    for axes in figure.axes:
+        found += [axes.get_title(), axes.get_xlabel(), axes.get_ylabel()]
+        found += [child.get_ylabel() for child in axes.child_axes]
+    return "\n".join(found)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_every_case_gives_every_picture(case, tmp_path):
+    paths = plot_all(CASES[case](), tmp_path)
+    assert {path.stem for path in paths} == {"contact_path", "transmission_error", "peak_pressure", "pressure_map"}
+    assert sorted(os.listdir(tmp_path)) == sorted(path.name for path in paths)
+    assert all(path.read_bytes().startswith(b"\x89PNG") for path in paths)
+
+
+def test_nothing_touching_gives_all_but_the_pressure_map(tmp_path):
+    assert "pressure_map" not in {path.stem for path in plot_all(nothing_touches(), tmp_path)}
+
+
+@pytest.mark.parametrize("plot", PLOTS)
+def test_pictures_tell_load_position_and_units(plot):
+    shown = texts(plot(result()))
+    assert result().title in shown
+    assert "pinion torque 130 N m" in shown
+    assert "pinion angle -5.294" in shown
+    assert "[mm]" in shown or "[deg]" in shown
+
+
+def test_transmission_error_is_drawn_in_arcsec_and_micrometres():
+    figure = plot_transmission_error(result())
+    absolute, _ = figure.axes
+    unloaded, loaded = absolute.get_lines()
+    assert_allclose(loaded.get_xdata(), np.degrees(result().pinion_angle))
+    assert_allclose(loaded.get_ydata(), result().transmission_error * ARCSEC)
+    assert_allclose(unloaded.get_ydata(), result().path.transmission_error * ARCSEC)
+    assert "[arcsec]" in texts(figure)
+    assert "[µm]" in texts(figure)
+
+
+def test_rounding_of_the_transmission_error_is_not_blown_up():
+    for axes in plot_transmission_error(result(torques=(0.0,), positions=2)).axes:
+        assert np.ptp(axes.get_ylim()) >= 0.02 * (1.0 - 1e-9)
+
+
+def test_peak_pressure_is_drawn_beside_hertz():
+    (axes,) = plot_peak_pressure(result(torques=(20.0, 50.0))).axes
+    labels = [line.get_label() for line in axes.get_lines()]
+    assert labels[:3] == ["pinion torque 20 N m", "pinion torque 50 N m", "after Hertz"]
+    assert_allclose(axes.get_lines()[0].get_ydata(), result(torques=(20.0, 50.0)).peak_pressure[0])
+
+
+def test_edge_contacts_are_marked_and_no_hertz_is_drawn():
+    (axes,) = plot_peak_pressure(result("misaligned", positions=2)).axes
+    labels = [line.get_label() for line in axes.get_lines()]
+    assert "after Hertz" not in labels
+    assert len(axes.get_lines()[-1].get_xdata()) == 2
+    assert "border of a flank" in labels[-1]
+
+
+def test_labels_of_many_torques_stay_few():
+    cycle = result(torques=tuple(float(torque) for torque in range(1, 31)), positions=1)
+    labels = plot_peak_pressure(cycle).axes[0].get_legend_handles_labels()[1]
+    assert len(labels) <= 8 + 2
+
+
+def test_pressure_map_draws_the_ellipse_and_tells_its_scale():
+    figure = plot_pressure_map(result(), position=2)
+    axes = figure.axes[0]
+    (ellipse,) = axes.patches
+    assert_allclose(ellipse.width, 2.0 * result().hertz_semi_major[2])
+    assert_allclose(ellipse.height, 2.0 * result().hertz_semi_minor[2])
+    assert f"(drawn {axes.get_aspect():g} times larger)" in axes.get_ylabel()
+    assert "position 3 of 5: pinion angle 0 deg" in texts(figure)
+
+
+def test_pressure_map_leaves_cells_without_material_to_the_grey_ground():
+    cycle = result("misaligned", positions=2)
+    axes = plot_pressure_map(cycle, position=0).axes[0]
+    ground = axes.collections[0].get_array().reshape(cycle.maps[0][0].gap.shape)
+    assert (ground.mask == np.isinf(cycle.maps[0][0].gap)).all()
+
+
+def test_pressure_map_where_nothing_touches_is_told():
+    with pytest.raises(IndexError, match="does not touch"):
+        plot_pressure_map(with_a_gap(), position=1)
+
+
+def test_contact_areas_lie_around_the_path_within_the_flank():
+    cycle = result()
+    for axes, radius in zip(
+        plot_contact_path(cycle).axes, (cycle.path.pinion_radius, cycle.path.wheel_radius), strict=False
+    ):
+        outlines = [path.vertices for path in axes.collections[0].get_paths()]
+        assert len(outlines) == 5
+        for outline, own in zip(outlines, radius, strict=True):
+            assert outline[:, 0].min() < 0.0 < outline[:, 0].max()
+            assert outline[:, 1].min() < 2.0 * own < outline[:, 1].max()
+            assert abs(outline[:, 0]).max() < 13.5  # half of the face, and a part of a cell
+
+
+def test_pictures_without_load_say_so():
+    cycle = result(torques=(0.0,), positions=2)
+    assert "no contact pressure, pinion torque 0 N m" in texts(plot_pressure_map(cycle))
+    (legend,) = plot_contact_path(cycle).legends
+    assert "under pressure (0 of 2 positions)" in [text.get_text() for text in legend.get_texts()]
+
+
+def test_pictures_touch_no_global_state():
+    before = sys.modules.get("matplotlib.pyplot")
+    plot_peak_pressure(result())
+    assert sys.modules.get("matplotlib.pyplot") is before
+
+
+def test_picture_that_cannot_be_written_is_told(tmp_path):
+    with pytest.raises(InputError, match="cannot be written"):
+        save_figure(Figure(), tmp_path / "absent" / "a.png")
