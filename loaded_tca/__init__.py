@@ -8,6 +8,8 @@ from loaded_tca.scene import Scene, read_scene
 from loaded_tca.separation import sample_separation
 from loaded_tca.unloaded import trace_contact
 
+load_result = MeshCycle.load
+
 __all__ = [
     "AccuracyWarning",
     "ConvergenceError",
@@ -17,6 +19,7 @@ __all__ = [
     "MeshCycle",
     "Scene",
     "analyse",
+    "load_result",
     "read_scene",
     "sample_separation",
     "solve_contact",

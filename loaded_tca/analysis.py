@@ -117,7 +117,8 @@ def _mesh_cycle(scene: Scene, pair: GearPair, path: ContactPath, torques: Array,
     names = next(entry for row in numbers for entry in row if entry)
 
     def table(name: str) -> Array:
-        values = np.array([[entry.get(name, math.nan) for entry in row] for row in numbers], dtype=float)
+        missing = type(names[name])() if not isinstance(names[name], float) else math.nan
+        values = np.array([[entry.get(name, missing) for entry in row] for row in numbers])
         return values if len(torques) > 1 else values[0]
 
     shares = np.where(path.touches, 1.0, math.nan)[:, None]
@@ -143,7 +144,7 @@ def _pressure_map(loaded: LoadedContact | None) -> PressureMap | None:
     return PressureMap(grid.x, grid.y, grid.spacing, solution.pressure, solution.gap, grid.origin, grid.axes)
 
 
-def _numbers(pair: GearPair, loaded: LoadedContact | None) -> dict[str, float]:
+def _numbers(pair: GearPair, loaded: LoadedContact | None) -> dict[str, float | bool | int]:
     """The numbers of one pressure map, by the names of the fields of MeshCycle."""
     if loaded is None:
         return {}
@@ -160,8 +161,8 @@ def _numbers(pair: GearPair, loaded: LoadedContact | None) -> dict[str, float]:
         "contact_length": length,
         "approach": solution.approach,
         "mesh_stiffness": _mesh_stiffness(pair, contact, loaded.stiffness),
-        "on_edge": float(loaded.at_border),
-        "iterations": float(solution.iterations),
+        "on_edge": loaded.at_border,
+        "iterations": solution.iterations,
         "residual": solution.residual,
     }
 

@@ -113,15 +113,18 @@ class MeshCycle:
         """Return a field of numbers per torque and position as an (m, n) array, for a single torque too."""
         return np.asarray(getattr(self, name)).reshape(len(self.torque), len(self.path))
 
-    def peak_position(self, torque: int) -> int | None:
-        """Return the index of the position with the highest pressure; None where nothing touches."""
+    def peak_position(self, torque: int, *, where_hertz_holds: bool = False) -> int | None:
+        """Return the index of the position with the highest pressure, of those asked for; None if there is none."""
         pressure = self.by_torque("peak_pressure")[torque]
+        wanted = self.by_torque("hertz_pressure")[torque] if where_hertz_holds else pressure
+        pressure = np.where(np.isfinite(wanted), pressure, np.nan)
         return int(np.nanargmax(pressure)) if np.isfinite(pressure).any() else None
 
     def key_figures(self) -> tuple[dict[str, float], ...]:
         """Return the figures of the whole cycle for each torque, by names that end in their unit.
 
-        "at_peak": at the position of the highest pressure. Means are over the positions. NaN: not known.
+        "at_peak": at the position of the highest pressure; "there": at that of the highest pressure where Hertz
+        holds. Means are over the positions. NaN: not known.
         """
         return tuple(_key_figures(self, torque) for torque in range(len(self.torque)))
 
@@ -273,12 +276,13 @@ def _trimmed(stacks: Mapping[str, Array], place: tuple[int, int]) -> PressureMap
 SUMMARY_ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("pinion torque [N m]", ("pinion_torque_Nm",)),
     ("peak pressure [MPa]", ("peak_pressure_MPa",)),
-    ("  after Hertz, same position [MPa]", ("hertz_pressure_at_peak_MPa",)),
     ("  at pinion angle [deg]", ("pinion_angle_at_peak_deg",)),
     ("  at pinion diameter | axial place [mm]", ("pinion_diameter_at_peak_mm", "pinion_axial_at_peak_mm")),
     ("  normal force on the tooth pair [N]", ("normal_force_at_peak_N",)),
     ("  contact length | width [mm]", ("contact_length_at_peak_mm", "contact_width_at_peak_mm")),
-    ("  ellipse after Hertz, length | width [mm]", ("hertz_length_at_peak_mm", "hertz_width_at_peak_mm")),
+    ("highest peak where Hertz holds [MPa]", ("peak_pressure_where_hertz_holds_MPa",)),
+    ("  pressure after Hertz there [MPa]", ("hertz_pressure_there_MPa",)),
+    ("  ellipse after Hertz, length | width [mm]", ("hertz_length_there_mm", "hertz_width_there_mm")),
     ("transmission error, mean [arcsec | um]", ("transmission_error_mean_arcsec", "transmission_error_mean_um")),
     ("  peak to peak [arcsec | um]", ("transmission_error_span_arcsec", "transmission_error_span_um")),
     ("  unloaded, peak to peak [arcsec | um]", ("unloaded_error_span_arcsec", "unloaded_error_span_um")),
@@ -290,22 +294,26 @@ SUMMARY_ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
 
 def _key_figures(cycle: MeshCycle, torque: int) -> dict[str, float]:
     row = {entry.name: cycle.by_torque(entry.name)[torque] for entry in fields(cycle) if entry.metadata}
-    peak = cycle.peak_position(torque)
-    at_peak = {name: math.nan if peak is None else float(values[peak]) for name, values in row.items()}
+    peak, smooth = cycle.peak_position(torque), cycle.peak_position(torque, where_hertz_holds=True)
+    at_peak, there = (
+        {name: math.nan if position is None else float(values[position]) for name, values in row.items()}
+        for position in (peak, smooth)
+    )
     place = cycle.path[peak or 0]
     return {
         "pinion_torque_Nm": 1e-3 * float(cycle.torque[torque]),
         "peak_pressure_MPa": at_peak["peak_pressure"],
-        "hertz_pressure_at_peak_MPa": at_peak["hertz_pressure"],
         "pinion_angle_at_peak_deg": math.degrees(place.pinion_angle),
         "pinion_diameter_at_peak_mm": 2.0 * float(place.pinion_radius),
         "pinion_axial_at_peak_mm": float(place.pinion_axial),
         "normal_force_at_peak_N": at_peak["normal_force"],
         "contact_length_at_peak_mm": at_peak["contact_length"],
         "contact_width_at_peak_mm": at_peak["contact_width"],
-        "hertz_length_at_peak_mm": 2.0 * at_peak["hertz_semi_major"],
-        "hertz_width_at_peak_mm": 2.0 * at_peak["hertz_semi_minor"],
         "approach_at_peak_um": 1e3 * at_peak["approach"],
+        "peak_pressure_where_hertz_holds_MPa": there["peak_pressure"],
+        "hertz_pressure_there_MPa": there["hertz_pressure"],
+        "hertz_length_there_mm": 2.0 * there["hertz_semi_major"],
+        "hertz_width_there_mm": 2.0 * there["hertz_semi_minor"],
         **_error_figures(cycle, "transmission_error", row["transmission_error"]),
         **_error_figures(cycle, "unloaded_error", cycle.path.transmission_error),
         "mesh_stiffness_mean_N_per_mm_um": _reduced(np.mean, row["mesh_stiffness"]),

@@ -32,7 +32,7 @@ MOST_LABELS = 8
 MOST_AREAS = 7
 SMALLEST_SPAN_ARCSEC = 0.02
 """Height of a transmission error axis below which a curve would be rounding."""
-DOTS_PER_INCH = 150
+DOTS_PER_INCH = 120
 
 
 def plot_all(result: MeshCycle, directory: FilePath) -> tuple[Path, ...]:
@@ -46,8 +46,9 @@ def plot_all(result: MeshCycle, directory: FilePath) -> tuple[Path, ...]:
     Returns
     -------
     tuple of Path
-        ``contact_path.png``, ``transmission_error.png``, ``peak_pressure.png`` and, where anything touches,
-        ``pressure_map.png`` of the highest pressure.
+        ``contact_path.png``, ``transmission_error.png``, ``peak_pressure.png``; if anything touches,
+        ``pressure_map.png`` of the highest pressure; if Hertz holds elsewhere only, ``pressure_map_hertz.png`` of the
+        highest pressure where it holds.
 
     Raises
     ------
@@ -59,8 +60,12 @@ def plot_all(result: MeshCycle, directory: FilePath) -> tuple[Path, ...]:
         "transmission_error": plot_transmission_error(result),
         "peak_pressure": plot_peak_pressure(result),
     }
-    if result.peak_position(_highest_torque(result)) is not None:
-        figures["pressure_map"] = plot_pressure_map(result)
+    torque = _highest_torque(result)
+    highest, smooth = result.peak_position(torque), result.peak_position(torque, where_hertz_holds=True)
+    if highest is not None:
+        figures["pressure_map"] = plot_pressure_map(result, highest)
+    if smooth not in (None, highest):
+        figures["pressure_map_hertz"] = plot_pressure_map(result, smooth)
     paths = []
     for name, figure in figures.items():
         paths.append(Path(directory) / f"{name}.png")

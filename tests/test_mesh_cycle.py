@@ -126,10 +126,23 @@ def test_summary_shows_the_pitch_point_in_engineers_units():
     ]
     assert re.search(r"\[N m\] +130$", line(text, "pinion torque"))
     peak = float(line(text, "peak pressure [MPa]").split()[-1])
-    hertz = float(line(text, "  after Hertz").split()[-1])
+    hertz = float(line(text, "  pressure after Hertz there").split()[-1])
     assert_allclose([peak, hertz], 706.85, rtol=5e-3)  # coarse grid
     assert re.search(r" 0 \| 0$", line(text, "  unloaded, peak to peak [arcsec | um]"))
     assert 12 <= len(text.splitlines()) <= 16
+
+
+def test_peak_where_hertz_holds_leaves_borders_out():
+    hertz = result().hertz_pressure.copy()
+    highest = result().peak_position(0)
+    hertz[highest] = np.nan
+    cycle = replace(result(), hertz_pressure=hertz)
+    smooth = cycle.peak_position(0, where_hertz_holds=True)
+    assert cycle.peak_position(0) == highest != smooth
+    (figures,) = cycle.key_figures()
+    assert figures["hertz_pressure_there_MPa"] == hertz[smooth]
+    assert figures["peak_pressure_where_hertz_holds_MPa"] < figures["peak_pressure_MPa"]
+    assert edge_contact().peak_position(0, where_hertz_holds=True) is None
 
 
 def test_summary_has_a_column_per_torque():

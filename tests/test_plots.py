@@ -52,9 +52,17 @@ def texts(figure):
 @pytest.mark.parametrize("case", CASES)
 def test_every_case_gives_every_picture(case, tmp_path):
     paths = plot_all(CASES[case](), tmp_path)
-    assert {path.stem for path in paths} == {"contact_path", "transmission_error", "peak_pressure", "pressure_map"}
+    always = {"contact_path", "transmission_error", "peak_pressure", "pressure_map"}
+    assert {path.stem for path in paths} - {"pressure_map_hertz"} == always
     assert sorted(os.listdir(tmp_path)) == sorted(path.name for path in paths)
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in paths)
+
+
+def test_map_with_the_ellipse_is_drawn_too_where_the_highest_pressure_has_none(tmp_path):
+    hertz = result().hertz_pressure.copy()
+    hertz[result().peak_position(0)] = np.nan
+    assert "pressure_map_hertz" in {path.stem for path in plot_all(replace(result(), hertz_pressure=hertz), tmp_path)}
+    assert "pressure_map_hertz" not in {path.stem for path in plot_all(result(positions=1), tmp_path)}
 
 
 def test_nothing_touching_gives_all_but_the_pressure_map(tmp_path):

@@ -82,7 +82,7 @@ def test_summary_is_strict_json_with_null_for_the_unknown():
 
     content = json.loads(summary_json(result("misaligned", positions=2)), parse_constant=refuse)
     (figures,) = content["torques"]
-    assert figures["hertz_pressure_at_peak_MPa"] is None
+    assert figures["hertz_pressure_there_MPa"] is None
     assert figures["edge_positions"] == 2
     assert content["tooth_pairs_sharing_load"] == 1
 

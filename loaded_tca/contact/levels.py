@@ -57,7 +57,7 @@ def prolong(pressure: Array, shape: tuple[int, int], merge: tuple[int, int]) -> 
 
 
 def continue_outside(square: Array) -> Array:
-    """Give cells beside the contact the value on the line through their next two neighbours in it."""
+    """Give cells beside the contact the value on the line through their next two neighbours in it, zero at most."""
     padded = np.pad(square, 2)
     rows, columns = square.shape
     best = np.full(square.shape, -np.inf)
@@ -67,7 +67,7 @@ def continue_outside(square: Array) -> Array:
         )
         np.maximum(best, 2.0 * near - far, out=best, where=near > 0.0)
     outside = (square <= 0.0) & np.isfinite(best)
-    return np.where(outside, best, square)
+    return np.where(outside, np.minimum(best, 0.0), square)
 
 
 def split(values: Array, axis: int) -> Array:

@@ -11,7 +11,6 @@ from loaded_tca.contact.levels import continue_outside, split, window_around
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-Mask = NDArray[np.bool_]
 
 # The fit is that of a quadratic if it leaves this part of the squared peak unexplained (root mean square);
 # a peak of another shape is taken from its cell.

@@ -21,7 +21,7 @@ from loaded_tca.unloaded.ease_off import EaseOff, Station
 LARGEST_STEP = 0.5
 """Longest step, as a fraction of the flank."""
 MOST_STEPS = 60
-MOST_HALVINGS = 12
+MOST_HALVINGS = 30
 SHORT_STEP = 1e-9
 """Fraction of the flank below which a Newton step is the last: the next would be its square."""
 PARALLEL = 1e-9
@@ -154,10 +154,10 @@ def _advance(
         if bent.size:
             trial[bent] += _back_to_border(here.slopes[rows[bent]], borders[bent], multipliers[rows[bent]])
             after[bent], _ = merit(rows[bent], trial[bent])
-        astray = np.flatnonzero((after < before[rows]) & (multipliers[rows] == 0.0).all(axis=-1))
+        astray = np.flatnonzero((after < before[rows]) & ((multipliers[rows] > 0.0).sum(axis=-1) <= 1))
         if astray.size:
             part = rows[astray]
-            trial[astray] = _back_to_ridge(field.restricted(part), phi1[part], trial[astray], scale)
+            trial[astray] = _back_to_ridge(field.restricted(part), phi1[part], trial[astray], multipliers[part], scale)
             after[astray], _ = merit(part, trial[astray])
         good = after >= before[rows]
         result[rows[good]] = trial[good]
@@ -176,23 +176,31 @@ def _back_to_border(slopes: Array, borders: Array, multipliers: Array) -> Array:
     return -slope * (borders[rows, held] / np.maximum((slope**2).sum(axis=-1), 1e-300))[:, None]
 
 
-def _back_to_ridge(field: EaseOff, phi1: Array, points: Array, scale: Array) -> Array:
-    """Trial points moved across the ridge to its top: a flat ridge (a nearly unmodified helical pair) is bent, and a
-    straight step along it falls by more than its end rises."""
+def _back_to_ridge(field: EaseOff, phi1: Array, points: Array, multipliers: Array, scale: Array) -> Array:
+    """Trial points moved across the ridge, or along the one border that holds them, to its top.
+
+    A flat ridge (a nearly unmodified helical pair) is bent: a straight step along it falls by more than its end rises.
+    """
+    held, rows = (multipliers > 0.0).any(axis=-1), np.arange(len(points))
     for _ in range(RIDGE_CORRECTIONS):
         here = _look(field, phi1, points, scale)
-        values, vectors = np.linalg.eigh(field.hessian(here.station) * np.outer(scale, scale))
-        rows, steep = np.arange(len(points)), np.abs(values).argmax(axis=-1)
-        across, bend = vectors[rows, :, steep], np.maximum(np.abs(values[rows, steep]), 1e-300)
-        shift = np.clip((across * here.gradient).sum(axis=-1) / bend, -LARGEST_STEP, LARGEST_STEP)
-        points = points + across * shift[:, None]
+        bend = field.hessian(here.station) * np.outer(scale, scale)
+        values, vectors = np.linalg.eigh(bend)
+        slope = here.slopes[rows, multipliers.argmax(axis=-1)]
+        border = np.stack([-slope[:, 1], slope[:, 0]], axis=-1)
+        across = np.where(held[:, None], border, vectors[rows, :, np.abs(values).argmax(axis=-1)])
+        curvature = np.abs(np.einsum("ni,nij,nj->n", across, bend, across))
+        shift = (across * here.gradient).sum(axis=-1) / np.maximum(curvature, 1e-300)
+        length = np.linalg.norm(across, axis=-1)
+        points = points + across * np.clip(shift, -LARGEST_STEP / length, LARGEST_STEP / length)[:, None]
+        points[held] += _back_to_border(here.slopes[held], here.borders[held], multipliers[held])
     return points
 
 
 def _propose(field: EaseOff, here: _Local, multipliers: Array, scale: Array) -> tuple[Array, Array]:
     """Step (n, 2) of the quadratic model within the linearised borders, and its multipliers (n, borders)."""
     bend = field.hessian(here.station)
-    held = (multipliers > 0.0).any(axis=-1)
+    held = np.asarray((multipliers > 0.0).any(axis=-1))
     if held.any():
         bend = bend + field.border_hessian(here.station, multipliers)
     inverse, curvature = _positive(-bend * np.outer(scale, scale))

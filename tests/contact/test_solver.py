@@ -6,12 +6,12 @@ import warnings
 
 import numpy as np
 import pytest
+from conditions import contact_conditions
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from loaded_tca.contact import ContactStatus, checks, contact_stiffness, solve_contact, solver
-from loaded_tca.contact.convolution import Convolution
 from loaded_tca.errors import AccuracyWarning, ConvergenceError, InputError
 from loaded_tca.reference import hertz
 
@@ -38,21 +38,6 @@ def hertz_problem(shape=(64, 64), curvatures=(0.1, 0.1), load=LOAD):
     contact = hertz.point_contact(load, curvatures, E_STAR)
     gap, spacing = paraboloid(shape, contact, curvatures)
     return contact, gap, spacing
-
-
-def contact_conditions(solution, gap):
-    """Largest violation of the contact conditions, computed apart from the solver, over the approach."""
-    aspect = solution.spacing[1] / solution.spacing[0]
-    displacement = Convolution(gap.shape, aspect)(solution.pressure, np.empty(gap.shape))
-    displacement *= solution.spacing[0] / solution.contact_modulus
-    excess = displacement + gap - solution.approach
-    scale = solution.approach - gap.min()
-    cap = math.inf if solution.max_pressure is None else solution.max_pressure
-    inner = (solution.pressure > 0.0) & (solution.pressure < cap)
-    complementarity = (solution.pressure[inner] * np.abs(excess[inner])).sum() / solution.pressure.sum()
-    penetration = max(0.0, -excess[solution.pressure == 0.0].min(initial=0.0))
-    parting = max(0.0, excess[solution.pressure >= cap].max(initial=0.0))
-    return max(complementarity, penetration, parting) / scale
 
 
 @pytest.mark.parametrize("ratio", [1.0, 10.0, 100.0])

@@ -1,0 +1,80 @@
+"""What is read between the cells: peak, area, semi-axes, and whether a contact ends of itself."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+from loaded_tca.contact import patch, solve_contact
+from loaded_tca.reference import hertz
+
+
+def ellipse(shape, centre, axes, angle=0.0):
+    """Pressure 1 in the middle of an ellipse, cells of width one."""
+    x, y = np.arange(shape[0])[:, None] - centre[0], np.arange(shape[1]) - centre[1]
+    along, across = x * math.cos(angle) + y * math.sin(angle), y * math.cos(angle) - x * math.sin(angle)
+    return np.sqrt(np.maximum(0.0, 1.0 - (along / axes[0]) ** 2 - (across / axes[1]) ** 2))
+
+
+@given(
+    offset=st.tuples(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5)),
+    axes=st.tuples(st.floats(5.0, 18.0), st.floats(5.0, 18.0)),
+    angle=st.floats(0.0, math.pi),
+)
+def test_peak_of_an_ellipse_is_exact_wherever_it_lies(offset, axes, angle):
+    pressure = ellipse((40, 40), (19.5 + offset[0], 19.5 + offset[1]), axes, angle)
+    assert_allclose(patch.peak_pressure(7.0 * pressure), 7.0, rtol=1e-12)
+
+
+def test_peak_of_other_shapes_is_their_largest_cell():
+    rng = np.random.default_rng(3)
+    two = ellipse((60, 60), (15.0, 30.0), (9.0, 9.0)) + 0.9 * ellipse((60, 60), (42.0, 30.0), (9.0, 9.0))
+    for pressure in (rng.random((30, 30)), two, np.eye(20), np.ones((20, 20)), np.ones((1, 1)), np.zeros((4, 4))):
+        assert patch.peak_pressure(pressure) == pressure.max()
+
+
+def test_peak_of_many_cells_is_thinned_without_loss():
+    pressure = ellipse((600, 500), (300.3, 250.2), (280.0, 200.0))
+    assert_allclose(patch.peak_pressure(pressure), 1.0, rtol=1e-12)
+
+
+@given(
+    offset=st.tuples(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5)),
+    axes=st.tuples(st.floats(8.0, 18.0), st.floats(8.0, 18.0)),
+    angle=st.floats(0.0, math.pi),
+)
+def test_area_and_axes_of_an_ellipse(offset, axes, angle):
+    pressure = ellipse((48, 48), (23.5 + offset[0], 23.5 + offset[1]), axes, angle)
+    area, minor, major = patch.area_and_semi_axes(pressure, (1.0, 1.0))
+    # the edge is found to a fraction of a quarter cell; counting whole cells scatters three times as much
+    assert_allclose(area, math.pi * axes[0] * axes[1], rtol=0.015)
+    assert_allclose([minor, major], sorted(axes), rtol=0.01)
+
+
+def test_axes_of_a_solved_contact_are_hertz():
+    contact = hertz.point_contact(100.0, (0.1, 0.1 / 37.4), 115e3)
+    n = 64
+    spacing = (3.0 * contact.semi_minor / n, 3.0 * contact.semi_major / n)
+    x, y = ((np.arange(n) - (n - 1) / 2) * width for width in spacing)
+    solution = solve_contact(0.05 * x[:, None] ** 2 + 0.05 / 37.4 * y**2, spacing, 115e3, load=100.0)
+    assert_allclose(solution.semi_axes, (contact.semi_minor, contact.semi_major), rtol=5e-3)  # 43 cells across
+    assert_allclose(solution.contact_area, contact.area, rtol=5e-3)
+
+
+def test_area_without_contact_is_zero():
+    solution = solve_contact(np.ones((20, 20)), (1.0, 1.0), 1.0, load=0.0)
+    assert solution.contact_area == 0.0
+    assert solution.semi_axes == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("turn", [0, 1, 2, 3])
+@pytest.mark.parametrize(("end", "reached"), [(30.0, False), (26.2, False), (20.0, True), (15.0, True)])
+def test_contact_ends_at_the_material_or_before(end, reached, turn):
+    """A circle of radius 10 around 16: ends of itself at 26, unless the material ends first."""
+    pressure = ellipse((32, 32), (16.0, 15.5), (10.0, 10.0))
+    void = np.broadcast_to(np.arange(32)[:, None] > end, (32, 32))
+    pressure = np.where(void, 0.0, pressure)
+    assert patch.ends_at_material(np.rot90(pressure, turn), np.rot90(void, turn)) is reached
