@@ -18,7 +18,7 @@ point of the mid-face section. Mounting errors are counted in the fixed frame, w
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Literal
 
 import numpy as np
@@ -49,12 +49,25 @@ class Mounting:
         Positive: apart.
     axial_offset : float [mm]
         Positive: wheel towards +z.
+
+    Raises
+    ------
+    InputError
+        If a value is not finite.
     """
 
     in_plane: float = 0.0
     out_of_plane: float = 0.0
     centre_distance_error: float = 0.0
     axial_offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        problems = []
+        for name, unit in zip((entry.name for entry in fields(self)), ("rad", "rad", "mm", "mm"), strict=True):
+            if not math.isfinite(value := getattr(self, name)):
+                problems.append(f"{name}: {value} {unit} is not finite")
+        if problems:
+            raise InputError(problems)
 
     def place_parallel(self, centre_distance: float) -> tuple[Array, Array]:
         """Origin (3,) and axes (3, 3), in rows, of the wheel frame: R_y(gamma) R_x(delta) about its mid-face."""

@@ -11,7 +11,6 @@ Run from the root of the repository: ``python -m validation.speed_against_error 
 import argparse
 import os
 import platform
-import resource
 import statistics
 import subprocess
 import sys
@@ -202,9 +201,14 @@ def memory_above_imports(n: int) -> float:
 
 def print_memory(n: int) -> None:
     """Solve the circle and print by how much the peak memory [MiB] of this process grew; the gap counts too."""
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+    def peak() -> int:
+        lines = Path("/proc/self/status").read_text().splitlines()
+        return next(int(line.split()[1]) for line in lines if line.startswith("VmHWM"))
+
+    before = peak()
     ours(Problem.make("circle", n, 1e-6))()
-    print((resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024.0)
+    print((peak() - before) / 1024.0)
 
 
 def machine() -> str:
@@ -272,7 +276,7 @@ def main() -> None:
             missing.add(code)
             continue
         print(table(found[-1:]).splitlines()[-1], flush=True)
-    memory = {n: memory_above_imports(n) for n in (512, 1024) if n <= arguments.largest}
+    memory = {n: memory_above_imports(n) for n in (512, 1024) if n <= arguments.largest and Path("/proc").exists()}
     notes = [machine(), *(f"memory above the imports at {n} x {n}: {mib:.0f} MiB" for n, mib in memory.items())]
     notes += [f"not installed: {code}" for code in sorted(missing)]
     print("\n".join(notes))

@@ -33,7 +33,7 @@ def solve_to_accuracy(
     max_pressure: float | None = None,
     tolerance: float = 1e-6,
     first_cells: Cells = (16, 16),
-    threads: int | None = None,
+    threads: int = 2,
     warn: bool = True,
 ) -> ContactSolution:
     """Refine the grid until the estimated error is below the accuracy.

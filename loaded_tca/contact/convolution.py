@@ -8,8 +8,9 @@ import math
 import multiprocessing
 import os
 import threading
-from collections import OrderedDict
-from collections.abc import Callable, Hashable
+from collections import OrderedDict, deque
+from collections.abc import Callable, Hashable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -23,14 +24,15 @@ Array = NDArray[Any]
 Window = tuple[slice, slice]
 
 CACHE_BYTES = 192 * 2**20
-# Two threads pay from about this many points of a transform; where the other core is busy they cost more than
-# they bring, so that small transforms, and those of workers, keep to one.
-THREADED_POINTS = 2**19
+# Fewer points of a transform than this are not worth a second thread.
+THREADED_POINTS = 2**17
+# A piece of a transform, with its part of the kernel, should stay in the cache of a core.
+PIECE_BYTES = 2**18
 _forked = False
 
 
 def _mark_fork() -> None:
-    """FFTW's threads do not survive a fork: the child works with one, and plans anew."""
+    """Threads do not survive a fork: the child works with one, and plans anew."""
     global _forked, _cache
     _forked = True
     _cache = _Cache()
@@ -41,6 +43,7 @@ class _Cache(threading.local):
 
     def __init__(self) -> None:
         self.items: OrderedDict[Hashable, Any] = OrderedDict()
+        self.pools: dict[int, ThreadPoolExecutor] = {}
         self.bytes = 0
 
     def get(self, key: Hashable, make: Callable[[], Any]) -> Any:
@@ -55,17 +58,16 @@ class _Cache(threading.local):
             self.bytes -= self.items.popitem(last=False)[1].nbytes
         return made
 
+    def pool(self, threads: int) -> ThreadPoolExecutor:
+        """Helpers of this thread, made when first needed."""
+        if threads not in self.pools:
+            self.pools[threads] = ThreadPoolExecutor(threads - 1, thread_name_prefix="convolution")
+        return self.pools[threads]
+
 
 _cache = _Cache()
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_mark_fork)
-
-
-def default_threads() -> int:
-    """Threads of a large transform: two where there are two cores and this process is no worker of a pool."""
-    if _forked or multiprocessing.parent_process() is not None:
-        return 1
-    return min(2, os.cpu_count() or 1)
 
 
 def fast_length(least: int) -> int:
@@ -84,44 +86,91 @@ def fast_length(least: int) -> int:
 
 
 class _Transform:
-    """Planned transforms of rows of real data in a periodic box, and back.
+    """Planned transforms of rows of real data in a periodic box, and back, in pieces that fit the cache.
 
     ``spectrum`` holds the transform of the box with the second direction first, so that every one-dimensional
     transform runs over contiguous data; rows without data are never transformed. ``rows`` counts those that
     hold data on the way forth and on the way back.
     """
 
-    def __init__(self, rows: tuple[int, int], box: tuple[int, int], dtype: str, threads: int) -> None:
+    def __init__(self, rows: tuple[int, int], box: tuple[int, int], dtype: str) -> None:
         complex_type = "complex64" if dtype == "float32" else "complex128"
         self.data = pyfftw.zeros_aligned((rows[0], box[1]), dtype=dtype)
-        self.result: Array = pyfftw.zeros_aligned((rows[1], box[1]), dtype=dtype)
+        self.result = pyfftw.zeros_aligned((rows[1], box[1]), dtype=dtype)
         # Rows a power of two apart share their place in the cache: a few unused columns keep them apart.
         padded = pyfftw.zeros_aligned((box[1] // 2 + 1, box[0] + 8), dtype=complex_type)
         self.spectrum = padded[:, : box[0]]
         by_rows = self.spectrum.T
-        plan: dict[str, Any] = {"axes": (1,), "flags": ("FFTW_ESTIMATE",), "threads": threads}
-        self.rows_forward = pyfftw.FFTW(self.data, by_rows[: rows[0]], **plan)
-        self.forward = pyfftw.FFTW(self.spectrum, self.spectrum, **plan)
-        plan["direction"] = "FFTW_BACKWARD"
-        self.backward = pyfftw.FFTW(self.spectrum, self.spectrum, **plan)
-        self.rows_backward = pyfftw.FFTW(by_rows[: rows[1]], self.result, **plan)
+        back = {"direction": "FFTW_BACKWARD"}
+        self.inward = [(part, _plan(self.data[part], by_rows[part])) for part in _pieces(self.data)]
+        self.across = [
+            (
+                part,
+                _plan(self.spectrum[part], self.spectrum[part]),
+                _plan(self.spectrum[part], self.spectrum[part], **back),
+            )
+            for part in _pieces(self.spectrum)
+        ]
+        self.outward = [(part, _plan(by_rows[part], self.result[part], **back)) for part in _pieces(self.result)]
         self.nbytes = self.data.nbytes + self.result.nbytes + self.spectrum.nbytes
 
-    def filter(self, values: Array, corner: tuple[int, int], symbol: Array) -> Array:
-        """Transform values placed at a corner of the box, multiply by the symbol, transform back."""
-        (top, left), (rows, columns) = corner, values.shape
-        self.data[:, :left] = 0.0
-        self.data[:, left : left + columns] = values
-        self.data[:, left + columns :] = 0.0
-        self.rows_forward.update_arrays(self.data, self.spectrum.T[top : top + rows])
-        self.rows_forward.execute()
-        self.spectrum[:, :top] = 0.0
-        self.spectrum[:, top + rows :] = 0.0
-        self.forward.execute()
-        self.spectrum *= symbol
-        self.backward.execute()
-        self.rows_backward.execute()
-        return self.result
+    def filter(self, values: Array, corner: tuple[int, int], symbol: Array, out: Array, threads: int) -> None:
+        """Transform values placed at a corner of the box, multiply by the symbol, transform back into ``out``."""
+        top, left = corner
+        bottom, right = top + values.shape[0], left + values.shape[1]
+
+        def inward(part: slice, plan: Any) -> None:
+            data = self.data[part]
+            data[:, :left] = 0.0
+            data[:, left:right] = values[part]
+            data[:, right:] = 0.0
+            plan.update_arrays(data, self.spectrum.T[top + part.start : top + part.stop])
+            plan.execute()
+
+        def across(part: slice, forth: Any, back: Any) -> None:
+            spectrum = self.spectrum[part]
+            spectrum[:, :top] = 0.0
+            spectrum[:, bottom:] = 0.0
+            forth.execute()
+            spectrum *= symbol[part]
+            back.execute()
+
+        def outward(part: slice, plan: Any) -> None:
+            plan.execute()
+            np.copyto(out[part], self.result[part, : out.shape[1]], casting="same_kind")
+
+        for work, pieces in ((inward, self.inward), (across, self.across), (outward, self.outward)):
+            _share(work, pieces, threads)
+
+
+def _plan(source: Array, target: Array, **options: str) -> Any:
+    """Plan of one-dimensional transforms along the second axis."""
+    return pyfftw.FFTW(source, target, axes=(1,), flags=("FFTW_ESTIMATE",), **options)
+
+
+def _pieces(array: Array) -> list[slice]:
+    """Rows of an array in pieces of about :data:`PIECE_BYTES`, each start a multiple of 8 rows (aligned data)."""
+    size = max(8, PIECE_BYTES // (array.shape[1] * array.itemsize) // 8 * 8)
+    return [slice(start, min(start + size, array.shape[0])) for start in range(0, array.shape[0], size)]
+
+
+def _share(work: Callable[..., None], pieces: Sequence[tuple[Any, ...]], threads: int) -> None:
+    """Do the work on every piece; helpers take pieces too, and nobody waits for a helper that has not begun."""
+    waiting = deque(pieces)
+
+    def drain() -> None:
+        while True:
+            try:
+                piece = waiting.popleft()
+            except IndexError:
+                return
+            work(*piece)
+
+    helpers = [_cache.pool(threads).submit(drain) for _ in range(min(threads, len(pieces)) - 1)]
+    drain()
+    for helper in helpers:
+        if not helper.cancel():
+            helper.result()
 
 
 class Convolution:
@@ -138,8 +187,8 @@ class Convolution:
         aligned data).
     dtype : {"float64", "float32"}
         Precision of the transforms.
-    threads : int, optional
-        Threads of one transform; default: two for large ones.
+    threads : int
+        Threads of one transform.
     """
 
     def __init__(
@@ -148,7 +197,7 @@ class Convolution:
         aspect: float,
         window: Window | None = None,
         dtype: str = "float64",
-        threads: int | None = None,
+        threads: int = 2,
     ) -> None:
         first, last = (0, 0), target
         if window is not None:
@@ -156,37 +205,35 @@ class Convolution:
         # The kernel is even: it may wrap once the box is twice the greatest distance of two cells.
         reach = [max(end, n - start) - 1 for start, end, n in zip(first, last, target, strict=True)]
         box = (fast_length(max(2 * reach[0], target[0])), fast_length(max(2 * reach[1], target[1])))
-        threads = _threads(box, threads)
+        self._threads = useful_threads(box, threads)
         rows = (last[0] - first[0], target[0])
         self.target = target
         self.corner = first
         self.count = 0
         self._symbol = _cache.get(("love", box, aspect, dtype), lambda: _Symbol(_love_symbol(box, aspect), dtype))
-        self._transform = _cache.get((rows, box, dtype, threads), lambda: _Transform(rows, box, dtype, threads))
+        self._transform = _cache.get((rows, box, dtype), lambda: _Transform(rows, box, dtype))
 
     def __call__(self, pressure: Array, out: Array) -> Array:
         """Write the displacement into ``out`` and return it."""
         self.count += 1
-        result = self._transform.filter(pressure, self.corner, self._symbol.values)
-        np.copyto(out, result[:, : self.target[1]], casting="same_kind")
+        self._transform.filter(pressure, self.corner, self._symbol.values, out, self._threads)
         return out
 
 
 class Preconditioner:
     """Approximate inverse of the convolution: that of the periodic kernel, in single precision."""
 
-    def __init__(self, shape: tuple[int, int], aspect: float, threads: int | None = None) -> None:
+    def __init__(self, shape: tuple[int, int], aspect: float, threads: int = 2) -> None:
         box = (fast_length(shape[0]), fast_length(shape[1]))
-        threads = _threads(box, threads)
+        self._threads = useful_threads(box, threads)
         rows = (shape[0], shape[0])
         self.shape = shape
         self._symbol = _cache.get(("inverse", box, aspect), lambda: _Symbol(_inverse_symbol(box, aspect), "float32"))
-        self._transform = _cache.get((rows, box, "float32", threads), lambda: _Transform(rows, box, "float32", threads))
+        self._transform = _cache.get((rows, box, "float32"), lambda: _Transform(rows, box, "float32"))
 
     def __call__(self, residual: Array, out: Array) -> Array:
         """Write the preconditioned residual into ``out`` and return it."""
-        result = self._transform.filter(residual, (0, 0), self._symbol.values)
-        np.copyto(out, result[:, : self.shape[1]], casting="same_kind")
+        self._transform.filter(residual, (0, 0), self._symbol.values, out, self._threads)
         return out
 
 
@@ -200,10 +247,10 @@ class _Symbol:
         self.nbytes = self.values.nbytes
 
 
-def _threads(box: tuple[int, int], wanted: int | None) -> int:
-    if wanted is not None:
-        return wanted
-    return default_threads() if box[0] * box[1] >= THREADED_POINTS else 1
+def useful_threads(box: tuple[int, int], wanted: int) -> int:
+    """One for small transforms, and in workers: threads do not survive a fork, and a pool fills the machine."""
+    worker = _forked or multiprocessing.parent_process() is not None
+    return 1 if worker or box[0] * box[1] < THREADED_POINTS else min(wanted, os.cpu_count() or 1)
 
 
 def _love_symbol(box: tuple[int, int], aspect: float) -> Array:

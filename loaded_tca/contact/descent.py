@@ -156,7 +156,7 @@ class Descent:
         Start, within the bounds and with the right sum.
     displacement : (nx, ny) array [mm], optional
         K times the start, if known.
-    threads : int, optional
+    threads : int
         Threads of a transform.
 
     References
@@ -165,9 +165,7 @@ class Descent:
     J. Comput. Phys. 257, 333-351 (Fourier preconditioner).
     """
 
-    def __init__(
-        self, grid: Grid, pressure: Array, displacement: Array | None = None, threads: int | None = None
-    ) -> None:
+    def __init__(self, grid: Grid, pressure: Array, displacement: Array | None = None, threads: int = 2) -> None:
         shape = pressure.shape
         self.grid = grid
         self.pressure = pressure

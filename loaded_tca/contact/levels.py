@@ -57,17 +57,16 @@ def prolong(pressure: Array, shape: tuple[int, int], merge: tuple[int, int]) -> 
 
 
 def continue_outside(square: Array) -> Array:
-    """Give cells beside the contact the value on the line through their next two neighbours in it, zero at most."""
+    """Give cells beside the contact the lowest value of the lines through two neighbours in it, zero at most."""
     padded = np.pad(square, 2)
     rows, columns = square.shape
-    best = np.full(square.shape, -np.inf)
+    line = np.zeros(square.shape)
     for down, right in ((1, 0), (-1, 0), (0, 1), (0, -1)):
         near, far = (
             padded[2 + k * down : 2 + k * down + rows, 2 + k * right : 2 + k * right + columns] for k in (1, 2)
         )
-        np.maximum(best, 2.0 * near - far, out=best, where=near > 0.0)
-    outside = (square <= 0.0) & np.isfinite(best)
-    return np.where(outside, np.minimum(best, 0.0), square)
+        np.minimum(line, 2.0 * near - far, out=line, where=near > 0.0)
+    return np.where(square > 0.0, square, line)
 
 
 def split(values: Array, axis: int) -> Array:

@@ -87,6 +87,8 @@ def ends_at_material(pressure: Array, void: Mask) -> bool:
     At a smooth end of a contact p^2 falls linearly with the distance. Where the last cell beside a void has less than a
     third of the p^2 of the cell before it, that line reaches zero inside the last cell: the contact ends of itself.
     """
+    if not void.any():
+        return False
     square = pressure**2
     for axis in (0, 1):
         for direction in (1, -1):

@@ -36,7 +36,7 @@ class Problem:
         Prescribed approach, counted as ``gap`` is; of no meaning if the load is given.
     max_pressure : float [MPa]
         Cap on the pressure, infinity if there is none.
-    threads : int or None
+    threads : int
         Threads of a transform.
     """
 
@@ -46,7 +46,7 @@ class Problem:
     load: float | None
     approach: float
     max_pressure: float
-    threads: int | None
+    threads: int
 
     @property
     def unit(self) -> float:

@@ -55,7 +55,7 @@ def solve_contact(
     tolerance: float = 1e-6,
     on_failure: Literal["raise", "return"] = "raise",
     initial_pressure: ArrayLike | None = None,
-    threads: int | None = None,
+    threads: int = 2,
     warn: bool = True,
 ) -> ContactSolution:
     r"""Press two elastic half-spaces together over a gap.
@@ -81,8 +81,8 @@ def solve_contact(
         What to do without convergence: raise, or return the last iterate with its status.
     initial_pressure : (nx, ny) array_like, optional [MPa]
         Where to start from, such as the solution of a neighbouring position; nested grids if absent.
-    threads : int, optional
-        Threads of a transform; default: two for large grids.
+    threads : int
+        Threads of large transforms; the result does not depend on them. Workers of a pool keep to one.
     warn : bool
         Whether to give an AccuracyWarning for each of ``solution.doubts``.
 

@@ -36,8 +36,8 @@ def inverse_involute(value: float) -> float:
 
     Examples
     --------
-    >>> round(degrees(inverse_involute(involute(radians(20)))), 10)
-    20.0
+    >>> round(inverse_involute(involute(0.35)), 12)
+    0.35
     """
     if not 0.0 <= value < float("inf"):
         raise InputError(f"value: an involute function of {value} rad has no angle between 0 and 90 deg")

@@ -34,7 +34,7 @@ class Lines:
     rho, z : (m,) array [mm]
         Middle of each line on the pinion flank.
     ends : (m, 2, 3) array [mm]
-        Its ends in the fixed frame.
+        Its ends in the fixed frame, the one at the smaller z first.
     """
 
     rows: Array
@@ -55,6 +55,7 @@ def find_lines(field: EaseOff, phi1: Array, rho: Array, z: Array, multipliers: A
     limit = FLATNESS * field.pair.module
     keep = found & (ridge.fall(first) <= limit) & (ridge.fall(second) <= limit)
     points = np.stack([ridge.in_space(end) for end in (first, second)], axis=1)
+    points = np.take_along_axis(points, np.argsort(points[..., 2:], axis=1), axis=1)
     x, y, z_middle = points.mean(axis=1).T
     middle = ridge.nearest(np.stack([np.hypot(x, y), z_middle], axis=-1))[keep]
     return Lines(rows[keep], middle[:, 0], middle[:, 1], points[keep])

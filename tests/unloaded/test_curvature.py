@@ -1,0 +1,94 @@
+"""Relative curvature from the ease-off against the two flanks' own curvatures, and against closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+from pairs import cylindrical_mesh, gear_pair, pairs, seed_002
+
+from loaded_tca.flanks import FlankModifications
+from loaded_tca.pair import cylindrical_basis
+from loaded_tca.unloaded import relative_curvature, trace_contact
+
+RELATIVE = 1e-9  # two chains of some hundred operations each, cancelling by a factor of up to 1e4
+CLOSED_FORM = 1e-9
+
+
+def shape_operator(flank, rho, z, turn, axes):
+    """Curvature tensor (2, 2) of a flank in the directions axes[0], axes[1] [1/mm], positive where it is convex.
+
+    From the first and second fundamental form of the parametrisation (rho, z), with the normal axes[2]; ``turn`` is
+    the azimuth of the point in the frame in which ``axes`` are given.
+    """
+    jet = flank.theta(np.array(rho), np.array(z))
+    radial, around, axial = cylindrical_basis(np.array(turn))
+    tangents = np.stack([radial + rho * jet.rho * around, axial + rho * jet.z * around])
+    normal = axes[2]
+    second = np.empty((2, 2))
+    second[0, 0] = normal @ ((2.0 * jet.rho + rho * jet.rho_rho) * around - rho * jet.rho**2 * radial)
+    second[0, 1] = second[1, 0] = normal @ ((jet.z + rho * jet.rho_z) * around - rho * jet.rho * jet.z * radial)
+    second[1, 1] = normal @ (rho * jet.z_z * around - rho * jet.z**2 * radial)
+    to_plane = np.linalg.inv(tangents @ axes[:2].T)
+    return -to_plane @ second @ to_plane.T
+
+
+def tensor_of_both_flanks(pair, contact, axes):
+    pinion_azimuth = math.atan2(contact.point[1], contact.point[0])
+    pinion = shape_operator(pair.pinion, contact.pinion_radius, contact.pinion_axial, pinion_azimuth, axes)
+    _, wheel_azimuth, _ = pair.to_wheel(contact.point)
+    in_wheel = axes @ pair.wheel_axes.T
+    in_wheel[2] *= -1.0  # the outward normal of the wheel
+    wheel = shape_operator(pair.wheel, contact.wheel_radius, contact.wheel_axial, float(wheel_azimuth), in_wheel)
+    return pinion + wheel
+
+
+@given(pairs(), st.floats(-0.5, 0.5))
+@settings(max_examples=60)
+def test_relative_curvature_is_the_sum_of_the_curvatures_of_both_flanks(pair, turn):
+    path = trace_contact(pair, [turn * pair.pitch])
+    contact = path[0]
+    assume(not (contact.on_edge or contact.on_crease))  # there the normals differ
+    found = relative_curvature(pair, contact)
+    tensor = tensor_of_both_flanks(pair, contact, found.axes)
+    scale = abs(tensor).max()
+    assert_allclose(tensor, np.diag([found.across, found.along]), rtol=0, atol=RELATIVE * scale)
+
+
+@pytest.mark.parametrize("helix_deg", [0.0, 15.0])
+def test_curvature_across_a_line_contact_is_that_of_two_involutes(helix_deg):
+    """1/rho = cos(beta_b) (1/a1 + 1/a2) with the roll lengths a = r_b tan(alpha_wt): ISO 6336-2; along it nothing."""
+    pair, mesh = gear_pair(helix_deg=helix_deg), cylindrical_mesh(helix_deg=helix_deg)
+    found = relative_curvature(pair, trace_contact(pair, [0.0])[0])
+    lengths = [radius * math.tan(mesh.working_pressure_angle) for radius in pair.base_radii]
+    expected = math.cos(mesh.pinion.base_helix_angle) * sum(1.0 / length for length in lengths)
+    assert_allclose(found.across, expected, rtol=CLOSED_FORM)
+    assert_allclose(found.along, 0.0, atol=1e-15)
+
+
+@pytest.mark.parametrize(("helix_deg", "radius"), [(0.0, 10.9259), (15.0, 12.0224)])
+def test_equivalent_radius_of_the_seed_002_pairs_is_the_published_one(helix_deg, radius):
+    pair = seed_002(helix_deg)
+    found = relative_curvature(pair, trace_contact(pair, [0.0])[0])
+    # the crowning turns the axes by 1e-3; printed to 4 decimals
+    assert_allclose(1.0 / found.across, radius, atol=6e-5 + (2e-4 if helix_deg else 0.0))
+
+
+def test_crowning_over_the_face_width_curves_a_spur_flank_along_its_contact_line():
+    amount = 0.005
+    pair = gear_pair(FlankModifications(lead_crowning=amount))
+    found = relative_curvature(pair, trace_contact(pair, [0.0])[0])
+    assert_allclose(found.along, 8.0 * amount / 25.0**2, rtol=1e-6)  # second order: slope of the crowning is zero there
+
+
+@given(pairs(), st.floats(-0.5, 0.5))
+@settings(max_examples=25)
+def test_axes_are_right_handed_with_the_normal_out_of_the_pinion_and_the_second_towards_positive_z(pair, turn):
+    contact = trace_contact(pair, [turn * pair.pitch])[0]
+    axes = relative_curvature(pair, contact).axes
+    assert_allclose(axes @ axes.T, np.eye(3), atol=1e-12)
+    assert_allclose(np.linalg.det(axes), 1.0, rtol=1e-12)
+    assert_allclose(axes[2], contact.normal)
+    assert axes[1, 2] >= 0.0

@@ -1,0 +1,200 @@
+"""The maximum of the ease-off: certified against dense grids, from borders to creases, from 1 nm to 1 mm of crowning."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+from pairs import cylindrical_mesh, gear_pair, highest_on_grid, pairs, wheel_lag
+
+from loaded_tca import trace_contact
+from loaded_tca.flanks import FlankModifications
+from loaded_tca.gears import CylindricalGear, CylindricalMesh
+from loaded_tca.pair import Mounting, cylindrical_pair
+from loaded_tca.unloaded import search
+from loaded_tca.unloaded.ease_off import EaseOff
+from loaded_tca.unloaded.reduced import climb
+
+ROUNDING = 1e-14  # rad, angles of order 0.1
+STATIONARY = 1e-9  # residual at which rounding ends a Newton iteration on a ridge of ratio 1e6
+
+
+def lead_over_grid(pair, path, row):
+    """How far the point found lies ahead of every point of a dense grid [rad]; negative if it lies behind."""
+    best = highest_on_grid(pair, path.pinion_angle[row])
+    return pair.driving * (path.transmission_error[row] - best)
+
+
+@given(pairs(), st.floats(-0.5, 0.5))
+@settings(max_examples=60)
+def test_no_point_of_both_flanks_touches_before_the_contact_point(pair, turn):
+    path = trace_contact(pair, np.array([turn, turn - 0.2]) * pair.pitch)
+    for row in range(2):
+        assert lead_over_grid(pair, path, row) >= -ROUNDING
+        if not path.on_crease[row]:
+            assert path.residual[row] < STATIONARY
+
+
+@given(pairs(), st.floats(-0.5, 0.5))
+@settings(max_examples=20)
+def test_contact_point_lies_on_both_flanks(pair, turn):
+    path = trace_contact(pair, [turn * pair.pitch])
+    rho, z = path.pinion_radius, path.pinion_axial
+    theta = pair.pinion.theta(rho, z).value + pair.sense * path.pinion_angle
+    assert_allclose(path.point[0], [*(rho * np.cos(theta)), *(rho * np.sin(theta)), *z], atol=1e-10)
+    lag, _ = wheel_lag(pair, path.pinion_angle, rho, z)
+    assert_allclose(path.transmission_error, lag, atol=ROUNDING)
+    assert pair.pinion.inside(rho, z, tolerance=1e-7).all()
+    assert pair.wheel.inside(path.wheel_radius, path.wheel_axial, tolerance=1e-7).all()
+
+
+@pytest.mark.parametrize("helix_deg", [0.0, 15.0])
+@pytest.mark.parametrize("crowning", [1e-9, 1e-8, 1e-7, 1e-6, 1e-4, 1e-2, 1.0])
+@pytest.mark.parametrize("tilt", [0.0, 1e-12, 1e-9, 1e-6, 1e-3])
+def test_contact_is_found_from_a_nanometre_to_a_millimetre_of_crowning(helix_deg, crowning, tilt):
+    pair = gear_pair(
+        FlankModifications(lead_crowning=crowning), mounting=Mounting(out_of_plane=tilt), helix_deg=helix_deg
+    )
+    path = trace_contact(pair, [-0.06, 0.0, 0.045])
+    assert path.touches.all()
+    assert min(lead_over_grid(pair, path, row) for row in range(3)) >= -ROUNDING
+    assert path.residual.max() < 2e-9  # the tilt itself where it is too small to be called an edge contact
+
+
+@pytest.mark.parametrize("tilt", [0.0, 1e-13, 1e-10, 1e-7, 1e-4, 1e-2])
+@pytest.mark.parametrize("width", [10.0, 40.0])
+def test_contact_of_an_unmodified_helical_pair_is_found_however_small_its_misalignment(tilt, width):
+    """A ridge as flat as rounding, and bent: what a straight step along it cannot follow."""
+    pair = gear_pair(mounting=Mounting(out_of_plane=tilt), helix_deg=25.0, width=width)
+    path = trace_contact(pair, np.linspace(-0.4, 0.4, 3) * pair.pitch)
+    assert min(lead_over_grid(pair, path, row) for row in range(3)) >= -ROUNDING
+
+
+def test_contact_at_the_end_of_a_face_with_a_helix_slope_is_found_on_a_ridge_without_curvature():
+    """The ease-off rises evenly to the side of the face: no curvature tells a Newton step its length."""
+    mesh = CylindricalMesh(
+        CylindricalGear(47, 3.0, 28.36, profile_shift=0.1), CylindricalGear(78, 3.0, 28.36, profile_shift=0.2)
+    )
+    sloped = FlankModifications(helix_slope=-0.0177, root_relief=0.039, root_relief_start=235.5)
+    pair = cylindrical_pair(
+        mesh,
+        modifications=(FlankModifications(profile_crowning=8e-5), sloped),
+        mounting=Mounting(centre_distance_error=-0.4),
+    )
+    path = trace_contact(pair, np.linspace(-0.5, 0.5, 41) * pair.pitch)
+    assert path.on_edge.all()
+    assert min(lead_over_grid(pair, path, row) for row in range(41)) >= -ROUNDING
+
+
+def test_higher_of_two_hills_is_found_with_hollow_crowning():
+    """Material added at both ends of the face and a slight tilt: a hill at either end, the right one a little higher."""
+    hollow = FlankModifications(lead_crowning=-0.01)
+    for tilt, end in ((1e-5, 12.5), (-1e-5, -12.5)):
+        path = trace_contact(gear_pair(hollow, mounting=Mounting(out_of_plane=tilt)))
+        assert_allclose(path.pinion_axial, end, atol=0.05)
+        assert path.on_edge.all()
+
+
+@given(st.integers(0, 2**32 - 1))
+@settings(max_examples=10)
+def test_every_random_start_climbs_to_the_same_maximum(seed):
+    rng = np.random.default_rng(seed)
+    pair = gear_pair(FlankModifications(lead_crowning=0.01, profile_crowning=0.01), helix_deg=15.0)
+    rho, z = pair.pinion.grid(2, 2)
+    starts = [rng.uniform(part.min(), part.max(), 300) for part in (rho, z)]
+    found = climb(EaseOff(pair), np.full(300, 0.02), *starts)
+    assert found.converged.all()
+    assert_allclose(found.value, found.value.max(), rtol=0, atol=1e-12)
+    assert found.iterations.mean() < 12
+
+
+# Creases
+
+
+def linear_relief(amount=0.2, start=106.0):
+    return FlankModifications(
+        lead_crowning=0.002, tip_relief=amount, tip_relief_start=start, tip_relief_form="linear"
+    )
+
+
+def test_contact_rests_on_the_start_of_a_linear_relief():
+    pair = gear_pair(linear_relief())
+    path = trace_contact(pair, np.linspace(0.3, 0.9, 61) * pair.pitch)
+    assert path.on_crease.sum() > 5
+    assert not (path.on_crease & path.on_edge).any()
+    assert_allclose(path.pinion_radius[path.on_crease], 53.0, atol=1e-8)
+    assert_allclose(path.pinion_axial[path.on_crease], 0.0, atol=1e-6)
+    for row in range(len(path)):
+        assert lead_over_grid(pair, path, row) >= -ROUNDING
+
+
+def test_error_is_continuous_where_the_contact_reaches_and_leaves_a_crease():
+    pair = gear_pair(linear_relief(), helix_deg=10.0)
+    angles = np.linspace(0.2, 1.0, 401) * pair.pitch
+    path = trace_contact(pair, angles)
+    assert path.on_crease.any()
+    assert np.ptp(np.flatnonzero(path.on_crease)) + 1 == path.on_crease.sum(), "one stretch"
+    step = angles[1] - angles[0]
+    slopes = np.diff(path.transmission_error) / step
+    # the relief of 0.2 mm over 1 mm of radius, 2.4 mm of roll length: a slope of 0.083 at most
+    assert np.abs(slopes).max() < 0.083
+    assert np.abs(np.diff(slopes)).max() < 5e-3, "and its slope has no jump: the contact rests meanwhile"
+
+
+@pytest.mark.parametrize("driving", ["pinion", "wheel"])
+def test_contact_on_a_crease_is_the_maximum_of_a_grid_that_holds_the_crease(driving):
+    pair = gear_pair(wheel=linear_relief(start=175.0), driving=driving)
+    path = trace_contact(pair, -pair.driving * np.linspace(0.4, 0.8, 41) * pair.pitch)
+    rows = np.flatnonzero(path.on_crease)
+    assert rows.size > 2
+    assert_allclose(path.wheel_radius[rows], 87.5, atol=1e-8)
+    rho, z = pair.pinion.grid(4001, 3)
+    for row in rows:
+        lag, there = wheel_lag(pair, path.pinion_angle[row], rho, z)
+        best = np.where(there, pair.driving * lag, -np.inf).max()
+        # a grid of 1.7 um misses the top of slopes of up to 0.2 by 3e-4 mm over r_b2 at most, a ridge of them by less
+        assert 0.0 <= pair.driving * path.transmission_error[row] - best + ROUNDING < 4e-6
+
+
+def test_contact_is_found_across_creases_in_whatever_order_they_lie():
+    """Linear tip and root relief that overlap, and the mate's: the way to the maximum crosses the later crease first."""
+    mesh = cylindrical_mesh((19, 58), width=8.87, shifts=(0.3, 0.3))
+    active = mesh.pinion_active_profile
+    low, high = 2.0 * active.start_radius, 2.0 * active.end_radius
+    middle = 0.5 * (low + high)
+    both = FlankModifications(
+        lead_crowning=1e-5,
+        tip_relief=0.002,
+        tip_relief_start=middle - 0.02,
+        tip_relief_form="linear",
+        root_relief=0.025,
+        root_relief_start=middle + 0.02,
+        root_relief_form="linear",
+        end_relief=0.025,
+        end_relief_length=4.0,
+    )
+    wheel = mesh.wheel_active_profile
+    start = wheel.start_radius + wheel.end_radius
+    mate = FlankModifications(lead_crowning=0.015, tip_relief=0.024, tip_relief_start=start, tip_relief_form="linear")
+    for driving in ("pinion", "wheel"):
+        for sense in ("positive", "negative"):
+            pair = cylindrical_pair(mesh, modifications=(both, mate), driving=driving, sense=sense)
+            path = trace_contact(pair, np.linspace(-1.2, 1.2, 25) * pair.pitch)
+            for row in np.flatnonzero(path.touches):
+                assert lead_over_grid(pair, path, row) >= -ROUNDING
+
+
+def test_crossings_go_on_from_piece_to_piece_but_never_straight_back():
+    multipliers = np.array([[0.0, 0.3], [0.2, 0.1], [0.0, 0.0], [0.5, 0.0]])
+    row, crease = search._crossings(multipliers, np.array([-1, -1, -1, 0]))
+    assert list(zip(row.tolist(), crease.tolist(), strict=True)) == [(0, 1), (1, 0), (1, 1)]
+
+
+def test_radius_of_contact_never_leaves_the_flanks_of_a_pair_turned_far():
+    pair = gear_pair(FlankModifications(lead_crowning=0.01), mounting=Mounting(math.radians(1.0), math.radians(-1.0)))
+    path = trace_contact(pair, np.linspace(-1.3, 1.3, 53) * pair.pitch)
+    inside = path.touches
+    assert pair.pinion.inside(path.pinion_radius[inside], path.pinion_axial[inside], tolerance=1e-7).all()
+    assert pair.wheel.inside(path.wheel_radius[inside], path.wheel_axial[inside], tolerance=1e-7).all()
