@@ -62,16 +62,21 @@ class LoadedContact:
 
     @property
     def hertz(self) -> PointContact | None:
-        """Hertz's contact of the same curvatures and load; None where it does not hold (border, crease, no load)."""
+        """Hertz's contact of the same curvatures and load; None where it does not hold.
+
+        That is at a border, on a crease or a line, without load, and where the curvature of the contact point is not
+        that of the contact: on a flank with end relief alone the ellipse would be longer than the box.
+        """
         across, along = self.separation.curvatures
         smooth = along > 0.0 and not (self.at_border or self.contact.on_crease or self.contact.on_line)
         if not smooth or self.solution.load <= 0.0:
             return None
-        return point_contact(self.solution.load, (across, along), self.solution.contact_modulus)
+        ellipse = point_contact(self.solution.load, (across, along), self.solution.contact_modulus)
+        return ellipse if ellipse.semi_major < self.separation.half_lengths[1] else None
 
     @property
     def extent(self) -> tuple[float, float]:
-        """Width across and length along [mm]: of the ellipse of the contact, at a border of the cells under pressure."""
+        """Width across and length along [mm]: of the contact ellipse, at a border of the cells under pressure."""
         if not self.at_border:
             minor, major = self.solution.semi_axes
             return 2.0 * minor, 2.0 * major

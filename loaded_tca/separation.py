@@ -37,6 +37,9 @@ MARGIN = 1.25
 """Box over estimated contact."""
 SPIKE_MARGIN = 1.75
 """The same across a contact that ends with its flank, where the half-space gives a spike and a wider contact."""
+EDGE_MARGIN = 2.5
+"""The same across a contact on an edge: over a gap that rises linearly from the edge of a flank the half-space is
+twice as wide as the strips."""
 CERTAINLY_INSIDE = 0.97
 """Contacts shorter than this fraction of the material are taken to end of themselves."""
 PROBE = (17, 33)
@@ -215,7 +218,8 @@ def estimate_box(pair: GearPair, contact: ContactPoint, load: float) -> tuple[tu
         window = (_resized(needed[0], window[0]), min(_resized(needed[1], window[1]), longest))
     material = _material_length(gap, MARGIN * needed[1])
     spiked = needed[1] > CERTAINLY_INSIDE * material
-    return ((SPIKE_MARGIN if spiked else MARGIN) * needed[0], MARGIN * needed[1]), material
+    margin = EDGE_MARGIN if contact.on_edge else SPIKE_MARGIN if spiked else MARGIN
+    return (margin * needed[0], MARGIN * needed[1]), material
 
 
 def _first_window(curvature: RelativeCurvature, load: float, modulus: float, longest: float) -> tuple[float, float]:

@@ -30,13 +30,15 @@ def separation_of(pair, turn=0.0, **options):
 
 
 def height_of(flank, turn, to_own, start, normal):
-    """Distance along the normal from a point of the tangent plane to a flank [mm], by bracketing; and (rho, z) there."""
+    """Distance along the normal from the tangent plane to a flank [mm], by bracketing, and (rho, z) there."""
 
     def excess(height):
         x, y, z = to_own(start + height * normal)
         theta = flank.theta(np.array(math.hypot(x, y)), np.array(z)).value + turn
         return math.remainder(float(theta) - math.atan2(y, x), math.tau)
 
+    if excess(-0.5) * excess(0.5) > 0.0:
+        return math.nan, (np.array(0.0), np.array(math.inf))  # bent away, far outside the flank
     height = brentq(excess, -0.5, 0.5, xtol=1e-15, rtol=1e-15)
     x, y, z = to_own(start + height * normal)
     return height, (np.array(math.hypot(x, y)), np.array(z))
@@ -59,7 +61,7 @@ def brute_force_gap(pair, contact, separation, i, j):
 
 
 @given(pairs(), st.floats(-0.4, 0.4))
-@settings(max_examples=20)
+@settings(max_examples=12)
 def test_gap_equals_the_distance_found_by_bracketing(pair, turn):
     contact, separation = separation_of(pair, turn, box=(0.3, 4.0), load=None, cells=(6, 6))
     for i, j in ((0, 0), (2, 3), (5, 1), (3, 5)):
@@ -71,7 +73,7 @@ def test_gap_equals_the_distance_found_by_bracketing(pair, turn):
 
 
 @given(pairs(), st.floats(-0.4, 0.4))
-@settings(max_examples=20)
+@settings(max_examples=12)
 def test_gap_is_nothing_at_the_contact_point_and_nowhere_negative(pair, turn):
     _, separation = separation_of(pair, turn, box=(0.2, 4.0), load=None, cells=(17, 17))
     assert_allclose(separation.gap[8, 8], 0.0, atol=GAP)
@@ -112,7 +114,7 @@ def test_gap_of_a_crowned_spur_pair_is_symmetric_along_the_face():
 def test_gap_of_equal_gears_at_the_pitch_point_is_symmetric_under_half_a_turn(helix_deg):
     crowned = FlankModifications(lead_crowning=0.005)
     _, separation = separation_of(gear_pair(crowned, crowned, teeth=(40, 40), helix_deg=helix_deg))
-    # half a turn about the normal... the gears change places under a half turn about the middle of the pair
+    # half a turn about the x axis of the pair lets the gears change places; to third order in the gap
     assert_allclose(separation.gap, separation.gap[::-1, ::-1], atol=1e-9)
 
 
@@ -177,16 +179,17 @@ def test_box_holds_the_contact_and_is_not_much_larger(name, load):
         warnings.simplefilter("ignore", AccuracyWarning)
         solution = solve_contact(separation.gap, separation.spacing, pair.contact_modulus, load=load, tolerance=1e-4)
     assert not solution.reaches_border
-    # more than a third of the box across, and of the material along
-    assert solution.cells_across[0] >= 16
-    assert solution.cells_across[1] >= 12
+    # half of the box across, a fifth on an edge; along, a wedge at the end of a face is short beside its box
+    assert solution.cells_across[0] >= (10 if "edge" in name or "tip" in name else 24)
+    assert solution.cells_across[1] >= (4 if name == "misaligned edge" else 36)
 
 
 def test_cells_for_accuracy_are_even_and_grow_with_the_root_of_the_accuracy():
-    cells = [cells_for_accuracy(accuracy) for accuracy in (1e-2, 1e-3, 1e-4, 1e-5)]
+    cells = [cells_for_accuracy(accuracy) for accuracy in (0.5, 1e-3, 1e-5, 1e-7)]
     assert all(count % 2 == 0 for count in cells)
+    assert cells[0] >= 8
+    assert_allclose(cells[3] / cells[2], 10.0, rtol=0.02)  # whole, even numbers
     assert cells == sorted(cells)
-    assert_allclose(cells[3] / cells[1], 10.0, rtol=0.05)
 
 
 def test_given_box_and_cells_are_kept():
@@ -196,10 +199,9 @@ def test_given_box_and_cells_are_kept():
     assert repr(separation) == "Separation(10 x 20 cells of 0.08 x 0.8 mm)"
 
 
-def test_load_of_zero_gets_the_box_of_one_newton():
-    pair = seed_002()
-    first, second = (separation_of(pair, load=load)[1] for load in (0.0, 1.0))
-    assert first.spacing == second.spacing
+def test_load_of_zero_gets_a_box_so_small_that_its_smallest_gap_is_rounding():
+    _, separation = separation_of(seed_002(), load=0.0)
+    assert separation.gap.min() < 1e-9
 
 
 # Failure paths

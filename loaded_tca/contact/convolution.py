@@ -95,8 +95,9 @@ class _Transform:
 
     def __init__(self, rows: tuple[int, int], box: tuple[int, int], dtype: str) -> None:
         complex_type = "complex64" if dtype == "float32" else "complex128"
-        self.data = pyfftw.zeros_aligned((rows[0], box[1]), dtype=dtype)
-        self.result = pyfftw.zeros_aligned((rows[1], box[1]), dtype=dtype)
+        # What goes in is used up before anything comes out: both share one array.
+        real = pyfftw.zeros_aligned((max(rows), box[1]), dtype=dtype)
+        self.data, self.result = real[: rows[0]], real[: rows[1]]
         # Rows a power of two apart share their place in the cache: a few unused columns keep them apart.
         padded = pyfftw.zeros_aligned((box[1] // 2 + 1, box[0] + 8), dtype=complex_type)
         self.spectrum = padded[:, : box[0]]
@@ -112,7 +113,7 @@ class _Transform:
             for part in _pieces(self.spectrum)
         ]
         self.outward = [(part, _plan(by_rows[part], self.result[part], **back)) for part in _pieces(self.result)]
-        self.nbytes = self.data.nbytes + self.result.nbytes + self.spectrum.nbytes
+        self.nbytes = real.nbytes + padded.nbytes
 
     def filter(self, values: Array, corner: tuple[int, int], symbol: Array, out: Array, threads: int) -> None:
         """Transform values placed at a corner of the box, multiply by the symbol, transform back into ``out``."""

@@ -20,6 +20,7 @@ WHOLE_STEP = 0.5
 MOST_PROJECTIONS = 100
 # Relative error of the sum of some thousand pressures.
 ROUNDING = 1e-15
+AT_BOUND = 1e-12
 
 
 # BLAS starts threads for products of vectors from this length.
@@ -60,18 +61,25 @@ class Grid:
     cap: float
 
     def clip(self, pressure: Array, movable: Mask) -> Array:
-        """Nearest pressure within the bounds (and with the right sum) that moves only the movable cells."""
-        clipped = np.clip(pressure, 0.0, self.cap)
-        if self.total is None:
-            return clipped
-        if np.isinf(self.cap):
-            clipped *= self.total / clipped.sum()
-            return clipped
-        values = pressure[movable]
-        if not values.size:
-            return clipped
-        clipped[movable] = _project(values, self.total - float(clipped[~movable].sum()), self.cap)
+        """Pressure within the bounds and with the right sum: scaled where there is no cap, projected otherwise."""
+        if self.total is None or not np.isinf(self.cap):
+            return self.project(pressure, movable)
+        clipped = np.maximum(pressure, 0.0)
+        clipped *= self.total / clipped.sum()
         return clipped
+
+    def project(self, pressure: Array, movable: Mask) -> Array:
+        """Nearest pressure within the bounds and with the right sum that moves only the movable cells."""
+        projected = np.clip(pressure, 0.0, self.cap)
+        if self.total is not None and movable.any():
+            rest = self.total - float(projected[~movable].sum())
+            projected[movable] = _project(pressure[movable], rest, min(self.cap, self.total))
+        return projected
+
+    @property
+    def slack(self) -> float:
+        """Distance from a bound that is a rounding error: a cell that the last digits keep off the cap is at it."""
+        return 0.0 if np.isinf(self.cap) else AT_BOUND * self.cap
 
 
 def _project(values: Array, total: float, cap: float) -> Array:
@@ -113,10 +121,10 @@ class Judgement:
 
 def judge(grid: Grid, pressure: Array, excess: Array) -> Judgement:
     """Check the Kuhn-Tucker conditions; turns ``excess``, given as u + h, into u + h - approach in place."""
-    inner = touching = pressure > 0.0
+    inner = touching = pressure > grid.slack
     capped: Mask | None = None
     if not np.isinf(grid.cap):
-        capped = pressure >= grid.cap
+        capped = pressure >= grid.cap - grid.slack
         inner = touching & ~capped
     approach = grid.approach if grid.total is None else _mean_level(excess, touching, inner, capped)
     excess -= approach
@@ -158,6 +166,9 @@ class Descent:
         K times the start, if known.
     threads : int
         Threads of a transform.
+    exact : bool
+        Whether the displacement of the start is computed in double precision; else its errors, some 1e-7 of the
+        approach, stay in it until the next refreshment.
 
     References
     ----------
@@ -165,15 +176,23 @@ class Descent:
     J. Comput. Phys. 257, 333-351 (Fourier preconditioner).
     """
 
-    def __init__(self, grid: Grid, pressure: Array, displacement: Array | None = None, threads: int = 2) -> None:
+    def __init__(
+        self,
+        grid: Grid,
+        pressure: Array,
+        displacement: Array | None = None,
+        threads: int = 2,
+        exact: bool = True,
+    ) -> None:
         shape = pressure.shape
         self.grid = grid
         self.pressure = pressure
         self.iterations = 0
-        self._exact = Convolution(shape, grid.aspect, threads=threads)
+        self._threads = threads
         self._fast = Convolution(shape, grid.aspect, dtype="float32", threads=threads)
         self._precondition = Preconditioner(shape, grid.aspect, threads)
-        self._displacement = self._exact(pressure, np.empty(shape)) if displacement is None else displacement
+        self._refreshed = 0
+        self._displacement = displacement if displacement is not None else self._displaced(exact)
         self._excess = np.empty(shape)
         self._scale = 0.0
         self._direction = np.zeros(shape, dtype=np.float32)
@@ -183,7 +202,7 @@ class Descent:
     @property
     def convolutions(self) -> int:
         """Convolutions so far."""
-        return self._exact.count + self._fast.count
+        return self._refreshed + self._fast.count
 
     def run(self, tolerance: float, limit: int) -> Judgement:
         """Iterate until the residual is below the tolerance or ``limit`` iterations are done."""
@@ -196,9 +215,17 @@ class Descent:
             self._iterate(state.free)
             self.iterations += 1
             if (step + 1) % REFRESH == 0:
-                self._exact(self.pressure, self._displacement)
+                self._displacement = self._displaced(exact=True)
                 self._last = None
         return state
+
+    def _displaced(self, exact: bool) -> Array:
+        """Displacement of the pressure, in double precision or in single."""
+        shape = self.pressure.shape
+        if not exact:
+            return self._fast(self.pressure, np.empty(shape))
+        self._refreshed += 1
+        return Convolution(shape, self.grid.aspect, threads=self._threads)(self.pressure, np.empty(shape))
 
     def settle(self) -> Array:
         """Take the rounding errors of the steps off the sum of the pressures; return these."""
@@ -273,4 +300,4 @@ class Descent:
         curvature = dot(residual, image)
         if curvature > 0.0:
             length = self._scale * dot(residual, residual) / curvature
-            self._move(self.grid.clip(self.pressure - length * residual, free))
+            self._move(self.grid.project(self.pressure - length * residual, free))

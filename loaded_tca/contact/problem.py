@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.contact.convolution import Window
-from loaded_tca.contact.descent import Grid
+from loaded_tca.contact.descent import AT_BOUND, Grid
 from loaded_tca.contact.levels import coarsen
 from loaded_tca.contact.love import influence_coefficients
 
@@ -101,3 +101,8 @@ class Problem:
             unit = self.unit
             pressure = self.grid().clip(pressure * unit, self.reachable) / unit
         return pressure
+
+    def in_user_units(self, pressure: Array) -> Array:
+        """Pressure of the grid in MPa; what is at the cap but for rounding there is exactly at the cap here."""
+        capped = pressure >= (1.0 - AT_BOUND) * self.max_pressure * self.unit
+        return np.where(capped, self.max_pressure, np.minimum(pressure / self.unit, self.max_pressure))

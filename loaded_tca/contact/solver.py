@@ -42,6 +42,8 @@ COARSE_FACTOR = 4.0
 COARSE_TOLERANCE = 1e-3
 # The iteration stops a little below the tolerance, so that the check in double precision finds it kept.
 RESERVE = 0.8
+# Above this tolerance the first displacement on a grid may be in single precision; the check is in double always.
+SINGLE_PRECISION = 1e-6
 
 
 def solve_contact(
@@ -240,7 +242,7 @@ def _from_coarser(problem: Problem, tolerance: float) -> tuple[Array, _Level | N
     pressure, _ = _from_coarser(coarse, tolerance)
     window = _window(coarse, pressure)
     grid = coarse.grid(window)
-    descent = Descent(grid, pressure[window] * coarse.unit, threads=problem.threads)
+    descent = Descent(grid, pressure[window] * coarse.unit, threads=problem.threads, exact=False)
     state = descent.run(tolerance, MOST_ITERATIONS)
     pressure = np.zeros(coarse.gap.shape)
     pressure[window] = descent.pressure / coarse.unit
@@ -261,7 +263,8 @@ def _finest(
     whole = problem.grid()
     pressure = pressure * problem.unit
     window = _window(problem, pressure)
-    descent = Descent(problem.grid(window), pressure[window], threads=problem.threads)
+    exact = tolerance < SINGLE_PRECISION
+    descent = Descent(problem.grid(window), pressure[window], threads=problem.threads, exact=exact)
     iterations = convolutions = 0
     for _ in range(MOST_CHECKS):
         descent.run(RESERVE * tolerance, MOST_ITERATIONS - iterations)
@@ -292,7 +295,7 @@ def _solution(
     coarse: _Level | None,
 ) -> ContactSolution:
     """Put a solution together in the units of the user."""
-    pressure = pressure / problem.unit
+    pressure = problem.in_user_units(pressure)
     load = float(pressure.sum()) * problem.spacing[0] * problem.spacing[1]
     solution = ContactSolution(
         pressure=pressure,

@@ -3,7 +3,8 @@
 The solver knows no lines: on a flat ridge it stops somewhere. Here the ridge (the points where the ease-off is
 stationary across the soft direction, or the edge that the contact rests on) is followed to the borders by a Newton
 iteration on two equations, *on the ridge* and *on border k*; if the ease-off does not fall towards either end, the
-contact is a line.
+contact is a line. A flat stretch that ends before the borders (end relief alone) is no line, but it is no point
+either: its middle stands for it.
 """
 
 from __future__ import annotations
@@ -20,7 +21,13 @@ FLATNESS = 1e-9
 """Fall of the ease-off towards the borders, relative to the module, below which a contact is called a line."""
 WORTH_FOLLOWING = 1e-6
 """Predicted fall over the flank, relative to the module, above which the ridge need not be followed."""
+NEARBY = 2e-5
+"""Step, as a fraction of the face width, that tells whether the contact lies at the end of a flat stretch."""
 RIDGE_STEPS = 12
+ROUNDING = 2e-15
+"""Fall of the ease-off, relative to r_b2, that is rounding."""
+BISECTIONS = 14
+"""Halvings that find the end of a flat stretch: to a micrometre on a face of 20 mm."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,13 +38,16 @@ class Lines:
     ----------
     rows : (m,) int array
         Positions whose contact is a line.
-    rho, z : (m,) array [mm]
-        Middle of each line on the pinion flank.
+    flat : (k,) int array
+        Positions whose contact is a line or lies on a flat stretch that ends before the borders (end relief alone).
+    rho, z : (k,) array [mm]
+        Middle of each flat stretch on the pinion flank.
     ends : (m, 2, 3) array [mm]
         Its ends in the fixed frame, the one at the smaller z first.
     """
 
     rows: Array
+    flat: Array
     rho: Array
     z: Array
     ends: Array
@@ -45,20 +55,35 @@ class Lines:
 
 def find_lines(field: EaseOff, phi1: Array, rho: Array, z: Array, multipliers: Array) -> Lines:
     """Lines among the first touches (n,); ``multipliers`` (n, borders) tell the borders they rest on."""
-    along, fall = _soft_direction(field, phi1, rho, z, multipliers)
+    along, fall = _softest_direction(field, phi1, rho, z, multipliers)
     corner = (multipliers > 0.0).sum(axis=-1) > 1
     rows = np.flatnonzero((fall <= WORTH_FOLLOWING * field.pair.module) & ~corner)
+    if not rows.size:
+        return Lines(rows, rows, rho[rows], z[rows], np.empty((0, 2, 3)))
     ridge = _Ridge(
         field.restricted(rows), phi1[rows], np.stack([rho, z], axis=-1)[rows], along[rows], multipliers[rows]
     )
     first, second, found = ridge.ends()
     limit = FLATNESS * field.pair.module
     keep = found & (ridge.fall(first) <= limit) & (ridge.fall(second) <= limit)
+    if (found & ~keep).any():
+        first, second = (np.where(keep[:, None], end, ridge.flat_part(end)) for end in (first, second))
     points = np.stack([ridge.in_space(end) for end in (first, second)], axis=1)
     points = np.take_along_axis(points, np.argsort(points[..., 2:], axis=1), axis=1)
     x, y, z_middle = points.mean(axis=1).T
-    middle = ridge.nearest(np.stack([np.hypot(x, y), z_middle], axis=-1))[keep]
-    return Lines(rows[keep], middle[:, 0], middle[:, 1], points[keep])
+    middle = ridge.nearest(np.stack([np.hypot(x, y), z_middle], axis=-1))[found]
+    return Lines(rows[keep], rows[found], middle[:, 0], middle[:, 1], points[keep])
+
+
+def _softest_direction(field: EaseOff, phi1: Array, rho: Array, z: Array, multipliers: Array) -> tuple[Array, Array]:
+    """Soft direction at the points or just beside them: at the start of an end relief the curvature jumps."""
+    along, fall = _soft_direction(field, phi1, rho, z, multipliers)
+    step = NEARBY * field.pair.pinion.extent[1] * along
+    for sign in (1.0, -1.0):
+        other, lower = _soft_direction(field, phi1, rho + sign * step[:, 0], z + sign * step[:, 1], multipliers)
+        flat = (lower < fall) & (lower <= WORTH_FOLLOWING * field.pair.module)
+        along, fall = np.where(flat[:, None], other, along), np.where(flat, lower, fall)
+    return along, fall
 
 
 def _soft_direction(field: EaseOff, phi1: Array, rho: Array, z: Array, multipliers: Array) -> tuple[Array, Array]:
@@ -110,6 +135,19 @@ class _Ridge:
         length = travel[rows, second] - travel[rows, first]
         found = (met.sum(axis=1) > 1) & (length > FEASIBLE * self.field.pair.pinion.extent[1])
         return crossings[rows, first], crossings[rows, second], found
+
+    def flat_part(self, end: Array) -> Array:
+        """The farthest point of the ridge towards an end, (m, 2), to which the ease-off falls by rounding only."""
+        limit = ROUNDING * self.field.pair.base_radii[1]
+        low, high = np.zeros(len(end)), np.ones(len(end))
+        for _ in range(BISECTIONS):
+            share = 0.5 * (low + high)
+            level = self.fall(self.nearest(self._between(end, share))) <= limit
+            low, high = np.where(level, share, low), np.where(level, high, share)
+        return self.nearest(self._between(end, low))
+
+    def _between(self, end: Array, share: Array) -> Array:
+        return self.start + share[:, None] * (end - self.start)
 
     def nearest(self, points: Array) -> Array:
         """Points of the ridge beside the given ones, moved across the ridge only."""

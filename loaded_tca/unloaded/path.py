@@ -184,7 +184,7 @@ def _assemble(pair: GearPair, phi1: Array, touch: FirstTouch) -> ContactPath:
     field = EaseOff(pair, touch.beyond[rows] if touch.beyond.shape[1] else None)
     multipliers = np.where(touch.multipliers[rows] > EDGE_SLOPE, touch.multipliers[rows], 0.0)
     lines = find_lines(field, angle, rho, z, multipliers)
-    rho[lines.rows], z[lines.rows] = lines.rho, lines.z
+    rho[lines.flat], z[lines.flat] = lines.rho, lines.z
     line_ends = np.full((len(rows), 2, 3), np.nan)
     line_ends[lines.rows] = lines.ends
     station = field.station(angle, rho, z)

@@ -181,7 +181,7 @@ def _back_to_ridge(field: EaseOff, phi1: Array, points: Array, multipliers: Arra
 
     A flat ridge (a nearly unmodified helical pair) is bent: a straight step along it falls by more than its end rises.
     """
-    held, rows = (multipliers > 0.0).any(axis=-1), np.arange(len(points))
+    held, rows = np.asarray((multipliers > 0.0).any(axis=-1)), np.arange(len(points))
     for _ in range(RIDGE_CORRECTIONS):
         here = _look(field, phi1, points, scale)
         bend = field.hessian(here.station) * np.outer(scale, scale)

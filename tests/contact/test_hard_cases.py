@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from conditions import contact_conditions
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
@@ -204,6 +204,14 @@ def test_cap_nearly_filled(filled):
     assert_allclose(solution.pressure.mean(), filled * 100.0, rtol=1e-12)
 
 
+@pytest.mark.parametrize("load", [1e-3, 1.0, 1e3])
+def test_cap_that_fills_a_whole_number_of_cells(load, rng):
+    """Every cell is at a bound but for rounding: no cell between the bounds to read the approach from."""
+    gap = 1e-3 * rng.random((30, 26))
+    solution = solve(gap, (0.01, 0.01), load=load, max_pressure=load / (546 * 1e-4), tolerance=1e-6)
+    assert_allclose(solution.pressure.sum() * solution.cell_area, load, rtol=1e-11)
+
+
 def test_cap_overfilled_is_refused():
     gap, spacing, _ = ellipse((64, 64), (0.1, 0.1))
     area = gap.size * spacing[0] * spacing[1]
@@ -263,6 +271,7 @@ def test_grids_of_one_row(n):
     void=st.sampled_from([0.0, 0.3]),
     fill=st.sampled_from([None, 0.1, 0.7]),
 )
+@example(seed=0, shape=(3, 5), aspect=1.0, load=10.0**3.796875, void=0.3, fill=0.7)
 @settings(max_examples=60)
 def test_contact_conditions_hold_on_random_surfaces(seed, shape, aspect, load, void, fill):
     """White noise with holes: the roughest surface there is, any shape, load and cell."""

@@ -204,6 +204,18 @@ def test_cap_is_kept_and_the_load_balanced():
     assert solution.approach > contact.approach
 
 
+@given(cap=st.floats(350.0, 1300.0), unit=st.sampled_from([1.0, 3.0, 1e-3, 7e5]))
+@settings(max_examples=20)
+def test_capped_cells_are_exactly_at_the_cap(cap, unit):
+    """Not a rounding error below it: the stiffness and every check tell them apart by equality."""
+    _, gap, spacing = hertz_problem((24, 24))
+    solution = solve_contact(
+        gap, spacing, E_STAR * unit, load=LOAD * unit, max_pressure=cap * unit, tolerance=1e-9, warn=False
+    )
+    assert solution.pressure.max() == cap * unit
+    assert contact_conditions(solution, gap) < 1e-8
+
+
 def test_start_from_the_neighbouring_solution_saves_nothing_in_truth():
     """A start changes the way, never the answer."""
     contact, gap, spacing = hertz_problem()

@@ -153,5 +153,5 @@ def test_theta_is_finite_down_to_the_base_circle_and_below():
 
 @pytest.mark.parametrize("limits", [(47.0, 54.0), (54.0, 54.0), (55.0, 54.0), (math.nan, 54.0)])
 def test_radii_out_of_order_are_refused(limits):
-    with pytest.raises(InputError, match="radii: base 47.9 <= form .* < tip .* mm does not hold"):
+    with pytest.raises(InputError, match=r"radii: base 47.9 <= form .* < tip .* mm does not hold"):
         InvoluteFlank(BASE, 0.0, 1, WORKING, limits, WIDTH)

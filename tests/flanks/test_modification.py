@@ -288,7 +288,7 @@ def test_relief_that_starts_off_the_active_profile_is_refused(relief, diameter):
 
 @pytest.mark.parametrize("length", [0.0, -1.0, 1.01 * HALF])
 def test_end_relief_longer_than_half_the_face_or_without_length_is_refused(length):
-    with pytest.raises(InputError, match="end_relief_length: .* mm is not between 0 and 12.5 mm"):
+    with pytest.raises(InputError, match=r"end_relief_length: .* mm is not between 0 and 12.5 mm"):
         modified(end_relief=AMOUNT, end_relief_length=length)
 
 

@@ -46,7 +46,7 @@ def tensor_of_both_flanks(pair, contact, axes):
 
 
 @given(pairs(), st.floats(-0.5, 0.5))
-@settings(max_examples=60)
+@settings(max_examples=40)
 def test_relative_curvature_is_the_sum_of_the_curvatures_of_both_flanks(pair, turn):
     path = trace_contact(pair, [turn * pair.pitch])
     contact = path[0]
@@ -84,7 +84,7 @@ def test_crowning_over_the_face_width_curves_a_spur_flank_along_its_contact_line
 
 
 @given(pairs(), st.floats(-0.5, 0.5))
-@settings(max_examples=25)
+@settings(max_examples=12)
 def test_axes_are_right_handed_with_the_normal_out_of_the_pinion_and_the_second_towards_positive_z(pair, turn):
     contact = trace_contact(pair, [turn * pair.pitch])[0]
     axes = relative_curvature(pair, contact).axes

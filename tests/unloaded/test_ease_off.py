@@ -22,9 +22,12 @@ turns = st.floats(-0.5, 0.5)
 
 def place(pair, share):
     rho, z = pair.pinion.grid(2, 2)
-    return np.array([[low + part * (high - low)] for low, high, part in zip(
-        (rho.min(), z.min()), (rho.max(), z.max()), share, strict=True
-    )])
+    return np.array(
+        [
+            [low + part * (high - low)]
+            for low, high, part in zip((rho.min(), z.min()), (rho.max(), z.max()), share, strict=True)
+        ]
+    )
 
 
 def stencil(rho, z):
@@ -134,7 +137,9 @@ def test_border_hessian_agrees_with_differences_of_the_border_gradients():
 
 def test_creases_come_after_the_borders_of_their_gear_and_point_to_the_side_asked_for():
     relief = FlankModifications(tip_relief=0.02, tip_relief_start=105.0, tip_relief_form="linear")
-    pair = gear_pair(pinion=relief, wheel=FlankModifications(tip_relief=0.02, tip_relief_start=174.0, tip_relief_form="linear"))
+    pair = gear_pair(
+        pinion=relief, wheel=FlankModifications(tip_relief=0.02, tip_relief_start=174.0, tip_relief_form="linear")
+    )
     rho, z, phi1 = np.array([53.0]), np.array([0.0]), np.array([0.0])
     sides = EaseOff(pair).sides(phi1, rho, z)
     assert sides.shape == (1, 2)
@@ -144,7 +149,9 @@ def test_creases_come_after_the_borders_of_their_gear_and_point_to_the_side_aske
         assert field.border_owner().tolist() == [0] * 5 + [1] * 5
         assert np.flatnonzero(field.border_is_crease()).tolist() == [4, 9]
         distances, _ = field.borders(field.station(phi1, rho, z))
-        assert (distances[0, [4, 9]] > 0.0).tolist() == [side == own for side, own in zip(beyond[0], sides[0], strict=True)]
+        assert (distances[0, [4, 9]] > 0.0).tolist() == [
+            side == own for side, own in zip(beyond[0], sides[0], strict=True)
+        ]
 
 
 @pytest.mark.parametrize("sense", ["positive", "negative"])

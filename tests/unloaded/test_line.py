@@ -19,8 +19,8 @@ helices = pytest.mark.parametrize("helix_deg", [0.0, 15.0, -25.0])
 drives = pytest.mark.parametrize("driving", ["pinion", "wheel"])
 
 
-def border_distances(pair, phi1, wheel_angle, point):
-    """Smallest distance of a point in space to the borders of either flank, its own angle ignored [mm]."""
+def border_distances(pair, point):
+    """Smallest distance of a point in space to the borders of either flank [mm]."""
     rho, z = np.array(math.hypot(point[0], point[1])), np.array(point[2])
     wheel_rho, _, wheel_z = pair.to_wheel(point)
     jets = (*pair.pinion.borders(rho, z), *pair.wheel.borders(wheel_rho, wheel_z))
@@ -40,7 +40,7 @@ def test_line_of_an_unmodified_pair_ends_on_borders_and_has_the_point_in_its_mid
     assert (np.diff(path.line_ends[..., 2], axis=1) > 0.1).all(), "from the lower end to the upper one"
     for row in range(len(path)):
         for end in path.line_ends[row]:
-            distances = border_distances(pair, path.pinion_angle[row], path.wheel_angle[row], end)
+            distances = border_distances(pair, end)
             assert distances.min() > -ON_BORDER
             assert abs(distances).min() < ON_BORDER
 
@@ -95,3 +95,15 @@ def test_point_contact_has_no_line_ends():
     path = trace_contact(gear_pair(mounting=Mounting(out_of_plane=0.001)), [0.0])
     assert path.on_edge.all()
     assert not path.on_line.any()
+
+
+@helices
+@pytest.mark.parametrize("length", [4.0, 8.0])
+def test_contact_on_a_flat_stretch_between_end_reliefs_is_its_middle(helix_deg, length):
+    """No line, since it ends before the borders; wherever the ascent ended, its middle stands for it."""
+    relief = FlankModifications(end_relief=0.02, end_relief_length=length)
+    path = trace_contact(gear_pair(relief, helix_deg=helix_deg), np.linspace(-0.05, 0.05, 9))
+    assert not path.on_line.any()
+    assert not path.on_edge.any()
+    assert_allclose(path.pinion_axial, 0.0, atol=0.01)  # the parabolas leave the level within 2 um
+    assert_allclose(path.transmission_error, 0.0, atol=1e-14)

@@ -163,7 +163,9 @@ def test_misalignments_of_equal_effect_in_the_plane_of_action_give_equal_errors(
 
 
 def test_centre_distance_error_leaves_the_transmission_error_of_involutes_constant():
-    path = trace_contact(gear_pair(FlankModifications(lead_crowning=0.01), mounting=Mounting(centre_distance_error=0.2)))
+    path = trace_contact(
+        gear_pair(FlankModifications(lead_crowning=0.01), mounting=Mounting(centre_distance_error=0.2))
+    )
     inner = ~path.on_edge
     assert np.ptp(path.transmission_error[inner]) < CONJUGATE
 
@@ -362,7 +364,7 @@ def test_pair_that_never_touches_is_refused():
 
 @pytest.mark.parametrize("angles", [[], [[0.0]], [math.nan], [0.0, math.inf], 0.0])
 def test_angles_that_are_no_finite_row_are_refused(angles):
-    with pytest.raises(InputError, match="pinion_angles: shape .* with finite numbers only in one dimension"):
+    with pytest.raises(InputError, match=r"pinion_angles: shape .* with finite numbers only in one dimension"):
         trace_contact(seed_002(), angles)
 
 
