@@ -38,7 +38,7 @@ def seed_002(helix_deg=0.0, **changes):
     return gear_pair(FlankModifications(lead_crowning=0.005), helix_deg=helix_deg, **changes)
 
 
-SEED_002_TORQUE = 130e3  # N mm, inferred (REFERENCES.md)
+SEED_002_TORQUE = 130e3  # N mm; inferred, the paper prints no load
 
 
 def amounts(largest):

@@ -11,6 +11,7 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 
 EXPECTED = {
     "plot_pressure_distribution": (1.0, 1e-10),  # the map carries the load: equilibrium
+    "plot_contact_from_arrays": (1.018, 2e-3),  # the profile takes load off the ends and gives it to the middle
     "plot_hertz_comparison": (1.0, 2e-3),  # peak over that of Hertz, on 49 cells
     "plot_transmission_error": (2.0 / 3.0, 5e-3),  # approach of a Hertz contact under growing load
 }

@@ -42,6 +42,8 @@ RESIDUAL = 1e-12
 """Distance of the points, relative to r_b2, and difference of the normals at which the equations are solved."""
 ASTRAY = 1e6
 """Unknowns larger than this multiple of r_b2 [mm] (phi2: this many radians) never come back to the flanks."""
+SAME_NORMAL = 1e-5
+"""Difference of the normals in their third component: the root of what the two others leave."""
 ON_FLANK = 1e-9
 """Distance beyond a border, relative to the flank's height, that still counts as on the flank: rounding."""
 
@@ -62,6 +64,8 @@ class ConventionalResult:
         Newton steps, or evaluations of the equations if SciPy solved them.
     converged : (n,) bool array
         Whether the five equations hold.
+    tangent : (n,) bool array
+        Whether the normals are opposite in their third component too: two components leave its sign open.
     inside : (n,) bool array
         Whether both points lie on their flanks: a solution elsewhere is no contact.
     """
@@ -71,16 +75,17 @@ class ConventionalResult:
     residual: Array
     iterations: NDArray[np.int_]
     converged: NDArray[np.bool_]
+    tangent: NDArray[np.bool_]
     inside: NDArray[np.bool_]
 
     @property
     def is_contact(self) -> NDArray[np.bool_]:
-        """Converged to points of both flanks: (n,) bool array."""
-        return self.converged & self.inside
+        """Converged, tangent, and on both flanks: (n,) bool array."""
+        return self.converged & self.tangent & self.inside
 
     def __repr__(self) -> str:
         solved, contacts = int(self.converged.sum()), int(self.is_contact.sum())
-        return f"ConventionalResult({len(self.converged)} starts, {solved} converged, {contacts} of them on the flanks)"
+        return f"ConventionalResult({len(self.converged)} starts, {solved} converged, {contacts} of them to a contact)"
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +139,7 @@ def solve_conventional(
     >>> crowned = FlankModifications(lead_crowning=0.005)
     >>> pair = cylindrical_pair(mesh, modifications=(crowned, FlankModifications()))
     >>> solve_conventional(pair, 0.0, [[51.2, 1.0, 85.2, -1.0, 0.01], [51.2, 1.0, 85.2, -1.0, 1.5]])
-    ConventionalResult(2 starts, 1 converged, 1 of them on the flanks)
+    ConventionalResult(2 starts, 1 converged, 1 of them to a contact)
     """
     angle, unknowns = _checked(phi1, start, normal_components)
     iterations = np.zeros(len(unknowns), dtype=int)
@@ -206,18 +211,24 @@ def contact_equations(
         (P1 - P2)/r_b2, then the two components of n1 + n2.
     jacobian : (n, 5, 5) array [1/mm; last column 1/rad]
     """
+    values, jacobian = _six_equations(pair, phi1, unknowns)
+    chosen = [0, 1, 2, *(3 + component for component in normal_components)]
+    return values[:, chosen], jacobian[:, chosen]
+
+
+def _six_equations(pair: GearPair, phi1: Array, unknowns: Array) -> tuple[Array, Array]:
+    """(P1 - P2)/r_b2 and all components of n1 + n2 (n, 6), and their Jacobian (n, 6, 5)."""
     pinion_radius, pinion_axial, wheel_radius, wheel_axial, phi2 = unknowns.T
     one = _surface(pair.pinion, pinion_radius, pinion_axial, pair.sense * phi1)
     other = _surface(pair.wheel, wheel_radius, wheel_axial, -pair.sense * phi2)
-    axes, length, chosen = pair.wheel_axes, pair.base_radii[1], list(normal_components)
+    axes, length = pair.wheel_axes, pair.base_radii[1]
     gap = one.point - other.point @ axes - pair.wheel_origin
     mismatch = one.normal + other.normal @ axes
-    values = np.concatenate([gap / length, mismatch[:, chosen]], axis=-1)
     to_unknowns = np.array([1.0, 1.0, -pair.sense])
     moved, tilted = (axes.T @ slopes * to_unknowns for slopes in (other.point_slopes, other.normal_slopes))
     upper = np.concatenate([one.point_slopes[..., :2], -moved], axis=-1) / length
-    lower = np.concatenate([one.normal_slopes[..., :2], tilted], axis=-1)[:, chosen]
-    return values, np.concatenate([upper, lower], axis=-2)
+    lower = np.concatenate([one.normal_slopes[..., :2], tilted], axis=-1)
+    return np.concatenate([gap / length, mismatch], axis=-1), np.concatenate([upper, lower], axis=-2)
 
 
 def _surface(flank: Flank, rho: Array, z: Array, turn: Array) -> _Surface:
@@ -254,7 +265,7 @@ def _stack(*parts: Array) -> Array:
 
 def _newton_step(values: Array, jacobian: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Newton step (n, 5), zero where the Jacobian is singular or not finite, and where it is neither (n,)."""
-    sound = np.isfinite(values).all(axis=-1) & np.isfinite(jacobian).all(axis=(-2, -1))
+    sound = np.asarray(np.isfinite(values).all(axis=-1) & np.isfinite(jacobian).all(axis=(-2, -1)))
     sound[sound] = np.abs(np.linalg.det(jacobian[sound])) > 0.0
     step = np.zeros_like(values)
     step[sound] = np.linalg.solve(jacobian[sound], -values[sound][..., None])[..., 0]
@@ -271,7 +282,9 @@ def _result(
     pair: GearPair, phi1: Array, unknowns: Array, iterations: NDArray[np.int_], normal_components: tuple[int, int]
 ) -> ConventionalResult:
     with np.errstate(all="ignore"):
-        residual = np.abs(contact_equations(pair, phi1, unknowns, normal_components)[0]).max(axis=-1)
+        misfit = np.abs(_six_equations(pair, phi1, unknowns)[0])
+        residual = misfit[:, [0, 1, 2, *(3 + component for component in normal_components)]].max(axis=-1)
+        tangent = np.asarray(misfit[:, 3:].max(axis=-1) <= SAME_NORMAL)
         inside = np.ones(len(unknowns), dtype=bool)
         for flank, first in ((pair.pinion, 0), (pair.wheel, 2)):
             tolerance = ON_FLANK * flank.extent[0]
@@ -279,7 +292,7 @@ def _result(
     residual[np.isnan(residual)] = np.inf
     mean = pair.ratio * phi1
     wheel_angle = mean + np.remainder(unknowns[:, 4] - mean + np.pi, 2.0 * np.pi) - np.pi
-    return ConventionalResult(unknowns, wheel_angle, residual, iterations, residual <= RESIDUAL, inside)
+    return ConventionalResult(unknowns, wheel_angle, residual, iterations, residual <= RESIDUAL, tangent, inside)
 
 
 def _checked(phi1: ArrayLike, start: ArrayLike, normal_components: tuple[int, int]) -> tuple[Array, Array]:
