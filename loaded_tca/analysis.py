@@ -103,6 +103,8 @@ def _doubts(pair: GearPair, loaded: LoadedContact) -> list[str]:
     found = []
     if loaded.at_border:
         found.append("the contact reaches a border of a flank: its peak pressure grows with the grid without end")
+    if loaded.at_crease:
+        found.append("the contact lies across the start of a linear relief: its peak pressure grows with the grid")
     if solution.reaches_border:
         found.append("the contact reaches the box")
     if solution.load > 0.0 and solution.cells_across[0] < 8:
@@ -154,6 +156,9 @@ def _numbers(pair: GearPair, loaded: LoadedContact | None) -> dict[str, float | 
         "transmission_error": loaded_transmission_error(pair, contact, solution.approach),
         "normal_force": solution.load,
         "peak_pressure": loaded.peak_pressure,
+        "central_pressure": loaded.central_pressure,
+        "peak_radius": loaded.peak_place[0],
+        "peak_axial": loaded.peak_place[1],
         "hertz_pressure": hertz.max_pressure if hertz else math.nan,
         "hertz_semi_minor": hertz.semi_minor if hertz else math.nan,
         "hertz_semi_major": hertz.semi_major if hertz else math.nan,
@@ -162,6 +167,9 @@ def _numbers(pair: GearPair, loaded: LoadedContact | None) -> dict[str, float | 
         "approach": solution.approach,
         "mesh_stiffness": _mesh_stiffness(pair, contact, loaded.stiffness),
         "on_edge": loaded.at_border,
+        "at_crease": loaded.at_crease,
+        "cells_across": solution.pressure.shape[0],
+        "cells_along": solution.pressure.shape[1],
         "iterations": solution.iterations,
         "residual": solution.residual,
     }

@@ -21,6 +21,8 @@ FIRST_CELLS = (16, 16)
 """Grid from which an accuracy is approached, doubled as often as needed."""
 CHORD = 0.1
 """Half width, relative to the load, of the interval over which the stiffness is taken."""
+MARGIN_LEFT = 0.8
+"""Expected contact over its box."""
 GROWTH = 1.5
 MOST_BOXES = 8
 
@@ -44,11 +46,14 @@ class LoadedContact:
         The unloaded contact it grows from.
     separation : Separation
     solution : ContactSolution
+    at_crease : bool
+        Whether the start of a linear relief lies in the contact.
     """
 
     contact: ContactPoint
     separation: Separation
     solution: ContactSolution
+    at_crease: bool
 
     @property
     def at_border(self) -> bool:
@@ -57,8 +62,23 @@ class LoadedContact:
 
     @property
     def peak_pressure(self) -> float:
-        """Peak pressure [MPa]; the largest cell where the contact reaches a border."""
-        return float(self.solution.pressure.max()) if self.at_border else self.solution.peak_pressure
+        """Peak pressure [MPa]; the largest cell where the contact reaches a border or a crease."""
+        rough = self.at_border or self.at_crease
+        return float(self.solution.pressure.max()) if rough else self.solution.peak_pressure
+
+    @property
+    def central_pressure(self) -> float:
+        """Pressure beside the contact point [MPa]: what is left of the peak where that sits at a border."""
+        middle = tuple(slice((n - 1) // 2, n // 2 + 1) for n in self.solution.pressure.shape)
+        there = np.isfinite(self.separation.gap[middle])
+        return float(self.solution.pressure[middle][there].mean()) if there.any() else 0.0
+
+    @property
+    def peak_place(self) -> tuple[float, float]:
+        """Radius and axial coordinate on the pinion of the cell with the largest pressure [mm]."""
+        cell = np.unravel_index(int(self.solution.pressure.argmax()), self.solution.pressure.shape)
+        x, y, z = self.separation.points[cell]
+        return math.hypot(x, y), float(z)
 
     @property
     def hertz(self) -> PointContact | None:
@@ -68,7 +88,7 @@ class LoadedContact:
         that of the contact: on a flank with end relief alone the ellipse would be longer than the box.
         """
         across, along = self.separation.curvatures
-        smooth = along > 0.0 and not (self.at_border or self.contact.on_crease or self.contact.on_line)
+        smooth = along > 0.0 and not (self.at_border or self.at_crease or self.contact.on_line)
         if not smooth or self.solution.load <= 0.0:
             return None
         ellipse = point_contact(self.solution.load, (across, along), self.solution.contact_modulus)
@@ -178,10 +198,29 @@ def _press_in_box(
             max_pressure=cap,
             accuracy=grid.accuracy,
             tolerance=grid.tolerance,
+            smooth=not _crosses_crease(pair, contact, first, _inner_ellipse(first)),
             first_cells=FIRST_CELLS,
             warn=False,
         )
-    return LoadedContact(contact, finest[0], solution)
+    pressed = solution.pressure > 0.0
+    return LoadedContact(contact, finest[0], solution, _crosses_crease(pair, contact, finest[0], pressed))
+
+
+def _crosses_crease(pair: GearPair, contact: ContactPoint, separation: Separation, where: Array) -> bool:
+    """Whether the start of a linear relief, of either flank, runs between the cells ``where``."""
+    if contact.on_crease:
+        return True
+    points = separation.points[where]
+    own = pair.pinion.creases(np.hypot(points[:, 0], points[:, 1]), points[:, 2])
+    radius, _, axial = pair.to_wheel(points)
+    values = [jet.value for jet in (*own, *pair.wheel.creases(radius, axial))]
+    return any(value.size and value.min() < 0.0 < value.max() for value in values)
+
+
+def _inner_ellipse(separation: Separation) -> Array:
+    """Cells of the ellipse that the contact is expected to fill, (nx, ny) bool."""
+    across, along = (MARGIN_LEFT * length for length in separation.half_lengths)
+    return (separation.x[:, None] / across) ** 2 + (separation.y / along) ** 2 <= 1.0
 
 
 def _grown_box(solution: ContactSolution) -> tuple[float, float] | None:

@@ -88,14 +88,22 @@ class MeshCycle:
     transmission_error: Array = quantity("rad", "loaded transmission error, absolute")
     normal_force: Array = quantity("N", "normal force on the tooth pair")
     peak_pressure: Array = quantity("MPa", "peak contact pressure, largest cell")
+    central_pressure: Array = quantity("MPa", "contact pressure beside the unloaded contact point")
+    peak_radius: Array = quantity("mm", "radius on the pinion of the cell with the largest pressure")
+    peak_axial: Array = quantity("mm", "axial coordinate on the pinion of the cell with the largest pressure")
     hertz_pressure: Array = quantity("MPa", "peak pressure after Hertz; NaN where Hertz does not hold")
     hertz_semi_minor: Array = quantity("mm", "semi-axis of the Hertz ellipse across the contact")
     hertz_semi_major: Array = quantity("mm", "semi-axis of the Hertz ellipse along the contact")
     contact_width: Array = quantity("mm", "width of the contact across, from the pressure map")
     contact_length: Array = quantity("mm", "length of the contact, from the pressure map")
     approach: Array = quantity("mm", "approach of the two flanks along the normal")
-    mesh_stiffness: Array = quantity("N/(mm um)", "tangent mesh stiffness of the face width")
+    mesh_stiffness: Array = quantity(
+        "N/(mm um)", "tangent stiffness of one tooth pair over its face width, contact only"
+    )
     on_edge: Array = quantity("1", "whether the contact reaches a border of a flank")
+    at_crease: Array = quantity("1", "whether the start of a linear relief lies in the contact")
+    cells_across: Array = quantity("1", "cells of the grid across the contact")
+    cells_along: Array = quantity("1", "cells of the grid along the contact")
     iterations: Array = quantity("1", "iterations of the contact solver")
     residual: Array = quantity("1", "residual of the contact solver")
 

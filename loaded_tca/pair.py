@@ -242,11 +242,9 @@ def _involute_flank(mesh: CylindricalMesh, member: int, side: int, modifications
         (gear.form_radius, gear.tip_radius),
         gear.face_width,
     )
-    profile = (active.start_roll_length, active.end_roll_length)
-    terms = modifications.terms(gear.face_width, profile, lambda diameter: _roll_length(gear, diameter))
+    diameters = (2.0 * active.start_radius, 2.0 * active.end_radius)
+    try:
+        terms = modifications.terms(gear.face_width, diameters, lambda diameter: gear.roll_length(0.5 * diameter))
+    except InputError as error:
+        raise InputError(f"{gear.name}.{problem}" for problem in error.problems) from None
     return ModifiedFlank(nominal, terms) if terms else nominal
-
-
-def _roll_length(gear: CylindricalGear, diameter: float) -> float:
-    """Roll length at a diameter, zero below the base circle."""
-    return gear.roll_length(max(0.5 * diameter, gear.base_radius))

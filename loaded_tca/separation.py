@@ -81,6 +81,11 @@ class Separation:
     curvatures: tuple[float, float]
 
     @property
+    def points(self) -> Array:
+        """Cell centres in the tangent plane, in the fixed frame: (nx, ny, 3) [mm]."""
+        return self.origin + self.x[:, None, None] * self.axes[0] + self.y[None, :, None] * self.axes[1]
+
+    @property
     def half_lengths(self) -> tuple[float, float]:
         """Half lengths of the box across and along [mm]."""
         return 0.5 * self.gap.shape[0] * self.spacing[0], 0.5 * self.gap.shape[1] * self.spacing[1]

@@ -32,6 +32,7 @@ def solve_to_accuracy(
     approach: float | None = None,
     max_pressure: float | None = None,
     tolerance: float = 1e-6,
+    smooth: bool = True,
     first_cells: Cells = (16, 16),
     threads: int = 2,
     warn: bool = True,
@@ -53,6 +54,8 @@ def solve_to_accuracy(
         Wanted relative error, between 0 and 1.
     load, approach, max_pressure, tolerance, threads, warn
         As in :func:`solve_contact`; the tolerance is tightened to a hundredth of the accuracy.
+    smooth : bool
+        False where the surfaces have a crease or an end inside the contact: treated as where a border bounds it.
     first_cells : (int, int)
         Where to begin. The estimate needs two grids: the answer has at least twice as many.
 
@@ -100,25 +103,25 @@ def solve_to_accuracy(
         )
 
     cells, solution = first_cells, solve(first_cells, None)
-    while not (good := _error(solution) <= accuracy) and max(cells) < _most_cells(solution):
+    while not (good := _error(solution, smooth) <= accuracy) and max(cells) < _most_cells(solution, smooth):
         coarse, cells = solution, (2 * cells[0], 2 * cells[1])
         solution = _compared(solve(cells, prolong(coarse.pressure, cells, (2, 2))), coarse)
     if warn:
-        late = () if good else (f"estimated error {_error(solution):.1e} is above the accuracy {accuracy:.1e}",)
+        late = () if good else (f"estimated error {_error(solution, smooth):.1e} is above the accuracy {accuracy:.1e}",)
         for doubt in late + solution.doubts:
             warnings.warn(doubt, AccuracyWarning, stacklevel=2)
     return solution
 
 
-def _error(solution: ContactSolution) -> float:
+def _error(solution: ContactSolution, smooth: bool) -> float:
     """Estimated error of what the accuracy is asked for; infinite where there is no estimate yet."""
     estimate = solution.error_estimate
-    error = estimate.approach if solution.bounded else estimate.peak_pressure
+    error = estimate.peak_pressure if smooth and not solution.bounded else estimate.approach
     return math.inf if math.isnan(error) else error
 
 
-def _most_cells(solution: ContactSolution) -> int:
-    return MOST_CELLS_AT_A_BORDER if solution.bounded else MOST_CELLS
+def _most_cells(solution: ContactSolution, smooth: bool) -> int:
+    return MOST_CELLS if smooth and not solution.bounded else MOST_CELLS_AT_A_BORDER
 
 
 def _compared(fine: ContactSolution, coarse: ContactSolution) -> ContactSolution:

@@ -82,8 +82,8 @@ class InvoluteFlank(Flank):
 
     def grid(self, profile: int, lengthwise: int) -> tuple[Array, Array]:
         """Even grid in roll length and face width: near the base circle the profile bends most."""
-        ends = self._roll_length(np.array(self.radii))
-        rho = np.hypot(self.base_radius, np.linspace(*ends, profile))
+        start, end = self._roll_length(np.array(self.radii))
+        rho = np.hypot(self.base_radius, np.linspace(start, end, profile))
         rho[[0, -1]] = self.radii
         z = np.linspace(-0.5 * self.face_width, 0.5 * self.face_width, lengthwise)
         return tuple(np.meshgrid(rho, z, indexing="ij"))  # type: ignore[return-value]

@@ -154,22 +154,28 @@ class FlankModifications:
             raise InputError(problems)
 
     def terms(
-        self, face_width: float, profile: tuple[float, float], coordinate: Callable[[float], float]
+        self, face_width: float, diameters: tuple[float, float], coordinate: Callable[[float], float]
     ) -> tuple[Term, ...]:
         """Terms of every amount that is not zero.
 
         Parameters
         ----------
         face_width : float [mm]
-        profile : (float, float)
-            Profile coordinate at the start of the active profile and at the tip.
+        diameters : (float, float) [mm]
+            Start of the active profile, and tip.
         coordinate : callable
-            Diameter [mm] -> profile coordinate, for the starts of the reliefs.
+            Diameter [mm] -> profile coordinate.
+
+        Raises
+        ------
+        InputError
+            If a relief starts off the active profile, or is longer than half the face.
         """
+        start, tip = (coordinate(diameter) for diameter in diameters)
         candidates = (
             *self._lengthwise(face_width),
-            *self._profile(*profile),
-            *self._reliefs(*profile, coordinate),
+            *self._profile(start, tip),
+            *self._reliefs(diameters, coordinate),
         )
         return tuple(term for term in candidates if term.amount != 0.0)
 
@@ -201,18 +207,17 @@ class FlankModifications:
             Term("profile", self.profile_slope, start, tip - start, linear),
         ]
 
-    def _reliefs(self, start: float, tip: float, coordinate: Callable[[float], float]) -> list[Term]:
+    def _reliefs(self, diameters: tuple[float, float], coordinate: Callable[[float], float]) -> list[Term]:
         reliefs = (
-            ("tip_relief", self.tip_relief, self.tip_relief_start, self.tip_relief_form, tip),
-            ("root_relief", self.root_relief, self.root_relief_start, self.root_relief_form, start),
+            ("tip_relief", self.tip_relief, self.tip_relief_start, self.tip_relief_form, diameters[1]),
+            ("root_relief", self.root_relief, self.root_relief_start, self.root_relief_form, diameters[0]),
         )
         terms = []
         for name, amount, diameter, form, end in reliefs:
             if amount != 0.0:
-                origin = coordinate(diameter)
-                _require_between(f"{name}_start (as roll length, from {diameter:g} mm)", origin, start, tip)
-                shape = one_sided_parabola if form == "parabolic" else None
-                terms.append(Term("profile", amount, origin, end - origin, shape))
+                _require_between(f"{name}_start (diameter on the active profile)", diameter, *diameters)
+                origin, shape = coordinate(diameter), one_sided_parabola if form == "parabolic" else None
+                terms.append(Term("profile", amount, origin, coordinate(end) - origin, shape))
         return terms
 
 

@@ -212,8 +212,13 @@ def contact_equations(
     jacobian : (n, 5, 5) array [1/mm; last column 1/rad]
     """
     values, jacobian = _six_equations(pair, phi1, unknowns)
-    chosen = [0, 1, 2, *(3 + component for component in normal_components)]
+    chosen = _chosen(normal_components)
     return values[:, chosen], jacobian[:, chosen]
+
+
+def _chosen(normal_components: tuple[int, int]) -> list[int]:
+    """Five of the six equations."""
+    return [0, 1, 2, *(3 + component for component in normal_components)]
 
 
 def _six_equations(pair: GearPair, phi1: Array, unknowns: Array) -> tuple[Array, Array]:
@@ -283,7 +288,7 @@ def _result(
 ) -> ConventionalResult:
     with np.errstate(all="ignore"):
         misfit = np.abs(_six_equations(pair, phi1, unknowns)[0])
-        residual = misfit[:, [0, 1, 2, *(3 + component for component in normal_components)]].max(axis=-1)
+        residual = misfit[:, _chosen(normal_components)].max(axis=-1)
         tangent = np.asarray(misfit[:, 3:].max(axis=-1) <= SAME_NORMAL)
         inside = np.ones(len(unknowns), dtype=bool)
         for flank, first in ((pair.pinion, 0), (pair.wheel, 2)):

@@ -153,8 +153,20 @@ def flank_gap(
     radius, axial : array [mm]
         Of the points in the mate's frame.
     """
-    radius, axial, lag, lever, there = _seen_from_mate(pair, gear, angles, place)
-    return np.where(there, lag * lever, np.inf), radius, axial
+    (phi1, phi2), (rho, z) = angles, place
+    if gear == "pinion":
+        point, mate = _cartesian(rho, pair.pinion.theta(rho, z).value + pair.sense * phi1, z), pair.wheel
+        radius, theta, axial = pair.to_wheel(point)
+        jet = mate.theta(radius, axial)
+        lag = pair.driving * (phi2 - pair.sense * (jet.value - theta))
+    else:
+        point, mate = _cartesian(rho, pair.wheel.theta(rho, z).value - pair.sense * phi2, z), pair.pinion
+        x, y, axial = np.moveaxis(point @ pair.wheel_axes + pair.wheel_origin, -1, 0)
+        radius, theta = np.hypot(x, y), np.arctan2(y, x)
+        jet = mate.theta(radius, axial)
+        lag = pair.driving * (pair.sense * (theta - jet.value) - phi1)
+    lever = 1.0 / np.sqrt(jet.rho**2 + 1.0 / radius**2 + jet.z**2)
+    return np.where(mate.inside(radius, axial), lag * lever, np.inf), radius, axial
 
 
 def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOUND, rays: int = RAYS) -> ContactArea:
@@ -195,7 +207,7 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
     >>> pair = cylindrical_pair(mesh, modifications=(FlankModifications(lead_crowning=0.05), FlankModifications()))
     >>> area = contact_area(pair, trace_contact(pair, [0.0])[0])
     >>> [round(length, 3) for length in (*area.semi_axes, *area.ellipse_semi_axes)]
-    [0.373, 4.455, 0.373, 4.455]
+    [0.372, 4.455, 0.373, 4.455]
     """
     problems = _problems_of(compound)
     if rays != int(rays) or rays < 8:
@@ -207,7 +219,8 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
             f"no common flank: the tooth pair does not touch at pinion angle {contact.pinion_angle} rad"
         )
     curvature = relative_curvature(pair, contact)
-    semi_axes = [math.sqrt(2.0 * compound / k) if k > 0.0 else math.inf for k in (curvature.across, curvature.along)]
+    bends = (curvature.across, 0.0 if contact.on_line else curvature.along)
+    semi_axes = [math.sqrt(2.0 * compound / k) if k > 0.0 else math.inf for k in bends]
     longest = math.hypot(*pair.pinion.extent)
     turn = np.arange(rays) * (2.0 * math.pi / rays)
     drawn = [min(LONGEST * axis, longest) for axis in semi_axes]
@@ -218,8 +231,6 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
     point = EaseOff(pair).station(np.full(rays, contact.pinion_angle), rho, z).point
     _, wheel_radius, wheel_axial = flank_gap(pair, "pinion", search.angles, (rho, z))
     x, y = curvature.axes[:2] @ (point - contact.point).T
-    ellipse = np.stack([semi_axes[0] * np.cos(turn), semi_axes[1] * np.sin(turn)], axis=-1)
-    finite = np.isfinite(semi_axes).all()
     return ContactArea(
         compound=float(compound),
         point=point,
@@ -231,7 +242,7 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
         area=_polygon_area(x, y),
         semi_axes=(0.5 * float(np.ptp(x)), 0.5 * float(np.ptp(y))),
         ellipse_semi_axes=(semi_axes[0], semi_axes[1]),
-        ellipse_points=contact.point + ellipse @ curvature.axes[:2] if finite else np.full((rays, 3), np.nan),
+        ellipse_points=_ellipse(contact.point, curvature.axes[:2], semi_axes, turn),
     )
 
 
@@ -297,26 +308,6 @@ def _problems_of(compound: float) -> list[str]:
     return [] if sound else [f"compound: {compound} mm is not a positive, finite thickness"]
 
 
-def _seen_from_mate(
-    pair: GearPair, gear: Gear, angles: tuple[Array, Array], place: tuple[Array, Array]
-) -> tuple[Array, Array, Array, Array, NDArray[np.bool_]]:
-    """Points in the mate's frame (rho, z), the mate's lag [rad] and lever [mm] there, and whether it is there."""
-    (phi1, phi2), (rho, z) = angles, place
-    if gear == "pinion":
-        point = _cartesian(rho, pair.pinion.theta(rho, z).value + pair.sense * phi1, z)
-        (radius, theta, axial), mate = pair.to_wheel(point), pair.wheel
-        jet = mate.theta(radius, axial)
-        lag = pair.driving * (phi2 - pair.sense * (jet.value - theta))
-    else:
-        own = _cartesian(rho, pair.wheel.theta(rho, z).value - pair.sense * phi2, z)
-        x, y, axial = np.moveaxis(own @ pair.wheel_axes + pair.wheel_origin, -1, 0)
-        radius, theta, mate = np.hypot(x, y), np.arctan2(y, x), pair.pinion
-        jet = mate.theta(radius, axial)
-        lag = pair.driving * (pair.sense * (theta - jet.value) - phi1)
-    lever = 1.0 / np.sqrt(jet.rho**2 + 1.0 / radius**2 + jet.z**2)
-    return radius, axial, lag, lever, mate.inside(radius, axial)
-
-
 def _cartesian(rho: Array, theta: Array, z: Array) -> Array:
     return np.stack(np.broadcast_arrays(rho * np.cos(theta), rho * np.sin(theta), z), axis=-1)
 
@@ -369,6 +360,13 @@ class _RaySearch:
         gap, _, _ = flank_gap(self.pair, "pinion", self.angles, (rho, z))
         there = np.isfinite(gap) & self.pair.pinion.inside(rho, z)
         return there & (gap <= self.compound), there
+
+
+def _ellipse(centre: Array, plane: Array, semi_axes: list[float], turn: Array) -> Array:
+    """Points (m, 3) of an ellipse in the tangent plane; NaN if an axis is infinite."""
+    if not np.isfinite(semi_axes).all():
+        return np.full((len(turn), 3), np.nan)
+    return np.asarray(centre + np.stack([np.cos(turn), np.sin(turn)], axis=-1) * semi_axes @ plane)
 
 
 def _polygon_area(x: Array, y: Array) -> float:

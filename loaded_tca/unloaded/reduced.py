@@ -11,12 +11,12 @@ or a bent ridge is kept to second order, and a step is accepted only if the meri
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from itertools import combinations
 
 import numpy as np
 
 from loaded_tca.flanks.jet import Array
 from loaded_tca.unloaded.ease_off import EaseOff, Station
+from loaded_tca.unloaded.quadratic import Quadratic, best_step
 
 LARGEST_STEP = 0.5
 """Longest step, as a fraction of the flank."""
@@ -24,10 +24,6 @@ MOST_STEPS = 60
 MOST_HALVINGS = 30
 SHORT_STEP = 1e-9
 """Fraction of the flank below which a Newton step is the last: the next would be its square."""
-PARALLEL = 1e-9
-"""Sine of the angle between two borders below which they have no corner."""
-TIE = 1e-12
-"""Relative rise by which a corner must beat a single border: on a flat edge all of it is equally high."""
 RIDGE_CORRECTIONS = 3
 """Newton steps back across a bent ridge: half a face width along it leaves it by 0.1 mm, then 1e-3, 1e-7."""
 MERIT_SLACK = 1e-15
@@ -209,8 +205,8 @@ def _propose(field: EaseOff, here: _Local, multipliers: Array, scale: Array) -> 
     tolerance = FEASIBLE * scale[0]
     out = np.flatnonzero((here.borders + (here.slopes @ step[..., None])[..., 0] < -tolerance).any(axis=-1))
     if out.size:
-        problem = (here.gradient[out], inverse[out], curvature[out], here.borders[out], here.slopes[out])
-        step[out], found[out] = _solve_quadratic(*problem, tolerance)
+        problem = Quadratic(here.gradient[out], curvature[out], here.borders[out], here.slopes[out])
+        step[out], found[out] = best_step(problem, tolerance)
     length = np.linalg.norm(step, axis=-1, keepdims=True)
     return step * np.minimum(1.0, LARGEST_STEP / np.maximum(length, 1e-300)), found
 
@@ -230,65 +226,3 @@ def _positive(matrix: Array) -> tuple[Array, Array]:
         return even[..., None, None] * np.eye(2) + odd[..., None, None] * pointer
 
     return function(1.0 / high, 1.0 / low), function(high, low)
-
-
-def _solve_quadratic(
-    gradient: Array, inverse: Array, curvature: Array, borders: Array, slopes: Array, tolerance: float
-) -> tuple[Array, Array]:
-    """Maximise g.s - s.N.s/2 subject to c + J s >= 0 by listing the points where it can lie."""
-    free = (inverse @ gradient[..., None])[..., 0]
-    candidates = [free[:, None, :], _on_single_borders(gradient, curvature, borders, slopes)]
-    pairs = np.array(list(combinations(range(borders.shape[-1]), 2)))
-    corners, parallel = _corners(borders, slopes, pairs)
-    steps = np.concatenate([*candidates, corners], axis=1)
-    room = (steps @ np.swapaxes(slopes, -1, -2) + borders[:, None, :]).min(axis=-1)
-    room[:, -len(pairs) :][parallel] = -np.inf
-    rise = (steps @ gradient[..., None])[..., 0] - 0.5 * ((steps @ curvature) * steps).sum(axis=-1)
-    rise[:, -len(pairs) :] -= TIE * np.abs(rise[:, -len(pairs) :])
-    feasible = room >= -tolerance
-    best = np.where(feasible.any(axis=1), np.argmax(np.where(feasible, rise, -np.inf), 1), np.argmax(room, 1))
-    step = steps[np.arange(len(best)), best]
-    return step, _multipliers(gradient - (curvature @ step[..., None])[..., 0], slopes, best, pairs)
-
-
-def _on_single_borders(gradient: Array, curvature: Array, borders: Array, slopes: Array) -> Array:
-    """Best step onto each linearised border: (n, borders, 2).
-
-    From the foot of the border along its tangent: the free step is not used, since on a flat ridge it is so long that
-    nothing would be left of its difference to the border.
-    """
-    foot = -slopes * (borders / np.maximum((slopes**2).sum(axis=-1), 1e-300))[..., None]
-    tangent = np.stack([-slopes[..., 1], slopes[..., 0]], axis=-1)
-    rise = ((gradient[:, None, :] - foot @ curvature) * tangent).sum(axis=-1)
-    bend = np.maximum(((tangent @ curvature) * tangent).sum(axis=-1), 1e-300)
-    return foot + tangent * (rise / bend)[..., None]
-
-
-def _corners(borders: Array, slopes: Array, pairs: Array) -> tuple[Array, Array]:
-    """Steps to the crossings of two linearised borders: (n, pairs, 2), and which pairs are parallel."""
-    first, second = slopes[:, pairs[:, 0]], slopes[:, pairs[:, 1]]
-    c1, c2 = -borders[:, pairs[:, 0]], -borders[:, pairs[:, 1]]
-    cross = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
-    size = np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1)
-    parallel = np.abs(cross) <= PARALLEL * size
-    cross = np.where(parallel, 1.0, cross)
-    x = (c1 * second[..., 1] - c2 * first[..., 1]) / cross
-    y = (first[..., 0] * c2 - second[..., 0] * c1) / cross
-    return np.stack([x, y], axis=-1), parallel
-
-
-def _multipliers(rest: Array, slopes: Array, best: Array, pairs: Array) -> Array:
-    """Lambda of rest + J^T lambda = 0 for the borders of the chosen candidate, clipped at zero."""
-    count = slopes.shape[1]
-    multipliers = np.zeros(slopes.shape[:2])
-    single = np.flatnonzero((best >= 1) & (best <= count))
-    k = best[single] - 1
-    own = slopes[single, k]
-    multipliers[single, k] = -(own * rest[single]).sum(-1) / np.maximum((own**2).sum(-1), 1e-300)
-    double = np.flatnonzero(best > count)
-    if double.size:
-        chosen = pairs[best[double] - 1 - count]
-        matrix = np.take_along_axis(slopes[double], chosen[..., None], axis=1)
-        solution = np.linalg.solve(np.swapaxes(matrix, -1, -2), -rest[double][..., None])[..., 0]
-        multipliers[double[:, None], chosen] = solution
-    return np.maximum(multipliers, 0.0)

@@ -59,17 +59,12 @@ class Transfer:
         The leading pair before and after.
     contacts : (ContactPoint, ContactPoint)
         Of the two pairs, each in its own angles.
-    jump : float [rad]
-        Zero where the curves cross inside both their ranges. Otherwise what the transmission error changes by between
-        the end of the surface contact of the one pair and the begin of that of the other, bridged by an edge; NaN if
-        there is no such end within a pitch.
     """
 
     pinion_angle: float
     transmission_error: float
     pairs: tuple[int, int]
     contacts: tuple[ContactPoint, ContactPoint]
-    jump: float
 
     @property
     def is_continuous(self) -> bool:
@@ -210,10 +205,14 @@ class MeshPath:
             found += self._transfers_between(*ends, int(self.leading_pair[row]), int(self.leading_pair[row + 1]))
         return tuple(found)
 
-    @property
+    @cached_property
     def jumps(self) -> Array:
-        """Step of the transmission error of surface contact at each transfer [rad]; zero where it is continuous."""
-        return np.array([transfer.jump for transfer in self.transfers])
+        """Step of the transmission error of surface contact at each transfer [rad].
+
+        Zero where the curves cross inside both their ranges. Otherwise the change between the end of the surface contact
+        of the one pair and the begin of that of the other, bridged by an edge; NaN if there is none within a pitch.
+        """
+        return np.array([_jump(self.pair, transfer.contacts) for transfer in self.transfers])
 
     @property
     def is_continuous(self) -> bool:
@@ -259,7 +258,7 @@ class MeshPath:
             angle = float(brentq(difference, low, high, xtol=TRANSFER))
         path = _quietly(self.pair, angle - ends * pitch)
         contacts = (path[0], path[1])
-        return Transfer(angle, path[0].transmission_error, (old, new), contacts, _jump(self.pair, contacts))
+        return Transfer(angle, path[0].transmission_error, (old, new), contacts)
 
 
 def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: Iterable[int] | None = None) -> MeshPath:
@@ -418,7 +417,7 @@ def _jump(pair: GearPair, contacts: tuple[ContactPoint, ContactPoint]) -> float:
 
 
 def _borders_held(edges: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Tips and roots of both gears, then the two sides, of either gear: where faces end together, their edges alternate."""
+    """Tips and roots of both gears, then the sides of either: where two faces end together, their edges alternate."""
     pinion, wheel = edges[..., : len(BORDER_NAMES)], edges[..., len(BORDER_NAMES) :]
     return np.concatenate([pinion[..., :2], wheel[..., :2], pinion[..., 2:] | wheel[..., 2:]], axis=-1)
 

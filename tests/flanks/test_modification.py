@@ -282,7 +282,7 @@ def test_modified_flank_of_the_other_side_is_the_mirror_image_of_the_other_hand(
 @pytest.mark.parametrize("relief", ["tip_relief", "root_relief"])
 @pytest.mark.parametrize("diameter", [0.0, 90.0, 2.0 * ACTIVE.start_radius, 2.0 * TIP, 130.0])
 def test_relief_that_starts_off_the_active_profile_is_refused(relief, diameter):
-    with pytest.raises(InputError, match=rf"{relief}_start .*from {diameter:g} mm.* is not between"):
+    with pytest.raises(InputError, match=rf"pinion.{relief}_start .*: {diameter:g} mm is not between"):
         modified(**{relief: AMOUNT, f"{relief}_start": diameter})
 
 

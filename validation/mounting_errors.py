@@ -1,0 +1,508 @@
+"""What each mounting error does to contact path, transmission error and Hertz pressure, and two errors together.
+
+The trends of the dissertation (Figures 17 to 30) for its spur pair 25/25 and its helical pair 40/37 with three forms of
+lead crowning, each with a verdict; a table of every error; a map of two errors (as its Figure 53). The
+dissertation compares forms of crowning of unlike amounts; here all forms remove the same at the ends of the face.
+
+Run from the root of the repository: ``python -m validation.mounting_errors --out docs``.
+"""
+
+import argparse
+import sys
+import time
+from dataclasses import dataclass, fields
+from math import cos, degrees, radians, sin, tan
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from loaded_tca.flanks import FlankModifications
+from loaded_tca.gears import CylindricalGear, CylindricalMesh
+from loaded_tca.material import Material
+from loaded_tca.pair import GearPair, Mounting, cylindrical_pair
+from loaded_tca.reference.hertz import point_contact
+from loaded_tca.unloaded import ContactPoint, relative_curvature, trace_contact
+from loaded_tca.unloaded.ease_off import EaseOff
+from loaded_tca.unloaded.reduced import climb
+from loaded_tca.unloaded.search import first_touch
+from loaded_tca.unloaded.teeth import trace_teeth
+from validation.table import Row
+
+Array = NDArray[np.float64]
+CASE = "Seed 000 mounting errors"
+ARCSEC = degrees(3600.0)
+FORMS = ("parabolic", "circular", "logarithmic")
+ERRORS = ("in_plane", "out_of_plane", "centre_distance_error", "axial_offset")
+POSITIONS = 21
+ROUND = 1e-6
+"""Accuracy of the peaks in the map: where neighbouring ascents must agree [mm]."""
+
+
+@dataclass(frozen=True)
+class Gears:
+    """One of the two pairs of the dissertation, module 1 mm, 20 deg."""
+
+    name: str
+    teeth: tuple[int, int]
+    helix_deg: float
+    face_width: float
+    crowning: float
+    load: float
+    material: Material
+
+    @property
+    def mesh(self) -> CylindricalMesh:
+        """Macro geometry, pinion right-hand."""
+        hands = zip(self.teeth, (1.0, -1.0), strict=True)
+        return CylindricalMesh(
+            *(CylindricalGear(z, 1.0, self.face_width, helix_angle=s * radians(self.helix_deg)) for z, s in hands)
+        )
+
+    def pair(self, mounting: Mounting | None = None, **modifications: float | str) -> GearPair:
+        """The pair with its lead crowning on the pinion, unless other modifications are given."""
+        chosen = {"lead_crowning": self.crowning, **modifications}
+        return cylindrical_pair(
+            self.mesh,
+            modifications=(FlankModifications(**chosen), FlankModifications()),
+            mounting=mounting or Mounting(),
+            materials=(self.material, self.material),
+        )
+
+
+SPUR = Gears("spur 25/25", (25, 25), 0.0, 10.0, 0.0025 * 5.0**2, 11.2, Material(200e3, 0.3))
+"""a1 = 0.0025/mm; F = 56e-6 of E m^2."""
+HELICAL = Gears("helical 40/37", (40, 37), 14.0, 20.0, 0.0051 * 10.0**2, 200.0, Material(206e3, 0.3))
+"""c1 = 0.0051/mm, the smallest of Table 3."""
+LARGEST = {
+    SPUR: dict(zip(ERRORS, (0.0175, 0.0175, 0.2, 0.2), strict=True)),
+    HELICAL: dict(zip(ERRORS, (radians(0.2), radians(0.2), 0.2, 0.2), strict=True)),
+}
+
+
+@dataclass(frozen=True)
+class Trend:
+    """A statement of the source, whether it holds here, and the numbers that say so."""
+
+    figure: str
+    statement: str
+    holds: bool
+    because: str
+
+
+@dataclass(frozen=True)
+class Effect:
+    """What one mounting error does to one pair."""
+
+    gears: str
+    form: str
+    error: str
+    shift: float
+    peak_to_peak: float
+    pressure: float
+    continuous: bool
+
+
+def hertz_pressure(pair: GearPair, contact: ContactPoint, load: float) -> float:
+    """Largest pressure after Hertz [MPa]; NaN where it does not hold."""
+    if contact.on_edge or contact.on_line:
+        return float("nan")
+    k = relative_curvature(pair, contact)
+    return point_contact(load, (k.across, k.along), pair.contact_modulus).max_pressure
+
+
+def effect(gears: Gears, form: str, error: str, amount: float) -> Effect:
+    """Shift at the pitch point against the aligned pair [mm], TE [arcsec], Hertz pressure [MPa]."""
+    pair = gears.pair(Mounting(**{error: amount} if amount else {}), lead_crowning_form=form)
+    contact = trace_contact(pair, [0.0])[0]
+    mesh = trace_teeth(pair)
+    pressure = hertz_pressure(pair, contact, gears.load)
+    return Effect(
+        gears.name, form, error, contact.pinion_axial, mesh.peak_to_peak * ARCSEC, pressure, mesh.is_continuous
+    )
+
+
+def effects() -> list[Effect]:
+    """Every error at its largest, each pair, each form of crowning, after the aligned pair."""
+    cases = [(gears, form) for gears in (SPUR, HELICAL) for form in FORMS]
+    found = []
+    for gears, form in cases:
+        found.append(effect(gears, form, "none", 0.0))
+        found += [effect(gears, form, error, LARGEST[gears][error]) for error in ERRORS]
+    return found
+
+
+def shift(gears: Gears, mounting: Mounting, **modifications: float | str) -> float:
+    """Axial coordinate of the contact at phi1 = 0 on the pinion [mm]."""
+    return float(trace_contact(gears.pair(mounting, **modifications), [0.0]).pinion_axial[0])
+
+
+def trends() -> list[Trend]:
+    """Every statement on the figures of cylindrical gears that a computation can judge."""
+    return [
+        *_trends_of_spur_pair(),
+        _crowning_for_continuity(),
+        *_trends_of_paths(),
+        _area_of_forms(),
+        _onset_of_edge_contact(),
+        *_trends_of_pressure(),
+    ]
+
+
+def _trends_of_spur_pair() -> list[Trend]:
+    relief = {
+        f"{end}_relief{what}": value
+        for end, start in (("tip", 25.6), ("root", 24.6))
+        for what, value in (("", 0.02), ("_start", start))
+    }
+    plain = {error: trace_teeth(SPUR.pair(Mounting(**{error: LARGEST[SPUR][error]}))) for error in ERRORS}
+    mounts = {"in": Mounting(in_plane=0.0175), "out": Mounting(out_of_plane=0.0175), "both": Mounting(0.0175, 0.0175)}
+    meshes = {name: trace_teeth(SPUR.pair(mounting, **relief)) for name, mounting in mounts.items()}
+    sides = [bool(mesh.leading_contact.edges[:, [2, 3, 6, 7]].any()) for mesh in plain.values()]
+    heights = {name: mesh.peak_to_peak * ARCSEC for name, mesh in meshes.items()}
+    shifts = ", ".join(f"{e} {m.leading_contact.pinion_axial[POSITIONS // 2]:+.2f} mm" for e, m in plain.items())
+    broken = [error for error, mesh in plain.items() if not mesh.is_continuous]
+    size = {error: mesh.peak_to_peak * ARCSEC for error, mesh in plain.items()}
+    same = abs(heights["in"] / heights["out"] - 1.0) < 0.1
+    return [
+        Trend("17", "spur: lead crowning keeps every misaligned contact off the sides", not any(sides), shifts),
+        Trend(
+            "17",
+            "spur: but leads to a discontinuous transmission",
+            len(broken) == len(plain),
+            f"{len(broken)} of {len(plain)} errors do ({', '.join(broken)}); peak to peak "
+            + ", ".join(f"{error} {value:.2g}" for error, value in size.items())
+            + " arcsec: a shift along a spur tooth alone costs no transmission error, to first order",
+        ),
+        Trend(
+            "18, 19",
+            "spur: tip and root relief makes it continuous, alike for both angles",
+            all(mesh.is_continuous for mesh in meshes.values()) and same,
+            f"parabolic reliefs of 20 um (assumed); in-plane {heights['in']:.4g}, out-of-plane {heights['out']:.4g} arcsec",
+        ),
+        Trend(
+            "20",
+            "spur: both angles together hardly change the transmission function",
+            abs(heights["both"] / heights["out"] - 1.0) < 0.1,
+            f"{heights['both']:.4g} against {heights['out']:.4g} arcsec",
+        ),
+    ]
+
+
+def _smallest_profile_crowning(error_deg: float) -> float:
+    """Profile crowning [mm] above which the helical pair has a continuous transmission error, by bisection."""
+    low, high = 0.0, 0.05
+    mounting = Mounting(out_of_plane=radians(error_deg))
+    for _ in range(7):
+        middle = 0.5 * (low + high)
+        smooth = trace_teeth(HELICAL.pair(mounting, profile_crowning=middle)).is_continuous
+        low, high = (low, middle) if smooth else (middle, high)
+    return high
+
+
+def _crowning_for_continuity() -> Trend:
+    angles = (0.05, 0.1, 0.2)
+    needed = [1e3 * _smallest_profile_crowning(angle) for angle in angles]
+    smooth = [
+        trace_teeth(HELICAL.pair(Mounting(out_of_plane=radians(0.05)), lead_crowning=c)).is_continuous
+        for c in (0.05, 0.5, 2.27)
+    ]
+    listed = ", ".join(f"{angle} deg {amount:.2g} um" for angle, amount in zip(angles, needed, strict=True))
+    return Trend(
+        "23",
+        "helical: the crowning needed for a continuous function falls as the misalignment grows",
+        any(smooth) and needed[-1] < needed[0],
+        f"no lead crowning from 50 to 2270 um makes it continuous; the profile crowning needed grows: {listed}",
+    )
+
+
+def _trends_of_paths() -> list[Trend]:
+    names = ("in_plane", "out_of_plane")
+    angles = (0.05, 0.1, 0.2)
+    table = {
+        (name, form): [shift(HELICAL, Mounting(**{name: radians(a)}), lead_crowning_form=form) for a in angles]
+        for name in names
+        for form in FORMS
+    }
+    grows = all((np.diff(np.abs(row)) > 0.0).all() for row in table.values())
+    circle = abs(table["in_plane", "circular"][2] / table["in_plane", "parabolic"][2] - 1.0)
+    logarithmic = table["in_plane", "logarithmic"][2] / table["in_plane", "parabolic"][2]
+    ratio = abs(table["out_of_plane", "parabolic"][2] / table["in_plane", "parabolic"][2])
+    spur = Gears("spur", HELICAL.teeth, 0.0, HELICAL.face_width, HELICAL.crowning, HELICAL.load, HELICAL.material)
+    mounting = Mounting(out_of_plane=radians(0.2))
+    larger = shift(HELICAL, mounting) / shift(spur, mounting)
+    return [
+        Trend("25, 27", "helical: the path moves away from the middle as the angle grows", grows, "all three forms"),
+        Trend(
+            "25",
+            "helical: the forms give similar paths",
+            circle < 0.01 and logarithmic < 1.1,
+            f"circular within {circle:.1e} of parabolic; logarithmic {logarithmic:.2f} times as far, being flatter in the "
+            "middle for the same amount at the ends",
+        ),
+        Trend(
+            "25, 27",
+            "helical: out-of-plane errors move the path more than in-plane ones",
+            ratio > 1.0,
+            f"{ratio:.3f} times, as 1/tan(alpha_t)",
+        ),
+        Trend(
+            "27",
+            "the path of a helical pair moves much more than that of a spur pair",
+            larger > 1.5,
+            f"{larger:.3f} times at the same crowning: (cos alpha_t/cos alpha)(cos beta_b of the lever) only",
+        ),
+    ]
+
+
+def _area_of_forms() -> Trend:
+    mounting = Mounting(out_of_plane=radians(0.2))
+    steps = np.linspace(0.0, 0.01, 2)
+    lines = [
+        trace_contact(HELICAL.pair(mounting, lead_crowning_form=form), steps).transmission_error * ARCSEC
+        for form in FORMS
+    ]
+    triangle = [0.5 * float(line[1] - line[0]) * 0.01 for line in lines]
+    spread = (max(triangle) - min(triangle)) / max(triangle)
+    return Trend(
+        "24, 26",
+        "helical: logarithmic crowning has the smallest area S of the transmission function",
+        spread > 0.01,
+        f"the function is one straight line whatever the crowning: areas over 0.01 rad differ by {spread:.1e}",
+    )
+
+
+def _onset_of_edge_contact() -> Trend:
+    amount, angles = 0.02, np.radians([0.1, 0.2, 0.4, 0.8, 1.6])
+
+    def first(form: str) -> float:
+        for angle in angles:
+            pair = HELICAL.pair(Mounting(out_of_plane=angle), lead_crowning=amount, lead_crowning_form=form)
+            if trace_contact(pair, [0.0]).on_edge[0]:
+                return degrees(angle)
+        return float("inf")
+
+    onset = {form: first(form) for form in FORMS}
+    return Trend(
+        "28",
+        "helical: logarithmic crowning bears much larger angles before it comes to an edge",
+        onset["logarithmic"] > 2.0 * onset["circular"],
+        f"on the side at {onset['circular']:.1f} deg (circular), {onset['logarithmic']:.1f} deg (logarithmic), crowned 20 um",
+    )
+
+
+def _pressures(gears: Gears, mounting: Mounting, form: str, points: int = 7) -> Array:
+    """Hertz pressure along the surface contact of one tooth pair [MPa]."""
+    pair = gears.pair(mounting, lead_crowning_form=form)
+    path = trace_contact(pair, np.linspace(-0.7, 0.7, points) * pair.pitch)
+    return np.array([hertz_pressure(pair, path[i], gears.load) for i in range(points)])
+
+
+def _trends_of_pressure() -> list[Trend]:
+    spur = _pressures(SPUR, Mounting(in_plane=0.0175), "parabolic")
+    helical = _pressures(HELICAL, Mounting(out_of_plane=radians(0.2)), "circular")
+    table = {
+        form: [_pressures(HELICAL, Mounting(out_of_plane=radians(a)), form, 3)[1] for a in (0.01, 0.05, 0.2)]
+        for form in FORMS
+    }
+    change = {form: row[-1] / row[0] - 1.0 for form, row in table.items()}
+    listed = ", ".join(f"{form} {value:+.1%}" for form, value in change.items())
+    ends = [float(row[0] / row[len(row) // 2] - 1.0) for row in (spur, spur[::-1])]
+    foot, head = (float(helical[k] / helical[len(helical) // 2] - 1.0) for k in (0, -1))
+    return [
+        Trend(
+            "21, 22",
+            "spur: the pressure is highest at the top and the bottom of the tooth",
+            min(ends) > 0.0,
+            f"{ends[0]:+.1%} towards the root and {ends[1]:+.1%} towards the tip of the pinion, against the pitch point",
+        ),
+        Trend(
+            "29",
+            "helical: the pressure falls with the angle from 0.01 deg on",
+            max(change.values()) < 0.0,
+            f"from 0.01 to 0.2 deg at one crowning: {listed}; in the source the crowning shrinks as the angle grows",
+        ),
+        Trend(
+            "29",
+            "helical: at 0.2 deg the logarithmic crowning has a distinctly higher pressure for its curvature",
+            change["logarithmic"] > 2.0 * max(change["circular"], change["parabolic"], 0.0),
+            listed,
+        ),
+        Trend(
+            "30",
+            "helical: the pressure falls along the path from the upper part of the tooth to the lower",
+            head > foot,
+            f"{head:+.1%} towards the tip, {foot:+.1%} towards the root of the pinion (40 teeth), against the pitch point",
+        ),
+    ]
+
+
+@dataclass(frozen=True)
+class ErrorMap:
+    """Two errors together: peak-to-peak transmission error, shift of the contact, Hertz pressure."""
+
+    in_plane: Array
+    out_of_plane: Array
+    peak_to_peak: Array
+    shift: Array
+    pressure: Array
+    seconds: float
+
+
+def error_map(count: int = 21, largest_deg: float = 0.06) -> ErrorMap:
+    """Map over in-plane and out-of-plane errors of the helical pair, crowned 5 um in both directions.
+
+    One tooth pair at 21 positions over two pitches gives the envelope over one. Each case starts from the contact
+    of the case before it; a scan of both flanks tells whether a higher point exists, and then the whole search is made.
+    """
+    start = time.perf_counter()
+    angles = np.linspace(-1.0, 1.0, count) * radians(largest_deg)
+    found = {name: np.empty((count, count)) for name in ("peak_to_peak", "shift", "pressure")}
+    guess = None
+    for i, gamma in enumerate(angles):
+        for j in range(count)[:: 1 if i % 2 == 0 else -1]:
+            pair = HELICAL.pair(Mounting(gamma, angles[j]), lead_crowning=0.005, profile_crowning=0.005)
+            guess = peaks = _continued(pair, guess)
+            envelope = np.maximum(peaks[2, POSITIONS // 2 :], peaks[2, : POSITIONS // 2 + 1])
+            found["peak_to_peak"][i, j] = np.ptp(envelope) / pair.base_radii[1] * ARCSEC
+            found["shift"][i, j] = peaks[1, POSITIONS // 2]
+            found["pressure"][i, j] = _peak_pressure(pair, *peaks[:2, POSITIONS // 2])
+    return ErrorMap(angles, angles, **found, seconds=time.perf_counter() - start)
+
+
+def _continued(pair: GearPair, guess: Array | None) -> Array:
+    """First touches over two pitches, rows rho, z and height [mm], from a guess of the same if there is one."""
+    phi1 = np.linspace(-1.0, 1.0, POSITIONS) * pair.pitch
+    if guess is not None:
+        field = EaseOff(pair)
+        peaks = climb(field, phi1, guess[0], guess[1])
+        rho, z = (np.broadcast_to(part, (POSITIONS, *part.shape)) for part in pair.pinion.grid(9, 9))
+        heights, borders = field.heights(phi1[:, None, None], rho, z)
+        scanned = np.where(borders.min(axis=-1) >= 0.0, heights, -np.inf).max(axis=(1, 2))
+        if peaks.converged.all() and (peaks.value >= scanned - 1e-12).all():
+            return np.stack([peaks.rho, peaks.z, peaks.value])
+    touch = first_touch(pair, phi1)
+    return np.stack([touch.rho, touch.z, touch.value])
+
+
+def _peak_pressure(pair: GearPair, rho: float, z: float) -> float:
+    """Hertz pressure at phi1 = 0 from the Hessian of the ease-off; NaN on a side of the tooth."""
+    if abs(z) >= 0.5 * pair.face_width - ROUND:
+        return float("nan")
+    field = EaseOff(pair)
+    station = field.station(np.zeros(1), np.array([rho]), np.array([z]))
+    tangents, jet = station.tangents[0], pair.wheel.theta(station.wheel_rho, station.wheel_z)
+    gradient = np.sqrt(jet.rho**2 + 1.0 / station.wheel_rho**2 + jet.z**2)
+    bend = -field.hessian(station)[0] / (pair.base_radii[1] * gradient[0])
+    k = np.linalg.eigvals(np.linalg.solve(tangents @ tangents.T, bend))
+    return point_contact(HELICAL.load, (float(k[0]), float(k[1])), pair.contact_modulus).max_pressure
+
+
+def rows() -> list[Row]:
+    """Numbers that the source's inputs fix: the laws of a misaligned crowned pair."""
+    found = []
+    mesh = HELICAL.mesh
+    alpha = mesh.working_pressure_angle
+    inward, across = (
+        shift(HELICAL, Mounting(**{name: radians(0.2)}), lead_crowning=c1 * 100.0)
+        for name, c1 in (("in_plane", 0.0051), ("out_of_plane", 0.00143))
+    )
+    for name, expected, obtained in (("in-plane", 0.126, inward), ("out-of-plane", 1.20, across)):
+        label = f"{name} 0.2 deg: shift of the contact [mm] (printed 1.3 and 5.0 to 6.5)"
+        found.append(Row(CASE, "computed from the inputs", label, expected, abs(obtained), 5e-3))
+    small = radians(0.001)
+    slopes = [_slope(Mounting(**{name: small})) for name in ("in_plane", "out_of_plane")]
+    label = "TE slope, in-plane over out-of-plane"
+    found.append(Row(CASE, "-tan(alpha_wt), first order", label, -tan(alpha), slopes[0] / slopes[1], 2e-3))
+    spur = shift(SPUR, Mounting(out_of_plane=small)) * 2.0 * 0.0025
+    found.append(
+        Row(CASE, "f/(2 c1), first order", "spur: slope at the contact", small * cos(radians(20.0)), spur, 1e-3)
+    )
+    tilted = shift(SPUR, Mounting(in_plane=small)) * 2.0 * 0.0025
+    found.append(
+        Row(CASE, "f/(2 c1), first order", "spur, in-plane: the same", -small * sin(radians(20.0)), tilted, 1e-3)
+    )
+    return found
+
+
+def _slope(mounting: Mounting) -> float:
+    line = trace_contact(HELICAL.pair(mounting), [0.0, 0.01]).transmission_error
+    return float(line[1] - line[0]) / 0.01
+
+
+def draw_map(errors: ErrorMap) -> Figure:
+    """Three maps over the two angles; grey where the contact lies on a side of the tooth."""
+    figure = Figure(figsize=(13.5, 4.4), layout="constrained")
+    panels = figure.subplots(1, 3, sharex=True, sharey=True)
+    texts = ("transmission error, peak to peak [arcsec]", "contact at the pitch point: z on the pinion [mm]", "[MPa]")
+    texts = (*texts[:2], "Hertz pressure at the pitch point [MPa]")
+    gamma, delta = np.degrees(errors.in_plane), np.degrees(errors.out_of_plane)
+    values = (errors.peak_to_peak, errors.shift, errors.pressure)
+    for axes, text, value, colours in zip(panels, texts, values, ("viridis", "cividis", "viridis"), strict=True):
+        axes.set_facecolor("0.8")
+        mesh = axes.pcolormesh(gamma, delta, np.ma.masked_invalid(value.T), cmap=colours, shading="nearest")
+        figure.colorbar(mesh, ax=axes, label=text)
+        axes.set_xlabel("in-plane error [deg]")
+    lines = panels[1].contour(gamma, delta, errors.shift.T, levels=range(-8, 9, 4), colors="white", linewidths=0.8)
+    panels[1].clabel(lines, fmt="%d mm")
+    panels[0].set_ylabel("out-of-plane error [deg]")
+    panels[2].plot([], [], "s", color="0.8", label="contact on the side of the tooth")
+    panels[2].legend(loc="upper right", fontsize="small")
+    figure.suptitle(
+        f"Helical pair 40/37, module 1 mm, lead and profile crowning 5 µm, {HELICAL.load:g} N, unloaded contact"
+    )
+    return figure
+
+
+def draw_paths() -> Figure:
+    """Contact path on the pinion flank and transmission error for each error, both pairs."""
+    figure = Figure(figsize=(12.0, 8.0), layout="constrained")
+    styles = zip(("none", *ERRORS), ("k", "#0072b2", "#d55e00", "#009e73", "#cc79a7"), "os^Dv", strict=True)
+    panels = figure.subplots(2, 2)
+    for error, colour, marker in styles:
+        for gears, (flank, motion) in zip((SPUR, HELICAL), panels, strict=True):
+            amount = {} if error == "none" else {error: LARGEST[gears][error]}
+            mesh = trace_teeth(gears.pair(Mounting(**amount), profile_crowning=0.01))
+            path = mesh.leading_contact
+            style = {"color": colour, "marker": marker, "markersize": 4, "label": _label(error, amount)}
+            flank.plot(path.pinion_axial, 2.0 * path.pinion_radius, linestyle="", **style)
+            motion.plot(np.degrees(mesh.pinion_angle), mesh.transmission_error * ARCSEC, markevery=2, **style)
+    for gears, (flank, motion) in zip((SPUR, HELICAL), panels, strict=True):
+        flank.set(xlim=(-0.5 * gears.face_width, 0.5 * gears.face_width), title=f"{gears.name}: contact path")
+        flank.set(xlabel="z on the pinion [mm]", ylabel="diameter on the pinion [mm]")
+        motion.set(xlabel="pinion angle [deg]", ylabel="transmission error [arcsec]", title="envelope over the teeth")
+        motion.legend(fontsize="small")
+    figure.suptitle("Mounting errors, lead crowning as in the source and profile crowning 10 µm, unloaded")
+    return figure
+
+
+def _label(error: str, amount: dict[str, float]) -> str:
+    if not amount:
+        return "aligned"
+    value = amount[error]
+    size = f"{degrees(value):.2g} deg" if "plane" in error else f"{value:g} mm"
+    return f"{error.replace('_', ' ')} {size}"
+
+
+def main() -> int:
+    """Print trends and effects, save the pictures; 0 in any case: a trend that does not hold is a finding."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--out", type=Path, default=Path(), help="directory of the pictures")
+    directory = parser.parse_args().out
+    for trend in trends():
+        verdict = "holds" if trend.holds else "does not hold"
+        print(f"Figure {trend.figure}: {trend.statement}: {verdict}: {trend.because}")
+    print("\n" + "  ".join(f"{field.name:>22}" for field in fields(Effect)))
+    for one in effects():
+        numbers = f"{one.shift:22.4f}  {one.peak_to_peak:22.4f}  {one.pressure:22.2f}  {one.continuous!s:>22}"
+        print(f"{one.gears:>22}  {one.form:>22}  {one.error:>22}  {numbers}")
+    errors = error_map()
+    print(f"\n{errors.shift.size} pairs of errors x {POSITIONS} positions: {errors.seconds:.2f} s")
+    draw_map(errors).savefig(directory / "mounting_error_map.png", dpi=100)
+    draw_paths().savefig(directory / "mounting_errors.png", dpi=100)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
