@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import maximum_filter
 
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.flanks.jet import Array
@@ -17,10 +18,10 @@ from loaded_tca.pair import GearPair
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import FEASIBLE, Maxima, climb
 
-SCAN = (9, 9)
-"""Points of the scan along the profile and along the face."""
+SCAN = (17, 17)
+"""Points of the scan along the profile and along the face; none of them may be higher than the contact found."""
 BLOCKS = (2, 3)
-"""Blocks of the scan, each of which sends its best point up the hill: several basins are found by this."""
+"""Blocks of the scan, each of which sends its best point up its hill: several basins are found by this."""
 CERTIFICATE = 1e-13
 """How far, relative to r_b2, a scanned point may rise above the maximum found: rounding."""
 
@@ -62,9 +63,7 @@ def first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
     ConvergenceError
         If a position has a common region but no ascent reached the height of the scan.
     """
-    rho, z, scanned = _starts(pair, phi1)
-    owner = np.repeat(np.arange(len(phi1)), rho.shape[1])
-    rho, z = rho.ravel(), z.ravel()
+    owner, rho, z, scanned = _starts(pair, phi1)
     beyond = EaseOff(pair).sides(phi1[owner], rho, z)
     peaks = _climb(pair, phi1[owner], rho, z, beyond)
     columns, latest, last = _crease_columns(pair), np.arange(len(owner)), np.full(len(owner), -1)
@@ -97,8 +96,8 @@ def _crease_columns(pair: GearPair) -> Array:
     return np.flatnonzero(EaseOff(pair, np.zeros((1, field.creases), dtype=bool)).border_is_crease())
 
 
-def _starts(pair: GearPair, phi1: Array) -> tuple[Array, Array, Array]:
-    """Best point of each block of the scan, rho and z (n, blocks) [mm], and the best feasible height (n,)."""
+def _starts(pair: GearPair, phi1: Array) -> tuple[Array, Array, Array, Array]:
+    """Hills of the scan: position and place (rho, z) [mm] of each, and the best feasible height of every position."""
     rho, z = pair.pinion.grid(*SCAN)
     shape, field = (len(phi1), *SCAN), EaseOff(pair)
     full = [np.broadcast_to(part, shape) for part in (rho, z)]
@@ -106,14 +105,23 @@ def _starts(pair: GearPair, phi1: Array) -> tuple[Array, Array, Array]:
     lack = np.maximum(0.0, -borders).sum(axis=-1)
     feasible = lack <= FEASIBLE
     score = np.where(feasible, value, np.minimum(value.min() - 1.0, -1.0) * (1.0 + lack))
-    picks = []
-    for rows in np.array_split(np.arange(SCAN[0]), BLOCKS[0]):
-        for columns in np.array_split(np.arange(SCAN[1]), BLOCKS[1]):
-            block = score[:, rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1].reshape(len(phi1), -1)
-            best = np.argmax(block, axis=1)
-            picks.append((rows[best // len(columns)], columns[best % len(columns)]))
-    i, j = (np.stack([pick[k] for pick in picks], axis=1) for k in (0, 1))
-    return rho[i, j], z[i, j], np.where(feasible, value, -np.inf).max(axis=(1, 2))
+    owner, i, j = np.nonzero(_hills(score))
+    return owner, rho[i, j], z[i, j], np.where(feasible, value, -np.inf).max(axis=(1, 2))
+
+
+def _hills(score: Array) -> Array:
+    """The best point of each block of the scan, if no neighbour is higher: (n, *SCAN) bool.
+
+    A ridge across the grid shows many such points; the blocks keep them few.
+    """
+    hills = np.zeros(score.shape, dtype=bool)
+    rows = np.arange(len(score))
+    for profile in np.array_split(np.arange(SCAN[0]), BLOCKS[0]):
+        for lengthwise in np.array_split(np.arange(SCAN[1]), BLOCKS[1]):
+            block = score[:, profile[0] : profile[-1] + 1, lengthwise[0] : lengthwise[-1] + 1]
+            best = block.reshape(len(score), -1).argmax(axis=1)
+            hills[rows, profile[best // len(lengthwise)], lengthwise[best % len(lengthwise)]] = True
+    return hills & (score >= maximum_filter(score, size=(1, 3, 3), mode="nearest"))
 
 
 def _best(pair: GearPair, phi1: Array, owner: Array, beyond: Array, peaks: Maxima, scanned: Array) -> FirstTouch:

@@ -209,8 +209,9 @@ class MeshPath:
     def jumps(self) -> Array:
         """Step of the transmission error of surface contact at each transfer [rad].
 
-        Zero where the curves cross inside both their ranges. Otherwise the change between the end of the surface contact
-        of the one pair and the begin of that of the other, bridged by an edge; NaN if there is none within a pitch.
+        Zero where the curves cross inside both their ranges. Otherwise the change between the end of the surface
+        contact of the one pair and the begin of that of the other, bridged by an edge; NaN if there is none within a
+        pitch.
         """
         return np.array([_jump(self.pair, transfer.contacts) for transfer in self.transfers])
 
