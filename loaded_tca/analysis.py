@@ -51,8 +51,9 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
     pair = scene.pair()
     path = trace_contact(pair, _positions(pair, scene.analysis.positions))
     torques = np.asarray(scene.torques)
-    contacts = _load_all(pair, path, torques, _grid_choice(scene), progress)
-    _warn_of_doubts(pair, contacts)
+    grid = _grid_choice(scene)
+    contacts = _load_all(pair, path, torques, grid, progress)
+    _warn_of_doubts(pair, grid, contacts)
     return _mesh_cycle(scene, pair, path, torques, contacts)
 
 
@@ -87,24 +88,27 @@ def _load_all(
     return contacts
 
 
-def _warn_of_doubts(pair: GearPair, contacts: Contacts) -> None:
+def _warn_of_doubts(pair: GearPair, grid: GridChoice, contacts: Contacts) -> None:
     """One AccuracyWarning for each reason to doubt, with the number of maps it concerns."""
     solved = [loaded for row in contacts for loaded in row if loaded is not None]
     reasons: dict[str, int] = {}
     for loaded in solved:
-        for reason in _doubts(pair, loaded):
+        for reason in _doubts(pair, grid, loaded):
             reasons[reason] = reasons.get(reason, 0) + 1
     for reason, count in reasons.items():
         warnings.warn(f"{reason} (at {count} of {len(solved)} positions)", AccuracyWarning, stacklevel=3)
 
 
-def _doubts(pair: GearPair, loaded: LoadedContact) -> list[str]:
+def _doubts(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[str]:
     solution = loaded.solution
     found = []
     if loaded.at_border:
         found.append("the contact reaches a border of a flank: its peak pressure grows with the grid without end")
     if loaded.at_crease:
         found.append("the contact lies across the start of a linear relief: its peak pressure grows with the grid")
+    smooth = not (loaded.at_border or loaded.at_crease)
+    if grid.cells is None and smooth and solution.error_estimate.peak_pressure > grid.accuracy:
+        found.append(f"the estimated error stays above the accuracy of {grid.accuracy:g}")
     if solution.reaches_border:
         found.append("the contact reaches the box")
     if solution.load > 0.0 and solution.cells_across[0] < 8:
@@ -135,6 +139,7 @@ def _mesh_cycle(scene: Scene, pair: GearPair, path: ContactPath, torques: Array,
         maps=tuple(tuple(_pressure_map(loaded) for loaded in row) for row in contacts),
         wheel_base_radius=pair.base_radii[1],
         face_width=pair.face_width,
+        max_pressure=math.nan if pair.max_pressure is None else pair.max_pressure,
         **{name: table(name) for name in names},
     )
 

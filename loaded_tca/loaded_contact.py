@@ -9,9 +9,9 @@ from functools import cached_property
 import numpy as np
 
 from loaded_tca.contact import ContactSolution, solve_contact, solve_to_accuracy
-from loaded_tca.contact.checks import memory_problem
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.jet import Array
+from loaded_tca.memory import memory_problem
 from loaded_tca.pair import GearPair
 from loaded_tca.reference.hertz import PointContact, point_contact
 from loaded_tca.separation import Separation, sample_separation
@@ -23,6 +23,10 @@ CHORD = 0.1
 """Half width, relative to the load, of the interval over which the stiffness is taken."""
 MARGIN_LEFT = 0.8
 """Expected contact over its box."""
+SMALLEST_LOAD = 1e-15
+"""Loads below this times E* m_n^2 are none: the gap they close is rounding (1e-9 N at module 3)."""
+CAP_USE = 0.6
+"""Share of what the material in the box can carry at the cap that may be used: the contact needs room to spread."""
 GROWTH = 1.5
 MOST_BOXES = 8
 
@@ -120,9 +124,8 @@ class LoadedContact:
     @property
     def _largest_load(self) -> float:
         """What the cap on the pressure lets the material in the box carry [N]."""
-        cells = int(np.isfinite(self.separation.gap).sum())
-        cap = math.inf if self.solution.max_pressure is None else self.solution.max_pressure
-        return cap * cells * self.solution.cell_area
+        cap = self.solution.max_pressure
+        return math.inf if cap is None else cap * self.separation.material_area
 
     def _approach_under(self, load: float) -> float:
         solution = self.solution
@@ -163,8 +166,9 @@ def press(pair: GearPair, contact: ContactPoint, load: float, grid: GridChoice) 
     """
     cells = grid.cells or FIRST_CELLS
     if (problem := memory_problem(cells)) is not None:
-        raise InputError(problem)
-    separation = sample_separation(pair, contact, cells=cells, load=load)
+        raise InputError(f"cells: {problem}")
+    load = 0.0 if 0.0 < load <= SMALLEST_LOAD * pair.contact_modulus * pair.module**2 else load
+    separation = _box_for_cap(pair, contact, load, sample_separation(pair, contact, cells=cells, load=load))
     for _ in range(MOST_BOXES):
         loaded = _press_in_box(pair, contact, load, grid, separation)
         grown = _grown_box(loaded.solution)
@@ -172,6 +176,22 @@ def press(pair: GearPair, contact: ContactPoint, load: float, grid: GridChoice) 
             break
         separation = sample_separation(pair, contact, cells=cells, box=grown)
     return loaded
+
+
+def _box_for_cap(pair: GearPair, contact: ContactPoint, load: float, separation: Separation) -> Separation:
+    """A box whose material carries the load at the cap on the pressure, if the flank has so much."""
+    cap = math.inf if pair.max_pressure is None else pair.max_pressure
+    while load > CAP_USE * separation.material_area * cap:
+        across, along = separation.half_lengths
+        box = (GROWTH * across, min(GROWTH * along, pair.face_width))
+        wider = sample_separation(pair, contact, cells=separation.gap.shape, box=box)
+        if wider.material_area <= separation.material_area:
+            most = CAP_USE * separation.material_area * cap
+            raise InputError(
+                f"load: {load:.6g} N is more than the flank carries at max_pressure, {cap:g} MPa: about {most:.4g} N"
+            )
+        separation = wider
+    return separation
 
 
 def _press_in_box(

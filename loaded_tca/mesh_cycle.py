@@ -11,11 +11,15 @@ import numpy as np
 
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.jet import Array
+from loaded_tca.key_figures import highest_growing_peak, highest_peak, highest_where_hertz_holds, key_figures
 from loaded_tca.storage import FilePath, Part, Variable, pack, read_netcdf, unpack, write_netcdf
+from loaded_tca.summary import summary_text
 from loaded_tca.unloaded import ContactPath
 
-ARCSEC = math.degrees(3600.0)
-"""Seconds of arc per radian."""
+CAPPED = 1.0 - 1e-6
+"""Part of the cap on the pressure from which a peak equals it."""
+DERIVED = ("inner_pressure", "length_on_face", "peak_grows_with_grid", "capped")
+"""Properties that have a number per torque and position, as the fields of quantities do."""
 
 
 def quantity(unit: str, text: str) -> Any:
@@ -73,6 +77,8 @@ class MeshCycle:
         ``maps[torque][position]``; None where nothing touches.
     wheel_base_radius, face_width : float [mm]
         r_b2 and the common face width: what turns the transmission error into a length and forces into line loads.
+    max_pressure : float [MPa]
+        Cap on the pressure; NaN: elastic.
     """
 
     title: str
@@ -85,20 +91,25 @@ class MeshCycle:
     maps: tuple[tuple[PressureMap | None, ...], ...]
     wheel_base_radius: float
     face_width: float
+    max_pressure: float
     transmission_error: Array = quantity("rad", "loaded transmission error, absolute")
     normal_force: Array = quantity("N", "normal force on the tooth pair")
-    peak_pressure: Array = quantity("MPa", "peak contact pressure, largest cell")
+    peak_pressure: Array = quantity(
+        "MPa", "peak contact pressure; at a border or crease the largest cell, which grows with the grid"
+    )
     central_pressure: Array = quantity("MPa", "contact pressure beside the unloaded contact point")
     peak_radius: Array = quantity("mm", "radius on the pinion of the cell with the largest pressure")
     peak_axial: Array = quantity("mm", "axial coordinate on the pinion of the cell with the largest pressure")
     hertz_pressure: Array = quantity("MPa", "peak pressure after Hertz; NaN where Hertz does not hold")
     hertz_semi_minor: Array = quantity("mm", "semi-axis of the Hertz ellipse across the contact")
     hertz_semi_major: Array = quantity("mm", "semi-axis of the Hertz ellipse along the contact")
-    contact_width: Array = quantity("mm", "width of the contact across, from the pressure map")
-    contact_length: Array = quantity("mm", "length of the contact, from the pressure map")
+    contact_width: Array = quantity("mm", "full width of the contact across, from the pressure map")
+    contact_length: Array = quantity(
+        "mm", "full length of the contact, from the pressure map; a line contact counts whole cells"
+    )
     approach: Array = quantity("mm", "approach of the two flanks along the normal")
     mesh_stiffness: Array = quantity(
-        "N/(mm um)", "tangent stiffness of one tooth pair over its face width, contact only"
+        "N/(mm um)", "contact stiffness of one tooth pair (no bending), tangent, over the face width"
     )
     on_edge: Array = quantity("1", "whether the contact reaches a border of a flank")
     at_crease: Array = quantity("1", "whether the start of a linear relief lies in the contact")
@@ -121,28 +132,75 @@ class MeshCycle:
         """Return a field of numbers per torque and position as an (m, n) array, for a single torque too."""
         return np.asarray(getattr(self, name)).reshape(len(self.torque), len(self.path))
 
+    @property
+    def peak_grows_with_grid(self) -> Array:
+        """Whether the largest cell lies at the end of a flank, or a crease in the contact: bool, (..., n).
+
+        There theory has an infinite pressure, unless a cap holds it down.
+        """
+        at_end = np.array([[one is not None and _peaks_at_end(one) for one in row] for row in self.maps])
+        rough = at_end.reshape(self.peak_pressure.shape) | (self.at_crease > 0)
+        return np.asarray(rough & ~self.capped)
+
+    @property
+    def capped(self) -> Array:
+        """Whether the peak equals the cap on the pressure: bool, (..., n)."""
+        return np.asarray(self.peak_pressure >= CAPPED * self.max_pressure)
+
+    @property
+    def inner_pressure(self) -> Array:
+        """Highest pressure that is no matter of the grid [MPa], (..., n).
+
+        The peak; where that grows with the grid, the pressure beside the contact point; NaN where the contact point
+        itself lies on a border or a crease.
+        """
+        beside = np.where(self.path.on_edge | self.path.on_crease, math.nan, self.central_pressure)
+        return np.where(self.peak_grows_with_grid, beside, self.peak_pressure)
+
+    @property
+    def length_on_face(self) -> Array:
+        """Length of the contact [mm], (..., n): not beyond the face, where cells of a line contact may end."""
+        longest = [[self._longest(one) for one in row] for row in self.maps]
+        return np.fmin(self.contact_length, np.reshape(longest, self.contact_length.shape))
+
+    def _longest(self, one: PressureMap | None) -> float:
+        """Length of the face width in the direction of the contact; NaN where that is not known."""
+        slope = 0.0 if one is None else abs(float(one.axes[1, 2]))
+        return self.face_width / slope if slope > 0.0 else math.nan
+
     def peak_position(self, torque: int, *, where_hertz_holds: bool = False) -> int | None:
-        """Return the index of the position with the highest pressure, of those asked for; None if there is none."""
-        pressure = self.by_torque("peak_pressure")[torque]
-        wanted = self.by_torque("hertz_pressure")[torque] if where_hertz_holds else pressure
-        pressure = np.where(np.isfinite(wanted), pressure, np.nan)
-        return int(np.nanargmax(pressure)) if np.isfinite(pressure).any() else None
+        """Return the index of the position with the highest pressure, of those asked for; None if there is none.
+
+        By default that of ``inner_pressure``, or of the central pressure where every contact point lies on a border.
+        """
+        row = self._row(torque)
+        return highest_where_hertz_holds(row) if where_hertz_holds else highest_peak(row)
+
+    def border_position(self, torque: int) -> int | None:
+        """Return the index of the position with the highest of the peaks that grow with the grid; None if none does."""
+        return highest_growing_peak(self._row(torque))
+
+    def _row(self, torque: int) -> dict[str, Array]:
+        """Every field of numbers per position under one torque, and those that follow from them."""
+        names = (*(entry.name for entry in fields(self) if entry.metadata), *DERIVED)
+        return {name: self.by_torque(name)[torque] for name in names}
 
     def key_figures(self) -> tuple[dict[str, float], ...]:
         """Return the figures of the whole cycle for each torque, by names that end in their unit.
 
-        "at_peak": at the position of the highest pressure; "there": at that of the highest pressure where Hertz
-        holds. Means are over the positions. NaN: not known.
+        ``peak_pressure_MPa`` is the highest ``inner_pressure``; "at_peak": at its position; "at_border": at that of
+        the highest peak that grows with the grid; "there": at that of the highest pressure where Hertz holds. Means
+        are over the positions. NaN: not known.
         """
-        return tuple(_key_figures(self, torque) for torque in range(len(self.torque)))
+        scalars = {name: getattr(self, name) for name in ("wheel_base_radius", "max_pressure")}
+        return tuple(
+            {"pinion_torque_Nm": 1e-3 * float(torque), **key_figures(self.path, self._row(index), **scalars)}
+            for index, torque in enumerate(self.torque)
+        )
 
     def summary(self) -> str:
-        """Return the key figures in the engineer's units: about 15 lines, one column per torque."""
-        figures = self.key_figures()
-        rows = [(label, [_cell(entry, names) for entry in figures]) for label, names in SUMMARY_ROWS]
-        width = 2 + max(len(cell) for _, cells in rows for cell in cells)
-        table = [f"{label:<44}" + "".join(f"{cell:>{width}}" for cell in cells) for label, cells in rows]
-        return "\n".join([self.title or "Loaded tooth contact", _scope(self), *table, *_notes(self)])
+        """Return the key figures in the engineer's units: about 20 lines, one column per torque."""
+        return summary_text(self.title, _scope(self), self.key_figures())
 
     def save(self, path: FilePath) -> None:
         """Write everything to a NetCDF-3 file, whole or not at all; ``load`` reads it back unchanged.
@@ -152,7 +210,7 @@ class MeshCycle:
         InputError
             If the file cannot be written.
         """
-        variables = {**pack(self, _own_parts(self.transmission_error.ndim)), **pack(self.path, PATH_PARTS, "path_")}
+        variables = {**pack(self, cycle_parts(self.transmission_error.ndim)), **pack(self.path, PATH_PARTS, "path_")}
         write_netcdf(path, {**variables, **_map_variables(self)}, {name: getattr(self, name) for name in TEXTS})
 
     @classmethod
@@ -217,7 +275,7 @@ MAP_PARTS: dict[str, Part] = {
 """Parts of a pressure map; in a file each has the axes torque and position before its own."""
 
 
-def _own_parts(axes: int) -> dict[str, Part]:
+def cycle_parts(axes: int) -> dict[str, Part]:
     """Parts of the cycle itself; ``axes``: 2 where the torques have an axis, 1 where there is one torque without."""
     leading = CYCLE[-axes:]
     quantities = {
@@ -231,6 +289,7 @@ def _own_parts(axes: int) -> dict[str, Part]:
         "load_share": ((*leading, "pair"), "1", "share of each tooth pair in the load"),
         "wheel_base_radius": ((), "mm", "base radius of the wheel"),
         "face_width": ((), "mm", "common face width"),
+        "max_pressure": ((), "MPa", "cap on the pressure; NaN: elastic"),
         **quantities,
     }
 
@@ -256,13 +315,12 @@ def _map_variables(cycle: MeshCycle) -> dict[str, Variable]:
 def _fields_from(variables: Mapping[str, Variable]) -> dict[str, Any]:
     """Every field of a cycle but its texts; InputError if a part is missing."""
     axes = 1 if "transmission_error" in variables and variables["transmission_error"].data.ndim == 1 else 2
-    own = unpack(variables, _own_parts(axes))
+    own = unpack(variables, cycle_parts(axes))
     stacks = unpack(variables, {name: ((*CYCLE, *part[0]), *part[1:]) for name, part in MAP_PARTS.items()}, "map_")
     torques, positions = stacks["x"].shape[:2]
     return {
         **own,
-        "wheel_base_radius": float(own["wheel_base_radius"]),
-        "face_width": float(own["face_width"]),
+        **{name: float(own[name]) for name in ("wheel_base_radius", "face_width", "max_pressure")},
         "path": ContactPath(**unpack(variables, PATH_PARTS, "path_")),
         "maps": tuple(tuple(_trimmed(stacks, (t, n)) for n in range(positions)) for t in range(torques)),
     }
@@ -281,86 +339,11 @@ def _trimmed(stacks: Mapping[str, Array], place: tuple[int, int]) -> PressureMap
     return PressureMap(**{**parts, "spacing": (float(dx), float(dy))})
 
 
-SUMMARY_ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
-    ("pinion torque [N m]", ("pinion_torque_Nm",)),
-    ("peak pressure [MPa]", ("peak_pressure_MPa",)),
-    ("  at pinion angle [deg]", ("pinion_angle_at_peak_deg",)),
-    ("  at pinion diameter | axial place [mm]", ("pinion_diameter_at_peak_mm", "pinion_axial_at_peak_mm")),
-    ("  normal force on the tooth pair [N]", ("normal_force_at_peak_N",)),
-    ("  contact length | width [mm]", ("contact_length_at_peak_mm", "contact_width_at_peak_mm")),
-    ("highest peak where Hertz holds [MPa]", ("peak_pressure_where_hertz_holds_MPa",)),
-    ("  pressure after Hertz there [MPa]", ("hertz_pressure_there_MPa",)),
-    ("  ellipse after Hertz, length | width [mm]", ("hertz_length_there_mm", "hertz_width_there_mm")),
-    ("transmission error, mean [arcsec | um]", ("transmission_error_mean_arcsec", "transmission_error_mean_um")),
-    ("  peak to peak [arcsec | um]", ("transmission_error_span_arcsec", "transmission_error_span_um")),
-    ("  unloaded, peak to peak [arcsec | um]", ("unloaded_error_span_arcsec", "unloaded_error_span_um")),
-    ("mesh stiffness, mean [N/(mm um)]", ("mesh_stiffness_mean_N_per_mm_um",)),
-    ("solver: most iterations | worst residual", ("most_solver_iterations", "worst_solver_residual")),
-)
-"""Label and key figures of each line of the summary."""
-
-
-def _key_figures(cycle: MeshCycle, torque: int) -> dict[str, float]:
-    row = {entry.name: cycle.by_torque(entry.name)[torque] for entry in fields(cycle) if entry.metadata}
-    peak, smooth = cycle.peak_position(torque), cycle.peak_position(torque, where_hertz_holds=True)
-    at_peak, there = (
-        {name: math.nan if position is None else float(values[position]) for name, values in row.items()}
-        for position in (peak, smooth)
-    )
-    place = cycle.path[peak or 0]
-    return {
-        "pinion_torque_Nm": 1e-3 * float(cycle.torque[torque]),
-        "peak_pressure_MPa": at_peak["peak_pressure"],
-        "pinion_angle_at_peak_deg": math.degrees(place.pinion_angle),
-        "pinion_diameter_at_peak_mm": 2.0 * float(place.pinion_radius),
-        "pinion_axial_at_peak_mm": float(place.pinion_axial),
-        "normal_force_at_peak_N": at_peak["normal_force"],
-        "contact_length_at_peak_mm": at_peak["contact_length"],
-        "contact_width_at_peak_mm": at_peak["contact_width"],
-        "approach_at_peak_um": 1e3 * at_peak["approach"],
-        "peak_pressure_where_hertz_holds_MPa": there["peak_pressure"],
-        "hertz_pressure_there_MPa": there["hertz_pressure"],
-        "hertz_length_there_mm": 2.0 * there["hertz_semi_major"],
-        "hertz_width_there_mm": 2.0 * there["hertz_semi_minor"],
-        **_error_figures(cycle, "transmission_error", row["transmission_error"]),
-        **_error_figures(cycle, "unloaded_error", cycle.path.transmission_error),
-        "mesh_stiffness_mean_N_per_mm_um": _reduced(np.mean, row["mesh_stiffness"]),
-        "most_solver_iterations": _reduced(np.max, row["iterations"]),
-        "worst_solver_residual": _reduced(np.max, row["residual"]),
-        "positions": len(cycle.path),
-        "touching_positions": int(cycle.path.touches.sum()),
-        "edge_positions": int((row["on_edge"] > 0).sum()),
-        "line_positions": int(cycle.path.on_line.sum()),
-    }
-
-
-def _error_figures(cycle: MeshCycle, name: str, error: Array) -> dict[str, float]:
-    """Mean and peak-to-peak of a transmission error, as an angle and as a length at the wheel's base circle."""
-    mean, span = _reduced(np.mean, error), _reduced(np.ptp, error)
-    length = 1e3 * cycle.wheel_base_radius
-    return {
-        f"{name}_mean_arcsec": mean * ARCSEC,
-        f"{name}_mean_um": mean * length,
-        f"{name}_span_arcsec": span * ARCSEC,
-        f"{name}_span_um": span * length,
-    }
-
-
-def _reduced(reduction: Any, values: Array) -> float:
-    """Mean, maximum or span of the finite values; NaN if there is none."""
-    finite = values[np.isfinite(values)]
-    return float(reduction(finite)) if finite.size else math.nan
-
-
-def _cell(figures: Mapping[str, float], names: tuple[str, ...]) -> str:
-    return " | ".join(_shown(figures[name], is_residual="residual" in name) for name in names)
-
-
-def _shown(value: float, is_residual: bool) -> str:
-    """Four digits; a dash for what is not known, zero for what is rounding."""
-    if math.isnan(value):
-        return "-"
-    return f"{value:.1e}" if is_residual else f"{value if abs(value) > 1e-6 else 0.0:.4g}"
+def _peaks_at_end(one: PressureMap) -> bool:
+    """Whether the largest cell is one of those beside cells without material."""
+    across, along = np.unravel_index(int(one.pressure.argmax()), one.pressure.shape)
+    around = one.gap[max(across - 1, 0) : across + 2, max(along - 1, 0) : along + 2]
+    return bool(one.pressure.any() and np.isinf(around).any())
 
 
 def _scope(cycle: MeshCycle) -> str:
@@ -369,15 +352,3 @@ def _scope(cycle: MeshCycle) -> str:
     where = f"{count} positions, pinion angle {first:.4g} to {last:.4g} deg" if count > 1 else "1 position"
     one_pair = "one tooth pair carries the whole load (load sharing off)"
     return f"{where}; {one_pair if pairs == 1 else f'{pairs} tooth pairs share the load'}"
-
-
-def _notes(cycle: MeshCycle) -> list[str]:
-    """Sentences on what limits the figures; none for an ordinary point contact."""
-    edge = (cycle.by_torque("on_edge") > 0).any(axis=0)
-    sentences = (
-        (~cycle.path.touches, "the tooth pair does not touch"),
-        (cycle.path.on_line, "the unloaded contact is a line"),
-        (edge, "the contact reaches a border of a flank: no Hertz, and the peak grows with the grid"),
-    )
-    count = len(cycle.path)
-    return [f"note: at {rows.sum()} of {count} positions {sentence}" for rows, sentence in sentences if rows.any()]

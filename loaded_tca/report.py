@@ -14,14 +14,24 @@ import numpy as np
 
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.jet import Array
-from loaded_tca.mesh_cycle import ARCSEC, MeshCycle
-from loaded_tca.storage import FilePath, replacing
+from loaded_tca.key_figures import ARCSEC
+from loaded_tca.mesh_cycle import MAP_PARTS, PATH_PARTS, MeshCycle, cycle_parts
+from loaded_tca.storage import FilePath, Part, replacing
+from loaded_tca.summary import STIFFNESS, without_rounding
 
 RESULT, SUMMARY, POSITIONS = "result.nc", "summary.json", "positions.csv"
 """Names of the three files."""
 
 ENGINEERS_UNITS = {"rad": (ARCSEC, "arcsec"), "N mm": (1e-3, "Nm"), "N/(mm um)": (1.0, "N_per_mm_um"), "1": (1.0, "")}
 """Unit of a result -> factor to, and name of, the unit in the table; others stay as they are."""
+COLUMNS = {
+    "hertz_semi_minor": ("hertz_width_mm", 2.0),
+    "hertz_semi_major": ("hertz_length_mm", 2.0),
+    "approach": ("approach_um", 1e3),
+    "peak_radius": ("peak_pinion_diameter_mm", 2.0),
+    "peak_axial": ("peak_pinion_axial_mm", 1.0),
+}
+"""Field -> column and factor, where these do not follow from the unit: full widths, diameters, um."""
 
 
 def write_report(result: MeshCycle, directory: FilePath) -> tuple[Path, Path, Path]:
@@ -69,12 +79,19 @@ def summary_json(result: MeshCycle) -> str:
         "tooth_pairs_sharing_load": len(result.pairs),
         "face_width_mm": result.face_width,
         "wheel_base_radius_mm": result.wheel_base_radius,
+        "mesh_stiffness_is": STIFFNESS,
         "torques": [
-            {name: value if math.isfinite(value) else None for name, value in figures.items()}
-            for figures in result.key_figures()
+            {name: _known(value, name) for name, value in figures.items()} for figures in result.key_figures()
         ],
     }
     return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _known(value: float, name: str) -> float | None:
+    """The number without what is rounding; None if it is not known."""
+    if isinstance(value, bool | int):
+        return value
+    return without_rounding(value, name) if math.isfinite(value) else None
 
 
 def positions_csv(result: MeshCycle) -> str:
@@ -83,47 +100,84 @@ def positions_csv(result: MeshCycle) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(columns)
-    writer.writerows(zip(*(map(_cell, values.ravel()) for values in columns.values()), strict=True))
+    cells = ([_cell(value, name) for value in values.ravel()] for name, values in columns.items())
+    writer.writerows(zip(*cells, strict=True))
     return text.getvalue()
 
 
 def _columns(result: MeshCycle) -> dict[str, Array]:
     """Header -> (m, n) array."""
     shape = len(result.torque), len(result.path)
-    torque = np.repeat(result.torque[:, None], shape[1], axis=1)
-    position = np.arange(1, shape[1] + 1)
-    loaded = {}
-    for entry in fields(result):
-        if entry.metadata:
-            factor, unit = _engineers_unit(entry.metadata["unit"])
-            loaded[entry.name + unit] = result.by_torque(entry.name) * factor
-    path = result.path
-    per_position = {
-        "position": position,
-        "pinion_angle_deg": np.degrees(path.pinion_angle),
-        "pinion_diameter_mm": 2.0 * path.pinion_radius,
-        "pinion_axial_mm": path.pinion_axial,
-        "wheel_diameter_mm": 2.0 * path.wheel_radius,
-        "wheel_axial_mm": path.wheel_axial,
-        "unloaded_transmission_error_arcsec": path.transmission_error * ARCSEC,
-        "unloaded_transmission_error_um": path.transmission_error * result.wheel_base_radius * 1e3,
-    }
-    loaded["transmission_error_um"] = result.by_torque("transmission_error") * result.wheel_base_radius * 1e3
     shares = result.load_share.reshape(*shape, len(result.pairs))
     return {
-        "pinion_torque_Nm": torque * 1e-3,
-        **{name: np.broadcast_to(values, shape) for name, values in per_position.items()},
-        **loaded,
+        "pinion_torque_Nm": np.repeat(1e-3 * result.torque[:, None], shape[1], axis=1),
+        **{name: np.broadcast_to(values, shape) for name, values in _path_columns(result).items()},
+        **_loaded_columns(result),
         **{f"load_share_pair_{pair}": shares[..., column] for column, pair in enumerate(result.pairs)},
     }
 
 
-def _engineers_unit(unit: str) -> tuple[float, str]:
-    """Factor to the unit of the table, and what a header says of it."""
-    factor, name = ENGINEERS_UNITS.get(unit, (1.0, unit))
-    return factor, f"_{name}" if name else ""
+def _path_columns(result: MeshCycle) -> dict[str, Array]:
+    """The unloaded contact: header -> (n,) array."""
+    path = result.path
+    return {
+        "position": np.arange(1, len(path) + 1),
+        "pinion_angle_deg": np.degrees(path.pinion_angle),
+        "contact_point_pinion_diameter_mm": 2.0 * path.pinion_radius,
+        "contact_point_pinion_axial_mm": path.pinion_axial,
+        "contact_point_wheel_diameter_mm": 2.0 * path.wheel_radius,
+        "contact_point_wheel_axial_mm": path.wheel_axial,
+        "unloaded_transmission_error_arcsec": path.transmission_error * ARCSEC,
+        "unloaded_transmission_error_um": path.transmission_error * result.wheel_base_radius * 1e3,
+    }
 
 
-def _cell(value: Any) -> str:
-    """Nine digits, or nothing where the number is not known."""
-    return f"{value:.9g}" if math.isfinite(value) else ""
+def _loaded_columns(result: MeshCycle) -> dict[str, Array]:
+    """The loaded contact: header -> (m, n) array."""
+    columns = {}
+    for entry in fields(result):
+        if entry.metadata:
+            name, factor = _column(entry.name, entry.metadata["unit"])
+            shown = "length_on_face" if entry.name == "contact_length" else entry.name
+            columns[name] = result.by_torque(shown) * factor
+    columns["peak_grows_with_grid"] = result.by_torque("peak_grows_with_grid")
+    columns["transmission_error_um"] = result.by_torque("transmission_error") * result.wheel_base_radius * 1e3
+    return columns
+
+
+def _column(name: str, unit: str) -> tuple[str, float]:
+    """Header of a field, and the factor to the unit that it tells."""
+    factor, unit_name = ENGINEERS_UNITS.get(unit, (1.0, unit))
+    return COLUMNS.get(name, (f"{name}_{unit_name}" if unit_name else name, factor))
+
+
+def _cell(value: Any, name: str) -> str:
+    """Nine digits, zero for what is rounding, or nothing where the number is not known."""
+    return f"{without_rounding(value, name):.9g}" if math.isfinite(value) else ""
+
+
+def describe_results() -> str:
+    """Return the reference of a result in Markdown: one table for the result, its path and its maps.
+
+    Examples
+    --------
+    >>> print(describe_results().splitlines()[4])
+    | `torque` | (torque) | N mm | pinion torque | `pinion_torque_Nm` |
+    """
+    own = {name: _column(name, unit)[0] for name, (axes, unit, _) in cycle_parts(2).items() if "position" in axes}
+    own |= {"torque": "pinion_torque_Nm", "load_share": "load_share_pair_0, ..."}
+    lines = ["### The result", "", *_described(cycle_parts(2), own)]
+    lines += ["", "### `result.path`: the unloaded contact", "", *_described(PATH_PARTS)]
+    lines += ["", "### `result.maps[torque][position]`: one pressure map", "", *_described(MAP_PARTS)]
+    return "\n".join(lines) + "\n"
+
+
+def _described(parts: dict[str, Part], columns: dict[str, str] | None = None) -> list[str]:
+    """A table of arrays, with the columns of ``positions.csv`` where these are given."""
+    titles = ["field", "axes", "unit", "what it is", *(["in positions.csv"] if columns else [])]
+    rows = [titles, ["---"] * len(titles)]
+    for name, (axes, unit, text) in parts.items():
+        column = (columns or {}).get(name, "")
+        cells = [f"`{name}`", f"({', '.join(axes)})" if axes else "one number", unit.replace("1", "-"), text]
+        rows.append([*cells, *([f"`{column}`" if column else ""] if columns else [])])
+    return [f"| {' | '.join(cells)} |" for cells in rows]

@@ -26,6 +26,7 @@ import numpy as np
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.jet import Array
+from loaded_tca.memory import memory_problem
 from loaded_tca.pair import GearPair, cylindrical_basis
 from loaded_tca.reference.hertz import point_contact
 from loaded_tca.unloaded import ContactPoint, RelativeCurvature, relative_curvature
@@ -84,6 +85,11 @@ class Separation:
     def points(self) -> Array:
         """Cell centres in the tangent plane, in the fixed frame: (nx, ny, 3) [mm]."""
         return self.origin + self.x[:, None, None] * self.axes[0] + self.y[None, :, None] * self.axes[1]
+
+    @property
+    def material_area(self) -> float:
+        """Area of the cells that have material [mm^2]."""
+        return float(np.isfinite(self.gap).sum()) * self.spacing[0] * self.spacing[1]
 
     @property
     def half_lengths(self) -> tuple[float, float]:
@@ -151,8 +157,12 @@ def sample_separation(
     _check(contact, cells, load, accuracy, box)
     curvature = relative_curvature(pair, contact)
     gap = _Gap(pair, contact, curvature.axes)
-    shape = cells or (cells_for_accuracy(accuracy),) * 2
-    half = box or _box_of_whole_cells(*estimate_box(pair, contact, load if load else SMALLEST_LOAD), shape[1])
+    shape = (int(cells[0]), int(cells[1])) if cells is not None else (cells_for_accuracy(accuracy),) * 2
+    half = (
+        box
+        if box is not None
+        else _box_of_whole_cells(*estimate_box(pair, contact, load if load else SMALLEST_LOAD), shape[1])
+    )
     spacing = (2.0 * half[0] / shape[0], 2.0 * half[1] / shape[1])
     x, y = ((np.arange(n) - 0.5 * (n - 1)) * step for n, step in zip(shape, spacing, strict=True))
     curvatures = (curvature.across, curvature.along)
@@ -166,17 +176,21 @@ def _check(
     accuracy: float,
     box: tuple[float, float] | None,
 ) -> None:
+    if not isinstance(contact, ContactPoint):
+        raise InputError(f"contact: {contact!r} is not one position of a path; take path[i]")
     problems = []
-    if cells is not None and not (len(cells) == 2 and all(n == int(n) and n >= 1 for n in cells)):
+    if cells is not None and not (_two_numbers(cells) and all(n == n // 1 and 1 <= n < math.inf for n in cells)):
         problems.append(f"cells: {cells} are not two whole numbers >= 1")
+    elif cells is not None and (memory := memory_problem(tuple(cells))) is not None:
+        problems.append(memory)
     if load is None and box is None:
         problems.append("load: none given; a load [N] or a box [mm] is needed to size the grid")
     if load is not None and not 0.0 <= load < math.inf:
         problems.append(f"load: {load} N is not a finite number >= 0")
-    if box is not None and not (len(box) == 2 and all(0.0 < length < math.inf for length in box)):
+    if box is not None and not (_two_numbers(box) and all(0.0 < length < math.inf for length in box)):
         problems.append(f"box: {box} are not two positive lengths [mm]")
-    if not 0.0 < accuracy < 1.0:
-        problems.append(f"accuracy: {accuracy} is not between 0 and 1")
+    if not 1e-8 <= accuracy < 1.0:
+        problems.append(f"accuracy: {accuracy} is not between 1e-8 and 1")
     if problems:
         raise InputError(problems)
     if not contact.touches:
@@ -190,6 +204,11 @@ def _box_of_whole_cells(half: tuple[float, float], material: float, cells: int) 
     if material >= half[1]:
         return half
     return half[0], material * (cells / (cells - 2) if cells > 2 else 1.0)
+
+
+def _two_numbers(values: object) -> bool:
+    array = np.asarray(values)
+    return array.shape == (2,) and array.dtype.kind in "iuf" and not np.isnan(array.astype(float)).any()
 
 
 def estimate_box(pair: GearPair, contact: ContactPoint, load: float) -> tuple[tuple[float, float], float]:
@@ -211,17 +230,22 @@ def estimate_box(pair: GearPair, contact: ContactPoint, load: float) -> tuple[tu
     """
     curvature = relative_curvature(pair, contact)
     gap, modulus = _Gap(pair, contact, curvature.axes), pair.contact_modulus
+    needed = (0.0, 0.0)
     longest = math.hypot(pair.face_width, *(flank.extent[0] for flank in (pair.pinion, pair.wheel)))
     window = _first_window(curvature, load, modulus, longest)
     for _ in range(MOST_PROBES):
         x, y = (np.linspace(-half, half, count) for half, count in zip(window, PROBE, strict=True))
-        needed = _strip_extent(gap(x, y), x, y, load, modulus)
+        probe = gap(x, y)
+        if not np.isfinite(probe).any():
+            window = (2.0 * window[0], min(2.0 * window[1], longest))
+            continue
+        needed = _strip_extent(probe, x, y, load, modulus)
         fits = [0.4 * have <= need <= 0.85 * have for need, have in zip(needed, window, strict=True)]
         fits[1] |= needed[1] > 0.85 * window[1] and window[1] == longest
         if all(fits):
             break
         window = (_resized(needed[0], window[0]), min(_resized(needed[1], window[1]), longest))
-    material = _material_length(gap, MARGIN * needed[1])
+    material = _material_length(gap, window[0], MARGIN * needed[1])
     spiked = needed[1] > CERTAINLY_INSIDE * material
     margin = EDGE_MARGIN if contact.on_edge else SPIKE_MARGIN if spiked else MARGIN
     return (margin * needed[0], MARGIN * needed[1]), material
@@ -264,15 +288,18 @@ def _penetration(floor: Array, total: float) -> Array:
     return np.maximum(delta - np.where(np.isfinite(floor), floor, np.inf), 0.0)
 
 
-def _material_length(gap: _Gap, reach: float) -> float:
-    """Distance along y to the farthest end of the material within ``reach``, refined to 1e-6 of it."""
-    middle = np.zeros(1)
+def _material_length(gap: _Gap, across: float, reach: float) -> float:
+    """Distance along y to the farthest end of the material within ``reach``, refined to 1e-6 of it.
+
+    Looked for over the whole width ``across`` on either side: in a corner of a flank there is none straight ahead.
+    """
+    x = np.linspace(-across, across, PROBE[0])
     farthest = 0.0
     for direction in (-1.0, 1.0):
         low, high = 0.0, reach
         for _ in range(4):
-            trial = np.linspace(low, high, 33)
-            has = np.isfinite(gap(middle, direction * trial)[0])
+            trial = np.linspace(low, high, PROBE[1])
+            has = np.isfinite(gap(x, direction * trial)).any(axis=0)
             last = int(np.flatnonzero(has).max(initial=0))
             low, high = trial[last], trial[min(last + 1, len(trial) - 1)]
         farthest = max(farthest, high)

@@ -116,7 +116,7 @@ def test_hertz_holds_nothing_on_a_flank_with_end_relief_alone(helix_deg):
 def test_grid_that_is_too_large_for_the_memory_is_refused_before_it_is_made():
     pair = seed_002()
     contact = trace_contact(pair, [0.0])[0]
-    with pytest.raises(InputError, match=r"gap: \(1000000, 1000000\) cells need .* GiB, the machine has"):
+    with pytest.raises(InputError, match=r"cells: \(1000000, 1000000\) cells need .* GiB, the machine has"):
         press(pair, contact, 100.0, GridChoice(cells=(1_000_000, 1_000_000)))
 
 
@@ -136,3 +136,63 @@ def test_pressure_cap_of_the_pair_holds_and_the_load_is_balanced_again():
     loaded = pressed(pair, 2712.6)
     assert_allclose(loaded.solution.pressure.max(), 600.0, rtol=1e-9)
     assert_allclose(loaded.solution.pressure.sum() * math.prod(loaded.separation.spacing), 2712.6, rtol=1e-6)
+
+
+@pytest.mark.parametrize("past", [-1e-2, -1e-4, -1e-9, 1e-9, 1e-3])
+def test_corner_contact_does_not_depend_on_which_side_of_the_corner_it_lies(past):
+    """Faces that overlap by 3 mm: the contact runs into a corner with material on neither side along the line."""
+    pair = seed_002(15.0, mounting=Mounting(axial_offset=22.0))
+    corner = 0.5404145177775719
+    loaded = pressed(pair, 2700.0, corner + past, GridChoice(cells=(64, 64)))
+    assert_allclose(loaded.solution.approach, 0.0228, rtol=0.06)  # 0.0217 to 0.0230 in a box of 4 x 6 mm
+
+
+@pytest.mark.parametrize("offset", [23.5, 24.9])
+def test_faces_that_barely_overlap_carry_load(offset):
+    loaded = pressed(seed_002(15.0, mounting=Mounting(axial_offset=offset)), 100.0, 0.5)
+    assert_allclose(loaded.solution.load, 100.0, rtol=BALANCE)
+
+
+def test_box_makes_room_for_a_capped_contact():
+    soft = Material(max_pressure=200.0)
+    mesh = cylindrical_mesh(helix_deg=15.0)
+    pair = cylindrical_pair(
+        mesh, modifications=(FlankModifications(lead_crowning=0.005), FlankModifications()), materials=(soft, soft)
+    )
+    loaded = pressed(pair, mesh.normal_force(SEED_002_TORQUE), grid=GridChoice(cells=(64, 64)))
+    assert loaded.solution.pressure.max() == 200.0
+    assert_allclose(loaded.solution.approach, 0.00737, rtol=5e-2)  # in a box of 2.4 x 27 mm
+
+
+def test_load_beyond_what_the_whole_flank_carries_is_refused():
+    weak = Material(max_pressure=5.0)
+    pair = cylindrical_pair(cylindrical_mesh(), materials=(weak, weak))
+    with pytest.raises(InputError, match="more than the flank carries at max_pressure, 5 MPa"):
+        pressed(pair, 2700.0)
+
+
+def test_load_that_closes_no_gap_is_none():
+    assert pressed(seed_002(), 1e-12).solution.load == 0.0
+
+
+def test_linear_relief_in_the_contact_leaves_no_hertz_and_a_coarse_grid():
+    relief = FlankModifications(lead_crowning=0.005, tip_relief=0.02, tip_relief_start=105.0, tip_relief_form="linear")
+    pair = gear_pair(relief)
+    path = trace_contact(pair)
+    turn = float(path.pinion_angle[abs(2.0 * path.pinion_radius - 105.0).argmin()] / pair.pitch)
+    loaded = pressed(pair, 2700.0, turn, GridChoice(accuracy=1e-4))
+    assert loaded.at_crease
+    assert loaded.hertz is None
+    assert max(loaded.solution.pressure.shape) <= 64
+
+
+def test_central_pressure_is_the_peak_of_a_smooth_contact():
+    loaded = pressed(seed_002(), 2700.0)
+    assert_allclose(loaded.central_pressure, loaded.peak_pressure, rtol=HERTZ)
+    radius, axial = loaded.peak_place
+    assert_allclose([radius, axial], [51.0, 0.0], atol=1.0)
+
+
+def test_edge_contact_has_its_peak_at_the_edge():
+    loaded = pressed(CASES["edge"](), 2700.0)
+    assert_allclose(loaded.peak_place[1], 12.5, atol=2.0 * loaded.separation.spacing[1])

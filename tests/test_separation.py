@@ -219,7 +219,7 @@ def test_load_of_zero_gets_a_box_so_small_that_its_smallest_gap_is_rounding():
         ({"load": 1.0, "cells": (4.5, 4)}, "cells: (4.5, 4) are not two whole numbers >= 1"),
         ({"box": (0.0, 1.0)}, "box: (0.0, 1.0) are not two positive lengths [mm]"),
         ({"box": (1.0, math.inf)}, "box: (1.0, inf) are not two positive lengths [mm]"),
-        ({"load": 1.0, "accuracy": 0.0}, "accuracy: 0.0 is not between 0 and 1"),
+        ({"load": 1.0, "accuracy": 0.0}, "accuracy: 0.0 is not between 1e-8 and 1"),
     ],
 )
 def test_argument_out_of_its_range_is_refused(options, problem):

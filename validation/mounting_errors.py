@@ -181,8 +181,8 @@ def _trends_of_spur_pair() -> list[Trend]:
             "18, 19",
             "spur: tip and root relief makes it continuous, alike for both angles",
             all(mesh.is_continuous for mesh in meshes.values()) and same,
-            f"parabolic reliefs of 20 um (assumed): in-plane {heights['in']:.4g}, out-of-plane {heights['out']:.4g} arcsec, "
-            f"continuous: {[mesh.is_continuous for mesh in meshes.values()]}",
+            f"parabolic reliefs of 20 um (assumed): in-plane {heights['in']:.4g}, out-of-plane {heights['out']:.4g} "
+            f"arcsec, continuous: {[mesh.is_continuous for mesh in meshes.values()]}",
         ),
         Trend(
             "20",
@@ -337,8 +337,8 @@ def _trends_of_pressure() -> list[Trend]:
             "30",
             "helical: the pressure is higher in the upper part of the tooth than in the lower, and falls between",
             bool((np.diff(helical) < 0.0).all() or (np.diff(helical) > 0.0).all()),
-            f"{head:+.1%} towards the tip, {foot:+.1%} towards the root of the pinion, against the pitch point: higher it "
-            "is, but lowest between them",
+            f"{head:+.1%} towards the tip, {foot:+.1%} towards the root of the pinion, against the pitch point: "
+            "higher it is, but lowest between them",
         ),
     ]
 
@@ -480,11 +480,25 @@ def rows() -> list[Row]:
     found.append(Row(CASE, "-tan(alpha_wt), first order", label, -tan(alpha), slopes[0] / slopes[1], 2e-3))
     spur = shift(SPUR, Mounting(out_of_plane=small)) * 2.0 * 0.0025
     found.append(
-        Row(CASE, "f/(2 c1), first order", "spur: slope at the contact", small * cos(radians(20.0)), spur, 1e-3)
+        Row(
+            CASE,
+            "delta cos(alpha), first order",
+            "spur: shift times 2 c1 [rad]",
+            small * cos(radians(20.0)),
+            spur,
+            1e-3,
+        )
     )
     tilted = shift(SPUR, Mounting(in_plane=small)) * 2.0 * 0.0025
     found.append(
-        Row(CASE, "f/(2 c1), first order", "spur, in-plane: the same", -small * sin(radians(20.0)), tilted, 1e-3)
+        Row(
+            CASE,
+            "-gamma sin(alpha), first order",
+            "spur: shift times 2 c1 [rad]",
+            -small * sin(radians(20.0)),
+            tilted,
+            1e-3,
+        )
     )
     return found
 
@@ -541,7 +555,7 @@ def draw_paths() -> Figure:
         flank.set(xlim=(-0.5 * gears.face_width, 0.5 * gears.face_width), title=f"{gears.name}, {lead}: contact path")
         flank.set(xlabel="z on the pinion [mm]", ylabel="diameter on the pinion [mm]")
         motion.set(xlabel="pinion angle [deg]", ylabel="transmission error less its largest [arcsec]")
-        motion.legend(fontsize="small")
+    figure.legend(*panels[0, 1].get_legend_handles_labels(), loc="outside lower center", ncols=5)
     figure.suptitle("Mounting errors of pairs of module 1 mm with profile crowning 10 µm, unloaded")
     return figure
 
@@ -567,9 +581,8 @@ def main() -> int:
         numbers = f"{one.shift:22.4f}  {one.peak_to_peak:22.4f}  {one.pressure:22.2f}  {one.continuous!s:>22}"
         print(f"{one.gears:>22}  {one.form:>22}  {one.error:>22}  {numbers}")
     errors = error_map()
-    print(
-        f"\n{errors.shift.size} pairs of errors x {POSITIONS} positions: {errors.seconds:.2f} s, {errors.searched} searched anew"
-    )
+    print(f"\n{errors.shift.size} pairs of errors x {POSITIONS} positions: {errors.seconds:.2f} s")
+    print(f"{errors.searched} of them searched anew")
     draw_map(errors).savefig(directory / "mounting_error_map.png", dpi=100)
     draw_paths().savefig(directory / "mounting_errors.png", dpi=100)
     return 0

@@ -51,17 +51,20 @@ def one_sided_parabola(t: Any) -> tuple[Any, Any, Any]:
     return positive**2, 2.0 * positive, 2.0 * (t > 0.0)
 
 
-def circular_arc(amount: float, half_width: float) -> Shape:
-    """f = (R - sqrt(R^2 - y^2))/C with y = half_width t and R = half_width^2/(2 C) + C/2; C > 0."""
-    radius = half_width**2 / (2.0 * amount) + 0.5 * amount
+@dataclass(frozen=True)
+class CircularArc:
+    """f = (R - sqrt(R^2 - y^2))/C with y = half_width t and R = half_width^2/(2 C) + C/2; C = amount > 0."""
 
-    def shape(t: Any) -> tuple[Any, Any, Any]:
-        y = half_width * t
+    amount: float
+    half_width: float
+
+    def __call__(self, t: Any) -> tuple[Any, Any, Any]:
+        """f, f', f'' at t."""
+        radius = self.half_width**2 / (2.0 * self.amount) + 0.5 * self.amount
+        y = self.half_width * t
         root = np.sqrt(np.maximum(radius**2 - y**2, (1e-3 * radius) ** 2))
-        drop = y**2 / (radius + root)
-        return drop / amount, half_width * y / root / amount, (half_width * radius) ** 2 / root**3 / amount
-
-    return shape
+        value, slope = y**2 / (radius + root), self.half_width * y / root
+        return value / self.amount, slope / self.amount, (self.half_width * radius) ** 2 / root**3 / self.amount
 
 
 def logarithmic(t: Any) -> tuple[Any, Any, Any]:
@@ -186,7 +189,7 @@ class FlankModifications:
             if abs(crowning) > half:
                 message = f"lead_crowning: {crowning:.6g} mm is more than a circular arc over {width:.6g} mm can fall"
                 raise InputError(message)
-            shapes["circular"] = circular_arc(abs(crowning), half)
+            shapes["circular"] = CircularArc(abs(crowning), half)
         shape = shapes.get(self.lead_crowning_form, parabola)
         terms = [
             Term("lengthwise", crowning, 0.0, half, shape),

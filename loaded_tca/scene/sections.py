@@ -175,7 +175,7 @@ class Analysis(Section):
         Number(1e-6, 0.5), "wanted relative error of the peak pressure; chooses the grid unless cells do", 1e-3
     )
     cells: tuple[int, int] | None = key(
-        List(Whole(1, 1000000), 2, 2),
+        List(Whole(4, 1000000), 2, 2),
         "cells across and along the contact; chooses the grid instead of the accuracy",
         None,
         "follows from accuracy",

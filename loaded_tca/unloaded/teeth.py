@@ -347,22 +347,28 @@ def _teeth_between(phi1: Array, low: float, high: float, pitch: float) -> NDArra
 
 def _window(pair: GearPair) -> tuple[float, float]:
     """Own pinion angles [rad] between which a tooth pair is within reach of the leading one, and a step more."""
-    reach, count = REACH * pair.module, 2
+    step, first = pair.pitch / SAMPLES, -2
+
+    def pitches(start: int, count: int) -> Array:
+        return _heights(pair, step * np.arange(start * SAMPLES, (start + count) * SAMPLES)).reshape(count, SAMPLES)
+
+    heights = pitches(first, 5)
     while True:
-        steps = np.arange(-count * SAMPLES, (count + 1) * SAMPLES)
-        own = steps * (pair.pitch / SAMPLES)
-        heights = _heights(pair, own).reshape(-1, SAMPLES)
-        near = np.isfinite(heights) & (heights >= heights.max(axis=0) - reach)
+        near = np.isfinite(heights) & (heights >= heights.max(axis=0) - REACH * pair.module)
         if not near[[0, -1]].any():
             break
-        count *= 2
+        if near[-1].any():
+            heights = np.concatenate([heights, pitches(first + len(heights), 1)])
+        if near[0].any():
+            first -= 1
+            heights = np.concatenate([pitches(first, 1), heights])
     if not near.any():
         raise GeometryError(
             "no common flank: the flanks of no tooth pair cover a common region; check tip diameters, centre distance "
             "and axial offset"
         )
-    touching = own[near.ravel()]
-    return float(touching[0]) - pair.pitch / SAMPLES, float(touching[-1]) + pair.pitch / SAMPLES
+    touching = step * (first * SAMPLES + np.flatnonzero(near))
+    return float(touching[0]) - step, float(touching[-1]) + step
 
 
 def _heights(pair: GearPair, own: Array) -> Array:

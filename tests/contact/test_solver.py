@@ -11,8 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from loaded_tca.contact import ContactStatus, checks, contact_stiffness, solve_contact, solver
+from loaded_tca.contact import ContactStatus, contact_stiffness, solve_contact, solver
 from loaded_tca.errors import AccuracyWarning, ConvergenceError, InputError
+from loaded_tca.memory import memory_problem
 from loaded_tca.reference import hertz
 
 E_STAR = 115e3
@@ -282,8 +283,8 @@ def test_grid_beyond_memory_is_refused_before_it_is_allocated():
     endless = np.broadcast_to(0.0, (10**7, 10**7))
     with pytest.raises(InputError, match="GiB"):
         solve_contact(endless, (1.0, 1.0), E_STAR, load=1.0)
-    assert checks.memory_problem((512, 512), available=2.0**30) is None
-    assert "0.0977 GiB" in str(checks.memory_problem((512, 512), available=1.0))
+    assert memory_problem((512, 512), available=2.0**30) is None
+    assert "0.0977 GiB" in str(memory_problem((512, 512), available=1.0))
 
 
 def test_failure_raises_with_the_last_iterate_or_returns_it(monkeypatch):

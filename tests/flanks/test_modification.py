@@ -13,7 +13,7 @@ from pairs import cylindrical_mesh, gear_pair, meshes, modifications
 from loaded_tca.errors import InputError
 from loaded_tca.flanks import FlankModifications, InvoluteFlank, ModifiedFlank
 from loaded_tca.flanks.base import outward_normal
-from loaded_tca.flanks.modification import circular_arc, linear, logarithmic, one_sided_parabola, parabola
+from loaded_tca.flanks.modification import CircularArc, linear, logarithmic, one_sided_parabola, parabola
 from loaded_tca.pair import cylindrical_basis, cylindrical_pair
 
 ROUNDING = 1e-12
@@ -202,7 +202,7 @@ def _jump_near(flank, rho, z, step):
 
 @pytest.mark.parametrize(
     "shape",
-    [linear, parabola, one_sided_parabola, logarithmic, circular_arc(0.02, 12.5), circular_arc(1.0, 12.5)],
+    [linear, parabola, one_sided_parabola, logarithmic, CircularArc(0.02, 12.5), CircularArc(1.0, 12.5)],
 )
 @given(t=st.floats(-1.6, 1.6))
 def test_shape_derivatives_agree_with_differences(shape, t):

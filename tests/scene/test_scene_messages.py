@@ -56,7 +56,7 @@ ONE_PROBLEM = [
     ({"wheel.modifications": [1]}, "wheel.modifications: found [1]; allowed a section [wheel.modifications]"),
     (
         {"analysis.cells": 32},
-        "analysis.cells: found 32; allowed a list of 2 values, each a whole number from 1 to 1000000",
+        "analysis.cells: found 32; allowed a list of 2 values, each a whole number from 4 to 1000000",
     ),
     # out of range
     ({"pinion.teeth": -34}, "pinion.teeth: found -34; allowed a whole number from 3 to 10000"),
@@ -87,8 +87,8 @@ ONE_PROBLEM = [
     ),
     (
         {"analysis.cells": [32, 2000000]},
-        "analysis.cells: found [32, 2000000]; allowed a list of 2 values, each a whole number from 1 to 1000000"
-        " (found 2000000; allowed a whole number from 1 to 1000000)",
+        "analysis.cells: found [32, 2000000]; allowed a list of 2 values, each a whole number from 4 to 1000000"
+        " (found 2000000; allowed a whole number from 4 to 1000000)",
     ),
     (
         {"analysis.torques_Nm": []},

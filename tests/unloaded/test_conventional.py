@@ -163,7 +163,8 @@ def test_unmodified_spur_pair_has_a_singular_jacobian_and_no_start_converges():
 def test_wheel_angle_does_not_count_whole_turns():
     pair = seed_002()
     path = trace_contact(pair, [0.02])
-    start = answer(path) + [0.0, 0.0, 0.0, 0.0, 4.0 * math.pi]
+    start = answer(path)
+    start[:, 4] += 4.0 * math.pi
     found = solve_conventional(pair, 0.02, start)
     assert found.is_contact.all()
     assert_allclose(found.unknowns[:, 4], path.wheel_angle + 4.0 * math.pi, atol=1e-11)

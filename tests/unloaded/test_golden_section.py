@@ -32,14 +32,20 @@ PAIRS = {
 }
 
 
+def unknowns(path):
+    """Those of the conventional equations, from the reduced solver."""
+    parts = (path.pinion_radius, path.pinion_axial, path.wheel_radius, path.wheel_axial, path.wheel_angle)
+    return np.stack(parts, axis=-1)
+
+
 @pytest.mark.parametrize("pair", PAIRS.values(), ids=PAIRS)
 def test_interior_contacts_of_three_methods_agree(pair):
     """Reduced, golden section, and the conventional equations from a start 0.1 mm and 0.01 rad off."""
     path = trace_contact(pair, np.linspace(-0.5, 0.5, 3) * pair.pitch)
     assert not path.on_edge.any()
     found = search_golden_section(pair, path.pinion_angle, sections=INTERIOR)
-    parts = (path.pinion_radius, path.pinion_axial, path.wheel_radius, path.wheel_axial, path.wheel_angle)
-    conventional = solve_conventional(pair, path.pinion_angle, np.stack(parts, axis=-1) + [0.1, 0.1, -0.1, -0.1, 0.01])
+    off = np.array([0.1, 0.1, -0.1, -0.1, 0.01])
+    conventional = solve_conventional(pair, path.pinion_angle, unknowns(path) + off)
     assert conventional.is_contact.all()
     assert_allclose(found.wheel_angle, path.wheel_angle, rtol=0, atol=SAME_ANGLE)
     assert_allclose(found.wheel_angle, conventional.wheel_angle, rtol=0, atol=SAME_ANGLE)
@@ -59,8 +65,7 @@ def test_edge_contacts_are_found_where_the_conventional_equations_have_none(pair
     assert path.on_edge.all()
     found = search_golden_section(pair, angles)
     assert_allclose(found.wheel_angle, path.wheel_angle, rtol=0, atol=2.0 * CLOSED)
-    parts = (path.pinion_radius, path.pinion_axial, path.wheel_radius, path.wheel_axial, path.wheel_angle)
-    assert not solve_conventional(pair, angles, np.stack(parts, axis=-1)).is_contact.any()
+    assert not solve_conventional(pair, angles, unknowns(path)).is_contact.any()
 
 
 def test_no_point_of_the_flanks_touches_before_the_angle_found():
@@ -144,7 +149,7 @@ def test_flanks_that_stay_apart_within_half_a_pitch_are_refused():
 
 def test_gap_that_is_not_closed_is_reported_with_what_is_left(monkeypatch):
     monkeypatch.setattr(golden_section, "MOST_TURNS", 1)
-    with pytest.raises(ConvergenceError, match="a gap of .* mm is left after 1 turns of the wheel") as caught:
+    with pytest.raises(ConvergenceError, match=r"a gap of .* mm is left after 1 turns of the wheel") as caught:
         search_golden_section(PAIRS["profile crowned, wheel driving, turning back"], [0.05], sections=10)
     angle, gap = caught.value.last
     assert np.isfinite(angle).all()

@@ -1,0 +1,150 @@
+"""The figures of a whole mesh cycle under one torque, from its numbers per position.
+
+A ``row`` maps the names of the fields of ``MeshCycle`` to arrays (n,) over the positions.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from loaded_tca.flanks.jet import Array
+from loaded_tca.unloaded import ContactPath
+
+ARCSEC = math.degrees(3600.0)
+"""Seconds of arc per radian."""
+
+Row = Mapping[str, Array]
+
+
+def highest_peak(row: Row) -> int | None:
+    """Position of the first number: the highest inner pressure, or else the highest central pressure."""
+    inner = _highest(row["inner_pressure"])
+    return _highest(row["central_pressure"]) if inner is None else inner
+
+
+def highest_growing_peak(row: Row) -> int | None:
+    """Position of the highest of the peaks that grow with the grid; None if none does."""
+    return _highest(np.where(row["peak_grows_with_grid"], row["peak_pressure"], math.nan))
+
+
+def highest_where_hertz_holds(row: Row) -> int | None:
+    """Position of the highest peak of those with a pressure after Hertz; None if there is none."""
+    return _highest(np.where(np.isfinite(row["hertz_pressure"]), row["peak_pressure"], math.nan))
+
+
+def key_figures(path: ContactPath, row: Row, *, wheel_base_radius: float, max_pressure: float) -> dict[str, float]:
+    """Return the figures by names that end in their unit; NaN: not known.
+
+    Parameters
+    ----------
+    path : ContactPath
+        The unloaded contact of the n positions.
+    row : mapping of (n,) arrays
+    wheel_base_radius : float [mm]
+        Turns the transmission error into a length.
+    max_pressure : float [MPa]
+        Cap on the pressure; NaN: elastic.
+    """
+    return {
+        **_peak_figures(path, row, highest_peak(row)),
+        **_border_figures(path, row, highest_growing_peak(row)),
+        **_hertz_figures(row, highest_where_hertz_holds(row)),
+        **_error_figures("transmission_error", row["transmission_error"], wheel_base_radius),
+        **_error_figures("unloaded_error", path.transmission_error, wheel_base_radius),
+        "mesh_stiffness_mean_N_per_mm_um": _reduced(np.mean, row["mesh_stiffness"]),
+        "max_pressure_MPa": max_pressure,
+        **_solver_figures(row),
+        **_counts(path, row),
+    }
+
+
+def _highest(values: Array) -> int | None:
+    return int(np.nanargmax(values)) if np.isfinite(values).any() else None
+
+
+def _at(values: Array, position: int | None) -> float:
+    return math.nan if position is None else float(values[position])
+
+
+def _peak_figures(path: ContactPath, row: Row, at: int | None) -> dict[str, float]:
+    """What holds at the position of the first number; its place is the contact point where it is found beside that."""
+    beside = at is not None and bool(row["peak_grows_with_grid"][at])
+    radius, axial = (path.pinion_radius, path.pinion_axial) if beside else (row["peak_radius"], row["peak_axial"])
+    return {
+        "peak_pressure_MPa": _at(row["central_pressure"] if beside else row["peak_pressure"], at),
+        "peak_is_beside_contact_point": beside,
+        "peak_is_at_border": beside and math.isnan(_at(row["inner_pressure"], at)),
+        "pinion_angle_at_peak_deg": math.degrees(_at(path.pinion_angle, at)),
+        "pinion_diameter_at_peak_mm": 2.0 * _at(radius, at),
+        "pinion_axial_at_peak_mm": _at(axial, at),
+        "contact_point_diameter_at_peak_mm": 2.0 * _at(path.pinion_radius, at),
+        "contact_point_axial_at_peak_mm": _at(path.pinion_axial, at),
+        "central_pressure_at_peak_MPa": _at(row["central_pressure"], at),
+        "normal_force_at_peak_N": _at(row["normal_force"], at),
+        "contact_length_at_peak_mm": _at(row["length_on_face"], at),
+        "contact_width_at_peak_mm": _at(row["contact_width"], at),
+        "approach_at_peak_um": 1e3 * _at(row["approach"], at),
+    }
+
+
+def _border_figures(path: ContactPath, row: Row, at: int | None) -> dict[str, float]:
+    """The highest peak that grows with the grid, told beside the first number."""
+    return {
+        "border_pressure_MPa": _at(row["peak_pressure"], at),
+        "pinion_angle_at_border_deg": math.degrees(_at(path.pinion_angle, at)),
+        "pinion_diameter_at_border_mm": 2.0 * _at(row["peak_radius"], at),
+        "pinion_axial_at_border_mm": _at(row["peak_axial"], at),
+    }
+
+
+def _hertz_figures(row: Row, at: int | None) -> dict[str, float]:
+    return {
+        "peak_pressure_where_hertz_holds_MPa": _at(row["peak_pressure"], at),
+        "hertz_pressure_there_MPa": _at(row["hertz_pressure"], at),
+        "hertz_length_there_mm": 2.0 * _at(row["hertz_semi_major"], at),
+        "hertz_width_there_mm": 2.0 * _at(row["hertz_semi_minor"], at),
+    }
+
+
+def _error_figures(name: str, error: Array, wheel_base_radius: float) -> dict[str, float]:
+    """Mean and peak-to-peak of a transmission error, as an angle and as a length at the wheel's base circle."""
+    mean, span = _reduced(np.mean, error), _reduced(np.ptp, error)
+    length = 1e3 * wheel_base_radius
+    return {
+        f"{name}_mean_arcsec": mean * ARCSEC,
+        f"{name}_mean_um": mean * length,
+        f"{name}_span_arcsec": span * ARCSEC,
+        f"{name}_span_um": span * length,
+    }
+
+
+def _solver_figures(row: Row) -> dict[str, float]:
+    used = {name: row[name][row[name] > 0] for name in ("cells_across", "cells_along")}
+    return {
+        **{f"fewest_{name}": _reduced(np.min, cells) for name, cells in used.items()},
+        **{f"most_{name}": _reduced(np.max, cells) for name, cells in used.items()},
+        "most_solver_iterations": _reduced(np.max, row["iterations"]),
+        "worst_solver_residual": _reduced(np.max, row["residual"]),
+    }
+
+
+def _counts(path: ContactPath, row: Row) -> dict[str, float]:
+    return {
+        "positions": len(path),
+        "touching_positions": int(path.touches.sum()),
+        "line_positions": int(path.on_line.sum()),
+        "edge_positions": int((row["on_edge"] > 0).sum()),
+        "crease_positions": int((row["at_crease"] > 0).sum()),
+        "growing_peak_positions": int(row["peak_grows_with_grid"].sum()),
+        "capped_positions": int(row["capped"].sum()),
+    }
+
+
+def _reduced(reduction: Any, values: Array) -> float:
+    """Mean, maximum or span of the finite values; NaN if there is none."""
+    finite = values[np.isfinite(values)]
+    return float(reduction(finite)) if finite.size else math.nan

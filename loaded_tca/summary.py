@@ -1,0 +1,140 @@
+"""The text that tells an engineer what a mesh cycle came to: a table of key figures, and what limits them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+
+Figures = Mapping[str, float]
+"""Name with its unit -> number, for one torque."""
+
+ROUNDING = 1e-6
+"""Figures below this, in the engineer's units, are rounding; residuals are not."""
+MOST_TORQUES = 6
+"""Torques that a note names one by one."""
+
+STIFFNESS = "mean contact stiffness of one pair, no bending"
+"""What the key mesh_stiffness means as long as teeth do not bend."""
+
+ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
+    ("pinion torque [N m]", ("pinion_torque_Nm",)),
+    ("peak pressure [MPa]", ("peak_pressure_MPa",)),
+    ("  beside the contact point [MPa]", ("central_pressure_at_peak_MPa",)),
+    ("  at pinion angle [deg]", ("pinion_angle_at_peak_deg",)),
+    ("  at pinion diameter | axial place [mm]", ("pinion_diameter_at_peak_mm", "pinion_axial_at_peak_mm")),
+    (
+        "  unloaded contact point: the same [mm]",
+        ("contact_point_diameter_at_peak_mm", "contact_point_axial_at_peak_mm"),
+    ),
+    ("  normal force on the tooth pair [N]", ("normal_force_at_peak_N",)),
+    ("  contact, full length | width [mm]", ("contact_length_at_peak_mm", "contact_width_at_peak_mm")),
+    ("at a border or crease, of the grid [MPa]", ("border_pressure_MPa",)),
+    ("  at pinion angle [deg]", ("pinion_angle_at_border_deg",)),
+    ("  at pinion diameter | axial place [mm]", ("pinion_diameter_at_border_mm", "pinion_axial_at_border_mm")),
+    ("highest peak where Hertz holds [MPa]", ("peak_pressure_where_hertz_holds_MPa",)),
+    ("  pressure after Hertz there [MPa]", ("hertz_pressure_there_MPa",)),
+    ("  ellipse after Hertz, length | width [mm]", ("hertz_length_there_mm", "hertz_width_there_mm")),
+    ("transmission error, mean [arcsec | um]", ("transmission_error_mean_arcsec", "transmission_error_mean_um")),
+    ("  peak to peak [arcsec | um]", ("transmission_error_span_arcsec", "transmission_error_span_um")),
+    ("  unloaded, peak to peak [arcsec | um]", ("unloaded_error_span_arcsec", "unloaded_error_span_um")),
+    (f"{STIFFNESS} [N/(mm um)]", ("mesh_stiffness_mean_N_per_mm_um",)),
+    ("grid: fewest cells across | along", ("fewest_cells_across", "fewest_cells_along")),
+    ("  most cells across | along", ("most_cells_across", "most_cells_along")),
+    ("solver: most iterations | worst residual", ("most_solver_iterations", "worst_solver_residual")),
+)
+"""Label and key figures of each line of the summary."""
+
+ONLY_IF_KNOWN = ("_at_border_", "border_pressure")
+"""Figures whose line is left out where no torque has them."""
+
+NOTES = (
+    ("line_positions", "the unloaded contact is a line"),
+    ("edge_positions", "the contact reaches a border of a flank: no Hertz there"),
+    ("crease_positions", "the start of a linear relief lies in the contact: no Hertz there"),
+    (
+        "growing_peak_positions",
+        "the largest cell lies at that border or crease and grows with the grid: "
+        "what counts there is the pressure beside the contact point",
+    ),
+)
+"""Key figure that counts positions, and what holds at these."""
+
+
+def summary_text(title: str, scope: str, figures: Sequence[Figures]) -> str:
+    """Return the summary: title, scope, one line per figure with a column per torque, notes.
+
+    Parameters
+    ----------
+    title, scope : str
+        First two lines.
+    figures : sequence of mapping
+        Of each torque, as ``MeshCycle.key_figures`` gives them.
+    """
+    rows = [(label, [_cell(entry, names) for entry in figures]) for label, names in ROWS if _is_told(figures, names)]
+    width = 2 + max(len(cell) for _, cells in rows for cell in cells)
+    labels = max(len(label) for label, _ in rows)
+    table = [f"{label:<{labels}}" + "".join(f"{cell:>{width}}" for cell in cells) for label, cells in rows]
+    notes = [f"note: {sentence}" for sentence in _notes(figures)]
+    return "\n".join([title or "Loaded tooth contact", scope, *table, *notes])
+
+
+def without_rounding(value: float, name: str) -> float:
+    """Zero for what is rounding in the engineer's units; residuals stay what they are."""
+    return value if "residual" in name or not abs(value) < ROUNDING else 0.0
+
+
+def _is_told(figures: Sequence[Figures], names: tuple[str, ...]) -> bool:
+    optional = any(part in name for name in names for part in ONLY_IF_KNOWN)
+    return not optional or any(math.isfinite(entry[name]) for entry in figures for name in names)
+
+
+def _cell(figures: Figures, names: tuple[str, ...]) -> str:
+    return " | ".join(_shown(without_rounding(figures[name], name), name) for name in names)
+
+
+def _shown(value: float, name: str) -> str:
+    """Four digits; a dash for what is not known."""
+    if math.isnan(value):
+        return "-"
+    return f"{value:.1e}" if "residual" in name else f"{value:.4g}"
+
+
+def _notes(figures: Sequence[Figures]) -> Iterator[str]:
+    """Sentences on what limits the figures; none for an ordinary point contact."""
+    apart = [entry["positions"] - entry["touching_positions"] for entry in figures]
+    yield from _counted(figures, apart, "the tooth pair does not touch")
+    for name, sentence in NOTES:
+        yield from _counted(figures, [entry[name] for entry in figures], sentence)
+    at_border = [bool(entry["peak_is_at_border"]) for entry in figures]
+    if any(at_border):
+        where = "the contact point itself lies on a border or crease"
+        yield f"{where}{_for_torques(figures, at_border)}: the peak pressure given grows with the grid too"
+    cap = figures[0]["max_pressure_MPa"]
+    if math.isfinite(cap):
+        yield from _cap_notes(figures, cap)
+
+
+def _cap_notes(figures: Sequence[Figures], cap: float) -> Iterator[str]:
+    counts = [entry["capped_positions"] for entry in figures]
+    yield from _counted(figures, counts, f"the peak equals the cap on the pressure, {cap:.6g} MPa")
+    if not any(counts):
+        yield f"the cap on the pressure, {cap:.6g} MPa, is not reached"
+
+
+def _counted(figures: Sequence[Figures], counts: Sequence[float], sentence: str) -> Iterator[str]:
+    """One sentence for each number of positions, with the torques that it holds for."""
+    for count in sorted(set(counts) - {0}):
+        holds = [one == count for one in counts]
+        yield f"at {count} of {figures[0]['positions']} positions{_for_torques(figures, holds)} {sentence}"
+
+
+def _for_torques(figures: Sequence[Figures], holds: Sequence[bool]) -> str:
+    """Which of several torques something holds for; nothing where there is one torque."""
+    if len(figures) == 1:
+        return ""
+    if all(holds):
+        return " (all torques)"
+    torques = [f"{entry['pinion_torque_Nm']:.4g}" for entry, one in zip(figures, holds, strict=True) if one]
+    if len(torques) > MOST_TORQUES:
+        return f" ({len(torques)} torques, {torques[0]} to {torques[-1]} N m)"
+    return f" ({', '.join(torques)} N m)"
