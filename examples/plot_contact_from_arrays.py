@@ -41,10 +41,13 @@ def main() -> float:
         roller = solve_contact(roller_gap(x, y), spacing=(x[1] - x[0], y[1] - y[0]), load=40000.0, **options)
         rough = solve_contact(rough_gap(z), spacing=(z[1] - z[0],) * 2, load=250.0, **options)
         row[0].pcolormesh(y, x, roller.pressure, vmin=0.0, vmax=3000.0)
-        row[0].set(title=f"roller, cap {cap or 'none'}", xlabel="along [mm]", ylabel="across [mm]")
+        row[0].set(
+            title=f"roller, cap {cap:.0f} MPa" if cap else "roller, elastic", xlabel="along [mm]", ylabel="across [mm]"
+        )
         row[1].plot(y, roller.pressure[48])
         row[1].set(title=f"approach {1e3 * roller.approach:.1f} um", xlabel="along [mm]", ylabel="pressure [MPa]")
-        row[2].pcolormesh(z, z, rough.pressure, vmin=0.0, vmax=3000.0)
+        colours = row[2].pcolormesh(z, z, rough.pressure, vmin=0.0, vmax=3000.0)
+        figure.colorbar(colours, ax=row[2], label="pressure [MPa]", extend="max")
         row[2].set(title=f"rough ball, peak {rough.peak_pressure:.0f} MPa", xlabel="[mm]", aspect="equal")
         if cap is None:
             middle = float(roller.pressure[47:49, 95:97].mean())

@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from loaded_tca import read_scene, trace_contact
+from loaded_tca import read_scene
 from loaded_tca.plots import save_figure
 from loaded_tca.unloaded.pattern import contact_area, contact_pattern
+from loaded_tca.unloaded.teeth import trace_teeth
 
 SCENE = Path(__file__).parent / "scenes" / "helical.toml"
 CHANGES = {
@@ -24,7 +25,7 @@ CHANGES = {
 def main() -> float:
     """Return the contact area at the pitch point over that of its curvature ellipse."""
     pair = read_scene(SCENE).with_changes(CHANGES).pair()
-    path = trace_contact(pair, np.linspace(-0.5, 0.5, 7) * pair.pitch)
+    path = trace_teeth(pair, np.linspace(-0.42, 0.42, 7) * pair.pitch).leading_contact
     areas = [contact_area(pair, path[i]) for i in range(len(path))]
     pattern = contact_pattern(pair)
 

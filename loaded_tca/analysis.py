@@ -95,15 +95,18 @@ def _warn_of_doubts(pair: GearPair, grid: GridChoice, contacts: Contacts) -> Non
     for loaded in solved:
         for reason in _doubts(pair, grid, loaded):
             reasons[reason] = reasons.get(reason, 0) + 1
+    what = "positions" if len(contacts) == 1 else "pressure maps"
     for reason, count in reasons.items():
-        warnings.warn(f"{reason} (at {count} of {len(solved)} positions)", AccuracyWarning, stacklevel=3)
+        warnings.warn(f"{reason} (at {count} of {len(solved)} {what})", AccuracyWarning, stacklevel=3)
 
 
 def _doubts(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[str]:
     solution = loaded.solution
     found = []
     if loaded.at_border:
-        found.append("the contact reaches a border of a flank: its peak pressure grows with the grid without end")
+        found.append(
+            "the contact reaches a border of a flank: Hertz does not hold, and pressure there grows with the grid"
+        )
     if loaded.at_crease:
         found.append("the contact lies across the start of a linear relief: its peak pressure grows with the grid")
     smooth = not (loaded.at_border or loaded.at_crease)
@@ -157,6 +160,7 @@ def _numbers(pair: GearPair, loaded: LoadedContact | None) -> dict[str, float | 
         return {}
     contact, solution, hertz = loaded.contact, loaded.solution, loaded.hertz
     width, length = loaded.extent
+    length = min(length, pair.face_width / abs(float(loaded.separation.axes[1, 2])))
     return {
         "transmission_error": loaded_transmission_error(pair, contact, solution.approach),
         "normal_force": solution.load,

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import argparse
 import io
-import math
 import os
 import sys
 import traceback
@@ -21,9 +20,7 @@ from typing import TYPE_CHECKING, NoReturn
 from loaded_tca.errors import ConvergenceError, InputError, LoadedTCAError
 
 if TYPE_CHECKING:
-    from loaded_tca.gears import CylindricalMesh
     from loaded_tca.mesh_cycle import MeshCycle
-    from loaded_tca.scene import Scene
 
 # The modules that compute and draw take most of a second to import: each command imports what it needs.
 
@@ -32,6 +29,17 @@ DEMO_DIRECTORY = Path("loaded-tca-demo")
 DEMO_SCENE = Path(__file__).with_name("demo.toml")
 
 DESCRIPTION = "Loaded tooth contact analysis of gears."
+FILES = """files in DIR:
+  result.nc                 everything, to be read by loaded_tca.load_result, xarray or 'loaded-tca plot'
+  summary.json              the key figures
+  positions.csv             one row per torque and position
+  contact_path.png          where the flanks carry pressure, under the largest torque
+  transmission_error.png    over the positions, all torques
+  peak_pressure.png         over the positions, all torques
+  pressure_map.png          at the position of the peak pressure, under the largest torque
+  pressure_map_border.png   only if a peak lies at a border or crease, at another position
+  pressure_map_hertz.png    only if Hertz holds, but not where the peak pressure is
+Pictures of these names that the result does not have are removed; docs/results.md says more."""
 EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
 
 
@@ -100,17 +108,24 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
 
     def command(name: str, run: Callable[[argparse.Namespace], None], text: str) -> argparse.ArgumentParser:
-        added = commands.add_parser(name, help=text, description=text, parents=[common])
+        layout = argparse.RawDescriptionHelpFormatter
+        epilog = None if run is _check else FILES
+        added = commands.add_parser(
+            name, help=text, description=text, epilog=epilog, formatter_class=layout, parents=[common]
+        )
         added.set_defaults(command=run)
         return added
 
-    command("demo", _demo, f"analyse a crowned helical pair; writes to ./{DEMO_DIRECTORY}")
+    demo = command("demo", _demo, "analyse a crowned helical pair; writes its scene file too")
+    demo.add_argument("--out", metavar="DIR", type=Path, default=DEMO_DIRECTORY, help=f"default: ./{DEMO_DIRECTORY}")
     run = command("run", _run, "analyse a scene; writes result.nc, summary.json, positions.csv and pictures")
     run.add_argument("scene", metavar="SCENE.toml", help="scene file")
     run.add_argument("--out", metavar="DIR", required=True, type=Path, help="directory for the results")
     plot = command("plot", _plot, "draw the pictures of a result again")
     plot.add_argument("result", metavar="DIR|FILE", type=Path, help="result.nc, or the directory that holds it")
     plot.add_argument("--out", metavar="DIR", type=Path, help="directory for the pictures; default: beside the result")
+    plot.add_argument("--torque", metavar="NM", type=float, help="pinion torque of maps and flanks; default: largest")
+    plot.add_argument("--position", metavar="N", type=int, help="position of pressure_map.png, from 1; default: peak")
     check = command("check", _check, "read a scene and show its geometry, without computing a contact")
     check.add_argument("scene", metavar="SCENE.toml", help="scene file")
     return parser
@@ -126,18 +141,20 @@ class _Version(argparse.Action):
         parser.exit()
 
 
-def _demo(_: argparse.Namespace) -> None:
+def _demo(options: argparse.Namespace) -> None:
     from loaded_tca.report import make_directory
     from loaded_tca.storage import replacing
 
-    make_directory(DEMO_DIRECTORY)
-    scene, content = DEMO_DIRECTORY / "scene.toml", DEMO_SCENE.read_bytes()
+    directory = options.out
+    _check_place(directory)
+    make_directory(directory)
+    scene, content = directory / "scene.toml", DEMO_SCENE.read_bytes()
     if scene.exists() and scene.read_bytes() != content:
-        again = f"'loaded-tca run {scene} --out {DEMO_DIRECTORY}'"
+        again = f"'loaded-tca run {scene} --out {directory}'"
         raise InputError(f"{scene}: has been changed, and the demo would replace it; rename it, or use {again}")
     with replacing(scene) as temporary:
         temporary.write_bytes(content)
-    _analyse_to(str(scene), DEMO_DIRECTORY)
+    _analyse_to(str(scene), directory)
     print(f"Next: change {scene}, for instance its lead_crowning_um, then try\n")
     print(f"  loaded-tca run {scene} --out my-pair")
 
@@ -167,23 +184,47 @@ def _plot(options: argparse.Namespace) -> None:
 
     path = options.result / RESULT if options.result.is_dir() else options.result
     result = MeshCycle.load(path)
+    torque, position = _chosen_torque(result, options.torque), _chosen_position(result, options.position)
     directory = options.out or path.parent
     make_directory(directory)
-    _print_files(_draw(result, directory))
+    _print_files(_draw(result, directory, torque, position))
+
+
+def _chosen_torque(result: MeshCycle, wanted: float | None) -> int | None:
+    """Index of the torque that --torque names."""
+    torques = [1e-3 * float(torque) for torque in result.torque]
+    matches = [
+        index for index, torque in enumerate(torques) if wanted is not None and f"{torque:.6g}" == f"{wanted:.6g}"
+    ]
+    if wanted is not None and not matches:
+        raise InputError(f"--torque {wanted:g}: the result has {', '.join(f'{torque:.6g}' for torque in torques)} N m")
+    return matches[0] if matches else None
+
+
+def _chosen_position(result: MeshCycle, wanted: int | None) -> int | None:
+    """Index of the position that --position names."""
+    if wanted is None:
+        return None
+    if not 1 <= wanted <= len(result.path):
+        raise InputError(f"--position {wanted}: the result has the positions 1 to {len(result.path)}")
+    if not result.path.touches[wanted - 1]:
+        raise InputError(f"--position {wanted}: the tooth pair does not touch there")
+    return wanted - 1
 
 
 def _check(options: argparse.Namespace) -> None:
+    from loaded_tca.overview import describe_scene
     from loaded_tca.scene import read_scene
 
-    scene = read_scene(options.scene)
-    scene.pair()
-    print(_geometry(scene))
+    print(describe_scene(read_scene(options.scene)))
 
 
-def _draw(result: MeshCycle, directory: Path) -> tuple[Path, ...]:
+def _draw(
+    result: MeshCycle, directory: Path, torque: int | None = None, position: int | None = None
+) -> tuple[Path, ...]:
     from loaded_tca.plots import plot_all
 
-    return plot_all(result, directory)
+    return plot_all(result, directory, torque=torque, position=position)
 
 
 def _print_files(paths: Sequence[Path]) -> None:
@@ -232,50 +273,3 @@ def _print_any_character() -> None:
     """Titles may hold characters that the terminal does not know: show their codes instead of failing."""
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")
-
-
-def _geometry(scene: Scene) -> str:
-    """Key figures of the macro geometry, one line each."""
-    mesh = scene.mesh()
-    rows = [*_mesh_rows(mesh), *_gear_rows(scene, mesh)]
-    lines = [f"{label:<44}" + "".join(f"{cell:>14}" for cell in cells) for label, *cells in rows]
-    return "\n".join([scene.title or "Scene", *lines])
-
-
-def _mesh_rows(mesh: CylindricalMesh) -> list[tuple[str, ...]]:
-    path = mesh.path_of_contact
-    return [
-        ("working centre distance a_w [mm]", f"{mesh.working_centre_distance:.4f}"),
-        ("working pressure angle alpha_wt [deg]", f"{math.degrees(mesh.working_pressure_angle):.4f}"),
-        ("backlash j_wt at the working circles [mm]", f"{mesh.backlash:.4f}"),
-        ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:.4f}"),
-        ("overlap ratio eps_beta", f"{mesh.overlap_ratio:.4f}"),
-        ("total contact ratio eps_gamma", f"{mesh.total_contact_ratio:.4f}"),
-        ("path of contact: length AE, approach AC [mm]", f"{path.AE:.4f}", f"{path.AC:.4f}"),
-        ("common face width b [mm]", f"{mesh.common_face_width:.4f}"),
-    ]
-
-
-def _gear_rows(scene: Scene, mesh: CylindricalMesh) -> list[tuple[str, ...]]:
-    gears = (mesh.pinion, mesh.wheel)
-    active = (mesh.pinion_active_profile, mesh.wheel_active_profile)
-    working = (mesh.pinion_working_radius, mesh.wheel_working_radius)
-    diameters = (
-        ("reference diameter d [mm]", [gear.reference_radius for gear in gears]),
-        ("base diameter d_b [mm]", [gear.base_radius for gear in gears]),
-        ("working diameter d_w [mm]", working),
-        ("tip diameter d_a [mm]", [gear.tip_radius for gear in gears]),
-        ("start of active profile d_Nf [mm]", [profile.start_radius for profile in active]),
-        ("root form diameter d_Ff [mm]", [gear.form_radius for gear in gears]),
-        ("root diameter d_f [mm]", [gear.root_radius for gear in gears]),
-    )
-    hands = ("none", "none")
-    if scene.geometry.helix_angle_deg:
-        hands = ("right", "left") if scene.pinion_hand == "right" else ("left", "right")
-    return [
-        ("", "pinion", "wheel"),
-        ("teeth z", *(str(gear.teeth) for gear in gears)),
-        ("hand of the helix", *hands),
-        *((label, *(f"{2.0 * radius:.4f}" for radius in radii)) for label, radii in diameters),
-        ("mate's tip reaches below d_Ff", *("yes" if profile.fillet_interference else "no" for profile in active)),
-    ]

@@ -26,9 +26,9 @@ def highest_peak(row: Row) -> int | None:
     return _highest(row["central_pressure"]) if inner is None else inner
 
 
-def highest_growing_peak(row: Row) -> int | None:
-    """Position of the highest of the peaks that grow with the grid; None if none does."""
-    return _highest(np.where(row["peak_grows_with_grid"], row["peak_pressure"], math.nan))
+def highest_border_peak(row: Row) -> int | None:
+    """Position of the highest of the peaks at a border or crease, which grow with the grid; None if there is none."""
+    return _highest(np.where(row["peak_at_border"], row["peak_pressure"], math.nan))
 
 
 def highest_where_hertz_holds(row: Row) -> int | None:
@@ -51,7 +51,7 @@ def key_figures(path: ContactPath, row: Row, *, wheel_base_radius: float, max_pr
     """
     return {
         **_peak_figures(path, row, highest_peak(row)),
-        **_border_figures(path, row, highest_growing_peak(row)),
+        **_border_figures(path, row, highest_border_peak(row)),
         **_hertz_figures(row, highest_where_hertz_holds(row)),
         **_error_figures("transmission_error", row["transmission_error"], wheel_base_radius),
         **_error_figures("unloaded_error", path.transmission_error, wheel_base_radius),
@@ -72,12 +72,12 @@ def _at(values: Array, position: int | None) -> float:
 
 def _peak_figures(path: ContactPath, row: Row, at: int | None) -> dict[str, float]:
     """What holds at the position of the first number; its place is the contact point where it is found beside that."""
-    beside = at is not None and bool(row["peak_grows_with_grid"][at])
+    beside = at is not None and bool(row["peak_at_border"][at])
     radius, axial = (path.pinion_radius, path.pinion_axial) if beside else (row["peak_radius"], row["peak_axial"])
     return {
         "peak_pressure_MPa": _at(row["central_pressure"] if beside else row["peak_pressure"], at),
         "peak_is_beside_contact_point": beside,
-        "peak_is_at_border": beside and math.isnan(_at(row["inner_pressure"], at)),
+        "contact_point_is_at_border": beside and math.isnan(_at(row["inner_pressure"], at)),
         "pinion_angle_at_peak_deg": math.degrees(_at(path.pinion_angle, at)),
         "pinion_diameter_at_peak_mm": 2.0 * _at(radius, at),
         "pinion_axial_at_peak_mm": _at(axial, at),
@@ -92,7 +92,7 @@ def _peak_figures(path: ContactPath, row: Row, at: int | None) -> dict[str, floa
 
 
 def _border_figures(path: ContactPath, row: Row, at: int | None) -> dict[str, float]:
-    """The highest peak that grows with the grid, told beside the first number."""
+    """The highest peak at a border or crease, told beside the first number."""
     return {
         "border_pressure_MPa": _at(row["peak_pressure"], at),
         "pinion_angle_at_border_deg": math.degrees(_at(path.pinion_angle, at)),
@@ -139,7 +139,7 @@ def _counts(path: ContactPath, row: Row) -> dict[str, float]:
         "line_positions": int(path.on_line.sum()),
         "edge_positions": int((row["on_edge"] > 0).sum()),
         "crease_positions": int((row["at_crease"] > 0).sum()),
-        "growing_peak_positions": int(row["peak_grows_with_grid"].sum()),
+        "border_peak_positions": int(row["peak_at_border"].sum()),
         "capped_positions": int(row["capped"].sum()),
     }
 

@@ -27,6 +27,8 @@ SMALLEST_LOAD = 1e-15
 """Loads below this times E* m_n^2 are none: the gap they close is rounding (1e-9 N at module 3)."""
 CAP_USE = 0.6
 """Share of what the material in the box can carry at the cap that may be used: the contact needs room to spread."""
+EQUAL = 1e-4
+"""Relative difference below which two cells have the same pressure, as the middle cells of an even grid do."""
 GROWTH = 1.5
 MOST_BOXES = 8
 
@@ -79,9 +81,12 @@ class LoadedContact:
 
     @property
     def peak_place(self) -> tuple[float, float]:
-        """Radius and axial coordinate on the pinion of the cell with the largest pressure [mm]."""
-        cell = np.unravel_index(int(self.solution.pressure.argmax()), self.solution.pressure.shape)
-        x, y, z = self.separation.points[cell]
+        """Radius and axial coordinate on the pinion of the largest pressure [mm]: middle of the cells that share it."""
+        pressure = self.solution.pressure
+        top = np.unravel_index(int(pressure.argmax()), pressure.shape)
+        beside = tuple(slice(max(0, k - 1), k + 2) for k in top)
+        equal = pressure[beside] >= (1.0 - EQUAL) * pressure.max()
+        x, y, z = self.separation.points[beside][equal].mean(axis=0)
         return math.hypot(x, y), float(z)
 
     @property

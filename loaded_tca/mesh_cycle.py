@@ -11,14 +11,14 @@ import numpy as np
 
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.jet import Array
-from loaded_tca.key_figures import highest_growing_peak, highest_peak, highest_where_hertz_holds, key_figures
+from loaded_tca.key_figures import highest_border_peak, highest_peak, highest_where_hertz_holds, key_figures
 from loaded_tca.storage import FilePath, Part, Variable, pack, read_netcdf, unpack, write_netcdf
 from loaded_tca.summary import summary_text
 from loaded_tca.unloaded import ContactPath
 
 CAPPED = 1.0 - 1e-6
 """Part of the cap on the pressure from which a peak equals it."""
-DERIVED = ("inner_pressure", "length_on_face", "peak_grows_with_grid", "capped")
+DERIVED = ("inner_pressure", "length_on_face", "peak_at_border", "capped")
 """Properties that have a number per torque and position, as the fields of quantities do."""
 
 
@@ -133,14 +133,13 @@ class MeshCycle:
         return np.asarray(getattr(self, name)).reshape(len(self.torque), len(self.path))
 
     @property
-    def peak_grows_with_grid(self) -> Array:
+    def peak_at_border(self) -> Array:
         """Whether the largest cell lies at the end of a flank, or a crease in the contact: bool, (..., n).
 
-        There theory has an infinite pressure, unless a cap holds it down.
+        There theory has an infinite pressure, and the peak grows with the grid, up to a cap if there is one.
         """
         at_end = np.array([[one is not None and _peaks_at_end(one) for one in row] for row in self.maps])
-        rough = at_end.reshape(self.peak_pressure.shape) | (self.at_crease > 0)
-        return np.asarray(rough & ~self.capped)
+        return np.asarray(at_end.reshape(self.peak_pressure.shape) | (self.at_crease > 0))
 
     @property
     def capped(self) -> Array:
@@ -155,7 +154,7 @@ class MeshCycle:
         itself lies on a border or a crease.
         """
         beside = np.where(self.path.on_edge | self.path.on_crease, math.nan, self.central_pressure)
-        return np.where(self.peak_grows_with_grid, beside, self.peak_pressure)
+        return np.where(self.peak_at_border, beside, self.peak_pressure)
 
     @property
     def length_on_face(self) -> Array:
@@ -177,8 +176,8 @@ class MeshCycle:
         return highest_where_hertz_holds(row) if where_hertz_holds else highest_peak(row)
 
     def border_position(self, torque: int) -> int | None:
-        """Return the index of the position with the highest of the peaks that grow with the grid; None if none does."""
-        return highest_growing_peak(self._row(torque))
+        """Return the index of the position with the highest peak at a border or crease; None if there is none."""
+        return highest_border_peak(self._row(torque))
 
     def _row(self, torque: int) -> dict[str, Array]:
         """Every field of numbers per position under one torque, and those that follow from them."""
@@ -189,7 +188,7 @@ class MeshCycle:
         """Return the figures of the whole cycle for each torque, by names that end in their unit.
 
         ``peak_pressure_MPa`` is the highest ``inner_pressure``; "at_peak": at its position; "at_border": at that of
-        the highest peak that grows with the grid; "there": at that of the highest pressure where Hertz holds. Means
+        the highest peak at a border or crease; "there": at that of the highest pressure where Hertz holds. Means
         are over the positions. NaN: not known.
         """
         scalars = {name: getattr(self, name) for name in ("wheel_base_radius", "max_pressure")}

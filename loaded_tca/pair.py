@@ -28,7 +28,7 @@ from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.involute import InvoluteFlank
 from loaded_tca.flanks.jet import Array
 from loaded_tca.flanks.modification import FlankModifications, ModifiedFlank
-from loaded_tca.gears import CylindricalGear, CylindricalMesh
+from loaded_tca.gears import CylindricalMesh
 from loaded_tca.material import Material, contact_modulus
 
 Driving = Literal["pinion", "wheel"]
@@ -203,6 +203,7 @@ def cylindrical_pair(
 
     Examples
     --------
+    >>> from loaded_tca.gears import CylindricalGear
     >>> gears = [CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)]
     >>> cylindrical_pair(CylindricalMesh(*gears))
     GearPair(34/57, module 3 mm, face 25 mm)

@@ -80,9 +80,7 @@ def summary_json(result: MeshCycle) -> str:
         "face_width_mm": result.face_width,
         "wheel_base_radius_mm": result.wheel_base_radius,
         "mesh_stiffness_is": STIFFNESS,
-        "torques": [
-            {name: _known(value, name) for name, value in figures.items()} for figures in result.key_figures()
-        ],
+        "torques": [{name: _known(value, name) for name, value in figures.items()} for figures in result.key_figures()],
     }
     return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
@@ -140,7 +138,7 @@ def _loaded_columns(result: MeshCycle) -> dict[str, Array]:
             name, factor = _column(entry.name, entry.metadata["unit"])
             shown = "length_on_face" if entry.name == "contact_length" else entry.name
             columns[name] = result.by_torque(shown) * factor
-    columns["peak_grows_with_grid"] = result.by_torque("peak_grows_with_grid")
+    columns["peak_at_border"] = result.by_torque("peak_at_border")
     columns["transmission_error_um"] = result.by_torque("transmission_error") * result.wheel_base_radius * 1e3
     return columns
 
@@ -178,6 +176,6 @@ def _described(parts: dict[str, Part], columns: dict[str, str] | None = None) ->
     rows = [titles, ["---"] * len(titles)]
     for name, (axes, unit, text) in parts.items():
         column = (columns or {}).get(name, "")
-        cells = [f"`{name}`", f"({', '.join(axes)})" if axes else "one number", unit.replace("1", "-"), text]
+        cells = [f"`{name}`", f"({', '.join(axes)})" if axes else "one number", "-" if unit == "1" else unit, text]
         rows.append([*cells, *([f"`{column}`" if column else ""] if columns else [])])
     return [f"| {' | '.join(cells)} |" for cells in rows]

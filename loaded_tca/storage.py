@@ -182,6 +182,14 @@ def replacing(path: FilePath) -> Iterator[Path]:
         temporary.unlink(missing_ok=True)
 
 
+def remove(path: FilePath) -> None:
+    """Remove a file if it is there; InputError if that cannot be done."""
+    try:
+        Path(path).unlink(missing_ok=True)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be removed: {_reason(error)}") from error
+
+
 def _opened(file: Path | io.BytesIO, mode: Literal["r", "w"]) -> Any:
     return netcdf_file(file, mode, mmap=False, version=2)
 

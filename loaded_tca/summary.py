@@ -13,7 +13,7 @@ ROUNDING = 1e-6
 MOST_TORQUES = 6
 """Torques that a note names one by one."""
 
-STIFFNESS = "mean contact stiffness of one pair, no bending"
+STIFFNESS = "contact stiffness of one pair, no bending"
 """What the key mesh_stiffness means as long as teeth do not bend."""
 
 ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
@@ -37,7 +37,7 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("transmission error, mean [arcsec | um]", ("transmission_error_mean_arcsec", "transmission_error_mean_um")),
     ("  peak to peak [arcsec | um]", ("transmission_error_span_arcsec", "transmission_error_span_um")),
     ("  unloaded, peak to peak [arcsec | um]", ("unloaded_error_span_arcsec", "unloaded_error_span_um")),
-    (f"{STIFFNESS} [N/(mm um)]", ("mesh_stiffness_mean_N_per_mm_um",)),
+    (f"mean {STIFFNESS} [N/(mm um)]", ("mesh_stiffness_mean_N_per_mm_um",)),
     ("grid: fewest cells across | along", ("fewest_cells_across", "fewest_cells_along")),
     ("  most cells across | along", ("most_cells_across", "most_cells_along")),
     ("solver: most iterations | worst residual", ("most_solver_iterations", "worst_solver_residual")),
@@ -52,8 +52,8 @@ NOTES = (
     ("edge_positions", "the contact reaches a border of a flank: no Hertz there"),
     ("crease_positions", "the start of a linear relief lies in the contact: no Hertz there"),
     (
-        "growing_peak_positions",
-        "the largest cell lies at that border or crease and grows with the grid: "
+        "border_peak_positions",
+        "the largest cell lies at a border or crease, where it grows with the grid: "
         "what counts there is the pressure beside the contact point",
     ),
 )
@@ -105,7 +105,7 @@ def _notes(figures: Sequence[Figures]) -> Iterator[str]:
     yield from _counted(figures, apart, "the tooth pair does not touch")
     for name, sentence in NOTES:
         yield from _counted(figures, [entry[name] for entry in figures], sentence)
-    at_border = [bool(entry["peak_is_at_border"]) for entry in figures]
+    at_border = [bool(entry["contact_point_is_at_border"]) for entry in figures]
     if any(at_border):
         where = "the contact point itself lies on a border or crease"
         yield f"{where}{_for_torques(figures, at_border)}: the peak pressure given grows with the grid too"

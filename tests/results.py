@@ -71,4 +71,4 @@ def assert_same(first, second):
         assert first.dtype == second.dtype
         assert_array_equal(first, second, strict=True)
     else:
-        assert first == second
+        assert first == second or (first != first and second != second)  # NaN is the same as NaN

@@ -8,6 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 import pytest
+from matplotlib.figure import Figure
 
 import loaded_tca.analysis
 import loaded_tca.plots
@@ -66,6 +67,13 @@ def test_demo_needs_no_file_and_tells_what_to_try_next(run):
     assert run("demo")[0] == 0
 
 
+def test_demo_goes_where_it_is_told(run):
+    code, out, _ = run("demo", "--out", "else/where")
+    assert code == 0
+    assert os.listdir() == ["else"]
+    assert out.rstrip().endswith("loaded-tca run else/where/scene.toml --out my-pair")
+
+
 def test_demo_has_nothing_to_warn_of(run):
     _, out, err = run("demo")
     assert err == []
@@ -100,6 +108,25 @@ def test_plot_draws_a_result_again(run):
     assert set(os.listdir("elsewhere")) == PICTURES
 
 
+def test_run_leaves_no_picture_of_an_earlier_scene(run):
+    Path("out").mkdir()
+    Path("out", "pressure_map_hertz.png").write_bytes(b"old")
+    assert run("run", scene(), "--out", "out")[0] == 0
+    assert set(os.listdir("out")) == REPORT | PICTURES
+
+
+def test_plot_draws_another_torque_and_position(run):
+    changes = {"positions = 21": "positions = 3\ntorques_Nm = [20.0, 40.0]"}
+    run("run", scene(**changes), "--out", "out")
+    before = Path("out", "pressure_map.png").read_bytes()
+    assert run("plot", "out", "--torque", 20, "--position", 2)[0] == 0
+    assert Path("out", "pressure_map.png").read_bytes() != before
+    for wrong, told in ((("--torque", 30), "the result has 20, 40 N m"), (("--position", 4), "positions 1 to 3")):
+        code, _, err = run("plot", "out", *wrong)
+        assert code == 2
+        assert told in err[0]
+
+
 def test_check_shows_the_geometry_and_writes_nothing(run):
     code, out, err = run("check", HELICAL)
     assert (code, err, os.listdir()) == (0, [], [])
@@ -109,6 +136,11 @@ def test_check_shows_the_geometry_and_writes_nothing(run):
     assert rows["transverse contact ratio eps_alpha"] == ["1.6445"]
     assert rows["start of active profile d_Nf [mm]"] == ["101.1985", "172.4189"]
     assert rows["root form diameter d_Ff [mm]"] == ["100.8631", "171.7720"]
+
+
+def test_check_tells_teeth_that_overlap(run):
+    changes = {"helix_angle_deg = 15.0": "helix_angle_deg = 15.0\ncentre_distance_mm = 141.3"}
+    assert "note: teeth overlap by 0.01" in run("check", scene(**changes))[1]
 
 
 def test_check_of_a_spur_pair_names_no_hand(run):
@@ -121,7 +153,8 @@ def test_edge_contact_warns_once_and_exits_0(run):
     code, out, err = run("run", "edge.toml", "--out", "out")
     assert code == 0
     assert len(err) == 1
-    assert err[0].startswith("warning: the contact reaches a border of a flank")
+    assert err[0].startswith("warning: ")
+    assert "border of a flank" in err[0]
     assert "note: at 3 of 3 positions the contact reaches a border" in out
 
 
@@ -232,7 +265,7 @@ def test_interrupt_while_writing_leaves_whole_files_only(run, monkeypatch):
         Path(path).write_bytes(b"half a picture")
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(loaded_tca.plots.Figure, "savefig", interrupted)
+    monkeypatch.setattr(Figure, "savefig", interrupted)
     assert run("run", scene(), "--out", "out")[0] == 130
     assert set(os.listdir("out")) == REPORT
 
@@ -256,6 +289,14 @@ def test_version_is_that_of_the_package(capsys):
         cli.main(["--version"])
     assert caught.value.code == 0
     assert capsys.readouterr().out == f"loaded-tca {version('loaded_tca')}\n"
+
+
+def test_help_lists_every_file(capsys):
+    with pytest.raises(SystemExit):
+        cli.main(["run", "--help"])
+    shown = capsys.readouterr().out
+    names = [f"{name}.png" for name in loaded_tca.plots.PICTURES]
+    assert all(name in shown for name in (*REPORT, *names))
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"]])

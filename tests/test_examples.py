@@ -12,6 +12,9 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 EXPECTED = {
     "plot_pressure_distribution": (1.0, 1e-10),  # the map carries the load: equilibrium
     "plot_contact_from_arrays": (1.018, 2e-3),  # the profile takes load off the ends and gives it to the middle
+    "plot_convergence_of_methods": (100.0, 1e-9),  # every start finds the contact
+    "plot_misalignment_sensitivity": (-1.0, 0.02),  # shift of the contact over f/(2 c1): first order
+    "plot_contact_pattern": (1.0, 2e-3),  # area of the pattern over that of the curvature ellipse
     "plot_hertz_comparison": (1.0, 2e-3),  # peak over that of Hertz, on 49 cells
     "plot_transmission_error": (2.0 / 3.0, 5e-3),  # approach of a Hertz contact under growing load
 }

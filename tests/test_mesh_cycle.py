@@ -4,10 +4,12 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from results import assert_same, result, with_a_gap
+from results import SCENES, assert_same, result, with_a_gap
 
+from loaded_tca.analysis import analyse
 from loaded_tca.errors import InputError
 from loaded_tca.mesh_cycle import MeshCycle
+from loaded_tca.scene import read_scene
 from loaded_tca.storage import read_netcdf, write_netcdf
 
 
@@ -92,7 +94,8 @@ def test_figures_agree_with_the_fields():
     cycle = result(torques=(20.0, 80.0))
     low, high = cycle.key_figures()
     assert (low["pinion_torque_Nm"], high["pinion_torque_Nm"]) == (20.0, 80.0)
-    assert high["peak_pressure_MPa"] == cycle.peak_pressure[1].max()
+    assert high["peak_pressure_MPa"] == cycle.peak_pressure[1].max()  # clear of borders
+    assert_allclose(high["pinion_diameter_at_peak_mm"], 2.0 * cycle.peak_radius[1, cycle.peak_position(1)])
     assert_allclose(high["pinion_angle_at_peak_deg"], np.degrees(cycle.pinion_angle[cycle.peak_position(1)]))
     span = np.ptp(cycle.transmission_error[1])
     assert_allclose(high["transmission_error_span_arcsec"], np.degrees(span) * 3600.0)
@@ -102,7 +105,8 @@ def test_figures_agree_with_the_fields():
 def test_figures_skip_positions_that_do_not_touch():
     for figures in with_a_gap().key_figures():
         assert figures["touching_positions"] == 4
-        assert np.isfinite(list(figures.values())).all()
+        unknown = {name for name, value in figures.items() if np.isnan(value)}
+        assert all("border" in name or name == "max_pressure_MPa" for name in unknown)
 
 
 def test_nothing_touching_leaves_figures_unknown():
@@ -125,11 +129,13 @@ def test_summary_shows_the_pitch_point_in_engineers_units():
         "1 position; one tooth pair carries the whole load (load sharing off)",
     ]
     assert re.search(r"\[N m\] +130$", line(text, "pinion torque"))
+    assert re.search(r"20 \| 24$", line(text, "grid: fewest cells"))
+    assert "no bending" in line(text, "mean contact stiffness")
     peak = float(line(text, "peak pressure [MPa]").split()[-1])
     hertz = float(line(text, "  pressure after Hertz there").split()[-1])
     assert_allclose([peak, hertz], 706.85, rtol=5e-3)  # coarse grid
     assert re.search(r" 0 \| 0$", line(text, "  unloaded, peak to peak [arcsec | um]"))
-    assert 12 <= len(text.splitlines()) <= 16
+    assert 15 <= len(text.splitlines()) <= 22
 
 
 def test_peak_where_hertz_holds_leaves_borders_out():
@@ -152,8 +158,110 @@ def test_summary_has_a_column_per_torque():
 def test_summary_tells_what_limits_it():
     text = edge_contact().summary()
     assert "note: at 2 of 2 positions the contact reaches a border of a flank" in text
-    assert "note: at 1 of 5 positions the tooth pair does not touch" in with_a_gap().summary()
+    assert "note: the contact point itself lies on a border or crease: the peak pressure given grows" in text
+    assert "note: at 1 of 5 positions (all torques) the tooth pair does not touch" in with_a_gap().summary()
     assert "note" not in result(positions=1).summary()
+
+
+def with_a_border_peak(at, torques=None):
+    """A contact whose largest cell lies beside cells without material at one position, as of the last torque."""
+    cycle = result(torques=torques)
+    one = cycle.maps[-1][at]
+    pressure, gap = one.pressure.copy(), one.gap.copy()
+    gap[:, -1] = np.inf
+    pressure[10, -2] = 2.0 * pressure.max()
+    maps = [list(row) for row in cycle.maps]
+    maps[-1][at] = replace(one, pressure=pressure, gap=gap)
+    peak = cycle.peak_pressure.copy()
+    peak.reshape(-1, 5)[-1, at] = pressure.max()
+    edge = cycle.on_edge.copy()
+    edge.reshape(-1, 5)[-1, at] = True
+    return replace(cycle, maps=tuple(map(tuple, maps)), peak_pressure=peak, on_edge=edge)
+
+
+def test_first_number_is_no_peak_at_a_border():
+    cycle, whole = with_a_border_peak(4), result()
+    (figures,), (before,) = cycle.key_figures(), whole.key_figures()
+    assert cycle.peak_at_border.tolist() == [False] * 4 + [True]
+    assert figures["peak_pressure_MPa"] == before["peak_pressure_MPa"]
+    assert figures["border_pressure_MPa"] == cycle.peak_pressure[4]
+    assert_allclose(figures["pinion_angle_at_border_deg"], np.degrees(cycle.pinion_angle[4]))
+    assert_allclose(cycle.inner_pressure[4], whole.central_pressure[4])
+    assert "note: at 1 of 5 positions the largest cell lies at a border" in cycle.summary()
+    assert float(line(cycle.summary(), "at a border or crease").split()[-1]) > figures["peak_pressure_MPa"]
+
+
+def test_contact_that_reaches_a_border_with_its_peak_mid_flank_keeps_it():
+    cycle = replace(result(), on_edge=np.ones(5, dtype=bool))
+    assert not cycle.peak_at_border.any()
+    assert_allclose(cycle.inner_pressure, cycle.peak_pressure)
+    assert "grows" not in cycle.summary()
+    assert "at a border or crease" not in cycle.summary()
+
+
+def test_peaks_at_every_border_leave_the_highest_central_pressure():
+    cycle = result("fzg_c14", positions=3)
+    (figures,) = cycle.key_figures()
+    assert figures["peak_pressure_MPa"] == cycle.central_pressure.max()
+    assert figures["peak_is_beside_contact_point"]
+    assert not figures["contact_point_is_at_border"]
+    assert figures["pinion_axial_at_peak_mm"] == pytest.approx(0.0, abs=1e-9)
+    assert figures["border_pressure_MPa"] == cycle.peak_pressure.max()
+    assert abs(figures["pinion_axial_at_border_mm"]) > 6.0  # at an end of the face
+
+
+def test_contact_points_on_a_border_are_told():
+    (figures,) = edge_contact().key_figures()
+    assert np.isnan(edge_contact().inner_pressure).all()
+    assert figures["contact_point_is_at_border"]
+    assert figures["peak_pressure_MPa"] == edge_contact().central_pressure.max()
+
+
+def test_crease_in_the_contact_makes_a_peak_doubtful():
+    crease = np.array([True, False, False, False, False])
+    cycle = replace(result(), at_crease=crease)
+    assert (cycle.peak_at_border == crease).all()
+    assert "note: at 1 of 5 positions the start of a linear relief lies in the contact" in cycle.summary()
+
+
+def test_pressure_cap_is_told():
+    peak = result().peak_pressure
+    reached = replace(result(), max_pressure=float(peak.min()), peak_pressure=np.full(5, peak.min()))
+    assert reached.capped.all()
+    assert (
+        f"note: at 5 of 5 positions the peak equals the cap on the pressure, {peak.min():.6g} MPa" in reached.summary()
+    )
+    assert "cap on the pressure, 9000 MPa, is not reached" in replace(result(), max_pressure=9000.0).summary()
+    assert not result().capped.any()
+
+
+def test_peak_that_reaches_the_cap_at_a_border_is_not_the_first_number():
+    cycle = with_a_border_peak(4)
+    (figures,) = replace(cycle, max_pressure=float(cycle.peak_pressure[4])).key_figures()
+    assert figures["capped_positions"] == 1
+    assert figures["peak_pressure_MPa"] == result().peak_pressure.max() < figures["border_pressure_MPa"]
+
+
+def test_cap_of_a_scene_reaches_the_result():
+    scene = read_scene(SCENES / "helical.toml")
+    changes = {"analysis.positions": 1, "analysis.cells": (20, 24), "material.max_pressure_MPa": 500.0}
+    cycle = analyse(scene.with_changes(changes))
+    assert cycle.max_pressure == 500.0
+    assert cycle.key_figures()[0]["peak_pressure_MPa"] == pytest.approx(500.0)
+    assert np.isnan(result().max_pressure)
+
+
+def test_notes_say_for_which_torques():
+    text = with_a_border_peak(4, torques=(20.0, 80.0)).summary()
+    assert "note: at 1 of 5 positions (80 N m) the largest cell lies at a border" in text
+
+
+def test_contact_is_no_longer_than_the_face():
+    cycle = result("fzg_c14", positions=1)
+    assert cycle.length_on_face[0] <= 14.0
+    long = replace(result(), contact_length=np.full(5, 40.0))
+    helix = np.arcsin(np.sin(np.radians(15.0)) * np.cos(np.radians(20.0)))  # of the base cylinder
+    assert_allclose(long.length_on_face, 25.0 / np.cos(helix), rtol=1e-6)
 
 
 def test_summary_of_a_line_contact_says_so():

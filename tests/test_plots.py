@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from results import result, with_a_gap
 
 from loaded_tca.errors import InputError
-from loaded_tca.mesh_cycle import ARCSEC
+from loaded_tca.key_figures import ARCSEC
 from loaded_tca.plots import (
     plot_all,
     plot_contact_path,
@@ -53,7 +53,7 @@ def texts(figure):
 def test_every_case_gives_every_picture(case, tmp_path):
     paths = plot_all(CASES[case](), tmp_path)
     always = {"contact_path", "transmission_error", "peak_pressure", "pressure_map"}
-    assert {path.stem for path in paths} - {"pressure_map_hertz"} == always
+    assert {path.stem for path in paths} - {"pressure_map_hertz", "pressure_map_border"} == always
     assert sorted(os.listdir(tmp_path)) == sorted(path.name for path in paths)
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in paths)
 
@@ -63,6 +63,26 @@ def test_map_with_the_ellipse_is_drawn_too_where_the_highest_pressure_has_none(t
     hertz[result().peak_position(0)] = np.nan
     assert "pressure_map_hertz" in {path.stem for path in plot_all(replace(result(), hertz_pressure=hertz), tmp_path)}
     assert "pressure_map_hertz" not in {path.stem for path in plot_all(result(positions=1), tmp_path)}
+
+
+def test_pictures_of_an_earlier_result_do_not_stay(tmp_path):
+    for name in ("pressure_map_hertz.png", "pressure_map_border.png", "mine.png"):
+        (tmp_path / name).write_bytes(b"old")
+    paths = plot_all(result(positions=1), tmp_path)
+    assert sorted(os.listdir(tmp_path)) == sorted(["mine.png", *(path.name for path in paths)])
+
+
+def test_peak_at_a_border_has_a_map_of_its_own(tmp_path):
+    cycle = result()
+    crease = np.zeros(5, dtype=bool)
+    crease[4] = True
+    assert cycle.peak_position(0) != 4
+    assert "pressure_map_border" in {path.stem for path in plot_all(replace(cycle, at_crease=crease), tmp_path)}
+
+
+def test_map_and_flanks_of_one_torque_and_position(tmp_path):
+    paths = plot_all(result(torques=(20.0, 80.0)), tmp_path, torque=0, position=3)
+    assert {path.stem for path in paths} == {"contact_path", "transmission_error", "peak_pressure", "pressure_map"}
 
 
 def test_nothing_touching_gives_all_but_the_pressure_map(tmp_path):
@@ -96,8 +116,8 @@ def test_rounding_of_the_transmission_error_is_not_blown_up():
 
 def test_peak_pressure_is_drawn_beside_hertz():
     (axes,) = plot_peak_pressure(result(torques=(20.0, 50.0))).axes
-    labels = [line.get_label() for line in axes.get_lines()]
-    assert labels[:3] == ["pinion torque 20 N m", "pinion torque 50 N m", "after Hertz"]
+    labels = axes.get_legend_handles_labels()[1]
+    assert labels == ["pinion torque 20 N m", "pinion torque 50 N m", "beside the contact point", "after Hertz"]
     assert_allclose(axes.get_lines()[0].get_ydata(), result(torques=(20.0, 50.0)).peak_pressure[0])
 
 
@@ -105,14 +125,27 @@ def test_edge_contacts_are_marked_and_no_hertz_is_drawn():
     (axes,) = plot_peak_pressure(result("misaligned", positions=2)).axes
     labels = [line.get_label() for line in axes.get_lines()]
     assert "after Hertz" not in labels
-    assert len(axes.get_lines()[-1].get_xdata()) == 2
-    assert "border of a flank" in labels[-1]
+    crosses = axes.get_lines()[-1]
+    assert len(crosses.get_xdata()) == 2
+    assert crosses.get_linestyle() == "None"
+    assert "at a border or crease (grows with the grid)" in labels[-1]
+    assert np.isnan(axes.get_lines()[0].get_ydata()).all()
+    assert_allclose(axes.get_lines()[1].get_ydata(), result("misaligned", positions=2).central_pressure)
+
+
+def test_high_peaks_at_a_border_do_not_rule_the_axis():
+    cycle = result("fzg_c14", positions=3)
+    (axes,) = plot_peak_pressure(cycle).axes
+    assert axes.get_ylim()[1] < cycle.peak_pressure.max()
+    arrows = axes.get_lines()[-1]
+    assert "above" in arrows.get_label()
+    assert (arrows.get_ydata() < axes.get_ylim()[1]).all()
 
 
 def test_labels_of_many_torques_stay_few():
     cycle = result(torques=tuple(float(torque) for torque in range(1, 31)), positions=1)
     labels = plot_peak_pressure(cycle).axes[0].get_legend_handles_labels()[1]
-    assert len(labels) <= 8 + 2
+    assert len(labels) <= 8 + 3
 
 
 def test_pressure_map_draws_the_ellipse_and_tells_its_scale():
@@ -132,6 +165,15 @@ def test_pressure_map_leaves_cells_without_material_to_the_grey_ground():
     assert (ground.mask == np.isinf(cycle.maps[0][0].gap)).all()
 
 
+def test_pressure_map_tells_its_directions():
+    cycle = result()
+    one = cycle.maps[0][2]
+    shown = texts(plot_pressure_map(cycle, position=2))
+    assert f"towards z > 0 on the {'right' if one.axes[1, 2] > 0 else 'left'}" in shown
+    radius = np.hypot(*(one.origin + 0.1 * one.axes[0])[:2])
+    assert f"pinion's {'tip' if radius > cycle.path.pinion_radius[2] else 'root'} at the top" in shown
+
+
 def test_pressure_map_where_nothing_touches_is_told():
     with pytest.raises(IndexError, match="does not touch"):
         plot_pressure_map(with_a_gap(), position=1)
@@ -142,19 +184,37 @@ def test_contact_areas_lie_around_the_path_within_the_flank():
     for axes, radius in zip(
         plot_contact_path(cycle).axes, (cycle.path.pinion_radius, cycle.path.wheel_radius), strict=False
     ):
-        outlines = [path.vertices for path in axes.collections[0].get_paths()]
-        assert len(outlines) == 5
-        for outline, own in zip(outlines, radius, strict=True):
-            assert outline[:, 0].min() < 0.0 < outline[:, 0].max()
-            assert outline[:, 1].min() < 2.0 * own < outline[:, 1].max()
-            assert abs(outline[:, 0]).max() < 13.5  # half of the face, and a part of a cell
+        assert len(axes.collections) == 5
+        for area, own in zip(axes.collections, radius, strict=True):
+            corners = area.get_coordinates()[:-1, :-1][~np.ma.getmaskarray(area.get_array())]
+            assert corners[:, 0].min() < 0.0 < corners[:, 0].max()
+            assert corners[:, 1].min() < 2.0 * own < corners[:, 1].max()
+            assert abs(corners[:, 0]).max() < 13.5  # half of the face, and a part of a cell
+
+
+def test_colours_of_the_flanks_begin_at_zero():
+    cycle = result()
+    limits = plot_contact_path(cycle).axes[0].collections[0].get_clim()
+    assert limits == (0.0, max(one.pressure.max() for one in cycle.maps[0]))
+
+
+def test_pictures_of_one_torque_say_which_of_several():
+    cycle = result(torques=(20.0, 80.0))
+    for plot in (plot_contact_path, plot_pressure_map):
+        assert "pinion torque 80 N m (the largest of 2)" in texts(plot(cycle))
+        assert "pinion torque 20 N m (number 1 of 2)" in texts(plot(cycle, torque=0))
 
 
 def test_pictures_without_load_say_so():
     cycle = result(torques=(0.0,), positions=2)
-    assert "no contact pressure, pinion torque 0 N m" in texts(plot_pressure_map(cycle))
-    (legend,) = plot_contact_path(cycle).legends
-    assert "under pressure (0 of 2 positions)" in [text.get_text() for text in legend.get_texts()]
+    figure = plot_pressure_map(cycle)
+    assert "no contact pressure, pinion torque 0 N m" in texts(figure)
+    assert len(figure.axes) == 1  # no colour bar
+    assert "no load, no pressure" in [text.get_text() for text in figure.axes[0].texts]
+    flanks = plot_contact_path(cycle)
+    assert "no load, no pressure on the flanks" in texts(flanks)
+    assert len(flanks.axes) == 2
+    assert flanks.legends[0].get_title().get_text() == "pressure drawn at 0 of 2 positions"
 
 
 def test_pictures_touch_no_global_state():

@@ -2,6 +2,7 @@ import csv
 import json
 import os
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from results import assert_same, result, with_a_gap
 
 from loaded_tca.errors import InputError
 from loaded_tca.mesh_cycle import MeshCycle
-from loaded_tca.report import positions_csv, summary_json, write_report
+from loaded_tca.report import describe_results, positions_csv, summary_json, write_report
 
 
 def table(cycle):
@@ -64,9 +65,48 @@ def test_table_agrees_with_the_result():
 
 
 def test_every_column_with_a_unit_tells_it():
-    pure = {"position", "on_edge", "iterations", "residual", "load_share_pair_0"}
-    units = ("_mm", "_MPa", "_N", "_Nm", "_deg", "_arcsec", "_um")
+    pure = {"position", "iterations", "residual", "load_share_pair_0", "cells_across", "cells_along"}
+    pure |= {"on_edge", "at_crease", "peak_at_border"}
+    units = ("_mm", "_MPa", "_N", "_Nm", "_deg", "_arcsec", "_um", "_N_per_mm_um")
     assert all(name.endswith(units) or name in pure for name in table(result())[0])
+
+
+def test_table_gives_full_widths_diameters_and_micrometres():
+    row, cycle = table(result())[2], result()
+    near = {"rtol": 1e-8}  # nine digits
+    assert_allclose(float(row["hertz_width_mm"]), 2.0 * cycle.hertz_semi_minor[2], **near)
+    assert_allclose(float(row["hertz_length_mm"]), 2.0 * cycle.hertz_semi_major[2], **near)
+    assert_allclose(float(row["approach_um"]), 1e3 * cycle.approach[2], **near)
+    assert_allclose(float(row["peak_pinion_diameter_mm"]), 2.0 * cycle.peak_radius[2], **near)
+    assert_allclose(float(row["contact_point_pinion_diameter_mm"]), 2.0 * cycle.path.pinion_radius[2], **near)
+    assert_allclose(float(row["central_pressure_MPa"]), cycle.central_pressure[2], **near)
+
+
+def test_table_shows_zero_for_rounding_but_no_false_residual():
+    rows = table(result())
+    assert {row["unloaded_transmission_error_arcsec"] for row in rows} == {"0"}
+    assert {row["contact_point_pinion_axial_mm"] for row in rows} == {"0"}
+    tiny = replace(result(), residual=np.full(5, 1e-12))
+    assert {row["residual"] for row in table(tiny)} == {"1e-12"}
+
+
+def test_line_contact_is_no_longer_than_the_face():
+    (row,) = table(result("fzg_c14", positions=1))
+    assert float(row["contact_length_mm"]) <= 14.0
+
+
+def test_peaks_at_a_border_are_marked_in_the_table():
+    assert {row["peak_at_border"] for row in table(result("misaligned", positions=2))} == {"1"}
+    assert {row["peak_at_border"] for row in table(result(positions=1))} == {"0"}
+
+
+def test_table_and_summary_agree():
+    (figures,) = json.loads(summary_json(result()))["torques"]
+    row = max(table(result()), key=lambda row: float(row["peak_pressure_MPa"]))
+    same = {"peak_pressure_MPa": "peak_pressure_MPa", "approach_at_peak_um": "approach_um"}
+    same |= {"contact_length_at_peak_mm": "contact_length_mm", "hertz_width_there_mm": "hertz_width_mm"}
+    for figure, column in same.items():
+        assert_allclose(figures[figure], float(row[column]), rtol=1e-8)
 
 
 def test_positions_that_do_not_touch_are_empty_cells():
@@ -85,6 +125,25 @@ def test_summary_is_strict_json_with_null_for_the_unknown():
     assert figures["hertz_pressure_there_MPa"] is None
     assert figures["edge_positions"] == 2
     assert content["tooth_pairs_sharing_load"] == 1
+
+
+def test_summary_says_what_the_stiffness_is():
+    assert "no bending" in json.loads(summary_json(result()))["mesh_stiffness_is"]
+
+
+def test_reference_of_the_results_is_up_to_date():
+    page = (Path(__file__).parents[1] / "docs" / "results.md").read_text(encoding="utf-8")
+    head, _, reference = page.partition("## Fields\n\n")
+    assert head
+    assert reference == describe_results(), "put the output of loaded_tca.report.describe_results() below '## Fields'"
+
+
+def test_every_column_is_in_the_reference():
+    described = describe_results()
+    own = [name for name in table(result())[0] if "contact_point" not in name and "load_share" not in name]
+    derived = {"position", "pinion_angle_deg", "unloaded_transmission_error_arcsec", "unloaded_transmission_error_um"}
+    derived |= {"transmission_error_um", "peak_at_border"}
+    assert [name for name in own if f"`{name}`" not in described and name not in derived] == []
 
 
 def test_summary_keeps_any_script():

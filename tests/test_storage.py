@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 
 from loaded_tca.errors import InputError
-from loaded_tca.storage import Variable, pack, read_netcdf, replacing, unpack, write_netcdf
+from loaded_tca.storage import Variable, pack, read_netcdf, remove, replacing, unpack, write_netcdf
 
 NUMBERS = Variable(("row", "column"), np.array([[1.5, np.inf], [np.nan, -0.0]]), "mm", "some lengths")
 FLAGS = Variable(("row",), np.array([True, False]), "1", "some flags")
@@ -163,3 +163,15 @@ def test_pack_and_unpack_are_inverse():
 
     parts = {"length": (("row",), "mm", "a length")}
     assert_array_equal(unpack(pack(Thing(), parts, "thing_"), parts, "thing_")["length"], Thing.length)
+
+
+def test_removing_a_file_needs_none_to_be_there(tmp_path):
+    (tmp_path / "old.png").write_bytes(b"old")
+    for _ in range(2):
+        remove(tmp_path / "old.png")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_file_that_cannot_be_removed_is_told(tmp_path):
+    with pytest.raises(InputError, match="cannot be removed"):
+        remove(tmp_path)

@@ -37,6 +37,8 @@ ARCSEC = degrees(3600.0)
 FORMS = ("parabolic", "circular", "logarithmic")
 ERRORS = ("in_plane", "out_of_plane", "centre_distance_error", "axial_offset")
 POSITIONS = 21
+ALIKE = 0.1
+"""Relative difference of two heights up to which "similar" and "not significantly different" are said to hold."""
 ROUNDING = 1e-9
 """Rounding of heights and places [mm]."""
 
@@ -165,30 +167,37 @@ def _trends_of_spur_pair() -> list[Trend]:
     sides = [bool(mesh.leading_contact.edges[:, [2, 3, 6, 7]].any()) for mesh in plain.values()]
     heights = {name: mesh.peak_to_peak * ARCSEC for name, mesh in meshes.items()}
     shifts = ", ".join(f"{e} {m.leading_contact.pinion_axial[POSITIONS // 2]:+.2f} mm" for e, m in plain.items())
-    broken = [error for error in ERRORS[:2] if not plain[error].is_continuous]
-    size = {error: mesh.peak_to_peak * ARCSEC for error, mesh in plain.items()}
-    same = abs(heights["in"] / heights["out"] - 1.0) < 0.15
+    size = ", ".join(f"{error} {mesh.peak_to_peak * ARCSEC:.2g}" for error, mesh in plain.items())
+    unlike = {name: heights[name] / heights["out"] - 1.0 for name in ("in", "both")}
+    relieved = f"parabolic reliefs of 20 um (assumed): {heights['out']:.4g} arcsec out-of-plane,"
     return [
         Trend("17", "spur: lead crowning keeps every misaligned contact off the sides", not any(sides), shifts),
-        Trend(
-            "17",
-            "spur: but leads to a discontinuous transmission under angular errors",
-            len(broken) == 2,
-            ", ".join(f"{error} {value:.2g}" for error, value in size.items())
-            + " arcsec peak to peak: linear errors leave an involute pair conjugate",
+        *(
+            Trend(
+                "17",
+                f"spur: but leads to a discontinuous transmission under {kind} errors",
+                not any(plain[error].is_continuous for error in errors),
+                f"peak to peak {size} arcsec",
+            )
+            for kind, errors in (("angular", ERRORS[:2]), ("linear", ERRORS[2:]))
         ),
         Trend(
             "18, 19",
-            "spur: tip and root relief makes it continuous, alike for both angles",
-            all(mesh.is_continuous for mesh in meshes.values()) and same,
-            f"parabolic reliefs of 20 um (assumed): in-plane {heights['in']:.4g}, out-of-plane {heights['out']:.4g} "
-            f"arcsec, continuous: {[mesh.is_continuous for mesh in meshes.values()]}",
+            "spur: tip and root relief makes the transmission continuous",
+            all(mesh.is_continuous for mesh in meshes.values()),
+            "for both angles and both together; parabolic reliefs of 20 um (assumed)",
+        ),
+        Trend(
+            "19",
+            f"spur: the transmission function is alike for both angles, to {ALIKE:.0%}",
+            abs(unlike["in"]) < ALIKE,
+            f"{relieved} {unlike['in']:+.1%} in-plane",
         ),
         Trend(
             "20",
-            "spur: both angles together hardly change the transmission function",
-            abs(heights["both"] / heights["out"] - 1.0) < 0.1,
-            f"{heights['both']:.4g} against {heights['out']:.4g} arcsec",
+            f"spur: both angles together hardly change the transmission function, to {ALIKE:.0%}",
+            abs(unlike["both"]) < ALIKE,
+            f"{relieved} {unlike['both']:+.1%} with both",
         ),
     ]
 
@@ -216,7 +225,7 @@ def _crowning_for_continuity() -> Trend:
         "23",
         "helical: the crowning needed for a continuous function falls as the misalignment grows",
         any(smooth) and needed[-1] < needed[0],
-        f"no lead crowning from 50 to 2270 um makes it continuous; the profile crowning needed grows: {listed}",
+        f"lead crowning of 50, 500, 2270 um alone: continuous {smooth}; profile crowning needed: {listed}",
     )
 
 
@@ -314,6 +323,7 @@ def _trends_of_pressure() -> list[Trend]:
     listed = ", ".join(f"{form} {value:+.1%}" for form, value in change.items())
     ends = [float(row[0] / row[len(row) // 2] - 1.0) for row in (spur, spur[::-1])]
     foot, head = (float(helical[k] / helical[len(helical) // 2] - 1.0) for k in (0, -1))
+    along = f"{head:+.1%} towards the tip, {foot:+.1%} towards the root of the pinion, against the pitch point"
     return [
         Trend(
             "21, 22",
@@ -333,12 +343,12 @@ def _trends_of_pressure() -> list[Trend]:
             change["logarithmic"] > 2.0 * max(change["circular"], change["parabolic"], 0.0),
             listed,
         ),
+        Trend("30", "helical: the pressure is higher in the upper part of the tooth", head > foot, along),
         Trend(
             "30",
-            "helical: the pressure is higher in the upper part of the tooth than in the lower, and falls between",
-            bool((np.diff(helical) < 0.0).all() or (np.diff(helical) > 0.0).all()),
-            f"{head:+.1%} towards the tip, {foot:+.1%} towards the root of the pinion, against the pitch point: "
-            "higher it is, but lowest between them",
+            "helical: and falls along the path from there to the lower part",
+            bool((np.diff(helical) > 0.0).all()),
+            f"{along}: lowest between them" if min(head, foot) > 0.0 else along,
         ),
     ]
 
@@ -500,7 +510,29 @@ def rows() -> list[Row]:
             1e-3,
         )
     )
-    return found
+    return found + _rows_of_map()
+
+
+def _rows_of_map() -> list[Row]:
+    """One case of the map, whose contacts climb together, against the search of that case alone."""
+    errors = error_map(3)
+    pair = _map_pair(Mounting(float(errors.in_plane[2]), float(errors.out_of_plane[1])))
+    contact = trace_contact(pair, [0.0])[0]
+    height = trace_teeth(pair, np.linspace(0.0, 1.0, 201) * pair.pitch).peak_to_peak * ARCSEC
+    where = f"map at in-plane {degrees(errors.in_plane[2]):.2g} deg"
+    source = "search of this case alone"
+    return [
+        Row(CASE, source, f"{where}: shift [mm]", contact.pinion_axial, float(errors.shift[2, 1]), 1e-6),
+        Row(
+            CASE,
+            source,
+            f"{where}: Hertz pressure [MPa]",
+            hertz_pressure(pair, contact, HELICAL.load),
+            float(errors.pressure[2, 1]),
+            1e-6,
+        ),
+        Row(CASE, source, f"{where}: TE, peak to peak [arcsec]", height, float(errors.peak_to_peak[2, 1]), 0.01),
+    ]
 
 
 def _slope(mounting: Mounting) -> float:
@@ -546,7 +578,12 @@ def draw_paths() -> Figure:
             pair = gears.pair(Mounting(**amount), lead_crowning=PICTURED[gears], profile_crowning=0.01)
             mesh = trace_teeth(pair)
             path = mesh.leading_contact
-            style = {"color": colour, "marker": marker, "markersize": 4, "label": _label(error, amount)}
+            style = {
+                "color": colour,
+                "marker": marker,
+                "markersize": 4,
+                "label": error.replace("_", " ") if amount else "aligned",
+            }
             flank.plot(path.pinion_axial, 2.0 * path.pinion_radius, linestyle="", **style)
             lag = (mesh.transmission_error - mesh.transmission_error.max()) * ARCSEC
             motion.plot(np.degrees(mesh.pinion_angle), lag, markevery=2, **style)
@@ -554,18 +591,13 @@ def draw_paths() -> Figure:
         lead = f"lead crowning {1e3 * PICTURED[gears]:g} µm"
         flank.set(xlim=(-0.5 * gears.face_width, 0.5 * gears.face_width), title=f"{gears.name}, {lead}: contact path")
         flank.set(xlabel="z on the pinion [mm]", ylabel="diameter on the pinion [mm]")
+        motion.set_title(
+            f"errors {degrees(LARGEST[gears]['in_plane']):.2g} deg and {LARGEST[gears]['axial_offset']} mm"
+        )
         motion.set(xlabel="pinion angle [deg]", ylabel="transmission error less its largest [arcsec]")
     figure.legend(*panels[0, 1].get_legend_handles_labels(), loc="outside lower center", ncols=5)
     figure.suptitle("Mounting errors of pairs of module 1 mm with profile crowning 10 µm, unloaded")
     return figure
-
-
-def _label(error: str, amount: dict[str, float]) -> str:
-    if not amount:
-        return "aligned"
-    value = amount[error]
-    size = f"{degrees(value):.2g} deg" if "plane" in error else f"{value:g} mm"
-    return f"{error.replace('_', ' ')} {size}"
 
 
 def main() -> int:
@@ -583,8 +615,8 @@ def main() -> int:
     errors = error_map()
     print(f"\n{errors.shift.size} pairs of errors x {POSITIONS} positions: {errors.seconds:.2f} s")
     print(f"{errors.searched} of them searched anew")
-    draw_map(errors).savefig(directory / "mounting_error_map.png", dpi=100)
-    draw_paths().savefig(directory / "mounting_errors.png", dpi=100)
+    draw_map(errors).savefig(directory / "mounting_error_map.png", dpi=90)
+    draw_paths().savefig(directory / "mounting_errors.png", dpi=90)
     return 0
 
 

@@ -124,7 +124,7 @@ class ContactPath:
         return f"ContactPath({len(self)} positions, {int(self.touches.sum())} touch, {edge} on an edge)"
 
 
-def trace_contact(pair: GearPair, pinion_angles: ArrayLike | None = None) -> ContactPath:
+def trace_contact(pair: GearPair, pinion_angles: ArrayLike | None = None, *, warn: bool = True) -> ContactPath:
     """Unloaded contact of one tooth pair at each pinion angle.
 
     Parameters
@@ -132,6 +132,8 @@ def trace_contact(pair: GearPair, pinion_angles: ArrayLike | None = None) -> Con
     pair : GearPair
     pinion_angles : (n,) array [rad], optional
         phi1; default: 21 positions over one pitch about phi1 = 0, both ends included.
+    warn : bool
+        Whether to give an AccuracyWarning where the contact lies on a root form circle.
 
     Returns
     -------
@@ -163,7 +165,7 @@ def trace_contact(pair: GearPair, pinion_angles: ArrayLike | None = None) -> Con
     path = _assemble(pair, phi1, touch)
     root = BORDER_NAMES.index("root")
     fillet = int((path.edges[:, root] | path.edges[:, len(BORDER_NAMES) + root]).sum())
-    if fillet:
+    if fillet and warn:
         message = f"fillet interference: at {fillet} of {len(path)} positions the contact lies on a root form circle"
         warnings.warn(message + ", below which the flank is not an involute", AccuracyWarning, stacklevel=2)
     return path

@@ -22,6 +22,8 @@ SCAN = (17, 17)
 """Points of the scan along the profile and along the face; none of them may be higher than the contact found."""
 BLOCKS = (2, 3)
 """Blocks of the scan, each of which sends its best point up its hill: several basins are found by this."""
+BETWEEN = 2.0
+"""Spacings of the scan by which every point may miss the common region if there is one between them."""
 CERTIFICATE = 1e-13
 """How far, relative to r_b2, a scanned point may rise above the maximum found: rounding."""
 
@@ -105,8 +107,18 @@ def _starts(pair: GearPair, phi1: Array) -> tuple[Array, Array, Array, Array]:
     lack = np.maximum(0.0, -borders).sum(axis=-1)
     feasible = lack <= FEASIBLE
     score = np.where(feasible, value, np.minimum(value.min() - 1.0, -1.0) * (1.0 + lack))
-    owner, i, j = np.nonzero(_hills(score))
+    owner, i, j = np.nonzero(_hills(score) & _within_reach(pair, borders)[:, None, None])
     return owner, rho[i, j], z[i, j], np.where(feasible, value, -np.inf).max(axis=(1, 2))
+
+
+def _within_reach(pair: GearPair, borders: Array) -> Array:
+    """Whether a common region may lie between the points of the scan (n,): borders are no farther than their spacing.
+
+    The distances to the borders change by about a millimetre per millimetre along the flank.
+    """
+    height, width = pair.pinion.extent
+    spacing = np.hypot(height / (SCAN[0] - 1), width / (SCAN[1] - 1))
+    return borders.min(axis=-1).max(axis=(1, 2)) >= -BETWEEN * spacing
 
 
 def _hills(score: Array) -> Array:
@@ -127,20 +139,27 @@ def _hills(score: Array) -> Array:
 def _best(pair: GearPair, phi1: Array, owner: Array, beyond: Array, peaks: Maxima, scanned: Array) -> FirstTouch:
     """The highest converged ascent of each position, certified against the scan."""
     height = np.where(peaks.converged, peaks.value, -np.inf)
-    order = np.lexsort((height, owner))
-    last = np.searchsorted(owner[order], np.arange(len(phi1)), side="right") - 1
-    winner = order[last]
-    touches = np.isfinite(height[winner])
-    short = np.isfinite(scanned) & (height[winner] < scanned - CERTIFICATE * pair.base_radii[1])
+    best = np.full(len(phi1), -np.inf)
+    np.maximum.at(best, owner, height)
+    winners = np.flatnonzero((height == best[owner]) & np.isfinite(height))
+    rows, first = np.unique(owner[winners], return_index=True)
+    winner = winners[first]
+
+    def spread(part: Array) -> Array:
+        full = np.zeros((len(phi1), *part.shape[1:]), dtype=part.dtype)
+        full[rows] = part[winner]
+        return full
+
     result = FirstTouch(
-        peaks.rho[winner],
-        peaks.z[winner],
-        peaks.value[winner],
-        peaks.multipliers[winner],
-        beyond[winner],
-        peaks.iterations[winner],
-        touches,
+        rho=spread(peaks.rho),
+        z=spread(peaks.z),
+        value=spread(peaks.value),
+        multipliers=spread(peaks.multipliers),
+        beyond=spread(beyond),
+        iterations=spread(peaks.iterations),
+        touches=np.isfinite(best),
     )
+    short = np.isfinite(scanned) & (best < scanned - CERTIFICATE * pair.base_radii[1])
     if short.any():
         row = int(np.flatnonzero(short)[0])
         message = f"unloaded contact: no ascent reached the height of the scan at pinion angle {phi1[row]:.6g} rad"

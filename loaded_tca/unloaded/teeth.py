@@ -257,7 +257,7 @@ class MeshPath:
             angle = (low, high)[int(np.argmin(np.abs(edges)))]
         else:
             angle = float(brentq(difference, low, high, xtol=TRANSFER))
-        path = _quietly(self.pair, angle - ends * pitch)
+        path = trace_contact(self.pair, angle - ends * pitch, warn=False)
         contacts = (path[0], path[1])
         return Transfer(angle, path[0].transmission_error, (old, new), contacts)
 
@@ -306,7 +306,7 @@ def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: I
     rows = np.flatnonzero((own >= low) & (own <= high))
     if not rows.size:
         raise GeometryError(f"no common flank: none of the tooth pairs {pairs.tolist()} comes into reach")
-    paths = _split(_quietly(pair, own.ravel()[rows]), rows, own)
+    paths = _split(trace_contact(pair, own.ravel()[rows], warn=False), rows, own)
     heights = np.stack([pair.driving * path.transmission_error for path in paths])
     heights = np.where(np.isnan(heights), -np.inf, heights) * pair.base_radii[1]
     column = _leading(pair, heights, phi1, pairs)
@@ -350,7 +350,8 @@ def _window(pair: GearPair) -> tuple[float, float]:
     step, first = pair.pitch / SAMPLES, -2
 
     def pitches(start: int, count: int) -> Array:
-        return _heights(pair, step * np.arange(start * SAMPLES, (start + count) * SAMPLES)).reshape(count, SAMPLES)
+        own = step * np.arange(start * SAMPLES, (start + count) * SAMPLES)
+        return _heights(pair, own).reshape(count, SAMPLES)
 
     heights = pitches(first, 5)
     while True:
@@ -382,13 +383,6 @@ def _leading(pair: GearPair, heights: Array, phi1: Array, pairs: NDArray[np.int_
     distance = np.abs(phi1 / pair.pitch - pairs[:, None]) + UNIFORM * pairs[:, None]
     tie = heights >= heights.max(axis=0) - COINCIDE * pair.base_radii[1]
     return np.asarray(np.where(tie, distance, np.inf).argmin(axis=0))
-
-
-def _quietly(pair: GearPair, own: Array) -> ContactPath:
-    """Contact path without the warning of fillets: most of its rows never lead."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", AccuracyWarning)
-        return trace_contact(pair, own)
 
 
 def _split(path: ContactPath, rows: NDArray[np.int_], own: Array) -> tuple[ContactPath, ...]:
@@ -433,7 +427,7 @@ def _end_of(pair: GearPair, contact: ContactPoint, borders: NDArray[np.bool_], w
     """Transmission error where a contact rests on ``borders`` alone again, going one way; NaN if not within a pitch."""
     start, length = contact.pinion_angle, way * pair.pitch
     for _ in range(SECTION_PASSES):
-        path = _quietly(pair, start + length * np.linspace(0.0, 1.0, SECTIONS + 1))
+        path = trace_contact(pair, start + length * np.linspace(0.0, 1.0, SECTIONS + 1), warn=False)
         free = path.touches & (_borders_held(path.edges) == borders).all(axis=-1)
         if not free.any():
             return math.nan

@@ -125,10 +125,10 @@ def test_unmodified_aligned_pair_has_no_transmission_error_and_no_jump(mesh, dri
 
 @pytest.mark.parametrize("mesh", [{}, {"teeth": (20, 60), "shifts": (0.3, -0.1)}, {"helix_deg": 15.0}])
 def test_contact_ratio_of_unmodified_gears_is_the_geometric_one(mesh):
-    """The corner contact beyond the path of contact adds less than a tolerance of 0.1 um reaches."""
+    """Beyond the path of contact the corner contact lags with the square of the way: by 1 nm after 1/1000 pitch."""
     pair = gear_pair(**mesh)
-    obtained = trace_teeth(pair, pitch(pair, 401)).contact_ratio(1e-4)
-    assert_allclose(obtained, cylindrical_mesh(**mesh).total_contact_ratio, atol=0.015)
+    obtained = trace_teeth(pair, pitch(pair, 401)).contact_ratio(1e-6)
+    assert_allclose(obtained, cylindrical_mesh(**mesh).total_contact_ratio, atol=0.005)
 
 
 def test_contact_ratio_of_crowned_gears_grows_from_one_with_the_tolerance():
@@ -169,21 +169,22 @@ def test_coarse_positions_over_several_pitches_have_every_transfer():
 
 
 def test_one_transfer_per_pitch_where_it_lies_on_the_ends():
-    """Of equal gears the crossing lies half a pitch from the pitch point, at the first and the last position."""
-    mesh = trace_teeth(gear_pair(BOTH, FlankModifications(profile_crowning=0.01), teeth=(30, 30)))
-    assert len(mesh.transfers) == 1
-    assert abs(mesh.transfers[0].pinion_angle) == pytest.approx(0.5 * mesh.pair.pitch, abs=1e-7)
+    """Where curves coincide they are parted half a pitch from the pitch point, at the first and the last position."""
+    mesh = trace_teeth(gear_pair(teeth=(30, 30)))
+    (transfer,) = mesh.transfers
+    assert abs(transfer.pinion_angle) == pytest.approx(0.5 * mesh.pair.pitch)
 
 
 @drives
 def test_lead_crowning_alone_leaves_a_straight_line_with_a_jump_under_misalignment(driving):
     pair = gear_pair(LEAD, mounting=TILTED, driving=driving, helix_deg=15.0)
-    mesh = trace_teeth(pair, pitch(pair, 41, 0.0))
+    mesh = trace_teeth(pair, pitch(pair, 201, 0.0))
+    bridged = mesh.leading_contact.on_edge.sum() * pair.pitch / 200
     assert not mesh.is_continuous
     inside = np.linspace(-0.2, 0.2, 5) * pair.pitch
     line = np.polynomial.Polynomial.fit(inside, trace_contact(pair, inside).transmission_error, 1).convert()
     (jump,) = mesh.jumps
-    assert_allclose(jump, -line.coef[1] * pair.pitch, rtol=0.02)
+    assert_allclose(jump, -line.coef[1] * (pair.pitch - bridged), rtol=0.01)  # two positions
 
 
 @drives
@@ -209,7 +210,7 @@ def test_profile_crowning_makes_the_transmission_error_continuous(driving):
 
 def test_linear_tip_and_root_relief_make_it_continuous_too():
     relief = FlankModifications(
-        lead_crowning=0.02, tip_relief=0.02, tip_relief_start=105.0, root_relief=0.02, root_relief_start=99.5
+        lead_crowning=0.02, tip_relief=0.02, tip_relief_start=108.0, root_relief=0.02, root_relief_start=102.0
     )
     mesh = trace_teeth(gear_pair(relief, mounting=TILTED, helix_deg=15.0))
     assert mesh.is_continuous
@@ -227,16 +228,18 @@ def test_corner_contact_belongs_to_the_envelope():
 # Symmetries
 
 
-def test_envelope_of_equal_gears_is_symmetric_about_the_pitch_point():
+def test_equal_gears_may_be_exchanged():
+    """Seen from the wheel the same contact runs backwards: phi2(-phi2(phi1)) = -phi1."""
     crowned = FlankModifications(profile_crowning=0.01)
-    mesh = trace_teeth(gear_pair(crowned, crowned, teeth=(30, 30)))
-    assert_allclose(mesh.transmission_error, mesh.transmission_error[::-1], atol=ROUNDING)
-    assert_allclose(np.sin(mesh.harmonics(4).phase), 0.0, atol=1e-6)  # a cosine series
+    pair = gear_pair(crowned, crowned, teeth=(30, 30))
+    mesh = trace_teeth(pair, pitch(pair, 20))
+    back = trace_teeth(pair, -mesh.wheel_angle[::-1])
+    assert_allclose(back.wheel_angle, -mesh.pinion_angle[::-1], atol=ROUNDING)
     assert mesh.mean < 0.0
 
 
 @given(st.floats(-1e-3, 1e-3), st.sampled_from([0.0, 12.0]))
-@settings(max_examples=8)
+@settings(max_examples=4)
 def test_sense_of_rotation_mirrors_the_pair(angle, helix_deg):
     kwargs = {"pinion": BOTH, "teeth": (25, 25)}
     one = trace_teeth(gear_pair(mounting=Mounting(out_of_plane=angle), helix_deg=helix_deg, **kwargs), None)

@@ -1,0 +1,108 @@
+"""The pressure of one position in the tangent plane."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.patches import Ellipse
+
+from loaded_tca.flanks.jet import Array
+from loaded_tca.mesh_cycle import MeshCycle, PressureMap
+from loaded_tca.plots.style import ACCENT, COLOURS, NO_MATERIAL, highest_torque, load, place, set_title, tell_no_load
+
+
+def plot_pressure_map(result: MeshCycle, position: int | None = None, torque: int | None = None) -> Figure:
+    """Contact pressure of one position in the tangent plane, with the ellipse after Hertz.
+
+    Cells without material are grey, cells without pressure white. The direction across is drawn larger than the
+    one along by a factor that the axis tells. The axes say where z > 0 and the pinion's tip lie.
+
+    Parameters
+    ----------
+    result : MeshCycle
+    position : int, optional
+        Index along the path; default: that of the peak pressure, ``result.peak_position``.
+    torque : int, optional
+        Index of the torque; default: the largest torque.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    IndexError
+        If nothing touches at that position.
+    """
+    torque = highest_torque(result) if torque is None else torque
+    position = result.peak_position(torque) if position is None else position
+    one = None if position is None else result.maps[torque][position]
+    if position is None or one is None:
+        raise IndexError("no pressure map: the tooth pair does not touch at this position")
+    scale, height = _scale_factor(one)
+    figure = Figure(figsize=(9.0, 1.8 + height), layout="constrained")
+    axes = figure.add_subplot()
+    _draw_pressure(figure, axes, one)
+    _draw_ellipse(axes, result, (torque, position))
+    axes.plot(0.0, 0.0, "+", color=ACCENT, label="unloaded contact point")
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
+    axes.set_aspect(scale)
+    _label_axes(axes, one, scale)
+    what = "contact pressure" if one.pressure.any() else "no contact pressure"
+    set_title(figure, result, f"{what}, {load(result, torque)}", place(result, position))
+    return figure
+
+
+def _label_axes(axes: Axes, one: PressureMap, scale: float) -> None:
+    """Names of the axes, with the sides on which z > 0 and the pinion's tip lie."""
+    side = "right" if one.axes[1, 2] > 0.0 else "left"
+    upwards = one.axes[0, :2] @ one.origin[:2] > 0.0
+    axes.set_xlabel(f"along the contact [mm], towards z > 0 on the {side}")
+    axes.set_ylabel(
+        f"across the contact [mm]\n(pinion's {'tip' if upwards else 'root'} at the top)"
+        + (f"\n(drawn {scale:g} times larger)" if scale != 1.0 else "")
+    )
+
+
+def _draw_pressure(figure: Figure, axes: Axes, one: PressureMap) -> None:
+    """Pressure of each cell; white without pressure, grey without material."""
+    y, x = (borders(centres, step) for centres, step in ((one.y, one.spacing[1]), (one.x, one.spacing[0])))
+    void = np.isinf(one.gap)
+    axes.set_facecolor(NO_MATERIAL)
+    axes.pcolormesh(y, x, np.where(void, np.nan, 0.0), cmap="Greys", vmin=0.0, vmax=1.0)
+    if void.any():
+        axes.plot([], [], "s", color=NO_MATERIAL, label="no material")
+    if not one.pressure.any():
+        tell_no_load(axes)
+        return
+    loaded = np.where(one.pressure > 0.0, one.pressure, np.nan)
+    mesh = axes.pcolormesh(y, x, loaded, cmap=COLOURS, norm=Normalize(0.0, float(one.pressure.max())))
+    figure.colorbar(mesh, ax=axes, label="contact pressure [MPa]")
+
+
+def _draw_ellipse(axes: Axes, result: MeshCycle, at: tuple[int, int]) -> None:
+    """The contact ellipse after Hertz, where it is known."""
+    names = ("hertz_semi_minor", "hertz_semi_major", "hertz_pressure")
+    minor, major, pressure = (float(result.by_torque(name)[at]) for name in names)
+    if math.isfinite(pressure):
+        label = f"ellipse after Hertz, peak pressure {pressure:.4g} MPa"
+        ellipse = Ellipse((0.0, 0.0), 2.0 * major, 2.0 * minor, fill=False, color=ACCENT, linestyle="--", label=label)
+        axes.add_patch(ellipse)
+
+
+def borders(centres: Array, step: float) -> Array:
+    """Borders (n + 1,) of cells of one size."""
+    return np.append(centres, centres[-1] + step) - 0.5 * step
+
+
+def _scale_factor(one: PressureMap) -> tuple[float, float]:
+    """How much larger to draw the direction across, for a map of 7 inches by what is returned beside it."""
+    length, width = len(one.y) * one.spacing[1], len(one.x) * one.spacing[0]
+    wanted = 0.5 * length / width
+    power = 10.0 ** math.floor(math.log10(wanted))
+    scale = max(factor * power for factor in (1.0, 2.0, 5.0) if factor * power <= wanted)
+    return scale, 7.0 * scale * width / length

@@ -1,0 +1,104 @@
+"""What all pictures share: colours, titles, how they are saved."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Iterator
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+
+from loaded_tca.mesh_cycle import MeshCycle
+from loaded_tca.storage import FilePath, replacing
+
+COLOURS = "viridis"
+"""Even in lightness, and told apart by colour-blind readers and in grey."""
+ACCENT, NO_MATERIAL, NO_MATE = "#d55e00", "0.8", "0.9"
+MARKERS = "osD^vP*X"
+MOST_LABELS = 8
+LONGEST_LINE = 100
+"""Characters of a title in one line."""
+DOTS_PER_INCH = 120
+
+
+def save_figure(figure: Figure, path: FilePath) -> None:
+    """Save a figure as PNG, whole or not at all; InputError if that cannot be done."""
+    with replacing(path) as temporary:
+        figure.savefig(temporary, format="png", dpi=DOTS_PER_INCH)
+
+
+def torque_styles(result: MeshCycle) -> Iterator[tuple[int, str, str, str]]:
+    """Index, label, colour and marker of each torque; of many torques only some have a label."""
+    count = len(result.torque)
+    every = math.ceil(count / MOST_LABELS)
+    for torque in range(count):
+        shade = 0.15 + 0.7 * torque / max(1, count - 1)
+        label = f"pinion torque {_in_newton_metres(result, torque)}" if torque % every == 0 else "_unlabelled"
+        yield torque, label, to_hex(colormaps[COLOURS](shade)), MARKERS[torque % len(MARKERS)]
+
+
+def widen(axes: Axes, smallest: float) -> None:
+    """Give the vertical axis a span that does not blow up rounding."""
+    low, high = axes.get_ylim()
+    if high - low < smallest:
+        middle = 0.5 * (low + high)
+        axes.set_ylim(middle - 0.5 * smallest, middle + 0.5 * smallest)
+
+
+def tell_no_load(axes: Axes) -> None:
+    """Say in a picture why it is empty."""
+    axes.text(0.5, 0.65, "no load, no pressure", transform=axes.transAxes, ha="center", va="center", fontsize="large")
+
+
+def highest_torque(result: MeshCycle) -> int:
+    """Return the index of the largest torque."""
+    return int(np.argmax(result.torque))
+
+
+def load(result: MeshCycle, torque: int) -> str:
+    """Return what a title says of one torque, and which of several it is."""
+    count = len(result.torque)
+    which = "the largest" if torque == highest_torque(result) else f"number {torque + 1}"
+    return f"pinion torque {_in_newton_metres(result, torque)}" + (f" ({which} of {count})" if count > 1 else "")
+
+
+def loads(result: MeshCycle) -> str:
+    """Return what a title says of all torques."""
+    low, high = 1e-3 * result.torque.min(), 1e-3 * result.torque.max()
+    return load(result, 0) if len(result.torque) == 1 else f"pinion torques {low:.4g} to {high:.4g} N m"
+
+
+def place(result: MeshCycle, position: int) -> str:
+    """Return what a title says of one position."""
+    where = result.path[position]
+    return (
+        f"position {position + 1} of {len(result.path)}: pinion angle {_degrees(where.pinion_angle)} deg, "
+        f"contact point at pinion diameter {2.0 * where.pinion_radius:.4g} mm"
+    )
+
+
+def range_of_positions(result: MeshCycle) -> str:
+    """Return what a title says of all positions."""
+    first, last = (_degrees(result.pinion_angle[end]) for end in (0, -1))
+    if len(result.path) == 1:
+        return f"pinion angle {first} deg"
+    return f"{len(result.path)} positions, pinion angle {first} to {last} deg"
+
+
+def set_title(figure: Figure, result: MeshCycle, *about: str) -> None:
+    """Write the title of the scene and what is shown; taken literally, signs of TeX too."""
+    joined = ", ".join(about)
+    lines = [*textwrap.wrap(result.title, 90), *([joined] if len(joined) <= LONGEST_LINE else about)]
+    figure.suptitle("\n".join(lines), fontsize="medium", parse_math=False)
+
+
+def _in_newton_metres(result: MeshCycle, torque: int) -> str:
+    return f"{1e-3 * result.torque[torque]:.4g} N m"
+
+
+def _degrees(angle: float) -> str:
+    return f"{round(math.degrees(angle), 3) + 0.0:.4g}"

@@ -1,0 +1,100 @@
+from pathlib import Path
+
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca.errors import GeometryError
+from loaded_tca.overview import describe_scene
+from loaded_tca.scene import read_scene
+
+SCENES = Path(__file__).parents[1] / "examples" / "scenes"
+
+
+def described(name="helical", **changes):
+    scene = read_scene(SCENES / f"{name}.toml")
+    return describe_scene(scene.with_changes({key.replace("__", "."): value for key, value in changes.items()}))
+
+
+def cells(text, label):
+    (row,) = (line for line in text.splitlines() if line.startswith(label))
+    return row[44:].split()
+
+
+def notes(text):
+    return [line for line in text.splitlines() if line.startswith("note: ")]
+
+
+def test_single_contact_lies_between_the_points_b_and_d():
+    text = described("spur")
+    mesh = read_scene(SCENES / "spur.toml").mesh()
+    high, low = (
+        [float(cell) for cell in cells(text, f"{which} single tooth contact")] for which in ("highest", "lowest")
+    )
+    base = mesh.pinion.base_radius
+    roll = [(0.25 * diameter**2 - base**2) ** 0.5 for diameter in (high[0], low[0])]
+    points = [mesh.path_of_contact.D, mesh.path_of_contact.B]
+    assert_allclose(roll, points, rtol=1e-4)  # four decimals
+    wheel = [(0.25 * diameter**2 - mesh.wheel.base_radius**2) ** 0.5 for diameter in (low[1], high[1])]
+    assert_allclose(wheel, [mesh.path_of_contact.T2 - point for point in points], rtol=1e-4)
+
+
+def test_no_single_contact_where_two_pairs_touch_always():
+    text = described("spur", pair__pressure_angle_deg=14.0, pinion__tip_diameter_mm=110.0, wheel__tip_diameter_mm=179.0)
+    assert float(cells(text, "transverse contact ratio")[0]) > 2.0
+    assert "single tooth contact" not in text
+
+
+def test_forces_are_those_of_the_torque():
+    text = described("helical", analysis__torques_Nm=(13.0, 130.0))
+    assert cells(text, "pinion torque [N m]") == ["13", "130"]
+    low, high = (float(cell) for cell in cells(text, "base tangential force"))
+    assert_allclose(high, 2.0 * 130e3 / float(cells(text, "base diameter")[0]), rtol=1e-4)
+    assert_allclose(high / low, 10.0, rtol=1e-3)
+
+
+def test_many_torques_are_shown_by_their_ends():
+    text = described(analysis__torques_Nm=tuple(range(1, 8)))
+    assert cells(text, "7 pinion torques from, to [N m]") == ["1", "7"]
+
+
+def test_what_departs_from_nominal_is_shown_by_its_key():
+    text = described("misaligned", pinion__modifications__lead_crowning_form="circular")
+    assert cells(text, "mounting.out_of_plane_deg") == ["0.08"]
+    assert cells(text, "pinion.modifications.lead_crowning_um") == ["5.0"]
+    assert cells(text, "pinion.modifications.lead_crowning_form") == ["circular"]
+    assert cells(text, "wheel.modifications") == ["none"]
+    assert cells(described(), "mounting errors") == ["none"]
+
+
+def test_cap_is_shown_where_there_is_one():
+    assert cells(described(material__max_pressure_MPa=2500.0), "cap on the pressure") == ["2500"]
+    assert "cap on the pressure" not in described()
+
+
+def test_pair_without_backlash_shows_none_and_no_note():
+    assert cells(described(), "backlash") == ["0.0000"]
+    assert notes(described()) == []
+
+
+def test_overlap_is_told_at_both_centre_distances():
+    nominal, mounted = notes(described(pair__centre_distance_mm=141.3, mounting__centre_distance_error_mm=-0.05))
+    assert "teeth overlap by 0.0" in nominal
+    assert "at the centre distance of 141.3000 mm: backlash is not part of the analysis" in nominal
+    assert "at the mounted centre distance of 141.2500 mm" in mounted
+
+
+def test_overlap_that_the_mounting_makes_or_mends_is_told():
+    (only,) = notes(described(mounting__centre_distance_error_mm=-0.05))
+    assert "mounted centre distance" in only
+    assert len(notes(described(pair__centre_distance_mm=141.3, mounting__centre_distance_error_mm=0.1))) == 1
+
+
+def test_mounting_that_parts_the_gears_is_a_note():
+    (only,) = notes(described(mounting__centre_distance_error_mm=30.0))
+    assert "at the mounted centre distance of 171.3" in only
+    assert "no common flank" in only
+
+
+def test_gears_that_cannot_mesh_are_an_error():
+    with pytest.raises(GeometryError, match="no common flank"):
+        described(pair__centre_distance_mm=500.0)
