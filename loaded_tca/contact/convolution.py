@@ -71,7 +71,7 @@ if hasattr(os, "register_at_fork"):
 
 
 def fast_length(least: int) -> int:
-    """Smallest even length 2^k (8, 9, 10, 12, 14) not below ``least``: few, fast, at most 1/5 too long.
+    """Smallest even length 2^k (8, 9, 10, 12, 14, 15) not below ``least``: few, fast, at most 1/5 too long.
 
     Examples
     --------
@@ -81,94 +81,115 @@ def fast_length(least: int) -> int:
     if least <= 8:
         return max(2, least + least % 2)
     power = 1 << (math.ceil(math.log2(least)) - 4)
-    lengths = (power * m for m in (8, 9, 10, 12, 14, 16))
+    lengths = (power * m for m in (8, 9, 10, 12, 14, 15, 16))
     return next(length for length in lengths if length >= least and length % 2 == 0)
 
 
 class _Transform:
     """Planned transforms of rows of real data in a periodic box, and back, in pieces that fit the cache.
 
-    ``spectrum`` holds the transform of the box with the second direction first, so that every one-dimensional
-    transform runs over contiguous data; rows without data are never transformed. ``rows`` counts those that
-    hold data on the way forth and on the way back.
+    ``rows`` counts those that hold data on the way forth and on the way back: no others are transformed or kept. The
+    doubled box itself exists in pieces only, one at a time in the work arrays of each thread.
     """
 
-    def __init__(self, rows: tuple[int, int], box: tuple[int, int], dtype: str) -> None:
-        complex_type = "complex64" if dtype == "float32" else "complex128"
-        # What goes in is used up before anything comes out: both share one array.
-        real = pyfftw.zeros_aligned((max(rows), box[1]), dtype=dtype)
-        self.data, self.result = real[: rows[0]], real[: rows[1]]
-        # Rows a power of two apart share their place in the cache: a few unused columns keep them apart.
-        padded = pyfftw.zeros_aligned((box[1] // 2 + 1, box[0] + 8), dtype=complex_type)
-        self.spectrum = padded[:, : box[0]]
-        by_rows = self.spectrum.T
-        back = {"direction": "FFTW_BACKWARD"}
-        self.inward = [(part, _plan(self.data[part], by_rows[part])) for part in _pieces(self.data)]
-        self.across = [
-            (
-                part,
-                _plan(self.spectrum[part], self.spectrum[part]),
-                _plan(self.spectrum[part], self.spectrum[part], **back),
+    def __init__(self, rows: tuple[int, int], box: tuple[int, int], dtype: str, threads: int) -> None:
+        complex_type = np.result_type(dtype, np.complex64)
+        # The second direction first, so that transforms along the first run over contiguous data. Rows a power of two
+        # apart share their place in the cache: a few unused columns keep them apart.
+        kept = pyfftw.zeros_aligned((box[1] // 2 + 1, (max(rows) + 15) // 8 * 8), dtype=complex_type)
+        self._forth, self._back = kept[:, : rows[0]], kept[:, : rows[1]]
+        high = _piece(max(rows), box[1] * np.dtype(dtype).itemsize)
+        wide = _piece(kept.shape[0], box[0] * kept.itemsize)
+        self._inward, self._outward = _pieces(rows[0], high), _pieces(rows[1], high)
+        self._across = _pieces(kept.shape[0], wide)
+        self._workplaces = [
+            _Workplace(
+                pyfftw.zeros_aligned((high, box[1]), dtype=dtype),
+                pyfftw.zeros_aligned((wide, box[0]), dtype=complex_type),
             )
-            for part in _pieces(self.spectrum)
+            for _ in range(threads)
         ]
-        self.outward = [(part, _plan(by_rows[part], self.result[part], **back)) for part in _pieces(self.result)]
-        self.nbytes = real.nbytes + padded.nbytes
+        self.nbytes = kept.nbytes + sum(place.nbytes for place in self._workplaces)
 
-    def filter(self, values: Array, corner: tuple[int, int], symbol: Array, out: Array, threads: int) -> None:
-        """Transform values placed at a corner of the box, multiply by the symbol, transform back into ``out``."""
+    def filter(self, values: Array, corner: tuple[int, int], symbol: Array, out: Array) -> None:
+        """Transform values placed at a corner of the box, multiply by the symbol, transform back into ``out``.
+
+        ``symbol`` is a quadrant of an even one, (second, first direction).
+        """
         top, left = corner
         bottom, right = top + values.shape[0], left + values.shape[1]
+        middle = symbol.shape[1]
 
-        def inward(part: slice, plan: Any) -> None:
-            data = self.data[part]
-            data[:, :left] = 0.0
-            data[:, left:right] = values[part]
-            data[:, right:] = 0.0
-            plan.update_arrays(data, self.spectrum.T[top + part.start : top + part.stop])
-            plan.execute()
+        def inward(place: _Workplace, part: slice) -> None:
+            rows = place.rows[: part.stop - part.start]
+            rows[:, :left] = 0.0
+            rows[:, left:right] = values[part]
+            rows[:, right:] = 0.0
+            place.transform(rows, self._forth.T[part])
 
-        def across(part: slice, forth: Any, back: Any) -> None:
-            spectrum = self.spectrum[part]
-            spectrum[:, :top] = 0.0
-            spectrum[:, bottom:] = 0.0
-            forth.execute()
-            spectrum *= symbol[part]
-            back.execute()
+        def across(place: _Workplace, part: slice) -> None:
+            lines = place.lines[: part.stop - part.start]
+            lines[:, :top] = 0.0
+            lines[:, top:bottom] = self._forth[part]
+            lines[:, bottom:] = 0.0
+            place.transform(lines, lines)
+            lines[:, :middle] *= symbol[part]
+            lines[:, middle:] *= symbol[part, middle - 2 : 0 : -1]
+            place.transform(lines, lines, "FFTW_BACKWARD")
+            self._back[part] = lines[:, : self._back.shape[1]]
 
-        def outward(part: slice, plan: Any) -> None:
-            plan.execute()
-            np.copyto(out[part], self.result[part, : out.shape[1]], casting="same_kind")
+        def outward(place: _Workplace, part: slice) -> None:
+            rows = place.rows[: part.stop - part.start]
+            place.transform(self._back.T[part], rows, "FFTW_BACKWARD")
+            np.copyto(out[part], rows[:, : out.shape[1]], casting="same_kind")
 
-        for work, pieces in ((inward, self.inward), (across, self.across), (outward, self.outward)):
-            _share(work, pieces, threads)
-
-
-def _plan(source: Array, target: Array, **options: str) -> Any:
-    """Plan of one-dimensional transforms along the second axis."""
-    return pyfftw.FFTW(source, target, axes=(1,), flags=("FFTW_ESTIMATE",), **options)
-
-
-def _pieces(array: Array) -> list[slice]:
-    """Rows of an array in pieces of about :data:`PIECE_BYTES`, each start a multiple of 8 rows (aligned data)."""
-    size = max(8, PIECE_BYTES // (array.shape[1] * array.itemsize) // 8 * 8)
-    return [slice(start, min(start + size, array.shape[0])) for start in range(0, array.shape[0], size)]
+        for work, pieces in ((inward, self._inward), (across, self._across), (outward, self._outward)):
+            _share(work, pieces, self._workplaces)
 
 
-def _share(work: Callable[..., None], pieces: Sequence[tuple[Any, ...]], threads: int) -> None:
+class _Workplace:
+    """Work arrays of one thread, and its plans."""
+
+    def __init__(self, rows: Array, lines: Array) -> None:
+        self.rows, self.lines = rows, lines
+        self.nbytes = rows.nbytes + lines.nbytes
+        self._plans: dict[Hashable, Any] = {}
+
+    def transform(self, source: Array, target: Array, direction: str = "FFTW_FORWARD") -> None:
+        """Transform along the second axis; arrays of the same shapes have to be laid out in the same way."""
+        key = (source.dtype.kind, target.dtype.kind, source.shape, direction)
+        if key in self._plans:
+            self._plans[key].update_arrays(source, target)
+        else:
+            flags = ("FFTW_ESTIMATE", "FFTW_DESTROY_INPUT")
+            self._plans[key] = pyfftw.FFTW(source, target, axes=(1,), direction=direction, flags=flags)
+        self._plans[key].execute()
+
+
+def _piece(count: int, row_bytes: int) -> int:
+    """Rows of a piece of about :data:`PIECE_BYTES`, a multiple of 8 (aligned data), of ``count`` in all."""
+    return min(count, max(8, PIECE_BYTES // row_bytes // 8 * 8))
+
+
+def _pieces(count: int, size: int) -> list[slice]:
+    """Rows in pieces of a size."""
+    return [slice(start, min(start + size, count)) for start in range(0, count, size)]
+
+
+def _share(work: Callable[[_Workplace, slice], None], pieces: list[slice], places: list[_Workplace]) -> None:
     """Do the work on every piece; helpers take pieces too, and nobody waits for a helper that has not begun."""
     waiting = deque(pieces)
 
-    def drain() -> None:
+    def drain(place: _Workplace) -> None:
         while True:
             try:
                 piece = waiting.popleft()
             except IndexError:
                 return
-            work(*piece)
+            work(place, piece)
 
-    helpers = [_cache.pool(threads).submit(drain) for _ in range(min(threads, len(pieces)) - 1)]
-    drain()
+    helpers = [_cache.pool(len(places)).submit(drain, place) for place in places[1 : len(pieces)]]
+    drain(places[0])
     for helper in helpers:
         if not helper.cancel():
             helper.result()
@@ -206,18 +227,18 @@ class Convolution:
         # The kernel is even: it may wrap once the box is twice the greatest distance of two cells.
         reach = [max(end, n - start) - 1 for start, end, n in zip(first, last, target, strict=True)]
         box = (fast_length(max(2 * reach[0], target[0])), fast_length(max(2 * reach[1], target[1])))
-        self._threads = useful_threads(box, threads)
+        threads = useful_threads(box, threads)
         rows = (last[0] - first[0], target[0])
         self.target = target
         self.corner = first
         self.count = 0
         self._symbol = _cache.get(("love", box, aspect, dtype), lambda: _Symbol(_love_symbol(box, aspect), dtype))
-        self._transform = _cache.get((rows, box, dtype), lambda: _Transform(rows, box, dtype))
+        self._transform = _cache.get((rows, box, dtype, threads), lambda: _Transform(rows, box, dtype, threads))
 
     def __call__(self, pressure: Array, out: Array) -> Array:
         """Write the displacement into ``out`` and return it."""
         self.count += 1
-        self._transform.filter(pressure, self.corner, self._symbol.values, out, self._threads)
+        self._transform.filter(pressure, self.corner, self._symbol.values, out)
         return out
 
 
@@ -226,25 +247,23 @@ class Preconditioner:
 
     def __init__(self, shape: tuple[int, int], aspect: float, threads: int = 2) -> None:
         box = (fast_length(shape[0]), fast_length(shape[1]))
-        self._threads = useful_threads(box, threads)
+        threads = useful_threads(box, threads)
         rows = (shape[0], shape[0])
         self.shape = shape
         self._symbol = _cache.get(("inverse", box, aspect), lambda: _Symbol(_inverse_symbol(box, aspect), "float32"))
-        self._transform = _cache.get((rows, box, "float32"), lambda: _Transform(rows, box, "float32"))
+        self._transform = _cache.get((rows, box, "float32", threads), lambda: _Transform(rows, box, "float32", threads))
 
     def __call__(self, residual: Array, out: Array) -> Array:
         """Write the preconditioned residual into ``out`` and return it."""
-        self._transform.filter(residual, (0, 0), self._symbol.values, out, self._threads)
+        self._transform.filter(residual, (0, 0), self._symbol.values, out)
         return out
 
 
 class _Symbol:
-    """Real even transform of a kernel, from a quadrant of it, as the spectrum is laid out."""
+    """A quadrant of the real, even transform of a kernel, as the spectrum is laid out."""
 
     def __init__(self, quadrant: Array, dtype: str) -> None:
-        half = quadrant.T[:, : quadrant.shape[0] - 1].astype(dtype)
-        mirrored = quadrant.T[:, :0:-1].astype(dtype)
-        self.values = np.concatenate((half, mirrored), axis=1)
+        self.values = np.ascontiguousarray(quadrant.T, dtype=dtype)
         self.nbytes = self.values.nbytes
 
 
@@ -257,7 +276,9 @@ def useful_threads(box: tuple[int, int], wanted: int) -> int:
 def _love_symbol(box: tuple[int, int], aspect: float) -> Array:
     """Transform of Love's coefficients wrapped into the box, over the number of points of the box."""
     quadrant = influence_coefficients((box[0] // 2 + 1, box[1] // 2 + 1), aspect)
-    return np.asarray(dctn(quadrant, type=1) / (box[0] * box[1]))
+    symbol = dctn(quadrant, type=1, overwrite_x=True)
+    symbol /= box[0] * box[1]
+    return np.asarray(symbol)
 
 
 def _inverse_symbol(box: tuple[int, int], aspect: float) -> Array:

@@ -8,6 +8,8 @@ Array = NDArray[np.float64]
 # Beyond this many cell widths the series replaces the four-term formula: its error, of the order of
 # (cell/distance)^4/100, and the cancellation of the formula, eps (distance/cell)^2, are both below 1e-9 there.
 FAR_FIELD = 60.0
+# The series takes several arrays of its size: so many rows at a time, to keep them small.
+ROWS = 64
 
 
 def influence_coefficients(shape: tuple[int, int], aspect: float) -> Array:
@@ -47,7 +49,10 @@ def influence_coefficients(shape: tuple[int, int], aspect: float) -> Array:
     near = (min(shape[0], int(reach) + 1), min(shape[1], int(reach / aspect) + 1))
     if near == shape:
         return _near_field(shape, aspect)
-    coefficients = _far_field(shape, aspect)
+    coefficients = np.empty(shape)
+    for start in range(0, shape[0], ROWS):
+        rows = slice(start, min(start + ROWS, shape[0]))
+        coefficients[rows] = _far_field(rows, shape[1], aspect)
     coefficients[: near[0], : near[1]] = _near_field(near, aspect)
     return coefficients
 
@@ -60,12 +65,12 @@ def _near_field(shape: tuple[int, int], aspect: float) -> Array:
     return np.asarray(np.diff(np.diff(corner, axis=0), axis=1) / np.pi, dtype=np.float64)
 
 
-def _far_field(shape: tuple[int, int], aspect: float) -> Array:
+def _far_field(rows: slice, columns: int, aspect: float) -> Array:
     """Series for distances large against the cell; the cell at the corner, distance zero, gets the value 0."""
-    x2 = (np.arange(shape[0], dtype=np.float64) ** 2)[:, None]
-    y2 = ((np.arange(shape[1]) * aspect) ** 2)[None, :]
+    x2 = (np.arange(rows.start, rows.stop, dtype=np.float64) ** 2)[:, None]
+    y2 = ((np.arange(columns) * aspect) ** 2)[None, :]
     squared = x2 + y2
-    squared[0, 0] = np.inf
+    squared[squared == 0.0] = np.inf
     inverse = 1.0 / squared
     quadrupole = (3.0 * (x2 + aspect**2 * y2) * inverse - (1.0 + aspect**2)) * inverse / 24.0
     return np.asarray((aspect / np.pi) * np.sqrt(inverse) * (1.0 + quadrupole), dtype=np.float64)
