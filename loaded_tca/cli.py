@@ -64,6 +64,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
             options.command(options)
     except KeyboardInterrupt:
         return _failure(INTERRUPTED, ["interrupted; no file is half written"])
+    except BrokenPipeError:  # whoever read the output has closed it
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return OK
     except Exception as error:  # whatever happens ends in one line
         if "--traceback" in arguments:
             traceback.print_exc()

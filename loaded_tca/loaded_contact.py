@@ -27,7 +27,7 @@ SMALLEST_LOAD = 1e-15
 """Loads below this times E* m_n^2 are none: the gap they close is rounding (1e-9 N at module 3)."""
 CAP_USE = 0.6
 """Share of what the material in the box can carry at the cap that may be used: the contact needs room to spread."""
-EQUAL = 1e-4
+EQUAL = 1e-3
 """Relative difference below which two cells have the same pressure, as the middle cells of an even grid do."""
 GROWTH = 1.5
 MOST_BOXES = 8

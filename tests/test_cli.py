@@ -328,3 +328,11 @@ def test_process_ends_with_the_exit_code():
     done = command("check", "absent.toml")
     assert done.returncode == 2
     assert done.stderr.count(b"\n") == 1
+
+
+def test_closed_pipe_is_no_fault():
+    command = [sys.executable, "-m", "loaded_tca", "check", HELICAL]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        process.stdout.close()
+        assert "fault" not in process.stderr.read()
+        assert process.wait() in (0, 120)  # 120: Python's own word that stdout could not be flushed

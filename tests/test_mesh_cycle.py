@@ -128,14 +128,14 @@ def test_summary_shows_the_pitch_point_in_engineers_units():
         "Crowned helical pair 34/57",
         "1 position; one tooth pair carries the whole load (load sharing off)",
     ]
-    assert re.search(r"\[N m\] +130$", line(text, "pinion torque"))
-    assert re.search(r"20 \| 24$", line(text, "grid: fewest cells"))
-    assert "no bending" in line(text, "mean contact stiffness")
-    peak = float(line(text, "peak pressure [MPa]").split()[-1])
-    hertz = float(line(text, "  pressure after Hertz there").split()[-1])
+    assert re.search(r" 130 \| 2713$", line(text, "pinion torque"))
+    assert re.search(r"20 \| 24 \| [0-9.e-]+$", line(text, "most cells"))
+    assert "no bending" in line(text, "contact stiffness")
+    peak = float(line(text, "peak pressure [MPa]").split()[-3])
+    hertz = float(line(text, "highest where Hertz holds").split()[-1])
     assert_allclose([peak, hertz], 706.85, rtol=5e-3)  # coarse grid
     assert re.search(r" 0 \| 0$", line(text, "  unloaded, peak to peak [arcsec | um]"))
-    assert 15 <= len(text.splitlines()) <= 22
+    assert 12 <= len(text.splitlines()) <= 14
 
 
 def test_peak_where_hertz_holds_leaves_borders_out():
@@ -152,7 +152,8 @@ def test_peak_where_hertz_holds_leaves_borders_out():
 
 
 def test_summary_has_a_column_per_torque():
-    assert line(result(torques=(20.0, 80.0)).summary(), "pinion torque").split()[-2:] == ["20", "80"]
+    torques = line(result(torques=(20.0, 80.0)).summary(), "pinion torque")
+    assert re.search(r" 20 \| [0-9.]+ +80 \| [0-9.]+$", torques)
 
 
 def test_summary_tells_what_limits_it():
@@ -188,7 +189,7 @@ def test_first_number_is_no_peak_at_a_border():
     assert_allclose(figures["pinion_angle_at_border_deg"], np.degrees(cycle.pinion_angle[4]))
     assert_allclose(cycle.inner_pressure[4], whole.central_pressure[4])
     assert "note: at 1 of 5 positions the largest cell lies at a border" in cycle.summary()
-    assert float(line(cycle.summary(), "at a border or crease").split()[-1]) > figures["peak_pressure_MPa"]
+    assert float(line(cycle.summary(), "at a border or crease").split()[-3]) > figures["peak_pressure_MPa"]
 
 
 def test_contact_that_reaches_a_border_with_its_peak_mid_flank_keeps_it():
@@ -271,7 +272,7 @@ def test_summary_of_a_line_contact_says_so():
 
 def test_summary_without_load_shows_zeros():
     text = result(torques=(0.0,), positions=2).summary()
-    assert line(text, "peak pressure [MPa]").split()[-1] == "0"
+    assert line(text, "peak pressure [MPa]").split()[-3] == "0"
     assert line(text, "transmission error, mean").split()[-3:] == ["0", "|", "0"]
 
 
