@@ -12,6 +12,7 @@ CASES = (
     "seed_000_tables",
     "convergence_from_random_starts",
     "mounting_errors",
+    "mounting_error_map",
     "involute_pairs",
     "line_contact",
     "fzg_c14_geometry",
