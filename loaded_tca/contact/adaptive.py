@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from loaded_tca.contact.levels import prolong
 from loaded_tca.contact.problem import Array, Spacing
-from loaded_tca.contact.solution import ContactSolution
+from loaded_tca.contact.solution import CoarserGrid, ContactSolution
 from loaded_tca.contact.solver import solve_contact
 from loaded_tca.errors import AccuracyWarning, InputError
 
@@ -128,5 +128,4 @@ def _compared(fine: ContactSolution, coarse: ContactSolution) -> ContactSolution
     """The finer solution with the error that the step from the coarser one shows."""
     if not coarse.pressure.any():
         return fine
-    estimate = fine.estimate_error(float(coarse.pressure.max()), coarse.approach)
-    return replace(fine, error_estimate=estimate)
+    return replace(fine, coarser=CoarserGrid(float(coarse.pressure.max()), coarse.approach))

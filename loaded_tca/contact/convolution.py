@@ -4,12 +4,13 @@ The only module that knows FFTW. Plans and their work arrays are kept per thread
 while in use; what is kept is bounded by :data:`CACHE_BYTES`.
 """
 
+import functools
 import math
 import multiprocessing
 import os
 import threading
 from collections import OrderedDict, deque
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
@@ -22,6 +23,7 @@ from loaded_tca.contact.love import influence_coefficients
 
 Array = NDArray[Any]
 Window = tuple[slice, slice]
+Piece = tuple[Any, ...]
 
 CACHE_BYTES = 192 * 2**20
 # Fewer points of a transform than this are not worth a second thread.
@@ -70,6 +72,7 @@ if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_mark_fork)
 
 
+@functools.cache
 def fast_length(least: int) -> int:
     """Smallest even length 2^k (8, 9, 10, 12, 14, 15) not below ``least``: few, fast, at most 1/5 too long.
 
@@ -93,23 +96,13 @@ class _Transform:
     """
 
     def __init__(self, rows: tuple[int, int], box: tuple[int, int], dtype: str, threads: int) -> None:
-        complex_type = np.result_type(dtype, np.complex64)
         # The second direction first, so that transforms along the first run over contiguous data. Rows a power of two
         # apart share their place in the cache: a few unused columns keep them apart.
-        kept = pyfftw.zeros_aligned((box[1] // 2 + 1, (max(rows) + 15) // 8 * 8), dtype=complex_type)
+        shape = (box[1] // 2 + 1, (max(rows) + 15) // 8 * 8)
+        kept = pyfftw.zeros_aligned(shape, dtype=np.result_type(dtype, np.complex64))
         self._forth, self._back = kept[:, : rows[0]], kept[:, : rows[1]]
-        high = _piece(max(rows), box[1] * np.dtype(dtype).itemsize)
-        wide = _piece(kept.shape[0], box[0] * kept.itemsize)
-        self._inward, self._outward = _pieces(rows[0], high), _pieces(rows[1], high)
-        self._across = _pieces(kept.shape[0], wide)
-        self._workplaces = [
-            _Workplace(
-                pyfftw.zeros_aligned((high, box[1]), dtype=dtype),
-                pyfftw.zeros_aligned((wide, box[0]), dtype=complex_type),
-            )
-            for _ in range(threads)
-        ]
-        self.nbytes = kept.nbytes + sum(place.nbytes for place in self._workplaces)
+        self._places = [_Workplace(self._forth, self._back, box, dtype) for _ in range(threads)]
+        self.nbytes = kept.nbytes + sum(place.nbytes for place in self._places)
 
     def filter(self, values: Array, corner: tuple[int, int], symbol: Array, out: Array) -> None:
         """Transform values placed at a corner of the box, multiply by the symbol, transform back into ``out``.
@@ -118,52 +111,69 @@ class _Transform:
         """
         top, left = corner
         bottom, right = top + values.shape[0], left + values.shape[1]
+        back = self._back.shape[1]
         middle = symbol.shape[1]
 
-        def inward(place: _Workplace, part: slice) -> None:
-            rows = place.rows[: part.stop - part.start]
-            rows[:, :left] = 0.0
+        def inward(part: slice, rows: Array, target: Array, plan: Any) -> None:
+            if left:
+                rows[:, :left] = 0.0
             rows[:, left:right] = values[part]
             rows[:, right:] = 0.0
-            place.transform(rows, self._forth.T[part])
+            plan.update_arrays(rows, target)
+            plan.execute()
 
-        def across(place: _Workplace, part: slice) -> None:
-            lines = place.lines[: part.stop - part.start]
-            lines[:, :top] = 0.0
+        def across(part: slice, lines: Array, forth: Any, back_again: Any) -> None:
+            if top:
+                lines[:, :top] = 0.0
             lines[:, top:bottom] = self._forth[part]
             lines[:, bottom:] = 0.0
-            place.transform(lines, lines)
+            forth.execute()
             lines[:, :middle] *= symbol[part]
             lines[:, middle:] *= symbol[part, middle - 2 : 0 : -1]
-            place.transform(lines, lines, "FFTW_BACKWARD")
-            self._back[part] = lines[:, : self._back.shape[1]]
+            back_again.execute()
+            self._back[part] = lines[:, :back]
 
-        def outward(place: _Workplace, part: slice) -> None:
-            rows = place.rows[: part.stop - part.start]
-            place.transform(self._back.T[part], rows, "FFTW_BACKWARD")
+        def outward(part: slice, source: Array, rows: Array, plan: Any) -> None:
+            plan.update_arrays(source, rows)
+            plan.execute()
             np.copyto(out[part], rows[:, : out.shape[1]], casting="same_kind")
 
-        for work, pieces in ((inward, self._inward), (across, self._across), (outward, self._outward)):
-            _share(work, pieces, self._workplaces)
+        _share(inward, [place.inward for place in self._places])
+        _share(across, [place.across for place in self._places])
+        _share(outward, [place.outward for place in self._places])
 
 
 class _Workplace:
-    """Work arrays of one thread, and its plans."""
+    """Work arrays of one thread, and for every piece its part of them and its plans."""
 
-    def __init__(self, rows: Array, lines: Array) -> None:
-        self.rows, self.lines = rows, lines
+    def __init__(self, forth: Array, back: Array, box: tuple[int, int], dtype: str) -> None:
+        high = _piece(max(forth.shape[1], back.shape[1]), box[1] * np.dtype(dtype).itemsize)
+        wide = _piece(forth.shape[0], box[0] * forth.itemsize)
+        rows = pyfftw.zeros_aligned((high, box[1]), dtype=dtype)
+        lines = pyfftw.zeros_aligned((wide, box[0]), dtype=forth.dtype)
         self.nbytes = rows.nbytes + lines.nbytes
-        self._plans: dict[Hashable, Any] = {}
+        plans: dict[tuple[str, int], Any] = {}
 
-    def transform(self, source: Array, target: Array, direction: str = "FFTW_FORWARD") -> None:
-        """Transform along the second axis; arrays of the same shapes have to be laid out in the same way."""
-        key = (source.dtype.kind, target.dtype.kind, source.shape, direction)
-        if key in self._plans:
-            self._plans[key].update_arrays(source, target)
-        else:
-            flags = ("FFTW_ESTIMATE", "FFTW_DESTROY_INPUT")
-            self._plans[key] = pyfftw.FFTW(source, target, axes=(1,), direction=direction, flags=flags)
-        self._plans[key].execute()
+        def plan(source: Array, target: Array, name: str, direction: str) -> Any:
+            """Plan of one-dimensional transforms along the second axis, one for all pieces of a size."""
+            key = (name, source.shape[0])
+            if key not in plans:
+                plans[key] = pyfftw.FFTW(source, target, axes=(1,), direction=direction, flags=("FFTW_ESTIMATE",))
+            return plans[key]
+
+        self.inward: list[Piece] = []
+        self.across: list[Piece] = []
+        self.outward: list[Piece] = []
+        for part, count in _pieces(forth.shape[1], high):
+            own, target = rows[:count], forth.T[part]
+            self.inward.append((part, own, target, plan(own, target, "inward", "FFTW_FORWARD")))
+        for part, count in _pieces(forth.shape[0], wide):
+            own = lines[:count]
+            there, again = (plan(own, own, way, way) for way in ("FFTW_FORWARD", "FFTW_BACKWARD"))
+            self.across.append((part, own, there, again))
+        for part, count in _pieces(back.shape[1], high):
+            own, source = rows[:count], back.T[part]
+            self.outward.append((part, source, own, plan(source, own, "outward", "FFTW_BACKWARD")))
 
 
 def _piece(count: int, row_bytes: int) -> int:
@@ -171,24 +181,29 @@ def _piece(count: int, row_bytes: int) -> int:
     return min(count, max(8, PIECE_BYTES // row_bytes // 8 * 8))
 
 
-def _pieces(count: int, size: int) -> list[slice]:
-    """Rows in pieces of a size."""
-    return [slice(start, min(start + size, count)) for start in range(0, count, size)]
+def _pieces(count: int, size: int) -> list[tuple[slice, int]]:
+    """Rows in pieces of a size, and the rows of each."""
+    return [(slice(start, min(start + size, count)), min(size, count - start)) for start in range(0, count, size)]
 
 
-def _share(work: Callable[[_Workplace, slice], None], pieces: list[slice], places: list[_Workplace]) -> None:
+def _share(work: Callable[..., None], places: list[list[Piece]]) -> None:
     """Do the work on every piece; helpers take pieces too, and nobody waits for a helper that has not begun."""
-    waiting = deque(pieces)
+    count = len(places[0])
+    if len(places) == 1 or count == 1:
+        for piece in places[0]:
+            work(*piece)
+        return
+    waiting = deque(range(count))
 
-    def drain(place: _Workplace) -> None:
+    def drain(own: list[Piece]) -> None:
         while True:
             try:
-                piece = waiting.popleft()
+                index = waiting.popleft()
             except IndexError:
                 return
-            work(place, piece)
+            work(*own[index])
 
-    helpers = [_cache.pool(len(places)).submit(drain, place) for place in places[1 : len(pieces)]]
+    helpers = [_cache.pool(len(places)).submit(drain, own) for own in places[1:count]]
     drain(places[0])
     for helper in helpers:
         if not helper.cancel():
@@ -205,8 +220,7 @@ class Convolution:
     aspect : float
         dy/dx.
     window : (slice, slice), optional
-        Where the pressure is; the whole grid if absent. Its first row has to be a multiple of 4 (FFTW asks for
-        aligned data).
+        Where the pressure is; the whole grid if absent.
     dtype : {"float64", "float32"}
         Precision of the transforms.
     threads : int

@@ -1,5 +1,6 @@
 """Projected, preconditioned conjugate gradients for a contact problem on one grid."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,6 +22,7 @@ MOST_PROJECTIONS = 100
 # Relative error of the sum of some thousand pressures.
 ROUNDING = 1e-15
 AT_BOUND = 1e-12
+TINY = float(np.finfo(np.float64).tiny)
 
 
 # BLAS starts threads for products of vectors from this length.
@@ -62,7 +64,7 @@ class Grid:
 
     def clip(self, pressure: Array, movable: Mask) -> Array:
         """Pressure within the bounds and with the right sum: scaled where there is no cap, projected otherwise."""
-        if self.total is None or not np.isinf(self.cap):
+        if self.total is None or not math.isinf(self.cap):
             return self.project(pressure, movable)
         clipped = np.maximum(pressure, 0.0)
         clipped *= self.total / clipped.sum()
@@ -79,7 +81,7 @@ class Grid:
     @property
     def slack(self) -> float:
         """Distance from a bound that is a rounding error: a cell that the last digits keep off the cap is at it."""
-        return 0.0 if np.isinf(self.cap) else AT_BOUND * self.cap
+        return 0.0 if math.isinf(self.cap) else AT_BOUND * self.cap
 
 
 def _project(values: Array, total: float, cap: float) -> Array:
@@ -123,7 +125,7 @@ def judge(grid: Grid, pressure: Array, excess: Array) -> Judgement:
     """Check the Kuhn-Tucker conditions; turns ``excess``, given as u + h, into u + h - approach in place."""
     inner = touching = pressure > grid.slack
     capped: Mask | None = None
-    if not np.isinf(grid.cap):
+    if not math.isinf(grid.cap):
         capped = pressure >= grid.cap - grid.slack
         inner = touching & ~capped
     approach = grid.approach if grid.total is None else _mean_level(excess, touching, inner, capped)
@@ -136,7 +138,7 @@ def judge(grid: Grid, pressure: Array, excess: Array) -> Judgement:
         free = free & ~capped | (capped & (excess > 0.0))
         misfit *= inner
     deepest = -float(excess[free & ~touching].min(initial=0.0))
-    weighted = dot(pressure, misfit) / max(float(pressure.sum()), np.finfo(float).tiny)
+    weighted = dot(pressure, misfit) / max(float(pressure.sum()), TINY)
     residual = max(weighted, deepest, widest) / approach if approach > 0.0 else np.inf
     return Judgement(approach, residual, free)
 
@@ -235,7 +237,6 @@ class Descent:
     def _iterate(self, free: Mask) -> None:
         """One step along the conjugate direction, projected where it leaves the bounds."""
         residual = (self._excess * (1.0 / self._scale)).astype(np.float32)
-        residual *= free
         direction = self._conjugate(self._level(residual, free), free)
         image = self._fast(direction, self._image)
         curvature = dot(direction, image)
@@ -244,7 +245,7 @@ class Descent:
             return
         length = self._scale * dot(direction, residual) / curvature
         trial = self.pressure - length * direction
-        if float(trial.min()) >= 0.0 and (np.isinf(self.grid.cap) or float(trial.max()) <= self.grid.cap):
+        if float(trial.min()) >= 0.0 and (math.isinf(self.grid.cap) or float(trial.max()) <= self.grid.cap):
             self.pressure = trial
             self._displacement -= length * image
         elif not self._move(self.grid.clip(trial, free)):
@@ -254,7 +255,6 @@ class Descent:
     def _conjugate(self, residual: Single, free: Mask) -> Single:
         """Direction of Polak and Ribiere from the preconditioned residual; a restart where it does not descend."""
         preconditioned = self._precondition(residual, np.empty_like(residual))
-        preconditioned *= free
         self._level(preconditioned, free)
         descent = dot(preconditioned, residual)
         direction = self._direction
@@ -264,7 +264,6 @@ class Descent:
             ahead = descent - dot(preconditioned, self._last[0])
             direction *= np.float32(max(0.0, ahead / self._last[1]))
             direction += preconditioned
-            direction *= free
             self._level(direction, free)
             if not dot(direction, residual) > 0.0:
                 direction[:] = preconditioned
@@ -272,9 +271,11 @@ class Descent:
         return direction
 
     def _level(self, values: Single, free: Mask) -> Single:
-        """Take the mean off the free cells, so that the sum of the pressures stays; nothing without a given sum."""
+        """Leave nothing outside the free cells; with a given sum, take the mean off them, so that the sum stays."""
+        values *= free
         if self.grid.total is not None:
-            values -= free * np.float32(values.sum(dtype=np.float64) / np.count_nonzero(free))
+            values -= np.float32(values.sum(dtype=np.float64) / np.count_nonzero(free))
+            values *= free
         return values
 
     def _move(self, target: Array) -> bool:

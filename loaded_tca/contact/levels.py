@@ -45,7 +45,7 @@ def _merge_pairs(gap: Array) -> Array:
 
 
 def prolong(pressure: Array, shape: tuple[int, int], merge: tuple[int, int]) -> Array:
-    """Pressure on the next finer grid: its square interpolated linearly, continued below zero across the edge.
+    """Pressure on the next finer grid: its square interpolated, continued below zero across the edge.
 
     Near a smooth edge the pressure grows as the root of the distance to it, so that its square is smooth there.
     """
@@ -70,25 +70,35 @@ def continue_outside(square: Array) -> Array:
 
 
 def split(values: Array, axis: int) -> Array:
-    """Linear interpolation to the centres of half cells along an axis, constant beyond the last centres."""
+    """Interpolation to the centres of half cells along an axis, constant beyond the last centres.
+
+    Quadratic between three positive values, linear elsewhere: the cells at an edge carry the error of their grid,
+    which a quadratic would magnify.
+    """
     lines = values if axis == 0 else values.T
     padded = np.concatenate((lines[:1], lines, lines[-1:]))
+    before, after = padded[:-2], padded[2:]
+    # (5 before + 30 own - 3 after)/32 = (3 own + before)/4 - (before - 2 own + after) 3/32
+    bend = before + after
+    bend -= 2.0 * lines
+    bend *= 0.09375 * ((before > 0.0) & (lines > 0.0) & (after > 0.0))
+    np.subtract(0.75 * lines, bend, out=bend)
     fine = np.empty((2 * lines.shape[0], lines.shape[1]))
-    fine[0::2] = 0.75 * lines + 0.25 * padded[:-2]
-    fine[1::2] = 0.75 * lines + 0.25 * padded[2:]
+    np.add(bend, 0.25 * before, out=fine[0::2])
+    np.add(bend, 0.25 * after, out=fine[1::2])
     return fine if axis == 0 else fine.T
 
 
 def window_around(cells: Mask) -> Window:
-    """Window of a grid that holds the marked cells and a margin, with a first row that is a multiple of 4.
+    """Window of a grid that holds the marked cells and a margin.
 
     Rounded up to the size that the transform of it would have anyway; the whole axis if it is nearly that.
     """
     spans = []
-    for axis, step in ((0, 4), (1, 1)):
+    for axis in (0, 1):
         marked = np.flatnonzero(cells.any(axis=1 - axis))
         size = cells.shape[axis]
-        start = max(0, (int(marked[0]) - MARGIN) // step * step)
+        start = max(0, int(marked[0]) - MARGIN)
         stop = min(size, int(marked[-1]) + 1 + MARGIN)
         stop = min(size, start + fast_length(2 * (stop - start)) // 2)
         spans.append(slice(start, stop))

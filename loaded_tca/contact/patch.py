@@ -32,11 +32,12 @@ def peak_pressure(pressure: Array) -> float:
     if square.size < FEWEST:
         return largest
     terms = np.stack((np.ones_like(x), x, y, 0.5 * x * x, x * y, 0.5 * y * y))
-    products = terms @ terms.T
+    # Not by BLAS: its threads wait for each other on a busy machine.
+    products = np.einsum("ik,jk->ij", terms, terms)
     if np.linalg.matrix_rank(products) < 6:
         return largest
-    fitted = np.linalg.solve(products, terms @ square)
-    misfit = float(np.sqrt(np.mean((fitted @ terms - square) ** 2)))
+    fitted = np.linalg.solve(products, np.einsum("ik,k->i", terms, square))
+    misfit = float(np.sqrt(np.mean((np.einsum("i,ik->k", fitted, terms) - square) ** 2)))
     hessian = np.array([[fitted[3], fitted[4]], [fitted[4], fitted[5]]])
     if misfit > GOOD_FIT or np.linalg.eigvalsh(hessian)[1] >= 0.0:
         return largest

@@ -104,5 +104,7 @@ class Problem:
 
     def in_user_units(self, pressure: Array) -> Array:
         """Pressure of the grid in MPa; what is at the cap but for rounding there is exactly at the cap here."""
+        if np.isinf(self.max_pressure):
+            return np.asarray(pressure / self.unit)
         capped = pressure >= (1.0 - AT_BOUND) * self.max_pressure * self.unit
         return np.where(capped, self.max_pressure, np.minimum(pressure / self.unit, self.max_pressure))

@@ -1,6 +1,7 @@
 """What the contact solver returns."""
 
 import enum
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -42,6 +43,22 @@ class ErrorEstimate:
     approach: float
 
 
+@dataclass(frozen=True)
+class CoarserGrid:
+    """What a solution on a grid of twice the spacing leaves behind for the error estimate.
+
+    Parameters
+    ----------
+    largest : float [MPa]
+        Largest cell pressure, positive.
+    approach : float [mm]
+        Approach, counted as that of the solution.
+    """
+
+    largest: float
+    approach: float
+
+
 @dataclass(frozen=True, eq=False)
 class ContactSolution:
     """Pressure and gap of two elastic half-spaces pressed together.
@@ -68,10 +85,10 @@ class ContactSolution:
         E*.
     max_pressure : float or None [MPa]
         The cap on the pressure, if there was one.
-    error_estimate : ErrorEstimate
-        Discretisation error of the peak and of the approach.
     first_touch : float [mm]
         Smallest gap as given: the approach at which the load begins.
+    coarser : CoarserGrid or None
+        The grid that ``error_estimate`` compares with, if there was one.
     """
 
     pressure: Array
@@ -85,8 +102,8 @@ class ContactSolution:
     spacing: tuple[float, float]
     contact_modulus: float
     max_pressure: float | None
-    error_estimate: ErrorEstimate
     first_touch: float
+    coarser: CoarserGrid | None
 
     def __repr__(self) -> str:
         cells = "x".join(str(n) for n in self.pressure.shape)
@@ -162,12 +179,17 @@ class ContactSolution:
             found.append(f"contact is {across} cells across: fewer than {FEWEST_CELLS} are no sound answer")
         return tuple(found)
 
-    def estimate_error(self, coarse_largest: float, coarse_approach: float) -> ErrorEstimate:
-        """Relative errors from the largest cell pressure and the approach on a grid of twice the spacing."""
+    @cached_property
+    def error_estimate(self) -> ErrorEstimate:
+        """Discretisation error of the peak and of the approach."""
+        if self.status is ContactStatus.NO_LOAD:
+            return ErrorEstimate(0.0, 0.0)
+        if self.coarser is None:
+            return ErrorEstimate(math.nan, math.nan)
         largest = float(self.pressure.max())
         share = 1.0 / 3.0 if self.peak_pressure == largest else 1.0 / 6.0
         share = 1.0 if self.bounded else share
         return ErrorEstimate(
-            peak_pressure=share * abs(largest - coarse_largest) / largest,
-            approach=abs(self.approach - coarse_approach) / (self.approach - self.first_touch),
+            peak_pressure=share * abs(largest - self.coarser.largest) / largest,
+            approach=abs(self.approach - self.coarser.approach) / (self.approach - self.first_touch),
         )

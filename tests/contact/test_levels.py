@@ -56,6 +56,18 @@ def test_prolonged_ellipse_is_the_ellipse_to_second_order(n):
     assert_allclose(prolonged.sum(), ellipse(2 * n).sum(), rtol=3.0 / n)
 
 
+def test_prolonged_ellipse_is_exact_away_from_its_edge():
+    """Its square is a quadratic, and so is the interpolation where three cells in a row are in contact."""
+    place = (np.arange(32) + 0.5) * 2.4 / 32 - 1.2
+    fine = 1.0 - place[:, None] ** 2 - 0.5 * place**2
+    place = (np.arange(16) + 0.5) * 2.4 / 16 - 1.2
+    coarse = 1.0 - place[:, None] ** 2 - 0.5 * place**2
+    prolonged = levels.prolong(np.sqrt(np.maximum(coarse, 0.0)), (32, 32), (2, 2))
+    inner = np.zeros((32, 32), dtype=bool)
+    inner[8:24, 8:24] = True
+    assert_allclose(prolonged[inner] ** 2, fine[inner], rtol=ROUNDING)
+
+
 def test_pressure_beyond_the_edge_stays_zero():
     pressure = np.zeros((8, 8))
     pressure[3:5, 3:5] = 1.0
@@ -70,11 +82,10 @@ def test_prolonged_zero_is_zero_and_odd_shapes_fit():
 
 
 @pytest.mark.parametrize("corner", [(0, 0), (30, 90), (17, 41), (60, 119)])
-def test_window_holds_the_cells_and_a_margin_and_starts_aligned(corner):
+def test_window_holds_the_cells_and_a_margin(corner):
     cells = np.zeros((64, 120), dtype=bool)
     cells[corner] = True
     rows, columns = levels.window_around(cells)
-    assert rows.start % 4 == 0
     assert cells[rows, columns].any()
     for span, place, size in ((rows, corner[0], 64), (columns, corner[1], 120)):
         assert span.start <= max(0, place - levels.MARGIN)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from loaded_tca.contact import ContactStatus, solve_contact
+from loaded_tca.contact.solution import CoarserGrid
 
 E_STAR = 115e3
 
@@ -63,12 +64,12 @@ def test_doubts_name_both_reasons():
 def test_estimate_grows_to_first_order_at_a_border():
     wide = ball(load=5e4)
     largest = wide.pressure.max()
-    estimate = wide.estimate_error(0.9 * largest, wide.approach)
+    estimate = dataclasses.replace(wide, coarser=CoarserGrid(0.9 * largest, wide.approach)).error_estimate
     assert estimate.peak_pressure == pytest.approx(0.1)
     assert estimate.approach == 0.0
     inside = ball()
-    coarse = 0.9 * inside.pressure.max()
-    assert inside.estimate_error(coarse, inside.approach).peak_pressure == pytest.approx(0.1 / 6.0)
+    coarser = CoarserGrid(0.9 * inside.pressure.max(), inside.approach)
+    assert dataclasses.replace(inside, coarser=coarser).error_estimate.peak_pressure == pytest.approx(0.1 / 6.0)
 
 
 def test_solution_cannot_be_changed():
