@@ -174,7 +174,10 @@ def trace_contact(pair: GearPair, pinion_angles: ArrayLike | None = None, *, war
 def _checked_angles(pair: GearPair, pinion_angles: ArrayLike | None) -> Array:
     if pinion_angles is None:
         return np.linspace(-0.5 * pair.pitch, 0.5 * pair.pitch, POSITIONS)
-    phi1 = np.asarray(pinion_angles, dtype=float)
+    try:
+        phi1 = np.asarray(pinion_angles, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError("pinion_angles: an array of finite numbers in one dimension is asked for") from None
     if phi1.ndim != 1 or not phi1.size or not np.isfinite(phi1).all():
         raise InputError(f"pinion_angles: shape {phi1.shape} with finite numbers only in one dimension is asked for")
     return phi1

@@ -210,7 +210,7 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
     [0.372, 4.455, 0.373, 4.455]
     """
     problems = _problems_of(compound)
-    if rays != int(rays) or rays < 8:
+    if not isinstance(rays, int | np.integer) or rays < 8:
         problems.append(f"rays: {rays} is not a whole number >= 8")
     if problems:
         raise InputError(problems)
@@ -282,7 +282,7 @@ def contact_pattern(
     problems = _problems_of(compound)
     if gear not in ("pinion", "wheel"):
         problems.append(f"gear: {gear!r} is not 'pinion' or 'wheel'")
-    if len(grid) != 2 or any(n != int(n) or n < 2 for n in grid):
+    if np.shape(grid) != (2,) or not all(isinstance(n, int | np.integer) and n >= 2 for n in grid):
         problems.append(f"grid: {grid} are not two whole numbers >= 2")
     if problems:
         raise InputError(problems)

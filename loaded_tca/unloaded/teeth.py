@@ -39,6 +39,8 @@ SAMPLES = 4
 """Positions per pitch at which the reach is looked for."""
 COINCIDE = 1e-13
 """Difference of transmission errors [rad] that is rounding: the pair nearer to its pitch point then leads."""
+MOST_TEETH = 10**9
+"""Tooth pairs are numbered below this, turns of the pinion away."""
 UNIFORM = 1e-6
 """Unevenness of the positions, relative to their step, within which they count as uniform."""
 TRANSFER = 1e-11
@@ -164,7 +166,7 @@ class MeshPath:
             If the positions do not divide a pitch evenly, or are too few for the orders asked for.
         """
         per_pitch = self._count_per_pitch()
-        if not 1 <= count < 0.5 * per_pitch:
+        if not isinstance(count, int | np.integer) or not 1 <= count < 0.5 * per_pitch:
             raise InputError(f"count: {count} orders of {per_pitch} positions per pitch; 1 to {(per_pitch - 1) // 2}")
         order = np.arange(1, count + 1)
         spectrum = np.fft.rfft(self.transmission_error[:per_pitch])[order] * (2.0 / per_pitch)
@@ -177,15 +179,18 @@ class MeshPath:
         Parameters
         ----------
         tolerance : float [mm]
-            Lag as a length at the wheel's base circle up to which a pair counts as touching. Crowned flanks touch one
-            by one: their ratio is 1 for no tolerance and grows with it. Unmodified, aligned ones give eps_gamma, and a
-            little more by the corner contact that follows.
+            Lag as a length at the wheel's base circle up to which a pair counts as touching. Flanks that leave each
+            other one by one (profile crowning, misalignment) have a ratio near 1 for no tolerance, which grows with
+            it. Unmodified, aligned ones give eps_gamma, and a little more by the corner contact that follows. Between
+            positions the lag is taken as a straight line: the ratio is good to about one over their number.
 
         Raises
         ------
         InputError
-            If the positions do not divide a pitch evenly.
+            If the positions do not divide a pitch evenly, or the tolerance is negative or not finite.
         """
+        if not 0.0 <= tolerance < math.inf:
+            raise InputError(f"tolerance: {tolerance} mm is not a finite length >= 0")
         count = self._count_per_pitch()
         limit = tolerance / self.pair.base_radii[1] + COINCIDE
         rows = np.argsort(-self.pairs)
@@ -300,8 +305,9 @@ def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: I
     (True, True)
     """
     phi1 = _checked_angles(pair, pinion_angles)
+    chosen = None if teeth is None else _checked_teeth(teeth)
     low, high = _window(pair)
-    pairs = _checked_teeth(teeth) if teeth is not None else _teeth_between(phi1, low, high, pair.pitch)
+    pairs = _teeth_between(phi1, low, high, pair.pitch) if chosen is None else chosen
     own = phi1 - pairs[:, None] * pair.pitch
     rows = np.flatnonzero((own >= low) & (own <= high))
     if not rows.size:
@@ -333,8 +339,9 @@ def _checked_angles(pair: GearPair, pinion_angles: ArrayLike | None) -> Array:
 
 
 def _checked_teeth(teeth: Iterable[int]) -> NDArray[np.int_]:
-    chosen = list(teeth)
-    if not chosen or len(set(chosen)) < len(chosen) or any(k != int(k) for k in chosen):
+    chosen = list(teeth) if isinstance(teeth, Iterable) else [teeth]
+    whole = all(isinstance(k, int | np.integer) and abs(k) < MOST_TEETH for k in chosen)
+    if not whole or not chosen or len(set(chosen)) < len(chosen):
         raise InputError(f"teeth: {chosen}; whole numbers are asked for, at least one, none twice")
     return np.array(chosen, dtype=int)
 

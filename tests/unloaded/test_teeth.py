@@ -339,3 +339,20 @@ def test_fillet_interference_is_warned_of_only_where_it_leads():
     hollow = FlankModifications(lead_crowning=0.02, profile_slope=0.3)
     with pytest.warns(AccuracyWarning, match="positions the leading contact lies on a root form circle"):
         trace_teeth(gear_pair(hollow, dedendum_coefficient=1.05))
+
+
+@pytest.mark.parametrize("teeth", [[math.nan], [math.inf], [10**30, 0], [0.5], 1.5, "ab"])
+def test_teeth_that_are_no_whole_numbers_are_refused(teeth):
+    with pytest.raises(InputError, match="teeth: .* whole numbers"):
+        trace_teeth(gear_pair(), [0.0], teeth=teeth)
+
+
+@pytest.mark.parametrize("tolerance", [-1.0, math.nan, math.inf])
+def test_contact_ratio_of_no_length_is_refused(tolerance):
+    with pytest.raises(InputError, match="tolerance: .* finite length"):
+        trace_teeth(gear_pair()).contact_ratio(tolerance)
+
+
+def test_harmonics_of_half_an_order_are_refused():
+    with pytest.raises(InputError, match=r"count: 2\.5"):
+        trace_teeth(gear_pair()).harmonics(2.5)
