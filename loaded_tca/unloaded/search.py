@@ -24,6 +24,10 @@ BLOCKS = (2, 3)
 """Blocks of the scan, each of which sends its best point up its hill: several basins are found by this."""
 BETWEEN = 2.0
 """Spacings of the scan by which every point may miss the common region if there is one between them."""
+BORDER_SCAN = (9, 65)
+"""Points along the sides and along the tip and root of the wheel's flank that must not lie inside the pinion."""
+PIERCED = 1e-9
+"""Depth over the module at which a border of the wheel's flank lies inside the pinion: rounding is 1e-13."""
 CERTIFICATE = 1e-13
 """How far, relative to r_b2, a scanned point may rise above the maximum found: rounding."""
 
@@ -66,19 +70,41 @@ def first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
         If a position has a common region but no ascent reached the height of the scan.
     """
     owner, rho, z, scanned = _starts(pair, phi1)
+    found = _ascend(pair, phi1, owner, rho, z)
+    result = _best(pair, phi1, found, scanned)
+    pierced, rho, z = _pierced(pair, phi1, result)
+    if pierced.size:
+        found = found.joined(_ascend(pair, phi1, pierced, rho, z))
+        result = _best(pair, phi1, found, scanned)
+    return result
+
+
+@dataclass(frozen=True, eq=False)
+class _Ascents:
+    """Ascents with the position each belongs to and the smooth piece it stayed on."""
+
+    owner: Array
+    beyond: Array
+    peaks: Maxima
+
+    def joined(self, other: _Ascents) -> _Ascents:
+        owner, beyond = (np.concatenate([getattr(self, n), getattr(other, n)]) for n in ("owner", "beyond"))
+        return _Ascents(owner, beyond, self.peaks.joined(other.peaks))
+
+
+def _ascend(pair: GearPair, phi1: Array, owner: Array, rho: Array, z: Array) -> _Ascents:
+    """Climb from the starts, and on across every crease that holds an ascent."""
     beyond = EaseOff(pair).sides(phi1[owner], rho, z)
-    peaks = _climb(pair, phi1[owner], rho, z, beyond)
-    columns, latest, last = _crease_columns(pair), np.arange(len(owner)), np.full(len(owner), -1)
+    found = latest = _Ascents(owner, beyond, _climb(pair, phi1[owner], rho, z, beyond))
+    columns, last = _crease_columns(pair), np.full(len(owner), -1)
     for _ in columns:
-        row, crease = _crossings(peaks.multipliers[np.ix_(latest, columns)], last)
-        row = latest[row]
-        across = beyond[row]
-        across[np.arange(len(row)), crease] ^= True
-        more = _climb(pair, phi1[owner[row]], peaks.rho[row], peaks.z[row], across)
-        latest, last = len(owner) + np.arange(len(row)), crease
-        owner, beyond = np.concatenate([owner, owner[row]]), np.concatenate([beyond, across])
-        peaks = peaks.joined(more)
-    return _best(pair, phi1, owner, beyond, peaks, scanned)
+        row, last = _crossings(latest.peaks.multipliers[:, columns], last)
+        across = latest.beyond[row]
+        across[np.arange(len(row)), last] ^= True
+        owner, start = latest.owner[row], (latest.peaks.rho[row], latest.peaks.z[row])
+        latest = _Ascents(owner, across, _climb(pair, phi1[owner], *start, across))
+        found = found.joined(latest)
+    return found
 
 
 def _climb(pair: GearPair, phi1: Array, rho: Array, z: Array, beyond: Array) -> Maxima:
@@ -136,8 +162,33 @@ def _hills(score: Array) -> Array:
     return hills & (score >= maximum_filter(score, size=(1, 3, 3), mode="nearest"))
 
 
-def _best(pair: GearPair, phi1: Array, owner: Array, beyond: Array, peaks: Maxima, scanned: Array) -> FirstTouch:
+def _pierced(pair: GearPair, phi1: Array, touch: FirstTouch) -> tuple[Array, Array, Array]:
+    """Positions at which a border of the wheel's flank lies inside the pinion, and where: (rho, z) there [mm].
+
+    The scan sees the whole of the pinion's flank; of the wheel's only its borders can hide from it.
+    """
+    rho, z = (_border(part) for part in pair.wheel.grid(*BORDER_SCAN))
+    wheel_angle = pair.driving * touch.value / pair.base_radii[1] + pair.ratio * phi1
+    theta = pair.wheel.theta(rho, z).value - pair.sense * wheel_angle[:, None]
+    own = np.stack([rho * np.cos(theta), rho * np.sin(theta), np.broadcast_to(z, theta.shape)], axis=-1)
+    x, y, axial = np.moveaxis(own @ pair.wheel_axes + pair.wheel_origin, -1, 0)
+    radius = np.hypot(x, y)
+    ahead = phi1[:, None] - pair.sense * (np.arctan2(y, x) - pair.pinion.theta(radius, axial).value)
+    depth = pair.driving * pair.base_radii[0] * (np.remainder(ahead + np.pi, 2.0 * np.pi) - np.pi)
+    depth = np.where(pair.pinion.inside(radius, axial), depth, -np.inf)
+    rows = np.flatnonzero((depth.max(axis=1) > PIERCED * pair.module) & touch.touches)
+    deepest = depth[rows].argmax(axis=1)
+    return rows, radius[rows, deepest], axial[rows, deepest]
+
+
+def _border(grid: Array) -> Array:
+    """The outermost points of a grid, one after the other."""
+    return np.concatenate([grid[0], grid[-1], grid[1:-1, 0], grid[1:-1, -1]])
+
+
+def _best(pair: GearPair, phi1: Array, found: _Ascents, scanned: Array) -> FirstTouch:
     """The highest converged ascent of each position, certified against the scan."""
+    owner, beyond, peaks = found.owner, found.beyond, found.peaks
     height = np.where(peaks.converged, peaks.value, -np.inf)
     best = np.full(len(phi1), -np.inf)
     np.maximum.at(best, owner, height)

@@ -9,6 +9,7 @@ from pairs import gear_pair, pairs, wheel_lag
 
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.base import outward_normal
+from loaded_tca.flanks.modification import logarithmic
 from loaded_tca.pair import Mounting, cylindrical_basis
 from loaded_tca.unloaded.ease_off import EaseOff
 
@@ -36,12 +37,16 @@ def stencil(rho, z):
 
 
 def smooth_there(pair, field, phi1, rho, z):
-    """Whether no joint of a relief lies within the stencil, where second derivatives jump."""
+    """Whether no joint of a relief lies within the stencil, nor the steep end of a logarithmic crowning.
+
+    Second derivatives jump at the first; the third of the other is so large that differences are off by 1e-6.
+    """
     station = field.station(phi1, rho, z)
     for flank, r, x in ((pair.pinion, rho, z), (pair.wheel, station.wheel_rho, station.wheel_z)):
         for term in getattr(flank, "terms", ()):
             t = term.coordinate(flank.nominal, r, x).value * abs(term.length)
-            if (np.abs(t) < 10.0 * STEP).any():
+            steep = term.shape is logarithmic and (np.abs(t) > 0.8 * abs(term.length)).any()
+            if steep or (np.abs(t) < 10.0 * STEP).any():
                 return False
     return True
 

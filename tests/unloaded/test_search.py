@@ -196,3 +196,16 @@ def test_radius_of_contact_never_leaves_the_flanks_of_a_pair_turned_far():
     inside = path.touches
     assert pair.pinion.inside(path.pinion_radius[inside], path.pinion_axial[inside], tolerance=1e-7).all()
     assert pair.wheel.inside(path.wheel_radius[inside], path.wheel_axial[inside], tolerance=1e-7).all()
+
+
+def test_raised_side_of_a_narrow_wheel_is_found_between_the_points_of_the_scan():
+    """A wheel that stands out by 10 um within 0.5 mm of its sides (negative end relief), inside the pinion's face."""
+    raised = FlankModifications(end_relief=-0.01, end_relief_length=0.5)
+    pinion, wheel = (CylindricalGear(z, 3.0, b) for z, b in ((34, 25.0), (57, 20.0)))
+    crowned = FlankModifications(lead_crowning=0.001)
+    pair = cylindrical_pair(CylindricalMesh(pinion, wheel), modifications=(crowned, raised))
+    path = trace_contact(pair, [0.0])
+    assert path.on_edge.all()
+    assert_allclose(abs(path.pinion_axial[0]), 10.0, atol=1e-9)
+    # 10 um less the crowning of the pinion at z = 10 mm
+    assert_allclose(path.transmission_error[0] * pair.base_radii[1], 0.01 - 0.001 * (20.0 / 25.0) ** 2, rtol=1e-6)

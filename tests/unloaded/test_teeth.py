@@ -343,13 +343,13 @@ def test_fillet_interference_is_warned_of_only_where_it_leads():
 
 @pytest.mark.parametrize("teeth", [[math.nan], [math.inf], [10**30, 0], [0.5], 1.5, "ab"])
 def test_teeth_that_are_no_whole_numbers_are_refused(teeth):
-    with pytest.raises(InputError, match="teeth: .* whole numbers"):
+    with pytest.raises(InputError, match=r"teeth: .* whole numbers"):
         trace_teeth(gear_pair(), [0.0], teeth=teeth)
 
 
 @pytest.mark.parametrize("tolerance", [-1.0, math.nan, math.inf])
 def test_contact_ratio_of_no_length_is_refused(tolerance):
-    with pytest.raises(InputError, match="tolerance: .* finite length"):
+    with pytest.raises(InputError, match=r"tolerance: .* finite length"):
         trace_teeth(gear_pair()).contact_ratio(tolerance)
 
 
