@@ -35,8 +35,8 @@ from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.jet import Array, Jet
 
 SMALLEST_Q = 3e-5
-"""Q is kept above this: at the base cone itself the curvature is infinite, below it there is no involute. It is so within
-1e-9 rad of the base cone, where Theta is then off by less than 1e-13 rad."""
+"""Q is kept above this: at the base cone itself the curvature is infinite, below it there is no involute. That
+concerns 1e-9 rad beside the base cone, where Theta is then off by less than 1e-13 rad."""
 SMALLEST_DISTANCE = 1e-3
 """Cone distances are kept above this fraction of R_m: at the apex there is no flank."""
 

@@ -30,7 +30,7 @@ def pitch_angles(teeth: tuple[int, int], shaft_angle: float) -> tuple[float, flo
     Examples
     --------
     >>> [round(degrees(delta), 4) for delta in pitch_angles((39, 32), radians(90))]
-    [50.6309, 39.3691]
+    [50.6307, 39.3693]
     """
     pinion = atan2(teeth[0] * sin(shaft_angle), teeth[1] + teeth[0] * cos(shaft_angle))
     return pinion, shaft_angle - pinion
@@ -76,7 +76,7 @@ class BevelGear:
     --------
     >>> gear = BevelGear(teeth=39, outer_module=5.0, face_width=20.0, pitch_angle=pitch_angles((39, 32), pi / 2)[0])
     >>> [round(degrees(angle), 4) for angle in (gear.base_angle, gear.tip_angle)]
-    [46.5897, 52.9012]
+    [46.5897, 52.901]
     """
 
     teeth: int
@@ -215,7 +215,7 @@ class BevelGear:
         return acos(cos(self.base_angle) * cos(arc))
 
     def diameter_at(self, cone_angle: float) -> float:
-        """Diameter 2 R_m sin u of a cone at the mean cone distance; beyond 90 deg 2 R_m (2 - sin u), so that it grows."""
+        """Diameter 2 R_m sin u of a cone at R_m [mm]; beyond 90 deg 2 R_m (2 - sin u), so that it grows."""
         sine = sin(cone_angle)
         return 2.0 * self.mean_cone_distance * (sine if cone_angle <= 0.5 * pi else 2.0 - sine)
 
@@ -247,14 +247,12 @@ class BevelMesh:
     ------
     InputError
         If the gears do not fit each other.
-    GeometryError
-        If the flanks have no common part.
 
     Examples
     --------
     >>> mesh = bevel_mesh((20, 40), outer_module=4.0, face_width=20.0)
     >>> round(mesh.pinion.outer_cone_distance, 4), round(mesh.transverse_contact_ratio, 3)
-    (89.4427, 1.701)
+    (89.4427, 1.714)
     """
 
     pinion: BevelGear
@@ -264,13 +262,6 @@ class BevelMesh:
         problems = self._input_problems()
         if problems:
             raise InputError(problems)
-        for gear, mate in ((self.pinion, self.wheel), (self.wheel, self.pinion)):
-            start = gear.cone_angle_at_arc(self._start_arc(gear, mate))
-            if start >= gear.tip_angle:
-                raise GeometryError(
-                    f"{gear.name}: no common flank: contact could only start on the cone of {_degrees(start)}, beyond the "
-                    f"face cone, {_degrees(gear.tip_angle)}"
-                )
 
     def _input_problems(self) -> list[str]:
         first, second = self.pinion, self.wheel

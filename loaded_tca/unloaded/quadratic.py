@@ -92,7 +92,9 @@ def _on_one_border(problem: Quadratic) -> tuple[Array, Array]:
     tangent = np.stack([-slopes[..., 1], slopes[..., 0]], axis=-1)
     rise = (problem.rest(foot) * tangent).sum(axis=-1)
     bend = np.abs(((tangent @ problem.bend) * tangent).sum(axis=-1))
-    bend = np.maximum(bend, FLAT * (tangent**2).sum(axis=-1) * np.linalg.norm(problem.bend, axis=(-2, -1))[:, None] + TINY)
+    bend = np.maximum(
+        bend, FLAT * (tangent**2).sum(axis=-1) * np.linalg.norm(problem.bend, axis=(-2, -1))[:, None] + TINY
+    )
     step = foot + tangent * (rise / bend)[..., None]
     return step, -(problem.rest(step) * slopes).sum(axis=-1) / square
 
