@@ -18,6 +18,9 @@ PARALLEL = 1e-9
 TINY = 1e-300
 FLAT = 1e-12
 """Smallest curvature along a border taken for real, relative to the largest there is: below it is rounding."""
+REACHED = 1e-3
+"""Distance, as a fraction of the flank, within which a border's own curvature counts: a step to one farther away must
+rise by the model as a whole."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,10 +94,10 @@ def _on_one_border(problem: Quadratic) -> tuple[Array, Array]:
     foot = -slopes * (problem.borders / square)[..., None]
     tangent = np.stack([-slopes[..., 1], slopes[..., 0]], axis=-1)
     rise = (problem.rest(foot) * tangent).sum(axis=-1)
-    bend = np.abs(((tangent @ problem.bend) * tangent).sum(axis=-1))
-    bend = np.maximum(
-        bend, FLAT * (tangent**2).sum(axis=-1) * np.linalg.norm(problem.bend, axis=(-2, -1))[:, None] + TINY
-    )
+    modelled, own = (((tangent @ matrix) * tangent).sum(axis=-1) for matrix in (problem.curvature, problem.bend))
+    flat = FLAT * square * np.linalg.norm(problem.bend, axis=(-2, -1))[:, None]
+    reached = np.abs(problem.borders) <= REACHED * np.sqrt(square)
+    bend = np.maximum(np.where(reached, np.maximum(np.abs(own), flat), modelled), TINY)
     step = foot + tangent * (rise / bend)[..., None]
     return step, -(problem.rest(step) * slopes).sum(axis=-1) / square
 
