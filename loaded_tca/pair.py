@@ -168,6 +168,21 @@ def cylindrical_basis(theta: Array) -> Array:
     return basis
 
 
+def signs_of(driving: Driving, sense: Sense) -> tuple[int, int]:
+    """Signs of the sense of rotation and of the driving gear, as ``GearPair`` keeps them.
+
+    Raises
+    ------
+    InputError
+        If driving or sense is not one of the two.
+    """
+    if driving not in ("pinion", "wheel"):
+        raise InputError(f"driving: {driving!r} is not 'pinion' or 'wheel'")
+    if sense not in ("positive", "negative"):
+        raise InputError(f"sense: {sense!r} is not 'positive' or 'negative'")
+    return (1 if sense == "positive" else -1), (1 if driving == "pinion" else -1)
+
+
 def cylindrical_pair(
     mesh: CylindricalMesh,
     *,
@@ -208,12 +223,8 @@ def cylindrical_pair(
     >>> cylindrical_pair(CylindricalMesh(*gears))
     GearPair(34/57, module 3 mm, face 25 mm)
     """
-    signs = {"pinion": 1, "wheel": -1, "positive": 1, "negative": -1}
-    if driving not in ("pinion", "wheel"):
-        raise InputError(f"driving: {driving!r} is not 'pinion' or 'wheel'")
-    if sense not in ("positive", "negative"):
-        raise InputError(f"sense: {sense!r} is not 'positive' or 'negative'")
-    side = signs[sense] * signs[driving]
+    turning, drive = signs_of(driving, sense)
+    side = turning * drive
     flanks = [_involute_flank(mesh, member, side, modifications[member]) for member in (0, 1)]
     origin, axes = mounting.place_parallel(mesh.working_centre_distance)
     return GearPair(
@@ -222,8 +233,8 @@ def cylindrical_pair(
         teeth=(mesh.pinion.teeth, mesh.wheel.teeth),
         wheel_origin=origin,
         wheel_axes=axes,
-        sense=signs[sense],
-        driving=signs[driving],
+        sense=turning,
+        driving=drive,
         materials=materials,
         module=mesh.pinion.normal_module,
         base_radii=(mesh.pinion.base_radius, mesh.wheel.base_radius),

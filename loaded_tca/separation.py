@@ -50,7 +50,7 @@ SMALLEST_LOAD = 1e-6
 MOST_PROBES = 16
 MOST_NEWTON_STEPS = 30
 ROUNDING = 1e-13
-"""Newton steps shorter than this times the centre distance are rounding."""
+"""Newton steps shorter than this times the sum of the base radii are rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -316,7 +316,7 @@ class _Gap:
             (pair.pinion, np.zeros(3), identity, turn * contact.pinion_angle),
             (pair.wheel, pair.wheel_origin, pair.wheel_axes, -turn * contact.wheel_angle),
         )
-        self._size = float(np.linalg.norm(pair.wheel_origin))
+        self._size = sum(pair.base_radii)
 
     def __call__(self, x: Array, y: Array) -> Array:
         """Gap (nx, ny) [mm] over the grid of x and y; +inf where a flank ends or bends away from the normal."""

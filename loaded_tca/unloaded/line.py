@@ -23,7 +23,14 @@ WORTH_FOLLOWING = 1e-6
 """Predicted fall over the flank, relative to the module, above which the ridge need not be followed."""
 NEARBY = 2e-5
 """Step, as a fraction of the face width, that tells whether the contact lies at the end of a flat stretch."""
-RIDGE_STEPS = 12
+RIDGE_STEPS = 40
+LONGEST_STRIDE = 0.1
+"""Longest step along a ridge, as a fraction of the flank: a longer one leaves a ridge as bent as that of a spiral bevel
+gear, beyond whose flank there may be no involute to come back from."""
+ASTRAY = 0.3
+"""Distance outside the borders, as a fraction of the flank, at which a ridge is followed no further."""
+SETTLED = 1e-11
+"""Step, as a fraction of the flank, after which the next would be rounding."""
 ROUNDING = 2e-15
 """Fall of the ease-off, relative to r_b2, that is rounding."""
 BISECTIONS = 14
@@ -157,10 +164,15 @@ class _Ridge:
         """Newton iteration for a point on the ridge and on a border (-1: on the normal through ``points``)."""
         x, extent = points.copy(), np.asarray(self.field.pair.pinion.extent)
         lowest, highest = self._bounds()
-        residual = np.zeros(len(x))
+        residual, rows = np.zeros(len(x)), np.arange(len(x))
         for _ in range(RIDGE_STEPS):
-            residual, step = self._newton(x, points, border)
-            x = np.clip(x + np.clip(step, -extent, extent), lowest, highest)
+            residual[rows], step, room = self._only(rows)._newton(x[rows], points[rows], border[rows])
+            stride = np.abs(step / extent).max(axis=-1)
+            step *= np.minimum(1.0, LONGEST_STRIDE / np.maximum(stride, 1e-300))[:, None]
+            x[rows] = np.clip(x[rows] + step, lowest, highest)
+            rows = rows[(stride > SETTLED) & (room >= -ASTRAY * extent.max())]
+            if not rows.size:
+                break
         _, distances = self.field.heights(self.phi1, *x.T)
         inside = distances.min(axis=-1, initial=np.inf) >= -FEASIBLE * extent[1]
         return x, inside & (residual <= FEASIBLE * extent[1])
@@ -170,8 +182,15 @@ class _Ridge:
         margin = 0.5 * np.asarray(self.field.pair.pinion.extent)
         return np.array([rho.min(), z.min()]) - margin * [0.2, 1.0], np.array([rho.max(), z.max()]) + margin
 
-    def _newton(self, x: Array, points: Array, border: Array) -> tuple[Array, Array]:
-        """Residual [mm] of the target equation, and the step of the two equations together."""
+    def _only(self, rows: Array) -> _Ridge:
+        """Some of the ridges."""
+        if len(rows) == len(self.phi1):
+            return self
+        parts = (part[rows] for part in (self.phi1, self.start, self.along, self.multipliers))
+        return _Ridge(self.field.restricted(rows), *parts)
+
+    def _newton(self, x: Array, points: Array, border: Array) -> tuple[Array, Array, Array]:
+        """Residual [mm] of the target equation, the step of the two equations together, the room to the borders."""
         station = self.field.station(self.phi1, *x.T)
         distances, slopes = self.field.borders(station)
         across = np.stack([-self.along[:, 1], self.along[:, 0]], axis=-1)
@@ -184,7 +203,7 @@ class _Ridge:
         free = border < 0
         target = np.where(free, ((x - points) * self.along).sum(axis=-1), distances[rows, border])
         target_row = np.where(free[:, None], self.along, slopes[rows, border])
-        return np.abs(target), -_solve_pair(row, target_row, value, target)
+        return np.abs(target), -_solve_pair(row, target_row, value, target), distances.min(axis=-1)
 
 
 def _solve_pair(first: Array, second: Array, one: Array, two: Array) -> Array:

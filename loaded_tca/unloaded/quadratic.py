@@ -16,6 +16,11 @@ from loaded_tca.flanks.jet import Array
 PARALLEL = 1e-9
 """Sine of the angle between two borders below which they have no corner."""
 TINY = 1e-300
+FLAT = 1e-12
+"""Smallest curvature along a border taken for real, relative to the largest there is: below it is rounding."""
+REACHED = 1e-3
+"""Distance, as a fraction of the flank, within which a border's own curvature counts: a step to one farther away must
+rise by the model as a whole."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,16 +37,21 @@ class Quadratic:
         c.
     slopes : (n, k, 2) array
         J.
+    bend : (n, 2, 2) array
+        The matrix that was made positive to give N; along a border its own curvature counts, which N overrates where
+        the border does not follow an axis of N.
     """
 
     gradient: Array
     curvature: Array
     borders: Array
     slopes: Array
+    bend: Array
 
     def only(self, rows: Array) -> Quadratic:
         """Some of the problems."""
-        return Quadratic(self.gradient[rows], self.curvature[rows], self.borders[rows], self.slopes[rows])
+        parts = (self.gradient, self.curvature, self.borders, self.slopes, self.bend)
+        return Quadratic(*(part[rows] for part in parts))
 
     def room(self, steps: Array) -> Array:
         """Distance to the nearest border after the steps (n, m, 2): (n, m), negative outside."""
@@ -84,7 +94,10 @@ def _on_one_border(problem: Quadratic) -> tuple[Array, Array]:
     foot = -slopes * (problem.borders / square)[..., None]
     tangent = np.stack([-slopes[..., 1], slopes[..., 0]], axis=-1)
     rise = (problem.rest(foot) * tangent).sum(axis=-1)
-    bend = np.maximum(((tangent @ problem.curvature) * tangent).sum(axis=-1), TINY)
+    modelled, own = (((tangent @ matrix) * tangent).sum(axis=-1) for matrix in (problem.curvature, problem.bend))
+    flat = FLAT * square * np.linalg.norm(problem.bend, axis=(-2, -1))[:, None]
+    reached = np.abs(problem.borders) <= REACHED * np.sqrt(square)
+    bend = np.maximum(np.where(reached, np.maximum(np.abs(own), flat), modelled), TINY)
     step = foot + tangent * (rise / bend)[..., None]
     return step, -(problem.rest(step) * slopes).sum(axis=-1) / square
 

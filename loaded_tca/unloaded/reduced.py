@@ -199,13 +199,14 @@ def _propose(field: EaseOff, here: _Local, multipliers: Array, scale: Array) -> 
     held = np.asarray((multipliers > 0.0).any(axis=-1))
     if held.any():
         bend = bend + field.border_hessian(here.station, multipliers)
-    inverse, curvature = _positive(-bend * np.outer(scale, scale))
+    bend = -bend * np.outer(scale, scale)
+    inverse, curvature = _positive(bend)
     step = (inverse @ here.gradient[..., None])[..., 0]
     found = np.zeros_like(multipliers)
     tolerance = FEASIBLE * scale[0]
     out = np.flatnonzero((here.borders + (here.slopes @ step[..., None])[..., 0] < -tolerance).any(axis=-1))
     if out.size:
-        problem = Quadratic(here.gradient[out], curvature[out], here.borders[out], here.slopes[out])
+        problem = Quadratic(here.gradient[out], curvature[out], here.borders[out], here.slopes[out], bend[out])
         step[out], found[out] = best_step(problem, tolerance)
     length = np.linalg.norm(step, axis=-1, keepdims=True)
     return step * np.minimum(1.0, LARGEST_STEP / np.maximum(length, 1e-300)), found

@@ -1,0 +1,373 @@
+"""Straight and spiral bevel gears with spherical involute profiles: cones, cone distances, active profiles.
+
+Lengths are in mm, angles in rad. All cones share the apex. Profiles are described on the unit sphere about the apex,
+where a tooth is unwound from its base cone: the unwound arc w takes the place of the roll length.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import acos, asin, atan, atan2, cos, degrees, isclose, isfinite, log, pi, radians, sin, sqrt, tan
+
+from loaded_tca.errors import GeometryError, InputError
+
+_MIN_PRESSURE_ANGLE, _MAX_PRESSURE_ANGLE = radians(1), radians(45)
+_MAX_SPIRAL_ANGLE = radians(60)
+_EQUAL = 1e-9
+_DEDENDUM = 1.25
+
+
+def pitch_angles(teeth: tuple[int, int], shaft_angle: float) -> tuple[float, float]:
+    r"""Pitch angles of pinion and wheel, :math:`\tan\delta_1 = \sin\Sigma/(z_2/z_1 + \cos\Sigma)` [rad].
+
+    Parameters
+    ----------
+    teeth : (int, int)
+    shaft_angle : float [rad]
+        Sigma, between 0 and pi.
+
+    Examples
+    --------
+    >>> [round(degrees(delta), 4) for delta in pitch_angles((39, 32), radians(90))]
+    [50.6307, 39.3693]
+    """
+    pinion = atan2(teeth[0] * sin(shaft_angle), teeth[1] + teeth[0] * cos(shaft_angle))
+    return pinion, shaft_angle - pinion
+
+
+@dataclass(frozen=True)
+class BevelGear:
+    """Bevel gear with spherical involute teeth, straight or with a logarithmic spiral.
+
+    Parameters
+    ----------
+    teeth : int
+        Number of teeth z, at least 3.
+    outer_module : float [mm]
+        m_et, transverse, at the heel.
+    face_width : float [mm]
+        b, along the pitch cone.
+    pitch_angle : float [rad]
+        delta, between 0 and pi; see :func:`pitch_angles`.
+    pressure_angle : float [rad]
+        alpha, transverse, on the pitch cone.
+    spiral_angle : float [rad]
+        beta_m on the pitch cone, at every cone distance; right hand positive, left hand negative.
+    profile_shift : float
+        Coefficient x, in outer transverse modules.
+    face_angle, root_angle : float [rad], optional
+        delta_a and delta_f; None: pitch angle + atan((1 + x) m_et/R_e) and pitch angle - atan((1.25 - x) m_et/R_e).
+    name : str
+        What messages call this gear.
+
+    Raises
+    ------
+    InputError
+        If values are out of range; every one is told.
+    GeometryError
+        If the face width reaches the apex, the tooth is pointed, or the face cone lies inside the form cone.
+
+    References
+    ----------
+    ISO 23509:2016, Bevel and hypoid gear geometry (cones and cone distances).
+
+    Examples
+    --------
+    >>> gear = BevelGear(teeth=39, outer_module=5.0, face_width=20.0, pitch_angle=pitch_angles((39, 32), pi / 2)[0])
+    >>> [round(degrees(angle), 4) for angle in (gear.base_angle, gear.tip_angle)]
+    [46.5897, 52.901]
+    """
+
+    teeth: int
+    outer_module: float
+    face_width: float
+    pitch_angle: float
+    pressure_angle: float = radians(20)
+    spiral_angle: float = 0.0
+    profile_shift: float = 0.0
+    face_angle: float | None = None
+    root_angle: float | None = None
+    name: str = "gear"
+
+    def __post_init__(self) -> None:
+        problems = self._input_problems() or self._cone_problems()
+        if problems:
+            raise InputError(f"{self.name}: {problem}" for problem in problems)
+        self._check_tooth()
+
+    def _input_problems(self) -> list[str]:
+        """Every value that is out of its own range."""
+        problems = []
+        if not (isfinite(self.teeth) and self.teeth == int(self.teeth) and self.teeth >= 3):
+            problems.append(f"teeth: {self.teeth} is not a whole number from 3 on")
+        for key in ("outer_module", "face_width"):
+            if not 0.0 < (value := getattr(self, key)) < float("inf"):
+                problems.append(f"{key}: {value} is not positive and finite")
+        for key in ("pitch_angle", "face_angle", "root_angle"):
+            if (angle := getattr(self, key)) is not None and not 0.0 < angle < pi:
+                problems.append(f"{key}: {angle:.6g} rad is not between 0 and 3.142 rad (180 deg)")
+        if not _MIN_PRESSURE_ANGLE <= self.pressure_angle <= _MAX_PRESSURE_ANGLE:
+            problems.append(
+                f"pressure_angle: {self.pressure_angle:.6g} rad is not between 0.0175 and 0.785 rad (1 to 45 deg)"
+            )
+        if not abs(self.spiral_angle) < _MAX_SPIRAL_ANGLE:
+            problems.append(f"spiral_angle: {self.spiral_angle:.6g} rad is not within 1.047 rad (60 deg)")
+        if not isfinite(self.profile_shift):
+            problems.append(f"profile_shift: {self.profile_shift} is not finite")
+        return problems
+
+    def _cone_problems(self) -> list[str]:
+        """Cones given or derived that are not in order."""
+        problems = []
+        if self.root_cone_angle >= self.pitch_angle:
+            problems.append(f"root cone, {_degrees(self.root_cone_angle)}, is not below the pitch cone")
+        if self.tip_angle <= self.pitch_angle:
+            problems.append(f"face cone, {_degrees(self.tip_angle)}, is not above the pitch cone")
+        return [f"{problem}, {_degrees(self.pitch_angle)}" for problem in problems]
+
+    def _check_tooth(self) -> None:
+        """Refuse a tooth without toe, flank or tip."""
+        if self.face_width >= self.outer_cone_distance:
+            raise GeometryError(
+                f"{self.name}: face_width {self.face_width:.6g} mm reaches the apex: no face width is left at the toe; "
+                f"it must be below the outer cone distance {self.outer_cone_distance:.6g} mm"
+            )
+        face = f"{self.name}: the face cone, {_degrees(self.tip_angle)},"
+        if self.tip_angle >= pi - self.base_angle:
+            raise GeometryError(
+                f"{face} lies beyond the end of the spherical involute, {_degrees(pi - self.base_angle)}; reduce "
+                "face_angle or profile_shift"
+            )
+        if self.half_thickness_angle_at(self.tip_angle) <= 0.0:
+            raise GeometryError(f"{face} cannot be reached: pointed tooth; reduce face_angle or profile_shift")
+
+    @property
+    def outer_cone_distance(self) -> float:
+        """R_e = z m_et/(2 sin delta) [mm]."""
+        return 0.5 * self.teeth * self.outer_module / sin(self.pitch_angle)
+
+    @property
+    def inner_cone_distance(self) -> float:
+        """R_i = R_e - b, at the toe [mm]."""
+        return self.outer_cone_distance - self.face_width
+
+    @property
+    def mean_cone_distance(self) -> float:
+        """R_m = R_e - b/2 [mm]."""
+        return self.outer_cone_distance - 0.5 * self.face_width
+
+    @property
+    def mean_normal_module(self) -> float:
+        """m_mn = m_et cos(beta_m) R_m/R_e [mm]."""
+        return self.outer_module * cos(self.spiral_angle) * self.mean_cone_distance / self.outer_cone_distance
+
+    @property
+    def base_angle(self) -> float:
+        """delta_b, sin(delta_b) = sin(delta) cos(alpha) [rad]."""
+        return asin(sin(self.pitch_angle) * cos(self.pressure_angle))
+
+    @property
+    def mean_base_radius(self) -> float:
+        """R_m sin(delta_b), the radius of the base cone at the mean cone distance [mm]."""
+        return self.mean_cone_distance * sin(self.base_angle)
+
+    @property
+    def tip_angle(self) -> float:
+        """Face angle delta_a, as given or standard [rad]."""
+        if self.face_angle is not None:
+            return self.face_angle
+        return self.pitch_angle + atan((1.0 + self.profile_shift) * self.outer_module / self.outer_cone_distance)
+
+    @property
+    def root_cone_angle(self) -> float:
+        """Root angle delta_f, as given or standard [rad]."""
+        if self.root_angle is not None:
+            return self.root_angle
+        depth = (_DEDENDUM - self.profile_shift) * self.outer_module
+        return self.pitch_angle - atan(depth / self.outer_cone_distance)
+
+    @property
+    def form_angle(self) -> float:
+        """Cone on which the flank ends at the root: the root cone, never below the base cone [rad]."""
+        return max(self.root_cone_angle, self.base_angle)
+
+    @property
+    def half_thickness_angle(self) -> float:
+        """Half tooth thickness angle on the pitch cone, (pi/2 + 2 x tan alpha)/z [rad]."""
+        return (0.5 * pi + 2.0 * self.profile_shift * tan(self.pressure_angle)) / self.teeth
+
+    def half_thickness_angle_at(self, cone_angle: float) -> float:
+        """Half tooth thickness angle on a cone; the same at every cone distance [rad]."""
+        return self.half_thickness_angle + self._involute(self.pitch_angle) - self._involute(cone_angle)
+
+    def _involute(self, cone_angle: float) -> float:
+        arc, base = self.unwound_arc(cone_angle), sin(self.base_angle)
+        return arc / base - atan2(sin(arc), base * cos(arc))
+
+    def unwound_arc(self, cone_angle: float) -> float:
+        """Arc w that is unwound from the base cone, cos u = cos(delta_b) cos(w); zero at the base cone [rad]."""
+        sine, base = sin(cone_angle), sin(self.base_angle)
+        return atan2(sqrt(max(0.0, (sine - base) * (sine + base))), cos(cone_angle))
+
+    def cone_angle_at_arc(self, arc: float) -> float:
+        """Cone angle u at an unwound arc w [rad]."""
+        return acos(cos(self.base_angle) * cos(arc))
+
+    def diameter_at(self, cone_angle: float) -> float:
+        """Diameter 2 R_m sin u of a cone at R_m [mm]; beyond 90 deg 2 R_m (2 - sin u), so that it grows."""
+        sine = sin(cone_angle)
+        return 2.0 * self.mean_cone_distance * (sine if cone_angle <= 0.5 * pi else 2.0 - sine)
+
+    def cone_angle_at_diameter(self, diameter: float) -> float:
+        """Cone angle of a diameter as :meth:`diameter_at` counts it [rad]."""
+        sine = 0.5 * diameter / self.mean_cone_distance
+        if not 0.0 <= sine <= 2.0:
+            raise InputError(
+                f"{self.name}: a diameter of {diameter:.6g} mm is not between 0 and {4.0 * self.mean_cone_distance:.6g}"
+                " mm"
+            )
+        return asin(sine) if sine <= 1.0 else pi - asin(2.0 - sine)
+
+
+def _degrees(angle: float) -> str:
+    return f"{degrees(angle):.4f} deg"
+
+
+@dataclass(frozen=True)
+class BevelMesh:
+    """Two bevel gears whose pitch cones roll on each other; the shaft angle is the sum of their pitch angles.
+
+    Parameters
+    ----------
+    pinion, wheel : BevelGear
+        Of one outer module, face width and pressure angle, with opposite hands.
+
+    Raises
+    ------
+    InputError
+        If the gears do not fit each other.
+
+    Examples
+    --------
+    >>> mesh = bevel_mesh((20, 40), outer_module=4.0, face_width=20.0)
+    >>> round(mesh.pinion.outer_cone_distance, 4), round(mesh.transverse_contact_ratio, 3)
+    (89.4427, 1.714)
+    """
+
+    pinion: BevelGear
+    wheel: BevelGear
+
+    def __post_init__(self) -> None:
+        problems = self._input_problems()
+        if problems:
+            raise InputError(problems)
+
+    def _input_problems(self) -> list[str]:
+        first, second = self.pinion, self.wheel
+        problems = []
+        for key, unit in (("outer_module", "mm"), ("face_width", "mm"), ("pressure_angle", "rad")):
+            values = getattr(first, key), getattr(second, key)
+            if not isclose(*values, rel_tol=_EQUAL):
+                problems.append(f"{key}: {values[0]} and {values[1]} {unit} must be equal")
+        if not isclose(first.spiral_angle, -second.spiral_angle, rel_tol=_EQUAL):
+            angles = f"{degrees(first.spiral_angle):.6g} and {degrees(second.spiral_angle):.6g} deg"
+            problems.append(f"spiral_angle: {angles} must be opposite hands of one angle")
+        if not isclose(first.outer_cone_distance, second.outer_cone_distance, rel_tol=_EQUAL):
+            angles = f"{_degrees(first.pitch_angle)} and {_degrees(second.pitch_angle)}"
+            problems.append(f"pitch_angle: {angles} do not roll on each other with {first.teeth}/{second.teeth} teeth")
+        if not self.shaft_angle < pi:
+            problems.append(f"pitch_angle: the shaft angle, {_degrees(self.shaft_angle)}, is not below 180 deg")
+        return problems
+
+    @property
+    def shaft_angle(self) -> float:
+        """Sigma = delta_1 + delta_2 [rad]."""
+        return self.pinion.pitch_angle + self.wheel.pitch_angle
+
+    @cached_property
+    def active_cones(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """(start, tip) cone angles of the active profile of pinion and wheel at nominal mounting [rad].
+
+        It starts where the tip of the mate ends on the flank, or at the form cone if that lies higher.
+        """
+        pinion, wheel = self.pinion, self.wheel
+        return (
+            (pinion.cone_angle_at_arc(self._start_arc(pinion, wheel)), pinion.tip_angle),
+            (wheel.cone_angle_at_arc(self._start_arc(wheel, pinion)), wheel.tip_angle),
+        )
+
+    @property
+    def _line_of_action(self) -> float:
+        """Arc of the great circle of contact between the two base cones that it touches [rad]."""
+        return sum(gear.unwound_arc(gear.pitch_angle) for gear in (self.pinion, self.wheel))
+
+    def _start_arc(self, gear: BevelGear, mate: BevelGear) -> float:
+        """Unwound arc on a gear where the active profile starts [rad]."""
+        return max(gear.unwound_arc(gear.form_angle), self._line_of_action - mate.unwound_arc(mate.tip_angle))
+
+    @property
+    def transverse_contact_ratio(self) -> float:
+        """eps_alpha: arc of contact over the base pitch 2 pi sin(delta_b1)/z1, on the sphere."""
+        starts = self._start_arc(self.pinion, self.wheel) + self._start_arc(self.wheel, self.pinion)
+        length = self._line_of_action - starts
+        return length * self.pinion.teeth / (2.0 * pi * sin(self.pinion.base_angle))
+
+    @property
+    def overlap_ratio(self) -> float:
+        """eps_beta: turn of the pinion over which the spiral passes the face, in pitches."""
+        gear = self.pinion
+        turn = abs(tan(gear.spiral_angle)) / sin(gear.pitch_angle)
+        return turn * log(gear.outer_cone_distance / gear.inner_cone_distance) * gear.teeth / (2.0 * pi)
+
+
+def bevel_mesh(
+    teeth: tuple[int, int],
+    outer_module: float,
+    face_width: float,
+    *,
+    shaft_angle: float = 0.5 * pi,
+    pressure_angle: float = radians(20),
+    spiral_angle: float = 0.0,
+    profile_shifts: tuple[float, float] = (0.0, 0.0),
+    face_angles: tuple[float | None, float | None] = (None, None),
+    root_angles: tuple[float | None, float | None] = (None, None),
+) -> BevelMesh:
+    """Pair of bevel gears from numbers of teeth and shaft angle.
+
+    Parameters
+    ----------
+    teeth : (int, int)
+    outer_module, face_width : float [mm]
+    shaft_angle : float [rad]
+        Sigma, between 0 and pi.
+    pressure_angle, spiral_angle : float [rad]
+        See :class:`BevelGear`; the spiral angle is that of the pinion, positive for right hand.
+    profile_shifts : (float, float)
+    face_angles, root_angles : (float or None, float or None) [rad]
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    GeometryError
+        If a tooth cannot exist.
+    """
+    if not 0.0 < shaft_angle < pi:
+        raise InputError(f"shaft_angle: {shaft_angle:.6g} rad is not between 0 and 3.142 rad (180 deg)")
+    gears = [
+        BevelGear(
+            teeth[member],
+            outer_module,
+            face_width,
+            pitch_angles(teeth, shaft_angle)[member],
+            pressure_angle,
+            (spiral_angle, -spiral_angle)[member],
+            profile_shifts[member],
+            face_angles[member],
+            root_angles[member],
+            ("pinion", "wheel")[member],
+        )
+        for member in (0, 1)
+    ]
+    return BevelMesh(*gears)
