@@ -160,14 +160,15 @@ def _numbers(pair: GearPair, loaded: LoadedContact | None) -> dict[str, float | 
         return {}
     contact, solution, hertz = loaded.contact, loaded.solution, loaded.hertz
     width, length = loaded.extent
+    peak_radius, peak_axial = loaded.peak_place
     length = min(length, pair.face_width / abs(float(loaded.separation.axes[1, 2])))
     return {
         "transmission_error": loaded_transmission_error(pair, contact, solution.approach),
         "normal_force": solution.load,
         "peak_pressure": loaded.peak_pressure,
         "central_pressure": loaded.central_pressure,
-        "peak_radius": loaded.peak_place[0],
-        "peak_axial": loaded.peak_place[1],
+        "peak_radius": peak_radius,
+        "peak_axial": peak_axial,
         "hertz_pressure": hertz.max_pressure if hertz else math.nan,
         "hertz_semi_minor": hertz.semi_minor if hertz else math.nan,
         "hertz_semi_major": hertz.semi_major if hertz else math.nan,

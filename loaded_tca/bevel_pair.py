@@ -16,18 +16,17 @@ withdrawn by P, the wheel comes nearer along the pinion's axis by P in this fram
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
-from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.jet import Array
-from loaded_tca.flanks.modification import FlankModifications, ModifiedFlank
+from loaded_tca.flanks.modification import FlankModifications, modified
 from loaded_tca.flanks.spherical_involute import SphericalInvoluteFlank
 from loaded_tca.gears.bevel import BevelGear, BevelMesh
 from loaded_tca.material import Material
-from loaded_tca.pair import Driving, GearPair, Sense, signs_of
+from loaded_tca.pair import Driving, GearPair, Sense, require_finite, signs_of
 
 
 @dataclass(frozen=True)
@@ -57,12 +56,7 @@ class BevelMounting:
     shaft_angle_error: float = 0.0
 
     def __post_init__(self) -> None:
-        problems = []
-        for name, unit in zip((entry.name for entry in fields(self)), ("mm", "mm", "mm", "rad"), strict=True):
-            if not math.isfinite(value := getattr(self, name)):
-                problems.append(f"{name}: {value} {unit} is not finite")
-        if problems:
-            raise InputError(problems)
+        require_finite(self, ("mm", "mm", "mm", "rad"))
 
     def place(self, shaft_angle: float) -> tuple[Array, Array]:
         """Origin (3,) and axes (3, 3), in rows, of the wheel frame in the frame of the pinion."""
@@ -144,8 +138,4 @@ def _flank(gear: BevelGear, active: tuple[float, float], side: int, modification
         return gear.unwound_arc(gear.cone_angle_at_diameter(diameter))
 
     diameters = gear.diameter_at(active[0]), gear.diameter_at(active[1])
-    try:
-        terms = modifications.terms(gear.face_width, diameters, arc)
-    except InputError as error:
-        raise InputError(f"{gear.name}.{problem}" for problem in error.problems) from None
-    return ModifiedFlank(nominal, terms) if terms else nominal
+    return modified(nominal, modifications, gear.face_width, diameters, arc, owner=gear.name)

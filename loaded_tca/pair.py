@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -27,12 +27,22 @@ from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.involute import InvoluteFlank
 from loaded_tca.flanks.jet import Array
-from loaded_tca.flanks.modification import FlankModifications, ModifiedFlank
+from loaded_tca.flanks.modification import FlankModifications, modified
 from loaded_tca.gears import CylindricalMesh
 from loaded_tca.material import Material, contact_modulus
 
 Driving = Literal["pinion", "wheel"]
 Sense = Literal["positive", "negative"]
+
+
+def require_finite(errors: Any, units: tuple[str, ...]) -> None:
+    """Refuse a dataclass of mounting errors of which one is not finite, naming each with its unit."""
+    values = [
+        (entry.name, getattr(errors, entry.name), unit) for entry, unit in zip(fields(errors), units, strict=True)
+    ]
+    problems = [f"{name}: {value} {unit} is not finite" for name, value, unit in values if not math.isfinite(value)]
+    if problems:
+        raise InputError(problems)
 
 
 @dataclass(frozen=True)
@@ -62,12 +72,7 @@ class Mounting:
     axial_offset: float = 0.0
 
     def __post_init__(self) -> None:
-        problems = []
-        for name, unit in zip((entry.name for entry in fields(self)), ("rad", "rad", "mm", "mm"), strict=True):
-            if not math.isfinite(value := getattr(self, name)):
-                problems.append(f"{name}: {value} {unit} is not finite")
-        if problems:
-            raise InputError(problems)
+        require_finite(self, ("rad", "rad", "mm", "mm"))
 
     def place_parallel(self, centre_distance: float) -> tuple[Array, Array]:
         """Origin (3,) and axes (3, 3), in rows, of the wheel frame: R_y(gamma) R_x(delta) about its mid-face."""
@@ -255,8 +260,8 @@ def _involute_flank(mesh: CylindricalMesh, member: int, side: int, modifications
         gear.face_width,
     )
     diameters = (2.0 * active.start_radius, 2.0 * active.end_radius)
-    try:
-        terms = modifications.terms(gear.face_width, diameters, lambda diameter: gear.roll_length(0.5 * diameter))
-    except InputError as error:
-        raise InputError(f"{gear.name}.{problem}" for problem in error.problems) from None
-    return ModifiedFlank(nominal, terms) if terms else nominal
+
+    def roll_length(diameter: float) -> float:
+        return gear.roll_length(0.5 * diameter)
+
+    return modified(nominal, modifications, gear.face_width, diameters, roll_length, owner=gear.name)

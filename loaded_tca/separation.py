@@ -161,7 +161,7 @@ def sample_separation(
     half = (
         box
         if box is not None
-        else _box_of_whole_cells(*estimate_box(pair, contact, load if load else SMALLEST_LOAD), shape[1])
+        else _box_of_whole_cells(*_estimate_box(gap, curvature, contact, load if load else SMALLEST_LOAD), shape[1])
     )
     spacing = (2.0 * half[0] / shape[0], 2.0 * half[1] / shape[1])
     x, y = ((np.arange(n) - 0.5 * (n - 1)) * step for n, step in zip(shape, spacing, strict=True))
@@ -211,28 +211,19 @@ def _two_numbers(values: object) -> bool:
     return array.shape == (2,) and array.dtype.kind in "iuf" and not np.isnan(array.astype(float)).any()
 
 
-def estimate_box(pair: GearPair, contact: ContactPoint, load: float) -> tuple[tuple[float, float], float]:
-    """Box that holds the contact under a load, and the end of the material.
+def _estimate_box(
+    gap: _Gap, curvature: RelativeCurvature, contact: ContactPoint, load: float
+) -> tuple[tuple[float, float], float]:
+    """Half lengths across and along of a box that holds the contact under a load > 0 [N], and the end of the material.
 
-    Parameters
-    ----------
-    pair : GearPair
-    contact : ContactPoint
-    load : float [N]
-        Positive.
-
-    Returns
-    -------
-    (float, float) [mm]
-        Half lengths across and along.
-    float [mm]
-        Distance along the second axis to the farthest point that both flanks still cover, within the box.
+    The end of the material is the distance along the second axis to the farthest point that both flanks still cover,
+    within the box.
     """
-    curvature = relative_curvature(pair, contact)
-    gap, modulus = _Gap(pair, contact, curvature.axes), pair.contact_modulus
-    needed = (0.0, 0.0)
+    pair = gap.pair
+    modulus = pair.contact_modulus
     longest = math.hypot(pair.face_width, *(flank.extent[0] for flank in (pair.pinion, pair.wheel)))
     window = _first_window(curvature, load, modulus, longest)
+    needed = (0.0, 0.0)
     for _ in range(MOST_PROBES):
         x, y = (np.linspace(-half, half, count) for half, count in zip(window, PROBE, strict=True))
         probe = gap(x, y)

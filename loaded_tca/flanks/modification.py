@@ -281,3 +281,35 @@ class ModifiedFlank(Flank):
     def gradient_norm(self, rho: Array, z: Array) -> Jet:
         """|grad F| of the nominal flank."""
         return self.nominal.gradient_norm(rho, z)
+
+
+def modified(
+    nominal: Flank,
+    modifications: FlankModifications,
+    face_width: float,
+    diameters: tuple[float, float],
+    coordinate: Callable[[float], float],
+    *,
+    owner: str,
+) -> Flank:
+    """The flank with its modifications, or the nominal one if there are none.
+
+    Parameters
+    ----------
+    nominal : Flank
+    modifications : FlankModifications
+    face_width, diameters, coordinate
+        As for ``FlankModifications.terms``.
+    owner : str
+        Name of the gear, before every problem.
+
+    Raises
+    ------
+    InputError
+        If a relief starts off the active profile, or is longer than half the face.
+    """
+    try:
+        terms = modifications.terms(face_width, diameters, coordinate)
+    except InputError as error:
+        raise InputError(f"{owner}.{problem}" for problem in error.problems) from None
+    return ModifiedFlank(nominal, terms) if terms else nominal
