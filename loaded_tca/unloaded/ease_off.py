@@ -18,6 +18,7 @@ here the remaining two are the gradient of one scalar.)
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,62 +37,80 @@ class Station:
 
     Attributes
     ----------
+    pair : GearPair
     rho, z : (...) array [mm]
         On the pinion flank.
     point : (..., 3) array [mm]
         In the fixed frame.
-    tangents : (..., 2, 3) array
-        dP/d rho and dP/d z in the fixed frame.
-    second : (..., 3, 3) array
-        Second derivatives of P in the order rho rho, rho z, z z, in the fixed frame.
     wheel_rho, wheel_theta, wheel_z : (...) array
         The points in the wheel frame [mm, rad, mm].
-    wheel_basis : (..., 3, 3) array
-        e_rho, e_theta, e_z of the wheel at the points, in rows, in the fixed frame.
+    wheel : Jet
+        Theta2 at (wheel_rho, wheel_z).
+    slopes : (3, 2, ...) array
+        dP/d rho and dP/d z, components along e_rho, e_theta, e_z of the wheel at the points first.
+    bends : (3, 3, ...) array
+        Second derivatives of P in the order rho rho, rho z, z z, in the same basis.
     """
 
+    pair: GearPair
     rho: Array
     z: Array
     point: Array
-    tangents: Array
-    second: Array
     wheel_rho: Array
     wheel_theta: Array
     wheel_z: Array
-    wheel_basis: Array
+    wheel: Jet
+    slopes: Array
+    bends: Array
+
+    @property
+    def wheel_basis(self) -> Array:
+        """e_rho, e_theta, e_z of the wheel at the points, in rows, in the fixed frame: (..., 3, 3)."""
+        return self.pair.wheel_basis(self.wheel_theta)
+
+    @property
+    def tangents(self) -> Array:
+        """dP/d rho and dP/d z in the fixed frame: (..., 2, 3)."""
+        return np.einsum("ik...,...ij->...kj", self.slopes, self.wheel_basis)
+
+    @property
+    def second(self) -> Array:
+        """Second derivatives of P in the order rho rho, rho z, z z, in the fixed frame: (..., 3, 3)."""
+        return np.einsum("ik...,...ij->...kj", self.bends, self.wheel_basis)
 
     def gradient(self, jet: Jet, turn: float = 0.0) -> Array:
         """d/d(rho, z) of ``jet(rho2, z2) + turn * theta2``: (..., 2)."""
-        tangents = self.tangents @ np.swapaxes(self.wheel_basis, -1, -2)
-        return _combine(tangents, jet, turn, self.wheel_rho)
+        return np.moveaxis(_dot(self._slope(jet, turn), self.slopes), 0, -1)
 
     def hessian(self, jet: Jet, turn: float = 0.0) -> Array:
         """Second derivatives of the same function: (..., 2, 2)."""
-        to_wheel = np.swapaxes(self.wheel_basis, -1, -2)
-        tangents, second = self.tangents @ to_wheel, self.second @ to_wheel
-        bent = tangents @ _cylindrical_hessian(jet, turn, self.wheel_rho) @ np.swapaxes(tangents, -1, -2)
-        drift = _combine(second, jet, turn, self.wheel_rho)
+        twist = -turn / self.wheel_rho**2 if turn else 0.0
+        rows = (
+            (jet.rho_rho, twist, jet.rho_z),
+            (twist, jet.rho / self.wheel_rho, 0.0),
+            (jet.rho_z, 0.0, jet.z_z),
+        )
+        bent = [_dot(row, self.slopes) for row in rows]
+        drift = _dot(self._slope(jet, turn), self.bends)
+        hessian = np.empty((2, 2, *np.shape(self.rho)))
         for k, (i, j) in enumerate(PARTS):
-            bent[..., i, j] += drift[..., k]
-        bent[..., 1, 0] = bent[..., 0, 1]
-        return bent
+            hessian[i, j] = drift[k] + _dot([part[j] for part in bent], self.slopes[:, i])
+        hessian[1, 0] = hessian[0, 1]
+        return np.moveaxis(hessian, (0, 1), (-2, -1))
+
+    def _slope(self, jet: Jet, turn: float) -> tuple[Any, Any, Any]:
+        """Gradient of jet + turn theta in the wheel's cylindrical basis."""
+        return jet.rho, turn / self.wheel_rho if turn else 0.0, jet.z
 
 
-def _combine(vectors: Array, jet: Jet, turn: float, radius: Array) -> Array:
-    """Vectors (..., k, 3) in the wheel's basis dotted with the gradient of jet + turn theta: (..., k)."""
-    parts = [jet.rho, turn / radius, jet.z]
-    return sum(vectors[..., k] * np.asarray(part)[..., None] for k, part in enumerate(parts))
-
-
-def _cylindrical_hessian(jet: Jet, turn: float, radius: Array) -> Array:
-    """Hessian of jet(rho, z) + turn theta in the orthonormal cylindrical basis: (..., 3, 3)."""
-    hessian = np.zeros((*np.shape(radius), 3, 3))
-    hessian[..., 0, 0] = jet.rho_rho
-    hessian[..., 1, 1] = jet.rho / radius
-    hessian[..., 2, 2] = jet.z_z
-    hessian[..., 0, 1] = hessian[..., 1, 0] = -turn / radius**2
-    hessian[..., 0, 2] = hessian[..., 2, 0] = jet.rho_z
-    return hessian
+def _dot(parts: Sequence[Any], vectors: Array, out: Array | None = None) -> Array:
+    """Sum of parts[i] * vectors[i]; a part that is the number zero costs nothing."""
+    total = np.empty(vectors.shape[1:]) if out is None else out
+    total[...] = 0.0
+    for part, vector in zip(parts, vectors, strict=True):
+        if np.ndim(part) or part:
+            total += part * vector
+    return total
 
 
 class EaseOff:
@@ -132,49 +151,47 @@ class EaseOff:
     def station(self, phi1: Array, rho: Array, z: Array) -> Station:
         """Points (rho, z) of the pinion flank at the pinion angle phi1 [rad], arrays of one shape."""
         jet = self.pair.pinion.theta(rho, z, self._sides(0))
-        basis = cylindrical_basis(jet.value + self.pair.sense * phi1)
-        radial, around, axial = basis[..., 0, :], basis[..., 1, :], basis[..., 2, :]
-
-        def along(across: Any, out: Any) -> Array:
-            return np.asarray(across)[..., None] * around + np.asarray(out)[..., None] * radial
-
-        point = rho[..., None] * radial + z[..., None] * axial
-        tangents = np.stack([radial + along(rho * jet.rho, 0.0), axial + along(rho * jet.z, 0.0)], axis=-2)
-        second = [
-            along(2.0 * jet.rho + rho * jet.rho_rho, -rho * jet.rho**2),
-            along(jet.z + rho * jet.rho_z, -rho * jet.rho * jet.z),
-            along(rho * jet.z_z, -rho * jet.z**2),
-        ]
+        azimuth = jet.value + self.pair.sense * phi1
+        point = _on_circle(rho, azimuth, z)
         wheel_rho, wheel_theta, wheel_z = self.pair.to_wheel(point)
-        wheel_basis = self.pair.wheel_basis(wheel_theta)
-        return Station(rho, z, point, tangents, np.stack(second, axis=-2), wheel_rho, wheel_theta, wheel_z, wheel_basis)
+        wheel = self.pair.wheel.theta(wheel_rho, wheel_z, self._sides(1))
+        radial, around, axial = _pinion_basis(self.pair.wheel_axes, azimuth, wheel_theta)
+        along, across = rho * jet.rho, rho * jet.z
+        slopes = np.stack([radial + along * around, axial + across * around], axis=1)
+        bends = np.stack(
+            [
+                (2.0 * jet.rho + rho * jet.rho_rho) * around - (along * jet.rho) * radial,
+                (jet.z + rho * jet.rho_z) * around - (along * jet.z) * radial,
+                (rho * jet.z_z) * around - (across * jet.z) * radial,
+            ],
+            axis=1,
+        )
+        return Station(self.pair, rho, z, point, wheel_rho, wheel_theta, wheel_z, wheel, slopes, bends)
 
     def heights(self, phi1: Array, rho: Array, z: Array) -> tuple[Array, Array]:
         """Ease-off (...) [mm] and distances to the borders (..., k) [mm], without derivatives."""
-        theta = self.pair.pinion.theta(rho, z, self._sides(0)).value + self.pair.sense * phi1
-        point = np.stack([rho * np.cos(theta), rho * np.sin(theta), np.broadcast_to(z, theta.shape)], axis=-1)
-        wheel_rho, wheel_theta, wheel_z = self.pair.to_wheel(point)
+        azimuth = self.pair.pinion.theta(rho, z, self._sides(0)).value + self.pair.sense * phi1
+        wheel_rho, wheel_theta, wheel_z = self.pair.to_wheel(_on_circle(rho, azimuth, z))
         mate = self.pair.wheel.theta(wheel_rho, wheel_z, self._sides(1)).value
         value = self._scale * (mate - wheel_theta) - self._mean_motion * phi1
         pinion, wheel = self._border_jets(rho, z, wheel_rho, wheel_z)
-        return value, np.stack(np.broadcast_arrays(*[jet.value for jet in (*pinion, *wheel)]), axis=-1)
+        return value, _last_axis([jet.value for jet in (*pinion, *wheel)], value.shape)
 
     def wheel_angle(self, station: Station) -> Array:
         """phi2 at which the wheel's flank passes through the points [rad]."""
-        return self.pair.sense * (self._wheel_theta(station).value - station.wheel_theta)
+        return self.pair.sense * (station.wheel.value - station.wheel_theta)
 
     def value(self, station: Station, phi1: Array) -> Array:
         """Ease-off e [mm], largest where the flanks touch first."""
-        lag = self._wheel_theta(station).value - station.wheel_theta
-        return self._scale * lag - self._mean_motion * phi1
+        return self._scale * (station.wheel.value - station.wheel_theta) - self._mean_motion * phi1
 
     def gradient(self, station: Station) -> Array:
         """de/d(rho, z): (..., 2) [1]."""
-        return self._scale * station.gradient(self._wheel_theta(station), -1.0)
+        return self._scale * station.gradient(station.wheel, -1.0)
 
     def hessian(self, station: Station) -> Array:
         """Second derivatives of e: (..., 2, 2) [1/mm]."""
-        return self._scale * station.hessian(self._wheel_theta(station), -1.0)
+        return self._scale * station.hessian(station.wheel, -1.0)
 
     def borders(self, station: Station) -> tuple[Array, Array]:
         """Distances to the borders and creases [mm], positive inside, (..., k), and their gradients (..., k, 2).
@@ -184,8 +201,12 @@ class EaseOff:
         """
         pinion, wheel = self._border_jets(station.rho, station.z, station.wheel_rho, station.wheel_z)
         values = [jet.value for jet in (*pinion, *wheel)]
-        gradients = [_own_gradient(jet, station.rho) for jet in pinion] + [station.gradient(jet) for jet in wheel]
-        return np.stack(values, axis=-1), np.stack(gradients, axis=-2)
+        slopes = np.empty((2, len(values), *np.shape(station.rho)))
+        for k, jet in enumerate(pinion):
+            slopes[0, k], slopes[1, k] = jet.rho, jet.z
+        for k, jet in enumerate(wheel, len(pinion)):
+            _dot((jet.rho, 0.0, jet.z), station.slopes, out=slopes[:, k])
+        return _last_axis(values, np.shape(station.rho)), np.moveaxis(slopes, (0, 1), (-1, -2))
 
     def border_normal(self, station: Station, border: int) -> Array:
         """Gradient of one border in space, (..., 3), in the fixed frame: normal to the surface it ends on."""
@@ -225,9 +246,6 @@ class EaseOff:
     def _mean_motion(self) -> float:
         return self.pair.driving * self.pair.base_radii[1] * self.pair.ratio
 
-    def _wheel_theta(self, station: Station) -> Jet:
-        return self.pair.wheel.theta(station.wheel_rho, station.wheel_z, self._sides(1))
-
     def _sides(self, member: int) -> Any:
         if self.beyond is None:
             return None
@@ -246,5 +264,31 @@ class EaseOff:
         return pinion, wheel
 
 
-def _own_gradient(jet: Jet, like: Array) -> Array:
-    return np.stack(np.broadcast_arrays(jet.rho, jet.z, like)[:2], axis=-1)
+def _pinion_basis(axes: Array, azimuth: Array, wheel_theta: Array) -> Array:
+    """e_rho, e_theta, e_z of the pinion at an azimuth, in the wheel's cylindrical basis: (3 of them, 3 parts, ...)."""
+    cosine, sine = np.cos(azimuth), np.sin(azimuth)
+    basis, fixed = np.empty((3, 3, *azimuth.shape)), np.moveaxis(axes, (-2, -1), (0, 1))
+    for i in range(3):
+        basis[0, i] = fixed[i, 0] * cosine + fixed[i, 1] * sine
+        basis[1, i] = fixed[i, 1] * cosine - fixed[i, 0] * sine
+        basis[2, i] = fixed[i, 2]
+    cosine, sine = np.cos(wheel_theta), np.sin(wheel_theta)
+    radial = cosine * basis[:, 0] + sine * basis[:, 1]
+    basis[:, 1] = cosine * basis[:, 1] - sine * basis[:, 0]
+    basis[:, 0] = radial
+    return basis
+
+
+def _on_circle(rho: Array, azimuth: Array, z: Array) -> Array:
+    """Cartesian points (..., 3), kept one component after the other."""
+    point = np.empty((3, *np.shape(azimuth)))
+    point[0], point[1], point[2] = rho * np.cos(azimuth), rho * np.sin(azimuth), z
+    return np.moveaxis(point, 0, -1)
+
+
+def _last_axis(values: Sequence[Array], shape: tuple[int, ...]) -> Array:
+    """Values stacked along a last axis that varies slowest in memory: sums and minima over it are quick."""
+    stacked = np.empty((len(values), *shape))
+    for k, value in enumerate(values):
+        stacked[k] = value
+    return np.moveaxis(stacked, 0, -1)

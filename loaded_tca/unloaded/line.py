@@ -132,9 +132,9 @@ class _Ridge:
     def ends(self) -> tuple[Array, Array, Array]:
         """Where the ridge leaves the region on either side, (m, 2) each, and whether both ends were found."""
         count, borders = len(self.phi1), len(self.field.border_owner())
-        crossings, met = np.empty((count, borders, 2)), np.empty((count, borders), dtype=bool)
-        for k in range(borders):
-            crossings[:, k], met[:, k] = self._follow(self.start, np.full(count, k))
+        every = self._only(np.repeat(np.arange(count), borders))
+        crossings, met = every._follow(every.start, np.tile(np.arange(borders), count))
+        crossings, met = crossings.reshape(count, borders, 2), met.reshape(count, borders)
         travel = ((crossings - self.start[:, None]) * self.along[:, None]).sum(axis=-1)
         rows = np.arange(count)
         first = np.argmin(np.where(met, travel, np.inf), axis=1)
@@ -183,9 +183,7 @@ class _Ridge:
         return np.array([rho.min(), z.min()]) - margin * [0.2, 1.0], np.array([rho.max(), z.max()]) + margin
 
     def _only(self, rows: Array) -> _Ridge:
-        """Some of the ridges."""
-        if len(rows) == len(self.phi1):
-            return self
+        """Some of the ridges, or some of them often."""
         parts = (part[rows] for part in (self.phi1, self.start, self.along, self.multipliers))
         return _Ridge(self.field.restricted(rows), *parts)
 

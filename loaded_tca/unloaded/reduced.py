@@ -120,7 +120,7 @@ def _look(field: EaseOff, phi1: Array, points: Array, scale: Array) -> _Local:
 
 
 def _violation(borders: Array) -> Array:
-    return np.maximum(0.0, -borders).max(axis=-1)
+    return np.maximum(0.0, -borders.min(axis=-1))
 
 
 def _settled(field: EaseOff, here: _Local, step: Array) -> Array:
@@ -141,7 +141,8 @@ def _advance(
         return value - penalty[rows] * np.maximum(0.0, -borders).sum(axis=-1), borders
 
     rows = np.arange(len(points))
-    before = merit(rows, points)[0] - MERIT_SLACK * field.pair.base_radii[1]
+    before = field.value(here.station, phi1) - penalty * np.maximum(0.0, -here.borders).sum(axis=-1)
+    before -= MERIT_SLACK * field.pair.base_radii[1]
     moved, result = np.zeros(len(points), dtype=bool), points.copy()
     for halving in range(MOST_HALVINGS):
         trial = points[rows] + step[rows] * 0.5**halving
@@ -201,10 +202,11 @@ def _propose(field: EaseOff, here: _Local, multipliers: Array, scale: Array) -> 
         bend = bend + field.border_hessian(here.station, multipliers)
     bend = -bend * np.outer(scale, scale)
     inverse, curvature = _positive(bend)
-    step = (inverse @ here.gradient[..., None])[..., 0]
+    step = inverse[..., 0] * here.gradient[..., :1] + inverse[..., 1] * here.gradient[..., 1:]
     found = np.zeros_like(multipliers)
     tolerance = FEASIBLE * scale[0]
-    out = np.flatnonzero((here.borders + (here.slopes @ step[..., None])[..., 0] < -tolerance).any(axis=-1))
+    room = here.borders + here.slopes[..., 0] * step[:, :1] + here.slopes[..., 1] * step[:, 1:]
+    out = np.flatnonzero(room.min(axis=-1) < -tolerance)
     if out.size:
         problem = Quadratic(here.gradient[out], curvature[out], here.borders[out], here.slopes[out], bend[out])
         step[out], found[out] = best_step(problem, tolerance)
@@ -217,13 +219,16 @@ def _positive(matrix: Array) -> tuple[Array, Array]:
     mean = 0.5 * (matrix[..., 0, 0] + matrix[..., 1, 1])
     half, off = 0.5 * (matrix[..., 0, 0] - matrix[..., 1, 1]), matrix[..., 0, 1]
     radius = np.maximum(np.hypot(half, off), 1e-300)
-    pointer = np.stack([np.stack([half, off], -1), np.stack([off, -half], -1)], -2) / radius[..., None, None]
     high, low = np.abs(mean + radius), np.abs(mean - radius)
     floor = CURVATURE_FLOOR * np.maximum(np.maximum(high, low), 1e-200)
     high, low = np.maximum(high, floor), np.maximum(low, floor)
+    half, off = half / radius, off / radius
 
     def function(first: Array, second: Array) -> Array:
         even, odd = 0.5 * (first + second), 0.5 * (first - second)
-        return even[..., None, None] * np.eye(2) + odd[..., None, None] * pointer
+        result = np.empty((2, 2, *even.shape))
+        result[0, 0], result[1, 1] = even + odd * half, even - odd * half
+        result[0, 1] = result[1, 0] = odd * off
+        return np.moveaxis(result, (0, 1), (-2, -1))
 
     return function(1.0 / high, 1.0 / low), function(high, low)

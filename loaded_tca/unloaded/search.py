@@ -7,7 +7,7 @@ piece. A contact that rests on a crease is thus found like one that rests on a b
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from scipy.ndimage import maximum_filter
@@ -28,6 +28,8 @@ BORDER_SCAN = (9, 65)
 """Points along the sides and along the tip and root of the wheel's flank that must not lie inside the pinion."""
 PIERCED = 1e-9
 """Depth over the module at which a border of the wheel's flank lies inside the pinion: rounding is 1e-13."""
+POSITIONS_AT_ONCE = 1024
+"""Positions searched together: some 0.1 GB."""
 CERTIFICATE = 1e-13
 """How far, relative to r_b2, a scanned point may rise above the maximum found: rounding."""
 
@@ -69,6 +71,18 @@ def first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
     ConvergenceError
         If a position has a common region but no ascent reached the height of the scan.
     """
+    blocks = [phi1[start : start + POSITIONS_AT_ONCE] for start in range(0, max(len(phi1), 1), POSITIONS_AT_ONCE)]
+    return _joined([_first_touch(pair, block) for block in blocks])
+
+
+def _joined(parts: list[FirstTouch]) -> FirstTouch:
+    if len(parts) == 1:
+        return parts[0]
+    names = [field.name for field in fields(FirstTouch)]
+    return FirstTouch(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
+
+
+def _first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
     owner, rho, z, scanned = _starts(pair, phi1)
     found = _ascend(pair, phi1, owner, rho, z)
     result = _best(pair, phi1, found, scanned)
