@@ -22,6 +22,7 @@ from dataclasses import dataclass, fields
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import Flank
@@ -33,6 +34,8 @@ from loaded_tca.material import Material, contact_modulus
 
 Driving = Literal["pinion", "wheel"]
 Sense = Literal["positive", "negative"]
+LARGEST_ANGLE = math.radians(45.0)
+"""Angular errors stay below this [rad]: the axes are those of parallel gears, which still face each other."""
 
 
 def require_finite(errors: Any, units: tuple[str, ...]) -> None:
@@ -40,9 +43,29 @@ def require_finite(errors: Any, units: tuple[str, ...]) -> None:
     values = [
         (entry.name, getattr(errors, entry.name), unit) for entry, unit in zip(fields(errors), units, strict=True)
     ]
-    problems = [f"{name}: {value} {unit} is not finite" for name, value, unit in values if not math.isfinite(value)]
+    problems = [f"{name}: {value!r} {unit} is not finite" for name, value, unit in values if not _is_finite(value)]
     if problems:
         raise InputError(problems)
+
+
+def _is_finite(value: Any) -> bool:
+    return isinstance(value, int | float | np.number) and math.isfinite(value)
+
+
+def numbers(name: str, values: ArrayLike) -> Array:
+    """An argument as an array of floats; InputError if it is none."""
+    try:
+        return np.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: an array of finite numbers is asked for, not {values!r:.60}") from None
+
+
+def finite_row(name: str, values: ArrayLike) -> Array:
+    """An argument as a row (n,) of finite numbers, at least one; InputError if it is none."""
+    row = numbers(name, values)
+    if row.ndim != 1 or not row.size or not np.isfinite(row).all():
+        raise InputError(f"{name}: shape {row.shape} with finite numbers only in one dimension is asked for")
+    return row
 
 
 @dataclass(frozen=True)
@@ -63,7 +86,7 @@ class Mounting:
     Raises
     ------
     InputError
-        If a value is not finite.
+        If a value is not finite, or an angle not between -45 and 45 deg.
     """
 
     in_plane: float = 0.0
@@ -73,6 +96,15 @@ class Mounting:
 
     def __post_init__(self) -> None:
         require_finite(self, ("rad", "rad", "mm", "mm"))
+        limit = f"is not between -{math.degrees(LARGEST_ANGLE):.3g} and {math.degrees(LARGEST_ANGLE):.3g} deg"
+        angles = {"in_plane": self.in_plane, "out_of_plane": self.out_of_plane}
+        problems = [
+            f"{name}: {angle:.6g} rad, {math.degrees(angle):.6g} deg, {limit}: the axes are nearly parallel"
+            for name, angle in angles.items()
+            if abs(angle) >= LARGEST_ANGLE
+        ]
+        if problems:
+            raise InputError(problems)
 
     def place_parallel(self, centre_distance: float) -> tuple[Array, Array]:
         """Origin (3,) and axes (3, 3), in rows, of the wheel frame: R_y(gamma) R_x(delta) about its mid-face."""

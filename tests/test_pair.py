@@ -1,15 +1,17 @@
 """Two gears in space: where the mounting errors put the wheel, the sides that touch, and what is refused."""
 
+import contextlib
 import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from pairs import cylindrical_mesh, gear_pair
 
-from loaded_tca.errors import InputError
+from loaded_tca import trace_contact
+from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.material import Material
 from loaded_tca.pair import Mounting, cylindrical_basis, cylindrical_pair
 
@@ -133,6 +135,30 @@ def test_unknown_driving_or_sense_is_refused():
         gear_pair(driving="motor")
     with pytest.raises(InputError, match="sense: 'left' is not 'positive' or 'negative'"):
         gear_pair(sense="left")
+
+
+@pytest.mark.parametrize("deg", [45.0, -45.1, 90.0, 180.0, -360.0])
+@pytest.mark.parametrize("name", ["in_plane", "out_of_plane"])
+def test_angular_error_that_turns_the_wheel_away_is_refused(name, deg):
+    with pytest.raises(InputError, match=rf"^{name}: .* {deg:g} deg, is not between -45 and 45 deg: the axes are"):
+        Mounting(**{name: math.radians(deg)})
+    with pytest.raises(InputError) as caught:
+        Mounting(math.pi, -math.pi)
+    assert len(caught.value.problems) == 2
+
+
+@given(st.floats(-44.9, 44.9), st.floats(-44.9, 44.9))
+@settings(max_examples=10)
+def test_angular_errors_within_the_bounds_give_a_path_or_say_that_nothing_touches(gamma_deg, delta_deg):
+    pair = gear_pair(mounting=Mounting(math.radians(gamma_deg), math.radians(delta_deg)))
+    with contextlib.suppress(GeometryError):
+        assert trace_contact(pair, [0.0], warn=False).touches.all()
+
+
+@pytest.mark.parametrize("value", [None, "x", [0.1], 1j])
+def test_mounting_error_that_is_no_number_is_refused(value):
+    with pytest.raises(InputError, match=r"axial_offset: .* mm is not finite"):
+        Mounting(axial_offset=value)
 
 
 def test_mounting_error_that_is_not_finite_is_refused_all_at_once():

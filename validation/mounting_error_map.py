@@ -24,7 +24,7 @@ from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import climb
 from loaded_tca.unloaded.search import FirstTouch, first_touch
 from loaded_tca.unloaded.teeth import trace_teeth
-from validation.mounting_errors import ARCSEC, CASE, HELICAL, POSITIONS, ROUNDING, hertz_pressure
+from validation.mounting_error_pairs import ARCSEC, CASE, HELICAL, POSITIONS, ROUNDING, hertz_pressure
 from validation.table import Row
 
 Array = NDArray[np.float64]

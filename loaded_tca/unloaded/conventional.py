@@ -22,6 +22,7 @@ Litvin & Fuentes 2004, Gear Geometry and Applied Theory, section 9.4; Seed 000, 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,7 +32,7 @@ from scipy.optimize import root
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.jet import Array
-from loaded_tca.pair import GearPair, cylindrical_basis
+from loaded_tca.pair import GearPair, cylindrical_basis, numbers
 
 UNKNOWNS = ("pinion_radius", "pinion_axial", "wheel_radius", "wheel_axial", "wheel_angle")
 """Order of the unknowns: rho1, z1, rho2, z2 [mm], phi2 [rad]."""
@@ -302,15 +303,15 @@ def _result(
 
 def _checked(phi1: ArrayLike, start: ArrayLike, normal_components: tuple[int, int]) -> tuple[Array, Array]:
     """Pinion angles (n,) and a copy of the starts (n, 5)."""
-    if sorted(normal_components) not in ([0, 1], [0, 2], [1, 2]):
+    if not isinstance(normal_components, Sequence) or sorted(normal_components) not in ([0, 1], [0, 2], [1, 2]):
         raise InputError(f"normal_components: {normal_components} are not two different ones of 0, 1, 2 (x, y, z)")
-    unknowns = np.array(start, dtype=float)
+    unknowns = numbers("start", start).copy()
     if unknowns.ndim != 2 or unknowns.shape[1] != len(UNKNOWNS) or not np.isfinite(unknowns).all():
         message = f"start: shape {unknowns.shape}; one row of five finite numbers a start is asked for: "
         raise InputError(message + ", ".join(UNKNOWNS))
     if (unknowns[:, [0, 2]] <= 0.0).any():
         raise InputError("start: the radii pinion_radius and wheel_radius must be positive")
-    angle = np.asarray(phi1, dtype=float)
+    angle = numbers("phi1", phi1)
     if angle.shape not in ((), (len(unknowns),)) or not np.isfinite(angle).all():
         raise InputError(f"phi1: shape {angle.shape}; one finite angle, or one for each of {len(unknowns)} starts")
     return np.broadcast_to(angle, len(unknowns)), unknowns

@@ -32,7 +32,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from loaded_tca.errors import ConvergenceError, GeometryError, InputError
 from loaded_tca.flanks.jet import Array
-from loaded_tca.pair import GearPair
+from loaded_tca.pair import GearPair, finite_row
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 SECTIONS = 44
@@ -100,7 +100,7 @@ def search_golden_section(pair: GearPair, pinion_angles: ArrayLike, *, sections:
     Raises
     ------
     InputError
-        If an angle is not finite, the array not one-dimensional, or there is no section.
+        If an angle is not finite, the array not one-dimensional, or the sections no whole number >= 1.
     GeometryError
         If the flanks cover a common region at no position, or do not come to touch within half a pitch of the wheel.
     ConvergenceError
@@ -121,11 +121,9 @@ def search_golden_section(pair: GearPair, pinion_angles: ArrayLike, *, sections:
     >>> abs(float(search_golden_section(pair, [0.0], sections=30).wheel_angle[0])) < 1e-11
     True
     """
-    phi1 = np.asarray(pinion_angles, dtype=float)
-    if phi1.ndim != 1 or not phi1.size or not np.isfinite(phi1).all():
-        raise InputError(f"pinion_angles: shape {phi1.shape} with finite numbers only in one dimension is asked for")
-    if sections < 1:
-        raise InputError(f"sections: {sections} is not positive")
+    phi1 = finite_row("pinion_angles", pinion_angles)
+    if not isinstance(sections, int | np.integer) or sections < 1:
+        raise InputError(f"sections: {sections!r} is not a whole number >= 1")
     search = _Search(pair, phi1, sections)
     touches = search.covered()
     if not touches.any():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any, overload
 
@@ -12,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from loaded_tca.errors import AccuracyWarning, GeometryError, InputError
 from loaded_tca.flanks.base import BORDER_NAMES, outward_normal
 from loaded_tca.flanks.jet import Array
-from loaded_tca.pair import GearPair, cylindrical_basis
+from loaded_tca.pair import GearPair, cylindrical_basis, finite_row
 from loaded_tca.unloaded.ease_off import EaseOff, Station
 from loaded_tca.unloaded.line import find_lines
 from loaded_tca.unloaded.reduced import FEASIBLE
@@ -109,15 +110,26 @@ class ContactPath:
         return len(self.pinion_angle)
 
     @overload
-    def __getitem__(self, position: int) -> ContactPoint: ...
+    def __getitem__(self, position: int | np.integer) -> ContactPoint: ...
 
     @overload
-    def __getitem__(self, position: slice) -> ContactPath: ...
+    def __getitem__(self, position: slice | Sequence[int] | Sequence[bool] | NDArray[Any]) -> ContactPath: ...
 
-    def __getitem__(self, position: int | slice) -> ContactPoint | ContactPath:
-        """One position of the path, or a stretch of it."""
-        part = {field.name: getattr(self, field.name)[position] for field in fields(self)}
-        return ContactPath(**part) if isinstance(position, slice) else ContactPoint(**part)
+    def __getitem__(self, position: Any) -> ContactPoint | ContactPath:
+        """One position of the path by its number; a part of the path by a slice, a mask or several numbers.
+
+        Raises
+        ------
+        InputError
+            If the index has more than one dimension.
+        IndexError
+            If a position does not exist, a mask is not as long as the path, or the index is of no such kind.
+        """
+        rows = np.arange(len(self))[position]
+        if rows.ndim > 1:
+            raise InputError(f"position: {position!r} is not one position, a slice, a mask or a row of positions")
+        part = {field.name: getattr(self, field.name)[rows] for field in fields(self)}
+        return ContactPath(**part) if rows.ndim else ContactPoint(**part)
 
     def __repr__(self) -> str:
         edge = int(self.on_edge.sum())
@@ -174,13 +186,7 @@ def trace_contact(pair: GearPair, pinion_angles: ArrayLike | None = None, *, war
 def _checked_angles(pair: GearPair, pinion_angles: ArrayLike | None) -> Array:
     if pinion_angles is None:
         return np.linspace(-0.5 * pair.pitch, 0.5 * pair.pitch, POSITIONS)
-    try:
-        phi1 = np.asarray(pinion_angles, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError("pinion_angles: an array of finite numbers in one dimension is asked for") from None
-    if phi1.ndim != 1 or not phi1.size or not np.isfinite(phi1).all():
-        raise InputError(f"pinion_angles: shape {phi1.shape} with finite numbers only in one dimension is asked for")
-    return phi1
+    return finite_row("pinion_angles", pinion_angles)
 
 
 def _assemble(pair: GearPair, phi1: Array, touch: FirstTouch) -> ContactPath:

@@ -1,12 +1,7 @@
-r"""Contact pattern by the searching method: where the flanks are nearer than the marking compound is thick.
+"""Contact pattern by the searching method: where the flanks are nearer than the marking compound is thick.
 
-Gears that stand at phi1 and phi2 are apart by an angle about one axis at every point of a flank: what the mate would
-have to turn to touch it there. Times the lever of the mate's normal about its axis this is the gap, to first order,
-
-.. math:: g = \Delta\varphi\,|n \cdot (w \times r)| = \Delta\varphi/|\nabla F|, \qquad F = \theta - \Theta(\rho, z),
-
-since the normal is the direction of grad F, whose azimuthal part is 1/rho. No tangent plane, no curvature and no
-fitted section is needed, and the borders of the flanks cut the pattern where it ends.
+The gap is that of :mod:`loaded_tca.unloaded.gap`, without tangent plane or curvature, and the borders of the flanks cut
+the pattern where it ends.
 
 References
 ----------
@@ -16,8 +11,9 @@ Litvin & Fuentes 2004, Gear Geometry and Applied Theory, 9.3 (the ellipse of the
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,19 +21,16 @@ from numpy.typing import NDArray
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.jet import Array
 from loaded_tca.pair import GearPair
+from loaded_tca.unloaded.contour import RaySearch
 from loaded_tca.unloaded.curvature import relative_curvature
 from loaded_tca.unloaded.ease_off import EaseOff
+from loaded_tca.unloaded.gap import Gear, flank_gap
 from loaded_tca.unloaded.path import ContactPoint
 from loaded_tca.unloaded.teeth import MeshPath, trace_teeth
-
-Gear = Literal["pinion", "wheel"]
 
 COMPOUND = 6.35e-3
 """Thickness of the usual marking compound [mm]."""
 RAYS = 360
-SCAN = 65
-"""Points of a ray at which its first crossing of the contour is looked for."""
-BISECTIONS = 40
 LONGEST = 4.0
 """Length of a ray in semi-axes of the ellipse."""
 POSITIONS = 61
@@ -47,17 +40,17 @@ GRID = (61, 81)
 
 @dataclass(frozen=True, eq=False)
 class ContactArea:
-    """Instantaneous contact area of one tooth pair, as its contour of ``rays`` points around the contact point.
+    """Instantaneous contact area of one tooth pair, as its contour of m points around the contact point.
 
     Attributes
     ----------
     compound : float [mm]
         The gap on the contour.
-    point : (rays, 3) array [mm]
+    point : (m, 3) array [mm]
         Contour on the pinion flank in the fixed frame.
-    pinion_radius, pinion_axial, wheel_radius, wheel_axial : (rays,) array [mm]
+    pinion_radius, pinion_axial, wheel_radius, wheel_axial : (m,) array [mm]
         The contour on each flank.
-    on_border : (rays,) bool array
+    on_border : (m,) bool array
         Where the contour is the end of a flank instead.
     area : float [mm^2]
         Of the projection into the common tangent plane.
@@ -131,50 +124,13 @@ class ContactPattern:
         return f"ContactPattern({self.gear}, {self.touched.mean():.0%} of {self.gap.size} points touched)"
 
 
-def flank_gap(
-    pair: GearPair, gear: Gear, angles: tuple[Array, Array], place: tuple[Array, Array]
-) -> tuple[Array, Array, Array]:
-    """Gap at points of one flank, to first order, and the same points on the mate.
-
-    Parameters
-    ----------
-    pair : GearPair
-    gear : {"pinion", "wheel"}
-        The gear whose flank the points lie on.
-    angles : two arrays [rad]
-        phi1 and phi2 at which the gears stand; they broadcast against the points.
-    place : two arrays [mm]
-        rho and z of the points.
-
-    Returns
-    -------
-    gap : array [mm]
-        Negative where the flanks penetrate; +inf beyond the borders of the mate.
-    radius, axial : array [mm]
-        Of the points in the mate's frame.
-    """
-    (phi1, phi2), (rho, z) = angles, place
-    if gear == "pinion":
-        point, mate = _cartesian(rho, pair.pinion.theta(rho, z).value + pair.sense * phi1, z), pair.wheel
-        radius, theta, axial = pair.to_wheel(point)
-        jet = mate.theta(radius, axial)
-        lag = pair.driving * (phi2 - pair.sense * (jet.value - theta))
-    else:
-        point, mate = _cartesian(rho, pair.wheel.theta(rho, z).value - pair.sense * phi2, z), pair.pinion
-        x, y, axial = np.moveaxis(point @ pair.wheel_axes + pair.wheel_origin, -1, 0)
-        radius, theta = np.hypot(x, y), np.arctan2(y, x)
-        jet = mate.theta(radius, axial)
-        lag = pair.driving * (pair.sense * (theta - jet.value) - phi1)
-    lever = 1.0 / np.sqrt(jet.rho**2 + 1.0 / radius**2 + jet.z**2)
-    return np.where(mate.inside(radius, axial), lag * lever, np.inf), radius, axial
-
-
 def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOUND, rays: int = RAYS) -> ContactArea:
     """Instantaneous contact area around a contact point, on its own tooth pair.
 
     Rays leave the contact point in all directions of the tangent plane, drawn out like the curvature ellipse; each ends
     where the gap first reaches the compound, or with a flank. Beyond that nothing is seen: of an area in several pieces
-    (two basins of a hollow flank) it is the piece of the contact.
+    (two basins of a hollow flank) it is the piece of the contact. Between two rays that end unlike, on the compound and
+    on a border or on two borders, others follow until the corner is met: it changes the area by less than 1e-6.
 
     Parameters
     ----------
@@ -184,7 +140,7 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
     compound : float [mm]
         Thickness of the marking compound.
     rays : int
-        At least 8.
+        Rays at even angles, at least 8; the contour gains points at its corners.
 
     Returns
     -------
@@ -193,7 +149,8 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
     Raises
     ------
     InputError
-        If the compound is not positive and finite, or there are fewer than 8 rays.
+        If the contact is not one position of a path, the compound is not positive and finite, or there are fewer than 8
+        rays.
     GeometryError
         If the tooth pair does not touch at this position.
 
@@ -210,8 +167,10 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
     [0.372, 4.455, 0.373, 4.455]
     """
     problems = _problems_of(compound)
+    if not isinstance(contact, ContactPoint):
+        problems.append(f"contact: {type(contact).__name__} is not a ContactPoint; take one position, path[i]")
     if not isinstance(rays, int | np.integer) or rays < 8:
-        problems.append(f"rays: {rays} is not a whole number >= 8")
+        problems.append(f"rays: {rays!r} is not a whole number >= 8")
     if problems:
         raise InputError(problems)
     if not contact.touches:
@@ -222,27 +181,25 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
     bends = (curvature.across, 0.0 if contact.on_line else curvature.along)
     semi_axes = [math.sqrt(2.0 * compound / k) if k > 0.0 else math.inf for k in bends]
     longest = math.hypot(*pair.pinion.extent)
-    turn = np.arange(rays) * (2.0 * math.pi / rays)
     drawn = [min(LONGEST * axis, longest) for axis in semi_axes]
-    tangent = np.stack([drawn[0] * np.cos(turn), drawn[1] * np.sin(turn)], axis=-1)
-    search = _RaySearch(pair, contact, _on_flank(pair, contact, curvature.axes[:2], tangent), compound)
-    share, on_border = search.first_crossings()
-    rho, z = search.place(share)
-    point = EaseOff(pair).station(np.full(rays, contact.pinion_angle), rho, z).point
-    _, wheel_radius, wheel_axial = flank_gap(pair, "pinion", search.angles, (rho, z))
-    x, y = curvature.axes[:2] @ (point - contact.point).T
+    plane = curvature.axes[:2]
+    search = RaySearch(
+        pair, contact, plane, _on_flank(pair, contact, plane, np.diag(drawn)), math.prod(drawn), compound
+    )
+    contour = search.contour(rays)
+    _, wheel_radius, wheel_axial = flank_gap(pair, "pinion", search.angles, (contour.rho, contour.z))
     return ContactArea(
         compound=float(compound),
-        point=point,
-        pinion_radius=rho,
-        pinion_axial=z,
+        point=search.in_space(contour.rho, contour.z),
+        pinion_radius=contour.rho,
+        pinion_axial=contour.z,
         wheel_radius=wheel_radius,
         wheel_axial=wheel_axial,
-        on_border=on_border,
-        area=_polygon_area(x, y),
-        semi_axes=(0.5 * float(np.ptp(x)), 0.5 * float(np.ptp(y))),
+        on_border=contour.border > 0,
+        area=contour.area,
+        semi_axes=(0.5 * float(np.ptp(contour.x)), 0.5 * float(np.ptp(contour.y))),
         ellipse_semi_axes=(semi_axes[0], semi_axes[1]),
-        ellipse_points=_ellipse(contact.point, curvature.axes[:2], semi_axes, turn),
+        ellipse_points=_ellipse(contact.point, plane, semi_axes, np.arange(rays) * (2.0 * math.pi / rays)),
     )
 
 
@@ -260,7 +217,7 @@ def contact_pattern(
     ----------
     pair : GearPair
     mesh : MeshPath, optional
-        Positions over one pitch, and the teeth; default: 61 positions and all teeth within reach.
+        Positions over one pitch, and the teeth, of this very pair; default: 61 positions and all teeth within reach.
     gear : {"pinion", "wheel"}
         Whose flank.
     compound : float [mm]
@@ -275,15 +232,16 @@ def contact_pattern(
     Raises
     ------
     InputError
-        If an argument is out of range.
+        If an argument is out of range, or the mesh is that of another pair.
     GeometryError
         If no tooth touches at some position.
     """
-    problems = _problems_of(compound)
+    problems = _problems_of(compound) + _problems_of_mesh(pair, mesh)
     if gear not in ("pinion", "wheel"):
         problems.append(f"gear: {gear!r} is not 'pinion' or 'wheel'")
-    if np.shape(grid) != (2,) or not all(isinstance(n, int | np.integer) and n >= 2 for n in grid):
-        problems.append(f"grid: {grid} are not two whole numbers >= 2")
+    counts = list(grid) if isinstance(grid, Sequence | np.ndarray) else []
+    if len(counts) != 2 or not all(isinstance(n, int | np.integer) and n >= 2 for n in counts):
+        problems.append(f"grid: {grid!r} are not two whole numbers >= 2")
     if problems:
         raise InputError(problems)
     if mesh is None:
@@ -303,13 +261,19 @@ def contact_pattern(
     return ContactPattern(gear, float(compound), rho, z, roll_length, smallest)
 
 
-def _problems_of(compound: float) -> list[str]:
-    sound = 0.0 < compound < math.inf
-    return [] if sound else [f"compound: {compound} mm is not a positive, finite thickness"]
+def _problems_of(compound: Any) -> list[str]:
+    sound = isinstance(compound, int | float | np.number) and 0.0 < compound < math.inf
+    return [] if sound else [f"compound: {compound!r} mm is not a positive, finite thickness"]
 
 
-def _cartesian(rho: Array, theta: Array, z: Array) -> Array:
-    return np.stack(np.broadcast_arrays(rho * np.cos(theta), rho * np.sin(theta), z), axis=-1)
+def _problems_of_mesh(pair: GearPair, mesh: Any) -> list[str]:
+    if mesh is None:
+        return []
+    if not isinstance(mesh, MeshPath):
+        return [f"mesh: {type(mesh).__name__} is not a MeshPath, which trace_teeth gives"]
+    if mesh.pair is not pair:
+        return [f"mesh: it was traced for another object, {mesh.pair!r}, not for the pair given; hand over mesh.pair"]
+    return []
 
 
 def _on_flank(pair: GearPair, contact: ContactPoint, plane: Array, tangent: Array) -> Array:
@@ -319,58 +283,8 @@ def _on_flank(pair: GearPair, contact: ContactPoint, plane: Array, tangent: Arra
     return np.asarray(np.linalg.solve(plane @ tangents.T, tangent.T).T)
 
 
-@dataclass(frozen=True, eq=False)
-class _RaySearch:
-    """Rays (m, 2) in (rho, z) from a contact point, and where the gap reaches the compound on each."""
-
-    pair: GearPair
-    contact: ContactPoint
-    rays: Array
-    compound: float
-
-    @property
-    def angles(self) -> tuple[Array, Array]:
-        """phi1 and phi2 of the contact."""
-        return np.asarray(self.contact.pinion_angle), np.asarray(self.contact.wheel_angle)
-
-    def place(self, share: Array) -> tuple[Array, Array]:
-        """(rho, z) at shares (m,) or (m, k) of the rays."""
-        extra = (1,) * (share.ndim - 1)
-        rho, z = (self.rays[:, k].reshape(-1, *extra) for k in (0, 1))
-        return self.contact.pinion_radius + share * rho, self.contact.pinion_axial + share * z
-
-    def first_crossings(self) -> tuple[Array, NDArray[np.bool_]]:
-        """Share of each ray inside the area, and whether it is a border that ends it."""
-        scan = np.broadcast_to(np.linspace(0.0, 1.0, SCAN), (len(self.rays), SCAN))
-        inside, _ = self._look(scan)
-        inside[:, 0] = True
-        last = np.where(inside.all(axis=1), SCAN, inside.argmin(axis=1)) - 1
-        rows = np.arange(len(scan))
-        low, high = scan[rows, last], scan[rows, np.minimum(last + 1, SCAN - 1)]
-        for _ in range(BISECTIONS):
-            middle = 0.5 * (low + high)
-            within, _ = self._look(middle)
-            low, high = np.where(within, middle, low), np.where(within, high, middle)
-        _, there = self._look(high)
-        return low, ~there
-
-    def _look(self, share: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-        """Whether the gap is below the compound, and whether both flanks are there."""
-        rho, z = self.place(share)
-        gap, _, _ = flank_gap(self.pair, "pinion", self.angles, (rho, z))
-        there = np.isfinite(gap) & self.pair.pinion.inside(rho, z)
-        return there & (gap <= self.compound), there
-
-
 def _ellipse(centre: Array, plane: Array, semi_axes: list[float], turn: Array) -> Array:
     """Points (m, 3) of an ellipse in the tangent plane; NaN if an axis is infinite."""
     if not np.isfinite(semi_axes).all():
         return np.full((len(turn), 3), np.nan)
     return np.asarray(centre + np.stack([np.cos(turn), np.sin(turn)], axis=-1) * semi_axes @ plane)
-
-
-def _polygon_area(x: Array, y: Array) -> float:
-    """Area of a polygon, made exact for points at even angles of an ellipse."""
-    count = len(x)
-    shoelace = 0.5 * abs(float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum()))
-    return shoelace * (2.0 * math.pi / count) / math.sin(2.0 * math.pi / count)

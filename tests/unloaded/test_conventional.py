@@ -186,6 +186,9 @@ GOOD = [51.0, 0.0, 85.5, 0.0, 0.0]
         ([0.0, 0.1], [GOOD], (1, 2), r"phi1: shape \(2,\)"),
         (0.0, [GOOD], (1, 1), "normal_components: .* are not two different ones of 0, 1, 2"),
         (0.0, [GOOD], (1, 3), "normal_components"),
+        (0.0, [GOOD], None, "normal_components"),
+        (0.0, "x", (1, 2), "start: an array of finite numbers is asked for, not 'x'"),
+        ([None, "a"], [GOOD], (1, 2), "phi1: an array of finite numbers is asked for"),
     ],
 )
 def test_inputs_that_cannot_be_used_are_refused(solve, phi1, start, components, message):

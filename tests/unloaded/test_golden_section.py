@@ -127,7 +127,10 @@ def test_every_gap_is_counted():
         ([], 30, r"pinion_angles: shape \(0,\) with finite numbers only"),
         (0.0, 30, r"pinion_angles: shape \(\)"),
         ([math.nan], 30, "pinion_angles"),
-        ([0.0], 0, "sections: 0 is not positive"),
+        ("x", 30, "pinion_angles: an array of finite numbers is asked for, not 'x'"),
+        ([0.0], 0, "sections: 0 is not a whole number >= 1"),
+        ([0.0], 2.5, "sections: 2.5 is not a whole number >= 1"),
+        ([0.0], None, "sections: None is not a whole number >= 1"),
     ],
 )
 def test_inputs_that_cannot_be_used_are_refused(angles, sections, message):

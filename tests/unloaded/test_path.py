@@ -1,13 +1,13 @@
 """The contact path: conjugate gears, misalignment, symmetries, edges, and what is refused."""
 
 import math
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 from pairs import NONE, cylindrical_mesh, gear_pair, meshes, modifications, pairs, seed_002, wheel_lag
 
 from loaded_tca import AccuracyWarning, GeometryError, InputError, trace_contact
@@ -15,6 +15,7 @@ from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.base import BORDER_NAMES
 from loaded_tca.gears import CylindricalMesh
 from loaded_tca.pair import Mounting, cylindrical_pair
+from loaded_tca.unloaded import ContactPath, ContactPoint
 
 ARCSEC = math.degrees(1.0) * 3600.0
 CONJUGATE = 1e-14  # rad; rounding of angles of order 0.1
@@ -366,6 +367,50 @@ def test_pair_that_never_touches_is_refused():
 def test_angles_that_are_no_finite_row_are_refused(angles):
     with pytest.raises(InputError, match=r"pinion_angles: shape .* with finite numbers only in one dimension"):
         trace_contact(seed_002(), angles)
+
+
+@pytest.mark.parametrize("angles", ["x", [None, "a"]])
+def test_angles_that_are_no_numbers_are_refused(angles):
+    with pytest.raises(InputError, match="pinion_angles: an array of finite numbers is asked for"):
+        trace_contact(seed_002(), angles)
+
+
+@pytest.mark.parametrize(
+    "part", [slice(1, None), [1, 2], np.array([2, 0]), np.array([True, False, True]), [False] * 3, [True] * 3, []]
+)
+def test_part_of_a_path_is_a_path(part):
+    path = trace_contact(seed_002(), [0.0, 0.01, 0.02])
+    found = path[part]
+    assert isinstance(found, ContactPath)
+    for entry in fields(ContactPath):
+        assert_array_equal(getattr(found, entry.name), getattr(path, entry.name)[np.arange(3)[part]])
+    assert f"ContactPath({len(found)} positions" in repr(found)
+
+
+@pytest.mark.parametrize("position", [1, -2, np.int64(1), np.array(1)])
+def test_number_of_a_position_gives_its_contact(position):
+    path = trace_contact(seed_002(), [0.0, 0.01, 0.02])
+    assert isinstance(path[position], ContactPoint)
+    assert path[position].pinion_angle == 0.01
+    assert [contact.pinion_angle for contact in path] == [0.0, 0.01, 0.02]
+
+
+@pytest.mark.parametrize(
+    ("position", "error"),
+    [
+        (3, IndexError),
+        (1.5, IndexError),
+        ("x", IndexError),
+        ((0, 1), IndexError),
+        ([True, False], IndexError),
+        ([[0, 1]], InputError),
+        (None, InputError),
+        (True, InputError),
+    ],
+)
+def test_index_that_is_no_part_of_a_path_is_refused(position, error):
+    with pytest.raises(error):
+        trace_contact(seed_002(), [0.0, 0.01, 0.02])[position]
 
 
 def test_one_position_has_the_fields_of_the_path_without_their_first_axis():
