@@ -20,59 +20,23 @@ import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from functools import cached_property
+from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 from loaded_tca.errors import AccuracyWarning, GeometryError, InputError
 from loaded_tca.flanks.base import BORDER_NAMES
 from loaded_tca.flanks.jet import Array
 from loaded_tca.pair import GearPair
-from loaded_tca.unloaded.path import POSITIONS, ContactPath, ContactPoint, trace_contact
-from loaded_tca.unloaded.search import first_touch
+from loaded_tca.unloaded.path import POSITIONS, ContactPath, trace_contact
+from loaded_tca.unloaded.tooth_cycle import COINCIDE, REACH, ToothCycle, leading, reach, teeth_between, tooth_cycle
+from loaded_tca.unloaded.transfers import Transfer, find_transfers
 
-REACH = 0.05
-"""Lag behind the leading pair, as a length at r_b2 over the module, beyond which a tooth pair counts as apart: no load
-that gears bear closes it."""
-SAMPLES = 4
-"""Positions per pitch at which the reach is looked for."""
-COINCIDE = 1e-13
-"""Difference of transmission errors [rad] that is rounding: the pair nearer to its pitch point then leads."""
 MOST_TEETH = 10**9
 """Tooth pairs are numbered below this, turns of the pinion away."""
 UNIFORM = 1e-6
 """Unevenness of the positions, relative to their step, within which they count as uniform."""
-TRANSFER = 1e-11
-"""Accuracy of a transfer point [rad]."""
-SECTIONS, SECTION_PASSES = 16, 4
-"""The end of a surface contact is found by cutting a pitch into 16 parts, four times over."""
-
-
-@dataclass(frozen=True, eq=False)
-class Transfer:
-    """Where one tooth pair hands over to another.
-
-    Attributes
-    ----------
-    pinion_angle : float [rad]
-    transmission_error : float [rad]
-    pairs : (int, int)
-        The leading pair before and after.
-    contacts : (ContactPoint, ContactPoint)
-        Of the two pairs, each in its own angles.
-    """
-
-    pinion_angle: float
-    transmission_error: float
-    pairs: tuple[int, int]
-    contacts: tuple[ContactPoint, ContactPoint]
-
-    @property
-    def is_continuous(self) -> bool:
-        """Whether the curves cross inside both their ranges: both contacts rest on the same borders, or on none."""
-        first, second = (_borders_held(contact.edges) for contact in self.contacts)
-        return bool((first == second).all())
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,10 +106,16 @@ class MeshPath:
         parts = {field.name: np.stack([getattr(p, field.name) for p in self.paths]) for field in fields(ContactPath)}
         return ContactPath(**{name: part[column, rows] for name, part in parts.items()})
 
-    @property
+    @cached_property
     def peak_to_peak(self) -> float:
-        """Largest minus smallest transmission error over the positions [rad]."""
-        return float(np.ptp(self.transmission_error))
+        """Largest minus smallest transmission error from the first position to the last [rad].
+
+        Over that range, whatever lies between the positions: transfers and summits are found by root finding.
+        """
+        low, high = float(self.pinion_angle[0]), float(self.pinion_angle[-1])
+        peaks = self._cycle.peaks(low, high, self.pairs) * self.pair.driving / self.pair.base_radii[1]
+        transfers = [transfer.transmission_error for transfer in self.transfers]
+        return float(np.ptp(np.concatenate([self.transmission_error, transfers, peaks])))
 
     @property
     def mean(self) -> float:
@@ -174,41 +144,35 @@ class MeshPath:
         return Harmonics(order, np.abs(turned), np.angle(turned))
 
     def contact_ratio(self, tolerance: float = 1e-3) -> float:
-        """Unloaded actual contact ratio: how many pairs touch on average, to within a tolerance.
+        """Unloaded actual contact ratio: how many pairs touch on average, to within a tolerance; at least 1.
+
+        It belongs to the gear pair, all of its teeth and a whole pitch, and does not depend on the positions.
 
         Parameters
         ----------
         tolerance : float [mm]
-            Lag as a length at the wheel's base circle up to which a pair counts as touching. Flanks that leave each
-            other one by one (profile crowning, misalignment) have a ratio near 1 for no tolerance, which grows with
-            it. Unmodified, aligned ones give eps_gamma, and a little more by the corner contact that follows. Between
-            positions the lag is taken as a straight line: the ratio is good to about one over their number.
+            Lag as a length at the wheel's base circle up to which a pair counts as touching, at most 0.05 modules.
+            Flanks that leave each other one by one (profile crowning, misalignment) have a ratio of 1 for no
+            tolerance, which grows with it. Unmodified, aligned ones give eps_gamma, and a little more by the corner
+            contact that follows.
 
         Raises
         ------
         InputError
-            If the positions do not divide a pitch evenly, or the tolerance is negative or not finite.
+            If the tolerance is negative, not finite, or beyond the reach within which teeth are traced.
         """
-        if not 0.0 <= tolerance < math.inf:
-            raise InputError(f"tolerance: {tolerance} mm is not a finite length >= 0")
-        count = self._count_per_pitch()
-        limit = tolerance / self.pair.base_radii[1] + COINCIDE
-        rows = np.argsort(-self.pairs)
-        lag = np.nan_to_num(self.lag[rows, :count], nan=REACH).ravel()
-        lag = np.concatenate([[REACH], lag, [REACH]])
-        low, high = np.minimum(lag[1:], lag[:-1]), np.maximum(lag[1:], lag[:-1])
-        share = (limit - low) / np.where(high > low, high - low, 1.0)
-        return float(np.where(high <= limit, 1.0, np.clip(share, 0.0, 1.0)).sum()) / count
+        most = REACH * self.pair.module
+        if not isinstance(tolerance, Real) or not 0.0 <= tolerance <= most:
+            raise InputError(f"tolerance: {tolerance!r} mm is not a length from 0 to {most:.6g} mm, {REACH} modules")
+        return max(1.0, self._cycle.touching_share(tolerance + COINCIDE * self.pair.base_radii[1]))
 
     @cached_property
     def transfers(self) -> tuple[Transfer, ...]:
-        """Where the leading pair changes, in the order of phi1; each found by root finding."""
-        changes = np.flatnonzero(np.diff(self.leading_pair))
-        found = []
-        for row in changes:
-            ends = (float(self.pinion_angle[row]), float(self.pinion_angle[row + 1]))
-            found += self._transfers_between(*ends, int(self.leading_pair[row]), int(self.leading_pair[row + 1]))
-        return tuple(found)
+        """Where the leading pair changes between the first and the last position, in the order of phi1.
+
+        Each is found by root finding, and does not depend on the positions between.
+        """
+        return find_transfers(self._cycle, float(self.pinion_angle[0]), float(self.pinion_angle[-1]), self.pairs)
 
     @cached_property
     def jumps(self) -> Array:
@@ -218,12 +182,21 @@ class MeshPath:
         contact of the one pair and the begin of that of the other, bridged by an edge; NaN if there is none within a
         pitch.
         """
-        return np.array([_jump(self.pair, transfer.contacts) for transfer in self.transfers])
+        return np.array([transfer.jump(self.pair) for transfer in self.transfers])
 
-    @property
+    @cached_property
     def is_continuous(self) -> bool:
-        """Whether every transfer is a crossing of two curves inside both their ranges."""
-        return all(transfer.is_continuous for transfer in self.transfers)
+        """Whether every transfer is a crossing of two curves inside both their ranges (``Transfer.is_continuous``).
+
+        It belongs to the gear pair: all of its teeth over a whole pitch, whatever the positions.
+        """
+        half = 0.5 * self.pair.pitch
+        teeth = self._cycle.teeth_between(-half, half)
+        return all(transfer.is_continuous for transfer in find_transfers(self._cycle, -half, half, teeth))
+
+    @cached_property
+    def _cycle(self) -> ToothCycle:
+        return tooth_cycle(self.pair)
 
     def _count_per_pitch(self) -> int:
         """Positions per pitch, if they are uniform and cover one."""
@@ -237,34 +210,6 @@ class MeshPath:
         raise InputError(
             f"pinion_angles: {len(self)} positions do not divide a pitch of {self.pair.pitch:.6g} rad into equal steps"
         )
-
-    def _transfers_between(self, low: float, high: float, old: int, new: int) -> list[Transfer]:
-        """Transfers between two angles with different leading pairs; halved until the pairs are neighbours."""
-        if abs(new - old) == 1 or high - low < TRANSFER:
-            return [self._transfer(low, high, old, new)]
-        middle = 0.5 * (low + high)
-        heights = _heights(self.pair, middle - self.pairs * self.pair.pitch)
-        lead = int(self.pairs[_leading(self.pair, heights[:, None], np.array([middle]), self.pairs)[0]])
-        first = self._transfers_between(low, middle, old, lead) if lead != old else []
-        return first + (self._transfers_between(middle, high, lead, new) if lead != new else [])
-
-    def _transfer(self, low: float, high: float, old: int, new: int) -> Transfer:
-        pitch, ends = self.pair.pitch, np.array([old, new])
-
-        def difference(angle: float) -> float:
-            first, second = _heights(self.pair, angle - ends * pitch)
-            return float(first - second)
-
-        edges = [difference(low), difference(high)]
-        if max(map(abs, edges)) <= COINCIDE * self.pair.base_radii[1]:
-            angle = float(np.clip(0.5 * (old + new) * pitch, low, high))
-        elif edges[0] * edges[1] >= 0.0:
-            angle = (low, high)[int(np.argmin(np.abs(edges)))]
-        else:
-            angle = float(brentq(difference, low, high, xtol=TRANSFER))
-        path = trace_contact(self.pair, angle - ends * pitch, warn=False)
-        contacts = (path[0], path[1])
-        return Transfer(angle, path[0].transmission_error, (old, new), contacts)
 
 
 def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: Iterable[int] | None = None) -> MeshPath:
@@ -306,22 +251,24 @@ def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: I
     """
     phi1 = _checked_angles(pair, pinion_angles)
     chosen = None if teeth is None else _checked_teeth(teeth)
-    low, high = _window(pair)
-    pairs = _teeth_between(phi1, low, high, pair.pitch) if chosen is None else chosen
+    low, high = reach(pair)
+    pairs = teeth_between(phi1[0], phi1[-1], (low, high), pair.pitch) if chosen is None else chosen
     own = phi1 - pairs[:, None] * pair.pitch
     rows = np.flatnonzero((own >= low) & (own <= high))
     if not rows.size:
         raise GeometryError(f"no common flank: none of the tooth pairs {pairs.tolist()} comes into reach")
-    paths = _split(trace_contact(pair, own.ravel()[rows], warn=False), rows, own)
-    heights = np.stack([pair.driving * path.transmission_error for path in paths])
-    heights = np.where(np.isnan(heights), -np.inf, heights) * pair.base_radii[1]
-    column = _leading(pair, heights, phi1, pairs)
-    top = heights[column, np.arange(len(phi1))]
+    path = trace_contact(pair, own.ravel()[rows], warn=False)
+    heights = np.full(own.size, -np.inf)
+    heights[rows] = np.where(path.touches, pair.driving * path.transmission_error * pair.base_radii[1], -np.inf)
+    column = leading(pair, heights.reshape(own.shape), phi1, pairs)
+    top = heights.reshape(own.shape)[column, np.arange(len(phi1))]
     if (apart := np.isinf(top)).any():
         raise GeometryError(
             f"none of the tooth pairs {pairs.tolist()} touches at {int(apart.sum())} of {len(phi1)} positions, first "
             f"at pinion angle {phi1[apart][0]:.6g} rad"
         )
+    near = np.flatnonzero(heights >= np.tile(top, len(pairs)) - REACH * pair.module)
+    paths = _split(path, np.searchsorted(rows, near), near, own)
     mesh = MeshPath(pair, phi1, pairs, paths, pairs[column], pair.driving * top / pair.base_radii[1])
     _warn_of_fillets(mesh)
     return mesh
@@ -330,75 +277,31 @@ def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: I
 def _checked_angles(pair: GearPair, pinion_angles: ArrayLike | None) -> Array:
     if pinion_angles is None:
         return np.linspace(-0.5 * pair.pitch, 0.5 * pair.pitch, POSITIONS)
-    phi1 = np.asarray(pinion_angles, dtype=float)
+    wanted = "finite, increasing numbers in one dimension are asked for"
+    try:
+        phi1 = np.asarray(pinion_angles, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"pinion_angles: {wanted}") from None
     if phi1.ndim != 1 or not phi1.size or not np.isfinite(phi1).all() or (np.diff(phi1) <= 0.0).any():
-        raise InputError(
-            f"pinion_angles: shape {phi1.shape}; finite, increasing numbers in one dimension are asked for"
-        )
+        raise InputError(f"pinion_angles: shape {phi1.shape}; {wanted}")
     return phi1
 
 
 def _checked_teeth(teeth: Iterable[int]) -> NDArray[np.int_]:
     chosen = list(teeth) if isinstance(teeth, Iterable) else [teeth]
-    whole = all(isinstance(k, int | np.integer) and abs(k) < MOST_TEETH for k in chosen)
+    whole = all(isinstance(k, int | np.integer) and not isinstance(k, bool) and abs(k) < MOST_TEETH for k in chosen)
     if not whole or not chosen or len(set(chosen)) < len(chosen):
         raise InputError(f"teeth: {chosen}; whole numbers are asked for, at least one, none twice")
     return np.array(chosen, dtype=int)
 
 
-def _teeth_between(phi1: Array, low: float, high: float, pitch: float) -> NDArray[np.int_]:
-    """Tooth pairs that come within reach over the angles, in the order 0, +1, -1, ..."""
-    first, last = math.ceil((phi1[0] - high) / pitch), math.floor((phi1[-1] - low) / pitch)
-    return np.array(sorted(range(first, last + 1), key=lambda k: (abs(k), -k)), dtype=int)
-
-
-def _window(pair: GearPair) -> tuple[float, float]:
-    """Own pinion angles [rad] between which a tooth pair is within reach of the leading one, and a step more."""
-    step, first = pair.pitch / SAMPLES, -2
-
-    def pitches(start: int, count: int) -> Array:
-        own = step * np.arange(start * SAMPLES, (start + count) * SAMPLES)
-        return _heights(pair, own).reshape(count, SAMPLES)
-
-    heights = pitches(first, 5)
-    while True:
-        near = np.isfinite(heights) & (heights >= heights.max(axis=0) - REACH * pair.module)
-        if not near[[0, -1]].any():
-            break
-        if near[-1].any():
-            heights = np.concatenate([heights, pitches(first + len(heights), 1)])
-        if near[0].any():
-            first -= 1
-            heights = np.concatenate([pitches(first, 1), heights])
-    if not near.any():
-        raise GeometryError(
-            "no common flank: the flanks of no tooth pair cover a common region; check tip diameters, centre distance "
-            "and axial offset"
-        )
-    touching = step * (first * SAMPLES + np.flatnonzero(near))
-    return float(touching[0]) - step, float(touching[-1]) + step
-
-
-def _heights(pair: GearPair, own: Array) -> Array:
-    """Ease-off [mm] of the first touch at own pinion angles; -inf where the flanks share no region."""
-    touch = first_touch(pair, own)
-    return np.where(touch.touches, touch.value, -np.inf)
-
-
-def _leading(pair: GearPair, heights: Array, phi1: Array, pairs: NDArray[np.int_]) -> NDArray[np.int_]:
-    """Column of the leading pair (n,) for heights (m, n) [mm]."""
-    distance = np.abs(phi1 / pair.pitch - pairs[:, None]) + UNIFORM * pairs[:, None]
-    tie = heights >= heights.max(axis=0) - COINCIDE * pair.base_radii[1]
-    return np.asarray(np.where(tie, distance, np.inf).argmin(axis=0))
-
-
-def _split(path: ContactPath, rows: NDArray[np.int_], own: Array) -> tuple[ContactPath, ...]:
-    """One path per tooth, (n,) rows each, from the rows found of all of them."""
+def _split(path: ContactPath, found: NDArray[np.int_], rows: NDArray[np.int_], own: Array) -> tuple[ContactPath, ...]:
+    """One path per tooth, (n,) rows each: those ``found`` of all of them go to ``rows``, the others are apart."""
     parts = {}
     for field in fields(ContactPath):
         part = getattr(path, field.name)
         full = np.full((own.size, *part.shape[1:]), np.nan if part.dtype.kind == "f" else 0, dtype=part.dtype)
-        full[rows] = part
+        full[rows] = part[found]
         parts[field.name] = full.reshape(*own.shape, *part.shape[1:])
     parts["pinion_angle"] = own
     return tuple(ContactPath(**{name: part[k] for name, part in parts.items()}) for k in range(len(own)))
@@ -412,34 +315,3 @@ def _warn_of_fillets(mesh: MeshPath) -> None:
             f"fillet interference: at {count} of {len(mesh)} positions the leading contact lies on a root form circle"
         )
         warnings.warn(message + ", below which the flank is not an involute", AccuracyWarning, stacklevel=3)
-
-
-def _jump(pair: GearPair, contacts: tuple[ContactPoint, ContactPoint]) -> float:
-    """Change of the transmission error over the edge contact at a transfer [rad]."""
-    held = [_borders_held(contact.edges) for contact in contacts]
-    if (held[0] == held[1]).all():
-        return 0.0
-    common = held[0] & held[1]
-    before, after = (_end_of(pair, one, common, way) for one, way in zip(contacts, (-1.0, 1.0), strict=True))
-    return after - before
-
-
-def _borders_held(edges: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Tips and roots of both gears, then the sides of either: where two faces end together, their edges alternate."""
-    pinion, wheel = edges[..., : len(BORDER_NAMES)], edges[..., len(BORDER_NAMES) :]
-    return np.concatenate([pinion[..., :2], wheel[..., :2], pinion[..., 2:] | wheel[..., 2:]], axis=-1)
-
-
-def _end_of(pair: GearPair, contact: ContactPoint, borders: NDArray[np.bool_], way: float) -> float:
-    """Transmission error where a contact rests on ``borders`` alone again, going one way; NaN if not within a pitch."""
-    start, length = contact.pinion_angle, way * pair.pitch
-    for _ in range(SECTION_PASSES):
-        path = trace_contact(pair, start + length * np.linspace(0.0, 1.0, SECTIONS + 1), warn=False)
-        free = path.touches & (_borders_held(path.edges) == borders).all(axis=-1)
-        if not free.any():
-            return math.nan
-        first = int(free.argmax())
-        if first == 0:
-            break
-        start, length = float(path.pinion_angle[first - 1]), length / SECTIONS
-    return float(path.transmission_error[first])

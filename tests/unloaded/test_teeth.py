@@ -9,18 +9,20 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
-from pairs import cylindrical_mesh, gear_pair, highest_on_grid
+from pairs import cylindrical_mesh, gear_pair, highest_on_grid, pairs
 
 from loaded_tca import AccuracyWarning, GeometryError, InputError, trace_contact
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.pair import Mounting
-from loaded_tca.unloaded.teeth import REACH, MeshPath, trace_teeth
+from loaded_tca.unloaded.teeth import MeshPath, trace_teeth
+from loaded_tca.unloaded.tooth_cycle import REACH
 
 ARCSEC = math.degrees(3600.0)
 ROUNDING = 1e-13  # rad
 CROSSING = 1e-10  # rad, promised accuracy of a transfer point
 LEAD = FlankModifications(lead_crowning=0.02)
 BOTH = FlankModifications(lead_crowning=0.02, profile_crowning=0.01)
+RELIEF = FlankModifications(lead_crowning=0.02, tip_relief=0.02, tip_relief_start=104.0, tip_relief_form="linear")
 TILTED = Mounting(out_of_plane=1e-3)
 
 drives = pytest.mark.parametrize("driving", ["pinion", "wheel"])
@@ -98,7 +100,28 @@ def test_lag_is_zero_for_the_leading_pair_and_positive_or_nan_for_the_others():
     assert_allclose(mesh.lag[column, np.arange(len(mesh))], 0.0, atol=ROUNDING)
     assert np.nanmin(mesh.lag) >= -ROUNDING
     far = np.nanmax(mesh.lag) * mesh.pair.base_radii[1]
-    assert REACH * mesh.pair.module < far < 10.0 * REACH * mesh.pair.module, "a sample beyond the reach, no more"
+    assert 0.5 * REACH * mesh.pair.module < far <= REACH * mesh.pair.module
+
+
+def test_pairs_are_nan_exactly_where_they_lag_beyond_the_reach():
+    pair = gear_pair(BOTH, mounting=TILTED, helix_deg=15.0)
+    mesh = trace_teeth(pair, pitch(pair, 41))
+    for path in mesh.paths:
+        own = trace_contact(pair, path.pinion_angle).transmission_error
+        near = (mesh.transmission_error - own) * pair.base_radii[1] <= REACH * pair.module
+        assert_allclose(path.touches, near)
+        assert_allclose(path.transmission_error[near], own[near], atol=ROUNDING)
+
+
+@drives
+@pytest.mark.parametrize("axial_offset", [0.0, 24.9])
+def test_one_position_alone_has_the_teeth_of_many(axial_offset, driving):
+    """Also where the flanks share a strip of 0.1 mm, far narrower than the scan that tells the reach."""
+    pair = gear_pair(BOTH, mounting=Mounting(axial_offset=axial_offset), driving=driving, helix_deg=15.0)
+    many = trace_teeth(pair, pitch(pair, 9))
+    alone = [trace_teeth(pair, [angle]) for angle in many.pinion_angle]
+    assert_allclose([mesh.transmission_error[0] for mesh in alone], many.transmission_error, atol=ROUNDING)
+    assert [mesh.leading_pair[0] for mesh in alone] == many.leading_pair.tolist()
 
 
 def test_leading_contact_is_that_of_the_leading_pair():
@@ -126,16 +149,34 @@ def test_unmodified_aligned_pair_has_no_transmission_error_and_no_jump(mesh, dri
 @pytest.mark.parametrize("mesh", [{}, {"teeth": (20, 60), "shifts": (0.3, -0.1)}, {"helix_deg": 15.0}])
 def test_contact_ratio_of_unmodified_gears_is_the_geometric_one(mesh):
     """Beyond the path of contact the corner contact lags with the square of the way: by 1 nm after 1/1000 pitch."""
-    pair = gear_pair(**mesh)
-    obtained = trace_teeth(pair, pitch(pair, 401)).contact_ratio(1e-6)
-    assert_allclose(obtained, cylindrical_mesh(**mesh).total_contact_ratio, atol=0.005)
+    traced, geometric = trace_teeth(gear_pair(**mesh), [0.0]), cylindrical_mesh(**mesh).total_contact_ratio
+    assert_allclose(traced.contact_ratio(0.0), geometric, atol=1e-5)
+    corner = [traced.contact_ratio(tolerance) - geometric for tolerance in (1e-8, 1e-6, 1e-4)]
+    assert_allclose(np.divide(corner[1:], corner[:-1]), 10.0, rtol=0.08)  # the square root of 100
+    assert 1e-3 < corner[1] < 3e-3
 
 
 def test_contact_ratio_of_crowned_gears_grows_from_one_with_the_tolerance():
-    mesh = trace_teeth(gear_pair(BOTH), pitch(gear_pair(BOTH), 101))
+    mesh = trace_teeth(gear_pair(BOTH))
     ratios = [mesh.contact_ratio(tolerance) for tolerance in (0.0, 1e-3, 5e-3, 2e-2)]
-    assert ratios[0] == pytest.approx(1.0, abs=0.02)  # two steps of the positions
+    assert ratios[0] == pytest.approx(1.0, abs=1e-5)
     assert (np.diff(ratios) > 0.0).all()
+
+
+def test_contact_ratio_of_parabolas_follows_from_their_coefficient():
+    """h = -c x^2: a pair lags by c p (2|x| - p), so that the ratio is 1 + tolerance/(c p^2), p the pitch."""
+    pair = gear_pair(BOTH)
+    own = np.array([-0.2, 0.0, 0.2]) * pair.pitch
+    square = np.polynomial.Polynomial.fit(own, trace_contact(pair, own).transmission_error, 2).convert().coef[2]
+    drop = -square * pair.base_radii[1] * pair.pitch**2
+    assert_allclose(trace_teeth(pair).contact_ratio(1e-3), 1.0 + 1e-3 / drop, rtol=5e-3)
+
+
+@given(pairs(), st.sampled_from([0.0, 1e-6, 1e-3, 2e-2]))
+@settings(max_examples=5, deadline=None)
+def test_contact_ratio_is_never_below_one_and_does_not_depend_on_the_positions(pair, tolerance):
+    ratios = [trace_teeth(pair, angles).contact_ratio(tolerance) for angles in ([0.0], pitch(pair, 3, -0.3))]
+    assert ratios[0] == ratios[1] >= 1.0
 
 
 # Transfers and jumps
@@ -159,6 +200,15 @@ def test_transfer_does_not_depend_on_the_positions():
     pair = gear_pair(BOTH, mounting=TILTED, helix_deg=15.0)
     found = [trace_teeth(pair, pitch(pair, count, 0.0)).transfers[0].pinion_angle for count in (3, 21, 64)]
     assert_allclose(found, found[0], atol=CROSSING)
+
+
+def test_contacts_of_a_transfer_touch_at_once():
+    """Both pairs stand at the same wheel angle, a pitch of the wheel apart."""
+    pair = gear_pair(BOTH, mounting=TILTED, helix_deg=15.0)
+    transfer = trace_teeth(pair, pitch(pair, 2, 0.0)).transfers[0]
+    first, second = transfer.contacts
+    assert_allclose(first.pinion_angle - second.pinion_angle, pair.pitch, rtol=1e-12)
+    assert_allclose(first.wheel_angle - second.wheel_angle, pair.ratio * pair.pitch, rtol=1e-9)
 
 
 def test_coarse_positions_over_several_pitches_have_every_transfer():
@@ -276,15 +326,64 @@ def test_harmonics_do_not_depend_on_where_the_pitch_starts():
     assert_allclose(np.exp(1j * found[0].phase), np.exp(1j * found[1].phase), atol=0.02)
 
 
-def test_peak_to_peak_is_that_of_the_positions():
-    mesh = with_error(gear_pair(BOTH), np.sin)
-    assert mesh.peak_to_peak == pytest.approx(2.0, rel=1e-2)
+CASES = [
+    {"pinion": BOTH},
+    {"pinion": BOTH, "mounting": TILTED, "helix_deg": 15.0},
+    {"pinion": LEAD, "mounting": TILTED, "helix_deg": 15.0},
+    {"pinion": RELIEF, "mounting": TILTED, "helix_deg": 15.0},
+]
+
+
+@drives
+@pytest.mark.parametrize("case", CASES)
+def test_peak_to_peak_does_not_depend_on_the_positions(case, driving):
+    pair = gear_pair(driving=driving, **case)
+    found = [trace_teeth(pair, pitch(pair, count)).peak_to_peak for count in (2, 5, 21, 200)]
+    assert_allclose(found, found[0], rtol=1e-9)
+
+
+@drives
+@pytest.mark.parametrize("case", CASES[1:3])
+def test_peak_to_peak_is_that_of_positions_packed_about_the_highest_and_the_lowest(case, driving):
+    """No use is made of the transfer and the summit that the package finds."""
+    pair = gear_pair(driving=driving, **case)
+    coarse = trace_teeth(pair, pitch(pair, 41))
+    values = []
+    for pick in (np.argmax, np.argmin):
+        centre, width = coarse.pinion_angle[pick(coarse.transmission_error)], pair.pitch / 40
+        for _ in range(5):
+            fine = trace_teeth(pair, centre + width * np.linspace(-1.0, 1.0, 41))
+            centre, width = fine.pinion_angle[pick(fine.transmission_error)], width / 15
+        values.append(fine.transmission_error[pick(fine.transmission_error)])
+    assert_allclose(coarse.peak_to_peak, values[0] - values[1], rtol=1e-6)
+
+
+def test_peak_to_peak_of_part_of_a_pitch_is_that_of_its_ends_where_the_error_only_falls():
+    pair = gear_pair(BOTH)
+    mesh = trace_teeth(pair, np.array([0.1, 0.4]) * pair.pitch)
+    assert mesh.peak_to_peak == pytest.approx(float(np.ptp(mesh.transmission_error)), rel=1e-12)
+    assert trace_teeth(pair, [0.1]).peak_to_peak == 0.0
+
+
+def test_peak_to_peak_of_some_pitches_is_that_of_one():
+    pair = gear_pair(BOTH, mounting=TILTED)
+    found = [
+        trace_teeth(pair, [start * pair.pitch, end * pair.pitch]).peak_to_peak for start, end in ((0, 1), (-1.2, 2.9))
+    ]
+    assert found[1] == pytest.approx(found[0], rel=1e-9)
+
+
+def test_peak_to_peak_of_one_tooth_alone_is_that_of_its_own_curve():
+    pair = gear_pair(BOTH)
+    mesh = trace_teeth(pair, np.linspace(-0.6, 0.6, 4) * pair.pitch, teeth=[0])
+    dense = trace_contact(pair, np.linspace(-0.6, 0.6, 2001) * pair.pitch).transmission_error
+    assert_allclose(mesh.peak_to_peak, np.ptp(dense), rtol=1e-6)
 
 
 @pytest.mark.parametrize("angles", [[0.0], [0.0, 0.01], [0.0, 0.01, 0.05], np.linspace(0.0, 0.9, 30) ** 2])
 def test_numbers_of_one_pitch_need_uniform_positions(angles):
     mesh = trace_teeth(gear_pair(BOTH), np.asarray(angles) * 0.2)
-    for quantity in (lambda: mesh.mean, lambda: mesh.area, lambda: mesh.harmonics(1), mesh.contact_ratio):
+    for quantity in (lambda: mesh.mean, lambda: mesh.area, lambda: mesh.harmonics(1)):
         with pytest.raises(InputError, match="do not divide a pitch"):
             quantity()
 
@@ -298,7 +397,7 @@ def test_harmonics_beyond_the_positions_are_refused(count):
 # What is refused, and warned of
 
 
-@pytest.mark.parametrize("angles", [[], [[0.0, 0.1]], [0.0, math.nan], [0.1, 0.0], [0.0, 0.0], 0.0])
+@pytest.mark.parametrize("angles", [[], [[0.0, 0.1]], [0.0, math.nan], [0.1, 0.0], [0.0, 0.0], 0.0, "ab", [1j]])
 def test_angles_that_do_not_increase_are_refused(angles):
     with pytest.raises(InputError, match="finite, increasing numbers"):
         trace_teeth(gear_pair(), angles)
@@ -341,15 +440,15 @@ def test_fillet_interference_is_warned_of_only_where_it_leads():
         trace_teeth(gear_pair(hollow, dedendum_coefficient=1.05))
 
 
-@pytest.mark.parametrize("teeth", [[math.nan], [math.inf], [10**30, 0], [0.5], 1.5, "ab"])
+@pytest.mark.parametrize("teeth", [[math.nan], [math.inf], [10**30, 0], [0.5], 1.5, "ab", [True]])
 def test_teeth_that_are_no_whole_numbers_are_refused(teeth):
     with pytest.raises(InputError, match=r"teeth: .* whole numbers"):
         trace_teeth(gear_pair(), [0.0], teeth=teeth)
 
 
-@pytest.mark.parametrize("tolerance", [-1.0, math.nan, math.inf])
-def test_contact_ratio_of_no_length_is_refused(tolerance):
-    with pytest.raises(InputError, match=r"tolerance: .* finite length"):
+@pytest.mark.parametrize("tolerance", [-1.0, 0.16, math.nan, math.inf, "1 um"])
+def test_contact_ratio_of_no_length_within_reach_is_refused(tolerance):
+    with pytest.raises(InputError, match=r"tolerance: .* not a length from 0 to 0.15 mm, 0.05 modules"):
         trace_teeth(gear_pair()).contact_ratio(tolerance)
 
 

@@ -1,0 +1,260 @@
+r"""The way of one tooth pair through the mesh, which all others repeat a pitch later.
+
+Whatever many teeth do follows from the height h(x) of one of them [mm]: the ease-off of its first touch at the own
+pinion angle x. Pair k has h(phi1 - k pitch) and the envelope is
+
+.. math:: H(\varphi_1) = \max_k h(\varphi_1 - k\,2\pi/z_1) .
+
+The height is sampled at 32 angles per pitch, at the same places for each tooth; what lies between is found by root
+finding, so that no result depends on the positions that a user asks for.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loaded_tca.errors import GeometryError
+from loaded_tca.flanks.jet import Array
+from loaded_tca.pair import GearPair
+from loaded_tca.unloaded.ease_off import EaseOff
+from loaded_tca.unloaded.roots import find_roots
+from loaded_tca.unloaded.search import first_touch
+
+REACH = 0.05
+"""Lag behind the leading pair, as a length at r_b2 over the module, beyond which a tooth pair counts as apart: no load
+that gears bear closes it."""
+COINCIDE = 1e-13
+"""Difference of transmission errors [rad] that is rounding: the pair nearer to its pitch point then leads."""
+SAMPLES = 32
+"""Angles per pitch at which the height is sampled."""
+SCANS = 8
+"""Angles per pitch at which the reach is looked for."""
+SCAN = (9, 17)
+"""Points of a flank along the profile and along the face that tell the reach."""
+NUDGE = 1e-5
+"""Half the way over which a slope is taken [rad]: rounding 1e-14/NUDGE, truncation NUDGE^2."""
+LEVEL = 1e-11
+"""Change of the transmission error between two samples [rad] that is rounding of the slope, no summit."""
+CLOSE = 1e-11
+"""Accuracy of a transfer point [rad]."""
+BORDER = 1e-8
+"""Accuracy of the angle at which a tooth pair begins or ceases to touch [rad]."""
+SUMMIT = 1e-6
+"""Accuracy of the angle of a summit [rad]: a round one is then right to rounding, a crest to 1e-5 of its
+height. Closer to a crest where two borders meet the ascents may fail."""
+NEARER = 1e-6
+"""Part of a pitch by which the later pair counts as farther, so that no two are equally far from their pitch points."""
+
+Integers = NDArray[np.int_]
+
+
+@dataclass(frozen=True, eq=False)
+class ToothCycle:
+    """Height of one tooth pair over its own pinion angle, wherever it is within reach of the leading one.
+
+    Attributes
+    ----------
+    pair : GearPair
+    first : int
+        The samples lie at the own pinion angles (first, first + 1, ...) times ``step``.
+    height : (w,) array [mm]
+        Ease-off of the first touch; -inf without a common region.
+    slope : (w,) array [mm/rad]
+        Its derivative.
+    """
+
+    pair: GearPair
+    first: int
+    height: Array
+    slope: Array
+
+    @property
+    def step(self) -> float:
+        """Between two samples [rad]."""
+        return self.pair.pitch / SAMPLES
+
+    @property
+    def own(self) -> Array:
+        """Own pinion angles of the samples [rad]."""
+        return self.step * (self.first + np.arange(len(self.height)))
+
+    def teeth_between(self, low: float, high: float) -> Integers:
+        """Tooth pairs within reach between two pinion angles, in the order 0, +1, -1, ..."""
+        return teeth_between(low, high, (float(self.own[0]), float(self.own[-1])), self.pair.pitch)
+
+    def heights(self, angle: Array, teeth: Integers) -> Array:
+        """Heights (m, n) [mm] of the tooth pairs (m,) at pinion angles (n,); -inf out of reach."""
+        own = angle - teeth[:, None] * self.pair.pitch
+        found = np.full(own.shape, -np.inf)
+        rows = (own >= self.own[0]) & (own <= self.own[-1])
+        found[rows] = height_and_slope(self.pair, own[rows])[0]
+        return found
+
+    def sampled(self, index: Integers, teeth: Integers) -> Array:
+        """The same heights at the pinion angles index * step, from the samples."""
+        place = index - teeth[:, None] * SAMPLES - self.first
+        inside = (place >= 0) & (place < len(self.height))
+        return np.where(inside, self.height[np.where(inside, place, 0)], -np.inf)
+
+    @cached_property
+    def extrema(self) -> Array:
+        """Own pinion angles at which the height is level, from above or below [rad]."""
+        rounding = LEVEL * self.pair.base_radii[1] / self.step
+        ends = np.stack([self.slope[:-1], self.slope[1:]])
+        turn = (ends[0] * ends[1] < 0.0) & (np.abs(ends).max(axis=0) > rounding)
+        rows = np.flatnonzero(turn & np.isfinite(self.height[:-1] + self.height[1:]))
+        brackets = np.stack([self.own[rows], self.own[rows + 1]])
+        return find_roots(lambda own, _: height_and_slope(self.pair, own)[1], brackets, ends[:, rows], SUMMIT)
+
+    def peaks(self, low: float, high: float, teeth: Integers) -> Array:
+        """Envelope [mm] of the tooth pairs (m,) wherever one of them is level between two pinion angles."""
+        angle = (self.extrema + teeth[:, None] * self.pair.pitch).ravel()
+        top = self.heights(angle[(angle > low) & (angle < high)], teeth).max(axis=0)
+        return top[np.isfinite(top)]
+
+    def touching_share(self, lag: float) -> float:
+        """Pitches over which a tooth pair lags behind the best of the others by no more than a length [mm]."""
+        count, most = len(self.height) // SAMPLES + 1, 2.0 * REACH * self.pair.module
+        others = np.concatenate([np.arange(-count, 0), np.arange(1, count + 1)])
+
+        def excess(own: Array, rivals: Array) -> Array:
+            """Lag less what is allowed, kept within bounds; out of reach it is too much."""
+            own, best = np.maximum(own, -self._far), np.maximum(rivals.max(axis=0), -self._far)
+            return np.where(own > -self._far, np.clip(best - own, -most, most), most) - lag
+
+        def excess_at(own: Array, _: Integers) -> Array:
+            heights = self.heights(own, np.concatenate([[0], others]))
+            return excess(heights[0], heights[1:])
+
+        index = self.first + np.arange(-1, len(self.height) + 1)
+        sample = excess(self.sampled(index, np.array([0]))[0], self.sampled(index, others))
+        rows = np.flatnonzero(np.diff(sample <= 0.0))
+        rows = np.stack([rows, rows + 1])
+        found = find_roots(excess_at, self.step * index[rows], sample[rows], BORDER)
+        return float((found[1::2] - found[::2]).sum()) / self.pair.pitch
+
+    def changes(self, low: float, high: float, teeth: Integers) -> tuple[Array, Integers]:
+        """Pinion angles (n,) between two others at which the lead changes, and the pairs before and after (2, n)."""
+        index = np.arange(math.floor(low / self.step) + 1, math.ceil(high / self.step))
+        ends = self.heights(np.array([low, high]), teeth)
+        heights = np.concatenate([ends[:, :1], self.sampled(index, teeth), ends[:, 1:]], axis=1)
+        angle = np.concatenate([[low], index * self.step, [high]])
+        lead = teeth[leading(self.pair, heights, angle, teeth)]
+        rows = np.flatnonzero(np.diff(lead))
+        old_new, brackets = np.stack([lead[rows], lead[rows + 1]]), np.stack([angle[rows], angle[rows + 1]])
+
+        def difference(at: Array, which: Integers) -> Array:
+            own = at - old_new[:, which] * self.pair.pitch
+            heights = np.maximum(height_and_slope(self.pair, own.ravel())[0], -self._far).reshape(own.shape)
+            return heights[0] - heights[1]
+
+        every = np.arange(len(rows))
+        values = np.stack([difference(side, every) for side in brackets])
+        found = find_roots(difference, brackets, values, CLOSE)
+        tie = np.abs(values).max(axis=0) <= COINCIDE * self.pair.base_radii[1]
+        found[tie] = np.clip(0.5 * old_new.sum(axis=0) * self.pair.pitch, *brackets)[tie]
+        return found, old_new
+
+    @property
+    def _far(self) -> float:
+        """Stands for the depth of a tooth pair without a common region [mm]."""
+        return 1e3 * self.pair.module
+
+
+def tooth_cycle(pair: GearPair) -> ToothCycle:
+    """Height of one tooth pair wherever it is within reach of the leading one.
+
+    Raises
+    ------
+    GeometryError
+        If the flanks of no tooth pair share a region.
+    """
+    low, high = (angle / pair.pitch * SAMPLES for angle in reach(pair))
+    index = np.arange(math.floor(low), math.ceil(high) + 1)
+    return ToothCycle(pair, int(index[0]), *height_and_slope(pair, index * (pair.pitch / SAMPLES)))
+
+
+def reach(pair: GearPair) -> tuple[float, float]:
+    """Own pinion angles [rad] between which a tooth pair can be within reach of the leading one, and a step more.
+
+    A coarse scan of the flank is enough: it misses the height of the first touch by far less than the reach.
+
+    Raises
+    ------
+    GeometryError
+        If the flanks of no tooth pair share a region.
+    """
+    step, first, last = pair.pitch / SCANS, -2, 3
+    height, common = _scan(pair, step * np.arange(first * SCANS, last * SCANS))
+    while True:
+        shape = (last - first, SCANS)
+        best = height.reshape(shape).max(axis=0)
+        near = common if not np.isfinite(best).any() else np.isfinite(height)
+        near = near & (height >= np.tile(best, shape[0]) - REACH * pair.module)
+        if not near[:SCANS].any() and not near[-SCANS:].any():
+            break
+        more = [step * np.arange(k * SCANS, (k + 1) * SCANS) for k in (first - 1, last)]
+        (below, common_below), (above, common_above) = (_scan(pair, own) for own in more)
+        height = np.concatenate([below, height, above])
+        common = np.concatenate([common_below, common, common_above])
+        first, last = first - 1, last + 1
+    if not near.any():
+        raise GeometryError(
+            "no common flank: the flanks of no tooth pair cover a common region; check tip diameters, centre distance "
+            "and axial offset"
+        )
+    touching = step * (first * SCANS + np.flatnonzero(near))
+    return float(touching[0]) - step, float(touching[-1]) + step
+
+
+def _scan(pair: GearPair, own: Array) -> tuple[Array, Array]:
+    """Highest point of a coarse grid (n,) [mm], -inf if none is common; whether one is within a spacing of it."""
+    rho, z = pair.pinion.grid(*SCAN)
+    shape = (len(own), *SCAN)
+    value, borders = EaseOff(pair).heights(
+        np.broadcast_to(own[:, None, None], shape), np.broadcast_to(rho, shape), np.broadcast_to(z, shape)
+    )
+    inside = borders.min(axis=-1)
+    height_step, width_step = (length / (count - 1) for length, count in zip(pair.pinion.extent, SCAN, strict=True))
+    height = np.where(inside >= 0.0, value, -np.inf).max(axis=(1, 2))
+    return height, inside.max(axis=(1, 2)) >= -2.0 * math.hypot(height_step, width_step)
+
+
+def teeth_between(low: float, high: float, window: tuple[float, float], pitch: float) -> Integers:
+    """Tooth pairs whose own angle comes into the window between two pinion angles, in the order 0, +1, -1, ..."""
+    first, last = math.ceil((low - window[1]) / pitch), math.floor((high - window[0]) / pitch)
+    return np.array(sorted(range(first, last + 1), key=lambda k: (abs(k), -k)), dtype=int)
+
+
+def leading(pair: GearPair, heights: Array, phi1: Array, teeth: Integers) -> Integers:
+    """Row of the leading pair (n,) for heights (m, n) [mm]; of equals, the one nearer to its pitch point."""
+    distance = np.abs(phi1 / pair.pitch - teeth[:, None]) + NEARER * teeth[:, None]
+    tie = heights >= heights.max(axis=0) - COINCIDE * pair.base_radii[1]
+    return np.asarray(np.where(tie, distance, np.inf).argmin(axis=0))
+
+
+def height_and_slope(pair: GearPair, own: Array) -> tuple[Array, Array]:
+    r"""Height h (n,) [mm] of the first touch and dh/d own [mm/rad]; -inf and zero without a common region.
+
+    The point of contact moves, but to first order only what changes at a fixed point counts: with the multipliers
+    :math:`\lambda_b` of the borders c_b that hold it, :math:`h' = \partial e/\partial\varphi_1 + \sum_b \lambda_b\,
+    \partial c_b/\partial\varphi_1`.
+    """
+    height, slope = np.full(len(own), -np.inf), np.zeros(len(own))
+    if not len(own):
+        return height, slope
+    touch = first_touch(pair, own)
+    rows = np.flatnonzero(touch.touches)
+    height[rows] = touch.value[rows]
+    if rows.size:
+        field = EaseOff(pair, touch.beyond[rows] if touch.beyond.shape[1] else None)
+        (after, on), (before, back) = (
+            field.heights(own[rows] + way * NUDGE, touch.rho[rows], touch.z[rows]) for way in (1.0, -1.0)
+        )
+        slope[rows] = (after - before + (touch.multipliers[rows] * (on - back)).sum(axis=-1)) / (2.0 * NUDGE)
+    return height, slope
