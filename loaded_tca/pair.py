@@ -24,7 +24,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from loaded_tca.errors import InputError
+from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.involute import InvoluteFlank
 from loaded_tca.flanks.jet import Array
@@ -252,6 +252,8 @@ def cylindrical_pair(
     ------
     InputError
         If driving or sense is not one of the two, or a relief starts off the active profile.
+    GeometryError
+        If the teeth wind a whole turn around a gear over its face width.
 
     Examples
     --------
@@ -262,6 +264,7 @@ def cylindrical_pair(
     """
     turning, drive = signs_of(driving, sense)
     side = turning * drive
+    _require_less_than_a_turn(mesh)
     flanks = [_involute_flank(mesh, member, side, modifications[member]) for member in (0, 1)]
     origin, axes = mounting.place_parallel(mesh.working_centre_distance)
     return GearPair(
@@ -277,6 +280,17 @@ def cylindrical_pair(
         base_radii=(mesh.pinion.base_radius, mesh.wheel.base_radius),
         face_width=min(mesh.pinion.face_width, mesh.wheel.face_width),
     )
+
+
+def _require_less_than_a_turn(mesh: CylindricalMesh) -> None:
+    """Refuse teeth that wind around their gear: in one position they would be in mesh at two places."""
+    for gear in (mesh.pinion, mesh.wheel):
+        turn = gear.face_width * abs(math.tan(gear.base_helix_angle)) / gear.base_radius
+        if turn >= 2.0 * math.pi:
+            raise GeometryError(
+                f"{gear.name}: its teeth wind {turn / (2.0 * math.pi):.3g} times around the gear over its face width, "
+                f"{gear.face_width:.6g} mm; less than one turn is allowed"
+            )
 
 
 def _involute_flank(mesh: CylindricalMesh, member: int, side: int, modifications: FlankModifications) -> Flank:

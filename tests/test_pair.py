@@ -165,3 +165,8 @@ def test_mounting_error_that_is_not_finite_is_refused_all_at_once():
     with pytest.raises(InputError) as caught:
         Mounting(in_plane=math.nan, axial_offset=math.inf)
     assert caught.value.problems == ("in_plane: nan rad is not finite", "axial_offset: inf mm is not finite")
+
+
+def test_teeth_that_wind_around_the_gear_are_refused():
+    with pytest.raises(GeometryError, match=r"pinion: its teeth wind .* times around the gear .* 300 mm"):
+        gear_pair(teeth=(14, 62), module=1.0, helix_deg=20.0, width=300.0)

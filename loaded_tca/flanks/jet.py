@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from numpy.typing import NDArray
@@ -24,6 +24,12 @@ class Jet:
     rho_rho: Any = 0.0
     rho_z: Any = 0.0
     z_z: Any = 0.0
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether all derivatives are the number zero."""
+        parts = (self.rho, self.z, self.rho_rho, self.rho_z, self.z_z)
+        return all(isinstance(part, float) and part == 0.0 for part in parts)
 
     def __add__(self, other: Jet) -> Jet:
         return Jet(
@@ -50,6 +56,8 @@ class Jet:
 
     def times(self, other: Jet) -> Jet:
         """Product of two functions (Leibniz)."""
+        if other.is_constant:
+            return self * other.value
         return Jet(
             self.value * other.value,
             self.rho * other.value + self.value * other.rho,
@@ -72,7 +80,8 @@ class Jet:
 
     def shifted_scaled(self, origin: float, length: float) -> Jet:
         """(self - origin)/length."""
-        return (self + Jet(-origin)) * (1.0 / length)
+        scaled = self * (1.0 / length)
+        return replace(scaled, value=scaled.value - origin / length)
 
 
 def weighted_sum(jets: Sequence[Jet], weights: Array) -> Jet:

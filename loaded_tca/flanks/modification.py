@@ -96,7 +96,7 @@ class Term:
         """Material removed [mm]; ``beyond`` picks the branch of a ramp (None: where the point lies)."""
         t = self.coordinate(flank, rho, z)
         if self.shape is not None:
-            return t.compose(*self.shape(t.value)) * self.amount
+            return t.compose(*(self.amount * part for part in self.shape(t.value)))
         on = (t.value > 0.0) if beyond is None else beyond
         return t * (self.amount * np.where(on, 1.0, 0.0))
 

@@ -135,13 +135,16 @@ class RaySearch:
         return self.contact.pinion_radius + share * rho, self.contact.pinion_axial + share * z
 
     def _first_crossings(self, rays: Array) -> tuple[Array, Array]:
-        """Shares (m,) of the rays just inside the area and just outside."""
-        scan = np.broadcast_to(np.linspace(0.0, 1.0, SCAN), (len(rays), SCAN))
-        inside = self._inside(rays, scan)
-        inside[:, 0] = True
-        last = np.where(inside.all(axis=1), SCAN, inside.argmin(axis=1)) - 1
-        rows = np.arange(len(scan))
-        low, high = scan[rows, last], scan[rows, np.minimum(last + 1, SCAN - 1)]
+        """Shares (m,) of the rays just inside the area and just outside; rays too short are made longer."""
+        low, high, rows = np.zeros(len(rays)), np.ones(len(rays)), np.arange(len(rays))
+        start, stop = 0.0, 1.0
+        while rows.size:
+            scan = np.linspace(start, stop, SCAN)
+            inside = self._inside(rays[rows], np.broadcast_to(scan, (len(rows), SCAN)))
+            inside[:, 0] = True
+            last = np.where(inside.all(axis=1), SCAN, inside.argmin(axis=1)) - 1
+            low[rows], high[rows] = scan[last], scan[np.minimum(last + 1, SCAN - 1)]
+            rows, start, stop = rows[last == SCAN - 1], stop, 2.0 * stop
         for _ in range(BISECTIONS):
             middle = 0.5 * (low + high)
             within = self._inside(rays, middle)

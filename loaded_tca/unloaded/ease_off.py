@@ -18,6 +18,7 @@ here the remaining two are the gradient of one scalar.)
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -27,6 +28,7 @@ import numpy as np
 from loaded_tca.flanks.jet import Array, Jet, weighted_sum
 from loaded_tca.pair import GearPair, cylindrical_basis
 
+FULL_TURN = 2.0 * math.pi
 PARTS = ((0, 0), (0, 1), (1, 1))
 """Order in which the three second derivatives with respect to (rho, z) are kept."""
 
@@ -173,17 +175,13 @@ class EaseOff:
         azimuth = self.pair.pinion.theta(rho, z, self._sides(0)).value + self.pair.sense * phi1
         wheel_rho, wheel_theta, wheel_z = self.pair.to_wheel(_on_circle(rho, azimuth, z))
         mate = self.pair.wheel.theta(wheel_rho, wheel_z, self._sides(1)).value
-        value = self._scale * (mate - wheel_theta) - self._mean_motion * phi1
+        value = self._lead(mate - wheel_theta, phi1)
         pinion, wheel = self._border_jets(rho, z, wheel_rho, wheel_z)
         return value, _last_axis([jet.value for jet in (*pinion, *wheel)], value.shape)
 
-    def wheel_angle(self, station: Station) -> Array:
-        """phi2 at which the wheel's flank passes through the points [rad]."""
-        return self.pair.sense * (station.wheel.value - station.wheel_theta)
-
     def value(self, station: Station, phi1: Array) -> Array:
         """Ease-off e [mm], largest where the flanks touch first."""
-        return self._scale * (station.wheel.value - station.wheel_theta) - self._mean_motion * phi1
+        return self._lead(station.wheel.value - station.wheel_theta, phi1)
 
     def gradient(self, station: Station) -> Array:
         """de/d(rho, z): (..., 2) [1]."""
@@ -238,13 +236,14 @@ class EaseOff:
         extra = (self._pinion_creases, self._wheel_creases) if self.beyond is not None else (0, 0)
         return np.concatenate([np.arange(4 + count) >= 4 for count in extra])
 
+    def _lead(self, wheel_angle: Array, phi1: Array) -> Array:
+        """Ease-off [mm] of a wheel angle, without the sense of rotation, that is known up to whole turns."""
+        lead = wheel_angle - (self.pair.sense * self.pair.ratio) * phi1
+        return self._scale * (lead - FULL_TURN * np.round(lead / FULL_TURN))
+
     @property
     def _scale(self) -> float:
         return float(self.pair.driving * self.pair.base_radii[1] * self.pair.sense)
-
-    @property
-    def _mean_motion(self) -> float:
-        return self.pair.driving * self.pair.base_radii[1] * self.pair.ratio
 
     def _sides(self, member: int) -> Any:
         if self.beyond is None:

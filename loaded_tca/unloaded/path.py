@@ -200,10 +200,11 @@ def _assemble(pair: GearPair, phi1: Array, touch: FirstTouch) -> ContactPath:
     line_ends[lines.rows] = lines.ends
     station = field.station(angle, rho, z)
     crease = field.border_is_crease()
+    error = pair.driving * field.value(station, angle) / pair.base_radii[1]
     known = _contact(pair, field, station, multipliers > 0.0)
     known |= {
-        "wheel_angle": field.wheel_angle(station),
-        "transmission_error": pair.driving * field.value(station, angle) / pair.base_radii[1],
+        "wheel_angle": error + pair.ratio * angle,
+        "transmission_error": error,
         "pinion_radius": rho,
         "pinion_axial": z,
         "on_crease": (multipliers[:, crease] > 0.0).any(axis=-1),

@@ -20,7 +20,7 @@ from loaded_tca.unloaded.quadratic import Quadratic, best_step
 
 LARGEST_STEP = 0.5
 """Longest step, as a fraction of the flank."""
-MOST_STEPS = 60
+MOST_STEPS = 300
 MOST_HALVINGS = 30
 SHORT_STEP = 1e-9
 """Fraction of the flank below which a Newton step is the last: the next would be its square."""
@@ -33,6 +33,8 @@ CURVATURE_FLOOR = 1e-12
 SMALLEST_GAIN = 1e-18
 """Predicted rise of the ease-off, relative to r_b2, at which an ascent ends: far below rounding of e itself, so that
 the quadratic convergence of the last step has placed the point, too."""
+ROOM = 1e-12
+"""Distance [mm, relative to the flank's height] by which a step may cross a border: rounding."""
 FEASIBLE = 1e-9
 """Distance [mm, relative to the flank's height] within which a border counts as met."""
 
@@ -204,7 +206,7 @@ def _propose(field: EaseOff, here: _Local, multipliers: Array, scale: Array) -> 
     inverse, curvature = _positive(bend)
     step = inverse[..., 0] * here.gradient[..., :1] + inverse[..., 1] * here.gradient[..., 1:]
     found = np.zeros_like(multipliers)
-    tolerance = FEASIBLE * scale[0]
+    tolerance = ROOM * scale[0]
     room = here.borders + here.slopes[..., 0] * step[:, :1] + here.slopes[..., 1] * step[:, 1:]
     out = np.flatnonzero(room.min(axis=-1) < -tolerance)
     if out.size:

@@ -10,28 +10,25 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 import numpy as np
-from scipy.ndimage import maximum_filter
+from numpy.typing import NDArray
 
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.flanks.jet import Array
 from loaded_tca.pair import GearPair
 from loaded_tca.unloaded.ease_off import EaseOff
-from loaded_tca.unloaded.reduced import FEASIBLE, Maxima, climb
+from loaded_tca.unloaded.reduced import Maxima, climb
+from loaded_tca.unloaded.scan import Scan, Starts, inside_pinion, scan_pinion
 
-SCAN = (17, 17)
-"""Points of the scan along the profile and along the face; none of them may be higher than the contact found."""
-BLOCKS = (2, 3)
-"""Blocks of the scan, each of which sends its best point up its hill: several basins are found by this."""
-BETWEEN = 2.0
-"""Spacings of the scan by which every point may miss the common region if there is one between them."""
-BORDER_SCAN = (9, 65)
-"""Points along the sides and along the tip and root of the wheel's flank that must not lie inside the pinion."""
-PIERCED = 1e-9
-"""Depth over the module at which a border of the wheel's flank lies inside the pinion: rounding is 1e-13."""
 POSITIONS_AT_ONCE = 1024
-"""Positions searched together: some 0.1 GB."""
+"""Positions searched together: some 0.2 GB."""
+ROUNDS = 5
+"""Times that a contact is doubted, and points that it missed are climbed from."""
 CERTIFICATE = 1e-13
 """How far, relative to r_b2, a scanned point may rise above the maximum found: rounding."""
+PIERCED = 1e-9
+"""Depth over the module at which a point of the wheel's flank lies inside the pinion: rounding is 1e-13."""
+NUDGE = 0.05
+"""Step away from a saddle, as a fraction of the flank."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,14 +80,60 @@ def _joined(parts: list[FirstTouch]) -> FirstTouch:
 
 
 def _first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
-    owner, rho, z, scanned = _starts(pair, phi1)
-    found = _ascend(pair, phi1, owner, rho, z)
-    result = _best(pair, phi1, found, scanned)
-    pierced, rho, z = _pierced(pair, phi1, result)
-    if pierced.size:
-        found = found.joined(_ascend(pair, phi1, pierced, rho, z))
-        result = _best(pair, phi1, found, scanned)
+    scan = scan_pinion(pair, phi1)
+    found = _ascend(pair, phi1, *scan.hills())
+    result, rows = _best(phi1, found), np.arange(len(phi1))
+    for _ in range(ROUNDS):
+        owner, rho, z = _doubts(pair, phi1, scan, result, rows)
+        if not owner.size:
+            return result
+        found = found.joined(_ascend(pair, phi1, owner, rho, z))
+        result, rows = _best(phi1, found), np.unique(owner)
+    _certify(pair, phi1, scan, result, rows)
     return result
+
+
+def _doubts(pair: GearPair, phi1: Array, scan: Scan, touch: FirstTouch, rows: NDArray[np.int_]) -> Starts:
+    """Points from which some positions are to be searched again."""
+    missed = scan.higher(rows, touch.value[rows] + CERTIFICATE * pair.base_radii[1])
+    rows = rows[touch.touches[rows]]
+    pierced, *place = inside_pinion(pair, phi1[rows], touch.value[rows], PIERCED * pair.module)
+    parts = (missed, (rows[pierced], *place), _beside_saddles(pair, phi1, touch, rows))
+    owner, rho, z = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return owner, rho, z
+
+
+def _beside_saddles(pair: GearPair, phi1: Array, touch: FirstTouch, rows: NDArray[np.int_]) -> Starts:
+    """Starts on either side of contacts from which the ease-off rises both ways by its second derivatives."""
+    field = EaseOff(pair, touch.beyond[rows] if touch.beyond.shape[1] else None)
+    held, scale = touch.multipliers[rows], np.asarray(pair.pinion.extent)
+    station = field.station(phi1[rows], touch.rho[rows], touch.z[rows])
+    bend = (field.hessian(station) + field.border_hessian(station, held)) * np.outer(scale, scale)
+    values, vectors = np.linalg.eigh(bend)
+    _, slopes = field.borders(station)
+    edge = slopes[np.arange(len(rows)), held.argmax(axis=1)] * scale
+    along = np.stack([-edge[:, 1], edge[:, 0]], axis=-1)
+    along /= np.maximum(np.linalg.norm(along, axis=-1, keepdims=True), 1e-300)
+    count = (held > 0.0).sum(axis=1)
+    way = np.where(count[:, None] == 1, along, vectors[:, :, 1])
+    rise = np.where(count == 1, np.einsum("ni,nij,nj->n", along, bend, along), values[:, 1]) * (count < 2)
+    saddle = np.flatnonzero(0.5 * NUDGE**2 * rise > PIERCED * pair.module)
+    owner = np.repeat(rows[saddle], 2)
+    step = (NUDGE * way[saddle] * scale)[:, None, :] * np.array([1.0, -1.0])[:, None]
+    return owner, touch.rho[owner] + step[..., 0].ravel(), touch.z[owner] + step[..., 1].ravel()
+
+
+def _certify(pair: GearPair, phi1: Array, scan: Scan, touch: FirstTouch, rows: NDArray[np.int_]) -> None:
+    """Raise unless no scanned point is higher and none of the wheel's lies inside the pinion."""
+    short, *_ = scan.higher(rows, touch.value[rows] + CERTIFICATE * pair.base_radii[1])
+    rows = rows[touch.touches[rows]]
+    pierced, *_ = inside_pinion(pair, phi1[rows], touch.value[rows], PIERCED * pair.module)
+    doubtful = np.union1d(short, rows[pierced])
+    if doubtful.size:
+        message = (
+            f"unloaded contact: no ascent reached the height of the scan at pinion angle {phi1[doubtful[0]]:.6g} rad"
+        )
+        raise ConvergenceError(message, touch)
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,70 +181,8 @@ def _crease_columns(pair: GearPair) -> Array:
     return np.flatnonzero(EaseOff(pair, np.zeros((1, field.creases), dtype=bool)).border_is_crease())
 
 
-def _starts(pair: GearPair, phi1: Array) -> tuple[Array, Array, Array, Array]:
-    """Hills of the scan: position and place (rho, z) [mm] of each, and the best feasible height of every position."""
-    rho, z = pair.pinion.grid(*SCAN)
-    shape, field = (len(phi1), *SCAN), EaseOff(pair)
-    full = [np.broadcast_to(part, shape) for part in (rho, z)]
-    value, borders = field.heights(np.broadcast_to(phi1[:, None, None], shape), *full)
-    lack = np.maximum(0.0, -borders).sum(axis=-1)
-    feasible = lack <= FEASIBLE
-    score = np.where(feasible, value, np.minimum(value.min() - 1.0, -1.0) * (1.0 + lack))
-    owner, i, j = np.nonzero(_hills(score) & _within_reach(pair, borders)[:, None, None])
-    return owner, rho[i, j], z[i, j], np.where(feasible, value, -np.inf).max(axis=(1, 2))
-
-
-def _within_reach(pair: GearPair, borders: Array) -> Array:
-    """Whether a common region may lie between the points of the scan (n,): borders are no farther than their spacing.
-
-    The distances to the borders change by about a millimetre per millimetre along the flank.
-    """
-    height, width = pair.pinion.extent
-    spacing = np.hypot(height / (SCAN[0] - 1), width / (SCAN[1] - 1))
-    return borders.min(axis=-1).max(axis=(1, 2)) >= -BETWEEN * spacing
-
-
-def _hills(score: Array) -> Array:
-    """The best point of each block of the scan, if no neighbour is higher: (n, *SCAN) bool.
-
-    A ridge across the grid shows many such points; the blocks keep them few.
-    """
-    hills = np.zeros(score.shape, dtype=bool)
-    rows = np.arange(len(score))
-    for profile in np.array_split(np.arange(SCAN[0]), BLOCKS[0]):
-        for lengthwise in np.array_split(np.arange(SCAN[1]), BLOCKS[1]):
-            block = score[:, profile[0] : profile[-1] + 1, lengthwise[0] : lengthwise[-1] + 1]
-            best = block.reshape(len(score), -1).argmax(axis=1)
-            hills[rows, profile[best // len(lengthwise)], lengthwise[best % len(lengthwise)]] = True
-    return hills & (score >= maximum_filter(score, size=(1, 3, 3), mode="nearest"))
-
-
-def _pierced(pair: GearPair, phi1: Array, touch: FirstTouch) -> tuple[Array, Array, Array]:
-    """Positions at which a border of the wheel's flank lies inside the pinion, and where: (rho, z) there [mm].
-
-    The scan sees the whole of the pinion's flank; of the wheel's only its borders can hide from it.
-    """
-    rho, z = (_border(part) for part in pair.wheel.grid(*BORDER_SCAN))
-    wheel_angle = pair.driving * touch.value / pair.base_radii[1] + pair.ratio * phi1
-    theta = pair.wheel.theta(rho, z).value - pair.sense * wheel_angle[:, None]
-    own = np.stack([rho * np.cos(theta), rho * np.sin(theta), np.broadcast_to(z, theta.shape)], axis=-1)
-    x, y, axial = np.moveaxis(own @ pair.wheel_axes + pair.wheel_origin, -1, 0)
-    radius = np.hypot(x, y)
-    ahead = phi1[:, None] - pair.sense * (np.arctan2(y, x) - pair.pinion.theta(radius, axial).value)
-    depth = pair.driving * pair.base_radii[0] * (np.remainder(ahead + np.pi, 2.0 * np.pi) - np.pi)
-    depth = np.where(pair.pinion.inside(radius, axial), depth, -np.inf)
-    rows = np.flatnonzero((depth.max(axis=1) > PIERCED * pair.module) & touch.touches)
-    deepest = depth[rows].argmax(axis=1)
-    return rows, radius[rows, deepest], axial[rows, deepest]
-
-
-def _border(grid: Array) -> Array:
-    """The outermost points of a grid, one after the other."""
-    return np.concatenate([grid[0], grid[-1], grid[1:-1, 0], grid[1:-1, -1]])
-
-
-def _best(pair: GearPair, phi1: Array, found: _Ascents, scanned: Array) -> FirstTouch:
-    """The highest converged ascent of each position, certified against the scan."""
+def _best(phi1: Array, found: _Ascents) -> FirstTouch:
+    """The highest converged ascent of each position."""
     owner, beyond, peaks = found.owner, found.beyond, found.peaks
     height = np.where(peaks.converged, peaks.value, -np.inf)
     best = np.full(len(phi1), -np.inf)
@@ -210,23 +191,17 @@ def _best(pair: GearPair, phi1: Array, found: _Ascents, scanned: Array) -> First
     rows, first = np.unique(owner[winners], return_index=True)
     winner = winners[first]
 
-    def spread(part: Array) -> Array:
-        full = np.zeros((len(phi1), *part.shape[1:]), dtype=part.dtype)
+    def spread(part: Array, empty: float = 0.0) -> Array:
+        full = np.full((len(phi1), *part.shape[1:]), empty, dtype=part.dtype)
         full[rows] = part[winner]
         return full
 
-    result = FirstTouch(
+    return FirstTouch(
         rho=spread(peaks.rho),
         z=spread(peaks.z),
-        value=spread(peaks.value),
+        value=spread(peaks.value, -np.inf),
         multipliers=spread(peaks.multipliers),
         beyond=spread(beyond),
         iterations=spread(peaks.iterations),
         touches=np.isfinite(best),
     )
-    short = np.isfinite(scanned) & (best < scanned - CERTIFICATE * pair.base_radii[1])
-    if short.any():
-        row = int(np.flatnonzero(short)[0])
-        message = f"unloaded contact: no ascent reached the height of the scan at pinion angle {phi1[row]:.6g} rad"
-        raise ConvergenceError(message, result)
-    return result

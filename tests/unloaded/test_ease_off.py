@@ -76,7 +76,6 @@ def test_value_is_the_scaled_transmission_error_of_the_definition(pair, share, t
     station = field.station(phi1, rho, z)
     assert_allclose(field.value(station, phi1), value, atol=1e-12)
     assert_allclose(field.heights(phi1, rho, z)[0], value, atol=1e-12)
-    assert_allclose(field.wheel_angle(station), lag + pair.ratio * phi1, atol=1e-14)
 
 
 @given(pairs(), shares, turns)

@@ -209,3 +209,54 @@ def test_raised_side_of_a_narrow_wheel_is_found_between_the_points_of_the_scan()
     assert_allclose(abs(path.pinion_axial[0]), 10.0, atol=1e-9)
     # 10 um less the crowning of the pinion at z = 10 mm
     assert_allclose(path.transmission_error[0] * pair.base_radii[1], 0.01 - 0.001 * (20.0 / 25.0) ** 2, rtol=1e-6)
+
+
+def with_faces(widths, helix_deg, modifications):
+    """Spur or helical pair 34/57, module 3 mm, with a face width of its own for each gear."""
+    gears = [
+        CylindricalGear(z, 3.0, width, helix_angle=math.radians(beta))
+        for z, width, beta in zip((34, 57), widths, (helix_deg, -helix_deg), strict=True)
+    ]
+    return cylindrical_pair(CylindricalMesh(*gears), modifications=modifications)
+
+
+def hidden_basins():
+    """Pairs whose highest point lies on a side of the wheel, between the points of a grid over the pinion."""
+    hollow = FlankModifications(lead_crowning=-0.5, profile_crowning=0.01)
+    yield pytest.param(with_faces((50.0, 2.0), 0.0, (hollow, FlankModifications())), 0.0, id="saddle, narrow wheel")
+    raised = FlankModifications(lead_crowning=0.004, end_relief=-0.005, end_relief_length=3.0)
+    for helix in (10.0, 20.0, 30.0):
+        for width in (24.0, 24.999):
+            pair = with_faces((25.0, width), helix, (FlankModifications(), raised))
+            yield pytest.param(pair, 0.1, id=f"raised end, {helix:g} deg, {width:g} mm")
+
+
+@pytest.mark.parametrize(("pair", "share"), list(hidden_basins()))
+def test_basin_on_a_border_of_the_wheel_is_found(pair, share):
+    path = trace_contact(pair, [share * pair.pitch], warn=False)
+    assert path.on_edge.all()
+    assert lead_over_grid(pair, path, 0) >= -ROUNDING
+
+
+def test_long_bent_ridge_is_climbed_to_its_end(monkeypatch):
+    """Unmodified, turned by a microradian, wider than is allowed: a ridge that is level to 1e-4 mm and winds."""
+    monkeypatch.setattr("loaded_tca.pair._require_less_than_a_turn", lambda mesh: None)
+    gears = [
+        CylindricalGear(z, 2.298922117910948, 185.8487990044376, helix_angle=s * 0.6548669727032047, profile_shift=x)
+        for z, s, x in ((14, -1.0, -0.44666563633052614), (62, 1.0, 0.030512516822514324))
+    ]
+    mounting = Mounting(1.0475209411321293e-06, -4.0585536516680183e-07, 0.00042831598104167625, 0.0)
+    pair = cylindrical_pair(CylindricalMesh(*gears), mounting=mounting, driving="wheel")
+    path = trace_contact(pair, np.linspace(-0.5, 0.5, 15), warn=False)
+    assert path.touches.all()
+    assert min(lead_over_grid(pair, path, row) for row in range(15)) >= -ROUNDING
+
+
+def test_no_positions_give_no_contacts():
+    assert len(search.first_touch(gear_pair(), np.zeros(0)).value) == 0
+
+
+def test_whole_turns_of_gears_of_equal_teeth_change_nothing():
+    pair = gear_pair(teeth=(30, 30))
+    here, turned = trace_contact(pair, [0.02, 0.02 + 2.0 * math.pi]).transmission_error
+    assert_allclose(turned, here, atol=ROUNDING)

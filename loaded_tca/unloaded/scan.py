@@ -1,0 +1,162 @@
+"""Points of both flanks that see what an ascent may have missed: where to start, and where to doubt a contact.
+
+The pinion's flank is seen by a grid and by dense points on its borders, which tell heights of the ease-off; the wheel's
+by its own grid and borders, which must not lie inside the pinion once the wheel stands where the contact found puts it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.jet import Array
+from loaded_tca.pair import GearPair
+from loaded_tca.unloaded.ease_off import EaseOff
+from loaded_tca.unloaded.reduced import ROOM
+
+GRID = (17, 17)
+"""Points of the scan along the profile and along the face."""
+BORDER = 33
+"""Points along each border of the pinion's flank."""
+WHEEL_GRID, WHEEL_BORDER = (9, 17), 65
+"""The same of the wheel's flank, whose borders the pinion's grid does not see: a contact on them may be short."""
+AT_ONCE = 16
+"""Positions looked at together."""
+LEVEL = 1e-11
+"""Difference of heights [mm] that is rounding: on a level ridge one start is enough."""
+BETWEEN = 2.0
+"""Spacings of the scan by which every point may miss the common region if there is one between them."""
+
+Starts = tuple[NDArray[np.int_], Array, Array]
+"""Position each start belongs to, and its place (rho, z) on the pinion flank [mm]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scan:
+    """The ease-off at points of the pinion flank, the grid first, then the borders.
+
+    Attributes
+    ----------
+    rho, z : (k,) array [mm]
+    height : (n, k) array [mm]
+        Ease-off at each of n positions; -inf outside the common region.
+    score : (n, *GRID) array
+        The same on the grid; outside, lower than any height, and the lower the farther.
+    reach : (n,) bool array
+        Whether a common region may lie between the points of the scan.
+    """
+
+    rho: Array
+    z: Array
+    height: Array
+    score: Array
+    reach: NDArray[np.bool_]
+
+    def hills(self) -> Starts:
+        """Starts, one or more for each basin: the summits of the ridges along the face and along the profile."""
+        inside = np.isfinite(self.height[:, : GRID[0] * GRID[1]]).reshape(self.score.shape)
+        turned = _summits(np.swapaxes(self.score, 1, 2), np.swapaxes(inside, 1, 2))
+        hills = _summits(self.score, inside) | np.swapaxes(turned, 1, 2)
+        hills &= self.reach[:, None, None]
+        owner, point = np.nonzero(hills.reshape(len(hills), GRID[0] * GRID[1]))
+        return owner, self.rho[point], self.z[point]
+
+    def higher(self, rows: NDArray[np.int_], value: Array) -> Starts:
+        """The highest point of each of some positions, where it is higher than ``value`` (rows,) [mm]."""
+        height = self.height[rows]
+        best = height.argmax(axis=1)
+        above = np.flatnonzero(height[np.arange(len(rows)), best] > value)
+        return rows[above], self.rho[best[above]], self.z[best[above]]
+
+
+def scan_pinion(pair: GearPair, phi1: Array) -> Scan:
+    """Scan of the pinion flank at each pinion angle (n,) [rad]."""
+    rho, z = _points(pair.pinion, GRID, BORDER)
+    field, count, allowed = EaseOff(pair), GRID[0] * GRID[1], ROOM * pair.pinion.extent[0]
+
+    def look(block: Array) -> tuple[Array, Array, Array]:
+        full = [np.broadcast_to(part, (len(block), len(rho))) for part in (rho, z)]
+        value, borders = field.heights(np.broadcast_to(block[:, None], full[0].shape), *full)
+        lack = np.maximum(0.0, -borders).sum(axis=-1)
+        return value, lack, borders[:, :count].min(axis=-1).max(axis=1)
+
+    value, lack, room = _in_blocks(look, phi1)
+    height = np.where(lack <= allowed, value, -np.inf)
+    outside = min(float(value.min(initial=0.0)) - 1.0, -1.0) * (1.0 + lack[:, :count])
+    score = np.where(lack[:, :count] <= allowed, value[:, :count], outside)
+    return Scan(rho, z, height, score.reshape(len(phi1), *GRID), room >= -BETWEEN * _spacing(pair.pinion))
+
+
+def inside_pinion(pair: GearPair, phi1: Array, value: Array, depth: float) -> Starts:
+    """Positions at which a point of the wheel's flank lies deeper than ``depth`` [mm] inside the pinion, and where.
+
+    Parameters
+    ----------
+    pair : GearPair
+    phi1, value : (n,) array [rad, mm]
+        Pinion angles, and the ease-off that tells where the wheel stands.
+    depth : float [mm]
+    """
+    rho, z = _points(pair.wheel, WHEEL_GRID, WHEEL_BORDER)
+    own_theta = pair.wheel.theta(rho, z).value
+    wheel_angle = pair.driving * value / pair.base_radii[1] + pair.ratio * phi1
+
+    def look(angle: Array, wheel_angle: Array) -> tuple[Array, Array, Array]:
+        theta = own_theta - pair.sense * wheel_angle[:, None]
+        own = np.stack([rho * np.cos(theta), rho * np.sin(theta), np.broadcast_to(z, theta.shape)])
+        x, y, axial = np.tensordot(pair.wheel_axes.T, own, axes=1) + pair.wheel_origin[:, None, None]
+        radius = np.hypot(x, y)
+        ahead = angle[:, None] - pair.sense * (np.arctan2(y, x) - pair.pinion.theta(radius, axial).value)
+        found = pair.driving * pair.base_radii[0] * (np.remainder(ahead + np.pi, 2.0 * np.pi) - np.pi)
+        found = np.where(pair.pinion.inside(radius, axial), found, -np.inf)
+        rows, deepest = np.arange(len(angle)), found.argmax(axis=1)
+        return found[rows, deepest], radius[rows, deepest], axial[rows, deepest]
+
+    found, radius, axial = _in_blocks(look, phi1, wheel_angle)
+    rows = np.flatnonzero(found > depth)
+    return rows, radius[rows], axial[rows]
+
+
+def _in_blocks(look: Callable[..., tuple[Array, ...]], *columns: Array) -> list[Array]:
+    """Results of ``look`` for a few positions at a time, which stay in the processor's cache."""
+    starts = range(0, max(len(columns[0]), 1), AT_ONCE)
+    parts = [look(*(column[start : start + AT_ONCE] for column in columns)) for start in starts]
+    return [np.concatenate(part) for part in zip(*parts, strict=True)]
+
+
+def _summits(score: Array, inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Summits along the last axis (n, i, j) of the ridge that the highest points across it make.
+
+    A ridge seen on a grid is a chain of false summits; the parabola through three points across it tells its height.
+    """
+    rows, columns = np.ogrid[: len(score), : score.shape[2]]
+    across = score.argmax(axis=1)
+    inner = np.clip(across, 1, score.shape[1] - 2)
+    below, top, above = (score[rows, inner + k, columns] for k in (-1, 0, 1))
+    known = (across == inner) & inside[rows, inner - 1, columns] & inside[rows, inner + 1, columns]
+    bend = np.where(known, np.maximum(2.0 * top - below - above, 1e-300), 1.0)
+    ridge = score[rows, across, columns] + np.where(known, (above - below) ** 2 / (8.0 * bend), 0.0)
+    step, edge = np.diff(ridge, axis=1), np.ones((len(score), 1), dtype=bool)
+    risen, falls = np.hstack([edge, step >= -LEVEL]), np.hstack([step < -LEVEL, edge])
+    summits = np.zeros(score.shape, dtype=bool)
+    summits[rows, across, columns] = risen & falls
+    return summits
+
+
+def _points(flank: Flank, shape: tuple[int, int], border: int) -> tuple[Array, Array]:
+    """(rho, z) of a grid over the flank and of dense points on its four borders [mm]."""
+    profile, lengthwise = flank.grid(border, 2), flank.grid(2, border)
+    grid = flank.grid(*shape)
+    parts = ([grid[k].ravel(), profile[k].ravel(), lengthwise[k].ravel()] for k in (0, 1))
+    rho, z = (np.concatenate(part) for part in parts)
+    return rho, z
+
+
+def _spacing(flank: Flank) -> float:
+    """Spacing of the scan [mm]; distances to the borders change by about a millimetre per millimetre."""
+    height, width = flank.extent
+    return float(np.hypot(height / (GRID[0] - 1), width / (GRID[1] - 1)))
