@@ -15,7 +15,7 @@ from loaded_tca.loaded_contact import GridChoice, LoadedContact, press
 from loaded_tca.mesh_cycle import MeshCycle, PressureMap
 from loaded_tca.pair import GearPair
 from loaded_tca.scene import Scene
-from loaded_tca.unloaded import ContactPath, ContactPoint, trace_contact
+from loaded_tca.unloaded import ContactPath, ContactPoint, heelwards, trace_contact
 
 Progress = Callable[[int, int], None]
 
@@ -161,7 +161,6 @@ def _numbers(pair: GearPair, loaded: LoadedContact | None) -> dict[str, float | 
     contact, solution, hertz = loaded.contact, loaded.solution, loaded.hertz
     width, length = loaded.extent
     peak_radius, peak_axial = loaded.peak_place
-    length = min(length, pair.face_width / abs(float(loaded.separation.axes[1, 2])))
     return {
         "transmission_error": loaded_transmission_error(pair, contact, solution.approach),
         "normal_force": solution.load,
@@ -173,7 +172,7 @@ def _numbers(pair: GearPair, loaded: LoadedContact | None) -> dict[str, float | 
         "hertz_semi_minor": hertz.semi_minor if hertz else math.nan,
         "hertz_semi_major": hertz.semi_major if hertz else math.nan,
         "contact_width": width,
-        "contact_length": length,
+        "contact_length": min(length, _longest(pair, loaded)),
         "approach": solution.approach,
         "mesh_stiffness": _mesh_stiffness(pair, contact, loaded.stiffness),
         "on_edge": loaded.at_border,
@@ -183,6 +182,12 @@ def _numbers(pair: GearPair, loaded: LoadedContact | None) -> dict[str, float | 
         "iterations": solution.iterations,
         "residual": solution.residual,
     }
+
+
+def _longest(pair: GearPair, loaded: LoadedContact) -> float:
+    """Length over which the face reaches in the direction of the contact [mm]."""
+    slope = abs(float(loaded.separation.axes[1] @ heelwards(pair, loaded.contact)))
+    return pair.face_width / slope if slope > 0.0 else math.inf
 
 
 def loaded_transmission_error(pair: GearPair, contact: ContactPoint, approach: float) -> float:

@@ -40,6 +40,12 @@ FILES = """files in DIR:
   pressure_map_border.png   only if a peak lies at a border or crease, at another position
   pressure_map_hertz.png    only if Hertz holds, but not where the peak pressure is
 Pictures of these names that the result does not have are removed; docs/results.md says more."""
+TEETH = """files in DIR:
+  pinion.vtk, wheel.vtk     the teeth in contact, in the fixed frame; "patch" tells flanks, fillets and lands apart
+  pressure.vtk              the cells under pressure on the pinion's flank, in MPa
+  pinion.stl, wheel.stl     closed solids, each in its gear's own frame
+  teeth.png                 a picture of all that
+All lengths are in mm."""
 EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
 
 
@@ -112,7 +118,8 @@ def _parser() -> argparse.ArgumentParser:
 
     def command(name: str, run: Callable[[argparse.Namespace], None], text: str) -> argparse.ArgumentParser:
         layout = argparse.RawDescriptionHelpFormatter
-        epilog = None if run is _check else FILES
+        epilogs: dict[object, str | None] = {_check: None, _tooth: TEETH}
+        epilog = epilogs.get(run, FILES)
         added = commands.add_parser(
             name, help=text, description=text, epilog=epilog, formatter_class=layout, parents=[common]
         )
@@ -129,6 +136,13 @@ def _parser() -> argparse.ArgumentParser:
     plot.add_argument("--out", metavar="DIR", type=Path, help="directory for the pictures; default: beside the result")
     plot.add_argument("--torque", metavar="NM", type=float, help="pinion torque of maps and flanks; default: largest")
     plot.add_argument("--position", metavar="N", type=int, help="position of pressure_map.png, from 1; default: peak")
+    tooth = command("tooth", _tooth, "write the complete teeth of a result as surfaces (VTK, STL) and as a picture")
+    tooth.add_argument("result", metavar="DIR|FILE", type=Path, help="result.nc, or the directory that holds it")
+    tooth.add_argument("--out", metavar="DIR", type=Path, help="directory for the files; default: beside the result")
+    tooth.add_argument("--torque", metavar="NM", type=float, help="pinion torque of the pressure; default: largest")
+    tooth.add_argument("--position", metavar="N", type=int, help="position of the teeth, from 1; default: peak")
+    tooth.add_argument("--fillet-radius", metavar="MM", type=float, help="of arcs at the root; default: by the module")
+    tooth.add_argument("--whole-gears", action="store_true", help="all teeth in the STL files, not one")
     check = command("check", _check, "read a scene and show its geometry, without computing a contact")
     check.add_argument("scene", metavar="SCENE.toml", help="scene file")
     return parser
@@ -182,15 +196,37 @@ def _analyse_to(scene_file: str, directory: Path) -> None:
 
 
 def _plot(options: argparse.Namespace) -> None:
+    result, directory = _loaded(options)
+    torque, position = _chosen_torque(result, options.torque), _chosen_position(result, options.position)
+    _print_files(_draw(result, directory, torque, position))
+
+
+def _tooth(options: argparse.Namespace) -> None:
+    from loaded_tca.plots import save_figure
+    from loaded_tca.plots.three_d import draw_teeth
+    from loaded_tca.scene import parse_scene
+    from loaded_tca.surface_files import write_teeth
+    from loaded_tca.teeth_in_space import complete_teeth, teeth_in_space
+
+    result, directory = _loaded(options)
+    torque, position = _chosen_torque(result, options.torque), _chosen_position(result, options.position)
+    teeth = complete_teeth(parse_scene(result.scene_toml), fillet_radius=options.fillet_radius)
+    shown = teeth_in_space(result, teeth, position, torque)
+    written = write_teeth(shown, teeth, directory, title=result.title, whole_gears=options.whole_gears)
+    save_figure(draw_teeth(result, shown), directory / "teeth.png")
+    _print_files([*written, directory / "teeth.png"])
+
+
+def _loaded(options: argparse.Namespace) -> tuple[MeshCycle, Path]:
+    """The result that the command line names, and the directory to write to."""
     from loaded_tca.mesh_cycle import MeshCycle
     from loaded_tca.report import RESULT, make_directory
 
     path = options.result / RESULT if options.result.is_dir() else options.result
     result = MeshCycle.load(path)
-    torque, position = _chosen_torque(result, options.torque), _chosen_position(result, options.position)
     directory = options.out or path.parent
     make_directory(directory)
-    _print_files(_draw(result, directory, torque, position))
+    return result, directory
 
 
 def _chosen_torque(result: MeshCycle, wanted: float | None) -> int | None:

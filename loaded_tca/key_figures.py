@@ -85,7 +85,7 @@ def _peak_figures(path: ContactPath, row: Row, at: int | None) -> dict[str, floa
         "contact_point_axial_at_peak_mm": _at(path.pinion_axial, at),
         "central_pressure_at_peak_MPa": _at(row["central_pressure"], at),
         "normal_force_at_peak_N": _at(row["normal_force"], at),
-        "contact_length_at_peak_mm": _at(row["length_on_face"], at),
+        "contact_length_at_peak_mm": _at(row["contact_length"], at),
         "contact_width_at_peak_mm": _at(row["contact_width"], at),
         "approach_at_peak_um": 1e3 * _at(row["approach"], at),
     }

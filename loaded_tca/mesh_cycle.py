@@ -18,7 +18,7 @@ from loaded_tca.unloaded import ContactPath
 
 CAPPED = 1.0 - 1e-6
 """Part of the cap on the pressure from which a peak equals it."""
-DERIVED = ("inner_pressure", "length_on_face", "peak_at_border", "capped")
+DERIVED = ("inner_pressure", "peak_at_border", "capped")
 """Properties that have a number per torque and position, as the fields of quantities do."""
 
 
@@ -53,6 +53,15 @@ class PressureMap:
     gap: Array
     origin: Array
     axes: Array
+
+    @property
+    def corners(self) -> Array:
+        """Corners (nx + 1, ny + 1, 3) of the cells in the tangent plane, in the fixed frame [mm]."""
+        x, y = (
+            np.append(centres, centres[-1] + step) - 0.5 * step
+            for centres, step in zip((self.x, self.y), self.spacing, strict=True)
+        )
+        return self.origin + x[:, None, None] * self.axes[0] + y[:, None] * self.axes[1]
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,9 +113,7 @@ class MeshCycle:
     hertz_semi_minor: Array = quantity("mm", "semi-axis of the Hertz ellipse across the contact")
     hertz_semi_major: Array = quantity("mm", "semi-axis of the Hertz ellipse along the contact")
     contact_width: Array = quantity("mm", "full width of the contact across, from the pressure map")
-    contact_length: Array = quantity(
-        "mm", "full length of the contact, from the pressure map; a line contact counts whole cells"
-    )
+    contact_length: Array = quantity("mm", "full length of the contact, from the pressure map, but not beyond the face")
     approach: Array = quantity("mm", "approach of the two flanks along the normal")
     mesh_stiffness: Array = quantity(
         "N/(mm um)", "contact stiffness of one tooth pair (no bending), tangent, over the face width"
@@ -155,17 +162,6 @@ class MeshCycle:
         """
         beside = np.where(self.path.on_edge | self.path.on_crease, math.nan, self.central_pressure)
         return np.where(self.peak_at_border, beside, self.peak_pressure)
-
-    @property
-    def length_on_face(self) -> Array:
-        """Length of the contact [mm], (..., n): not beyond the face, where cells of a line contact may end."""
-        longest = [[self._longest(one) for one in row] for row in self.maps]
-        return np.fmin(self.contact_length, np.reshape(longest, self.contact_length.shape))
-
-    def _longest(self, one: PressureMap | None) -> float:
-        """Length of the face width in the direction of the contact; NaN where that is not known."""
-        slope = 0.0 if one is None else abs(float(one.axes[1, 2]))
-        return self.face_width / slope if slope > 0.0 else math.nan
 
     def peak_position(self, torque: int, *, where_hertz_holds: bool = False) -> int | None:
         """Return the index of the position with the highest pressure, of those asked for; None if there is none.
@@ -257,7 +253,12 @@ PATH_PARTS = _at_positions(
     ("on_crease", (), "1", "whether the unloaded contact lies on the start of a linear relief"),
     ("on_line", (), "1", "whether the unloaded contact is a line"),
     ("line_ends", ("end", *VECTOR), "mm", "ends of the line in the fixed frame"),
-    ("edges", ("border",), "1", "borders that hold the point, pinion then wheel: tip, root, lower side, upper side"),
+    (
+        "edges",
+        ("border",),
+        "1",
+        "borders that hold the point, pinion then wheel: tip, root, lower side (toe), upper side (heel)",
+    ),
     ("iterations", (), "1", "Newton steps of the unloaded contact"),
     ("residual", (), "1", "sine of the angle between the two normals"),
 )

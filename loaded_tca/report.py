@@ -136,8 +136,7 @@ def _loaded_columns(result: MeshCycle) -> dict[str, Array]:
     for entry in fields(result):
         if entry.metadata:
             name, factor = _column(entry.name, entry.metadata["unit"])
-            shown = "length_on_face" if entry.name == "contact_length" else entry.name
-            columns[name] = result.by_torque(shown) * factor
+            columns[name] = result.by_torque(entry.name) * factor
     columns["peak_at_border"] = result.by_torque("peak_at_border")
     columns["transmission_error_um"] = result.by_torque("transmission_error") * result.wheel_base_radius * 1e3
     return columns

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from loaded_tca import InputError, sample_separation, solve_contact, trace_contact
+from loaded_tca import AccuracyWarning, InputError, sample_separation, solve_contact, trace_contact
 from loaded_tca.bevel_pair import BevelMounting, bevel_pair
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import bevel_mesh
@@ -243,3 +243,12 @@ def test_relief_off_the_active_profile_is_refused_by_the_name_of_the_gear():
     relieved = FlankModifications(tip_relief=0.03, tip_relief_start=10.0)
     with pytest.raises(InputError, match=r"wheel\.tip_relief_start .* 10 mm is not between"):
         bevel_pair(mesh_of(), modifications=(NONE, relieved))
+
+
+def test_contact_on_the_root_of_a_bevel_flank_is_called_so():
+    """A root cone just below the pitch cone leaves no flank for the tip of the mate."""
+    mesh = mesh_of((39, 32), root_angles=(math.radians(50.2), None))
+    pair = bevel_pair(mesh)
+    with pytest.warns(AccuracyWarning, match="fillet interference: at 1 of 1 positions .* on a root form cone, where"):
+        path = trace_contact(pair, [-0.6 * pair.pitch])
+    assert path.on_edge.all()

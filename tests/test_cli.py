@@ -143,6 +143,17 @@ def test_check_tells_teeth_that_overlap(run):
     assert "note: teeth overlap by 0.01" in run("check", scene(**changes))[1]
 
 
+@pytest.mark.parametrize("name", ["straight_bevel", "spiral_bevel"])
+def test_bevel_scene_is_run_and_drawn_as_any_other(run, name):
+    text = (SCENES / f"{name}.toml").read_text(encoding="utf-8")
+    Path("quick.toml").write_text(text.replace("positions = 21", "positions = 2\ncells = [16, 16]"), encoding="utf-8")
+    code, _, err = run("run", "quick.toml", "--out", "out")
+    assert (code, err) == (0, [])
+    assert set(os.listdir("out")) == REPORT | PICTURES
+    assert run("plot", "out", "--position", 1, "--out", "again")[0] == 0
+    assert set(os.listdir("again")) == PICTURES
+
+
 def test_check_of_a_spur_pair_names_no_hand(run):
     assert "none          none" in run("check", SCENES / "spur.toml")[1]
 

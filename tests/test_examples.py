@@ -17,6 +17,7 @@ EXPECTED = {
     "plot_contact_pattern": (1.0, 2e-3),  # area of the pattern over that of the curvature ellipse
     "plot_hertz_comparison": (1.0, 2e-3),  # peak over that of Hertz, on 49 cells
     "plot_transmission_error": (2.0 / 3.0, 5e-3),  # approach of a Hertz contact under growing load
+    "plot_tooth_3d": (1.0, 5e-3),  # the pressure laid on the flank carries the load
 }
 
 

@@ -1,3 +1,4 @@
+import math
 from pathlib import Path
 
 import pytest
@@ -98,3 +99,38 @@ def test_mounting_that_parts_the_gears_is_a_note():
 def test_gears_that_cannot_mesh_are_an_error():
     with pytest.raises(GeometryError, match="no common flank"):
         described(pair__centre_distance_mm=500.0)
+
+
+def test_bevel_pair_shows_the_printed_cones_of_its_source():
+    """Seed 000, Table 5, two decimals: face angles 52.90/41.64 deg, and the root angles that it calls base angles."""
+    text = described("straight_bevel")
+    assert_allclose([float(cell) for cell in cells(text, "face angle delta_a")], [52.90, 41.64], atol=5e-3)
+    assert_allclose([float(cell) for cell in cells(text, "root angle delta_f")], [47.79, 36.53], atol=5e-3)
+    assert cells(text, "cone distances R_e, R_m, R_i [mm]") == ["63.0600", "56.0600", "49.0600"]
+    assert cells(text, "flank in contact") == ["straight", "straight"]
+    assert cells(text, "normal force F_n [N]") == ["1500.3"]
+
+
+def test_active_profile_of_a_bevel_pair_starts_between_root_and_pitch_cone():
+    text = described("spiral_bevel")
+    labels = ("root angle", "root form cone angle", "start of active profile", "pitch angle", "face angle")
+    angles = [[float(cell) for cell in cells(text, label)] for label in labels]
+    for member in (0, 1):
+        found = [row[member] for row in angles]
+        assert found == sorted(found)
+    assert cells(text, "mate's tip reaches below the form cone") == ["no", "no"]
+
+
+def test_bevel_pair_whose_flank_ends_too_high_says_so():
+    text = described("straight_bevel", pinion__root_angle_deg=50.2)
+    assert cells(text, "mate's tip reaches below the form cone") == ["yes", "no"]
+
+
+def test_spiral_pair_shows_hands_flanks_and_what_departs_from_nominal():
+    text = described("spiral_bevel", mounting__offset_mm=0.02)
+    assert cells(text, "hand of the spiral") == ["left", "right"]
+    assert cells(text, "flank in contact") == ["concave", "convex"]
+    assert cells(text, "mounting.offset_mm") == ["0.02"]
+    assert cells(text, "pinion.modifications.lead_crowning_um") == ["10.0"]
+    normal = float(cells(text, "pressure angles alpha_t, alpha_n [deg]")[1])
+    assert_allclose(math.tan(math.radians(normal)), math.tan(math.radians(20)) * math.cos(math.radians(35)), rtol=1e-5)

@@ -18,6 +18,7 @@ from loaded_tca.plots import (
     plot_transmission_error,
     save_figure,
 )
+from loaded_tca.scene import parse_scene
 
 PLOTS = [plot_contact_path, plot_peak_pressure, plot_pressure_map, plot_transmission_error]
 
@@ -34,6 +35,8 @@ CASES = {
     "positions without contact": with_a_gap,
     "edge contact, no Hertz": lambda: result("misaligned", positions=2),
     "line contact": lambda: result("fzg_c14", positions=3),
+    "straight bevel pair": lambda: result("straight_bevel", positions=3),
+    "spiral bevel pair": lambda: result("spiral_bevel", positions=3),
     "no load": lambda: result(torques=(0.0,), positions=2),
     "one position": lambda: result(positions=1),
     "title with signs of TeX": lambda: replace(result(), title="$x_1 \\frac{ 100 %, " + 15 * "a long title "),
@@ -190,6 +193,36 @@ def test_contact_areas_lie_around_the_path_within_the_flank():
             assert corners[:, 0].min() < 0.0 < corners[:, 0].max()
             assert corners[:, 1].min() < 2.0 * own < corners[:, 1].max()
             assert abs(corners[:, 0]).max() < 13.5  # half of the face, and a part of a cell
+
+
+@pytest.mark.parametrize("name", ["helical", "straight_bevel", "spiral_bevel"])
+def test_flanks_are_drawn_with_the_part_that_the_mate_reaches(name):
+    """The outline is the border of the flank in its frame; the tip is common, the bottom of the reached part higher."""
+    cycle = result(name)
+    pair = parse_scene(cycle.scene_toml).pair()
+    for axes, flank in zip(plot_contact_path(cycle).axes, (pair.pinion, pair.wheel), strict=False):
+        whole, reached = (patch.get_path() for patch in axes.patches)
+        across, up = flank.frame.to_picture(*flank.grid(33, 9))
+        inner = np.stack([across[1:-1, 1:-1].ravel(), up[1:-1, 1:-1].ravel()], axis=-1)
+        assert whole.contains_points(inner).all()
+        assert_allclose(whole.get_extents().get_points(), [[across.min(), up.min()], [across.max(), up.max()]])
+        assert whole.contains_points(reached.vertices[:-1] * 0.999 + inner.mean(axis=0) * 0.001).all()
+        assert reached.get_extents().y0 > whole.get_extents().y0
+        assert (axes.get_xlabel(), axes.get_ylabel()) == flank.frame.labels
+
+
+@pytest.mark.parametrize("name", ["straight_bevel", "spiral_bevel"])
+def test_pictures_of_bevel_pairs_speak_of_toe_and_heel(name):
+    cycle = result(name, positions=3)
+    shown = texts(plot_pressure_map(cycle, position=0))
+    assert "towards the heel on the right" in shown
+    assert "pitch cone" in shown
+    one, frame = cycle.maps[0][0], parse_scene(cycle.scene_toml).pair().pinion.frame
+    heights = [frame.to_picture(np.hypot(*p[:2]), p[2])[1] for p in (one.origin, one.origin + 0.01 * one.axes[0])]
+    assert f"pinion's {'tip' if heights[1] > heights[0] else 'root'} at the top" in shown
+    flanks = plot_contact_path(cycle)
+    assert "toe left, heel right" in texts(flanks)
+    assert "concave" in flanks.axes[0].get_title() or name == "straight_bevel"
 
 
 def test_colours_of_the_flanks_begin_at_zero():

@@ -11,11 +11,14 @@ CASES = (
     "seed_000_misalignment",
     "seed_000_tables",
     "convergence_from_random_starts",
+    "bevel_convergence",
     "mounting_errors",
     "mounting_error_map",
+    "bevel_mounting_errors",
     "involute_pairs",
     "line_contact",
     "fzg_c14_geometry",
+    "iso_23509_sample",
     "iso_tr_6336_30",
 )
 

@@ -11,95 +11,27 @@ Run from the root of the repository: ``python -m validation.convergence_from_ran
 
 import argparse
 import math
-import os
-import platform
-import time
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
-
-import numpy as np
-from numpy.typing import NDArray
 
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.pair import GearPair, Mounting, cylindrical_pair
-from loaded_tca.unloaded import ContactPoint, trace_contact
-from loaded_tca.unloaded.conventional import ConventionalResult, solve_conventional, solve_with_scipy_root
-from loaded_tca.unloaded.ease_off import EaseOff
-from loaded_tca.unloaded.reduced import climb
+from validation.random_starts import (
+    RUNS,
+    SCIPY_STARTS,
+    SPREADS,
+    Case,
+    conventional,
+    draw,
+    machine,
+    reduced,
+    study,
+    table,
+)
 from validation.table import Row
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Array = NDArray[np.float64]
-Result = TypeVar("Result")
-SAME = 1e-9
-"""Wheel angle [rad], and ease-off relative to r_b2, within which an ending is the contact."""
-SPREADS = {"within 0.2 rad": 0.2, "within pi/2": 0.5 * math.pi}
-COMPONENTS = {"y, z": (1, 2), "x, z": (0, 2)}
-RUNS = 3
-"""The shortest of so many runs is the time of a vectorised method."""
-SHOWN = 1000
-"""Starts in the pictures."""
-FAR = 1e5
-"""Ends farther than this [mm] are drawn at the frame."""
-TICKS = (-1e5, -1e3, 0.0, 1e3, 1e5)
-SCIPY_STARTS = 200
-"""SciPy solves one start after the other."""
-COLOURS = {"converged": "#0072b2", "not": "#d55e00", "answer": "#000000"}
-"""Okabe and Ito 2008: told apart by colour-blind readers; the markers differ, too."""
-
-
-@dataclass(frozen=True)
-class Case:
-    """A pair, and what the source does not say about it."""
-
-    name: str
-    pair: GearPair
-    assumed: str
-    starts: int = 5000
-    contact: ContactPoint = field(init=False, repr=False)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "contact", trace_contact(self.pair, [0.0])[0])
-
-    @cached_property
-    def unit_starts(self) -> Array:
-        """Starts (n, 5): rho1, z1, rho2, z2 [mm] over both flanks, and phi2 between -1 and 1."""
-        corners = [part for flank in (self.pair.pinion, self.pair.wheel) for part in flank.grid(2, 2)]
-        ranges = [(float(part.min()), float(part.max())) for part in corners]
-        rng = np.random.default_rng(20240607)
-        return np.stack([rng.uniform(*ends, self.starts) for ends in (*ranges, (-1.0, 1.0))], axis=-1)
-
-    def draw(self, spread: float) -> Array:
-        """The same starts, with phi2 within ``spread`` [rad] of the answer."""
-        starts = self.unit_starts * [1.0, 1.0, 1.0, 1.0, spread]
-        starts[:, 4] += self.contact.wheel_angle
-        return starts
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """One method from all starts of a case."""
-
-    method: str
-    spread: str
-    good: NDArray[np.bool_]
-    steps: float
-    seconds: float
-    domain: Array
-    """Starts: rho1, z1 [mm] and, if it is an unknown, phi2 [rad]."""
-    range: Array
-    """Ends: rho1, z1 [mm]."""
-
-    @property
-    def percentage(self) -> float:
-        """Starts that ended at the contact [%]."""
-        return 100.0 * float(self.good.mean())
+CHOICES = ("y, z", "x, z")
+"""Components of the normals; x and y are singular together for parallel axes."""
 
 
 def cases(starts: int = 5000) -> list[Case]:
@@ -144,46 +76,6 @@ def _pair(mesh: CylindricalMesh, mods: tuple[FlankModifications, ...], mounting:
     return cylindrical_pair(mesh, modifications=(mods[0], mods[1]), mounting=mounting)
 
 
-def timed(run: Callable[[], Result], runs: int) -> tuple[Result, float]:
-    """Result, and the shortest time of some runs [s]."""
-    seconds = []
-    for _ in range(runs):
-        begin = time.perf_counter()
-        found = run()
-        seconds.append(time.perf_counter() - begin)
-    return found, min(seconds)
-
-
-def reduced(case: Case, runs: int = 1) -> Outcome:
-    """Climb the ease-off from every start; phi2 is no unknown of it."""
-    starts, angle = case.unit_starts, np.zeros(case.starts)
-    found, seconds = timed(lambda: climb(EaseOff(case.pair), angle, starts[:, 0], starts[:, 1]), runs)
-    height = case.contact.transmission_error * case.pair.base_radii[1]
-    good = found.converged & (np.abs(found.value - height) <= SAME * case.pair.base_radii[1])
-    ends = np.stack([found.rho, found.z], axis=-1)
-    return Outcome("reduced", "-", good, float(found.iterations[good].mean()), seconds, starts[:, :2], ends)
-
-
-def conventional(case: Case, spread: str, components: str, runs: int = 1) -> Outcome:
-    """Plain Newton iteration on the five equations."""
-    starts, chosen = case.draw(SPREADS[spread]), COMPONENTS[components]
-    found, seconds = timed(lambda: solve_conventional(case.pair, 0.0, starts, chosen), runs)
-    return _five(f"five, normals {components}", case, spread, starts, found, seconds)
-
-
-def scipy_root(case: Case, spread: str, components: str) -> Outcome:
-    """SciPy's ``root`` on the same equations, from the first starts."""
-    starts, chosen = case.draw(SPREADS[spread])[:SCIPY_STARTS], COMPONENTS[components]
-    found, seconds = timed(lambda: solve_with_scipy_root(case.pair, 0.0, starts, chosen), 1)
-    return _five(f"SciPy root, normals {components}", case, spread, starts, found, seconds)
-
-
-def _five(method: str, case: Case, spread: str, starts: Array, found: ConventionalResult, seconds: float) -> Outcome:
-    good = found.is_contact & (np.abs(found.wheel_angle - case.contact.wheel_angle) <= SAME)
-    steps = float(found.iterations[good].mean())
-    return Outcome(method, spread, good, steps, seconds, starts[:, [0, 1, 4]], found.unknowns[:, :2])
-
-
 def rows() -> list[Row]:
     """Reduced: all starts of all pairs. Conventional: the spur pair 52/72, beside what was computed and printed."""
     found, spur = [], cases()[0]
@@ -202,71 +94,6 @@ def rows() -> list[Row]:
         Row(spur.name, printed, f"{label}, phi2 within pi/2: converged [%]", 27.32, wide.percentage, 0.1, sampled),
         Row(spur.name, printed, f"{label}, phi2 within pi/2: mean steps", 5.53, wide.steps, None, sampled),
     ]
-
-
-def machine() -> str:
-    """Processor, cores and Python of this machine."""
-    model = platform.processor()
-    if Path("/proc/cpuinfo").exists():
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-        model = next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), model)
-    return f"{model}, {os.cpu_count()} cores, Python {platform.python_version()}, NumPy {np.__version__}"
-
-
-def study(case: Case) -> list[Outcome]:
-    """All methods and draws of one case."""
-    found = [reduced(case, RUNS)]
-    for spread in SPREADS:
-        found += [conventional(case, spread, components, RUNS) for components in COMPONENTS]
-        found.append(scipy_root(case, spread, "y, z"))
-    return found
-
-
-def table(case: Case, outcomes: list[Outcome]) -> str:
-    """Markdown, one line a method and draw."""
-    lines = [
-        f"| {case.name} | {one.method} | {one.spread} | {len(one.good)} | {one.percentage:.2f} | {one.steps:.2f} "
-        f"| {1e3 * one.seconds:.0f} | {1e3 * one.seconds / max(1, one.good.sum()):.3g} |"
-        for one in outcomes
-    ]
-    return "\n".join(lines)
-
-
-def draw(case: Case, outcomes: list[Outcome], path: Path) -> None:
-    """Picture: above which starts converge, below where they end, relative to the contact; one column a method."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    import matplotlib.pyplot as plt
-
-    chosen = [one for one in outcomes if one.method in ("reduced", "five, normals y, z")]
-    figure, panels = plt.subplots(2, len(chosen), figsize=(11.5, 6.6), layout="constrained", squeeze=False)
-    contact = np.array([case.contact.pinion_radius, case.contact.pinion_axial, case.contact.wheel_angle])
-    for (domain, ends), one in zip(panels.T, chosen, strict=True):
-        spread = "" if one.spread == "-" else f", phi2 {one.spread}"
-        domain.set_title(f"{one.method}{spread}\n{one.percentage:.1f} % of {len(one.good)} starts", fontsize=10)
-        across = 1 if one.spread == "-" else 2
-        _scatter(domain, one.domain[:, across] - contact[across], one.domain[:, 0] - contact[0], one.good)
-        domain.set_xlabel(("z - contact [mm]", "phi2 - contact [rad]")[across - 1])
-        _scatter(ends, one.range[:, 1] - contact[1], one.range[:, 0] - contact[0], one.good)
-        ends.set_xscale("symlog", linthresh=case.pair.face_width)
-        ends.set_yscale("symlog", linthresh=case.pair.pinion.extent[0])
-        ends.set(xlim=(-FAR, FAR), ylim=(-FAR, FAR), xticks=TICKS, yticks=TICKS, xlabel="z - contact [mm]")
-        ends.minorticks_off()
-    panels[0, 0].set_ylabel("domain: radius - contact [mm]")
-    panels[1, 0].set_ylabel("range: radius - contact [mm]")
-    figure.legend(*panels[0, -1].get_legend_handles_labels(), loc="outside lower center", ncols=3)
-    figure.suptitle(f"{case.name}: {SHOWN} starts on the pinion flank, and where they end")
-    figure.savefig(path, dpi=80)
-    plt.close(figure)
-
-
-def _scatter(panel: "Axes", x: Array, y: Array, good: NDArray[np.bool_]) -> None:
-    for mask, marker, label in ((~good, "x", "not"), (good, "o", "converged")):
-        rows = np.flatnonzero(mask[:SHOWN])
-        where = [np.clip(part[rows], -FAR, FAR) for part in (x, y)]
-        panel.plot(*where, marker, ms=3, color=COLOURS[label], alpha=0.7, label=label)
-    panel.plot(0.0, 0.0, "+", ms=14, color=COLOURS["answer"], label="contact")
 
 
 INTRODUCTION = """# Convergence of the unloaded contact from random starts
@@ -334,7 +161,7 @@ def main() -> None:
     arguments = parser.parse_args()
     tables, pictures, assumed = [], [], []
     for number, case in enumerate(cases(arguments.starts), 1):
-        outcomes = study(case)
+        outcomes = study(case, CHOICES)
         tables.append(table(case, outcomes))
         print(tables[-1], flush=True)
         picture = f"unloaded_convergence_{number}.png"

@@ -14,11 +14,12 @@ from typing import Any
 
 import numpy as np
 
+from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.flanks.jet import Array, Jet
 
 BORDER_NAMES = ("tip", "root", "lower side", "upper side")
 """Names of the borders, in the order of ``Flank.borders``; the sides are the ends of the face, lower at
-small z (toe), upper at large z (heel)."""
+small z (toe), upper at large z (heel). ``FlankFrame.borders`` has the words of each kind of gear."""
 
 
 class Flank(ABC):
@@ -30,10 +31,16 @@ class Flank(ABC):
         s = +1 or -1, the sign of the azimuthal part of the outward normal.
     extent : (float, float)
         Height of the region in rho and its width in z [mm], the natural lengths of steps on the flank.
+    frame : FlankFrame
+        How pictures and messages show places on it.
+    profile_unit : float [mm]
+        Length that one unit of the profile coordinate stands for: 1 of a roll length, R_m of an arc.
     """
 
     side: int
     extent: tuple[float, float]
+    frame: FlankFrame
+    profile_unit: float = 1.0
 
     @abstractmethod
     def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:
@@ -83,3 +90,12 @@ def outward_normal(flank: Flank, rho: Array, z: Array) -> Array:
     parts = np.broadcast_arrays(-jet.rho, 1.0 / rho, -jet.z)
     gradient = np.stack(parts, axis=-1) * flank.side
     return gradient / np.linalg.norm(gradient, axis=-1, keepdims=True)
+
+
+def lengthwise_direction(flank: Flank, rho: Array, z: Array) -> Array:
+    """Direction in which the lengthwise coordinate grows, (..., 3), components along e_rho, e_theta, e_z.
+
+    That is from toe to heel, or along the axis; its length is the growth per millimetre.
+    """
+    jet = flank.lengthwise_coordinate(rho, z)
+    return np.stack(np.broadcast_arrays(jet.rho, 0.0 * rho, jet.z), axis=-1)

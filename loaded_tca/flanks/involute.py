@@ -20,6 +20,7 @@ import numpy as np
 
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.frame import CylinderFrame
 from loaded_tca.flanks.jet import Array, Jet
 
 SMALLEST_ROLL_LENGTH = 1e-6
@@ -57,6 +58,7 @@ class InvoluteFlank(Flank):
         self.base_radius, self.base_helix_angle, self.side = base_radius, base_helix_angle, side
         self.radii, self.face_width = radii, face_width
         self.extent = (radii[1] - radii[0], face_width)
+        self.frame = CylinderFrame()
         self._twist = math.tan(base_helix_angle) / base_radius
         roll = math.sqrt(working_radius**2 - base_radius**2) / base_radius
         self._working_involute = roll - math.atan(roll)

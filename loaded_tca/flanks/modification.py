@@ -1,9 +1,9 @@
 r"""Flank modifications: crownings, reliefs, slopes, as amounts of material removed along the normal.
 
-Every modification of the seeds is a function of one coordinate, the roll length along the profile or the
-distance from the middle of the face, so each is a ``Term``: an amount times a shape of
-t = (coordinate - origin)/length. Terms add up to delta(rho, z) > 0 where material is off, and the flank
-becomes Theta - s delta |grad F| with |grad F| of the unmodified flank.
+Nearly every modification is a function of one coordinate, the roll length along the profile or the distance from the
+middle of the face, so each is a ``Term``: an amount times a shape of t = (coordinate - origin)/length. The one that
+takes both is the bi-directional ``Polynomial``, twist included. They add up to delta(rho, z) > 0 where material is
+off, and the flank becomes Theta - s delta |grad F| with |grad F| of the unmodified flank.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ import numpy as np
 
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.derived import DerivedFlank
 from loaded_tca.flanks.jet import Array, Jet
 
 Shape = Callable[[Any], tuple[Any, Any, Any]]
@@ -30,6 +31,9 @@ _FORMS = {
     "tip_relief_form": get_args(ReliefForm),
     "root_relief_form": get_args(ReliefForm),
 }
+
+NO_POLYNOMIAL = (0.0,) * 6
+"""a1 to a6 of no correction."""
 
 LOGARITHMIC_STEEPNESS = 0.99
 """k of the logarithmic crowning C ln(1 - k t^2)/ln(1 - k)."""
@@ -102,6 +106,36 @@ class Term:
 
 
 @dataclass(frozen=True)
+class Polynomial:
+    """a1 + a2 x + a3 y + a4 x y + a5 x^2 + a6 y^2, with x lengthwise and y along the profile, both from the middle.
+
+    Parameters
+    ----------
+    coefficients : 6 floats [mm, 1, 1, 1/mm, 1/mm, 1/mm]
+        a1 to a6.
+    origin : float
+        Profile coordinate of the middle, y = 0.
+    unit : float [mm]
+        Length of one unit of the profile coordinate.
+    """
+
+    coefficients: tuple[float, ...]
+    origin: float
+    unit: float
+
+    def removal(self, flank: Flank, rho: Array, z: Array, beyond: Any) -> Jet:  # noqa: ARG002 (it has no crease)
+        """Material removed [mm]."""
+        constant, along, up, twist, along_along, up_up = self.coefficients
+        x = flank.lengthwise_coordinate(rho, z)
+        y = flank.profile_coordinate(rho, z).shifted_scaled(self.origin, 1.0 / self.unit)
+        lengthwise = x.compose(
+            constant + x.value * (along + x.value * along_along), along + 2.0 * along_along * x.value, 2.0 * along_along
+        )
+        profile = y.compose(y.value * (up + y.value * up_up), up + 2.0 * up_up * y.value, 2.0 * up_up)
+        return lengthwise + profile + x.times(y) * twist
+
+
+@dataclass(frozen=True)
 class FlankModifications:
     """Amounts of the standard modifications, in mm removed along the normal (ISO 21771 names beside).
 
@@ -120,15 +154,30 @@ class FlankModifications:
         C_alpha_f at the start of the active profile; the diameter where it starts.
     helix_slope, profile_slope : float [mm]
         C_H_beta and C_H_alpha; may be negative.
+    twist : float [mm]
+        S_beta: the helix slope at the tip less that at the start of the active profile, over the face width; nothing
+        on the lines through the middle of the flank. S_alpha, the profile slope at the upper end of the face less
+        that at the lower end, is the same number. May be negative.
+    polynomial : 6 floats [mm, 1, 1, 1/mm, 1/mm, 1/mm]
+        a1 to a6 of a1 + a2 x + a3 y + a4 x y + a5 x^2 + a6 y^2, with x [mm] the distance from the middle of the face
+        (the cone distance R - R_m of a bevel gear) and y [mm] the roll length a - a_m from the middle of the active
+        profile (the unwound arc R_m (w - w_m) of a bevel gear). Crownings C_beta and C_alpha over the face width b
+        and the active profile L are a5 = C_beta/(b/2)^2 and a6 = C_alpha/(L/2)^2, a twist S is a4 = S/(b L).
 
     Raises
     ------
     InputError
-        If an amount is not finite or a form is unknown.
+        If an amount is not finite, a form is unknown or the polynomial has not six coefficients.
 
     References
     ----------
-    ISO 21771, clause 5 (flank modifications).
+    ISO 21771, clause 5 (flank modifications). Polynomial: the bi-directional correction that studies of straight bevel
+    gears with fitted flanks use.
+
+    Examples
+    --------
+    >>> FlankModifications(polynomial=(0.0, 0.0, 0.0, 0.0, 1e-4, 2e-3)).polynomial[4]
+    0.0001
     """
 
     lead_crowning: float = 0.0
@@ -144,21 +193,30 @@ class FlankModifications:
     root_relief_form: ReliefForm = "parabolic"
     helix_slope: float = 0.0
     profile_slope: float = 0.0
+    twist: float = 0.0
+    polynomial: tuple[float, ...] = NO_POLYNOMIAL
 
     def __post_init__(self) -> None:
         problems = []
         for name, value in ((entry.name, getattr(self, entry.name)) for entry in fields(self)):
             forms = _FORMS.get(name)
-            if forms is None and not math.isfinite(value):
+            if name == "polynomial":
+                problems += _problems_of_polynomial(value)
+            elif forms is None and not math.isfinite(value):
                 problems.append(f"{name}: {value} mm is not finite")
             elif forms is not None and value not in forms:
                 problems.append(f"{name}: {str(value)!r} is not {', '.join(map(repr, forms[:-1]))} or {forms[-1]!r}")
         if problems:
             raise InputError(problems)
+        object.__setattr__(self, "polynomial", tuple(float(value) for value in self.polynomial))
 
     def terms(
-        self, face_width: float, diameters: tuple[float, float], coordinate: Callable[[float], float]
-    ) -> tuple[Term, ...]:
+        self,
+        face_width: float,
+        diameters: tuple[float, float],
+        coordinate: Callable[[float], float],
+        profile_unit: float = 1.0,
+    ) -> tuple[Term | Polynomial, ...]:
         """Terms of every amount that is not zero.
 
         Parameters
@@ -168,6 +226,8 @@ class FlankModifications:
             Start of the active profile, and tip.
         coordinate : callable
             Diameter [mm] -> profile coordinate.
+        profile_unit : float [mm]
+            Length of one unit of the profile coordinate.
 
         Raises
         ------
@@ -180,7 +240,9 @@ class FlankModifications:
             *self._profile(start, tip),
             *self._reliefs(diameters, coordinate),
         )
-        return tuple(term for term in candidates if term.amount != 0.0)
+        terms = tuple(term for term in candidates if term.amount != 0.0)
+        polynomial = self._polynomial(face_width, start, tip, profile_unit)
+        return (*terms, polynomial) if any(polynomial.coefficients) else terms
 
     def _lengthwise(self, width: float) -> list[Term]:
         half, crowning = 0.5 * width, self.lead_crowning
@@ -210,6 +272,12 @@ class FlankModifications:
             Term("profile", self.profile_slope, start, tip - start, linear),
         ]
 
+    def _polynomial(self, width: float, start: float, tip: float, unit: float) -> Polynomial:
+        """The polynomial, with the twist added to its product of both coordinates."""
+        twist = self.twist / (width * (tip - start) * unit)
+        a1, a2, a3, a4, a5, a6 = self.polynomial
+        return Polynomial((a1, a2, a3, a4 + twist, a5, a6), 0.5 * (start + tip), unit)
+
     def _reliefs(self, diameters: tuple[float, float], coordinate: Callable[[float], float]) -> list[Term]:
         reliefs = (
             ("tip_relief", self.tip_relief, self.tip_relief_start, self.tip_relief_form, diameters[1]),
@@ -224,32 +292,39 @@ class FlankModifications:
         return terms
 
 
+def _problems_of_polynomial(coefficients: Any) -> list[str]:
+    values = np.asarray(coefficients)
+    if values.shape == (6,) and values.dtype.kind in "if" and np.isfinite(values).all():
+        return []
+    return [f"polynomial: {coefficients!r:.100} is not six finite numbers, a1 to a6"]
+
+
 def _require_between(name: str, value: float, low: float, high: float) -> None:
     if not low < value < high:
         raise InputError(f"{name}: {value:.6g} mm is not between {low:.6g} and {high:.6g} mm")
 
 
-class ModifiedFlank(Flank):
+class ModifiedFlank(DerivedFlank):
     """A flank with material removed along its normal: Theta - s delta |grad F|.
 
     Parameters
     ----------
     nominal : Flank
         The unmodified flank, whose region, coordinates and |grad F| are kept.
-    terms : sequence of Term
+    terms : tuple of Term and Polynomial
         Modifications, added up.
     """
 
-    def __init__(self, nominal: Flank, terms: tuple[Term, ...]) -> None:
-        self.nominal, self.terms = nominal, terms
-        self.side, self.extent = nominal.side, nominal.extent
-        self._ramps = tuple(term for term in terms if term.shape is None)
+    def __init__(self, nominal: Flank, terms: tuple[Term | Polynomial, ...]) -> None:
+        super().__init__(nominal)
+        self.terms = terms
+        self._ramps = tuple(term for term in terms if isinstance(term, Term) and term.shape is None)
 
     def removal(self, rho: Array, z: Array, beyond: Any = None) -> Jet:
         """Material removed [mm] by all modifications together."""
         total = Jet(np.zeros(np.broadcast(rho, z).shape))
         for term in self.terms:
-            branch = None if beyond is None or term.shape is not None else beyond[..., self._ramps.index(term)]
+            branch = beyond[..., self._ramps.index(term)] if beyond is not None and term in self._ramps else None
             total = total + term.removal(self.nominal, rho, z, branch)
         return total
 
@@ -261,26 +336,6 @@ class ModifiedFlank(Flank):
     def creases(self, rho: Array, z: Array) -> tuple[Jet, ...]:
         """Starts of the linear reliefs, in millimetres of roll length beyond them."""
         return tuple(term.coordinate(self.nominal, rho, z) * abs(term.length) for term in self._ramps)
-
-    def borders(self, rho: Array, z: Array) -> tuple[Jet, ...]:
-        """Borders of the nominal flank."""
-        return self.nominal.borders(rho, z)
-
-    def grid(self, profile: int, lengthwise: int) -> tuple[Array, Array]:
-        """Grid of the nominal flank."""
-        return self.nominal.grid(profile, lengthwise)
-
-    def profile_coordinate(self, rho: Array, z: Array) -> Jet:
-        """Profile coordinate of the nominal flank."""
-        return self.nominal.profile_coordinate(rho, z)
-
-    def lengthwise_coordinate(self, rho: Array, z: Array) -> Jet:
-        """Lengthwise coordinate of the nominal flank."""
-        return self.nominal.lengthwise_coordinate(rho, z)
-
-    def gradient_norm(self, rho: Array, z: Array) -> Jet:
-        """|grad F| of the nominal flank."""
-        return self.nominal.gradient_norm(rho, z)
 
 
 def modified(
@@ -309,7 +364,7 @@ def modified(
         If a relief starts off the active profile, or is longer than half the face.
     """
     try:
-        terms = modifications.terms(face_width, diameters, coordinate)
+        terms = modifications.terms(face_width, diameters, coordinate, nominal.profile_unit)
     except InputError as error:
         raise InputError(f"{owner}.{problem}" for problem in error.problems) from None
     return ModifiedFlank(nominal, terms) if terms else nominal

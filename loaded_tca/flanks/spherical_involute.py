@@ -32,6 +32,7 @@ import numpy as np
 
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.frame import ConeFrame
 from loaded_tca.flanks.jet import Array, Jet
 
 SMALLEST_Q = 3e-5
@@ -101,11 +102,12 @@ class SphericalInvoluteFlank(Flank):
             raise InputError(f"cone_distances: 0 < toe {cone_distances[0]} < heel {cone_distances[1]} mm does not hold")
         self.base_angle, self.side = base, side
         self.cone_angles, self.cone_distances = cone_angles, cone_distances
-        self.mean_cone_distance = 0.5 * (cone_distances[0] + cone_distances[1])
+        self.mean_cone_distance = self.profile_unit = 0.5 * (cone_distances[0] + cone_distances[1])
         self._spiral = math.tan(spiral_angle) / math.sin(pitch_angle)
         self._pitch_involute = float(spherical_involute(np.array(pitch_angle), base))
         rho, z = self.grid(9, 2)
         self.extent = (float(np.ptp(rho)), float(np.ptp(z)))
+        self.frame = ConeFrame(pitch_angle, self.mean_cone_distance)
 
     def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:  # noqa: ARG002 (it has no crease)
         """Theta of the spherical involute, log spiral included."""

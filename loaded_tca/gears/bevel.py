@@ -16,6 +16,8 @@ _MIN_PRESSURE_ANGLE, _MAX_PRESSURE_ANGLE = radians(1), radians(45)
 _MAX_SPIRAL_ANGLE = radians(60)
 _EQUAL = 1e-9
 _DEDENDUM = 1.25
+# In outer modules: the straight blade of a generating tool reaches this deep (ISO 23509:2016, clause 8).
+_TOOL_DEPTH = 1.1
 
 
 def pitch_angles(teeth: tuple[int, int], shaft_angle: float) -> tuple[float, float]:
@@ -66,7 +68,7 @@ class BevelGear:
     InputError
         If values are out of range; every one is told.
     GeometryError
-        If the face width reaches the apex, the tooth is pointed, or the face cone lies inside the form cone.
+        If the face width reaches the apex, the root cone reaches the axis, or the tooth ends below the face cone.
 
     References
     ----------
@@ -133,6 +135,11 @@ class BevelGear:
                 f"{self.name}: face_width {self.face_width:.6g} mm reaches the apex: no face width is left at the toe; "
                 f"it must be below the outer cone distance {self.outer_cone_distance:.6g} mm"
             )
+        if self.root_cone_angle <= 0.0:
+            raise GeometryError(
+                f"{self.name}: the root cone, {_degrees(self.root_cone_angle)}, reaches the axis; raise profile_shift"
+                " or teeth"
+            )
         face = f"{self.name}: the face cone, {_degrees(self.tip_angle)},"
         if self.tip_angle >= pi - self.base_angle:
             raise GeometryError(
@@ -191,6 +198,26 @@ class BevelGear:
     def form_angle(self) -> float:
         """Cone on which the flank ends at the root: the root cone, never below the base cone [rad]."""
         return max(self.root_cone_angle, self.base_angle)
+
+    @property
+    def smallest_profile_shift(self) -> float:
+        r"""Profile shift below which a generating crown gear undercuts this gear.
+
+        The tip of the tool, 1.1 m_et deep, meets the line of action beyond its end on the base cone where
+
+        .. math:: \sin\theta > \sin\alpha \sin w, \quad \tan\theta = (1.1 - x) m_{et}/R_e
+
+        with w the unwound arc at the pitch cone, at most a quarter turn (from a pitch angle of 90 deg on, a tool meets
+        no end of the line of action).
+        """
+        arc = min(self.unwound_arc(self.pitch_angle), 0.5 * pi)
+        deepest = tan(asin(sin(self.pressure_angle) * sin(arc)))
+        return _TOOL_DEPTH - deepest * self.outer_cone_distance / self.outer_module
+
+    @property
+    def is_undercut(self) -> bool:
+        """Whether a generating crown gear would cut into the flank; flanks here are never cut short by it."""
+        return self.profile_shift < self.smallest_profile_shift
 
     @property
     def half_thickness_angle(self) -> float:
@@ -298,19 +325,35 @@ class BevelMesh:
         )
 
     @property
+    def _both_ways(self) -> tuple[tuple[BevelGear, BevelGear], tuple[BevelGear, BevelGear]]:
+        """(gear, its mate), from either side."""
+        return (self.pinion, self.wheel), (self.wheel, self.pinion)
+
+    @property
     def _line_of_action(self) -> float:
         """Arc of the great circle of contact between the two base cones that it touches [rad]."""
         return sum(gear.unwound_arc(gear.pitch_angle) for gear in (self.pinion, self.wheel))
 
     def _start_arc(self, gear: BevelGear, mate: BevelGear) -> float:
         """Unwound arc on a gear where the active profile starts [rad]."""
-        return max(gear.unwound_arc(gear.form_angle), self._line_of_action - mate.unwound_arc(mate.tip_angle))
+        return max(gear.unwound_arc(gear.form_angle), self._arc_at_tip_of(mate))
+
+    def _arc_at_tip_of(self, mate: BevelGear) -> float:
+        """Unwound arc on a gear where the tip of its mate ends; negative beyond the base cone [rad]."""
+        return self._line_of_action - mate.unwound_arc(mate.tip_angle)
+
+    @property
+    def fillet_interference(self) -> tuple[bool, bool]:
+        """Whether the mate's tip reaches below the form cone of pinion and wheel, into what is no involute."""
+        pinion, wheel = (
+            self._arc_at_tip_of(mate) < gear.unwound_arc(gear.form_angle) for gear, mate in self._both_ways
+        )
+        return pinion, wheel
 
     @property
     def transverse_contact_ratio(self) -> float:
         """eps_alpha: arc of contact over the base pitch 2 pi sin(delta_b1)/z1, on the sphere."""
-        starts = self._start_arc(self.pinion, self.wheel) + self._start_arc(self.wheel, self.pinion)
-        length = self._line_of_action - starts
+        length = self._line_of_action - sum(self._start_arc(*pair) for pair in self._both_ways)
         return length * self.pinion.teeth / (2.0 * pi * sin(self.pinion.base_angle))
 
     @property

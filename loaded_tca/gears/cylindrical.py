@@ -7,6 +7,7 @@ transverse section.
 from dataclasses import dataclass
 from functools import cached_property
 from math import asin, atan, cos, hypot, isfinite, pi, radians, sin, sqrt, tan
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -312,6 +313,37 @@ class CylindricalGear:
         """
         return self._fillet(np.linspace(self._fillet_start, 0.5 * pi, points))
 
+    def root_fillet_tangent(self, points: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Unit tangents of :meth:`root_fillet`, towards the root circle.
+
+        The rack cuts where its normal meets the pitch point, so the normal of the fillet is the line to it.
+
+        Parameters
+        ----------
+        points : int
+            Number of points.
+
+        Returns
+        -------
+        radial, circumferential : (points,)
+            The second one positive away from the middle of the tooth.
+        """
+        slope = np.linspace(self._fillet_start, 0.5 * pi, points)
+        offset, above = self._offset_and_height(slope)
+        leaning = cos(self.helix_angle) / np.tan(slope)
+        normal = np.stack([leaning * offset - self.reference_radius - above, leaning * self.reference_radius])
+        inward, sideways = normal / np.linalg.norm(normal, axis=0)
+        return -sideways, -inward
+
+    def _offset_and_height(self, slope: Any) -> tuple[Any, Any]:
+        """Where a point of the rack's rounding cuts: beside and above the pitch point [mm]."""
+        above = (
+            self.normal_module * self.profile_shift
+            - self.rack_form_depth
+            - self.rack_tip_radius * (np.sin(slope) - sin(self.pressure_angle))
+        )
+        return -above * cos(self.helix_angle) * np.cos(slope) / np.sin(slope), above
+
     def _fillet(self, slope: float | NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Radius and half thickness angle that a point of the rack's rounding cuts.
 
@@ -322,12 +354,7 @@ class CylindricalGear:
         rounding, twist = self.rack_tip_radius, cos(self.helix_angle)
         flank_end = pi / 4.0 * self.normal_module - self.rack_form_depth * tan(self.pressure_angle)
         along = (flank_end + rounding * (np.cos(slope) - cos(self.pressure_angle))) / twist
-        above = (
-            self.normal_module * self.profile_shift
-            - self.rack_form_depth
-            - rounding * (np.sin(slope) - sin(self.pressure_angle))
-        )
-        offset = -above * twist * np.cos(slope) / np.sin(slope)
+        offset, above = self._offset_and_height(slope)
         space = np.arctan2(offset, self.reference_radius + above) - (offset - along) / self.reference_radius
         return np.hypot(self.reference_radius + above, offset), pi / self.teeth - space
 

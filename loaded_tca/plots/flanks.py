@@ -8,10 +8,10 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch, Rectangle
+from matplotlib.patches import Patch, Polygon
 
+from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.jet import Array
-from loaded_tca.gears import CylindricalGear
 from loaded_tca.mesh_cycle import MeshCycle, PressureMap
 from loaded_tca.pair import GearPair
 from loaded_tca.plots.pressure_map import borders
@@ -19,10 +19,12 @@ from loaded_tca.plots.style import ACCENT, COLOURS, NO_MATE, highest_torque, loa
 from loaded_tca.scene import parse_scene
 
 MOST_AREAS = 7
+FINENESS = (129, 33)
+"""Points along the profile and lengthwise from which the outline of a flank is drawn."""
 
 
 def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
-    """Path of contact on both flanks, diameter against face width, with the pressure of some positions.
+    """Path of contact on both flanks, each as its frame shows it, with the pressure of some positions.
 
     White is the part of a flank that the mate reaches at nominal mounting.
 
@@ -40,18 +42,18 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     figure = Figure(figsize=(11.0, 5.5), layout="constrained")
     panels = figure.subplots(1, 2)
     scene = parse_scene(result.scene_toml)
-    mesh, pair, path = scene.mesh(), scene.pair(), result.path
+    starts, pair, path = scene.active_starts(), scene.pair(), result.path
     sides = (
-        ("pinion", mesh.pinion, mesh.pinion_active_profile.start_radius, path.pinion_radius, path.pinion_axial),
-        ("wheel", mesh.wheel, mesh.wheel_active_profile.start_radius, path.wheel_radius, path.wheel_axial),
+        (pair.pinion, starts[0], path.pinion_radius, path.pinion_axial),
+        (pair.wheel, starts[1], path.wheel_radius, path.wheel_axial),
     )
     maps = _drawn_maps(result, torque)
     scale = Normalize(0.0, max((float(one.pressure.max()) for one in maps), default=1.0))
-    for axes, (name, gear, start, radius, axial) in zip(panels, sides, strict=True):
-        outline = _draw_flank(axes, name, gear, start)
+    for axes, name, (flank, start, radius, axial) in zip(panels, scene.flank_names, sides, strict=True):
+        outline = _draw_flank(axes, name, flank, start)
         for one in maps:
-            _draw_area(axes, outline, one, _on_gear(pair, name, _corners(one)), scale)
-        axes.plot(axial, 2.0 * radius, ".", color=ACCENT, markersize=4.0)
+            _draw_area(axes, outline, one, flank.frame.to_picture(*_on_gear(pair, flank, _corners(one))), scale)
+        axes.plot(*flank.frame.to_picture(radius, axial), ".", color=ACCENT, markersize=4.0)
     if maps:
         figure.colorbar(ScalarMappable(scale, COLOURS), ax=panels, label="contact pressure [MPa]")
     _explain(figure, len(maps), len(path))
@@ -80,26 +82,52 @@ def _explain(figure: Figure, drawn: int, positions: int) -> None:
     )
 
 
-def _draw_flank(axes: Axes, name: str, gear: CylindricalGear, start_radius: float) -> Patch:
-    """The flank from form circle to tip, with the part that the mate reaches in white; returns its outline."""
-    half = 0.5 * gear.face_width
-    form, start, tip = (2.0 * radius for radius in (gear.form_radius, start_radius, gear.tip_radius))
-    whole = Rectangle((-half, form), 2.0 * half, tip - form, facecolor=NO_MATE, edgecolor="black")
-    axes.add_patch(whole)
-    axes.add_patch(Rectangle((-half, start), 2.0 * half, tip - start, facecolor="white", edgecolor="black"))
-    axes.set_xlim(-1.08 * half, 1.08 * half)
-    axes.set_ylim(form - 0.08 * (tip - form), tip + 0.08 * (tip - form))
-    axes.set_title(f"{name}, active flank from diameter {start:.2f} to {tip:.2f} mm", fontsize="small")
-    axes.set_xlabel("axial place, from mid-face [mm]")
-    axes.set_ylabel("diameter [mm]")
-    return whole
+def _draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:
+    """The flank from root to tip, with the part from profile coordinate ``start`` on in white; returns its outline."""
+    rho, z = flank.grid(*FINENESS)
+    along = flank.profile_coordinate(rho, z).value
+    outline = _region(flank, float(along.min()), NO_MATE)
+    for piece in (outline, _region(flank, start, "white")):
+        axes.add_patch(piece)
+    lower, upper = outline.get_xy().min(axis=0), outline.get_xy().max(axis=0)
+    margin = 0.08 * (upper - lower)
+    axes.set_xlim(lower[0] - margin[0], upper[0] + margin[0])
+    axes.set_ylim(lower[1] - margin[1], upper[1] + margin[1])
+    span = flank.frame.profile_span(*_profile_ends(flank, start))
+    axes.set_title(f"{name}, active from {span}", fontsize="small")
+    axes.set_xlabel(flank.frame.labels[0])
+    axes.set_ylabel(flank.frame.labels[1])
+    return outline
+
+
+def _from_coordinate(flank: Flank, lowest: float) -> tuple[Array, Array]:
+    """(rho, z) along the line on which the profile coordinate is ``lowest``, each (lengthwise,)."""
+    rho, z = flank.grid(*FINENESS)
+    along = flank.profile_coordinate(rho, z).value
+    found = [[np.interp(lowest, along[:, k], part[:, k]) for k in range(FINENESS[1])] for part in (rho, z)]
+    return np.array(found[0]), np.array(found[1])
+
+
+def _region(flank: Flank, lowest: float, colour: str) -> Polygon:
+    """Outline of the flank above the line on which the profile coordinate is ``lowest``."""
+    rho, z = flank.grid(*FINENESS)
+    bottom, top = _from_coordinate(flank, lowest), (rho[-1], z[-1])
+    around = (np.concatenate([first, last[::-1]]) for first, last in zip(bottom, top, strict=True))
+    return Polygon(np.stack(flank.frame.to_picture(*around), axis=-1), facecolor=colour, edgecolor="black")
+
+
+def _profile_ends(flank: Flank, start: float) -> tuple[tuple[float, float], tuple[float, float]]:
+    """(rho, z) in the middle of the face, where the active profile starts, and at the tip."""
+    middle = FINENESS[1] // 2
+    rho, z = flank.grid(*FINENESS)
+    first = _from_coordinate(flank, start)
+    return (float(first[0][middle]), float(first[1][middle])), (float(rho[-1, middle]), float(z[-1, middle]))
 
 
 def _draw_area(axes: Axes, outline: Patch, one: PressureMap, corners: tuple[Array, Array], scale: Normalize) -> None:
     """The cells under pressure of one position, within the outline of the flank."""
-    radius, axial = corners
     loaded = np.where(one.pressure > 0.0, one.pressure, np.nan)
-    cells = axes.pcolormesh(axial, 2.0 * radius, loaded, cmap=COLOURS, norm=scale, rasterized=True)
+    cells = axes.pcolormesh(*corners, loaded, cmap=COLOURS, norm=scale, rasterized=True)
     cells.set_clip_path(outline)
 
 
@@ -109,9 +137,9 @@ def _corners(one: PressureMap) -> Array:
     return one.origin + x[:, None, None] * one.axes[0] + y[:, None] * one.axes[1]
 
 
-def _on_gear(pair: GearPair, gear: str, point: Array) -> tuple[Array, Array]:
-    """Radius and axial coordinate (...) of points (..., 3) on a gear."""
-    if gear == "pinion":
+def _on_gear(pair: GearPair, flank: Flank, point: Array) -> tuple[Array, Array]:
+    """Radius and axial coordinate (...) of points (..., 3) on the gear of a flank."""
+    if flank is pair.pinion:
         return np.hypot(point[..., 0], point[..., 1]), point[..., 2]
     radius, _, axial = pair.to_wheel(point)
     return radius, axial

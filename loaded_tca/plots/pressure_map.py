@@ -10,16 +10,18 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
+from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.flanks.jet import Array
 from loaded_tca.mesh_cycle import MeshCycle, PressureMap
 from loaded_tca.plots.style import ACCENT, COLOURS, NO_MATERIAL, highest_torque, load, place, set_title, tell_no_load
+from loaded_tca.scene import parse_scene
 
 
 def plot_pressure_map(result: MeshCycle, position: int | None = None, torque: int | None = None) -> Figure:
     """Contact pressure of one position in the tangent plane, with the ellipse after Hertz.
 
     Cells without material are grey, cells without pressure white. The direction across is drawn larger than the
-    one along by a factor that the axis tells. The axes say where z > 0 and the pinion's tip lie.
+    one along by a factor that the axis tells. The axes say where the heel (or z > 0) and the pinion's tip lie.
 
     Parameters
     ----------
@@ -51,21 +53,29 @@ def plot_pressure_map(result: MeshCycle, position: int | None = None, torque: in
     axes.plot(0.0, 0.0, "+", color=ACCENT, label="unloaded contact point")
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
     axes.set_aspect(scale)
-    _label_axes(axes, one, scale)
+    frame = parse_scene(result.scene_toml).pair().pinion.frame
+    _label_axes(axes, one, scale, frame)
     what = "contact pressure" if one.pressure.any() else "no contact pressure"
-    set_title(figure, result, f"{what}, {load(result, torque)}", place(result, position))
+    set_title(figure, result, f"{what}, {load(result, torque)}", *place(result, position, frame))
     return figure
 
 
-def _label_axes(axes: Axes, one: PressureMap, scale: float) -> None:
-    """Names of the axes, with the sides on which z > 0 and the pinion's tip lie."""
-    side = "right" if one.axes[1, 2] > 0.0 else "left"
-    upwards = one.axes[0, :2] @ one.origin[:2] > 0.0
-    axes.set_xlabel(f"along the contact [mm], towards z > 0 on the {side}")
+def _label_axes(axes: Axes, one: PressureMap, scale: float, frame: FlankFrame) -> None:
+    """Names of the axes, with the sides on which the heel (or z > 0) and the pinion's tip lie."""
+    (here, level), (right, _), (_, above) = (
+        _on_pinion(frame, point)
+        for point in (one.origin, one.origin + one.spacing[1] * one.axes[1], one.origin + one.spacing[0] * one.axes[0])
+    )
+    axes.set_xlabel(f"along the contact [mm], towards {frame.heelwards} on the {'right' if right > here else 'left'}")
     axes.set_ylabel(
-        f"across the contact [mm]\n(pinion's {'tip' if upwards else 'root'} at the top)"
+        f"across the contact [mm]\n(pinion's {'tip' if above > level else 'root'} at the top)"
         + (f"\n(drawn {scale:g} times larger)" if scale != 1.0 else "")
     )
+
+
+def _on_pinion(frame: FlankFrame, point: Array) -> tuple[Array, Array]:
+    """Lengthwise place and height of a point (3,) of the fixed frame on the pinion's flank."""
+    return frame.to_picture(np.hypot(point[0], point[1]), point[2])
 
 
 def _draw_pressure(figure: Figure, axes: Axes, one: PressureMap) -> None:

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
+from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.mesh_cycle import MeshCycle
 from loaded_tca.storage import FilePath, replacing
 
@@ -72,12 +73,12 @@ def loads(result: MeshCycle) -> str:
     return load(result, 0) if len(result.torque) == 1 else f"pinion torques {low:.4g} to {high:.4g} N m"
 
 
-def place(result: MeshCycle, position: int) -> str:
-    """Return what a title says of one position."""
+def place(result: MeshCycle, position: int, frame: FlankFrame) -> tuple[str, str]:
+    """Return what a title says of one position, and of its contact point in the frame of the pinion's flank."""
     where = result.path[position]
     return (
-        f"position {position + 1} of {len(result.path)}: pinion angle {_degrees(where.pinion_angle)} deg, "
-        f"contact point at pinion diameter {2.0 * where.pinion_radius:.4g} mm"
+        f"position {position + 1} of {len(result.path)}: pinion angle {_degrees(where.pinion_angle)} deg",
+        f"contact point on the pinion: {frame.place(where.pinion_radius, where.pinion_axial)}",
     )
 
 

@@ -1,31 +1,31 @@
 """Scene files and the scenes they describe.
 
 A scene file is TOML with the unit in every key; ``read_scene`` makes a ``Scene`` of it, or tells every
-problem at once. All values are checked and kept in the engineer's units; ``Scene.pair`` converts them.
+problem at once. All values are checked and kept in the engineer's units; ``Scene.pair`` converts them. Each family of
+gear pairs is a module here, with its sections and its class of scenes; ``pair.type`` picks it. A new family is such a
+module, with ``@family`` over its class, and one line of import below.
 """
 
+# ruff: noqa: I001  -- the order of import is the order in which messages and documents name the families
+
+from loaded_tca.scene import cylindrical, bevel
+from loaded_tca.scene.cylindrical import CylindricalScene
+from loaded_tca.scene.bevel import BevelScene
 from loaded_tca.scene.describe import describe_keys
 from loaded_tca.scene.model import Scene, scene_from_table
 from loaded_tca.scene.parse import parse_scene, read_scene
-from loaded_tca.scene.sections import (
-    Analysis,
-    ElasticMaterial,
-    Gear,
-    Geometry,
-    Load,
-    Modifications,
-    MountingErrors,
-)
+from loaded_tca.scene.sections import Analysis, ElasticMaterial, Load, Modifications
 
 __all__ = [
     "Analysis",
+    "BevelScene",
+    "CylindricalScene",
     "ElasticMaterial",
-    "Gear",
-    "Geometry",
     "Load",
     "Modifications",
-    "MountingErrors",
     "Scene",
+    "bevel",
+    "cylindrical",
     "describe_keys",
     "parse_scene",
     "read_scene",

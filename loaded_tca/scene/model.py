@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 from loaded_tca.errors import InputError
-from loaded_tca.gears import CylindricalMesh
-from loaded_tca.pair import GearPair
-from loaded_tca.scene.build import build_cylindrical_mesh, build_cylindrical_pair, in_base_units
-from loaded_tca.scene.keys import Line, key
+from loaded_tca.pair import GearPair, Sense
+from loaded_tca.scene.build import in_base_units
+from loaded_tca.scene.keys import Choice, Key, Line, key
 from loaded_tca.scene.section import (
     Rule,
     Section,
@@ -22,26 +22,11 @@ from loaded_tca.scene.section import (
     made,
     subsection,
 )
-from loaded_tca.scene.sections import (
-    Analysis,
-    ElasticMaterial,
-    Gear,
-    Geometry,
-    Hand,
-    Load,
-    MountingErrors,
-)
+from loaded_tca.scene.sections import Analysis, ElasticMaterial, Gear, Load, Pair
 from loaded_tca.scene.text import literal
 
-
-def _opposite_hands(wheel: Hand | None, pinion: Hand | None) -> str | None:
-    if wheel is None or wheel != pinion:
-        return None
-    return f'found "{wheel}" on both gears; allowed "{_opposite(wheel)}", the hand that the pinion does not have'
-
-
-def _opposite(hand: Hand) -> Hand:
-    return "left" if hand == "right" else "right"
+Row = tuple[str, ...]
+"""Label and cells of a line of an overview."""
 
 
 def _material_of_each(common: object, pinion: object, wheel: object) -> str | None:
@@ -51,60 +36,89 @@ def _material_of_each(common: object, pinion: object, wheel: object) -> str | No
 
 
 @dataclass(frozen=True, kw_only=True)
-class Scene(Section):
+class Scene(Section, ABC):
     """All that an analysis needs to know, in the engineer's units, as read from a scene file.
 
-    Values are checked however a scene is made, ``dataclasses.replace`` included; docs/scene.md has the keys.
+    Values are checked however a scene is made, ``dataclasses.replace`` included; docs/scene.md has the keys. Each
+    family of gear pairs (``CylindricalScene``, ``BevelScene``) has its own sections for the pair, the gears and their
+    mounting errors.
 
     Attributes
     ----------
     title : str
-    geometry : Geometry
+    geometry : Pair
         Section [pair]: what both gears have in common.
     pinion, wheel : Gear
-    mounting : MountingErrors
+    mounting : Section
+        Mounting errors, zero by default.
     material : ElasticMaterial or None
         Of both gears; ``materials`` tells what holds for each.
     load : Load
     analysis : Analysis
-
-    Examples
-    --------
-    >>> scene = Scene(
-    ...     geometry=Geometry(type="cylindrical", normal_module_mm=3.0),
-    ...     pinion=Gear(teeth=34, face_width_mm=25.0),
-    ...     wheel=Gear(teeth=57, face_width_mm=25.0),
-    ...     material=ElasticMaterial(youngs_modulus_MPa=206000.0, poisson_ratio=0.3),
-    ...     load=Load(pinion_torque_Nm=130.0),
-    ... )
-    >>> scene.pair()
-    GearPair(34/57, module 3 mm, face 25 mm)
-    >>> scene.with_changes({"pinion.teeth": 21}).pair()
-    GearPair(21/57, module 3 mm, face 25 mm)
     """
 
     title: str = key(Line(), "stands over reports and plots", "")
-    geometry: Geometry = subsection(Geometry, "what both gears have in common", name="pair")
+    geometry: Pair = subsection(Pair, "what both gears have in common", name="pair")
     pinion: Gear = subsection(Gear, "the gear that turns about +z")
     wheel: Gear = subsection(Gear, "its mate")
-    mounting: MountingErrors = subsection(MountingErrors, "mounting errors")
+    mounting: Section = subsection(Section, "mounting errors")
     material: ElasticMaterial | None = subsection(
         ElasticMaterial, "material of both gears; needed unless each has its own", optional=True
     )
     load: Load = subsection(Load, "what the pair carries")
     analysis: Analysis = subsection(Analysis, "how finely it is computed")
 
-    rules: ClassVar[tuple[Rule, ...]] = (
-        Rule(("wheel.hand", "pinion.hand"), _opposite_hands),
-        Rule(("material", "pinion.material", "wheel.material"), _material_of_each),
-    )
+    rules: ClassVar[tuple[Rule, ...]] = (Rule(("material", "pinion.material", "wheel.material"), _material_of_each),)
+
+    @abstractmethod
+    def mesh(self) -> Any:
+        """Return the macro geometry.
+
+        Raises
+        ------
+        InputError
+            If values that are sound one by one do not fit each other.
+        GeometryError
+            If the gears cannot exist or cannot mesh.
+        """
+
+    @abstractmethod
+    def pair(self, sense: Sense | None = None) -> GearPair:
+        """Return the two flanks in space.
+
+        Parameters
+        ----------
+        sense : {"positive", "negative"}, optional
+            Sense of rotation, which picks the flanks in contact; default: that of the scene.
+
+        Raises
+        ------
+        InputError
+            If values that are sound one by one do not fit each other.
+        GeometryError
+            If the gears cannot exist or cannot mesh.
+        """
+
+    @abstractmethod
+    def active_starts(self) -> tuple[float, float]:
+        """Return where the active profiles of pinion and wheel start, as ``Flank.profile_coordinate`` counts."""
+
+    @abstractmethod
+    def geometry_rows(self) -> Sequence[Row]:
+        """Return what there is to tell of the geometry: of the mesh, then of pinion and wheel."""
+
+    @abstractmethod
+    def force_rows(self, torques: Sequence[float]) -> Sequence[Row]:
+        """Return the forces under pinion torques [N mm], a cell for each."""
+
+    def notes(self) -> Sequence[str]:
+        """Return sentences on what the analysis leaves out."""
+        return ()
 
     @property
-    def pinion_hand(self) -> Hand:
-        """Hand of the pinion: as given, or opposite to the wheel, or right."""
-        if self.pinion.hand is not None:
-            return self.pinion.hand
-        return "right" if self.wheel.hand is None else _opposite(self.wheel.hand)
+    def flank_names(self) -> tuple[str, str]:
+        """What pictures call the two flanks in contact."""
+        return "pinion", "wheel"
 
     @property
     def materials(self) -> tuple[ElasticMaterial, ElasticMaterial]:
@@ -119,27 +133,6 @@ class Scene(Section):
         """Every pinion torque to analyse [N mm]."""
         several = in_base_units(self.analysis).get("torques")
         return several or (in_base_units(self.load)["pinion_torque"],)
-
-    def mesh(self) -> CylindricalMesh:
-        """Return the macro geometry: diameters, contact ratios, path of contact."""
-        return build_cylindrical_mesh(self.geometry, (self.pinion, self.wheel), self._hand_sign)
-
-    def pair(self) -> GearPair:
-        """Return the two flanks in space.
-
-        Raises
-        ------
-        InputError
-            If values that are sound one by one do not fit each other.
-        GeometryError
-            If the gears cannot exist or cannot mesh.
-        """
-        gears = (self.pinion, self.wheel)
-        return build_cylindrical_pair(self.geometry, gears, self._hand_sign, self.mounting, self.materials)
-
-    @property
-    def _hand_sign(self) -> int:
-        return 1 if self.pinion_hand == "right" else -1
 
     def with_changes(self, changes: Mapping[str, Any]) -> Scene:
         """Return a scene with other values, all checked.
@@ -175,18 +168,58 @@ class Scene(Section):
         return "\n".join(_lines(self, "")) + "\n"
 
 
+FAMILIES: dict[str, type[Scene]] = {}
+"""Type of a gear pair, as files call it -> the scenes of its family; filled by ``family``."""
+
+SceneType = TypeVar("SceneType", bound=type[Scene])
+
+
+def family(scene: SceneType) -> SceneType:
+    """Make a class of scenes known to scene files, under every type that its section [pair] allows."""
+    for option in types_of(scene):
+        FAMILIES[option] = scene
+    return scene
+
+
+def types_of(scene: type[Scene]) -> tuple[str, ...]:
+    """Return the types of gear pairs of a family."""
+    _, pair = entries(scene)["pair"]
+    assert isinstance(pair, Subsection)
+    _, entry = entries(pair.section)["type"]
+    assert isinstance(entry, Key)
+    assert isinstance(entry.kind, Choice)
+    return tuple(str(option) for option in entry.kind.options)
+
+
 def scene_from_table(table: Mapping[str, Any]) -> Scene:
-    """Return the scene that nested dictionaries describe, as TOML would give them.
+    """Return the scene that nested dictionaries describe, as TOML would give them; ``pair.type`` picks the family.
 
     Raises
     ------
     InputError
         Every problem at once.
     """
-    values, problems = check(Scene, table)
+    pair = {} if table.get("pair") is None else table["pair"]
+    pair = contents(pair) if isinstance(pair, Section) else pair
+    kind = pair.get("type") if isinstance(pair, Mapping) else None
+    try:
+        scenes = FAMILIES[Choice(tuple(FAMILIES)).read(kind)]  # type: ignore[index]
+    except ValueError as refused:
+        raise InputError(_problems_without_type(table, pair, kind, str(refused))) from None
+    values, problems = check(scenes, table)
     if problems:
         raise InputError(problems)
-    return made(Scene, values)
+    return made(scenes, values)
+
+
+def _problems_without_type(table: Mapping[str, Any], pair: Any, kind: Any, refusal: str) -> list[str]:
+    """Every problem of a scene of no known type: the others are those as the type that knows the most keys."""
+    if not isinstance(pair, Mapping):
+        return check(next(iter(FAMILIES.values())), table)[1]
+    told = f"missing; allowed {Choice(tuple(FAMILIES)).allowed}" if kind is None else refusal
+    trials = [check(scenes, {**table, "pair": {**pair, "type": name}})[1] for name, scenes in FAMILIES.items()]
+    fewest = min(trials, key=lambda problems: (sum("unknown key" in problem for problem in problems), len(problems)))
+    return [f"pair.type: {told}", *fewest]
 
 
 def _lines(section: Section, path: str) -> list[str]:

@@ -68,8 +68,8 @@ def parse_scene(text: str, source: str = "scene") -> Scene:
     >>> parse_scene("[pair]\nmodul = 3")  # doctest: +ELLIPSIS
     Traceback (most recent call last):
     ...
-    loaded_tca.errors.InputError: pair.modul: unknown key; did you mean "pair.normal_module_mm"?
-    pair.type: missing; allowed "cylindrical"
+    loaded_tca.errors.InputError: pair.type: missing; allowed "cylindrical" or "straight_bevel" or "spiral_bevel"
+    pair.modul: unknown key; did you mean "pair.normal_module_mm"?
     ...
     """
     return scene_from_table(_table(text, source))

@@ -14,8 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loaded_tca.flanks.base import lengthwise_direction
 from loaded_tca.flanks.jet import Array
-from loaded_tca.pair import GearPair
+from loaded_tca.pair import GearPair, cylindrical_basis
 from loaded_tca.unloaded.ease_off import PARTS, EaseOff
 from loaded_tca.unloaded.path import ContactPoint
 
@@ -29,8 +30,8 @@ class RelativeCurvature:
     across, along : float [1/mm]
         Largest and smallest principal relative curvature.
     axes : (3, 3) array
-        Rows: direction of the largest curvature, of the smallest (towards +z), and the normal out of the pinion;
-        right-handed.
+        Rows: direction of the largest curvature, of the smallest (towards +z or the heel, as the pinion's lengthwise
+        coordinate grows), and the normal out of the pinion; right-handed.
     """
 
     across: float
@@ -40,18 +41,26 @@ class RelativeCurvature:
 
 def relative_curvature(pair: GearPair, contact: ContactPoint) -> RelativeCurvature:
     """Principal relative curvatures at a contact point."""
-    tangent_plane = _tangent_plane(contact.normal)
+    lengthwise = heelwards(pair, contact)
+    tangent_plane = _tangent_plane(contact.normal, lengthwise)
     tensor = _tensor(pair, contact, tangent_plane)
     values, vectors = np.linalg.eigh(0.5 * (tensor + tensor.T))
     along = vectors[:, 0] @ tangent_plane
-    along = along if along[2] >= 0.0 else -along
+    along = along if along @ lengthwise >= 0.0 else -along
     across = np.cross(along, contact.normal)
     return RelativeCurvature(float(values[1]), float(values[0]), np.stack([across, along, contact.normal]))
 
 
-def _tangent_plane(normal: Array) -> Array:
-    """Two orthonormal directions (2, 3) across a unit normal; the second as near to the axis as can be."""
-    lengthwise = np.array([0.0, 0.0, 1.0]) - normal[2] * normal
+def heelwards(pair: GearPair, contact: ContactPoint) -> Array:
+    """Direction (3,) in the fixed frame in which the pinion's lengthwise coordinate grows by one mm per mm."""
+    basis = cylindrical_basis(np.arctan2(contact.point[1], contact.point[0]))
+    rho, z = np.array(contact.pinion_radius), np.array(contact.pinion_axial)
+    return lengthwise_direction(pair.pinion, rho, z) @ basis
+
+
+def _tangent_plane(normal: Array, lengthwise: Array) -> Array:
+    """Two orthonormal directions (2, 3) across a unit normal; the second as near to ``lengthwise`` as can be."""
+    lengthwise = lengthwise - (normal @ lengthwise) * normal
     lengthwise /= np.linalg.norm(lengthwise)
     return np.stack([np.cross(lengthwise, normal), lengthwise])
 

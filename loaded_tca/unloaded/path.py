@@ -145,7 +145,7 @@ def trace_contact(pair: GearPair, pinion_angles: ArrayLike | None = None, *, war
     pinion_angles : (n,) array [rad], optional
         phi1; default: 21 positions over one pitch about phi1 = 0, both ends included.
     warn : bool
-        Whether to give an AccuracyWarning where the contact lies on a root form circle.
+        Whether to give an AccuracyWarning where the contact lies on the root border of a flank.
 
     Returns
     -------
@@ -175,12 +175,21 @@ def trace_contact(pair: GearPair, pinion_angles: ArrayLike | None = None, *, war
             "rad do the two flanks cover a common region; check tip diameters, centre distance and axial offset"
         )
     path = _assemble(pair, phi1, touch)
-    root = BORDER_NAMES.index("root")
-    fillet = int((path.edges[:, root] | path.edges[:, len(BORDER_NAMES) + root]).sum())
-    if fillet and warn:
-        message = f"fillet interference: at {fillet} of {len(path)} positions the contact lies on a root form circle"
-        warnings.warn(message + ", below which the flank is not an involute", AccuracyWarning, stacklevel=2)
+    if warn:
+        warn_of_fillets(pair, path, "contact")
     return path
+
+
+def warn_of_fillets(pair: GearPair, path: ContactPath, what: str) -> None:
+    """Warn, for the caller's caller, where ``what`` lies on the root border of a flank."""
+    root = BORDER_NAMES.index("root")
+    held = (path.edges[:, root], path.edges[:, len(BORDER_NAMES) + root])
+    flanks = [flank for flank, rows in zip((pair.pinion, pair.wheel), held, strict=True) if rows.any()]
+    if flanks:
+        count = int((held[0] | held[1]).sum())
+        where = " or a ".join(dict.fromkeys(flank.frame.borders[root] for flank in flanks))
+        message = f"fillet interference: at {count} of {len(path)} positions the {what} lies on a {where}"
+        warnings.warn(message + ", where the flank ends and the fillet begins", AccuracyWarning, stacklevel=3)
 
 
 def _checked_angles(pair: GearPair, pinion_angles: ArrayLike | None) -> Array:

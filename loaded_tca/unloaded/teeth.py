@@ -16,7 +16,6 @@ contact do not cross inside both their ranges, so that a tooth edge bridges the 
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from functools import cached_property
@@ -25,11 +24,10 @@ from numbers import Real
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from loaded_tca.errors import AccuracyWarning, GeometryError, InputError
-from loaded_tca.flanks.base import BORDER_NAMES
+from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.jet import Array
 from loaded_tca.pair import GearPair
-from loaded_tca.unloaded.path import POSITIONS, ContactPath, trace_contact
+from loaded_tca.unloaded.path import POSITIONS, ContactPath, trace_contact, warn_of_fillets
 from loaded_tca.unloaded.tooth_cycle import COINCIDE, REACH, ToothCycle, leading, reach, teeth_between, tooth_cycle
 from loaded_tca.unloaded.transfers import Transfer, find_transfers
 
@@ -238,7 +236,7 @@ def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: I
     Warns
     -----
     AccuracyWarning
-        If the leading contact rests on a root form circle, below which the flank is another.
+        If the leading contact rests on the root border of a flank, below which the tooth goes on as its fillet.
 
     Examples
     --------
@@ -270,7 +268,7 @@ def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: I
     near = np.flatnonzero(heights >= np.tile(top, len(pairs)) - REACH * pair.module)
     paths = _split(path, np.searchsorted(rows, near), near, own)
     mesh = MeshPath(pair, phi1, pairs, paths, pairs[column], pair.driving * top / pair.base_radii[1])
-    _warn_of_fillets(mesh)
+    warn_of_fillets(pair, mesh.leading_contact, "leading contact")
     return mesh
 
 
@@ -305,13 +303,3 @@ def _split(path: ContactPath, found: NDArray[np.int_], rows: NDArray[np.int_], o
         parts[field.name] = full.reshape(*own.shape, *part.shape[1:])
     parts["pinion_angle"] = own
     return tuple(ContactPath(**{name: part[k] for name, part in parts.items()}) for k in range(len(own)))
-
-
-def _warn_of_fillets(mesh: MeshPath) -> None:
-    edges, root = mesh.leading_contact.edges, BORDER_NAMES.index("root")
-    count = int((edges[:, root] | edges[:, len(BORDER_NAMES) + root]).sum())
-    if count:
-        message = (
-            f"fillet interference: at {count} of {len(mesh)} positions the leading contact lies on a root form circle"
-        )
-        warnings.warn(message + ", below which the flank is not an involute", AccuracyWarning, stacklevel=3)

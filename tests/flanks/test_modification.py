@@ -10,10 +10,12 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from pairs import cylindrical_mesh, gear_pair, meshes, modifications
 
+from loaded_tca.bevel_pair import bevel_pair
 from loaded_tca.errors import InputError
 from loaded_tca.flanks import FlankModifications, InvoluteFlank, ModifiedFlank
 from loaded_tca.flanks.base import outward_normal
 from loaded_tca.flanks.modification import CircularArc, linear, logarithmic, one_sided_parabola, parabola
+from loaded_tca.gears import bevel_mesh
 from loaded_tca.pair import cylindrical_basis, cylindrical_pair
 
 ROUNDING = 1e-12
@@ -109,6 +111,67 @@ def test_end_relief_is_a_parabola_over_its_length_at_both_ends(length):
         distances = np.array([length, 0.5 * length, 0.0])
         found = [removed(flank, WORKING, end * (HALF - distance)) for distance in distances]
         assert_allclose(found, [0.0, 0.25 * AMOUNT, AMOUNT], rtol=1e-10)
+
+
+def bevel_modified(**amounts):
+    """Pinion flank of a spiral bevel pair with modifications."""
+    mesh = bevel_mesh((20, 40), 4.0, 20.0, spiral_angle=math.radians(35.0))
+    return bevel_pair(mesh, modifications=(FlankModifications(**amounts), FlankModifications())).pinion
+
+
+@pytest.mark.parametrize("build", [modified, bevel_modified])
+@pytest.mark.parametrize("amount", [AMOUNT, -AMOUNT])
+def test_twist_is_the_helix_slope_at_the_tip_less_that_at_the_start_of_the_profile(build, amount):
+    """And the profile slope at the upper end less that at the lower end; nothing on the lines through the middle."""
+    slopes = {name: build(**{name: 1e-3}) for name in ("profile_slope", "helix_slope")}
+    flank = build(twist=amount)
+    rho, z = flank.grid(41, 5)
+    up, along = (1e3 * slopes[name].removal(rho, z).value for name in ("profile_slope", "helix_slope"))
+    assert_allclose(flank.removal(rho, z).value, amount * (up - 0.5) * (along - 0.5), rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize("build", [modified, bevel_modified])
+def test_squares_of_the_polynomial_are_the_parabolic_crownings(build):
+    """a5 = C_beta/(b/2)^2, a6 = C_alpha/(L/2)^2."""
+    crowned = build(lead_crowning=0.02, profile_crowning=0.01)
+    profile = next(term for term in crowned.terms if term.direction == "profile")
+    lengthwise = next(term for term in crowned.terms if term.direction == "lengthwise")
+    squares = 0.02 / lengthwise.length**2, 0.01 / (profile.length * crowned.profile_unit) ** 2
+    flank = build(polynomial=(0.0, 0.0, 0.0, 0.0, *squares))
+    rho, z = flank.grid(7, 7)
+    for ours, theirs in zip(parts(flank, rho, z), parts(crowned, rho, z), strict=True):
+        assert_allclose(ours, theirs, rtol=1e-11, atol=1e-16)
+
+
+def parts(flank, rho, z):
+    jet = flank.removal(rho, z)
+    return np.broadcast_arrays(jet.value, jet.rho, jet.z, jet.rho_rho, jet.rho_z, jet.z_z)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.25, 1.0])
+@pytest.mark.parametrize("z", [-HALF, 3.0])
+def test_polynomial_counts_from_the_middle_of_face_and_active_profile_in_millimetres(share, z):
+    a = (3e-3, 1e-4, -2e-4, 3e-5, 4e-5, -5e-5)
+    y = (share - 0.5) * (ACTIVE.end_roll_length - ACTIVE.start_roll_length)
+    expected = a[0] + a[1] * z + a[2] * y + a[3] * z * y + a[4] * z**2 + a[5] * y**2
+    assert_allclose(removed(modified(polynomial=a), radius_at(share), z), expected, rtol=1e-10)
+
+
+@given(st.lists(st.floats(-1e-3, 1e-3), min_size=6, max_size=6), st.floats(0.05, 0.95), st.floats(0.05, 0.95))
+@settings(max_examples=40)
+def test_derivatives_of_the_polynomial_agree_with_differences(coefficients, height, place):
+    flank = bevel_modified(polynomial=tuple(coefficients), twist=0.01)
+    corners = np.stack(flank.grid(2, 2))
+    rho, z = (corners * np.outer([1.0 - height, height], [1.0 - place, place])).sum(axis=(1, 2))
+    step = 1e-4
+    around = [(step, 0.0), (-step, 0.0), (0.0, step), (0.0, -step)]
+    ahead, behind, above, below = (parts(flank, rho + i, z + j) for i, j in around)
+    here = parts(flank, np.array(rho), np.array(z))
+    # truncation: third derivatives near the base cone times step^2
+    assert_allclose(here[1], (ahead[0] - behind[0]) / (2 * step), rtol=1e-6, atol=1e-9)
+    assert_allclose(here[2], (above[0] - below[0]) / (2 * step), rtol=1e-6, atol=1e-9)
+    seconds = (ahead[1] - behind[1], above[1] - below[1], above[2] - below[2])
+    assert_allclose(here[3:], np.array(seconds) / (2 * step), rtol=1e-6, atol=1e-8)
 
 
 @given(st.data(), meshes())
@@ -310,6 +373,12 @@ def test_unknown_forms_are_refused_all_at_once():
         "lead_crowning_form: 'round' is not 'parabolic', 'circular' or 'logarithmic'",
         "tip_relief_form: 'quadratic' is not 'parabolic' or 'linear'",
     )
+
+
+@pytest.mark.parametrize("wrong", [(1.0, 2.0), (0.0,) * 5 + (math.nan,), ("a",) * 6, 3.0, None])
+def test_polynomial_that_is_not_six_finite_numbers_is_refused(wrong):
+    with pytest.raises(InputError, match=r"polynomial: .* is not six finite numbers, a1 to a6"):
+        FlankModifications(polynomial=wrong)
 
 
 def test_circular_crowning_of_more_than_half_the_face_is_refused():

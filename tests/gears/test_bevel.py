@@ -88,6 +88,42 @@ def test_overlap_ratio_of_a_spiral_pair():
     assert_allclose(mesh.overlap_ratio, turn / (2.0 * math.pi / 20), rtol=ROUNDING)
 
 
+@pytest.mark.parametrize("teeth", [8, 17, 40])
+def test_smallest_profile_shift_of_a_slender_cone_is_that_of_a_spur_gear(teeth):
+    """Pitch angle towards zero: 1.1 - z sin^2(alpha)/2."""
+    slender = gear(teeth=teeth, pitch_angle=1e-3)
+    assert_allclose(slender.smallest_profile_shift, 1.1 - 0.5 * teeth * math.sin(math.radians(20)) ** 2, rtol=1e-5)
+
+
+def test_undercut_ends_at_the_smallest_profile_shift():
+    few = gear(teeth=8)
+    assert few.is_undercut
+    assert not gear(teeth=8, profile_shift=few.smallest_profile_shift + 1e-9).is_undercut
+
+
+@pytest.mark.parametrize("pitch_angle", [math.pi / 2, 1.8])
+def test_tool_of_a_crown_gear_may_be_as_deep_as_the_pressure_angle(pitch_angle):
+    crown = gear(pitch_angle=pitch_angle)
+    depth = (1.1 - crown.smallest_profile_shift) * crown.outer_module
+    assert_allclose(depth, math.tan(crown.pressure_angle) * crown.outer_cone_distance, rtol=ROUNDING)
+
+
+def test_fillet_interference_tells_a_tip_below_the_form_cone():
+    assert bevel_mesh((39, 32), 5.0, 20.0).fillet_interference == (False, False)
+    assert bevel_mesh((14, 39), 5.0, 20.0).fillet_interference == (True, False)
+    assert bevel_mesh((39, 14), 5.0, 20.0).fillet_interference == (False, True)
+
+
+def test_fillet_interference_ends_where_the_tip_of_the_mate_reaches_the_form_cone():
+    mesh = bevel_mesh((14, 39), 5.0, 20.0)
+    pinion, wheel = mesh.pinion, mesh.wheel
+    whole = sum(one.unwound_arc(one.pitch_angle) for one in (pinion, wheel))
+    longest = wheel.cone_angle_at_arc(whole - pinion.unwound_arc(pinion.form_angle))
+    for step, interferes in ((-1e-9, False), (1e-9, True)):
+        changed = BevelMesh(pinion, replace(wheel, face_angle=longest + step))
+        assert changed.fillet_interference == (interferes, False)
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
@@ -117,6 +153,10 @@ def test_every_problem_is_told_at_once():
     ("changes", "message"),
     [
         ({"face_width": 80.0}, "face_width 80 mm reaches the apex: no face width is left at the toe"),
+        (
+            {"teeth": 3, "profile_shift": -1.5, "face_angle": 0.65, "face_width": 4.0},
+            "the root cone, .* deg, reaches the axis",
+        ),
         ({"face_angle": 0.9}, "cannot be reached: pointed tooth"),
         ({"face_angle": 2.7}, "beyond the end of the spherical involute"),
     ],

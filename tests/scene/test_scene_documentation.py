@@ -7,6 +7,7 @@ import pytest
 
 from loaded_tca.errors import InputError
 from loaded_tca.scene import describe_keys, parse_scene
+from loaded_tca.scene.model import FAMILIES
 
 ROOT = Path(__file__).parents[2]
 
@@ -19,14 +20,15 @@ def test_reference_of_the_keys_is_up_to_date():
     assert reference == describe_keys(), "put the output of loaded_tca.scene.describe_keys() below '## Keys'"
 
 
-def test_shortest_scene_is_one():
-    (text,) = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
-    assert parse_scene(text).pinion_hand == "right"
+def test_shortest_scenes_are_scenes():
+    cylindrical, bevel = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    assert parse_scene(cylindrical).pinion_hand == "right"
+    assert parse_scene(bevel).contact_sides == ("concave", "convex")
 
 
 def test_messages_shown_are_those_that_come():
     (shown,) = re.findall(r"```text\n(.*?)```", PAGE, re.DOTALL)
-    (text,) = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    text, _ = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
     wrong = text.replace("normal_module_mm", "modul").replace("teeth = 34", "teeth = -34")
     with pytest.raises(InputError) as raised:
         parse_scene(wrong + "[wheel.modifications]\ntip_relief_um = 20.0")
@@ -38,3 +40,20 @@ def test_every_kind_of_default_is_described():
     assert "| `teeth` | a whole number from 3 to 10000 | **required** | number of teeth z |" in text
     assert "| `profile_shift` | a number from -5 to 5 | `0.0` | profile shift coefficient x |" in text
     assert "| `tip_diameter_mm` | a number above 0, up to 100000 | d + 2 m_n (1 + x) | tip diameter d_a |" in text
+
+
+def test_scene_made_without_a_file_is_one():
+    *_, code = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+    made = {}
+    exec(code, made)
+    assert made["scene"].pair().teeth == (39, 32)
+
+
+def test_reference_describes_each_section_once_for_each_family():
+    titles = [line for line in describe_keys().splitlines() if line.startswith("### ")]
+    assert len(set(titles)) == len(titles)
+    for name in ("pair", "pinion", "mounting"):
+        assert sum(f"`[{name}]`" in title for title in titles) == len({*FAMILIES.values()})
+    for name in ("wheel", "pinion.modifications", "material", "load", "analysis"):
+        assert sum(f"`[{name}]`" in title for title in titles) == 1
+    assert all(any(f"`{name}`" in title for title in titles) for name in FAMILIES)

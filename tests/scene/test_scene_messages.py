@@ -23,10 +23,12 @@ def problems_of(table, changes):
     return raised.value.problems
 
 
+TYPES = '"cylindrical" or "straight_bevel" or "spiral_bevel"'
+
 ONE_PROBLEM = [
     # missing
     ({"pair.normal_module_mm": None}, "pair.normal_module_mm: missing; allowed a number above 0, up to 1000"),
-    ({"pair.type": None}, 'pair.type: missing; allowed "cylindrical"'),
+    ({"pair.type": None}, f"pair.type: missing; allowed {TYPES}"),
     ({"pinion.teeth": None}, "pinion.teeth: missing; allowed a whole number from 3 to 10000"),
     ({"load": None}, "load.pinion_torque_Nm: missing; allowed a number from 0 to 1e+09"),
     (
@@ -53,6 +55,7 @@ ONE_PROBLEM = [
     ({"title": 3}, "title: found 3; allowed one line of text of up to 200 characters"),
     ({"title": "two\nlines"}, r'title: found "two\nlines"; allowed one line of text of up to 200 characters'),
     ({"pinion": 3}, "pinion: found 3; allowed a section [pinion]"),
+    ({"pair": 3}, "pair: found 3; allowed a section [pair]"),
     ({"wheel.modifications": [1]}, "wheel.modifications: found [1]; allowed a section [wheel.modifications]"),
     (
         {"analysis.cells": 32},
@@ -105,7 +108,10 @@ ONE_PROBLEM = [
         'pair.driving: found "weel"; allowed "pinion" or "wheel"; did you mean "wheel"?',
     ),
     ({"pair.sense": 1}, 'pair.sense: found 1; allowed "positive" or "negative"'),
-    ({"pair.type": "spiral_bevel"}, 'pair.type: found "spiral_bevel"; allowed "cylindrical"'),
+    ({"pair.type": "hypoid"}, f'pair.type: found "hypoid"; allowed {TYPES}'),
+    ({"pair.type": 3}, f"pair.type: found 3; allowed {TYPES}"),
+    ({"pair.type": ["cylindrical"]}, f'pair.type: found ["cylindrical"]; allowed {TYPES}'),
+    ({"pair.type": "cylindical"}, f'pair.type: found "cylindical"; allowed {TYPES}; did you mean "cylindrical"?'),
     # not in this version
     (
         {"analysis.load_sharing": True},

@@ -11,16 +11,17 @@ from numpy.testing import assert_allclose
 from loaded_tca.errors import InputError
 from loaded_tca.scene import (
     Analysis,
+    CylindricalScene,
     ElasticMaterial,
-    Gear,
-    Geometry,
     Load,
     Modifications,
-    MountingErrors,
+    Scene,
     parse_scene,
     read_scene,
+    scene_from_table,
 )
 from loaded_tca.scene.build import in_base_units
+from loaded_tca.scene.cylindrical import Gear, Geometry, MountingErrors
 from loaded_tca.unloaded import trace_contact
 
 ROOT = Path(__file__).parents[2]
@@ -147,6 +148,21 @@ def test_text_with_every_key_set_makes_the_same_scene(scene):
 
 def test_scene_survives_pickling(scene):
     assert pickle.loads(pickle.dumps(scene)) == scene
+
+
+def test_type_picks_the_family(scene):
+    assert type(scene) is CylindricalScene
+    assert isinstance(scene, Scene)
+
+
+def test_scene_of_no_family_cannot_be_made():
+    with pytest.raises(TypeError, match="abstract"):
+        Scene()
+
+
+def test_sections_made_already_are_taken_from_a_table(scene, table):
+    made = {"pair": scene.geometry, "pinion": scene.pinion, "load": scene.load}
+    assert scene_from_table({**table, **made}) == scene
 
 
 def test_scene_is_frozen(scene):

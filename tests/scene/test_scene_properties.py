@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.scene import Scene, parse_scene, read_scene, scene_from_table
 from loaded_tca.scene.keys import Choice, Key, Line, List, Number, Whole
+from loaded_tca.scene.model import FAMILIES
 from loaded_tca.scene.section import Subsection, entries
 
 ROOT = Path(__file__).parents[2]
@@ -28,7 +29,8 @@ def names(section: type) -> set[str]:
     return found
 
 
-NAMES = sorted(names(Scene))
+FAMILY_SCENES = list(dict.fromkeys(FAMILIES.values()))
+NAMES = sorted(set().union(*(names(scene) for scene in FAMILY_SCENES)))
 key_names = st.sampled_from(NAMES) | st.text(max_size=8)
 values = st.recursive(
     st.none()
@@ -37,7 +39,7 @@ values = st.recursive(
     | st.integers(min_value=10**300, max_value=10**320)
     | st.floats()
     | st.text(max_size=20)
-    | st.sampled_from(["cylindrical", "pinion", "linear", "contact"])
+    | st.sampled_from(["cylindrical", "straight_bevel", "spiral_bevel", "pinion", "concave", "linear", "contact"])
     | st.dates()
     | st.datetimes()
     | st.times(),
@@ -147,8 +149,9 @@ def sound_values(kind):
 
 
 @st.composite
-def sound_tables(draw, section=Scene):
-    """Tables that hold only values allowed one by one."""
+def sound_tables(draw, section=None):
+    """Tables that hold only values allowed one by one, by default of a scene of any family."""
+    section = section or draw(st.sampled_from(FAMILY_SCENES))
     table = {}
     for name, (_, entry) in entries(section).items():
         if isinstance(entry, Key):
@@ -217,3 +220,35 @@ def test_scene_makes_a_pair_or_says_why_not(changes):
     else:
         told = repr(pair)
     assert "nan" not in told
+
+
+bevel_gears = st.fixed_dictionaries(
+    {"pinion.teeth": st.integers(3, 200), "wheel.teeth": st.integers(3, 200)},
+    optional={
+        "pair.shaft_angle_deg": st.floats(1.0, 179.0),
+        "pair.spiral_angle_deg": st.floats(0.0, 59.0),
+        "pair.pressure_angle_deg": st.floats(1.0, 44.0),
+        "pair.pinion_flank": st.sampled_from(["concave", "convex"]),
+        "pair.driving": st.sampled_from(["pinion", "wheel"]),
+        "pinion.hand": st.sampled_from(["left", "right"]),
+        "wheel.profile_shift": st.floats(-1.0, 1.0),
+        "wheel.face_angle_deg": st.floats(1.0, 179.0),
+        "pinion.root_angle_deg": st.floats(1.0, 179.0),
+        "pinion.bore_diameter_mm": st.floats(1.0, 100.0),
+        "pinion.modifications.tip_relief_um": st.floats(0.0, 100.0),
+        "mounting.shaft_angle_error_deg": st.floats(-10.0, 10.0),
+        "mounting.offset_mm": st.floats(-5.0, 5.0),
+    },
+)
+
+
+@given(bevel_gears)
+def test_bevel_scene_makes_a_pair_or_says_why_not(changes):
+    nominal = parse_scene((ROOT / "examples" / "scenes" / "spiral_bevel.toml").read_text(encoding="utf-8"))
+    try:
+        scene = nominal.with_changes({"wheel.hand": None, **changes})
+        told = repr(scene.pair())
+        assert all("nan" not in cell for row in (*scene.geometry_rows(), *scene.force_rows([1e3])) for cell in row[1:])
+    except (InputError, GeometryError) as problem:
+        told = str(problem)
+    assert "nan" not in told.split()

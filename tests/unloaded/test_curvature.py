@@ -9,9 +9,11 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from pairs import cylindrical_mesh, gear_pair, pairs, seed_002
 
+from loaded_tca.bevel_pair import bevel_pair
 from loaded_tca.flanks import FlankModifications
+from loaded_tca.gears import bevel_mesh
 from loaded_tca.pair import cylindrical_basis
-from loaded_tca.unloaded import relative_curvature, trace_contact
+from loaded_tca.unloaded import heelwards, relative_curvature, trace_contact
 
 RELATIVE = 1e-9  # two chains of some hundred operations each, cancelling by a factor of up to 1e4
 CLOSED_FORM = 1e-9
@@ -92,3 +94,20 @@ def test_axes_are_right_handed_with_the_normal_out_of_the_pinion_and_the_second_
     assert_allclose(np.linalg.det(axes), 1.0, rtol=1e-12)
     assert_allclose(axes[2], contact.normal)
     assert axes[1, 2] >= 0.0
+
+
+@pytest.mark.parametrize("teeth", [(20, 40), (40, 20), (80, 20)])
+@pytest.mark.parametrize("spiral_deg", [0.0, 35.0, -35.0])
+def test_second_axis_of_a_bevel_contact_leads_to_the_heel_also_on_a_flat_gear(teeth, spiral_deg):
+    mesh = bevel_mesh(teeth, 4.0, 20.0, spiral_angle=math.radians(spiral_deg))
+    crowned = FlankModifications(lead_crowning=0.02, profile_crowning=0.01)
+    pair = bevel_pair(mesh, modifications=(crowned, FlankModifications()))
+    for contact in map(trace_contact(pair, np.linspace(-0.4, 0.4, 5) * pair.pitch).__getitem__, range(5)):
+        axes = relative_curvature(pair, contact).axes
+        assert np.linalg.norm(contact.point + 0.1 * axes[1]) > np.linalg.norm(contact.point)
+        assert_allclose(heelwards(pair, contact), contact.point / np.linalg.norm(contact.point), atol=1e-12)
+
+
+def test_heelwards_is_the_axis_of_a_cylindrical_pinion():
+    pair = seed_002(15.0)
+    assert_allclose(heelwards(pair, trace_contact(pair, [0.1])[0]), [0.0, 0.0, 1.0], atol=0)

@@ -1,0 +1,253 @@
+r"""B-spline flanks: fitted to a grid of points of any flank, or to a measured topography.
+
+.. math:: \Theta = \Theta_n(\rho, z) + S\big(p(\rho, z),\, l(\rho, z)\big)
+
+S is a tensor B-spline over the coordinates of a nominal flank, p along the profile (roll length, unwound arc) and l
+lengthwise. In them flanks are smooth even where the profile bends without bound, at the base circle; borders, grid and
+coordinates stay those of the nominal flank. A flank that is *fitted* has no other surface than its spline
+(Theta_n = 0); one that is *measured* deviates from its nominal surface by the spline, so that a coarse grid of small
+deviations keeps the exact macro geometry.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from loaded_tca.errors import AccuracyWarning, GeometryError, InputError
+from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.derived import DerivedFlank, Region, unmodified
+from loaded_tca.flanks.jet import Array, Jet
+from loaded_tca.flanks.structured_grid import FEWEST_POINTS, StructuredGrid, flank_coordinates
+from loaded_tca.flanks.tensor_spline import TensorSpline, fit
+from loaded_tca.flanks.topography import Topography, excess_problems
+
+DEFAULT_POINTS = (33, 33)
+"""Points of a fitted flank along the profile and lengthwise."""
+FIT_TOLERANCE = 1e-4
+"""Distance [mm] between a flank and its B-spline beyond which a warning says so."""
+PITCH_POINT_STEPS = 50
+
+
+@dataclass(frozen=True)
+class FitError:
+    """Distance along the normal between a B-spline flank and the points it stands for.
+
+    Attributes
+    ----------
+    largest, rms : float [mm]
+    """
+
+    largest: float
+    rms: float
+
+    @classmethod
+    def of(cls, distances: Array) -> FitError:
+        """From the distances at the points [mm]."""
+        return cls(float(np.abs(distances).max()), float(np.sqrt((distances**2).mean())))
+
+    def __str__(self) -> str:
+        return f"{1e3 * self.largest:.3g} um at most, {1e3 * self.rms:.3g} um rms"
+
+
+class SplineFlank(DerivedFlank):
+    """Theta of a nominal flank plus a tensor B-spline over its profile and lengthwise coordinates.
+
+    Parameters
+    ----------
+    nominal : Flank
+        Gives region, coordinates, |grad F| and the surface that the spline deviates from; a ``Region`` has none.
+    spline : TensorSpline
+        Deviation of Theta [rad] over (profile coordinate, lengthwise coordinate).
+    fit_error : FitError
+        At the points that the spline was fitted to.
+    check_error : FitError, optional
+        Midway between the points, where the flank is known there.
+    """
+
+    def __init__(
+        self, nominal: Flank, spline: TensorSpline, fit_error: FitError, check_error: FitError | None = None
+    ) -> None:
+        super().__init__(nominal)
+        self.spline, self.fit_error, self.check_error = spline, fit_error, check_error
+
+    def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:
+        """Theta of the nominal flank plus the spline."""
+        profile, lengthwise = self.profile_coordinate(rho, z), self.lengthwise_coordinate(rho, z)
+        deviation = self.spline(profile.value, lengthwise.value).compose(profile, lengthwise)
+        return self.nominal.theta(rho, z, beyond) + deviation
+
+    def creases(self, rho: Array, z: Array) -> tuple[Jet, ...]:
+        """Creases of the nominal flank."""
+        return self.nominal.creases(rho, z)
+
+    def distance_to(self, other: Flank, rho: Array, z: Array) -> Array:
+        """Distance [mm] along the normal from another flank of the same gear, positive where this one has more."""
+        turn = self.theta(rho, z).value - other.theta(rho, z).value
+        return self.side * turn / other.gradient_norm(rho, z).value
+
+    def __repr__(self) -> str:
+        counts = " x ".join(str(count) for count in self.spline.coefficients.shape)
+        return f"SplineFlank({counts} coefficients, fit error {self.fit_error})"
+
+
+def fitted(flank: Flank, points: tuple[int, int] = DEFAULT_POINTS, degree: int = 5) -> SplineFlank:
+    """B-spline flank through a grid of points of any flank; its zero of theta stays where it is.
+
+    Parameters
+    ----------
+    flank : Flank
+    points : (int, int)
+        Along the profile and lengthwise, evenly spaced in the flank's own coordinates; above the degree.
+    degree : int
+        5: curvatures are twice continuously differentiable; 3 is enough for the shape.
+
+    Returns
+    -------
+    SplineFlank
+        With ``fit_error`` at the points and ``check_error`` midway between them.
+
+    Warns
+    -----
+    AccuracyWarning
+        If the B-spline misses the flank by more than 0.1 um: a crease (the start of a linear relief) is rounded off.
+
+    Raises
+    ------
+    InputError
+        If there are fewer points than the degree needs.
+
+    References
+    ----------
+    Piegl & Tiller 1997, The NURBS Book, section 9.2 (surface interpolation).
+
+    Examples
+    --------
+    >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
+    >>> from loaded_tca.pair import cylindrical_pair
+    >>> gears = [CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)]
+    >>> wheel = fitted(cylindrical_pair(CylindricalMesh(*gears)).wheel)
+    >>> wheel.check_error.largest < 1e-9
+    True
+    """
+    least = FEWEST_POINTS.get(degree)
+    if least is None:
+        raise InputError(f"degree: {degree!r}; allowed {' or '.join(map(str, FEWEST_POINTS))}")
+    if min(points) < least:
+        raise InputError(f"points: {points[0]} x {points[1]} are too coarse for degree {degree}; at least {least} each")
+    region, (rho, z) = Region(flank), flank.grid(*points)
+    spline = fit(*flank_coordinates(flank, rho, z), flank.theta(rho, z).value, (degree, degree))
+    bare = SplineFlank(region, spline, FitError(0.0, 0.0))
+    between = (part[1::2, 1::2] for part in flank.grid(2 * points[0] - 1, 2 * points[1] - 1))
+    check = FitError.of(bare.distance_to(flank, *between))
+    if check.largest > FIT_TOLERANCE:
+        advice = "take more points; the crease where a linear relief starts is rounded off by any number"
+        message = f"the B-spline through {points[0]} x {points[1]} points misses the flank by {check} between them"
+        warnings.warn(f"{message}: {advice}", AccuracyWarning, stacklevel=2)
+    return SplineFlank(region, spline, FitError.of(bare.distance_to(flank, rho, z)), check)
+
+
+def measured(
+    nominal: Flank,
+    topography: Topography,
+    *,
+    degree: int | None = None,
+    coefficients: tuple[int, int] | None = None,
+    turned: bool = True,
+) -> SplineFlank:
+    """Flank of a measured topography: the nominal one, deviating as measured.
+
+    Beyond the outermost points the deviation goes on as a parabola. Put it into a pair by
+    ``dataclasses.replace(pair, wheel=measured(pair.wheel, topography))``.
+
+    Parameters
+    ----------
+    nominal : Flank
+        The flank that the deviations were measured from; its modifications, if it has any, are part of it.
+    topography : Topography
+        ``MeasuredPoints`` or ``MeasuredDeviations``, or what ``read_topography`` returns.
+    degree : int, optional
+        3 or 5 in both directions. Default: 5 from six points on, else 3.
+    coefficients : (int, int), optional
+        Fewer B-spline coefficients than points along the profile and lengthwise: a fit of least squares that smooths
+        the noise of measurement, told by ``fit_error``. Default: through every point.
+    turned : bool
+        Turn the flank about its axis until it holds the pitch point (theta = 0). False: keep the zero of the data.
+
+    Returns
+    -------
+    SplineFlank
+
+    Warns
+    -----
+    AccuracyWarning
+        If the outermost points leave more than 15 % of the flank uncovered at an end.
+
+    Raises
+    ------
+    InputError
+        If the grid is too coarse, folded, unordered, off the flank or covers less than half of it, or if the points
+        are further from the nominal flank than a deviation can be; all problems at once.
+    GeometryError
+        If the flank has no pitch point to be turned to.
+
+    Examples
+    --------
+    >>> from loaded_tca.flanks.topography import MeasuredDeviations
+    >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
+    >>> from loaded_tca.pair import cylindrical_pair
+    >>> gears = [CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)]
+    >>> nominal = cylindrical_pair(CylindricalMesh(*gears)).wheel
+    >>> radius, axial = nominal.grid(5, 9)
+    >>> hollow = measured(nominal, MeasuredDeviations(radius, axial, 0.01 * (axial / 12.5) ** 2))
+    >>> round(float(hollow.distance_to(nominal, radius, axial)[2, 8]), 9)
+    0.01
+    """
+    data = StructuredGrid.of(nominal, topography.radius, topography.axial)
+    degrees = data.degrees(degree)
+    counts = coefficients or (topography.radius.shape[0], topography.radius.shape[1])
+    problems = data.problems(nominal, degrees, counts)
+    if problems:
+        raise InputError(problems)
+    data.warn_if_uncovered(nominal)
+    excess = topography.excess_over(nominal, turned)
+    problems = excess_problems(nominal, excess)
+    if problems:
+        raise InputError(problems)
+    angles = nominal.side * nominal.gradient_norm(topography.radius, topography.axial).value
+    wanted = data.ordered(excess * angles)
+    spline = fit(data.profile, data.lengthwise, wanted, degrees, counts)
+    missed = (spline(data.profile, data.lengthwise).value - wanted) / data.ordered(angles)
+    if turned:
+        spline = spline.shifted(-_azimuth_of_pitch_point(SplineFlank(nominal, spline, FitError(0.0, 0.0))))
+    return SplineFlank(nominal, spline, FitError.of(missed))
+
+
+def pitch_point(flank: Flank) -> tuple[Array, Array]:
+    """(rho, z) of the point with theta = 0 in the middle of the face, on the flank without modifications [mm].
+
+    Raises
+    ------
+    GeometryError
+        If the flank, continued beyond its borders, has none.
+    """
+    flank = unmodified(flank)
+    middle = np.array([float(part[1, 1]) for part in flank.grid(3, 3)])
+    place = middle.copy()
+    for _ in range(PITCH_POINT_STEPS):
+        jets = flank.theta(place[0], place[1]), flank.lengthwise_coordinate(place[0], place[1])
+        slopes = np.array([[jet.rho, jet.z] for jet in jets], dtype=float)
+        step = np.linalg.solve(slopes, [-float(jet.value) for jet in jets])
+        place += step * min(1.0, float((0.5 * np.asarray(flank.extent) / np.maximum(np.abs(step), 1e-300)).min()))
+        if np.abs(step).max() < 1e-12 * flank.extent[0]:
+            return np.array(place[0]), np.array(place[1])
+    where = flank.frame.place(*middle)
+    raise GeometryError(f"the flank around {where} has no pitch point (theta = 0 in the middle of the face)")
+
+
+def _azimuth_of_pitch_point(flank: Flank) -> float:
+    """Theta where the unmodified flank has theta = 0 [rad]."""
+    return float(flank.theta(*pitch_point(flank)).value)

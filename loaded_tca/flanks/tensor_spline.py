@@ -1,0 +1,257 @@
+r"""Tensor B-splines: fitted to values on a structured grid, evaluated with first and second derivatives.
+
+.. math:: S(u, v) = \sum_{ij} c_{ij}\, N_i(u)\, N_j(v)
+
+For evaluation the spline is kept as one polynomial per cell of its breaks, found once; a point then costs one look-up
+and two nested Horner schemes for the value and all five derivatives. Beyond its rectangle a spline goes on as the
+second-order Taylor polynomial of its border in each direction: twice continuously differentiable, and tame.
+
+References
+----------
+de Boor 2001, A Practical Guide to Splines, chapters IX (piecewise polynomials), XIV (least squares) and XVII (tensor
+products); Fong & Saunders 2011, LSMR: an iterative algorithm for sparse least-squares problems, SIAM J. Sci.
+Comput. 33.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.interpolate import BSpline
+from scipy.linalg import solve_triangular
+from scipy.sparse import csr_array
+from scipy.sparse.linalg import LinearOperator, lsmr
+
+from loaded_tca.flanks.jet import Array, Jet
+
+POINTS_AT_ONCE = 4096
+"""Points evaluated together: their coefficients take 1.2 MB."""
+MOST_ROUNDS = 2
+MOST_ITERATIONS = 300
+"""Rounds of refinement, and steps of each, of a fit to points off the grid lines; points on them take one step."""
+
+
+class SplineDerivatives(NamedTuple):
+    """Value and derivatives of S(u, v), arrays of one shape."""
+
+    value: Array
+    u: Array
+    v: Array
+    u_u: Array
+    u_v: Array
+    v_v: Array
+
+    def compose(self, u: Jet, v: Jet) -> Jet:
+        """S(u(rho, z), v(rho, z)), with these the derivatives of S there (chain rule)."""
+        across = [_sum((self.u_u, part_u), (self.u_v, part_v)) for part_u, part_v in ((u.rho, v.rho), (u.z, v.z))]
+        along = [_sum((self.u_v, part_u), (self.v_v, part_v)) for part_u, part_v in ((u.rho, v.rho), (u.z, v.z))]
+        return Jet(
+            self.value,
+            _sum((self.u, u.rho), (self.v, v.rho)),
+            _sum((self.u, u.z), (self.v, v.z)),
+            _sum((across[0], u.rho), (along[0], v.rho), (self.u, u.rho_rho), (self.v, v.rho_rho)),
+            _sum((across[0], u.z), (along[0], v.z), (self.u, u.rho_z), (self.v, v.rho_z)),
+            _sum((across[1], u.z), (along[1], v.z), (self.u, u.z_z), (self.v, v.z_z)),
+        )
+
+
+def _sum(*products: tuple[Any, Any]) -> Any:
+    """Sum of products; a factor that is the number zero costs nothing."""
+    total: Any = 0.0
+    for first, second in products:
+        if (np.ndim(first) or first) and (np.ndim(second) or second):
+            total = total + first * second
+    return total
+
+
+class TensorSpline:
+    """A tensor B-spline, ready to be evaluated.
+
+    Parameters
+    ----------
+    knots : ((k,) array, (l,) array)
+        In u and v, each with degree + 1 equal knots at both ends.
+    coefficients : (k - degree - 1, l - degree - 1) array
+    degrees : (int, int)
+        At least 2: the second derivative has to exist.
+    """
+
+    def __init__(self, knots: tuple[Array, Array], coefficients: Array, degrees: tuple[int, int]) -> None:
+        self.knots, self.coefficients, self.degrees = knots, coefficients, degrees
+        by_u, breaks_u = _pieces(knots[0], coefficients, degrees[0])
+        by_v, breaks_v = _pieces(knots[1], np.moveaxis(by_u, 2, 0), degrees[1])
+        self._breaks = (breaks_u, breaks_v)
+        self._origins = tuple(np.concatenate([breaks[:1], breaks]) for breaks in self._breaks)
+        # (degree + 1 of v, degree + 1 of u, cells): a run of memory for each power, as Horner's scheme reads it
+        powers_v, cells_v, powers_u, cells_u = by_v.shape
+        self._cells_v = cells_v
+        self._table = np.ascontiguousarray(by_v.transpose(0, 2, 3, 1)).reshape(powers_v, powers_u, cells_u * cells_v)
+
+    @property
+    def domain(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """The rectangle ((u_0, u_1), (v_0, v_1)) beyond which the spline is continued."""
+        first, second = ((float(breaks[0]), float(breaks[-1])) for breaks in self._breaks)
+        return first, second
+
+    def __call__(self, u: Array, v: Array) -> SplineDerivatives:
+        """Value and derivatives at (u, v), arrays that broadcast against each other."""
+        u, v = np.broadcast_arrays(u, v)
+        flat_u, flat_v = u.ravel(), v.ravel()
+        parts = np.empty((len(SplineDerivatives._fields), flat_u.size))
+        for start in range(0, flat_u.size, POINTS_AT_ONCE):
+            block = slice(start, start + POINTS_AT_ONCE)
+            self._evaluate(flat_u[block], flat_v[block], parts[:, block])
+        return SplineDerivatives(*parts.reshape(len(parts), *u.shape))
+
+    def shifted(self, amount: float) -> TensorSpline:
+        """The same spline with a constant added: the basis functions sum to one."""
+        return TensorSpline(self.knots, self.coefficients + amount, self.degrees)
+
+    def _evaluate(self, u: Array, v: Array, out: Array) -> None:
+        cell_u = np.searchsorted(self._breaks[0], u, side="right")
+        cell_v = np.searchsorted(self._breaks[1], v, side="right")
+        x, y = u - self._origins[0][cell_u], v - self._origins[1][cell_v]
+        rows = _horner(np.take(self._table, cell_u * self._cells_v + cell_v, axis=2), y, 2)
+        out[0], out[1], out[3] = _horner(rows[0], x, 2)
+        out[2], out[4] = _horner(rows[1], x, 1)
+        (out[5],) = _horner(rows[2], x, 0)
+
+
+def _horner(coefficients: Array, x: Array, derivatives: int) -> list[Array]:
+    """Sum of coefficients[k] x^k and its derivatives up to the second, by synthetic division; overwrites the last."""
+    parts = [coefficients[-1]]
+    for coefficient in coefficients[-2::-1]:
+        if len(parts) <= derivatives:
+            parts.append(np.zeros_like(parts[0]))
+        for order in range(len(parts) - 1, 0, -1):
+            parts[order] *= x
+            parts[order] += parts[order - 1]
+        parts[0] *= x
+        parts[0] += coefficient
+    if derivatives == 2:
+        parts[2] *= 2.0
+    return parts
+
+
+def _pieces(knots: Array, coefficients: Array, degree: int) -> tuple[Array, Array]:
+    """Local coefficients (powers upwards, pieces, ...) along the first axis, and the breaks between the pieces.
+
+    The first and the last piece are the continuations, of degree two, about the first and the last break.
+    """
+    breaks, spline = knots[degree : len(knots) - degree], BSpline(knots, coefficients, degree)
+    local = np.stack([spline(breaks, nu=order) / math.factorial(order) for order in range(degree + 1)])
+    before, after = local[:, :1].copy(), local[:, -1:].copy()
+    before[3:] = after[3:] = 0.0
+    return np.concatenate([before, local[:, :-1], after], axis=1), breaks
+
+
+def fit(
+    u: Array, v: Array, values: Array, degrees: tuple[int, int], coefficients: tuple[int, int] | None = None
+) -> TensorSpline:
+    """Tensor B-spline of least squares through values on a structured grid; points need not lie on its lines exactly.
+
+    The knots follow the means of the lines (not-a-knot). Where all points lie on lines of constant u and v the
+    problem separates; the factors of the separated problem precondition the real one, so that a fit takes one step on
+    lines and a few beside them.
+
+    Parameters
+    ----------
+    u, v : (n, m) array
+        u grows along the first axis, v along the second.
+    values : (n, m) array
+    degrees : (int, int)
+        In u and v; below the numbers of coefficients.
+    coefficients : (int, int), optional
+        Numbers of coefficients, at most (n, m). Default: as many as points, and the spline passes through them.
+
+    Returns
+    -------
+    TensorSpline
+
+    Examples
+    --------
+    >>> u, v = np.meshgrid(np.linspace(0.0, 1.0, 7), np.linspace(0.0, 2.0, 9), indexing="ij")
+    >>> spline = fit(u, v, u**2 * v, (3, 3))
+    >>> found = spline(np.array(0.3), np.array(1.7))
+    >>> [round(float(part), 9) for part in (found.value, found.u_u, found.u_v)]
+    [0.153, 3.4, 0.6]
+    """
+    counts = u.shape if coefficients is None else coefficients
+    first, second = (
+        _Direction.along(axis, at, count, degree)
+        for axis, at, count, degree in zip((0, 1), (u, v), counts, degrees, strict=True)
+    )
+    found = _least_squares(first, second, values.ravel())
+    return TensorSpline((first.knots, second.knots), found, degrees)
+
+
+@dataclass(frozen=True, eq=False)
+class _Direction:
+    """Knots of one direction, its basis at every point (points, coefficients), and 1/R of its problem on the lines."""
+
+    knots: Array
+    basis: Any
+    inverse: Array
+
+    @classmethod
+    def along(cls, axis: int, at: Array, count: int, degree: int) -> _Direction:
+        """For coordinates (n, m) that grow along an axis."""
+        positions = _line_positions(at, axis)
+        knots = _knots(positions, count, degree)
+        lines = BSpline.design_matrix(positions, knots, degree).toarray()
+        triangle = np.asarray(np.linalg.qr(lines, mode="r"))
+        inverse = np.asarray(solve_triangular(triangle, np.eye(len(triangle))))
+        return cls(knots, BSpline.design_matrix(at.ravel(), knots, degree), inverse)
+
+
+def _line_positions(at: Array, axis: int) -> Array:
+    """Mean of each grid line; the first and the last are moved to the outermost points."""
+    lines = at if axis == 0 else at.T
+    positions = lines.mean(axis=1)
+    positions[0], positions[-1] = lines.min(), lines.max()
+    return positions
+
+
+def _knots(positions: Array, count: int, degree: int) -> Array:
+    """Not-a-knot knots of ``count`` coefficients, spread as the positions are."""
+    places = np.interp(np.linspace(0.0, len(positions) - 1.0, count), np.arange(len(positions)), positions)
+    skipped = (degree + 1) // 2
+    inner = places[skipped : count - skipped]
+    return np.concatenate([np.full(degree + 1, places[0]), inner, np.full(degree + 1, places[-1])])
+
+
+def _least_squares(first: _Direction, second: _Direction, values: Array) -> Array:
+    """Coefficients (k, l) whose rows are basis_u x basis_v, preconditioned by R_u x R_v."""
+    shape = (len(first.inverse), len(second.inverse))
+    matrix = _row_products(first.basis, second.basis, len(values))
+    transposed = matrix.T.tocsr()
+
+    def relaxed(raw: Array) -> Array:
+        return first.inverse @ raw.reshape(shape) @ second.inverse.T
+
+    operator: Any = LinearOperator(
+        matrix.shape,
+        matvec=lambda raw: matrix @ relaxed(raw).ravel(),
+        rmatvec=lambda residual: (first.inverse.T @ (transposed @ residual).reshape(shape) @ second.inverse).ravel(),
+        dtype=float,
+    )
+    found, residual = np.zeros(shape), values
+    for _ in range(MOST_ROUNDS):
+        if not residual.any():
+            break
+        raw = lsmr(operator, residual, atol=1e-14, btol=1e-14, conlim=0.0, maxiter=MOST_ITERATIONS)[0]
+        found = found + relaxed(raw)
+        residual = values - matrix @ found.ravel()
+    return found
+
+
+def _row_products(first: Any, second: Any, rows: int) -> Any:
+    """Sparse matrix whose rows are the Kronecker products of the rows of two, each with equally many entries."""
+    entries = [(part.indices.reshape(rows, -1), part.data.reshape(rows, -1)) for part in (first, second)]
+    columns = entries[0][0][:, :, None] * second.shape[1] + entries[1][0][:, None, :]
+    data = entries[0][1][:, :, None] * entries[1][1][:, None, :]
+    starts = np.arange(rows + 1) * (data.size // rows)
+    return csr_array((data.ravel(), columns.ravel(), starts), shape=(rows, first.shape[1] * second.shape[1]))

@@ -1,0 +1,410 @@
+r"""Blanks of straight, spiral and face-milled bevel gears: cones, depths, thicknesses and limits (ISO 23509).
+
+Lengths are in mm, angles in rad; axes that meet (no hypoid offset), any shaft angle. Unlike the cones of
+:mod:`loaded_tca.gears.bevel`, face and root cones need not share the apex of the pitch cones. A blank is what a
+face-milled pair is cut from: one :class:`BevelBlank` holds both, each gear's numbers are in :mod:`.blank_gear`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import asin, atan, cos, degrees, inf, isfinite, pi, radians, sin, tan
+from typing import Any, Literal, get_args
+
+from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.gears.bevel import pitch_angles
+from loaded_tca.gears.blank_gear import SECTIONS, BlankGear, Triple, triple, virtual_curvature
+
+Taper = Literal["standard", "uniform", "duplex", "modified"]
+
+_MIN_PRESSURE_ANGLE, _MAX_PRESSURE_ANGLE = radians(1), radians(45)
+_MAX_SPIRAL_ANGLE = radians(60)
+_MAX_DEPTH_ANGLE = radians(45)
+# The straight blade of a tool reaches this much deeper than the mate's tip (ISO 23509, clause 8).
+_TOOL_DEPTH = 1.1
+# "modified" taper: the most by which the dedendum angles may exceed the standard ones (ISO 23509, annex C.5).
+_LARGEST_TAPER = 1.3
+
+
+def crown_gear_factors(
+    addendum_share: float, depth: float = 2.0, clearance: float = 0.125, thickness: float = 0.0
+) -> dict[str, float]:
+    """Parameters of :class:`BevelBlank` from the factors of data type II.
+
+    Parameters
+    ----------
+    addendum_share : float
+        c_ham, mean addendum of the wheel over the working depth.
+    depth : float
+        k_d, working depth in mean normal modules.
+    clearance : float
+        k_c, clearance over the working depth.
+    thickness : float
+        k_t, circular thickness factor.
+
+    Returns
+    -------
+    dict
+        ``profile_shift``, ``addendum_factor``, ``dedendum_factor``, ``thickness_modification``.
+
+    References
+    ----------
+    ISO 23509:2016, table 4.
+
+    Examples
+    --------
+    >>> {key: round(value, 5) for key, value in crown_gear_factors(0.24737, thickness=0.0915).items()}
+    {'profile_shift': 0.50526, 'addendum_factor': 1.0, 'dedendum_factor': 1.25, 'thickness_modification': 0.04575}
+    """
+    return {
+        "profile_shift": depth * (0.5 - addendum_share),
+        "addendum_factor": 0.5 * depth,
+        "dedendum_factor": depth * (clearance + 0.5),
+        "thickness_modification": 0.5 * thickness,
+    }
+
+
+@dataclass(frozen=True)
+class BevelBlank:
+    r"""Blanks of two bevel gears on axes that meet.
+
+    The profile shifts are opposite, the wheel's is :math:`-x_{hm}`. Face cones run parallel to the mate's root cones
+    (:math:`\theta_{a1} = \theta_{f2}`, :math:`\theta_{a2} = \theta_{f1}`), so that the clearance is the same along
+    the face. How the depth falls from heel to toe:
+
+    - "standard": :math:`\tan\theta_f = h_{fm}/R_m`, root cones to the pitch apex;
+    - "uniform": no taper, all cones parallel;
+    - "duplex": constant slot width for a circular cutter,
+      :math:`\theta_{f1} + \theta_{f2} = \frac{\pi m_{et}}{2 R_e \tan\alpha_n \cos\beta_m}
+      (1 - R_m \sin\beta_m/r_{c0})`, of which the mean addendum of the mate over the working depth is each one's share;
+    - "modified": like duplex, but the sum at most 1.3 times the standard one.
+
+    Parameters
+    ----------
+    teeth : (int, int)
+        z1, z2, at least 3.
+    outer_module : float [mm]
+        m_et, transverse, at the heel; see :meth:`from_wheel_diameter` for d_e2 instead.
+    face_width : float [mm]
+        b, along the pitch cone.
+    shaft_angle : float [rad]
+        Sigma, between 0 and pi.
+    pressure_angle : float [rad]
+        alpha_n, normal.
+    spiral_angle : float [rad]
+        beta_m at mid-face, not negative: the hand does not enter.
+    cutter_radius : float [mm], optional
+        r_c0 of a face-milling cutter; None: the spiral angle is the same along the face.
+    profile_shift : float
+        x_hm of the pinion, in mean normal modules.
+    thickness_modification : float
+        x_smn of the pinion, in mean normal modules; thickens its tooth by 2 x_smn m_mn and thins the wheel's.
+    addendum_factor, dedendum_factor : float
+        k_hap and k_hfp of the basic crown gear.
+    outer_normal_backlash : float [mm]
+        j_en, taken from both teeth in equal parts.
+    taper : {"standard", "uniform", "duplex", "modified"}
+    wheel_angles : (float, float) [rad], optional
+        theta_a2 and theta_f2 instead of those of the taper.
+    allow_undercut : bool
+        Accept undercut teeth, for members that are not generated.
+
+    Raises
+    ------
+    InputError
+        If values are out of range; every one is told.
+    GeometryError
+        If no face is left at the toe, the cutter does not reach over the face, a tooth or a slot is pointed, depth is
+        missing, or teeth are undercut.
+
+    References
+    ----------
+    ISO 23509:2016, Bevel and hypoid gear geometry: clauses 6.2.1 (method 0), 7 and 8, annex C.5.
+
+    Examples
+    --------
+    The spiral bevel pair of annex F.2:
+
+    >>> blank = BevelBlank.from_wheel_diameter(
+    ...     (14, 39), 176.893, 25.4, spiral_angle=radians(35), cutter_radius=114.3, profile_shift=0.505, taper="duplex"
+    ... )
+    >>> round(blank.mean_cone_distance, 3), round(blank.mean_normal_module, 4)
+    (81.273, 3.2133)
+    >>> [round(degrees(angle), 2) for angle in (blank.pinion.face_angle, blank.pinion.root_angle)]
+    [26.24, 17.61]
+    """
+
+    teeth: tuple[int, int]
+    outer_module: float
+    face_width: float
+    shaft_angle: float = 0.5 * pi
+    pressure_angle: float = radians(20)
+    spiral_angle: float = 0.0
+    cutter_radius: float | None = None
+    profile_shift: float = 0.0
+    thickness_modification: float = 0.0
+    addendum_factor: float = 1.0
+    dedendum_factor: float = 1.25
+    outer_normal_backlash: float = 0.0
+    taper: Taper = "standard"
+    wheel_angles: tuple[float, float] | None = None
+    allow_undercut: bool = False
+
+    @classmethod
+    def from_wheel_diameter(
+        cls, teeth: tuple[int, int], wheel_diameter: float, face_width: float, **options: Any
+    ) -> BevelBlank:
+        """Blanks from the wheel's outer pitch diameter d_e2 = z2 m_et [mm]; options: every other parameter."""
+        return cls(teeth, wheel_diameter / max(teeth[1], 1), face_width, **options)
+
+    def __post_init__(self) -> None:
+        problems = self._input_problems() or self._taper_problems()
+        if problems:
+            raise InputError(problems)
+        self._check_face()
+        self._check_cones()
+        for gear in (self.pinion, self.wheel):
+            gear.check(self.allow_undercut)
+
+    def _input_problems(self) -> list[str]:
+        """Every value that is out of its own range."""
+        problems = [
+            f"teeth: {teeth} is not a whole number from 3 on"
+            for teeth in self.teeth
+            if not (isfinite(teeth) and teeth == int(teeth) and teeth >= 3)
+        ]
+        for key in ("outer_module", "face_width", "cutter_radius", "addendum_factor", "dedendum_factor"):
+            if (value := getattr(self, key)) is not None and not 0.0 < value < inf:
+                problems.append(f"{key}: {value} is not positive and finite")
+        for key in ("profile_shift", "thickness_modification"):
+            if not isfinite(value := getattr(self, key)):
+                problems.append(f"{key}: {value} is not finite")
+        if not 0.0 <= self.outer_normal_backlash < inf:
+            problems.append(f"outer_normal_backlash: {self.outer_normal_backlash} mm is negative or not finite")
+        return problems + self._angle_problems()
+
+    def _angle_problems(self) -> list[str]:
+        problems = []
+        if not 0.0 < self.shaft_angle < pi:
+            problems.append(f"shaft_angle: {self.shaft_angle:.6g} rad is not between 0 and 3.142 rad (180 deg)")
+        if not _MIN_PRESSURE_ANGLE <= self.pressure_angle <= _MAX_PRESSURE_ANGLE:
+            problems.append(
+                f"pressure_angle: {self.pressure_angle:.6g} rad is not between 0.0175 and 0.785 rad (1 to 45 deg)"
+            )
+        if not 0.0 <= self.spiral_angle < _MAX_SPIRAL_ANGLE:
+            problems.append(f"spiral_angle: {self.spiral_angle:.6g} rad is not from 0 to below 1.047 rad (60 deg)")
+        if self.wheel_angles is not None and not all(abs(angle) < _MAX_DEPTH_ANGLE for angle in self.wheel_angles):
+            problems.append(f"wheel_angles: {self.wheel_angles} rad are not within 0.785 rad (45 deg)")
+        return problems
+
+    def _taper_problems(self) -> list[str]:
+        """Depths and tapers that do not go together."""
+        problems = []
+        if self.dedendum_factor < self.addendum_factor:
+            problems.append(
+                f"dedendum_factor: {self.dedendum_factor} is below addendum_factor {self.addendum_factor}: tips of the"
+                " mate would cut into the root"
+            )
+        if self.taper not in get_args(Taper):
+            problems.append(f"taper: {self.taper!r} is not one of {', '.join(get_args(Taper))}")
+        elif self.taper in ("duplex", "modified") and self.wheel_angles is None:
+            smallest = self.mean_cone_distance * sin(self.spiral_angle)
+            if self.cutter_radius is None or self.cutter_radius < smallest:
+                problems.append(
+                    f"cutter_radius: {self.cutter_radius} mm; a {self.taper} taper needs at least R_m sin(beta_m) ="
+                    f" {smallest:.4f} mm"
+                )
+        return problems
+
+    def _check_face(self) -> None:
+        """Refuse faces without toe, or beyond the reach of the cutter."""
+        if self.face_width >= self.outer_cone_distance:
+            raise GeometryError(
+                f"face_width {self.face_width:.6g} mm reaches the apex: no face is left at the toe; it must be below"
+                f" the outer cone distance {self.outer_cone_distance:.6g} mm"
+            )
+        for place, distance in zip(SECTIONS, self.cone_distances, strict=True):
+            if not abs(self._sine_of_spiral(distance)) < 1.0:
+                raise GeometryError(
+                    f"cutter_radius {self.cutter_radius} mm: its circle does not cross the cone distance"
+                    f" {distance:.4f} mm at the {place}; use a larger cutter or a smaller face width"
+                )
+
+    def _check_cones(self) -> None:
+        """Refuse root and face cones that reach or cross the axis."""
+        for member, name in enumerate(("pinion", "wheel")):
+            root = self.pitch_angles[member] - self.dedendum_angles[member]
+            face = self.pitch_angles[member] + self.dedendum_angles[1 - member]
+            if not (root > 0.0 and face < pi):
+                raise GeometryError(
+                    f"{name}: root angle {degrees(root):.4f} deg and face angle {degrees(face):.4f} deg must lie"
+                    " between 0 and 180 deg; reduce depth or taper"
+                )
+
+    @cached_property
+    def pitch_angles(self) -> tuple[float, float]:
+        """delta_1, delta_2 [rad]."""
+        return pitch_angles(self.teeth, self.shaft_angle)
+
+    @property
+    def outer_cone_distance(self) -> float:
+        """R_e = z1 m_et/(2 sin(delta_1)) [mm]."""
+        return 0.5 * self.teeth[0] * self.outer_module / sin(self.pitch_angles[0])
+
+    @property
+    def mean_cone_distance(self) -> float:
+        """R_m = R_e - b/2 [mm]."""
+        return self.outer_cone_distance - 0.5 * self.face_width
+
+    @property
+    def cone_distances(self) -> Triple:
+        """R_i, R_m, R_e [mm]."""
+        outer, half = self.outer_cone_distance, 0.5 * self.face_width
+        return outer - 2.0 * half, outer - half, outer
+
+    @property
+    def mean_transverse_module(self) -> float:
+        """m_mt = m_et R_m/R_e [mm]."""
+        return self.outer_module * self.mean_cone_distance / self.outer_cone_distance
+
+    @property
+    def mean_normal_module(self) -> float:
+        """m_mn = m_mt cos(beta_m) [mm]."""
+        return self.mean_transverse_module * cos(self.spiral_angle)
+
+    @property
+    def working_depth(self) -> float:
+        """h_mw = 2 k_hap m_mn, at mid-face [mm]."""
+        return 2.0 * self.addendum_factor * self.mean_normal_module
+
+    @property
+    def clearance(self) -> float:
+        """c = (k_hfp - k_hap) m_mn, the same along the face [mm]."""
+        return (self.dedendum_factor - self.addendum_factor) * self.mean_normal_module
+
+    @property
+    def whole_depth(self) -> float:
+        """h_m = (k_hap + k_hfp) m_mn, at mid-face [mm]."""
+        return (self.addendum_factor + self.dedendum_factor) * self.mean_normal_module
+
+    def spiral_angle_at(self, cone_distance: float) -> float:
+        r"""Spiral angle on the pitch cone [rad].
+
+        .. math:: \sin\beta = \frac{2 R_m r_{c0} \sin\beta_m - R_m^2 + R^2}{2 R r_{c0}}
+        """
+        return asin(self._sine_of_spiral(cone_distance))
+
+    def _sine_of_spiral(self, cone_distance: float) -> float:
+        mean, sine = self.mean_cone_distance, sin(self.spiral_angle)
+        if self.cutter_radius is None:
+            return sine
+        bend = (cone_distance - mean) * (cone_distance + mean) / (2.0 * self.cutter_radius)
+        return (mean * sine + bend) / cone_distance
+
+    @property
+    def dedendum_angles(self) -> tuple[float, float]:
+        """theta_f1, theta_f2; each is the mate's addendum angle too [rad]."""
+        if self.wheel_angles is not None:
+            return self.wheel_angles
+        if self.taper == "uniform":
+            return 0.0, 0.0
+        pinion, wheel = (atan(depth / self.mean_cone_distance) for depth in self._mean_dedenda)
+        if self.taper == "standard":
+            return pinion, wheel
+        whole = self.constant_slot_taper
+        if self.taper == "modified":
+            whole = min(whole, _LARGEST_TAPER * (pinion + wheel))
+        share = self._mean_addenda[1] / self.working_depth
+        return share * whole, (1.0 - share) * whole
+
+    @property
+    def constant_slot_taper(self) -> float:
+        """Sum of the dedendum angles at which a circular cutter leaves slots of constant width [rad].
+
+        The normal pitch grows by pi m_et (1 - R_m sin(beta_m)/r_c0)/(R_e cos(beta_m)) per cone distance, the two slots
+        together by 2 tan(alpha_n) times the sum of the dedendum angles.
+        """
+        closing = self.mean_cone_distance * sin(self.spiral_angle) / (self.cutter_radius or inf)
+        growth = pi * self.outer_module * (1.0 - closing) / (self.outer_cone_distance * cos(self.spiral_angle))
+        return 0.5 * growth / tan(self.pressure_angle)
+
+    @property
+    def _mean_addenda(self) -> tuple[float, float]:
+        """h_am1, h_am2 [mm]."""
+        module, shift = self.mean_normal_module, self.profile_shift
+        return module * (self.addendum_factor + shift), module * (self.addendum_factor - shift)
+
+    @property
+    def _mean_dedenda(self) -> tuple[float, float]:
+        """h_fm1, h_fm2 [mm]."""
+        module, shift = self.mean_normal_module, self.profile_shift
+        return module * (self.dedendum_factor - shift), module * (self.dedendum_factor + shift)
+
+    @property
+    def _backlash_modification(self) -> float:
+        """What the backlash takes from the thickness modification of either gear, j_en at the heel brought to R_m."""
+        _, mean, outer = self.cone_distances
+        narrower = mean * cos(self.spiral_angle) / (outer * cos(self.spiral_angle_at(outer)))
+        return self.outer_normal_backlash * narrower / (4.0 * self.mean_normal_module * cos(self.pressure_angle))
+
+    @property
+    def _apexes(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """(t_zF, t_zR) of pinion and wheel [mm].
+
+        The wheel's cones hold its depths at R_m; the pinion's stand off from them by the clearance, measured normal to
+        the cones, so that its depths at R_m differ by c (1 - cos theta) from the nominal ones.
+        """
+        mean, (pitch1, pitch2) = self.mean_cone_distance, self.pitch_angles
+        theta_a2, theta_f2 = self.dedendum_angles
+        face2 = (self._mean_addenda[1] * cos(theta_a2) - mean * sin(theta_a2)) / sin(pitch2 + theta_a2)
+        root2 = (mean * sin(theta_f2) - self._mean_dedenda[1] * cos(theta_f2)) / sin(pitch2 - theta_f2)
+        face1 = -(root2 * sin(pitch2 - theta_f2) + self.clearance) / sin(pitch1 + theta_f2)
+        root1 = -(face2 * sin(pitch2 + theta_a2) + self.clearance) / sin(pitch1 - theta_a2)
+        return (face1, root1), (face2, root2)
+
+    def _smallest_profile_shift(self, member: int) -> float:
+        """x_hm that keeps the straight blade of the tool, at toe and heel, outside the flank of a gear."""
+        module, pressure = self.mean_normal_module, self.pressure_angle
+        needed = []
+        for distance in (self.cone_distances[0], self.cone_distances[2]):
+            depth = self.addendum_factor * module
+            depth += (distance - self.mean_cone_distance) * tan(self.dedendum_angles[member])
+            spiral = self.spiral_angle_at(distance)
+            bend = virtual_curvature(distance, self.pitch_angles[member], spiral, pressure)
+            room = sin(pressure) ** 2 / bend if bend > 0.0 else inf
+            needed.append((_TOOL_DEPTH * depth - room) / module)
+        return max(needed)
+
+    def _gear(self, member: int) -> BlankGear:
+        sign = (1.0, -1.0)[member]
+        shift, module = sign * self.profile_shift, self.mean_normal_module
+        thickening = sign * self.thickness_modification - self._backlash_modification
+        face_apex, root_apex = self._apexes[member]
+        return BlankGear(
+            name=("pinion", "wheel")[member],
+            teeth=self.teeth[member],
+            pitch_angle=self.pitch_angles[member],
+            pressure_angle=self.pressure_angle,
+            cone_distances=self.cone_distances,
+            spiral_angles=triple(self.spiral_angle_at(distance) for distance in self.cone_distances),
+            mean_addendum=self._mean_addenda[member],
+            mean_dedendum=self._mean_dedenda[member],
+            addendum_angle=self.dedendum_angles[1 - member],
+            dedendum_angle=self.dedendum_angles[member],
+            mean_normal_thickness=module * (0.5 * pi + 2.0 * (thickening + shift * tan(self.pressure_angle))),
+            profile_shift=shift,
+            smallest_profile_shift=self._smallest_profile_shift(member),
+            face_apex=face_apex,
+            root_apex=root_apex,
+        )
+
+    @cached_property
+    def pinion(self) -> BlankGear:
+        """Blank of the pinion."""
+        return self._gear(0)
+
+    @cached_property
+    def wheel(self) -> BlankGear:
+        """Blank of the wheel."""
+        return self._gear(1)

@@ -1,0 +1,234 @@
+"""One gear of a pair of bevel blanks: what follows from its cones, depths and thicknesses (ISO 23509).
+
+Lengths are in mm, angles in rad; triples are values at toe, mid-face and heel. Along the face the depth follows
+straight cones and the tooth thickness the normal pitch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import acos, cos, pi, sin, tan
+
+from loaded_tca.errors import GeometryError
+from loaded_tca.gears.cylindrical import involute
+
+Triple = tuple[float, float, float]
+
+SECTIONS = ("toe", "mid-face", "heel")
+
+# Height over radius, or angle, below which the virtual gear is a rack: cancellation would cost more than curvature.
+_RACK = 1e-8
+
+
+def triple(values: Iterable[float]) -> Triple:
+    """Three values at toe, mid-face and heel."""
+    toe, middle, heel = values
+    return toe, middle, heel
+
+
+def virtual_curvature(cone_distance: float, pitch_angle: float, spiral_angle: float, pressure_angle: float) -> float:
+    r"""Curvature of the virtual spur gear that the normal section of a bevel gear shows [1/mm].
+
+    .. math:: \frac{1}{r_n} = \frac{1 - \sin^2\beta \cos^2\alpha_n}{R \tan\delta}
+
+    Zero for a crown gear (delta 90 deg), negative (an internal gear) beyond.
+
+    Parameters
+    ----------
+    cone_distance : float [mm]
+        R.
+    pitch_angle, spiral_angle, pressure_angle : float [rad]
+        delta, beta at R, alpha_n.
+
+    References
+    ----------
+    ISO 23509:2016, formula 213.
+
+    Examples
+    --------
+    >>> round(2.0 / virtual_curvature(81.273, 0.344647, 0.610865, 0.349066), 2)  # annex F.2: d_mn1 82.241
+    82.24
+    """
+    turned = (sin(spiral_angle) * cos(pressure_angle)) ** 2
+    return (1.0 - turned) / (cone_distance * tan(pitch_angle))
+
+
+@dataclass(frozen=True)
+class BlankGear:
+    """One gear of a :class:`BevelBlank`, complete: cones, depths, thicknesses.
+
+    Parameters
+    ----------
+    name : str
+    teeth : int
+    pitch_angle, pressure_angle : float [rad]
+        delta and alpha_n.
+    cone_distances, spiral_angles : (float, float, float) [mm], [rad]
+        R and beta at toe, mid-face, heel.
+    mean_addendum, mean_dedendum : float [mm]
+        h_am and h_fm, normal to the pitch cone.
+    addendum_angle, dedendum_angle : float [rad]
+        theta_a and theta_f.
+    mean_normal_thickness : float [mm]
+        s_mn, on the pitch cone.
+    profile_shift, smallest_profile_shift : float
+        x_hm and the value below which the teeth are undercut (clause 8), in mean normal modules.
+    face_apex, root_apex : float [mm]
+        t_zF and t_zR: how far the apex of the cone lies beyond the crossing point of the axes, away from the teeth.
+    """
+
+    name: str
+    teeth: int
+    pitch_angle: float
+    pressure_angle: float
+    cone_distances: Triple
+    spiral_angles: Triple
+    mean_addendum: float
+    mean_dedendum: float
+    addendum_angle: float
+    dedendum_angle: float
+    mean_normal_thickness: float
+    profile_shift: float
+    smallest_profile_shift: float
+    face_apex: float
+    root_apex: float
+
+    @property
+    def face_angle(self) -> float:
+        """delta_a = delta + theta_a [rad]."""
+        return self.pitch_angle + self.addendum_angle
+
+    @property
+    def root_angle(self) -> float:
+        """delta_f = delta - theta_f [rad]."""
+        return self.pitch_angle - self.dedendum_angle
+
+    @property
+    def is_undercut(self) -> bool:
+        """Whether a generating tool cuts into the flank, at toe or heel."""
+        return self.profile_shift < self.smallest_profile_shift
+
+    @property
+    def pitch_diameters(self) -> Triple:
+        """d_i, d_m, d_e = 2 R sin(delta) [mm]."""
+        return triple(2.0 * distance * sin(self.pitch_angle) for distance in self.cone_distances)
+
+    @property
+    def addenda(self) -> Triple:
+        """h_ai, h_am, h_ae, normal to the pitch cone [mm]."""
+        return self._depths(self.mean_addendum, self.addendum_angle)
+
+    @property
+    def dedenda(self) -> Triple:
+        """h_fi, h_fm, h_fe, normal to the pitch cone [mm]."""
+        return self._depths(self.mean_dedendum, self.dedendum_angle)
+
+    def _depths(self, mean: float, angle: float) -> Triple:
+        middle = self.cone_distances[1]
+        return triple(mean + (distance - middle) * tan(angle) for distance in self.cone_distances)
+
+    @property
+    def tip_diameters(self) -> Triple:
+        """d_ai, d_am, d_ae = d + 2 h_a cos(delta) [mm]."""
+        return self._diameters(self.addenda)
+
+    @property
+    def root_diameters(self) -> Triple:
+        """d_fi, d_fm, d_fe = d - 2 h_f cos(delta) [mm]."""
+        return self._diameters(triple(-depth for depth in self.dedenda))
+
+    def _diameters(self, heights: Triple) -> Triple:
+        slope = 2.0 * cos(self.pitch_angle)
+        pairs = zip(self.pitch_diameters, heights, strict=True)
+        return triple(diameter + slope * height for diameter, height in pairs)
+
+    @property
+    def crown_to_crossing(self) -> Triple:
+        """t_xi, t_xm, t_xo: tip from the crossing point of the axes, along the own axis [mm]."""
+        along, across = cos(self.pitch_angle), sin(self.pitch_angle)
+        pairs = zip(self.cone_distances, self.addenda, strict=True)
+        return triple(distance * along - height * across for distance, height in pairs)
+
+    @property
+    def normal_pitches(self) -> Triple:
+        """p_n = pi d cos(beta)/z [mm]."""
+        pairs = zip(self.pitch_diameters, self.spiral_angles, strict=True)
+        return triple(pi * diameter * cos(spiral) / self.teeth for diameter, spiral in pairs)
+
+    @property
+    def normal_thicknesses(self) -> Triple:
+        """s_n on the pitch cone, in proportion to the normal pitch [mm]."""
+        share = self.mean_normal_thickness / self.normal_pitches[1]
+        return triple(share * pitch for pitch in self.normal_pitches)
+
+    @property
+    def mean_transverse_thickness(self) -> float:
+        """s_mt = s_mn/cos(beta_m) [mm]."""
+        return self.mean_normal_thickness / cos(self.spiral_angles[1])
+
+    @property
+    def virtual_curvatures(self) -> Triple:
+        """1/r_n of the virtual spur gear in the normal section, not positive from a pitch angle of 90 deg on [1/mm]."""
+        pairs = zip(self.cone_distances, self.spiral_angles, strict=True)
+        return triple(
+            virtual_curvature(distance, self.pitch_angle, spiral, self.pressure_angle) for distance, spiral in pairs
+        )
+
+    @property
+    def tip_thicknesses(self) -> Triple:
+        """s_an, normal tooth thickness at the tip of the virtual spur gear; negative: pointed tooth [mm]."""
+        rows = zip(self.normal_thicknesses, self.addenda, self.virtual_curvatures, strict=True)
+        return triple(_thickness_at(height, whole, bend, self.pressure_angle) for whole, height, bend in rows)
+
+    @property
+    def slot_widths(self) -> Triple:
+        """Width of the slot at its bottom, p_n - s_n - 2 h_f tan(alpha_n), the widest tool that fits [mm]."""
+        rows = zip(self.normal_pitches, self.normal_thicknesses, self.dedenda, strict=True)
+        return triple(pitch - tooth - 2.0 * depth * tan(self.pressure_angle) for pitch, tooth, depth in rows)
+
+    @property
+    def chordal_thickness(self) -> float:
+        """s_mnc, mean normal chord: d_mn sin(s_mn/d_mn) with d_mn = 2 r_n [mm]."""
+        bend = 0.5 * self.virtual_curvatures[1]
+        angle = self.mean_normal_thickness * bend
+        return self.mean_normal_thickness if abs(angle) < _RACK else sin(angle) / bend
+
+    @property
+    def chordal_addendum(self) -> float:
+        """h_amc, mean addendum above that chord: h_am + d_mn cos(delta) (1 - cos(s_mn/d_mn))/2 [mm]."""
+        bend = 0.5 * self.virtual_curvatures[1]
+        angle = self.mean_normal_thickness * bend
+        rise = 0.0 if abs(angle) < _RACK else sin(0.5 * angle) ** 2 / bend
+        return self.mean_addendum + cos(self.pitch_angle) * rise
+
+    def check(self, allow_undercut: bool) -> None:
+        """Raise GeometryError where this gear cannot exist; the message says where, and what to change."""
+        self._require("no addendum is left", self.addenda, "reduce profile shift, taper or face width")
+        self._require("no dedendum is left", self.dedenda, "reduce profile shift, taper or face width")
+        self._require("pointed tooth, its tip is", self.tip_thicknesses, "reduce profile shift or addendum")
+        self._require("the slot closes above its root, its bottom is", self.slot_widths, "reduce dedendum or taper")
+        if self.is_undercut and not allow_undercut:
+            raise GeometryError(
+                f"{self.name}: undercut with a profile shift x_hm of {self.profile_shift:.4f}; with these cones the"
+                f" least is {self.smallest_profile_shift:.4f} (or allow_undercut, for teeth that are not generated)"
+            )
+
+    def _require(self, fault: str, lengths: Triple, remedy: str) -> None:
+        """Refuse lengths that are not positive everywhere."""
+        worst = min(lengths)
+        if not worst > 0.0:
+            place = SECTIONS[lengths.index(worst)]
+            raise GeometryError(f"{self.name}: {fault} ({worst:.4f} mm) at the {place}; {remedy}")
+
+
+def _thickness_at(height: float, thickness: float, curvature: float, pressure_angle: float) -> float:
+    """Tooth thickness of a spur gear at a height above the circle of given thickness and curvature [mm].
+
+    An internal gear keeps the thickness of its base circle beyond it, where its flank ends.
+    """
+    growth = 1.0 + curvature * height
+    if abs(growth - 1.0) < _RACK:
+        return thickness - 2.0 * height * tan(pressure_angle)
+    end = acos(cos(pressure_angle) / growth) if growth > cos(pressure_angle) else 0.0
+    return growth * (thickness + 2.0 * (involute(pressure_angle) - involute(end)) / curvature)

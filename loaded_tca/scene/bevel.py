@@ -1,0 +1,245 @@
+"""Scenes of straight and spiral bevel gears: their sections, and the gears and pairs that follow from them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import sin
+from typing import ClassVar, Literal
+
+from loaded_tca.bevel_pair import BevelMounting, bevel_pair
+from loaded_tca.errors import InputError
+from loaded_tca.gears.bevel import BevelGear, BevelMesh, pitch_angles
+from loaded_tca.pair import GearPair, Sense
+from loaded_tca.scene import bevel_rows
+from loaded_tca.scene.blank import BlankGear, BlankScene
+from loaded_tca.scene.build import build_materials, build_modifications, in_base_units
+from loaded_tca.scene.keys import Choice, Number, above_zero, key
+from loaded_tca.scene.model import Row, family
+from loaded_tca.scene.section import Rule, Section, subsection
+from loaded_tca.scene.sections import DRIVING, SENSE, ERROR_deg, ERROR_mm, Pair
+
+SPIRAL_deg = Number(0.0, 59.0)
+CONE_deg = above_zero(179.0)
+
+
+def _spiral_of_the_type(spiral: float | None, kind: str) -> str | None:
+    if kind == "straight_bevel" and spiral:
+        return f'found {spiral:g}; allowed 0 for a "straight_bevel" pair; another angle makes it a "spiral_bevel" one'
+    if kind == "spiral_bevel" and spiral is None:
+        return f'missing; a "spiral_bevel" pair needs it, {SPIRAL_deg.low:g} to {SPIRAL_deg.high:g}'
+    return None
+
+
+def _flank_of_a_spiral(flank: str | None, kind: str) -> str | None:
+    if flank is None or kind == "spiral_bevel":
+        return None
+    return f'found "{flank}", but flanks of straight teeth are neither; give sense instead'
+
+
+def _flank_or_sense(flank: str | None, sense: str | None) -> str | None:
+    if flank is None or sense is None:
+        return None
+    return f'found "{flank}" beside sense = "{sense}"; give one of the two'
+
+
+def _one_face_width(wheel: float, pinion: float) -> str | None:
+    if wheel == pinion:
+        return None
+    return f"found {wheel:g}; allowed pinion.face_width_mm = {pinion:g}: both gears end on the same spheres"
+
+
+def _axes_that_meet(error: float, shaft_angle: float) -> str | None:
+    if 0.0 < shaft_angle + error < 180.0:
+        return None
+    return f"found {error:g}; with pair.shaft_angle_deg = {shaft_angle:g} it must stay between 0 and 180"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Geometry(Pair):
+    """[pair] of straight and spiral bevel gears."""
+
+    type: Literal["straight_bevel", "spiral_bevel"] = key(
+        Choice(("straight_bevel", "spiral_bevel")), "kind of gear pair"
+    )
+    outer_module_mm: float = key(above_zero(1000.0), "outer transverse module m_et, at the heel")
+    shaft_angle_deg: float = key(Number(1.0, 179.0), "shaft angle Sigma", 90.0)
+    spiral_angle_deg: float | None = key(
+        SPIRAL_deg,
+        "mean spiral angle beta_m on the pitch cone; its sign is in `pinion.hand`",
+        None,
+        "0; required for `spiral_bevel`",
+    )
+    pressure_angle_deg: float = key(Number(1.0, 44.0), "transverse pressure angle alpha on the pitch cone", 20.0)
+    driving: Literal["pinion", "wheel"] = key(DRIVING, "the gear that drives", "pinion")
+    sense: Sense | None = key(
+        SENSE,
+        "sense of rotation; negative: the pinion turns the other way and pushes with its other flank",
+        None,
+        '"positive", or what `pinion_flank` asks for',
+    )
+    pinion_flank: Literal["concave", "convex"] | None = key(
+        Choice(("concave", "convex")),
+        "flank of a spiral pinion that is in contact, instead of `sense`",
+        None,
+        "by `sense`",
+    )
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        Rule(("spiral_angle_deg", "type"), _spiral_of_the_type),
+        Rule(("pinion_flank", "type"), _flank_of_a_spiral),
+        Rule(("pinion_flank", "sense"), _flank_or_sense),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gear(BlankGear):
+    """[pinion], [wheel] of bevel gears."""
+
+    face_angle_deg: float | None = key(CONE_deg, "face angle delta_a", None, "pitch angle + atan((1 + x) m_et/R_e)")
+    root_angle_deg: float | None = key(CONE_deg, "root angle delta_f", None, "pitch angle - atan((1.25 - x) m_et/R_e)")
+
+
+@dataclass(frozen=True, kw_only=True)
+class MountingErrors(Section):
+    """[mounting] of bevel gears: zero where both apexes are one and the shafts stand at Sigma."""
+
+    offset_mm: float = key(ERROR_mm, "offset E; positive: the wheel's apex moves along +y", 0.0)
+    pinion_axial_mm: float = key(
+        ERROR_mm, "axial displacement P of the pinion; positive: away from its apex, towards its heel", 0.0
+    )
+    wheel_axial_mm: float = key(
+        ERROR_mm, "axial displacement G of the wheel; positive: away from its apex, towards its heel", 0.0
+    )
+    shaft_angle_error_deg: float = key(ERROR_deg, "error of the shaft angle; positive: it grows", 0.0)
+
+
+@family
+@dataclass(frozen=True, kw_only=True)
+class BevelScene(BlankScene):
+    """A scene of two straight or spiral bevel gears with spherical involute flanks.
+
+    Attributes
+    ----------
+    geometry : bevel.Geometry
+        Section [pair]: what both gears have in common.
+    pinion, wheel : bevel.Gear
+    mounting : bevel.MountingErrors
+    title, material, load, analysis
+        As for every ``Scene``.
+
+    Examples
+    --------
+    >>> from loaded_tca.scene import ElasticMaterial, Load
+    >>> scene = BevelScene(
+    ...     geometry=Geometry(type="spiral_bevel", outer_module_mm=4.0, spiral_angle_deg=35.0),
+    ...     pinion=Gear(teeth=20, face_width_mm=20.0, hand="left"),
+    ...     wheel=Gear(teeth=40, face_width_mm=20.0),
+    ...     material=ElasticMaterial(youngs_modulus_MPa=206000.0, poisson_ratio=0.3),
+    ...     load=Load(pinion_torque_Nm=100.0),
+    ... )
+    >>> scene.pair()
+    GearPair(20/40, module 2.91027 mm, face 20 mm)
+    >>> scene.sense, scene.with_changes({"pair.pinion_flank": "concave"}).sense
+    ('positive', 'negative')
+    """
+
+    geometry: Geometry = subsection(Geometry, "what both gears have in common", name="pair")
+    pinion: Gear = subsection(Gear, "the gear that turns about +z")
+    wheel: Gear = subsection(Gear, "its mate")
+    mounting: MountingErrors = subsection(MountingErrors, "mounting errors")
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        *BlankScene.rules,
+        Rule(("wheel.face_width_mm", "pinion.face_width_mm"), _one_face_width),
+        Rule(("mounting.shaft_angle_error_deg", "pair.shaft_angle_deg"), _axes_that_meet),
+    )
+
+    @property
+    def sense(self) -> Sense:
+        """Sense of rotation, as given, or such that the pinion touches with the flank asked for.
+
+        On a right-hand pinion the flank with side s = +1 is the concave one, on a left-hand pinion the convex one; the
+        flank in contact has s = +1 where the pinion drives and turns about +z, or the wheel drives the other way.
+        """
+        wanted = self.geometry
+        if wanted.pinion_flank is None:
+            return wanted.sense or "positive"
+        side = self.hand_signs[0] * (1 if wanted.pinion_flank == "concave" else -1)
+        return "positive" if side == self._drive else "negative"
+
+    @property
+    def _drive(self) -> int:
+        return 1 if self.geometry.driving == "pinion" else -1
+
+    @property
+    def contact_sides(self) -> tuple[str, str]:
+        """Sides in contact of pinion and wheel: "concave" or "convex", "straight" without a spiral."""
+        if not self.geometry.spiral_angle_deg:
+            return "straight", "straight"
+        side = self._drive * (1 if self.sense == "positive" else -1)
+        return ("concave", "convex") if side == self.hand_signs[0] else ("convex", "concave")
+
+    @property
+    def flank_names(self) -> tuple[str, str]:
+        """Gear and side in contact."""
+        pinion, wheel = self.contact_sides
+        return f"{pinion} flank of the pinion", f"{wheel} flank of the wheel"
+
+    def mesh(self) -> BevelMesh:
+        """Return the macro geometry: cones, cone distances, contact ratios."""
+        mesh = BevelMesh(self._gear(0), self._gear(1))
+        bores = (self.pinion.bore_diameter_mm, self.wheel.bore_diameter_mm)
+        problems = [_bore_problem(gear, bore) for gear, bore in zip((mesh.pinion, mesh.wheel), bores, strict=True)]
+        if any(problems):
+            raise InputError(problem for problem in problems if problem)
+        return mesh
+
+    def _gear(self, member: int) -> BevelGear:
+        common, own = in_base_units(self.geometry), in_base_units((self.pinion, self.wheel)[member])
+        teeth = (self.pinion.teeth, self.wheel.teeth)
+        return BevelGear(
+            teeth=teeth[member],
+            outer_module=common["outer_module"],
+            face_width=own["face_width"],
+            pitch_angle=pitch_angles(teeth, common["shaft_angle"])[member],
+            pressure_angle=common["pressure_angle"],
+            spiral_angle=self.hand_signs[member] * common.get("spiral_angle", 0.0),
+            profile_shift=own["profile_shift"],
+            face_angle=own.get("face_angle"),
+            root_angle=own.get("root_angle"),
+            name=("pinion", "wheel")[member],
+        )
+
+    def pair(self, sense: Sense | None = None) -> GearPair:
+        """Return the two flanks in space."""
+        return bevel_pair(
+            self.mesh(),
+            modifications=build_modifications(self.pinion, self.wheel),
+            mounting=BevelMounting(**in_base_units(self.mounting)),
+            materials=build_materials(self.materials),
+            driving=self.geometry.driving,
+            sense=sense or self.sense,
+        )
+
+    def active_starts(self) -> tuple[float, float]:
+        """Return the unwound arcs at which the active profiles of pinion and wheel start [rad]."""
+        mesh = self.mesh()
+        (pinion, _), (wheel, _) = mesh.active_cones
+        return mesh.pinion.unwound_arc(pinion), mesh.wheel.unwound_arc(wheel)
+
+    def geometry_rows(self) -> Sequence[Row]:
+        """Return cones, cone distances, modules and contact ratios."""
+        return bevel_rows.geometry_rows(self.mesh(), self.hands, self.contact_sides)
+
+    def force_rows(self, torques: Sequence[float]) -> Sequence[Row]:
+        """Return the forces under pinion torques [N mm]."""
+        return bevel_rows.force_rows(self.mesh(), torques, self.geometry.driving, self.sense)
+
+
+def _bore_problem(gear: BevelGear, bore: float | None) -> str:
+    """What is wrong with a bore diameter [mm]; empty: nothing."""
+    largest = 2.0 * gear.inner_cone_distance * sin(gear.root_cone_angle)
+    if bore is None or bore < largest:
+        return ""
+    return f"{gear.name}: bore_diameter: {bore:.6g} mm is not below the root diameter at the toe, {largest:.6g} mm"

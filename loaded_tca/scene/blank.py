@@ -1,0 +1,68 @@
+"""Scenes of gears whose blanks are given by teeth, face width and hand: what cylindrical and bevel gears share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+from loaded_tca.scene.keys import Choice, Number, above_zero, key
+from loaded_tca.scene.model import Scene
+from loaded_tca.scene.section import Rule, subsection
+from loaded_tca.scene.sections import DIAMETER_mm, Gear, below
+
+Hand = Literal["right", "left"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class BlankGear(Gear):
+    """[pinion], [wheel] of a gear with a face width, a hand and a profile shift."""
+
+    face_width_mm: float = key(above_zero(10000.0), "face width b")
+    hand: Hand | None = key(
+        Choice(("right", "left")),
+        "hand of the helix or spiral (without meaning for straight teeth)",
+        None,
+        "right for the pinion, and the other for the wheel",
+    )
+    profile_shift: float = key(Number(-5.0, 5.0), "profile shift coefficient x", 0.0)
+    bore_diameter_mm: float | None = key(DIAMETER_mm, "bore diameter, for the tooth compliance", None, "no bore")
+
+    rules: ClassVar[tuple[Rule, ...]] = (below("modifications.end_relief_length_mm", "face_width_mm", 0.5),)
+
+
+def _opposite(hand: Hand) -> Hand:
+    return "left" if hand == "right" else "right"
+
+
+def _opposite_hands(wheel: Hand | None, pinion: Hand | None) -> str | None:
+    if wheel is None or wheel != pinion:
+        return None
+    return f'found "{wheel}" on both gears; allowed "{_opposite(wheel)}", the hand that the pinion does not have'
+
+
+@dataclass(frozen=True, kw_only=True)
+class BlankScene(Scene):
+    """A scene whose gears have opposite hands."""
+
+    pinion: BlankGear = subsection(BlankGear, "the gear that turns about +z")
+    wheel: BlankGear = subsection(BlankGear, "its mate")
+
+    rules: ClassVar[tuple[Rule, ...]] = (*Scene.rules, Rule(("wheel.hand", "pinion.hand"), _opposite_hands))
+
+    @property
+    def pinion_hand(self) -> Hand:
+        """Hand of the pinion: as given, or opposite to the wheel, or right."""
+        if self.pinion.hand is not None:
+            return self.pinion.hand
+        return "right" if self.wheel.hand is None else _opposite(self.wheel.hand)
+
+    @property
+    def hands(self) -> tuple[Hand, Hand]:
+        """Hands of pinion and wheel."""
+        return self.pinion_hand, _opposite(self.pinion_hand)
+
+    @property
+    def hand_signs(self) -> tuple[int, int]:
+        """+1 for the right hand, -1 for the left one, of pinion and wheel."""
+        sign = 1 if self.pinion_hand == "right" else -1
+        return sign, -sign

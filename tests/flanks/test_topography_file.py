@@ -1,0 +1,203 @@
+"""Files of measured flanks: units, signs, orders, and everything that is refused."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from pairs import gear_pair
+
+from loaded_tca import InputError
+from loaded_tca.flanks import FlankModifications, MeasuredDeviations, MeasuredPoints, measured, read_topography
+from loaded_tca.flanks.derived import unmodified
+from loaded_tca.flanks.topography_file import LARGEST_FILE, MOST_PROBLEMS, parse_topography
+
+HEADER = "profile_index,lengthwise_index,radius_mm,axial_mm,deviation_um"
+
+
+def rows_of(*columns, separator=","):
+    """Rows of a file, the profile running fastest, with indices in front."""
+    rows, lines = columns[0].shape
+    return [
+        separator.join([str(i + 1), str(j + 1), *(repr(float(column[i, j])) for column in columns)])
+        for j in range(lines)
+        for i in range(rows)
+    ]
+
+
+@pytest.fixture
+def flank():
+    return gear_pair(FlankModifications(lead_crowning=0.01, twist=0.005), helix_deg=15.0).pinion
+
+
+@pytest.fixture
+def grid(flank):
+    """(radius, axial, excess) [mm] over the flank."""
+    radius, axial = flank.grid(7, 9)
+    return radius, axial, -np.asarray(flank.removal(radius, axial).value)
+
+
+def problems_of(text):
+    with pytest.raises(InputError) as caught:
+        parse_topography(text)
+    return caught.value.problems
+
+
+# What is read
+
+
+def test_flank_written_to_a_file_comes_back(flank, grid, tmp_path):
+    file = tmp_path / "pinion.csv"
+    columns = grid[0], grid[1], 1e3 * grid[2]
+    file.write_text("\n".join(["# gear = pinion", "# a note", HEADER, *rows_of(*columns)]), encoding="utf-8")
+    topography = read_topography(file)
+    assert isinstance(topography, MeasuredDeviations)
+    assert topography.notes == {"gear": "pinion"}
+    again = measured(unmodified(flank), topography)
+    rho, z = flank.grid(5, 5)
+    assert_allclose(again.theta(rho, z).value, flank.theta(rho, z).value, rtol=0, atol=1e-14)
+
+
+def test_order_of_the_rows_with_indices_does_not_matter(grid, rng):
+    rows = rows_of(*grid)
+    shuffled = [rows[k] for k in rng.permutation(len(rows))]
+    found = parse_topography("\n".join([HEADER, *shuffled]))
+    assert_allclose(found.radius, grid[0], rtol=0)
+    assert_allclose(found.excess, 1e-3 * grid[2], rtol=1e-15)
+
+
+def test_rows_without_indices_run_along_the_profile_first(grid):
+    rows = [row.split(",", 2)[2] for row in rows_of(*grid)]
+    found = parse_topography("\n".join(["# points = 7 x 9", "radius_mm,axial_mm,deviation_um", *rows]))
+    assert_allclose(found.axial, grid[1], rtol=0)
+    assert_allclose(found.excess, 1e-3 * grid[2], rtol=1e-15)
+
+
+@pytest.mark.parametrize(("unit", "factor"), [("um", 1e-3), ("mm", 1.0), ("m", 1e3), ("in", 25.4)])
+def test_every_unit_is_turned_into_millimetres(unit, factor):
+    ones = np.ones((2, 2))
+    header = f"profile_index,lengthwise_index,radius_{unit},axial_mm,removed_{unit}"
+    found = parse_topography("\n".join([header, *rows_of(ones, 0.0 * ones, 3.0 * ones)]))
+    assert_allclose(found.radius, factor * ones)
+    assert_allclose(found.excess, -3.0 * factor * ones)
+
+
+def test_removed_material_is_the_deviation_with_the_other_sign(grid):
+    rows = rows_of(*grid)
+    deviation, removed = (
+        parse_topography("\n".join([HEADER.replace("deviation", name), *rows])) for name in ("deviation", "removed")
+    )
+    assert_allclose(removed.excess, -np.asarray(deviation.excess), rtol=0)
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+def test_points_are_read_with_every_separator_a_byte_order_mark_and_blank_lines(flank, tmp_path, separator):
+    rho, z = flank.grid(6, 6)
+    theta = flank.theta(rho, z).value
+    points = rho * np.cos(theta), rho * np.sin(theta), z
+    header = separator.join(["profile_index", "lengthwise_index", " x_mm", "y_mm ", "z_mm"])
+    text = "\r\n".join(["", header, "", *rows_of(*points, separator=separator), ""])
+    (tmp_path / "points.csv").write_text(text, encoding="utf-8-sig", newline="")
+    found = read_topography(tmp_path / "points.csv")
+    assert isinstance(found, MeasuredPoints)
+    assert_allclose(found.points, np.stack(points, axis=-1), rtol=0)
+    assert_allclose(found.radius, rho, rtol=1e-15)
+
+
+# What is refused
+
+
+def test_columns_that_are_unknown_without_unit_or_double_are_refused_all_at_once():
+    assert problems_of("radius_mm,axial,deviation_um,deviatoin_um,axial_mm,axial_um\n1,2,3,4,5,6") == (
+        "column 'axial' has no unit; allowed axial_um, axial_mm, axial_m, axial_in",
+        "column 'deviatoin_um' is unknown; did you mean 'deviation_um'?",
+        "column axial appears twice",
+    )
+    assert problems_of("qqq,x_mm,y_mm,z_mm\n1,2,3,4") == ("column 'qqq' is unknown",)
+
+
+@pytest.mark.parametrize(
+    "header", ["x_mm,y_mm", "radius_mm,axial_mm", "radius_mm,axial_mm,deviation_um,removed_um", "profile_index"]
+)
+def test_columns_that_do_not_belong_together_are_refused(header):
+    (problem,) = problems_of(header + "\n" + ",".join("1" for _ in header.split(",")))
+    assert problem.endswith(
+        "allowed x, y, z, or radius, axial and deviation, or radius, axial and removed, each with its unit"
+    )
+
+
+def test_one_index_alone_is_refused():
+    (problem,) = problems_of("lengthwise_index,x_mm,y_mm,z_mm\n1,2,3,4")
+    assert problem == "columns profile_index and lengthwise_index belong together; only one is there"
+
+
+def test_lines_that_are_no_numbers_are_refused_with_their_place():
+    text = "\n".join(["# note", HEADER, "1,1,50,0,1", "2,1,51,0,abc", "3,1,52,0", "", "4,1,nan,inf,0"])
+    assert problems_of(text) == (
+        "line 4: deviation_um 'abc' is not a finite number",
+        "line 5: 4 values; the header names 5 columns",
+        "line 7: radius_mm 'nan' is not a finite number",
+        "line 7: axial_mm 'inf' is not a finite number",
+    )
+
+
+def test_many_bad_lines_are_counted():
+    problems = problems_of("\n".join([HEADER, *["1,1,?,0,1"] * 25]))
+    assert len(problems) == MOST_PROBLEMS + 1
+    assert problems[-1] == "and 15 more problems of this kind"
+
+
+def test_missing_and_double_points_are_refused(grid):
+    rows = rows_of(*grid)
+    assert problems_of("\n".join([HEADER, *rows[:10], rows[3], *rows[12:]])) == (
+        "2 of the 7 x 9 points are missing, the first at profile_index 4, lengthwise_index 2",
+        "1 of the 7 x 9 points is given more than once, the first at profile_index 4, lengthwise_index 1",
+    )
+
+
+def test_a_diagonal_of_indices_takes_no_memory():
+    rows = [f"{k},{k},50,0,0" for k in range(20000)]
+    (problem,) = problems_of("\n".join([HEADER, *rows]))
+    assert problem.startswith("399980000 of the 20000 x 20000 points are missing")
+
+
+@pytest.mark.parametrize(
+    ("note", "match"),
+    [
+        ("# nothing", "the shape of the grid is missing: columns profile_index and lengthwise_index, or a comment"),
+        ("# points = many", "the shape of the grid is missing"),
+        ("# points = 3 x 2", "points = 3 x 2 are 6, but there are 4 rows"),
+    ],
+)
+def test_grid_without_its_shape_is_refused(note, match):
+    (problem,) = problems_of("\n".join([note, "x_mm,y_mm,z_mm", *["1,2,3"] * 4]))
+    assert problem.startswith(match)
+
+
+@pytest.mark.parametrize("text", ["", "# only a note", HEADER])
+def test_file_without_points_is_refused(text):
+    assert problems_of(text)[0].startswith("no points: ")
+
+
+def test_file_that_cannot_be_read_is_refused_by_name(tmp_path):
+    with pytest.raises(InputError, match=r"missing.csv: cannot be read: No such file"):
+        read_topography(tmp_path / "missing.csv")
+    (tmp_path / "binary.csv").write_bytes(b"# note\n\xff\xfe\x00")
+    with pytest.raises(InputError, match=r"binary.csv: not a text file in UTF-8 \(line 2\)"):
+        read_topography(tmp_path / "binary.csv")
+    (tmp_path / "huge.csv").write_bytes(b"#" * (LARGEST_FILE + 1))
+    with pytest.raises(InputError, match=r"huge.csv: more than 8388608 bytes"):
+        read_topography(tmp_path / "huge.csv")
+    (tmp_path / "bad.csv").write_text(HEADER + "\n1,1,50,0,x\n1,1,50,y,1", encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        read_topography(tmp_path / "bad.csv")
+    assert len(caught.value.problems) == 2
+    assert all(problem.startswith(str(tmp_path / "bad.csv: line ")) for problem in caught.value.problems)
+
+
+def test_radius_of_points_on_the_axis_is_zero_and_not_a_failure():
+    found = MeasuredPoints(np.zeros((4, 4, 3)))
+    assert found.radius.max() == 0.0
+    with pytest.raises(InputError, match="points lie off the flank"):
+        measured(gear_pair().pinion, found)
+    assert math.isclose(found.axial.max(), 0.0)
