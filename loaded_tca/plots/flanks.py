@@ -14,7 +14,6 @@ from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.jet import Array
 from loaded_tca.mesh_cycle import MeshCycle, PressureMap
 from loaded_tca.pair import GearPair
-from loaded_tca.plots.pressure_map import borders
 from loaded_tca.plots.style import ACCENT, COLOURS, NO_MATE, highest_torque, load, range_of_positions, set_title
 from loaded_tca.scene import parse_scene
 
@@ -52,7 +51,7 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     for axes, name, (flank, start, radius, axial) in zip(panels, scene.flank_names, sides, strict=True):
         outline = _draw_flank(axes, name, flank, start)
         for one in maps:
-            _draw_area(axes, outline, one, flank.frame.to_picture(*_on_gear(pair, flank, _corners(one))), scale)
+            _draw_area(axes, outline, one, flank.frame.to_picture(*_on_gear(pair, flank, one.corners)), scale)
         axes.plot(*flank.frame.to_picture(radius, axial), ".", color=ACCENT, markersize=4.0)
     if maps:
         figure.colorbar(ScalarMappable(scale, COLOURS), ax=panels, label="contact pressure [MPa]")
@@ -129,12 +128,6 @@ def _draw_area(axes: Axes, outline: Patch, one: PressureMap, corners: tuple[Arra
     loaded = np.where(one.pressure > 0.0, one.pressure, np.nan)
     cells = axes.pcolormesh(*corners, loaded, cmap=COLOURS, norm=scale, rasterized=True)
     cells.set_clip_path(outline)
-
-
-def _corners(one: PressureMap) -> Array:
-    """Corners (nx + 1, ny + 1, 3) of the cells in the fixed frame [mm]."""
-    x, y = (borders(centres, step) for centres, step in zip((one.x, one.y), one.spacing, strict=True))
-    return one.origin + x[:, None, None] * one.axes[0] + y[:, None] * one.axes[1]
 
 
 def _on_gear(pair: GearPair, flank: Flank, point: Array) -> tuple[Array, Array]:

@@ -1,0 +1,207 @@
+"""Fillets between a flank and the root surface, drawn in the images of the sections.
+
+The arc touches the flank and the root circle; where it would touch the flank below its root border, the tangent
+there leads on to it, straight. The fillet of the basic rack is the curve that its rounded tip cuts.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+
+from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.flanks.jet import Array
+from loaded_tca.gears.cylindrical import CylindricalGear
+from loaded_tca.tooth.profile import Profile, turned
+
+BORDER_MARGIN = 0.01
+"""Part of the profile above its root border where a straight continuation starts at the latest: at the base circle
+itself a modification of the profile, which counts by roll length, has no finite slope."""
+BISECTIONS = 60
+BLEND = 0.2
+"""Part of the length of a rack's fillet over which the slope of a modification fades out."""
+
+
+@dataclass(frozen=True, eq=False)
+class FilletCurve:
+    """Fillets of m sections in their images, from the flank to the root circle.
+
+    Attributes
+    ----------
+    start : (m,) array [mm]
+        Radius of the image where the flank ends.
+    points : (k, m, 2) array [mm]
+        Azimuth 0 is the middle of the tooth; the first points lie on the flank, the last on the root circle.
+    tangents : (k, m, 2) array
+        Unit tangents, towards the root.
+    """
+
+    start: Array
+    points: Array
+    tangents: Array
+
+
+class Fillet(ABC):
+    """How a flank is led into the root."""
+
+    @abstractmethod
+    def curve(self, profile: Profile, root_radius: Array, count: int) -> FilletCurve:
+        """Fillets of all sections of a profile.
+
+        Parameters
+        ----------
+        profile : Profile
+        root_radius : (m,) array [mm]
+            Radius of the image of the root circle of each section.
+        count : int
+            Points k along each fillet.
+
+        Raises
+        ------
+        GeometryError
+            If there is no such fillet.
+        """
+
+
+@dataclass(frozen=True)
+class ArcFillet(Fillet):
+    """Circular arc on the section, tangent to the flank and to the root circle.
+
+    Parameters
+    ----------
+    radius : float [mm]
+        At the section of ``coordinate``.
+    coordinate : float [mm], optional
+        The radius grows in proportion to the coordinate of the section, as everything on a bevel gear does; None: it
+        is the same everywhere.
+
+    Raises
+    ------
+    InputError
+        If a length is not positive and finite.
+
+    References
+    ----------
+    Seed 001, "Fillet surface model": an arc on the sphere, tangent to the root circle and the spherical involute.
+    """
+
+    radius: float
+    coordinate: float | None = None
+
+    def __post_init__(self) -> None:
+        lengths = {"fillet_radius": self.radius, "coordinate": 1.0 if self.coordinate is None else self.coordinate}
+        problems = [
+            f"{name}: {value} mm is not positive and finite"
+            for name, value in lengths.items()
+            if not 0.0 < value < float("inf")
+        ]
+        if problems:
+            raise InputError(problems)
+
+    def curve(self, profile: Profile, root_radius: Array, count: int) -> FilletCurve:
+        """Line and arc, evenly divided."""
+        scale = np.ones_like(root_radius) if self.coordinate is None else profile.coordinate / self.coordinate
+        outer = profile.sections.radius_beyond(root_radius, profile.coordinate, 2.0 * self.radius * scale)
+        size = 0.5 * (outer - root_radius)  # the arc touches the root circle: its meridian runs from there
+        start = _touching_radius(profile, root_radius, size)
+        point, tangent = profile.point_and_tangent(start)
+        line, centre = self._line_to_arc(point, tangent, root_radius, size)
+        return FilletCurve(start, *_line_and_arc(point, tangent, line, centre, size, count))
+
+    def _line_to_arc(self, point: Array, tangent: Array, root: Array, size: Array) -> tuple[Array, Array]:
+        """Length (m,) of the straight piece before the arc, and the centre (m, 2) of the arc."""
+        centre = point + size[:, None] * _into_space(tangent)
+        over = (centre**2).sum(axis=-1) - (root + size) ** 2
+        along = -(centre * tangent).sum(axis=-1)
+        square = along**2 - over
+        if square.min() < 0.0:
+            raise GeometryError(
+                f"fillet_radius: an arc of {self.radius:.6g} mm cannot touch both the end of the flank and the root"
+            )
+        line = np.maximum(along - np.sqrt(square), 0.0)
+        return line, centre + line[:, None] * tangent
+
+
+def _touching_radius(profile: Profile, root: Array, size: Array) -> Array:
+    """Radii (m,) of the image at which arcs of the radii ``size`` touch flank and root circle, on the flank."""
+    low, high = profile.radius[0], profile.radius[-1]
+    low = low + BORDER_MARGIN * (high - low)
+    if (_height_over_root(profile, high, root, size) <= 0.0).any():
+        raise GeometryError("fillet_radius: the fillet reaches the tip of the tooth; reduce it")
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        above = _height_over_root(profile, middle, root, size) > 0.0
+        low, high = np.where(above, low, middle), np.where(above, middle, high)
+    return high
+
+
+def _height_over_root(profile: Profile, radius: Array, root: Array, size: Array) -> Array:
+    """How far from the root circle an arc stays that touches the flank at ``radius`` [mm]."""
+    point, tangent = profile.point_and_tangent(radius)
+    return np.linalg.norm(point + size[:, None] * _into_space(tangent), axis=-1) - root - size
+
+
+def _line_and_arc(
+    point: Array, tangent: Array, line: Array, centre: Array, size: Array, count: int
+) -> tuple[Array, Array]:
+    """Points and tangents (count, m, 2) of a straight piece and the arc after it, down to the root circle."""
+    inward = -centre / np.linalg.norm(centre, axis=-1, keepdims=True)
+    start = -_into_space(tangent)
+    sweep = np.arctan2(start[:, 0] * inward[:, 1] - start[:, 1] * inward[:, 0], (start * inward).sum(axis=-1))
+    length = np.linspace(0.0, 1.0, count)[:, None] * (line + size * np.abs(sweep))
+    swept = np.sign(sweep) * np.maximum(length - line, 0.0) / size
+    on_arc = centre + size[:, None] * turned(start, swept)
+    on_line = point + length[..., None] * tangent
+    points = np.where((length < line)[..., None], on_line, on_arc)
+    points[0] = point
+    return points, turned(tangent, swept)
+
+
+def _into_space(tangent: Array) -> Array:
+    """Unit normals out of the material beside tangents towards the root."""
+    return np.stack([tangent[..., 1], -tangent[..., 0]], axis=-1)
+
+
+@dataclass(frozen=True)
+class RackFillet(Fillet):
+    """Trochoid that the rounded tip of the basic rack cuts into a cylindrical gear.
+
+    On a modified flank it turns with the flank's root border, and takes over the flank's slope there over the first
+    fifth of its length; an undercut leaves a corner.
+
+    Parameters
+    ----------
+    gear : CylindricalGear
+
+    References
+    ----------
+    ISO 53:1998 (basic rack); :meth:`CylindricalGear.root_fillet`.
+    """
+
+    gear: CylindricalGear
+
+    def curve(self, profile: Profile, root_radius: Array, count: int) -> FilletCurve:  # noqa: ARG002 (of the gear)
+        """The trochoid of the gear, turned to each section."""
+        start = profile.radius[0]
+        radius, angle = self.gear.root_fillet(count)
+        top, slope = profile.point_and_tangent(start)
+        turn = angle[:, None] + (np.arctan2(top[:, 1], top[:, 0]) - angle[0])
+        tangents = turned(np.stack(self.gear.root_fillet_tangent(count), axis=-1)[:, None], turn)
+        points = np.stack([radius[:, None] * np.cos(turn), radius[:, None] * np.sin(turn)], axis=-1)
+        if not self.gear.is_undercut:
+            points, tangents = _with_slope(points, tangents, slope)
+        points[0] = top
+        return FilletCurve(start, points, tangents)
+
+
+def _with_slope(points: Array, tangents: Array, slope: Array) -> tuple[Array, Array]:
+    """Curves that start with the tangents ``slope`` (m, 2), and are the old ones from a fifth of their length on."""
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=-1)
+    length = np.concatenate([np.zeros_like(steps[:1]), np.cumsum(steps, axis=0)])[..., None]
+    blend = BLEND * length[-1]
+    rest = np.maximum(1.0 - length / blend, 0.0)
+    change = slope - tangents[0]
+    bent = tangents + change * rest * (3.0 * rest - 2.0)
+    return points + change * length * rest**2, bent / np.linalg.norm(bent, axis=-1, keepdims=True)
