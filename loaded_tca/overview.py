@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
+from loaded_tca.pair import GearPair
 from loaded_tca.scene import Scene
 from loaded_tca.scene.model import Row
 from loaded_tca.scene.section import Section, contents
@@ -23,7 +25,7 @@ def describe_scene(scene: Scene) -> str:
     """
     pair = scene.pair()
     cap = [] if pair.max_pressure is None else [("cap on the pressure [MPa]", f"{pair.max_pressure:g}")]
-    rows = [*scene.geometry_rows(), *_load_rows(scene), *cap, *_departures(scene)]
+    rows = [*scene.geometry_rows(), *_load_rows(scene), *cap, *_departures(scene), *_spline_rows(scene, pair)]
     lines = [f"{label:<{LABEL}}" + "".join(f"{cell:>14}" for cell in cells) for label, *cells in rows]
     return "\n".join([scene.title or "Scene", *lines, *(f"note: {note}" for note in scene.notes())])
 
@@ -41,6 +43,24 @@ def _departures(scene: Scene) -> Iterator[Row]:
     yield from _changed(scene.mounting, "mounting.") or [("mounting errors", "none")]
     for name, gear in (("pinion", scene.pinion), ("wheel", scene.wheel)):
         yield from _changed(gear.modifications, f"{name}.modifications.") or [(f"{name}.modifications", "none")]
+
+
+def _spline_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
+    """Forms of flanks that are not analytic, and how closely their B-splines follow their points."""
+    for name, gear, flank in (("pinion", scene.pinion, pair.pinion), ("wheel", scene.wheel, pair.wheel)):
+        if not isinstance(flank, SplineFlank):
+            continue
+        yield f"{name}.flank.form", gear.flank.form
+        if gear.flank.measurement is not None:
+            rho, z = flank.grid(*DEFAULT_POINTS)
+            excess = 1e3 * flank.distance_to(flank.nominal, rho, z)
+            yield f"{name}: measured points", " x ".join(map(str, gear.flank.measurement.shape))
+            yield f"{name}: deviations from, to [um]", f"{excess.min():.2f}", f"{excess.max():.2f}"
+        errors = {"at points": flank.fit_error, "between them": flank.check_error}
+        for where, error in errors.items():
+            if error is not None:
+                label = f"{name}: fit {where}, largest, rms [um]"
+                yield label, f"{1e3 * error.largest:.1e}", f"{1e3 * error.rms:.1e}"
 
 
 def _changed(section: Section, place: str) -> list[Row]:

@@ -6,6 +6,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from loaded_tca.flanks import FlankModifications
+from loaded_tca.flanks.modification import NO_POLYNOMIAL
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.pair import Mounting, cylindrical_pair
 
@@ -50,6 +51,7 @@ def modifications(draw, gear, active):
     """Every modification, each present or not, within the active profile and the face."""
     low, high = 2.0 * active.start_radius, 2.0 * active.end_radius
     slope = st.one_of(st.just(0.0), st.floats(-0.03, 0.03))
+    profile = gear.roll_length(active.end_radius) - gear.roll_length(active.start_radius)
     return FlankModifications(
         lead_crowning=draw(amounts(0.05)),
         lead_crowning_form=draw(st.sampled_from(["parabolic", "circular", "logarithmic"])),
@@ -64,7 +66,17 @@ def modifications(draw, gear, active):
         root_relief_form=draw(st.sampled_from(["parabolic", "linear"])),
         helix_slope=draw(slope),
         profile_slope=draw(slope),
+        twist=draw(slope),
+        polynomial=draw(st.one_of(st.just(NO_POLYNOMIAL), polynomials(gear.face_width, profile))),
     )
+
+
+@st.composite
+def polynomials(draw, width, profile):
+    """Coefficients a1 to a6 of amounts up to 10 um at the borders of the flank, hollow ones too."""
+    x, y = 0.5 * width, 0.5 * profile
+    powers = (1.0, x, y, x * y, x**2, y**2)
+    return tuple(draw(st.floats(-0.01, 0.01)) / power for power in powers)
 
 
 @st.composite

@@ -3,8 +3,11 @@
 import importlib.util
 from pathlib import Path
 
+import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
+from loaded_tca import trace_contact
 from loaded_tca.scene import read_scene
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -44,3 +47,29 @@ def test_example_is_short(path):
 @pytest.mark.parametrize("path", sorted((EXAMPLES / "scenes").glob("*.toml")), ids=lambda path: path.stem)
 def test_example_scene_is_sound(path):
     assert read_scene(path).pair().pitch > 0.0
+
+
+def test_measured_flank_is_what_its_script_makes():
+    stored = (EXAMPLES / "scenes" / "measured_flank.csv").read_text(encoding="utf-8")
+    made = loaded(EXAMPLES / "make_measured_flank.py").main()
+    numbers = [
+        np.array([[float(cell) for cell in line.split(",")] for line in text.splitlines()[5:]])
+        for text in (stored, made)
+    ]
+    assert stored.splitlines()[:5] == made.splitlines()[:5]
+    assert_allclose(*numbers, rtol=0, atol=0.011)  # one unit of the last digit written
+
+
+@pytest.mark.parametrize("gear", ["pinion", "wheel"])
+def test_bspline_example_is_the_pair_of_its_equations(gear):
+    fitted = read_scene(EXAMPLES / "scenes" / "bspline_bevel.toml")
+    exact = fitted.with_changes({f"{gear}.flank": None})
+    errors = [trace_contact(scene.pair(), [-0.1, 0.0, 0.1]).transmission_error for scene in (fitted, exact)]
+    assert_allclose(*errors, rtol=0, atol=1e-10)
+
+
+def test_measured_example_touches_on_the_side_of_its_slope():
+    """Crowning of 8 um with a slope of 2 um: the most material lies at 1/16 of half the face, towards z > 0."""
+    path = trace_contact(read_scene(EXAMPLES / "scenes" / "measured_flank.toml").pair(), [0.0])
+    assert not path.on_edge.any()
+    assert 0.0 < path.pinion_axial[0] < 4.0

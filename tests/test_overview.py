@@ -134,3 +134,25 @@ def test_spiral_pair_shows_hands_flanks_and_what_departs_from_nominal():
     assert cells(text, "pinion.modifications.lead_crowning_um") == ["10.0"]
     normal = float(cells(text, "pressure angles alpha_t, alpha_n [deg]")[1])
     assert_allclose(math.tan(math.radians(normal)), math.tan(math.radians(20)) * math.cos(math.radians(35)), rtol=1e-5)
+
+
+def test_fitted_flanks_show_how_closely_they_follow_their_points():
+    text = described("bspline_bevel")
+    assert cells(text, "pinion.flank.form") == cells(text, "wheel.flank.form") == ["bspline"]
+    for gear in ("pinion", "wheel"):
+        assert float(cells(text, f"{gear}: fit at points, largest, rms [um]")[0]) < 1e-9
+        largest, rms = (float(cell) for cell in cells(text, f"{gear}: fit between them, largest, rms [um]"))
+        assert 0.0 < rms < largest < 1e-4
+    assert "measured points" not in text
+
+
+def test_measured_flank_shows_its_points_and_deviations():
+    text = described("measured_flank")
+    assert "pinion.flank.form" not in text
+    assert cells(text, "wheel.flank.form") == ["measured"]
+    assert cells(text, "wheel: measured points") == ["9", "x", "15"]
+    low, high = (float(cell) for cell in cells(text, "wheel: deviations from, to [um]"))
+    assert -15.0 < low < -11.0 < 0.0 < high < 1.0  # 8 um and 3 um of crowning with slopes and waves
+    rms = float(cells(text, "wheel: fit at points, largest, rms [um]")[1])
+    assert rms < 0.2  # what smoothing leaves out: noise of 0.15 um
+    assert "between them" not in text

@@ -12,6 +12,7 @@ from loaded_tca.scene import cylindrical, bevel
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.bevel import BevelScene
 from loaded_tca.scene.describe import describe_keys
+from loaded_tca.scene.flank_form import FlankForm, Measurement
 from loaded_tca.scene.model import Scene, scene_from_table
 from loaded_tca.scene.parse import parse_scene, read_scene
 from loaded_tca.scene.sections import Analysis, ElasticMaterial, Load, Modifications
@@ -21,7 +22,9 @@ __all__ = [
     "BevelScene",
     "CylindricalScene",
     "ElasticMaterial",
+    "FlankForm",
     "Load",
+    "Measurement",
     "Modifications",
     "Scene",
     "bevel",

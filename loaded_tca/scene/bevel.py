@@ -211,15 +211,15 @@ class BevelScene(BlankScene):
             name=("pinion", "wheel")[member],
         )
 
-    def pair(self, sense: Sense | None = None) -> GearPair:
-        """Return the two flanks in space."""
+    def analytic_pair(self, sense: Sense) -> GearPair:
+        """Return the two spherical involute flanks in space."""
         return bevel_pair(
             self.mesh(),
             modifications=build_modifications(self.pinion, self.wheel),
             mounting=BevelMounting(**in_base_units(self.mounting)),
             materials=build_materials(self.materials),
             driving=self.geometry.driving,
-            sense=sense or self.sense,
+            sense=sense,
         )
 
     def active_starts(self) -> tuple[float, float]:

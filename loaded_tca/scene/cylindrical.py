@@ -119,15 +119,20 @@ class CylindricalScene(BlankScene):
             name=("pinion", "wheel")[member],
         )
 
-    def pair(self, sense: Sense | None = None) -> GearPair:
-        """Return the two flanks in space."""
+    @property
+    def sense(self) -> Sense:
+        """Sense of rotation."""
+        return self.geometry.sense
+
+    def analytic_pair(self, sense: Sense) -> GearPair:
+        """Return the two involute flanks in space."""
         return cylindrical_pair(
             self.mesh(),
             modifications=build_modifications(self.pinion, self.wheel),
             mounting=Mounting(**in_base_units(self.mounting)),
             materials=build_materials(self.materials),
             driving=self.geometry.driving,
-            sense=sense or self.geometry.sense,
+            sense=sense,
         )
 
     def active_starts(self) -> tuple[float, float]:

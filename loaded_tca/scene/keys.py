@@ -9,6 +9,8 @@ from dataclasses import dataclass, field
 from numbers import Integral, Real
 from typing import Any, Protocol
 
+import numpy as np
+
 from loaded_tca.scene.text import shown
 
 REQUIRED: Any = object()
@@ -77,17 +79,17 @@ class Whole:
 
 @dataclass(frozen=True)
 class Choice:
-    """One of a few words (or of true and false); ``later`` are known but not available in this version."""
+    """One of a few words or numbers (or of true and false); ``later`` are not available in this version."""
 
-    options: tuple[str | bool, ...]
-    later: tuple[str | bool, ...] = ()
+    options: tuple[str | int, ...]
+    later: tuple[str | int, ...] = ()
 
     @property
     def allowed(self) -> str:
         """The options in words."""
         return " or ".join(shown(option) for option in self.options)
 
-    def read(self, value: Any) -> str | bool:
+    def read(self, value: Any) -> str | int:
         """Return the option that equals the value."""
         for option in self.options:
             if type(value) is type(option) and value == option:
@@ -143,6 +145,46 @@ class List:
             return tuple(self.kind.read(entry) for entry in value)
         except ValueError as refused:
             raise _refusal(self, value, f" ({refused})") from None
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Numbers in lines of one length, as many lines and numbers as allowed."""
+
+    number: Number
+    shortest: int
+    longest: int
+
+    @property
+    def allowed(self) -> str:
+        """Size and entries in words."""
+        size = f"{self.shortest} to {self.longest}"
+        return f"a list of {size} lists of one length, {size} values, each {self.number.allowed}"
+
+    def read(self, value: Any) -> tuple[tuple[float, ...], ...]:
+        """Return tuples; all numbers are looked at together, since there may be thousands."""
+        if not isinstance(value, list | tuple) or not all(isinstance(line, list | tuple) for line in value):
+            raise _refusal(self, value)
+        lengths = {len(value), *(len(line) for line in value)}
+        if not value or not self.shortest <= min(lengths) <= max(lengths) <= self.longest:
+            raise _refusal(self, value)
+        if len({len(line) for line in value}) > 1:
+            lengths_in_order = ", ".join(str(len(line)) for line in value[:6])
+            raise _refusal(self, value, f" (the lists hold {lengths_in_order}{', ...' if len(value) > 6 else ''})")
+        if self._is_sound(value):
+            return tuple(tuple(map(float, line)) for line in value)
+        try:
+            return tuple(tuple(self.number.read(entry) for entry in line) for line in value)
+        except ValueError as refused:
+            raise _refusal(self, value, f" ({refused})") from None
+
+    def _is_sound(self, value: Any) -> bool:
+        """Whether all entries are floats within the limits: quick, and true of nearly all grids."""
+        if any(set(map(type, line)) != {float} for line in value):
+            return False
+        numbers = np.array(value)
+        low = numbers > self.number.low if self.number.above else numbers >= self.number.low
+        return bool((low & (numbers <= self.number.high)).all())
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, TypeVar
 
 from loaded_tca.errors import InputError
 from loaded_tca.pair import GearPair, Sense
-from loaded_tca.scene.build import in_base_units
+from loaded_tca.scene.build import build_flanks, in_base_units
 from loaded_tca.scene.keys import Choice, Key, Line, key
 from loaded_tca.scene.section import (
     Rule,
@@ -82,14 +82,23 @@ class Scene(Section, ABC):
             If the gears cannot exist or cannot mesh.
         """
 
+    @property
     @abstractmethod
+    def sense(self) -> Sense:
+        """Sense of rotation."""
+
+    @abstractmethod
+    def analytic_pair(self, sense: Sense) -> GearPair:
+        """Return the two flanks in space by their equations, modifications included."""
+
     def pair(self, sense: Sense | None = None) -> GearPair:
-        """Return the two flanks in space.
+        """Return the two flanks in space, fitted or measured where [pinion.flank] or [wheel.flank] asks for it.
 
         Parameters
         ----------
         sense : {"positive", "negative"}, optional
-            Sense of rotation, which picks the flanks in contact; default: that of the scene.
+            Sense of rotation, which picks the flanks in contact; default: that of the scene. A measured flank is the
+            one in contact by the scene; the other flank of its tooth follows from the equations.
 
         Raises
         ------
@@ -97,7 +106,16 @@ class Scene(Section, ABC):
             If values that are sound one by one do not fit each other.
         GeometryError
             If the gears cannot exist or cannot mesh.
+
+        Warns
+        -----
+        AccuracyWarning
+            If a B-spline misses its flank by more than 0.1 um, or a measurement leaves much of it uncovered.
         """
+        wanted = sense or self.sense
+        return build_flanks(
+            self.analytic_pair(wanted), (self.pinion.flank, self.wheel.flank), in_contact=wanted == self.sense
+        )
 
     @abstractmethod
     def active_starts(self) -> tuple[float, float]:

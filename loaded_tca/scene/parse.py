@@ -10,11 +10,14 @@ from typing import Any
 from loaded_tca.errors import InputError
 from loaded_tca.scene.model import Scene, scene_from_table
 
-LARGEST_FILE = 65536
-"""Bytes of a scene file; a full one has about 4000."""
+LARGEST_FILE = 2**21
+"""Bytes of a scene file; a full one has about 5000, one with two measured flanks of 100 x 100 points a million."""
 
 MOST_DOTS = 2000
 """Dots in one line: reading a key of tens of thousands of dotted parts takes minutes."""
+
+MOST_SQUARED_DOTS = 2e7
+"""Sum of squares of the dots of all lines, which is what reading them takes; two large measured flanks have 6e6."""
 
 
 def read_scene(path: str | os.PathLike[str]) -> Scene:
@@ -23,7 +26,7 @@ def read_scene(path: str | os.PathLike[str]) -> Scene:
     Parameters
     ----------
     path : str or path
-        A TOML file in UTF-8.
+        A TOML file in UTF-8. The files that it names are looked for from its folder.
 
     Returns
     -------
@@ -42,13 +45,13 @@ def read_scene(path: str | os.PathLike[str]) -> Scene:
         reason = getattr(error, "strerror", None) or str(error)
         raise InputError(f"{name}: cannot be read: {reason}") from None
     try:
-        return parse_scene(content.decode("utf-8-sig"), source=name)
+        return parse_scene(content.decode("utf-8-sig"), source=name, folder=Path(path).parent)
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         raise InputError(f"{name}: not a text file in UTF-8 (line {line})") from None
 
 
-def parse_scene(text: str, source: str = "scene") -> Scene:
+def parse_scene(text: str, source: str = "scene", folder: str | os.PathLike[str] = ".") -> Scene:
     r"""Make a scene of the text of a scene file.
 
     Parameters
@@ -57,6 +60,8 @@ def parse_scene(text: str, source: str = "scene") -> Scene:
         TOML.
     source : str
         What messages call the text, for instance the name of the file.
+    folder : str or path
+        Where the files that it names are looked for.
 
     Raises
     ------
@@ -72,15 +77,29 @@ def parse_scene(text: str, source: str = "scene") -> Scene:
     pair.modul: unknown key; did you mean "pair.normal_module_mm"?
     ...
     """
-    return scene_from_table(_table(text, source))
+    return scene_from_table(_with_files_from(Path(folder), _table(text, source)))
+
+
+def _with_files_from(folder: Path, table: dict[str, Any], levels: int = 3) -> dict[str, Any]:
+    """The table, in which the keys of the upper levels that are called file name it from the current folder."""
+    found: dict[str, Any] = {}
+    for name, value in table.items():
+        if isinstance(value, dict) and levels > 1:
+            found[name] = _with_files_from(folder, value, levels - 1)
+        else:
+            found[name] = str(folder / value) if name == "file" and isinstance(value, str) else value
+    return found
 
 
 def _table(text: str, source: str) -> dict[str, Any]:
     if len(text) > LARGEST_FILE:
         raise InputError(f"{source}: too long for a scene; allowed up to {LARGEST_FILE} characters")
-    for number, line in enumerate(text.split("\n"), 1):
-        if line.count(".") > MOST_DOTS:
-            raise InputError(f"{source}: line {number} holds more than {MOST_DOTS} dots")
+    dots = [line.count(".") for line in text.split("\n")]
+    if max(dots) > MOST_DOTS:
+        line = next(number for number, count in enumerate(dots, 1) if count > MOST_DOTS)
+        raise InputError(f"{source}: line {line} holds more than {MOST_DOTS} dots")
+    if sum(count**2 for count in dots) > MOST_SQUARED_DOTS:
+        raise InputError(f"{source}: too many lines with hundreds of dots; allowed up to 100 numbers in a line")
     try:
         return tomllib.loads(text)
     except RecursionError:

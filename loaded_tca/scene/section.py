@@ -138,9 +138,13 @@ def _check_subsection(name: str, entry: Subsection, given: Any, place: str) -> t
         return {}, [f"{place}{name}: found {shown(given)}; allowed a section [{place}{name}]"]
     values, problems = check(entry.section, given or {}, f"{place}{name}.")
     inner = {f"{name}.{key}": value for key, value in values.items()}
-    if not problems:
+    if problems:
+        return inner, problems
+    try:
         inner[name] = made(entry.section, values)
-    return inner, problems
+    except InputError as refused:  # what only shows when it is made: a file that cannot be read
+        return inner, [f"{place}{name}.{problem}" for problem in refused.problems]
+    return inner, []
 
 
 def made(section: type[SectionType], values: Mapping[str, Any]) -> SectionType:

@@ -7,6 +7,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from loaded_tca.flanks.modification import NO_POLYNOMIAL
+from loaded_tca.scene.flank_form import FlankForm
 from loaded_tca.scene.keys import Choice, Line, List, Number, Whole, above_zero, key
 from loaded_tca.scene.section import Rule, Section, subsection
 
@@ -78,6 +80,15 @@ class Modifications(Section):
     root_relief_form: str = key(RELIEF_FORM, "form of the root relief over the roll length", "parabolic")
     helix_slope_um: float = key(SLOPE_um, "helix slope C_H_beta over the face width; may be negative", 0.0)
     profile_slope_um: float = key(SLOPE_um, "profile slope C_H_alpha over the active profile; may be negative", 0.0)
+    twist_um: float = key(
+        SLOPE_um, "twist S_beta: helix slope at the tip less that at the start of the active profile; any sign", 0.0
+    )
+    polynomial_mm: tuple[float, ...] = key(
+        List(Number(-100.0, 100.0), 6, 6),
+        "a1 to a6 of a1 + a2 x + a3 y + a4 x y + a5 x^2 + a6 y^2 [mm]; x [mm] lengthwise from mid-face, y [mm] "
+        "along the roll length (bevel gears: the unwound arc times R_m) from the middle of the active profile",
+        NO_POLYNOMIAL,
+    )
 
     rules: ClassVar[tuple[Rule, ...]] = (
         needs("end_relief_um", "end_relief_length_mm"),
@@ -103,6 +114,7 @@ class Gear(Section):
 
     teeth: int = key(Whole(3, 10000), "number of teeth z")
     modifications: Modifications = subsection(Modifications, "material removed from the flanks")
+    flank: FlankForm = subsection(FlankForm, "how the flanks are described")
     material: ElasticMaterial | None = subsection(
         ElasticMaterial, "material of this gear, instead of the common one", optional=True
     )

@@ -17,11 +17,18 @@ def literal(value: Any) -> str:
     --------
     >>> literal((20.0, 130.0)), literal(True), literal('5 "µm"')
     ('[20.0, 130.0]', 'true', '"5 \\"µm\\""')
+    >>> print(literal(((1.0, 2.0), (3.0, 4.0))))
+    [
+        [1.0, 2.0],
+        [3.0, 4.0],
+    ]
     """
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, list | tuple) and value and isinstance(value[0], list | tuple):
+        return "[\n" + "".join(f"    {literal(line)},\n" for line in value) + "]"
     if isinstance(value, list | tuple):
         return "[" + ", ".join(literal(entry) for entry in value) + "]"
     return repr(value)

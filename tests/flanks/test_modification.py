@@ -14,7 +14,15 @@ from loaded_tca.bevel_pair import bevel_pair
 from loaded_tca.errors import InputError
 from loaded_tca.flanks import FlankModifications, InvoluteFlank, ModifiedFlank
 from loaded_tca.flanks.base import outward_normal
-from loaded_tca.flanks.modification import CircularArc, linear, logarithmic, one_sided_parabola, parabola
+from loaded_tca.flanks.modification import (
+    NO_POLYNOMIAL,
+    CircularArc,
+    Term,
+    linear,
+    logarithmic,
+    one_sided_parabola,
+    parabola,
+)
 from loaded_tca.gears import bevel_mesh
 from loaded_tca.pair import cylindrical_basis, cylindrical_pair
 
@@ -179,7 +187,7 @@ def test_derivatives_of_the_polynomial_agree_with_differences(coefficients, heig
 def test_modifications_add_up(data, mesh):
     whole = data.draw(modifications(mesh.pinion, mesh.pinion_active_profile))
     names = ("lead_crowning", "end_relief", "profile_crowning", "tip_relief", "root_relief", "helix_slope")
-    nothing = dict.fromkeys((*names, "profile_slope"), 0.0)
+    nothing = {**dict.fromkeys((*names, "profile_slope", "twist"), 0.0), "polynomial": NO_POLYNOMIAL}
     single = [replace(whole, **{**nothing, name: getattr(whole, name)}) for name in nothing]
 
     def field(choice):
@@ -256,7 +264,7 @@ def test_derivatives_of_every_modified_flank_agree_with_differences(data, height
 def _jump_near(flank, rho, z, step):
     """1e-3 1/mm^2 where a one-sided parabola starts within the step, else nothing."""
     for term in getattr(flank, "terms", ()):
-        if term.shape is one_sided_parabola:
+        if isinstance(term, Term) and term.shape is one_sided_parabola:
             t = float(term.coordinate(flank.nominal, np.array(rho), np.array(z)).value)
             if abs(t * term.length) < 10.0 * step:
                 return 1.0

@@ -57,8 +57,8 @@ def test_file_that_is_not_toml_is_told_with_its_line(tmp_path):
 
 def test_file_that_is_too_long_is_told(tmp_path):
     path = tmp_path / "scene.toml"
-    path.write_bytes(b"#" * 10**6)
-    assert refusal(read_scene, path) == f"{path}: too long for a scene; allowed up to 65536 characters"
+    path.write_bytes(b"#" * 3 * 10**6)
+    assert refusal(read_scene, path) == f"{path}: too long for a scene; allowed up to 2097152 characters"
 
 
 def test_empty_text_misses_every_required_key():
@@ -83,6 +83,12 @@ def test_text_nested_too_deeply_is_told(text):
 
 def test_key_of_too_many_parts_is_told_at_once():
     assert refusal(parse_scene, "\n" + "a." * 30000 + "a = 1") == "scene: line 2 holds more than 2000 dots"
+
+
+def test_many_keys_of_many_parts_are_told_at_once():
+    text = "\n".join(f"a{line}." + "a." * 1900 + "a = 1" for line in range(500))
+    expected = "scene: too many lines with hundreds of dots; allowed up to 100 numbers in a line"
+    assert refusal(parse_scene, text) == expected
 
 
 def test_whole_number_of_too_many_digits_is_told():

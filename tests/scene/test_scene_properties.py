@@ -11,14 +11,16 @@ from hypothesis import strategies as st
 
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.scene import Scene, parse_scene, read_scene, scene_from_table
-from loaded_tca.scene.keys import Choice, Key, Line, List, Number, Whole
+from loaded_tca.scene.keys import Choice, Grid, Key, Line, List, Number, Whole
 from loaded_tca.scene.model import FAMILIES
 from loaded_tca.scene.section import Subsection, entries
 
 ROOT = Path(__file__).parents[2]
 
-EXAMPLES = [path.read_text(encoding="utf-8") for path in sorted((ROOT / "examples" / "scenes").glob("*.toml"))]
+SCENES = ROOT / "examples" / "scenes"
+EXAMPLES = [path.read_text(encoding="utf-8") for path in sorted(SCENES.glob("*.toml"))]
 TABLES = [tomllib.loads(text) for text in EXAMPLES]
+CYLINDRICAL = (SCENES / "fzg_c14.toml").read_text(encoding="utf-8")
 
 
 def names(section: type) -> set[str]:
@@ -144,8 +146,16 @@ def sound_values(kind):
         return st.sampled_from(kind.options)
     if isinstance(kind, Line):
         return st.text(st.characters(exclude_categories=["Cc", "Cs", "Zl", "Zp"]), max_size=kind.longest)
+    if isinstance(kind, Grid):
+        return st.integers(kind.shortest, kind.shortest + 1).flatmap(
+            lambda length: st.lists(
+                st.lists(sound_values(kind.number), min_size=length, max_size=length),
+                min_size=kind.shortest,
+                max_size=kind.shortest + 1,
+            )
+        )
     assert isinstance(kind, List)
-    return st.lists(sound_values(kind.kind), min_size=kind.shortest, max_size=min(kind.longest, 5))
+    return st.lists(sound_values(kind.kind), min_size=kind.shortest, max_size=max(kind.shortest, min(kind.longest, 5)))
 
 
 @st.composite
@@ -183,7 +193,7 @@ def test_misspelt_key_is_never_taken_silently(table, name, data):
 
 @given(st.text(max_size=30))
 def test_title_is_kept_to_the_character(title):
-    text = EXAMPLES[0].split("title =")[0] + "[pair]" + EXAMPLES[0].split("[pair]")[1]
+    text = CYLINDRICAL.split("title =")[0] + "[pair]" + CYLINDRICAL.split("[pair]")[1]
     encoded = json.dumps(title).replace("\x7f", "\\u007f")
     result = outcome(parse_scene, f"title = {encoded}\n" + text)
     if isinstance(result, Scene):
@@ -210,7 +220,7 @@ gears = st.fixed_dictionaries(
 
 @given(gears)
 def test_scene_makes_a_pair_or_says_why_not(changes):
-    scene = scene_from_table(TABLES[0]).with_changes(
+    scene = parse_scene(CYLINDRICAL).with_changes(
         {"pair.centre_distance_mm": None, "pinion.tip_diameter_mm": None, "wheel.tip_diameter_mm": None} | changes
     )
     try:
@@ -244,7 +254,7 @@ bevel_gears = st.fixed_dictionaries(
 
 @given(bevel_gears)
 def test_bevel_scene_makes_a_pair_or_says_why_not(changes):
-    nominal = parse_scene((ROOT / "examples" / "scenes" / "spiral_bevel.toml").read_text(encoding="utf-8"))
+    nominal = parse_scene((SCENES / "spiral_bevel.toml").read_text(encoding="utf-8"))
     try:
         scene = nominal.with_changes({"wheel.hand": None, **changes})
         told = repr(scene.pair())

@@ -9,7 +9,7 @@ from pairs import gear_pair, pairs, wheel_lag
 
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.base import outward_normal
-from loaded_tca.flanks.modification import logarithmic
+from loaded_tca.flanks.modification import Term, logarithmic
 from loaded_tca.pair import Mounting, cylindrical_basis
 from loaded_tca.unloaded.ease_off import EaseOff
 
@@ -43,7 +43,7 @@ def smooth_there(pair, field, phi1, rho, z):
     """
     station = field.station(phi1, rho, z)
     for flank, r, x in ((pair.pinion, rho, z), (pair.wheel, station.wheel_rho, station.wheel_z)):
-        for term in getattr(flank, "terms", ()):
+        for term in (term for term in getattr(flank, "terms", ()) if isinstance(term, Term)):
             t = term.coordinate(flank.nominal, r, x).value * abs(term.length)
             steep = term.shape is logarithmic and (np.abs(t) > 0.8 * abs(term.length)).any()
             if steep or (np.abs(t) < 10.0 * STEP).any():

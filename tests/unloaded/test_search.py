@@ -30,7 +30,7 @@ def lead_over_grid(pair, path, row):
 @given(pairs(), st.floats(-0.5, 0.5))
 @settings(max_examples=60)
 def test_no_point_of_both_flanks_touches_before_the_contact_point(pair, turn):
-    path = trace_contact(pair, np.array([turn, turn - 0.2]) * pair.pitch)
+    path = trace_contact(pair, np.array([turn, turn - 0.2]) * pair.pitch, warn=False)
     for row in range(2):
         assert lead_over_grid(pair, path, row) >= -ROUNDING
         if not path.on_crease[row]:
@@ -40,7 +40,7 @@ def test_no_point_of_both_flanks_touches_before_the_contact_point(pair, turn):
 @given(pairs(), st.floats(-0.5, 0.5))
 @settings(max_examples=20)
 def test_contact_point_lies_on_both_flanks(pair, turn):
-    path = trace_contact(pair, [turn * pair.pitch])
+    path = trace_contact(pair, [turn * pair.pitch], warn=False)
     rho, z = path.pinion_radius, path.pinion_axial
     theta = pair.pinion.theta(rho, z).value + pair.sense * path.pinion_angle
     assert_allclose(path.point[0], [*(rho * np.cos(theta)), *(rho * np.sin(theta)), *z], atol=1e-10)
