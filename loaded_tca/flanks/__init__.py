@@ -2,6 +2,7 @@
 
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.frame import ConeFrame, CylinderFrame, FlankFrame
+from loaded_tca.flanks.generated import FlankAngles, GeneratedFlank
 from loaded_tca.flanks.involute import InvoluteFlank
 from loaded_tca.flanks.modification import FlankModifications, ModifiedFlank
 from loaded_tca.flanks.spherical_involute import SphericalInvoluteFlank
@@ -13,8 +14,10 @@ __all__ = [
     "ConeFrame",
     "CylinderFrame",
     "Flank",
+    "FlankAngles",
     "FlankFrame",
     "FlankModifications",
+    "GeneratedFlank",
     "InvoluteFlank",
     "MeasuredDeviations",
     "MeasuredPoints",

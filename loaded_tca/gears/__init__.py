@@ -1,9 +1,27 @@
-"""Macro geometry of gears."""
+"""Macro geometry of gears, and the cutters and machine settings that cut them."""
 
 from loaded_tca.gears.bevel import BevelGear, BevelMesh, bevel_mesh
 from loaded_tca.gears.bevel_blank import BevelBlank
 from loaded_tca.gears.blank_gear import BlankGear
+from loaded_tca.gears.cutter import Blade, Cutter
 from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.gears.cylindrical_mesh import CylindricalMesh
+from loaded_tca.gears.face_milled import FaceMilledGear
+from loaded_tca.gears.face_milled_mesh import FaceMilledMesh
+from loaded_tca.gears.machine_settings import FaceMilledBlank, MachineSettings
 
-__all__ = ["BevelBlank", "BevelGear", "BevelMesh", "BlankGear", "CylindricalGear", "CylindricalMesh", "bevel_mesh"]
+__all__ = [
+    "BevelBlank",
+    "BevelGear",
+    "BevelMesh",
+    "Blade",
+    "BlankGear",
+    "Cutter",
+    "CylindricalGear",
+    "CylindricalMesh",
+    "FaceMilledBlank",
+    "FaceMilledGear",
+    "FaceMilledMesh",
+    "MachineSettings",
+    "bevel_mesh",
+]

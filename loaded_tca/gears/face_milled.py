@@ -1,0 +1,54 @@
+"""A face-milled bevel gear: its blank, the cutter and the machine settings that give it its flanks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite
+
+from loaded_tca.errors import InputError
+from loaded_tca.gears.cutter import BLADE_SIGNS, Cutter, FlankName
+from loaded_tca.gears.machine_settings import FaceMilledBlank, MachineSettings
+
+
+@dataclass(frozen=True)
+class FaceMilledGear:
+    """Everything that one member of a face-milled pair is made from.
+
+    Parameters
+    ----------
+    teeth : int
+        Number of teeth z, at least 3.
+    blank : FaceMilledBlank
+    cutter : Cutter
+    machine : MachineSettings
+    name : str
+        What messages call this gear.
+
+    Raises
+    ------
+    InputError
+        If the number of teeth is none.
+    """
+
+    teeth: int
+    blank: FaceMilledBlank
+    cutter: Cutter
+    machine: MachineSettings
+    name: str = "gear"
+
+    def __post_init__(self) -> None:
+        if not (isfinite(self.teeth) and self.teeth == int(self.teeth) and self.teeth >= 3):
+            raise InputError(f"{self.name}: teeth: {self.teeth} is not a whole number from 3 on")
+
+    @property
+    def mirror(self) -> int:
+        """+1 for a right-hand gear, -1 for a left-hand one, which is the mirror image of a right-hand one."""
+        return 1 if self.blank.hand == "right" else -1
+
+    def side(self, flank: FlankName) -> int:
+        """Sign s of the azimuthal part of the outward normal: +1 for the concave flank of a right-hand gear."""
+        return self.mirror * BLADE_SIGNS[flank]
+
+    def flank_name(self, side: int) -> FlankName:
+        """The flank with a sign s."""
+        return "concave" if self.side("concave") == side else "convex"
