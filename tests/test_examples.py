@@ -19,8 +19,14 @@ EXPECTED = {
     "plot_misalignment_sensitivity": (-1.0, 0.02),  # shift of the contact over f/(2 c1): first order
     "plot_contact_pattern": (1.0, 2e-3),  # area of the pattern over that of the curvature ellipse
     "plot_hertz_comparison": (1.0, 2e-3),  # peak over that of Hertz, on 49 cells
+    "plot_bevel_pressure": (1.0, 1e-2),  # peak over that of Hertz: the flanks bend a little over the ellipse
     "plot_transmission_error": (2.0 / 3.0, 5e-3),  # approach of a Hertz contact under growing load
+    "plot_load_sharing": (1.0, 1e-3),  # half a pitch before and behind: the two pairs of one position
+    "plot_loaded_transmission_error": (1.0, 1e-3),  # a pitch further the mesh is the same
+    "plot_ease_off": (1.0, 1e-3),  # the crownings of both gears add up, to first order
+    "plot_vh_check": (-1.0, 0.03),  # shifts under opposite errors: first order
     "plot_tooth_3d": (1.0, 5e-3),  # the pressure laid on the flank carries the load
+    "plot_bidirectional_start": (1.0, 1e-7),  # five equations and ease-off find the same contact
 }
 
 
@@ -73,3 +79,43 @@ def test_measured_example_touches_on_the_side_of_its_slope():
     path = trace_contact(read_scene(EXAMPLES / "scenes" / "measured_flank.toml").pair(), [0.0])
     assert not path.on_edge.any()
     assert 0.0 < path.pinion_axial[0] < 4.0
+
+
+PARTS = np.array([-0.5, 0.0, 0.5])  # of a pitch
+
+
+def traced(name, angles):
+    pair = read_scene(EXAMPLES / "scenes" / f"{name}.toml").pair()
+    return pair, trace_contact(pair, np.atleast_1d(angles), warn=False)
+
+
+def test_published_face_milled_example_scrapes_along_a_tip():
+    """Two thirds of the pitch."""
+    _, path = traced("face_milled_19x62", np.radians(np.linspace(-9.47, 9.47, 13)))
+    assert 0.6 < path.on_edge.mean() < 0.75
+
+
+@pytest.mark.parametrize(
+    ("name", "top", "fall"),
+    [
+        ("face_milled_19x62_matched", 0.0, [-6.018, -5.711]),
+        ("duplex_30x20_mended", 5.99083, [-12.29, -12.50]),
+    ],
+)
+def test_matched_face_milled_examples_have_the_transmission_error_they_say(name, top, fall):
+    """References: pair B by the five equations and the ease-off; pair D of Seed 004."""
+    pair, _ = traced(name, 0.0)
+    path = trace_contact(pair, np.radians(top) + PARTS * pair.pitch)
+    error = np.degrees(path.transmission_error) * 3600.0
+    assert_allclose(error[[0, 2]] - error[1], fall, atol=6e-3)  # two decimals are printed
+    assert not path.on_edge.any()
+
+
+def test_duplex_example_first_touches_in_the_corner_of_toe_and_tip():
+    """The largest transmission error of one tooth pair: the first touch of all."""
+    pair, path = traced("duplex_30x20", np.radians(np.linspace(0.0, 30.0, 31)))
+    first = path[int(np.nanargmax(path.transmission_error))]
+    lengthwise, _ = pair.pinion.frame.to_picture(np.array(first.pinion_radius), np.array(first.pinion_axial))
+    assert_allclose(lengthwise, -10.0, atol=1e-6)
+    tip = pair.pinion.borders(np.array(first.pinion_radius), np.array(first.pinion_axial))[0]
+    assert tip.value < 0.2

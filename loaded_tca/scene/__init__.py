@@ -8,9 +8,10 @@ module, with ``@family`` over its class, and one line of import below.
 
 # ruff: noqa: I001  -- the order of import is the order in which messages and documents name the families
 
-from loaded_tca.scene import cylindrical, bevel
+from loaded_tca.scene import cylindrical, bevel, face_milled
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.bevel import BevelScene
+from loaded_tca.scene.face_milled import FaceMilledScene
 from loaded_tca.scene.describe import describe_keys
 from loaded_tca.scene.flank_form import FlankForm, Measurement
 from loaded_tca.scene.model import Scene, scene_from_table
@@ -22,6 +23,7 @@ __all__ = [
     "BevelScene",
     "CylindricalScene",
     "ElasticMaterial",
+    "FaceMilledScene",
     "FlankForm",
     "Load",
     "Measurement",
@@ -30,6 +32,7 @@ __all__ = [
     "bevel",
     "cylindrical",
     "describe_keys",
+    "face_milled",
     "parse_scene",
     "read_scene",
     "scene_from_table",

@@ -16,8 +16,19 @@ from loaded_tca.scene.blank import BlankGear, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row, family
-from loaded_tca.scene.section import Rule, Section, subsection
-from loaded_tca.scene.sections import DRIVING, SENSE, ERROR_deg, ERROR_mm, Pair
+from loaded_tca.scene.section import Rule, subsection
+from loaded_tca.scene.sections import DRIVING, SENSE, Pair
+from loaded_tca.scene.spiral import (
+    AXES_THAT_MEET,
+    FLANK_OR_SENSE,
+    SIDE,
+    MountingErrors,
+    SHAFT_ANGLE_deg,
+    Side,
+    names_of,
+    sense_for,
+    sides_in_contact,
+)
 
 SPIRAL_deg = Number(0.0, 59.0)
 CONE_deg = above_zero(179.0)
@@ -37,22 +48,10 @@ def _flank_of_a_spiral(flank: str | None, kind: str) -> str | None:
     return f'found "{flank}", but flanks of straight teeth are neither; give sense instead'
 
 
-def _flank_or_sense(flank: str | None, sense: str | None) -> str | None:
-    if flank is None or sense is None:
-        return None
-    return f'found "{flank}" beside sense = "{sense}"; give one of the two'
-
-
 def _one_face_width(wheel: float, pinion: float) -> str | None:
     if wheel == pinion:
         return None
     return f"found {wheel:g}; allowed pinion.face_width_mm = {pinion:g}: both gears end on the same spheres"
-
-
-def _axes_that_meet(error: float, shaft_angle: float) -> str | None:
-    if 0.0 < shaft_angle + error < 180.0:
-        return None
-    return f"found {error:g}; with pair.shaft_angle_deg = {shaft_angle:g} it must stay between 0 and 180"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,7 +62,7 @@ class Geometry(Pair):
         Choice(("straight_bevel", "spiral_bevel")), "kind of gear pair"
     )
     outer_module_mm: float = key(above_zero(1000.0), "outer transverse module m_et, at the heel")
-    shaft_angle_deg: float = key(Number(1.0, 179.0), "shaft angle Sigma", 90.0)
+    shaft_angle_deg: float = key(SHAFT_ANGLE_deg, "shaft angle Sigma", 90.0)
     spiral_angle_deg: float | None = key(
         SPIRAL_deg,
         "mean spiral angle beta_m on the pitch cone; its sign is in `pinion.hand`",
@@ -78,8 +77,8 @@ class Geometry(Pair):
         None,
         '"positive", or what `pinion_flank` asks for',
     )
-    pinion_flank: Literal["concave", "convex"] | None = key(
-        Choice(("concave", "convex")),
+    pinion_flank: Side | None = key(
+        SIDE,
         "flank of a spiral pinion that is in contact, instead of `sense`",
         None,
         "by `sense`",
@@ -88,7 +87,7 @@ class Geometry(Pair):
     rules: ClassVar[tuple[Rule, ...]] = (
         Rule(("spiral_angle_deg", "type"), _spiral_of_the_type),
         Rule(("pinion_flank", "type"), _flank_of_a_spiral),
-        Rule(("pinion_flank", "sense"), _flank_or_sense),
+        FLANK_OR_SENSE,
     )
 
 
@@ -98,20 +97,6 @@ class Gear(BlankGear):
 
     face_angle_deg: float | None = key(CONE_deg, "face angle delta_a", None, "pitch angle + atan((1 + x) m_et/R_e)")
     root_angle_deg: float | None = key(CONE_deg, "root angle delta_f", None, "pitch angle - atan((1.25 - x) m_et/R_e)")
-
-
-@dataclass(frozen=True, kw_only=True)
-class MountingErrors(Section):
-    """[mounting] of bevel gears: zero where both apexes are one and the shafts stand at Sigma."""
-
-    offset_mm: float = key(ERROR_mm, "offset E; positive: the wheel's apex moves along +y", 0.0)
-    pinion_axial_mm: float = key(
-        ERROR_mm, "axial displacement P of the pinion; positive: away from its apex, towards its heel", 0.0
-    )
-    wheel_axial_mm: float = key(
-        ERROR_mm, "axial displacement G of the wheel; positive: away from its apex, towards its heel", 0.0
-    )
-    shaft_angle_error_deg: float = key(ERROR_deg, "error of the shaft angle; positive: it grows", 0.0)
 
 
 @family
@@ -152,39 +137,28 @@ class BevelScene(BlankScene):
     rules: ClassVar[tuple[Rule, ...]] = (
         *BlankScene.rules,
         Rule(("wheel.face_width_mm", "pinion.face_width_mm"), _one_face_width),
-        Rule(("mounting.shaft_angle_error_deg", "pair.shaft_angle_deg"), _axes_that_meet),
+        AXES_THAT_MEET,
     )
 
     @property
     def sense(self) -> Sense:
-        """Sense of rotation, as given, or such that the pinion touches with the flank asked for.
-
-        On a right-hand pinion the flank with side s = +1 is the concave one, on a left-hand pinion the convex one; the
-        flank in contact has s = +1 where the pinion drives and turns about +z, or the wheel drives the other way.
-        """
+        """Sense of rotation, as given, or such that the pinion touches with the flank asked for."""
         wanted = self.geometry
         if wanted.pinion_flank is None:
             return wanted.sense or "positive"
-        side = self.hand_signs[0] * (1 if wanted.pinion_flank == "concave" else -1)
-        return "positive" if side == self._drive else "negative"
-
-    @property
-    def _drive(self) -> int:
-        return 1 if self.geometry.driving == "pinion" else -1
+        return sense_for(wanted.pinion_flank, self.hand_signs[0], wanted.driving)
 
     @property
     def contact_sides(self) -> tuple[str, str]:
         """Sides in contact of pinion and wheel: "concave" or "convex", "straight" without a spiral."""
         if not self.geometry.spiral_angle_deg:
             return "straight", "straight"
-        side = self._drive * (1 if self.sense == "positive" else -1)
-        return ("concave", "convex") if side == self.hand_signs[0] else ("convex", "concave")
+        return sides_in_contact(self.sense, self.hand_signs[0], self.geometry.driving)
 
     @property
     def flank_names(self) -> tuple[str, str]:
         """Gear and side in contact."""
-        pinion, wheel = self.contact_sides
-        return f"{pinion} flank of the pinion", f"{wheel} flank of the wheel"
+        return names_of(self.contact_sides)
 
     def mesh(self) -> BevelMesh:
         """Return the macro geometry: cones, cone distances, contact ratios."""
@@ -234,7 +208,12 @@ class BevelScene(BlankScene):
 
     def force_rows(self, torques: Sequence[float]) -> Sequence[Row]:
         """Return the forces under pinion torques [N mm]."""
-        return bevel_rows.force_rows(self.mesh(), torques, self.geometry.driving, self.sense)
+        mesh = self.mesh()
+        bare = bevel_pair(mesh, driving=self.geometry.driving, sense=self.sense)
+        points = [
+            bevel_rows.pitch_point(gear.mean_cone_distance, gear.pitch_angle) for gear in (mesh.pinion, mesh.wheel)
+        ]
+        return bevel_rows.force_rows((bare.pinion, bare.wheel), (points[0], points[1]), torques)
 
 
 def _bore_problem(gear: BevelGear, bore: float | None) -> str:

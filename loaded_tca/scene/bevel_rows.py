@@ -7,10 +7,8 @@ from math import atan, cos, degrees, sin, tan
 
 import numpy as np
 
-from loaded_tca.bevel_pair import bevel_pair
 from loaded_tca.flanks.base import Flank, outward_normal
 from loaded_tca.gears.bevel import BevelGear, BevelMesh
-from loaded_tca.pair import Driving, Sense
 from loaded_tca.scene.model import Row
 
 ROUNDING = 1e-9
@@ -86,11 +84,21 @@ def _height(gear: BevelGear, cone_angle: float) -> float:
     return gear.mean_cone_distance * tan(cone_angle - gear.pitch_angle)
 
 
-def force_rows(mesh: BevelMesh, torques: Sequence[float], driving: Driving, sense: Sense) -> list[Row]:
-    """Forces at the mean pitch point under pinion torques [N mm], a cell for each; one tooth pair carries all."""
-    pair = bevel_pair(mesh, driving=driving, sense=sense)
-    pinion, wheel = _unit_force(pair.pinion, mesh.pinion), _unit_force(pair.wheel, mesh.wheel)
-    radius = 0.5 * _mean_diameter(mesh.pinion)
+Point = tuple[float, float]
+"""(rho, z) [mm]."""
+
+
+def pitch_point(cone_distance: float, pitch_angle: float) -> Point:
+    """Point of the pitch cone at a cone distance."""
+    return cone_distance * sin(pitch_angle), cone_distance * cos(pitch_angle)
+
+
+def force_rows(flanks: tuple[Flank, Flank], points: tuple[Point, Point], torques: Sequence[float]) -> list[Row]:
+    """Forces at the mean pitch points of pinion and wheel under pinion torques [N mm], a cell for each.
+
+    One tooth pair carries all.
+    """
+    pinion, wheel = (_unit_force(flank, point) for flank, point in zip(flanks, points, strict=True))
     rows = (
         ("mean tangential force F_mt [N]", pinion[1]),
         ("normal force F_n [N]", 1.0),
@@ -99,12 +107,11 @@ def force_rows(mesh: BevelMesh, torques: Sequence[float], driving: Driving, sens
         ("axial force on the wheel, from its apex [N]", -wheel[2]),
         ("radial force on the wheel, to its axis [N]", wheel[0]),
     )
-    normal_forces = [torque / (radius * pinion[1]) for torque in torques]
+    normal_forces = [torque / (points[0][0] * pinion[1]) for torque in torques]
     return [(label, *(f"{part * force:.1f}" for force in normal_forces)) for label, part in rows]
 
 
-def _unit_force(flank: Flank, gear: BevelGear) -> tuple[float, float, float]:
-    """Normal out of a flank at the mean pitch point: radial, tangential (positive) and axial part."""
-    distance, angle = gear.mean_cone_distance, gear.pitch_angle
-    normal = outward_normal(flank, np.array(distance * sin(angle)), np.array(distance * cos(angle)))
+def _unit_force(flank: Flank, point: Point) -> tuple[float, float, float]:
+    """Normal out of a flank at a point: radial, tangential (positive) and axial part."""
+    normal = outward_normal(flank, np.array(point[0]), np.array(point[1]))
     return float(normal[0]), abs(float(normal[1])), float(normal[2])

@@ -9,7 +9,7 @@ from loaded_tca.scene.model import FAMILIES, types_of
 from loaded_tca.scene.section import Section, Subsection, entries
 from loaded_tca.scene.text import literal
 
-SAME_AS = {"wheel": "pinion", "pinion.material": "material"}
+SAME_AS = {"wheel": "pinion", "pinion.material": "material", "pinion.cutter.convex": "pinion.cutter.concave"}
 """Sections described once, under another name."""
 
 

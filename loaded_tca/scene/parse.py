@@ -73,7 +73,7 @@ def parse_scene(text: str, source: str = "scene", folder: str | os.PathLike[str]
     >>> parse_scene("[pair]\nmodul = 3")  # doctest: +ELLIPSIS
     Traceback (most recent call last):
     ...
-    loaded_tca.errors.InputError: pair.type: missing; allowed "cylindrical" or "straight_bevel" or "spiral_bevel"
+    loaded_tca.errors.InputError: pair.type: missing; allowed "cylindrical" or "straight_bevel" or ... or "face_milled"
     pair.modul: unknown key; did you mean "pair.normal_module_mm"?
     ...
     """

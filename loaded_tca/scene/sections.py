@@ -145,7 +145,7 @@ class Analysis(Section):
     )
     tolerance: float = key(Number(1e-14, 0.1), "relative tolerance of the contact solver", 1e-6)
     load_sharing: bool = key(
-        Choice((False,), later=(True,)),
+        Choice((False, True)),
         "whether several tooth pairs share the torque; false: one carries all",
         False,
     )

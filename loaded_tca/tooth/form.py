@@ -13,8 +13,17 @@ from functools import singledispatch
 import numpy as np
 
 from loaded_tca.errors import InputError
+from loaded_tca.flanks.generated import GeneratedFlank, tooth_angle
 from loaded_tca.flanks.jet import Array
-from loaded_tca.gears import BevelGear, BevelMesh, CylindricalGear, CylindricalMesh
+from loaded_tca.gears import (
+    BevelGear,
+    BevelMesh,
+    CylindricalGear,
+    CylindricalMesh,
+    FaceMilledGear,
+    FaceMilledMesh,
+)
+from loaded_tca.gears.cutter import BLADE_SIGNS
 from loaded_tca.tooth.fillet import ArcFillet, Fillet, RackFillet
 from loaded_tca.tooth.sections import ApexSpheres, Sections, TransversePlanes
 
@@ -95,11 +104,13 @@ def tooth_forms(
 
     Parameters
     ----------
-    mesh : CylindricalMesh or BevelMesh
-        Macro geometry; cylindrical gears get the fillet that their basic rack cuts, bevel gears an arc.
+    mesh : CylindricalMesh, BevelMesh or FaceMilledMesh
+        Macro geometry; cylindrical gears get the fillet that their basic rack cuts, bevel gears an arc. The root of
+        face-milled gears is the root cone of their blanks.
     fillet_radius : float [mm], optional
-        Radius of arcs, at the mean section; default: for cylindrical gears the fillet of the rack, for bevel gears
-        0.38 mean normal modules, or the largest that fits.
+        Radius of arcs, at the mean section; default: for cylindrical gears the fillet of the rack; for face-milled
+        gears the larger edge radius of their blades, the same from toe to heel; for other bevel gears, and blades
+        without an edge radius, 0.38 mean normal modules. An arc that does not fit is made as large as does.
 
     Raises
     ------
@@ -135,3 +146,25 @@ def _of_bevel_gears(mesh: BevelMesh, *, fillet_radius: float | None = None) -> t
         return ToothForm(gear.teeth, gear.half_thickness_angle, ApexSpheres(), root, fillet, fillet_radius is None)
 
     return form(mesh.pinion), form(mesh.wheel)
+
+
+@tooth_forms.register
+def _of_face_milled_gears(mesh: FaceMilledMesh, *, fillet_radius: float | None = None) -> tuple[ToothForm, ToothForm]:
+    def form(gear: FaceMilledGear) -> ToothForm:
+        distance, delta = gear.blank.mean_cone_distance, gear.blank.pitch_angle
+        rho, z = np.array([distance * math.sin(delta)]), np.array([distance * math.cos(delta)])
+        half = 0.5 * float(tooth_angle(gear, rho, z)[0])
+        fillet = ArcFillet(_edge_radius(gear, float(rho[0])) if fillet_radius is None else fillet_radius)
+        root = RootCone(gear.blank.root_angle, -gear.blank.root_apex)
+        return ToothForm(gear.teeth, half, ApexSpheres(), root, fillet, fillet_radius is None)
+
+    return form(mesh.pinion), form(mesh.wheel)
+
+
+def _edge_radius(gear: FaceMilledGear, pitch_radius: float) -> float:
+    """Larger edge radius of the blades, or that of a basic rack of the mean normal module [mm]."""
+    edge = max(gear.cutter.blade(flank).edge_radius for flank in BLADE_SIGNS)
+    if edge > 0.0:
+        return edge
+    spiral = GeneratedFlank(gear, "concave").angles.spiral
+    return FILLET_RADIUS_COEFFICIENT * 2.0 * pitch_radius * math.cos(spiral) / gear.teeth

@@ -21,14 +21,15 @@ def test_reference_of_the_keys_is_up_to_date():
 
 
 def test_shortest_scenes_are_scenes():
-    cylindrical, bevel = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    cylindrical, bevel, face_milled = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
     assert parse_scene(cylindrical).pinion_hand == "right"
     assert parse_scene(bevel).contact_sides == ("concave", "convex")
+    assert parse_scene(face_milled).pair().teeth == (19, 62)
 
 
 def test_messages_shown_are_those_that_come():
     (shown,) = re.findall(r"```text\n(.*?)```", PAGE, re.DOTALL)
-    text, _ = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    text, *_ = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
     wrong = text.replace("normal_module_mm", "modul").replace("teeth = 34", "teeth = -34")
     with pytest.raises(InputError) as raised:
         parse_scene(wrong + "[wheel.modifications]\ntip_relief_um = 20.0")

@@ -41,7 +41,9 @@ values = st.recursive(
     | st.integers(min_value=10**300, max_value=10**320)
     | st.floats()
     | st.text(max_size=20)
-    | st.sampled_from(["cylindrical", "straight_bevel", "spiral_bevel", "pinion", "concave", "linear", "contact"])
+    | st.sampled_from(
+        ["cylindrical", "straight_bevel", "spiral_bevel", "face_milled", "pinion", "concave", "linear", "contact"]
+    )
     | st.dates()
     | st.datetimes()
     | st.times(),

@@ -1,0 +1,231 @@
+"""Scenes of face-milled spiral bevel gears: their sections, and the gears and pairs that follow from them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import degrees, isclose, radians, sin
+from typing import ClassVar
+
+from loaded_tca.bevel_pair import BevelMounting
+from loaded_tca.errors import InputError
+from loaded_tca.face_milled_pair import face_milled_pair
+from loaded_tca.gears import cutter
+from loaded_tca.gears.bevel import pitch_angles
+from loaded_tca.gears.face_milled import FaceMilledGear
+from loaded_tca.gears.face_milled_mesh import FaceMilledMesh
+from loaded_tca.gears.machine_settings import FaceMilledBlank, MachineSettings
+from loaded_tca.pair import GearPair, Sense
+from loaded_tca.scene import bevel_rows, face_milled_rows
+from loaded_tca.scene.build import build_materials, build_modifications, in_base_units
+from loaded_tca.scene.face_milled_keys import Blade, Blank, Cutter, FaceMilled, Geometry, Machine
+from loaded_tca.scene.model import Row, Scene, family
+from loaded_tca.scene.section import Rule, subsection
+from loaded_tca.scene.spiral import AXES_THAT_MEET, MountingErrors, Side, names_of, sense_for, sides_in_contact
+
+__all__ = ["Blade", "Blank", "Cutter", "FaceMilled", "FaceMilledScene", "Geometry", "Machine", "MountingErrors"]
+
+ROUNDED_deg = 0.01
+"""By how much a pitch angle may miss the one of teeth and shaft angle: half a minute of arc, as summaries round it."""
+SAME_SPHERES = 1e-6
+"""Relative difference of two lengths that are meant to be the same."""
+
+
+def _opposite_hands(wheel: str, pinion: str) -> str | None:
+    if wheel != pinion:
+        return None
+    other = "left" if wheel == "right" else "right"
+    return f'found "{wheel}" on both gears; allowed "{other}", the hand that the pinion does not have'
+
+
+def _same_spheres(name: str) -> Rule:
+    """Rule: both gears begin or end on the same spheres about the apex."""
+
+    def complain(wheel: float, pinion: float) -> str | None:
+        if isclose(wheel, pinion, rel_tol=SAME_SPHERES):
+            return None
+        return f"found {wheel:g}; allowed pinion.blank.{name} = {pinion:g}: both gears end on the same spheres"
+
+    return Rule((f"wheel.blank.{name}", f"pinion.blank.{name}"), complain)
+
+
+def _pitch_cone(member: int, name: str) -> Rule:
+    """Rule: a pitch angle is the one at which the pitch cones roll on each other."""
+
+    def complain(angle: float, pinion_teeth: int, wheel_teeth: int, shaft_angle: float) -> str | None:
+        rolls = degrees(pitch_angles((pinion_teeth, wheel_teeth), radians(shaft_angle))[member])
+        if abs(angle - rolls) <= ROUNDED_deg:
+            return None
+        return (
+            f"found {angle:g}; with {pinion_teeth}/{wheel_teeth} teeth and pair.shaft_angle_deg = {shaft_angle:g} the "
+            f"pitch cones roll on each other at {rolls:.6f}, allowed within {ROUNDED_deg:g} of it"
+        )
+
+    return Rule((f"{name}.blank.pitch_angle_deg", "pinion.teeth", "wheel.teeth", "pair.shaft_angle_deg"), complain)
+
+
+@family
+@dataclass(frozen=True, kw_only=True)
+class FaceMilledScene(Scene):
+    """A scene of two spiral bevel gears whose flanks are cut after machine settings.
+
+    Attributes
+    ----------
+    geometry : face_milled.Geometry
+        Section [pair]: what both gears have in common.
+    pinion, wheel : face_milled.FaceMilled
+        Blank, machine settings and cutter of each gear.
+    mounting : face_milled.MountingErrors
+    title, material, load, analysis
+        As for every ``Scene``.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from loaded_tca.scene import read_scene
+    >>> scene = read_scene("examples/scenes/face_milled_19x62_matched.toml")
+    >>> scene.pair()
+    GearPair(19/62, module 2.93694 mm, face 36.83 mm)
+    >>> scene.contact_sides, scene.sense
+    (('concave', 'convex'), 'negative')
+    """
+
+    geometry: Geometry = subsection(Geometry, "what both gears have in common", name="pair")
+    pinion: FaceMilled = subsection(FaceMilled, "the gear that turns about +z")
+    wheel: FaceMilled = subsection(FaceMilled, "its mate")
+    mounting: MountingErrors = subsection(MountingErrors, "mounting errors")
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        *Scene.rules,
+        Rule(("wheel.blank.hand", "pinion.blank.hand"), _opposite_hands),
+        _same_spheres("outer_cone_distance_mm"),
+        _same_spheres("face_width_mm"),
+        _pitch_cone(0, "pinion"),
+        _pitch_cone(1, "wheel"),
+        AXES_THAT_MEET,
+    )
+
+    @property
+    def hands(self) -> tuple[str, str]:
+        """Hands of pinion and wheel."""
+        return self.pinion.blank.hand, self.wheel.blank.hand
+
+    @property
+    def _hand_sign(self) -> int:
+        return 1 if self.pinion.blank.hand == "right" else -1
+
+    @property
+    def sense(self) -> Sense:
+        """Sense of rotation, as given, or such that the pinion touches with the flank asked for."""
+        wanted = self.geometry
+        return wanted.sense or sense_for(wanted.pinion_flank or "concave", self._hand_sign, wanted.driving)
+
+    @property
+    def contact_sides(self) -> tuple[Side, Side]:
+        """Sides in contact of pinion and wheel: "concave" or "convex"."""
+        return self._sides(self.sense)
+
+    def _sides(self, sense: Sense) -> tuple[Side, Side]:
+        return sides_in_contact(sense, self._hand_sign, self.geometry.driving)
+
+    @property
+    def flank_names(self) -> tuple[str, str]:
+        """Gear and side in contact."""
+        return names_of(self.contact_sides)
+
+    def mesh(self) -> FaceMilledMesh:
+        """Return blanks, machine settings and cutters of both gears."""
+        pinion, wheel = (self._gear(member) for member in (0, 1))
+        return FaceMilledMesh(pinion, wheel, radians(self.geometry.shaft_angle_deg))
+
+    def _gear(self, member: int) -> FaceMilledGear:
+        own, name = (self.pinion, self.wheel)[member], ("pinion", "wheel")[member]
+        teeth = (self.pinion.teeth, self.wheel.teeth)
+        pitch = pitch_angles(teeth, radians(self.geometry.shaft_angle_deg))[member]
+        blank = _blank(own.blank, pitch)
+        _require_bore(name, own.bore_diameter_mm, blank)
+        return FaceMilledGear(own.teeth, blank, _cutter(own.cutter), _machine(own), name=name)
+
+    def analytic_pair(self, sense: Sense) -> GearPair:
+        """Return the two generated flanks in space."""
+        sides, mesh = self._sides(sense), self.mesh()
+        _require_blades(mesh, sides)
+        return face_milled_pair(
+            mesh.pinion,
+            mesh.wheel,
+            pinion_flank=sides[0],
+            driving=self.geometry.driving,
+            shaft_angle=mesh.shaft_angle,
+            modifications=build_modifications(self.pinion, self.wheel),
+            mounting=BevelMounting(**in_base_units(self.mounting)),
+            materials=build_materials(self.materials),
+        )
+
+    def active_starts(self) -> tuple[float, float]:
+        """Return the form lines of pinion and wheel, from which their profiles are counted."""
+        return 0.0, 0.0
+
+    def geometry_rows(self) -> Sequence[Row]:
+        """Return cones, angles of the flanks in contact, machine settings and cutters."""
+        mesh = self.mesh()
+        _require_blades(mesh, self.contact_sides)
+        return face_milled_rows.geometry_rows(mesh, self.contact_sides)
+
+    def force_rows(self, torques: Sequence[float]) -> Sequence[Row]:
+        """Return the forces under pinion torques [N mm]."""
+        mesh = self.mesh()
+        flanks, points = face_milled_rows.flanks_and_points(mesh, self.contact_sides)
+        return bevel_rows.force_rows(flanks, points, torques)
+
+    def notes(self) -> Sequence[str]:
+        """Return what is wrong with the tooth thicknesses, which the analysis does not need."""
+        flanks, _ = face_milled_rows.flanks_and_points(self.mesh(), self.contact_sides)
+        backlash = face_milled_rows.mean_backlash(flanks)
+        if backlash is None or backlash >= 0.0:
+            return ()
+        return (
+            f"at mid-face the teeth are {-backlash:.3f} mm thicker than the spaces, so that whole gears would jam; "
+            "backlash does not enter the analysis",
+        )
+
+
+def _blank(own: Blank, pitch_angle: float) -> FaceMilledBlank:
+    """The blank with its exact pitch angle, which rounded root and face angles of uniform teeth may not pass."""
+    values = in_base_units(own)
+    values["root_angle"] = min(values["root_angle"], pitch_angle)
+    values["face_angle"] = max(values["face_angle"], pitch_angle)
+    return FaceMilledBlank(**{**values, "pitch_angle": pitch_angle})
+
+
+def _machine(own: FaceMilled) -> MachineSettings:
+    values = in_base_units(own.machine)
+    values["helical_motion"] = values.pop("helical_motion_mm_per_rad")
+    return MachineSettings(**{"root_angle": radians(own.blank.root_angle_deg), **values})
+
+
+def _cutter(own: Cutter) -> cutter.Cutter:
+    return cutter.Cutter(concave=_blade(own.concave), convex=_blade(own.convex), number=own.number)
+
+
+def _blade(own: Blade | None) -> cutter.Blade | None:
+    return None if own is None else cutter.Blade(**in_base_units(own))
+
+
+def _require_blades(mesh: FaceMilledMesh, sides: tuple[Side, Side]) -> None:
+    """Refuse a pair whose cutters do not cut the flanks that are asked for."""
+    missing = [
+        f"{gear.name}.cutter.{side}: missing; it cuts the {side} flank of the {gear.name}, which is asked for"
+        for gear, side in zip(mesh.gears, sides, strict=True)
+        if getattr(gear.cutter, side) is None
+    ]
+    if missing:
+        raise InputError(missing)
+
+
+def _require_bore(name: str, bore: float | None, blank: FaceMilledBlank) -> None:
+    """Refuse a bore that reaches the root at the toe."""
+    largest = 2.0 * blank.cone_distances[0] * sin(blank.root_angle)
+    if bore is not None and bore >= largest:
+        raise InputError(
+            f"{name}.bore_diameter_mm: found {bore:g}; allowed below the root diameter at the toe, {largest:.6g}"
+        )

@@ -1,0 +1,160 @@
+"""What there is to tell of two face-milled gears before any contact is computed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import cos, degrees, pi, sin
+
+import numpy as np
+
+from loaded_tca.flanks.generated import GeneratedFlank, tooth_angle
+from loaded_tca.gears.face_milled import FaceMilledGear
+from loaded_tca.gears.face_milled_mesh import FaceMilledMesh
+from loaded_tca.scene.bevel_rows import Point, pitch_point
+from loaded_tca.scene.model import Row
+from loaded_tca.scene.spiral import Side
+
+Sides = tuple[Side, Side]
+ONE_FLANK = "one flank"
+"""In place of what both flanks of a tooth tell together, where the cutter has one blade."""
+
+
+def flanks_and_points(
+    mesh: FaceMilledMesh, sides: Sides
+) -> tuple[tuple[GeneratedFlank, GeneratedFlank], tuple[Point, Point]]:
+    """Flanks in contact of pinion and wheel, without modifications, and their mean pitch points (rho, z) [mm]."""
+    pinion, wheel = (GeneratedFlank(gear, side) for gear, side in zip(mesh.gears, sides, strict=True))
+    first, second = (pitch_point(gear.blank.mean_cone_distance, gear.blank.pitch_angle) for gear in mesh.gears)
+    return (pinion, wheel), (first, second)
+
+
+def geometry_rows(mesh: FaceMilledMesh, sides: Sides) -> list[Row]:
+    """Lines on the pair, then on blanks, flanks, machine settings and blades of both gears."""
+    flanks, points = flanks_and_points(mesh, sides)
+    return [
+        *_pair_rows(mesh, flanks),
+        ("", "pinion", "wheel"),
+        ("teeth z", *(str(gear.teeth) for gear in mesh.gears)),
+        ("hand of the spiral", *(gear.blank.hand for gear in mesh.gears)),
+        ("flank in contact", *sides),
+        *_blank_rows(mesh, points),
+        *_flank_rows(mesh, flanks),
+        *_machine_rows(mesh),
+        *_blade_rows(mesh, sides),
+    ]
+
+
+def _pair_rows(mesh: FaceMilledMesh, flanks: tuple[GeneratedFlank, GeneratedFlank]) -> list[Row]:
+    blank, (pinion, wheel) = mesh.pinion.blank, (flank.angles for flank in flanks)
+    toe, heel = blank.cone_distances
+    misses = (abs(pinion.spiral) - abs(wheel.spiral), pinion.pressure - wheel.pressure)
+    return [
+        ("shaft angle Sigma [deg]", _deg(mesh.shaft_angle)),
+        ("cone distances R_e, R_m, R_i [mm]", *(f"{part:.4f}" for part in (heel, blank.mean_cone_distance, toe))),
+        ("face width b [mm]", f"{blank.face_width:.4f}"),
+        ("pinion less wheel: spiral, pressure [deg]", *(_deg(miss) for miss in misses)),
+    ]
+
+
+def _blank_rows(mesh: FaceMilledMesh, points: tuple[Point, Point]) -> list[Row]:
+    def both(value: Callable[[FaceMilledGear], float]) -> tuple[str, ...]:
+        return tuple(f"{value(gear):.4f}" for gear in mesh.gears)
+
+    return [
+        ("pitch angle delta [deg]", *both(lambda gear: degrees(gear.blank.pitch_angle))),
+        ("face angle delta_a [deg]", *both(lambda gear: degrees(gear.blank.face_angle))),
+        ("root angle delta_f [deg]", *both(lambda gear: degrees(gear.blank.root_angle))),
+        ("apex of the face cone beyond [mm]", *both(lambda gear: gear.blank.face_apex)),
+        ("apex of the root cone beyond [mm]", *both(lambda gear: gear.blank.root_apex)),
+        ("outer pitch diameter d_e [mm]", *both(_outer_diameter)),
+        ("outer transverse module m_et [mm]", *both(lambda gear: _outer_diameter(gear) / gear.teeth)),
+        ("mean point, radius rho [mm]", *(f"{rho:.4f}" for rho, _ in points)),
+        ("mean point, from the apex z [mm]", *(f"{z:.4f}" for _, z in points)),
+    ]
+
+
+def _outer_diameter(gear: FaceMilledGear) -> float:
+    return 2.0 * gear.blank.outer_cone_distance * sin(gear.blank.pitch_angle)
+
+
+def _flank_rows(mesh: FaceMilledMesh, flanks: tuple[GeneratedFlank, GeneratedFlank]) -> list[Row]:
+    """What the settings make of the flanks in contact, at their mean points."""
+    distance = mesh.pinion.blank.mean_cone_distance
+    heights = [
+        tuple(distance * (angle - flank.gear.blank.pitch_angle) for angle in flank.mean_cone_angles) for flank in flanks
+    ]
+    return [
+        ("mean spiral angle beta_m [deg]", *(_deg(abs(flank.angles.spiral)) for flank in flanks)),
+        ("normal pressure angle alpha_n [deg]", *(_deg(flank.angles.pressure) for flank in flanks)),
+        ("mean addendum [mm]", *(f"{tip:.4f}" for tip, _ in heights)),
+        ("flank below the pitch cone, mid-face [mm]", *(f"{-foot:.4f}" for _, foot in heights)),
+        ("mean normal tooth thickness s_mn [mm]", *(_shown(_thickness(flank)) for flank in flanks)),
+        ("mean normal backlash [mm]", _shown(mean_backlash(flanks))),
+    ]
+
+
+def mean_backlash(flanks: tuple[GeneratedFlank, GeneratedFlank]) -> float | None:
+    """Normal pitch less both tooth thicknesses on the pitch cones at mid-face [mm]; None: a flank is not cut."""
+    thicknesses = [_thickness(flank) for flank in flanks]
+    pitches = [_normal_arc(flank, 2.0 * pi / flank.gear.teeth) for flank in flanks]
+    if thicknesses[0] is None or thicknesses[1] is None:
+        return None
+    return 0.5 * (pitches[0] + pitches[1]) - thicknesses[0] - thicknesses[1]
+
+
+def _thickness(flank: GeneratedFlank) -> float | None:
+    """Thickness across the teeth on the pitch cone at mid-face [mm]; None: only one flank is cut."""
+    gear = flank.gear
+    if gear.cutter.concave is None or gear.cutter.convex is None:
+        return None
+    rho, z = (np.array([part]) for part in pitch_point(gear.blank.mean_cone_distance, gear.blank.pitch_angle))
+    return _normal_arc(flank, float(tooth_angle(gear, rho, z)[0]))
+
+
+def _normal_arc(flank: GeneratedFlank, angle: float) -> float:
+    """Length across the teeth of an angle at the mean point [mm]."""
+    blank = flank.gear.blank
+    return blank.mean_cone_distance * sin(blank.pitch_angle) * angle * cos(flank.angles.spiral)
+
+
+def _shown(length: float | None) -> str:
+    return ONE_FLANK if length is None else f"{length:.4f}"
+
+
+def _machine_rows(mesh: FaceMilledMesh) -> list[Row]:
+    first, second = (gear.machine for gear in mesh.gears)
+    settings = (
+        ("radial setting S_r [mm]", first.radial, second.radial),
+        ("cradle angle q [deg]", degrees(first.cradle_angle), degrees(second.cradle_angle)),
+        ("machine root angle gamma_m [deg]", degrees(first.root_angle), degrees(second.root_angle)),
+        ("machine centre to back [mm]", first.machine_centre_to_back, second.machine_centre_to_back),
+        ("sliding base [mm]", first.sliding_base, second.sliding_base),
+        ("blank offset [mm]", first.blank_offset, second.blank_offset),
+        ("cutter tilt i [deg]", degrees(first.tilt), degrees(second.tilt)),
+        ("swivel j [deg]", degrees(first.swivel), degrees(second.swivel)),
+        ("ratio of roll m", first.ratio_of_roll, second.ratio_of_roll),
+        ("modified roll 2C", first.modified_roll_2c, second.modified_roll_2c),
+        ("modified roll 6D", first.modified_roll_6d, second.modified_roll_6d),
+        ("helical motion [mm/rad]", first.helical_motion, second.helical_motion),
+    )
+    shown = [(label, *(f"{value:.6f}" for value in values)) for label, *values in settings if any(values)]
+    return [("generation", first.generation, second.generation), *shown]
+
+
+def _blade_rows(mesh: FaceMilledMesh, sides: Sides) -> list[Row]:
+    """Blades that cut the flanks in contact; their angle as the cutter number corrects it."""
+    blades = [gear.cutter.blade(side) for gear, side in zip(mesh.gears, sides, strict=True)]
+    return [
+        ("cutter number", *(f"{gear.cutter.number:g}" for gear in mesh.gears)),
+        ("point radius r_p [mm]", *(f"{blade.point_radius:.6f}" for blade in blades)),
+        ("blade angle [deg]", *(_deg(blade.blade_angle) for blade in blades)),
+        (
+            "radius of a hollow blade [mm]",
+            *("straight" if blade.blade_radius is None else f"{blade.blade_radius:g}" for blade in blades),
+        ),
+        ("edge radius [mm]", *(f"{blade.edge_radius:.4f}" for blade in blades)),
+    ]
+
+
+def _deg(angle: float) -> str:
+    return f"{round(degrees(angle), 4) + 0.0:.4f}"  # no minus before a zero
