@@ -4,33 +4,37 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable
 from importlib.metadata import version
 
 import numpy as np
 
+from loaded_tca.carried_load import Carried, Contacts, MakeCompliance, Progress, carried_by_all, carried_by_one
 from loaded_tca.errors import AccuracyWarning
 from loaded_tca.flanks.jet import Array
-from loaded_tca.loaded_contact import GridChoice, LoadedContact, press
-from loaded_tca.mesh_cycle import MeshCycle, PressureMap
+from loaded_tca.load_sharing import RigidTeeth, TeethYield
+from loaded_tca.loaded_contact import GridChoice, LoadedContact
+from loaded_tca.mesh_cycle import MeshCycle
 from loaded_tca.pair import GearPair
+from loaded_tca.pair_contacts import NUMBERS, PairContacts, PressureMap
 from loaded_tca.scene import Scene
-from loaded_tca.unloaded import ContactPath, ContactPoint, heelwards, trace_contact
+from loaded_tca.tooth import tooth_forms
+from loaded_tca.tooth_compliance import tooth_compliance
+from loaded_tca.unloaded import heelwards
 
-Progress = Callable[[int, int], None]
-
+BORE = "bore_diameter_mm"
+"""Key of a gear that each family of scenes has of its own."""
 THICKEST_CONTACT = 0.25
 """Half width of a contact, over the module, above which a tooth is no half-space: it is 1.6 modules thick."""
 
 
 def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
-    """Analyse a scene: one tooth pair carries the whole load at every position of a pitch.
+    """Analyse a scene: at every position of a pitch one tooth pair carries the load, or all that touch share it.
 
     Parameters
     ----------
     scene : Scene
     progress : callable, optional
-        Called as ``progress(done, total)`` after every pressure map.
+        Called as ``progress(done, total)`` after every torque and position.
 
     Returns
     -------
@@ -41,7 +45,7 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
     InputError, GeometryError
         If the scene's parts do not fit each other, or the flanks never touch.
     ConvergenceError
-        If a contact is not solved to the tolerance.
+        If a contact, or the balance of the tooth pairs, is not solved to the tolerance.
 
     Warns
     -----
@@ -49,12 +53,12 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
         If the contact reaches a border of a flank, or the model is at another limit.
     """
     pair = scene.pair()
-    path = trace_contact(pair, _positions(pair, scene.analysis.positions))
-    torques = np.asarray(scene.torques)
-    grid = _grid_choice(scene)
-    contacts = _load_all(pair, path, torques, grid, progress)
-    _warn_of_doubts(pair, grid, contacts)
-    return _mesh_cycle(scene, pair, path, torques, contacts)
+    angles = _positions(pair, scene.analysis.positions)
+    torques, grid = np.asarray(scene.torques), _grid_choice(scene)
+    carry = carried_by_all if scene.analysis.load_sharing else carried_by_one
+    carried = carry(pair, angles, torques, grid, _compliance(scene, pair), progress)
+    _warn_of_doubts(pair, grid, carried.contacts)
+    return _mesh_cycle(scene, pair, carried)
 
 
 def _positions(pair: GearPair, count: int) -> Array:
@@ -68,34 +72,29 @@ def _grid_choice(scene: Scene) -> GridChoice:
     return GridChoice(accuracy=wanted.accuracy, tolerance=wanted.tolerance)
 
 
-Contacts = list[list[LoadedContact | None]]
+def _compliance(scene: Scene, pair: GearPair) -> MakeCompliance:
+    """What yields beside the contacts, once it is known how far apart the loaded teeth of a position may be."""
+    if scene.analysis.compliance == "contact":
+        return lambda _: RigidTeeth()
 
+    def make(neighbours: int) -> TeethYield:
+        backs = scene.pair("negative" if pair.sense > 0 else "positive")
+        bores = getattr(scene.pinion, BORE), getattr(scene.wheel, BORE)
+        forms = tooth_forms(scene.mesh())
+        return tooth_compliance(forms, pair, backs, bore_diameters=bores, neighbours=neighbours)
 
-def _load_all(
-    pair: GearPair, path: ContactPath, torques: Array, grid: GridChoice, progress: Progress | None
-) -> Contacts:
-    """Pressure maps of every torque and position; None where the tooth pair does not touch."""
-    done, contacts = 0, []
-    for torque in torques:
-        row: list[LoadedContact | None] = []
-        for position in range(len(path)):
-            contact = path[position]
-            row.append(press(pair, contact, torque / contact.pinion_lever, grid) if contact.touches else None)
-            done += 1
-            if progress is not None:
-                progress(done, len(torques) * len(path))
-        contacts.append(row)
-    return contacts
+    return make
 
 
 def _warn_of_doubts(pair: GearPair, grid: GridChoice, contacts: Contacts) -> None:
     """One AccuracyWarning for each reason to doubt, with the number of maps it concerns."""
-    solved = [loaded for row in contacts for loaded in row if loaded is not None]
+    solved = [loaded for rows in contacts for row in rows for loaded in row if loaded is not None]
     reasons: dict[str, int] = {}
     for loaded in solved:
         for reason in _doubts(pair, grid, loaded):
             reasons[reason] = reasons.get(reason, 0) + 1
-    what = "positions" if len(contacts) == 1 else "pressure maps"
+    alone = len(contacts) == 1 and all(len(row) == 1 for row in contacts[0])
+    what = "positions" if alone else "pressure maps"
     for reason, count in reasons.items():
         warnings.warn(f"{reason} (at {count} of {len(solved)} {what})", AccuracyWarning, stacklevel=3)
 
@@ -121,30 +120,53 @@ def _doubts(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[str
     return found
 
 
-def _mesh_cycle(scene: Scene, pair: GearPair, path: ContactPath, torques: Array, contacts: Contacts) -> MeshCycle:
-    numbers = [[_numbers(pair, loaded) for loaded in row] for row in contacts]
-    names = next(entry for row in numbers for entry in row if entry)
+def _mesh_cycle(scene: Scene, pair: GearPair, carried: Carried) -> MeshCycle:
+    contacts = _pair_contacts(pair, carried)
+    path, highest = carried.path, contacts.highest
 
-    def table(name: str) -> Array:
-        missing = type(names[name])() if not isinstance(names[name], float) else math.nan
-        values = np.array([[entry.get(name, missing) for entry in row] for row in numbers])
-        return values if len(torques) > 1 else values[0]
+    def squeeze(values: Array) -> Array:
+        return values if len(carried.torque) > 1 else values[0]
 
-    shares = np.where(path.touches, 1.0, math.nan)[:, None]
+    lengths = 1e3 * pair.base_radii[0] * pair.base_radii[1] * pair.face_width
+    with np.errstate(divide="ignore", invalid="ignore"):
+        secant = np.where(carried.rotation > 0.0, carried.torque[:, None] / carried.rotation, math.nan)
     return MeshCycle(
         title=scene.title,
         scene_toml=scene.to_toml(),
         version=version("loaded_tca"),
         path=path,
-        torque=torques,
-        pairs=np.zeros(1, dtype=int),
-        load_share=np.broadcast_to(shares, (len(torques), *shares.shape)).copy() if len(torques) > 1 else shares,
-        maps=tuple(tuple(_pressure_map(loaded) for loaded in row) for row in contacts),
+        torque=carried.torque,
+        pairs=carried.pairs,
+        load_share=squeeze(np.array(carried.share)),
+        maps=tuple(
+            tuple(row[column] for row, column in zip(rows, columns, strict=True))
+            for rows, columns in zip(contacts.maps, highest.tolist(), strict=True)
+        ),
         wheel_base_radius=pair.base_radii[1],
         face_width=pair.face_width,
         max_pressure=math.nan if pair.max_pressure is None else pair.max_pressure,
-        **{name: table(name) for name in names},
+        transmission_error=squeeze(path.transmission_error - pair.driving * carried.rotation),
+        mesh_stiffness=squeeze(carried.torque_rate / lengths),
+        secant_stiffness=squeeze(secant / lengths),
+        pair_contacts=contacts if scene.analysis.load_sharing else None,
+        **{name: squeeze(contacts.at_highest(getattr(contacts, name))) for name in NUMBERS},
     )
+
+
+def _pair_contacts(pair: GearPair, carried: Carried) -> PairContacts:
+    numbers = [[[_numbers(pair, loaded) for loaded in row] for row in rows] for rows in carried.contacts]
+    names = next(entry for rows in numbers for row in rows for entry in row if entry)
+
+    def table(name: str) -> Array:
+        missing = type(names[name])() if not isinstance(names[name], float) else math.nan
+        return np.array([[[entry.get(name, missing) for entry in row] for row in rows] for rows in numbers])
+
+    tables = {name: table(name) for name in names}
+    apart = np.isnan(tables["approach"])
+    tables["deflection"] = np.where(apart, math.nan, carried.deflection)
+    tables["normal_force"] = np.where(apart & ~np.isnan(carried.share), 0.0, tables["normal_force"])
+    maps = tuple(tuple(tuple(_pressure_map(one) for one in row) for row in rows) for rows in carried.contacts)
+    return PairContacts(**tables, pairs=carried.pairs, paths=carried.paths, maps=maps)
 
 
 def _pressure_map(loaded: LoadedContact | None) -> PressureMap | None:
@@ -155,14 +177,14 @@ def _pressure_map(loaded: LoadedContact | None) -> PressureMap | None:
 
 
 def _numbers(pair: GearPair, loaded: LoadedContact | None) -> dict[str, float | bool | int]:
-    """The numbers of one pressure map, by the names of the fields of MeshCycle."""
+    """The numbers of one pressure map, by the names of the fields of ContactNumbers."""
     if loaded is None:
         return {}
-    contact, solution, hertz = loaded.contact, loaded.solution, loaded.hertz
+    solution, hertz = loaded.solution, loaded.hertz
     width, length = loaded.extent
     peak_radius, peak_axial = loaded.peak_place
+    longest = _longest(pair, loaded)
     return {
-        "transmission_error": loaded_transmission_error(pair, contact, solution.approach),
         "normal_force": solution.load,
         "peak_pressure": loaded.peak_pressure,
         "central_pressure": loaded.central_pressure,
@@ -172,9 +194,10 @@ def _numbers(pair: GearPair, loaded: LoadedContact | None) -> dict[str, float | 
         "hertz_semi_minor": hertz.semi_minor if hertz else math.nan,
         "hertz_semi_major": hertz.semi_major if hertz else math.nan,
         "contact_width": width,
-        "contact_length": min(length, _longest(pair, loaded)),
+        "contact_length": min(length, longest),
+        "line_load": loaded.line_load,
+        "face_load_factor": loaded.line_load * longest / solution.load if solution.load > 0.0 else math.nan,
         "approach": solution.approach,
-        "mesh_stiffness": _mesh_stiffness(pair, contact, loaded.stiffness),
         "on_edge": loaded.at_border,
         "at_crease": loaded.at_crease,
         "cells_across": solution.pressure.shape[0],
@@ -188,14 +211,3 @@ def _longest(pair: GearPair, loaded: LoadedContact) -> float:
     """Length over which the face reaches in the direction of the contact [mm]."""
     slope = abs(float(loaded.separation.axes[1] @ heelwards(pair, loaded.contact)))
     return pair.face_width / slope if slope > 0.0 else math.inf
-
-
-def loaded_transmission_error(pair: GearPair, contact: ContactPoint, approach: float) -> float:
-    """Unloaded transmission error less the approach over its lever [rad]; more where the wheel drives."""
-    return contact.transmission_error - pair.driving * approach / contact.wheel_lever
-
-
-def _mesh_stiffness(pair: GearPair, contact: ContactPoint, stiffness: float) -> float:
-    """d(F_bt/b)/d(r_b2 TE) [N/(mm um)] from dF/d approach [N/mm]."""
-    levers = contact.pinion_lever / pair.base_radii[0] * contact.wheel_lever / pair.base_radii[1]
-    return 1e-3 * levers * stiffness / pair.face_width

@@ -39,6 +39,13 @@ FILES = """files in DIR:
   pressure_map.png          at the position of the peak pressure, under the largest torque
   pressure_map_border.png   only if a peak lies at a border or crease, at another position
   pressure_map_hertz.png    only if Hertz holds, but not where the peak pressure is
+and where tooth pairs share the load
+  load_share.png            of each tooth pair, under the largest torque
+  harmonics.png             orders of the tooth mesh in the transmission error, all torques
+  mesh_stiffness.png        over the positions, all torques
+  line_load.png             over the positions, all torques
+  pressure_envelope.png     the highest pressure on the flanks, under the largest torque
+  path_pressure.png         from the begin to the end of contact, all torques
 Pictures of these names that the result does not have are removed; docs/results.md says more."""
 TEETH = """files in DIR:
   pinion.vtk, wheel.vtk     the teeth in contact, in the fixed frame; "patch" tells flanks, fillets and lands apart
@@ -287,7 +294,7 @@ def _progress_bar() -> Iterator[Callable[[int, int], None] | None]:
         return
     from tqdm import tqdm
 
-    with tqdm(desc="pressure maps", unit="map") as bar:
+    with tqdm(desc="positions", unit="position") as bar:
 
         def show(done: int, total: int) -> None:
             bar.total = total

@@ -1,6 +1,7 @@
 """The figures of a whole mesh cycle under one torque, from its numbers per position.
 
-A ``row`` maps the names of the fields of ``MeshCycle`` to arrays (n,) over the positions.
+A ``row`` maps the names of numbers of a contact to arrays (n k,) over the n positions and, at each, its k tooth pairs;
+a ``cycle`` the names of numbers of the whole mesh to arrays (n,).
 """
 
 from __future__ import annotations
@@ -36,30 +37,76 @@ def highest_where_hertz_holds(row: Row) -> int | None:
     return _highest(np.where(np.isfinite(row["hertz_pressure"]), row["peak_pressure"], math.nan))
 
 
-def key_figures(path: ContactPath, row: Row, *, wheel_base_radius: float, max_pressure: float) -> dict[str, float]:
+def harmonic_amplitudes(error: Array, count: int) -> Array:
+    """Amplitudes of the orders 1 to ``count`` of a periodic curve.
+
+    Parameters
+    ----------
+    error : (n,) array
+        At even positions over one period, both ends included.
+    count : int
+
+    Returns
+    -------
+    (count,) array
+        NaN for orders of which the positions are too few, and for a curve with a gap.
+
+    Examples
+    --------
+    >>> harmonic_amplitudes(np.cos(np.linspace(0.0, 2.0 * np.pi, 9)), 4).round(12)
+    array([ 1.,  0.,  0., nan])
+    """
+    period = error[:-1]
+    amplitudes = np.full(count, math.nan)
+    known = min(count, (len(period) - 1) // 2)
+    if known > 0 and np.isfinite(period).all():
+        amplitudes[:known] = 2.0 / len(period) * np.abs(np.fft.rfft(period))[1 : known + 1]
+    return amplitudes
+
+
+def key_figures(
+    path: ContactPath, row: Row, cycle: Row, *, wheel_base_radius: float, max_pressure: float
+) -> dict[str, float]:
     """Return the figures by names that end in their unit; NaN: not known.
 
     Parameters
     ----------
     path : ContactPath
-        The unloaded contact of the n positions.
-    row : mapping of (n,) arrays
+        The unloaded contact of the n positions and their k pairs, n k in all.
+    row : mapping of (n k,) arrays
+    cycle : mapping of (n,) arrays
+        ``transmission_error``, ``unloaded_error``, ``mesh_stiffness``, ``secant_stiffness``, ``loaded_pairs``,
+        ``touches``; and ``harmonics`` (orders,).
     wheel_base_radius : float [mm]
         Turns the transmission error into a length.
     max_pressure : float [MPa]
         Cap on the pressure; NaN: elastic.
     """
+    length = 1e3 * wheel_base_radius
     return {
         **_peak_figures(path, row, highest_peak(row)),
         **_border_figures(path, row, highest_border_peak(row)),
         **_hertz_figures(row, highest_where_hertz_holds(row)),
-        **_error_figures("transmission_error", row["transmission_error"], wheel_base_radius),
-        **_error_figures("unloaded_error", path.transmission_error, wheel_base_radius),
-        "mesh_stiffness_mean_N_per_mm_um": _reduced(np.mean, row["mesh_stiffness"]),
+        **_error_figures("transmission_error", cycle["transmission_error"], wheel_base_radius),
+        **{
+            f"transmission_error_order_{order}_um": length * float(amplitude)
+            for order, amplitude in enumerate(cycle["harmonics"], start=1)
+        },
+        **_error_figures("unloaded_error", cycle["unloaded_error"], wheel_base_radius),
+        "mesh_stiffness_mean_N_per_mm_um": _reduced(np.mean, cycle["mesh_stiffness"]),
+        "secant_stiffness_mean_N_per_mm_um": _reduced(np.mean, cycle["secant_stiffness"]),
+        "loaded_contact_ratio": _mean_over_a_pitch(cycle["loaded_pairs"]),
+        "line_load_max_N_per_mm": _reduced(np.max, row["line_load"]),
+        "face_load_factor_at_largest_force": _at(row["face_load_factor"], _highest(row["normal_force"])),
         "max_pressure_MPa": max_pressure,
         **_solver_figures(row),
-        **_counts(path, row),
+        **_counts(path, row, cycle),
     }
+
+
+def _mean_over_a_pitch(values: Array) -> float:
+    """Mean over even positions of which the first and the last are a pitch apart."""
+    return float(0.5 * (values[:-1] + values[1:]).mean()) if len(values) > 1 else float(values.mean())
 
 
 def _highest(values: Array) -> int | None:
@@ -132,15 +179,21 @@ def _solver_figures(row: Row) -> dict[str, float]:
     }
 
 
-def _counts(path: ContactPath, row: Row) -> dict[str, float]:
+def _counts(path: ContactPath, row: Row, cycle: Row) -> dict[str, float]:
+    positions = len(cycle["touches"])
+
+    def count(flags: Array) -> int:
+        """Positions at which a pair has the flag."""
+        return int(flags.reshape(positions, -1).any(axis=1).sum())
+
     return {
-        "positions": len(path),
-        "touching_positions": int(path.touches.sum()),
-        "line_positions": int(path.on_line.sum()),
-        "edge_positions": int((row["on_edge"] > 0).sum()),
-        "crease_positions": int((row["at_crease"] > 0).sum()),
-        "border_peak_positions": int(row["peak_at_border"].sum()),
-        "capped_positions": int(row["capped"].sum()),
+        "positions": positions,
+        "touching_positions": int(cycle["touches"].sum()),
+        "line_positions": count(path.on_line & np.isfinite(row["approach"])),
+        "edge_positions": count(row["on_edge"] > 0),
+        "crease_positions": count(row["at_crease"] > 0),
+        "border_peak_positions": count(row["peak_at_border"]),
+        "capped_positions": count(row["capped"]),
     }
 
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from loaded_tca.contact import ContactSolution, solve_contact, solve_to_accuracy
+from loaded_tca.contact.adaptive import TOLERANCE_SHARE
+from loaded_tca.contact.solution import CoarserGrid
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.jet import Array
 from loaded_tca.memory import memory_problem
@@ -54,12 +56,15 @@ class LoadedContact:
     solution : ContactSolution
     at_crease : bool
         Whether the start of a linear relief lies in the contact.
+    tolerance : float
+        To which the solver kept the contact conditions.
     """
 
     contact: ContactPoint
     separation: Separation
     solution: ContactSolution
     at_crease: bool
+    tolerance: float = 1e-6
 
     @property
     def at_border(self) -> bool:
@@ -78,6 +83,11 @@ class LoadedContact:
         middle = tuple(slice((n - 1) // 2, n // 2 + 1) for n in self.solution.pressure.shape)
         there = np.isfinite(self.separation.gap[middle])
         return float(self.solution.pressure[middle][there].mean()) if there.any() else 0.0
+
+    @property
+    def line_load(self) -> float:
+        """Largest force per length along the contact [N/mm]: pressure summed up across."""
+        return float(self.solution.pressure.sum(axis=0).max()) * self.separation.spacing[0]
 
     @property
     def peak_place(self) -> tuple[float, float]:
@@ -123,8 +133,22 @@ class LoadedContact:
         if load <= 0.0:
             return 0.0
         loads = ((1.0 - CHORD) * load, min((1.0 + CHORD) * load, self._largest_load))
-        approaches = [self._approach_under(chord_end) for chord_end in loads]
+        approaches = [self._solved(chord_end).approach for chord_end in loads]
         return (loads[1] - loads[0]) / (approaches[1] - approaches[0])
+
+    def under(self, load: float) -> LoadedContact:
+        """Return the contact under another load > 0 [N] near this one, on the same grid and as closely solved.
+
+        The estimated error is that of the grid: its share of the peak and of the approach is kept.
+        """
+        solution, before = self._solved(load, self.tolerance), self.solution
+        coarser = before.coarser
+        if coarser is not None:
+            higher = float(solution.pressure.max()) / float(before.pressure.max())
+            deeper = (solution.approach - solution.first_touch) / (before.approach - before.first_touch)
+            approach = before.first_touch + deeper * (coarser.approach - before.first_touch)
+            solution = replace(solution, coarser=CoarserGrid(higher * coarser.largest, approach))
+        return replace(self, solution=solution)
 
     @property
     def _largest_load(self) -> float:
@@ -132,7 +156,7 @@ class LoadedContact:
         cap = self.solution.max_pressure
         return math.inf if cap is None else cap * self.separation.material_area
 
-    def _approach_under(self, load: float) -> float:
+    def _solved(self, load: float, tolerance: float = 1e-6) -> ContactSolution:
         solution = self.solution
         return solve_contact(
             self.separation.gap,
@@ -140,9 +164,10 @@ class LoadedContact:
             solution.contact_modulus,
             load=load,
             max_pressure=solution.max_pressure,
+            tolerance=tolerance,
             initial_pressure=solution.pressure,
             warn=False,
-        ).approach
+        )
 
 
 def press(pair: GearPair, contact: ContactPoint, load: float, grid: GridChoice) -> LoadedContact:
@@ -211,6 +236,7 @@ def _press_in_box(
         return finest[0].gap, finest[0].spacing
 
     modulus, cap = pair.contact_modulus, pair.max_pressure
+    tolerance = grid.tolerance if grid.cells is not None else min(grid.tolerance, TOLERANCE_SHARE * grid.accuracy)
     if grid.cells is not None:
         solution = solve_contact(
             first.gap, first.spacing, modulus, load=load, max_pressure=cap, tolerance=grid.tolerance, warn=False
@@ -228,7 +254,7 @@ def _press_in_box(
             warn=False,
         )
     pressed = solution.pressure > 0.0
-    return LoadedContact(contact, finest[0], solution, _crosses_crease(pair, contact, finest[0], pressed))
+    return LoadedContact(contact, finest[0], solution, _crosses_crease(pair, contact, finest[0], pressed), tolerance)
 
 
 def _crosses_crease(pair: GearPair, contact: ContactPoint, separation: Separation, where: Array) -> bool:

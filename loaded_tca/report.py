@@ -15,19 +15,27 @@ import numpy as np
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.jet import Array
 from loaded_tca.key_figures import ARCSEC
-from loaded_tca.mesh_cycle import MAP_PARTS, PATH_PARTS, MeshCycle, cycle_parts
+from loaded_tca.mesh_cycle import MeshCycle, cycle_parts
+from loaded_tca.pair_contacts import MAP_PARTS, PAIRS, PATH_PARTS, contact_parts
 from loaded_tca.storage import FilePath, Part, replacing
-from loaded_tca.summary import STIFFNESS, without_rounding
+from loaded_tca.summary import without_rounding
 
 RESULT, SUMMARY, POSITIONS = "result.nc", "summary.json", "positions.csv"
 """Names of the three files."""
 
-ENGINEERS_UNITS = {"rad": (ARCSEC, "arcsec"), "N mm": (1e-3, "Nm"), "N/(mm um)": (1.0, "N_per_mm_um"), "1": (1.0, "")}
+ENGINEERS_UNITS = {
+    "rad": (ARCSEC, "arcsec"),
+    "N mm": (1e-3, "Nm"),
+    "N/(mm um)": (1.0, "N_per_mm_um"),
+    "N/mm": (1.0, "N_per_mm"),
+    "1": (1.0, ""),
+}
 """Unit of a result -> factor to, and name of, the unit in the table; others stay as they are."""
 COLUMNS = {
     "hertz_semi_minor": ("hertz_width_mm", 2.0),
     "hertz_semi_major": ("hertz_length_mm", 2.0),
     "approach": ("approach_um", 1e3),
+    "deflection": ("deflection_um", 1e3),
     "peak_radius": ("peak_pinion_diameter_mm", 2.0),
     "peak_axial": ("peak_pinion_axial_mm", 1.0),
 }
@@ -79,7 +87,7 @@ def summary_json(result: MeshCycle) -> str:
         "tooth_pairs_sharing_load": len(result.pairs),
         "face_width_mm": result.face_width,
         "wheel_base_radius_mm": result.wheel_base_radius,
-        "mesh_stiffness_is": STIFFNESS,
+        "mesh_stiffness_is": f"d(F_bt/b)/d(r_b2 TE); {result.yielding}",
         "torques": [{name: _known(value, name) for name, value in figures.items()} for figures in result.key_figures()],
     }
     return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
@@ -138,6 +146,7 @@ def _loaded_columns(result: MeshCycle) -> dict[str, Array]:
             name, factor = _column(entry.name, entry.metadata["unit"])
             columns[name] = result.by_torque(entry.name) * factor
     columns["peak_at_border"] = result.by_torque("peak_at_border")
+    columns["loaded_pairs"] = result.by_torque("loaded_pairs")
     columns["transmission_error_um"] = result.by_torque("transmission_error") * result.wheel_base_radius * 1e3
     return columns
 
@@ -165,6 +174,7 @@ def describe_results() -> str:
     own |= {"torque": "pinion_torque_Nm", "load_share": "load_share_pair_0, ..."}
     lines = ["### The result", "", *_described(cycle_parts(2), own)]
     lines += ["", "### `result.path`: the unloaded contact", "", *_described(PATH_PARTS)]
+    lines += ["", "### `result.contacts`: every tooth pair", "", *_described(contact_parts(PAIRS))]
     lines += ["", "### `result.maps[torque][position]`: one pressure map", "", *_described(MAP_PARTS)]
     return "\n".join(lines) + "\n"
 

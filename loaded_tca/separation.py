@@ -285,16 +285,17 @@ def _material_length(gap: _Gap, across: float, reach: float) -> float:
     Looked for over the whole width ``across`` on either side: in a corner of a flank there is none straight ahead.
     """
     x = np.linspace(-across, across, PROBE[0])
-    farthest = 0.0
-    for direction in (-1.0, 1.0):
-        low, high = 0.0, reach
-        for _ in range(4):
-            trial = np.linspace(low, high, PROBE[1])
-            has = np.isfinite(gap(x, direction * trial)).any(axis=0)
-            last = int(np.flatnonzero(has).max(initial=0))
-            low, high = trial[last], trial[min(last + 1, len(trial) - 1)]
-        farthest = max(farthest, high)
-    return farthest
+    if np.isfinite(gap(x, np.array([-reach, reach]))).any():
+        return reach
+    low, high = np.zeros(2), np.full(2, reach)
+    for _ in range(4):
+        trial = np.linspace(low, high, PROBE[1])
+        has = np.isfinite(gap(x, (trial * [-1.0, 1.0]).ravel())).any(axis=0).reshape(trial.shape)
+        last = np.where(has, np.arange(PROBE[1])[:, None], 0).max(axis=0)
+        low, high = (
+            np.take_along_axis(trial, row[None], axis=0)[0] for row in (last, np.minimum(last + 1, PROBE[1] - 1))
+        )
+    return float(high.max())
 
 
 class _Gap:

@@ -13,9 +13,6 @@ ROUNDING = 1e-6
 MOST_TORQUES = 6
 """Torques that a note names one by one."""
 
-STIFFNESS = "contact stiffness of a pair, no bending"
-"""What the key mesh_stiffness means as long as teeth do not bend."""
-
 ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("pinion torque [N m] | normal force [N]", ("pinion_torque_Nm", "normal_force_at_peak_N")),
     ("peak pressure [MPa] | pinion angle [deg]", ("peak_pressure_MPa", "pinion_angle_at_peak_deg")),
@@ -27,12 +24,18 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("transmission error, mean [arcsec | um]", ("transmission_error_mean_arcsec", "transmission_error_mean_um")),
     ("  peak to peak [arcsec | um]", ("transmission_error_span_arcsec", "transmission_error_span_um")),
     ("  unloaded, peak to peak [arcsec | um]", ("unloaded_error_span_arcsec", "unloaded_error_span_um")),
-    (f"{STIFFNESS} [N/(mm um)]", ("mesh_stiffness_mean_N_per_mm_um",)),
+    ("  orders 1 | 2 | 3 of the tooth mesh [um]", tuple(f"transmission_error_order_{order}_um" for order in (1, 2, 3))),
+    (
+        "mesh stiffness, tangent | secant [N/(mm um)]",
+        ("mesh_stiffness_mean_N_per_mm_um", "secant_stiffness_mean_N_per_mm_um"),
+    ),
+    ("line load, largest [N/mm] | face load factor", ("line_load_max_N_per_mm", "face_load_factor_at_largest_force")),
+    ("tooth pairs under load, on average", ("loaded_contact_ratio",)),
     ("most cells across | along, worst residual", ("most_cells_across", "most_cells_along", "worst_solver_residual")),
 )
 """Label and key figures of each line of the summary."""
 
-ONLY_IF_KNOWN = ("_at_border_", "border_pressure")
+ONLY_IF_KNOWN = ("_at_border_", "border_pressure", "_order_", "loaded_contact_ratio")
 """Figures whose line is left out where no torque has them."""
 
 NOTES = (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from loaded_tca.mesh_cycle import MeshCycle
 from loaded_tca.pair import GearPair
 from loaded_tca.scene import Scene
 from loaded_tca.tooth import MatingTeeth, Resolution, TriangleMesh, mating_teeth, tooth_forms
+from loaded_tca.unloaded import ContactPoint
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,10 +103,11 @@ def teeth_in_space(
     """
     torque = int(np.argmax(result.torque)) if torque is None else torque
     position = result.peak_position(torque) if position is None else position
-    one = None if position is None else result.maps[torque][position]
+    column = 0 if position is None else result.highest_column(torque, position)
+    one = None if position is None else result.contacts.maps[torque][position][column]
     if position is None or one is None:
         raise GeometryError("no teeth in contact: the tooth pair does not touch at this position")
-    contact, path = result.path[position], result.path[result.path.touches]
+    contact, path = _of_own_teeth(result, teeth.pair, position, column), result.path[result.path.touches]
     pinion, wheel = teeth.in_mesh(contact.pinion_angle, contact.wheel_angle)
     return TeethInSpace(
         teeth.pair,
@@ -117,4 +119,15 @@ def teeth_in_space(
         teeth.pressure_on_pinion(one.corners, one.pressure, contact.pinion_angle),
         contact.point,
         contact.normal,
+    )
+
+
+def _of_own_teeth(result: MeshCycle, pair: GearPair, position: int, column: int) -> ContactPoint:
+    """Unloaded contact of a tooth pair, in the angles of its own teeth, as if it were the pair at the pitch point."""
+    contact = result.contacts.paths[column][position]
+    pitches = float(result.pairs[column]) * pair.pitch
+    return replace(
+        contact,
+        pinion_angle=contact.pinion_angle - pitches,
+        wheel_angle=contact.wheel_angle - pair.ratio * pitches,
     )

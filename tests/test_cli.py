@@ -291,7 +291,7 @@ def test_progress_is_shown_on_a_terminal_only(run, monkeypatch):
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
     assert cli.main(["run", str(scene()), "--out", "out"]) == 0
-    assert "pressure maps: 100%" in terminal.getvalue()
+    assert "positions: 100%" in terminal.getvalue()
     assert "3/3" in terminal.getvalue()
 
 

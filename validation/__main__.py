@@ -15,11 +15,17 @@ CASES = (
     "mounting_errors",
     "mounting_error_map",
     "bevel_mounting_errors",
+    "seed_001_pair",
+    "bevel_pressure",
     "involute_pairs",
     "line_contact",
     "fzg_c14_geometry",
     "iso_23509_sample",
+    "face_milled_settings",
+    "seed_004_start",
     "iso_tr_6336_30",
+    "subsurface",
+    "free_edge",
 )
 
 

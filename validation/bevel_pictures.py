@@ -38,7 +38,7 @@ def _style(number: int, label: str) -> dict[str, str | float]:
     return {"color": COLOURS[number], "marker": MARKERS[number], "markersize": 4.0, "linewidth": 1.0, "label": label}
 
 
-def _draw_flank(axes: Axes, gears: BevelGears) -> None:
+def draw_flank(axes: Axes, gears: BevelGears) -> None:
     """Outline of the pinion flank, between its four corners."""
     corners = np.stack(gears.place(*gears.pair().pinion.grid(2, 2)), axis=-1)
     axes.add_patch(Polygon(corners[[0, 0, 1, 1], [0, 1, 1, 0]], facecolor="0.95", edgecolor="0.5"))
@@ -86,7 +86,7 @@ def draw_straight() -> Figure:
     (flank, stress), (bare, relieved) = figure.subplots(2, 2)
     cases = {"aligned": None, **TABLE_6}
     modifications = straight_modifications(LEAD, relief_um=RELIEF), straight_modifications(0.0, "parabolic", RELIEF, 1)
-    _draw_flank(flank, STRAIGHT)
+    draw_flank(flank, STRAIGHT)
     for number, (name, mounting) in enumerate(cases.items()):
         _draw_path(flank, STRAIGHT, STRAIGHT.pair(mounting, *modifications), _style(number, name))
         one = straight_effect(name, LEAD, relieved="both")
@@ -112,7 +112,7 @@ def draw_straight_crowning() -> Figure:
     """Amounts of lead crowning under Delta E, and forms under Delta A and over the shaft angle."""
     figure = Figure(figsize=(13.5, 4.6), layout="constrained")
     flank, motion, stress = figure.subplots(1, 3)
-    _draw_flank(flank, STRAIGHT)
+    draw_flank(flank, STRAIGHT)
     wheel = straight_modifications(0.0, relief_um=RELIEF, member=1)
     for number, lead in enumerate((SLIGHT, LEAD, STRONG)):
         pair = STRAIGHT.pair(TABLE_6["ΔE"], straight_modifications(lead, relief_um=RELIEF), wheel)
@@ -154,7 +154,7 @@ def draw_spiral() -> Figure:
     figure = Figure(figsize=(16.0, 8.0), layout="constrained")
     flanks, motions = figure.subplots(2, 4)
     for flank, motion, (name, c1, ct, cases) in zip(flanks, motions, SPIRAL_PANELS, strict=True):
-        _draw_flank(flank, SPIRAL)
+        draw_flank(flank, SPIRAL)
         for number, (label, error) in enumerate(cases):
             pair = SPIRAL.pair(spiral_mounting(**error), spiral_modifications(c1, ct))
             _draw_path(flank, SPIRAL, pair, _style(number, label))

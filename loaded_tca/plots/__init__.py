@@ -4,10 +4,20 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from matplotlib.figure import Figure
+
 from loaded_tca.mesh_cycle import MeshCycle
 from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
 from loaded_tca.plots.flanks import plot_contact_path
 from loaded_tca.plots.pressure_map import plot_pressure_map
+from loaded_tca.plots.sharing import (
+    plot_harmonics,
+    plot_line_load,
+    plot_load_share,
+    plot_mesh_stiffness,
+    plot_path_pressure,
+    plot_pressure_envelope,
+)
 from loaded_tca.plots.style import highest_torque, save_figure
 from loaded_tca.storage import FilePath, remove
 
@@ -15,7 +25,13 @@ __all__ = [
     "PICTURES",
     "plot_all",
     "plot_contact_path",
+    "plot_harmonics",
+    "plot_line_load",
+    "plot_load_share",
+    "plot_mesh_stiffness",
+    "plot_path_pressure",
     "plot_peak_pressure",
+    "plot_pressure_envelope",
     "plot_pressure_map",
     "plot_transmission_error",
     "save_figure",
@@ -28,6 +44,12 @@ PICTURES = (
     "pressure_map",
     "pressure_map_border",
     "pressure_map_hertz",
+    "load_share",
+    "harmonics",
+    "mesh_stiffness",
+    "line_load",
+    "pressure_envelope",
+    "path_pressure",
 )
 """Names of all pictures that there may be, without their ending."""
 
@@ -54,7 +76,8 @@ def plot_all(
         ``contact_path.png``, ``transmission_error.png``, ``peak_pressure.png``; if anything touches,
         ``pressure_map.png`` of the peak pressure; if a higher one lies at a border or a crease in another position,
         ``pressure_map_border.png``; if Hertz holds in other positions only, ``pressure_map_hertz.png`` of the highest
-        pressure where it holds.
+        pressure where it holds. Where tooth pairs share the load: ``load_share.png``, ``harmonics.png``,
+        ``mesh_stiffness.png``, ``line_load.png``, ``pressure_envelope.png``, ``path_pressure.png``.
 
     Raises
     ------
@@ -67,8 +90,10 @@ def plot_all(
         "transmission_error": plot_transmission_error(result),
         "peak_pressure": plot_peak_pressure(result),
     }
-    for name, place in _map_positions(result, torque, position).items():
-        figures[name] = plot_pressure_map(result, place, torque)
+    for name, (place, column) in _map_places(result, torque, position).items():
+        figures[name] = plot_pressure_map(result, place, torque, column)
+    if result.pair_contacts is not None and len(result.path) > 1:
+        figures |= _shared_figures(result, torque)
     files = {name: Path(directory) / f"{name}.png" for name in PICTURES}
     for name, file in files.items():
         if name in figures:
@@ -78,13 +103,25 @@ def plot_all(
     return tuple(files[name] for name in figures)
 
 
-def _map_positions(result: MeshCycle, torque: int, position: int | None) -> dict[str, int]:
-    """Picture -> position of each pressure map to be drawn."""
+def _shared_figures(result: MeshCycle, torque: int) -> dict[str, Figure]:
+    """What there is to see where tooth pairs share the load."""
+    return {
+        "load_share": plot_load_share(result, torque),
+        "harmonics": plot_harmonics(result),
+        "mesh_stiffness": plot_mesh_stiffness(result),
+        "line_load": plot_line_load(result),
+        "pressure_envelope": plot_pressure_envelope(result, torque),
+        "path_pressure": plot_path_pressure(result),
+    }
+
+
+def _map_places(result: MeshCycle, torque: int, position: int | None) -> dict[str, tuple[int, int]]:
+    """Picture -> position and column of the tooth pair of each pressure map to be drawn."""
     if position is not None:
-        return {"pressure_map": position}
-    peak, border = result.peak_position(torque), result.border_position(torque)
-    smooth = result.peak_position(torque, where_hertz_holds=True)
-    hertz_at_peak = peak is not None and result.by_torque("hertz_pressure")[torque, peak] > 0.0
+        return {"pressure_map": (position, result.highest_column(torque, position))}
+    peak, border = result.peak_contact(torque), result.border_contact(torque)
+    smooth = result.peak_contact(torque, where_hertz_holds=True)
+    hertz_at_peak = peak is not None and result.contacts.hertz_pressure[torque][peak] > 0.0
     wanted = {
         "pressure_map": peak,
         "pressure_map_border": None if border == peak else border,

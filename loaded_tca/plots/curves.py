@@ -61,6 +61,8 @@ def _add_length_axis(axes: Axes, base_radius: float) -> None:
 def plot_peak_pressure(result: MeshCycle) -> Figure:
     """Peak pressure over the positions for each torque, with the pressure beside the contact point and after Hertz.
 
+    Where tooth pairs share the load, each of these is the highest of all pairs, or of the pair of the highest pressure.
+
     Peaks at a border or a crease, which grow with the grid, are single crosses; the axis does not follow them far.
 
     Parameters
@@ -75,8 +77,9 @@ def plot_peak_pressure(result: MeshCycle) -> Figure:
     axes = figure.add_subplot()
     angle = np.degrees(result.pinion_angle)
     peak, at_border = result.by_torque("peak_pressure"), result.by_torque("peak_at_border")
-    central, hertz = result.by_torque("central_pressure"), result.by_torque("hertz_pressure")
-    smooth = np.where(at_border, np.nan, peak)
+    contacts = result.contacts
+    smooth = np.fmax.reduce(np.where(contacts.peak_at_border, np.nan, contacts.peak_pressure), axis=-1)
+    central, hertz = (contacts.at_inner(values) for values in (contacts.central_pressure, contacts.hertz_pressure))
     for torque, label, colour, marker in torque_styles(result):
         axes.plot(angle, smooth[torque], color=colour, marker=marker, markersize=5.0, label=label)
         axes.plot(angle, central[torque], color=colour, marker=".", markersize=3.0, linestyle=":")

@@ -12,8 +12,9 @@ from matplotlib.patches import Patch, Polygon
 
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.jet import Array
-from loaded_tca.mesh_cycle import MeshCycle, PressureMap
+from loaded_tca.mesh_cycle import MeshCycle
 from loaded_tca.pair import GearPair
+from loaded_tca.pair_contacts import PressureMap
 from loaded_tca.plots.style import ACCENT, COLOURS, NO_MATE, highest_torque, load, range_of_positions, set_title
 from loaded_tca.scene import parse_scene
 
@@ -46,27 +47,29 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
         (pair.pinion, starts[0], path.pinion_radius, path.pinion_axial),
         (pair.wheel, starts[1], path.wheel_radius, path.wheel_axial),
     )
-    maps = _drawn_maps(result, torque)
+    drawn = _drawn_maps(result, torque)
+    maps = [one for row in drawn for one in row]
     scale = Normalize(0.0, max((float(one.pressure.max()) for one in maps), default=1.0))
     for axes, name, (flank, start, radius, axial) in zip(panels, scene.flank_names, sides, strict=True):
-        outline = _draw_flank(axes, name, flank, start)
+        outline = draw_flank(axes, name, flank, start)
         for one in maps:
-            _draw_area(axes, outline, one, flank.frame.to_picture(*_on_gear(pair, flank, one.corners)), scale)
+            _draw_area(axes, outline, one, flank.frame.to_picture(*on_gear(pair, flank, one.corners)), scale)
         axes.plot(*flank.frame.to_picture(radius, axial), ".", color=ACCENT, markersize=4.0)
     if maps:
         figure.colorbar(ScalarMappable(scale, COLOURS), ax=panels, label="contact pressure [MPa]")
-    _explain(figure, len(maps), len(path))
+    _explain(figure, len(drawn), len(path))
     what = "contact on the flanks" if maps else "no load, no pressure on the flanks"
     set_title(figure, result, f"{what}, {load(result, torque)}", range_of_positions(result))
     return figure
 
 
-def _drawn_maps(result: MeshCycle, torque: int) -> list[PressureMap]:
-    """Maps under pressure of few enough positions to be told apart."""
+def _drawn_maps(result: MeshCycle, torque: int) -> list[list[PressureMap]]:
+    """Maps under pressure, of all pairs, of few enough positions to be told apart."""
     last = len(result.path) - 1
     positions = sorted({round(last * part / (MOST_AREAS - 1)) for part in range(MOST_AREAS)})
-    maps = (result.maps[torque][position] for position in positions)
-    return [one for one in maps if one is not None and one.pressure.any()]
+    rows = (result.contacts.maps[torque][position] for position in positions)
+    pressed = ([one for one in row if one is not None and one.pressure.any()] for row in rows)
+    return [row for row in pressed if row]
 
 
 def _explain(figure: Figure, drawn: int, positions: int) -> None:
@@ -81,7 +84,7 @@ def _explain(figure: Figure, drawn: int, positions: int) -> None:
     )
 
 
-def _draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:
+def draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:
     """The flank from root to tip, with the part from profile coordinate ``start`` on in white; returns its outline."""
     rho, z = flank.grid(*FINENESS)
     along = flank.profile_coordinate(rho, z).value
@@ -130,7 +133,7 @@ def _draw_area(axes: Axes, outline: Patch, one: PressureMap, corners: tuple[Arra
     cells.set_clip_path(outline)
 
 
-def _on_gear(pair: GearPair, flank: Flank, point: Array) -> tuple[Array, Array]:
+def on_gear(pair: GearPair, flank: Flank, point: Array) -> tuple[Array, Array]:
     """Radius and axial coordinate (...) of points (..., 3) on the gear of a flank."""
     if flank is pair.pinion:
         return np.hypot(point[..., 0], point[..., 1]), point[..., 2]

@@ -12,13 +12,16 @@ from matplotlib.patches import Ellipse
 
 from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.flanks.jet import Array
-from loaded_tca.mesh_cycle import MeshCycle, PressureMap
+from loaded_tca.mesh_cycle import MeshCycle
+from loaded_tca.pair_contacts import PressureMap
 from loaded_tca.plots.style import ACCENT, COLOURS, NO_MATERIAL, highest_torque, load, place, set_title, tell_no_load
 from loaded_tca.scene import parse_scene
 
 
-def plot_pressure_map(result: MeshCycle, position: int | None = None, torque: int | None = None) -> Figure:
-    """Contact pressure of one position in the tangent plane, with the ellipse after Hertz.
+def plot_pressure_map(
+    result: MeshCycle, position: int | None = None, torque: int | None = None, column: int | None = None
+) -> Figure:
+    """Contact pressure of one tooth pair at one position in the tangent plane, with the ellipse after Hertz.
 
     Cells without material are grey, cells without pressure white. The direction across is drawn larger than the
     one along by a factor that the axis tells. The axes say where the heel (or z > 0) and the pinion's tip lie.
@@ -30,6 +33,8 @@ def plot_pressure_map(result: MeshCycle, position: int | None = None, torque: in
         Index along the path; default: that of the peak pressure, ``result.peak_position``.
     torque : int, optional
         Index of the torque; default: the largest torque.
+    column : int, optional
+        Of the tooth pair in ``result.pairs``; default: that with the highest pressure at the position.
 
     Returns
     -------
@@ -42,21 +47,23 @@ def plot_pressure_map(result: MeshCycle, position: int | None = None, torque: in
     """
     torque = highest_torque(result) if torque is None else torque
     position = result.peak_position(torque) if position is None else position
-    one = None if position is None else result.maps[torque][position]
+    if column is None:
+        column = 0 if position is None else result.highest_column(torque, position)
+    one = None if position is None else result.contacts.maps[torque][position][column]
     if position is None or one is None:
         raise IndexError("no pressure map: the tooth pair does not touch at this position")
     scale, height = _scale_factor(one)
     figure = Figure(figsize=(9.0, 1.8 + height), layout="constrained")
     axes = figure.add_subplot()
     _draw_pressure(figure, axes, one)
-    _draw_ellipse(axes, result, (torque, position))
+    _draw_ellipse(axes, result, (torque, position, column))
     axes.plot(0.0, 0.0, "+", color=ACCENT, label="unloaded contact point")
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
     axes.set_aspect(scale)
     frame = parse_scene(result.scene_toml).pair().pinion.frame
     _label_axes(axes, one, scale, frame)
     what = "contact pressure" if one.pressure.any() else "no contact pressure"
-    set_title(figure, result, f"{what}, {load(result, torque)}", *place(result, position, frame))
+    set_title(figure, result, f"{what}, {load(result, torque)}", *place(result, position, frame, column))
     return figure
 
 
@@ -94,10 +101,10 @@ def _draw_pressure(figure: Figure, axes: Axes, one: PressureMap) -> None:
     figure.colorbar(mesh, ax=axes, label="contact pressure [MPa]")
 
 
-def _draw_ellipse(axes: Axes, result: MeshCycle, at: tuple[int, int]) -> None:
+def _draw_ellipse(axes: Axes, result: MeshCycle, at: tuple[int, int, int]) -> None:
     """The contact ellipse after Hertz, where it is known."""
     names = ("hertz_semi_minor", "hertz_semi_major", "hertz_pressure")
-    minor, major, pressure = (float(result.by_torque(name)[at]) for name in names)
+    minor, major, pressure = (float(getattr(result.contacts, name)[at]) for name in names)
     if math.isfinite(pressure):
         label = f"ellipse after Hertz, peak pressure {pressure:.4g} MPa"
         ellipse = Ellipse((0.0, 0.0), 2.0 * major, 2.0 * minor, fill=False, color=ACCENT, linestyle="--", label=label)

@@ -73,11 +73,12 @@ def loads(result: MeshCycle) -> str:
     return load(result, 0) if len(result.torque) == 1 else f"pinion torques {low:.4g} to {high:.4g} N m"
 
 
-def place(result: MeshCycle, position: int, frame: FlankFrame) -> tuple[str, str]:
-    """Return what a title says of one position, and of its contact point in the frame of the pinion's flank."""
-    where = result.path[position]
+def place(result: MeshCycle, position: int, frame: FlankFrame, column: int = 0) -> tuple[str, str]:
+    """Return what a title says of one position, and of a pair's contact point in the frame of the pinion's flank."""
+    where = result.contacts.paths[column][position]
+    which = f", tooth pair {result.pairs[column]:+d}" if len(result.pairs) > 1 else ""
     return (
-        f"position {position + 1} of {len(result.path)}: pinion angle {_degrees(where.pinion_angle)} deg",
+        f"position {position + 1} of {len(result.path)}{which}: pinion angle {_degrees(where.pinion_angle)} deg",
         f"contact point on the pinion: {frame.place(where.pinion_radius, where.pinion_axial)}",
     )
 

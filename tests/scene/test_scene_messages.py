@@ -112,11 +112,11 @@ ONE_PROBLEM = [
     ({"pair.type": 3}, f"pair.type: found 3; allowed {TYPES}"),
     ({"pair.type": ["cylindrical"]}, f'pair.type: found ["cylindrical"]; allowed {TYPES}'),
     ({"pair.type": "cylindical"}, f'pair.type: found "cylindical"; allowed {TYPES}; did you mean "cylindrical"?'),
-    # not in this version
+    # what shares and yields
     ({"analysis.load_sharing": 0}, "analysis.load_sharing: found 0; allowed false or true"),
     (
-        {"analysis.compliance": "contact+tooth"},
-        'analysis.compliance: "contact+tooth" is not available in this version; allowed "contact"',
+        {"analysis.compliance": "contact+teeth"},
+        'analysis.compliance: found "contact+teeth"; allowed "contact" or "contact+tooth"; did you mean "contact+tooth"?',
     ),
     # together
     (

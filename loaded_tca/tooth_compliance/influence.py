@@ -1,0 +1,229 @@
+r"""Compliance of one gear: displacement along the line of action at one place of a flank under a force at another.
+
+The contact solver takes each flank for a half-space, whose displacement it measures from infinity. What the gear adds:
+
+.. math:: c(p, q) = u_{FE}(\text{middle below } p;\ q) - u_B(t_p, |p - q|) + c_{loc}\,k(p, q)
+
+u_FE is the displacement of the gear body under a unit force at q, where the line of action through p cuts the middle of
+the tooth; u_B that of the half-space at the same depth t (it is part of u_FE, and would count twice); c_loc the local
+term of a line force in the plane, spread lengthwise as the stress spreads down to the middle,
+:math:`k = t^2/(2 (t^2 + s^2)^{3/2})`, with its mirror images beyond the ends of the face: along a whole face width the
+local term is that of the plane. Another tooth of the gear has the first term only.
+
+References
+----------
+Weber, Banaschek 1953, Formänderung und Profilrücknahme bei gerad- und schrägverzahnten Rädern (the same split in plane
+strain).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial.chebyshev import chebpts2
+
+from loaded_tca.errors import InputError
+from loaded_tca.flanks.jet import Array
+from loaded_tca.tooth_compliance.body import GearTooth, ToothFrame, gear_body
+from loaded_tca.tooth_compliance.half_space import depth_displacement
+from loaded_tca.tooth_compliance.layout import MeshDensity
+from loaded_tca.tooth_compliance.local_term import LocalFlexibility, local_flexibility
+
+HEIGHTS = 6
+"""Places along the profile between which the displacements are interpolated."""
+LENGTHS_PER_LAYER = 2.0
+"""Places across the face, over the layers of elements, and at least:"""
+LEAST_LENGTHS = 11
+
+
+@dataclass(frozen=True, eq=False)
+class LineForce:
+    """A unit normal force along a line of places of one flank.
+
+    Attributes
+    ----------
+    tooth : int
+        Tooth of the gear that carries it, counted in the sense of +theta.
+    rho, z : (m,) array [mm]
+        Places, in the gear's own frame.
+    distance : (m, m) array [mm]
+        Between the places.
+    weight : (m,) array
+        Share of the force at each place; the sum is 1.
+    """
+
+    tooth: int
+    rho: Array
+    z: Array
+    distance: Array
+    weight: Array
+
+
+@dataclass(frozen=True, eq=False)
+class GearCompliance:
+    """Compliance of one gear, made once.
+
+    Attributes
+    ----------
+    frame : ToothFrame
+    heights, lengths : (a,), (b,) array
+        Parts of the flank's height and of the face width, where the finite elements were loaded and read.
+    displacement : (teeth, a b, a b) array [mm/N]
+        Of the teeth ``-neighbours`` to ``+neighbours``: at the second place under a force at the third on tooth 0.
+    depth : (a, b) array [mm]
+        From there along the normal to the middle of the tooth.
+    local : LocalFlexibility
+    """
+
+    frame: ToothFrame
+    heights: Array
+    lengths: Array
+    displacement: Array
+    depth: Array
+    local: LocalFlexibility
+
+    @property
+    def neighbours(self) -> int:
+        """Teeth on either side of a loaded one whose displacement is known."""
+        return len(self.displacement) // 2
+
+    def matrix(self, forces: Sequence[LineForce]) -> Array:
+        """Displacements along the line of action (m, m) [mm/N], at each force under each, symmetric.
+
+        Parameters
+        ----------
+        forces : sequence of m LineForce
+            On different teeth.
+
+        Raises
+        ------
+        InputError
+            If two of them are further apart than the teeth of the model, or a weight is not usable.
+        """
+        found = self.middle_displacements(forces)
+        own = [self._own(force, _Places.of(self, force)) for force in forces]
+        return 0.5 * (found + found.T) + np.diag(own)
+
+    def middle_displacements(self, forces: Sequence[LineForce]) -> Array:
+        """Displacements (m, m) of the middles of the teeth alone [mm/N], as the finite elements have them.
+
+        Not quite symmetric: forces act on the flank. For parameters and errors see :meth:`matrix`.
+        """
+        _require_usable(forces)
+        shared = [(force.tooth, _Places.of(self, force).shares(force.weight)) for force in forces]
+        return np.array([[self._between(at, under) for under in shared] for at in shared])
+
+    def _between(self, at: tuple[int, Array], under: tuple[int, Array]) -> float:
+        """Displacement by the finite elements at one force under another: their teeth, and shares of the places."""
+        teeth = self.frame.gear.form.teeth
+        away = (at[0] - under[0] + teeth // 2) % teeth - teeth // 2
+        if abs(away) > self.neighbours:
+            raise InputError(
+                f"tooth: two loaded teeth are {abs(away)} pitches apart, the model has {self.neighbours} neighbours of "
+                "a loaded tooth; ask for more neighbours"
+            )
+        return float(at[1] @ self.displacement[away + self.neighbours] @ under[1])
+
+    def _own(self, force: LineForce, places: _Places) -> float:
+        """Local term less the displacement of the half-space, both on the mean over the force."""
+        depth = np.einsum("ma,ab,mb->m", places.across, self.depth, places.along)[:, None]
+        spread = _spread(depth, force.distance) + sum(_spread(depth, image) for image in self._images(places.length))
+        local = self.local.at(places.height)[:, None] * spread
+        half_space = depth_displacement(depth, force.distance, self.frame.gear.material)
+        return float(force.weight @ (local - half_space) @ force.weight)
+
+    def _images(self, length: Array) -> tuple[Array, Array]:
+        """Distances (m, m) from the mirror images beyond both ends of the face [mm]."""
+        width = float(np.ptp(self.frame.nodes.coordinate))
+        from_start = width * (length[:, None] + length)
+        return from_start, 2.0 * width - from_start
+
+
+@dataclass(frozen=True, eq=False)
+class _Places:
+    """Parts (m,) of height and face width of the places of a force, and their Lagrange polynomials (m, a), (m, b)."""
+
+    height: Array
+    length: Array
+    across: Array
+    along: Array
+
+    @classmethod
+    def of(cls, gear: GearCompliance, force: LineForce) -> _Places:
+        """Where a force lies among the places of a gear's table."""
+        height, length = gear.frame.parts(force.rho, force.z)
+        return cls(height, length, _lagrange(gear.heights, height), _lagrange(gear.lengths, length))
+
+    def shares(self, weight: Array) -> Array:
+        """Shares (a b,) of the places of the table in a force."""
+        return ((weight[:, None] * self.across).T @ self.along).ravel()
+
+
+def gear_compliance(gear: GearTooth, side: int, density: MeshDensity = MeshDensity()) -> GearCompliance:
+    """Load a gear body by unit forces all over one flank.
+
+    Parameters
+    ----------
+    gear : GearTooth
+    side : int
+        s of the flank in contact.
+    density : MeshDensity
+
+    Raises
+    ------
+    InputError
+        If the bore reaches the teeth.
+    GeometryError
+        If the tooth is pointed or cut off, or the mesh is turned inside out.
+    """
+    frame = ToothFrame(gear, side, gear.nodes(density))
+    heights = 0.5 + 0.5 * chebpts2(HEIGHTS)
+    lengths = 0.5 + 0.5 * chebpts2(max(LEAST_LENGTHS, math.ceil(LENGTHS_PER_LAYER * density.lengthwise)))
+    places = frame.places(*(grid.ravel() for grid in np.meshgrid(heights, lengths, indexing="ij")))
+    body = gear_body(frame.nodes, gear.material)
+    number = body.mesh.number
+    loads = frame.on_flank(places, number).loads(-places.normal, len(body.mesh.points))
+    solution = body.factorisation.solve(loads)
+    near = frame.nodes.layout.neighbours
+    found = []
+    for tooth in range(-near, near + 1):
+        turned = -places.normal @ _turn(2.0 * math.pi * tooth / gear.form.teeth)
+        found.append(frame.on_middle(places, tooth, number).displacements(solution, turned))
+    depth = places.depth.reshape(len(heights), len(lengths))
+    return GearCompliance(frame, heights, lengths, np.stack(found), depth, local_flexibility(gear, side))
+
+
+def _require_usable(forces: Sequence[LineForce]) -> None:
+    """Refuse weights that are no shares of one force."""
+    problems = [
+        f"weight: the shares of force {number} must be finite and add up to 1"
+        for number, force in enumerate(forces)
+        if not (np.isfinite(force.weight).all() and math.isclose(float(force.weight.sum()), 1.0, rel_tol=1e-6))
+    ]
+    if problems:
+        raise InputError(problems)
+
+
+def _spread(depth: Array, distance: Array) -> Array:
+    """Line density [1/mm] at a depth below a point force: its integral over the distances of a line is 1."""
+    return 0.5 * depth**2 / (depth**2 + distance**2) ** 1.5
+
+
+def _lagrange(nodes: Array, places: Array) -> Array:
+    """Lagrange polynomials (m, n) of nodes (n,) at places (m,)."""
+    differences = np.where(np.eye(len(nodes), dtype=bool), 1.0, nodes[:, None] - nodes)
+    found = np.ones((len(places), len(nodes)))
+    for n, node in enumerate(nodes):
+        factor = (places[:, None] - node) / differences[:, n]
+        factor[:, n] = 1.0
+        found *= factor
+    return found
+
+
+def _turn(angle: float) -> Array:
+    """Turn about z for vectors in rows (3, 3)."""
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])

@@ -1,0 +1,73 @@
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca.errors import InputError
+from loaded_tca.material import Material
+from loaded_tca.reference.weber_banaschek import flank_flattening, ring_wind_up, tooth_deflection
+
+STEEL = Material()
+PRISM = np.array([0.0, 1.0, 4.0, 10.0]), np.full(4, 2.0)
+
+
+def test_bending_of_a_prism_is_that_of_a_cantilever_with_shear():
+    length, modulus = 7.0, STEEL.plane_strain_modulus
+    bending = 12.0 * length**3 / (3.0 * 2.0**3) / modulus
+    shear = 1.2 * length / (2.0 * 0.5 * STEEL.youngs_modulus / (1.0 + STEEL.poisson_ratio))
+    assert_allclose(tooth_deflection(*PRISM, length, 0.0).bending, bending + shear)
+
+
+def test_coefficients_of_steel_are_the_printed_ones():
+    """5.2 (y/s)^2 + y/s + 1.4 (1 + 0.294 tan^2), as printed for a Poisson ratio of 0.3 to two digits."""
+    angle = math.radians(20.0)
+    ratio = 3.0 / 2.0
+    printed = 5.2 * ratio**2 + ratio + 1.4 * (1.0 + 0.294 * math.tan(angle) ** 2)
+    found = tooth_deflection(*PRISM, 3.0, angle).foundation
+    assert_allclose(found * STEEL.youngs_modulus, math.cos(angle) ** 2 * printed, rtol=0.01)
+
+
+def test_deflection_of_a_taper_does_not_depend_on_how_it_is_cut():
+    coarse = np.array([0.0, 10.0]), np.array([4.0, 2.0])
+    fine = np.linspace(0.0, 10.0, 40), np.linspace(4.0, 2.0, 40)
+    assert_allclose(tooth_deflection(*coarse, 9.0, 0.3).total, tooth_deflection(*fine, 9.0, 0.3).total, rtol=1e-4)
+
+
+def test_deflection_is_free_of_scale():
+    one, ten = (tooth_deflection(k * PRISM[0], k * PRISM[1], 6.0 * k, 0.2) for k in (1.0, 10.0))
+    assert_allclose([one.bending, one.foundation], [ten.bending, ten.foundation])
+
+
+def test_flattening_grows_by_the_logarithm_of_the_depth():
+    found = [flank_flattening(0.1, depth) for depth in (1.0, 2.0, 4.0)]
+    step = 2.0 * math.log(2.0) / (math.pi * STEEL.plane_strain_modulus)
+    assert_allclose(np.diff(found), step)
+
+
+def test_wind_up_adds_over_rings():
+    assert_allclose(ring_wind_up(10.0, 30.0), ring_wind_up(10.0, 17.0) + ring_wind_up(17.0, 30.0))
+
+
+def test_tooth_tells_every_problem():
+    with pytest.raises(InputError) as error:
+        tooth_deflection(np.array([1.0, 2.0]), np.array([1.0, -1.0]), 1.0, 2.0)
+    assert [problem.split(":")[0] for problem in error.value.problems] == ["height", "thickness", "load_angle"]
+
+
+@pytest.mark.parametrize("height", [0.0, 11.0])
+def test_a_load_off_the_tooth_is_refused(height):
+    with pytest.raises(InputError, match="load_height"):
+        tooth_deflection(*PRISM, height, 0.0)
+
+
+@pytest.mark.parametrize(("width", "depth"), [(0.0, 1.0), (2.0, 1.0)])
+def test_a_contact_wider_than_the_tooth_is_refused(width, depth):
+    with pytest.raises(InputError, match="half_width"):
+        flank_flattening(width, depth)
+
+
+@pytest.mark.parametrize(("inner", "outer"), [(0.0, 1.0), (2.0, 1.0)])
+def test_a_ring_without_thickness_is_refused(inner, outer):
+    with pytest.raises(InputError, match="inner_radius"):
+        ring_wind_up(inner, outer)

@@ -1,0 +1,45 @@
+"""Gears and models that the tests of the tooth compliance share."""
+
+from functools import cache
+
+import numpy as np
+
+from loaded_tca.gears import CylindricalGear, CylindricalMesh
+from loaded_tca.pair import GearPair, cylindrical_pair
+from loaded_tca.tooth import tooth_forms
+from loaded_tca.tooth_compliance import GearCompliance, GearTooth, LineForce, MeshDensity, gear_compliance
+
+WIDTH = 20.0
+COARSE = MeshDensity(lengthwise=4)
+
+
+def spur_mesh(width=WIDTH, helix_angle=0.0) -> CylindricalMesh:
+    gears = [
+        CylindricalGear(teeth=z, normal_module=3.0, face_width=width, helix_angle=beta)
+        for z, beta in ((25, helix_angle), (37, -helix_angle))
+    ]
+    return CylindricalMesh(*gears)
+
+
+def both_senses(mesh: CylindricalMesh) -> tuple[GearPair, GearPair]:
+    return cylindrical_pair(mesh, sense="positive"), cylindrical_pair(mesh, sense="negative")
+
+
+def pinion(bore_diameter=None, width=WIDTH, **material) -> GearTooth:
+    mesh = spur_mesh(width)
+    pair, backs = both_senses(mesh)
+    return GearTooth((pair.pinion, backs.pinion), tooth_forms(mesh)[0], bore_diameter=bore_diameter, **material)
+
+
+@cache
+def model(density: MeshDensity = COARSE, side: int = 1, bore_diameter: float | None = None) -> GearCompliance:
+    return gear_compliance(pinion(bore_diameter), side, density)
+
+
+def line(gear: GearCompliance, height: float, part: float = 1.0, tooth: int = 0, middle: float = 0.5) -> LineForce:
+    """Even force along a part of the face at a height on the flank."""
+    places, weight = np.polynomial.legendre.leggauss(40)
+    flank = gear.frame.places(np.full(40, height), middle + 0.5 * part * places)
+    x, y, z = flank.point.T
+    distance = np.linalg.norm(flank.point[:, None] - flank.point, axis=-1)
+    return LineForce(tooth, np.hypot(x, y), z, distance, 0.5 * weight)

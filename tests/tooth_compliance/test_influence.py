@@ -1,0 +1,162 @@
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from bodies import COARSE, WIDTH, line, model, pinion, spur_mesh
+from numpy.testing import assert_allclose
+
+from loaded_tca.errors import InputError
+from loaded_tca.gears.transverse_profile import half_tooth
+from loaded_tca.material import Material
+from loaded_tca.reference.weber_banaschek import ring_wind_up, tooth_deflection
+from loaded_tca.tooth_compliance import MeshDensity, gear_compliance
+from loaded_tca.tooth_compliance.dissection import factorise
+from loaded_tca.tooth_compliance.finite_elements import discretise
+
+HEIGHTS = (0.1, 0.5, 0.9)
+CONVERGED = 0.015
+"""Change of the whole compliance on a finer mesh: half as many elements more in most directions."""
+BETTI = 0.03
+"""Forces act on the flank, displacements are taken in the middle of the tooth: part of the coupling of two teeth."""
+CLOSED_FORM = 0.15
+"""Weber and Banaschek take the body for a half-plane."""
+RING = 5e-3
+"""One quadratic element to a pitch."""
+ROUNDING = 1e-9
+
+
+def whole(gear, height, part=1.0):
+    return WIDTH * gear.matrix([line(gear, height, part)])[0, 0]
+
+
+def below(gear, height):
+    """Displacement of the middle of the tooth per line load [mm per N/mm]."""
+    return WIDTH * gear.middle_displacements([line(gear, height)])[0, 0]
+
+
+@pytest.mark.parametrize("height", HEIGHTS)
+def test_compliance_is_converged(height):
+    fine = model(MeshDensity(6, 8, 3, 3, 6, 5, 1))
+    assert_allclose(whole(model(), height), whole(fine, height), rtol=CONVERGED)
+
+
+@pytest.mark.parametrize("part", [1.0, 0.4])
+def test_compliance_needs_no_more_layers(part):
+    fine = model(replace(COARSE, lengthwise=10))
+    assert_allclose(whole(model(replace(COARSE, lengthwise=5)), 0.6, part), whole(fine, 0.6, part), rtol=CONVERGED)
+
+
+def test_compliance_of_both_sides_is_the_same():
+    assert_allclose([whole(model(side=-1), h) for h in HEIGHTS], [whole(model(), h) for h in HEIGHTS], rtol=1e-5)
+
+
+def test_compliance_grows_towards_the_tip():
+    found = [whole(model(), height) for height in np.linspace(0.0, 1.0, 6)]
+    assert (np.diff(found) > 0.0).all()
+
+
+def test_a_short_line_gives_way_more_than_a_long_one():
+    found = [whole(model(), 0.5, part) for part in (0.1, 0.3, 0.6, 1.0)]
+    assert (np.diff(found) < 0.0).all()
+
+
+def test_the_end_of_the_face_gives_way_more_than_its_middle():
+    gear = model()
+    ends = [gear.matrix([line(gear, 0.5, 0.2, middle=middle)])[0, 0] for middle in (0.1, 0.5, 0.9)]
+    assert ends[0] > 1.3 * ends[1]
+    assert_allclose(ends[0], ends[2], rtol=1e-6)
+
+
+def test_compliance_is_inverse_to_the_modulus():
+    soft = gear_compliance(pinion(material=Material(103000.0, 0.3)), 1, COARSE)
+    assert_allclose(whole(soft, 0.5), 2.0 * whole(model(), 0.5), rtol=ROUNDING)
+
+
+def test_coupling_of_two_teeth_is_reciprocal():
+    gear = model()
+    found = gear.middle_displacements([line(gear, 0.2), line(gear, 0.8, tooth=1)])
+    assert_allclose(found[0, 1], found[1, 0], rtol=BETTI)
+
+
+def test_matrix_is_symmetric_and_positive_definite():
+    gear = model()
+    for low, high in ((0.1, 0.8), (0.4, 0.5), (0.0, 1.0)):
+        matrix = gear.matrix([line(gear, low), line(gear, high, tooth=1)])
+        assert matrix[0, 1] == matrix[1, 0]
+        assert np.linalg.eigvalsh(matrix).min() > 0.0
+        assert 0.0 < matrix[0, 1] < matrix[1, 1]
+
+
+def test_matrix_counts_teeth_around_the_gear():
+    gear = model()
+    near = gear.matrix([line(gear, 0.3), line(gear, 0.6, tooth=1)])
+    around = gear.matrix([line(gear, 0.3, tooth=24), line(gear, 0.6, tooth=25)])
+    assert_allclose(around, near, rtol=ROUNDING)
+
+
+def test_teeth_too_far_apart_are_refused():
+    gear = model()
+    with pytest.raises(InputError, match="2 pitches apart, the model has 1"):
+        gear.matrix([line(gear, 0.3), line(gear, 0.6, tooth=2)])
+
+
+def test_weights_that_are_no_shares_are_refused():
+    gear = model()
+    one = line(gear, 0.5)
+    with pytest.raises(InputError, match=r"force 0.*\n.*force 1"):
+        gear.matrix([replace(one, weight=2.0 * one.weight), replace(one, tooth=1, weight=np.full(40, np.nan))])
+
+
+def test_wind_up_is_that_of_a_ring():
+    """All teeth loaded alike: a pure torque, of which two bores take the ring between them differently."""
+    density = MeshDensity(through=2, flank=3, fillet=1, land=1, rim=4, lengthwise=1, neighbours=12)
+    bores = (40.0, 30.0)
+    found = []
+    for bore in bores:
+        gear = model(density, bore_diameter=bore)
+        found.append(WIDTH * gear.middle_displacements([line(gear, 0.5, tooth=tooth) for tooth in range(25)])[0].sum())
+    wound = 25.0 * spur_mesh().pinion.base_radius ** 2 * ring_wind_up(0.5 * bores[1], 0.5 * bores[0])
+    assert_allclose(found[1] - found[0], wound, rtol=RING)
+
+
+def test_space_without_lengthwise_strain_is_the_plane():
+    """One layer whose nodes do not move along the axis, against plane strain elements: an identity."""
+    gear = pinion()
+    density = replace(COARSE, lengthwise=1)
+    nodes = gear.nodes(density)
+    section = nodes.layout.elements
+    space = discretise(nodes.points, np.column_stack([section, np.zeros(len(section), dtype=int)]))
+    plane = discretise(nodes.points[:, :, 0, :2], section)
+    row = nodes.layout.base_row + 2 * (density.fillet + density.flank)
+    corner = 2 * density.land + 2 * density.through
+    found = []
+    for mesh, share in ((space, WIDTH * np.array([1.0, 4.0, 1.0]) / 6.0), (plane, [1.0])):
+        free = np.ones((len(mesh.points), mesh.dimension), dtype=bool)
+        free[:, 2:] = False
+        held = mesh.number[:, 0].ravel()
+        free[held[held >= 0]] = False
+        load = np.zeros((len(mesh.points), mesh.dimension))
+        load[mesh.number[corner, row].ravel(), 1] = share
+        factor = factorise(mesh.stiffness(gear.material), mesh.dofs, mesh.lowest // 2, free.ravel())
+        solution = factor.solve(load.reshape(-1, 1)).reshape(load.shape)
+        found.append(np.mean(solution[mesh.number[corner, row].ravel(), 1]))
+    assert_allclose(found[0], found[1], rtol=1e-7)
+
+
+@pytest.mark.parametrize("height", HEIGHTS)
+def test_deflection_is_that_of_weber_and_banaschek(height):
+    gear, cylinder = model(), spur_mesh().pinion
+    parts = half_tooth(cylinder, 200)
+    outline = np.concatenate([parts["fillet"][:0:-1], parts["flank"][::-1]])
+    steps = np.diff(outline, axis=0)
+    root = int(np.argmax(-steps[:, 1] < steps[:, 0]))  # where the fillet leans by 45 deg
+    place = gear.frame.places(np.array([height]), np.array([0.5]))
+    load_height = float(place.middle[0, 0] - outline[root, 0])
+    load_angle = math.atan2(place.normal[0, 0], place.normal[0, 1])
+    y, s = outline[root:, 0] - outline[root, 0], 2.0 * outline[root:, 1]
+    expected = tooth_deflection(y, s, load_height, load_angle).total
+    expected += cylinder.base_radius**2 * ring_wind_up(0.55 * cylinder.root_radius, cylinder.root_radius)
+    found = below(gear, height)
+    assert_allclose(found, expected, rtol=CLOSED_FORM)
+    assert found > expected

@@ -1,0 +1,35 @@
+import numpy as np
+import pytest
+
+from loaded_tca.errors import InputError
+from loaded_tca.tooth_compliance import MeshDensity
+from loaded_tca.tooth_compliance.layout import RingLayout
+
+
+def test_elements_close_to_a_ring():
+    layout = RingLayout(9, MeshDensity(neighbours=2))
+    columns, _ = layout.shape
+    lowest = layout.elements[layout.elements[:, 1] == 0][:, 0]
+    np.testing.assert_array_equal(lowest, np.arange(0, columns, 2))
+
+
+def test_neighbours_do_not_meet_behind_the_gear():
+    layout = RingLayout(5, MeshDensity(neighbours=4))
+    assert layout.neighbours == 2
+    assert sorted(sector.number for sector in layout.sectors) == [-2, -1, 0, 1, 2]
+
+
+def test_a_tooth_outside_the_model_is_refused():
+    with pytest.raises(InputError, match="3 is not one of the 3 teeth"):
+        RingLayout(25, MeshDensity()).sector(3)
+
+
+def test_density_tells_every_problem():
+    with pytest.raises(InputError) as error:
+        MeshDensity(through=0, flank=2.5, neighbours=-1)
+    assert [problem.split(":")[0] for problem in error.value.problems] == ["through", "flank", "neighbours"]
+
+
+def test_an_odd_number_of_elements_through_the_tooth_is_refused():
+    with pytest.raises(InputError, match="through: 3 is not even"):
+        MeshDensity(through=3)
