@@ -2,11 +2,12 @@
 
 import math
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from numpy.typing import ArrayLike
 
+from loaded_tca.contact.edges import FreeEdge
 from loaded_tca.contact.levels import prolong
 from loaded_tca.contact.problem import Array, Spacing
 from loaded_tca.contact.solution import CoarserGrid, ContactSolution
@@ -36,6 +37,7 @@ def solve_to_accuracy(
     first_cells: Cells = (16, 16),
     threads: int = 2,
     warn: bool = True,
+    free_edges: Sequence[FreeEdge] = (),
 ) -> ContactSolution:
     """Refine the grid until the estimated error is below the accuracy.
 
@@ -52,7 +54,7 @@ def solve_to_accuracy(
         E*.
     accuracy : float
         Wanted relative error, between 0 and 1.
-    load, approach, max_pressure, tolerance, threads, warn
+    load, approach, max_pressure, tolerance, threads, warn, free_edges
         As in :func:`solve_contact`; the tolerance is tightened to a hundredth of the accuracy.
     smooth : bool
         False where the surfaces have a crease or an end inside the contact: treated as where a border bounds it.
@@ -100,6 +102,7 @@ def solve_to_accuracy(
             initial_pressure=start,
             threads=threads,
             warn=False,
+            free_edges=free_edges,
         )
 
     cells, solution = first_cells, solve(first_cells, None)

@@ -18,16 +18,10 @@ def check_grid(gap: Array, spacing: tuple[float, float], contact_modulus: float)
     if (memory := memory_problem(gap.shape)) is not None:
         return [f"gap: {memory}"]
     if np.shape(spacing) != (2,):
-        return [f"spacing: {spacing} is not a pair of cell widths (dx, dy)"]
-    problems = [
-        f"{name}: {value} is not positive and finite"
-        for name, value in (
-            ("spacing[0]", spacing[0]),
-            ("spacing[1]", spacing[1]),
-            ("contact_modulus", contact_modulus),
-        )
-        if not 0.0 < value < math.inf
-    ]
+        return check_spacing(spacing)
+    problems = check_spacing(spacing)
+    if not 0.0 < contact_modulus < math.inf:
+        problems.append(f"contact_modulus: {contact_modulus} is not positive and finite")
     if np.isnan(gap).any():
         problems.append(f"gap: {int(np.isnan(gap).sum())} cells are NaN (use inf for no material)")
     elif np.isneginf(gap).any():
@@ -35,6 +29,17 @@ def check_grid(gap: Array, spacing: tuple[float, float], contact_modulus: float)
     elif not np.isfinite(gap).any():
         problems.append("gap: no cell holds material, every one is inf")
     return problems
+
+
+def check_spacing(spacing: tuple[float, float]) -> list[str]:
+    """Problems of the widths of a cell."""
+    if np.shape(spacing) != (2,):
+        return [f"spacing: {spacing} is not a pair of cell widths (dx, dy)"]
+    return [
+        f"spacing[{axis}]: {width} is not positive and finite"
+        for axis, width in enumerate(spacing)
+        if not 0.0 < width < math.inf
+    ]
 
 
 def check_demand(load: float | None, approach: float | None, max_pressure: float | None, area: float) -> list[str]:

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from loaded_tca.contact.convolution import Convolution, Preconditioner
+from loaded_tca.contact.convolution import Preconditioner
+from loaded_tca.contact.edges import Mirror, displacement_operator
 
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]
@@ -54,6 +55,8 @@ class Grid:
         Prescribed approach, counted as ``gap`` is; of no meaning if the total is given.
     cap : float [mm]
         Largest pressure, infinity if there is none.
+    edges : tuple of Mirror
+        Free edges, whose images of the pressure K holds too.
     """
 
     gap: Array
@@ -61,6 +64,7 @@ class Grid:
     total: float | None
     approach: float
     cap: float
+    edges: tuple[Mirror, ...] = ()
 
     def clip(self, pressure: Array, movable: Mask) -> Array:
         """Pressure within the bounds and with the right sum: scaled where there is no cap, projected otherwise."""
@@ -191,7 +195,7 @@ class Descent:
         self.pressure = pressure
         self.iterations = 0
         self._threads = threads
-        self._fast = Convolution(shape, grid.aspect, dtype="float32", threads=threads)
+        self._fast = displacement_operator(shape, grid.aspect, grid.edges, dtype="float32", threads=threads)
         self._precondition = Preconditioner(shape, grid.aspect, threads)
         self._refreshed = 0
         self._displacement = displacement if displacement is not None else self._displaced(exact)
@@ -227,7 +231,8 @@ class Descent:
         if not exact:
             return self._fast(self.pressure, np.empty(shape))
         self._refreshed += 1
-        return Convolution(shape, self.grid.aspect, threads=self._threads)(self.pressure, np.empty(shape))
+        exactly = displacement_operator(shape, self.grid.aspect, self.grid.edges, threads=self._threads)
+        return exactly(self.pressure, np.empty(shape))
 
     def settle(self) -> Array:
         """Take the rounding errors of the steps off the sum of the pressures; return these."""

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from loaded_tca.contact.convolution import Window
 from loaded_tca.contact.descent import AT_BOUND, Grid
+from loaded_tca.contact.edges import FreeEdge, amplification, mirrors
 from loaded_tca.contact.levels import coarsen
 from loaded_tca.contact.love import influence_coefficients
 
@@ -38,6 +39,8 @@ class Problem:
         Cap on the pressure, infinity if there is none.
     threads : int
         Threads of a transform.
+    free_edges : tuple of FreeEdge
+        Where the bodies end beside the contact.
     """
 
     gap: Array
@@ -47,6 +50,7 @@ class Problem:
     approach: float
     max_pressure: float
     threads: int
+    free_edges: tuple[FreeEdge, ...] = ()
 
     @property
     def unit(self) -> float:
@@ -58,7 +62,8 @@ class Problem:
         gap = self.gap if window is None else self.gap[window]
         total = None if self.load is None else self.load / (self.spacing[1] * self.contact_modulus)
         gap = np.minimum(gap, OUT_OF_REACH * self.reach)
-        return Grid(gap, self.spacing[1] / self.spacing[0], total, self.approach, self.max_pressure * self.unit)
+        edges = mirrors(self.free_edges, self.spacing, window)
+        return Grid(gap, self.spacing[1] / self.spacing[0], total, self.approach, self.max_pressure * self.unit, edges)
 
     @cached_property
     def reach(self) -> float:
@@ -71,7 +76,7 @@ class Problem:
         if self.load is None:
             return self.approach
         own = float(influence_coefficients((1, 1), self.spacing[1] / self.spacing[0])[0, 0])
-        farthest = own * self.load / (self.spacing[1] * self.contact_modulus)
+        farthest = amplification(self.free_edges) * own * self.load / (self.spacing[1] * self.contact_modulus)
         full = int(self.load / (self.max_pressure * self.spacing[0] * self.spacing[1]))
         if not full:
             return farthest + float(self.gap.min())

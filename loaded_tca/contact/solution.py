@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.contact import patch
+from loaded_tca.contact.edges import FreeEdge
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -89,6 +90,8 @@ class ContactSolution:
         Smallest gap as given: the approach at which the load begins.
     coarser : CoarserGrid or None
         The grid that ``error_estimate`` compares with, if there was one.
+    free_edges : tuple of FreeEdge
+        The edges that were corrected for.
     """
 
     pressure: Array
@@ -104,6 +107,7 @@ class ContactSolution:
     max_pressure: float | None
     first_touch: float
     coarser: CoarserGrid | None
+    free_edges: tuple[FreeEdge, ...] = ()
 
     def __repr__(self) -> str:
         cells = "x".join(str(n) for n in self.pressure.shape)

@@ -17,6 +17,7 @@ Sahlin, Larsson & Glavatskih 2007, Tribol. Int. 40, 574-579 (cap on the pressure
 
 import math
 import warnings
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Literal
 
@@ -24,8 +25,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from loaded_tca.contact import checks
-from loaded_tca.contact.convolution import Convolution, Window
+from loaded_tca.contact.convolution import Window
 from loaded_tca.contact.descent import Descent, Grid, Judgement, judge
+from loaded_tca.contact.edges import FreeEdge, check_edges, displacement_operator, mirrors, without_material_beyond
 from loaded_tca.contact.levels import coarsening, prolong, window_around
 from loaded_tca.contact.problem import OUT_OF_REACH, Problem, Spacing
 from loaded_tca.contact.solution import CoarserGrid, ContactSolution, ContactStatus
@@ -60,6 +62,7 @@ def solve_contact(
     initial_pressure: ArrayLike | None = None,
     threads: int = 2,
     warn: bool = True,
+    free_edges: Sequence[FreeEdge] = (),
 ) -> ContactSolution:
     r"""Press two elastic half-spaces together over a gap.
 
@@ -88,6 +91,9 @@ def solve_contact(
         Threads of large transforms; the result does not depend on them. Workers of a pool keep to one.
     warn : bool
         Whether to give an AccuracyWarning for each of ``solution.doubts``.
+    free_edges : sequence of FreeEdge
+        Where the bodies end beside the contact: nothing is carried beyond, and the images of the pressure in these
+        edges make up for what a half-space would be too stiff. Half-spaces if there are none.
 
     Returns
     -------
@@ -118,10 +124,14 @@ def solve_contact(
     True
     """
     gap, start = np.asarray(gap, dtype=np.float64), _optional_array(initial_pressure)
-    spacing = (float(spacing[0]), float(spacing[1]))
+    spacing, edges = (float(spacing[0]), float(spacing[1])), tuple(free_edges)
     checks.raise_if(
-        checks.check_grid(gap, spacing, contact_modulus) + checks.check_run(tolerance, on_failure, start, gap.shape)
+        checks.check_grid(gap, spacing, contact_modulus)
+        + checks.check_run(tolerance, on_failure, start, gap.shape)
+        + check_edges(edges)
     )
+    gap = without_material_beyond(gap, spacing, edges)
+    checks.raise_if([] if np.isfinite(gap).any() else ["free_edges: no cell within them holds material"])
     material = np.isfinite(gap)
     area = np.count_nonzero(material) * spacing[0] * spacing[1]
     checks.raise_if(checks.check_demand(load, approach, max_pressure, area))
@@ -134,6 +144,7 @@ def solve_contact(
         approach=0.0 if approach is None else approach - lowest,
         max_pressure=math.inf if max_pressure is None else max_pressure,
         threads=threads,
+        free_edges=edges,
     )
     solution = _solve(problem, lowest, tolerance, start)
     if warn:
@@ -174,7 +185,8 @@ def contact_stiffness(solution: ContactSolution, tolerance: float = 1e-6) -> flo
     window = window_around(active)
     # A flat punch of the shape of the cells between the bounds, pressed in by one: its load is the stiffness.
     gap = np.where(active[window], 0.0, OUT_OF_REACH)
-    grid = Grid(gap, solution.spacing[1] / solution.spacing[0], None, 1.0, math.inf)
+    edges = mirrors(solution.free_edges, solution.spacing, window)
+    grid = Grid(gap, solution.spacing[1] / solution.spacing[0], None, 1.0, math.inf, edges)
     descent = Descent(grid, np.zeros(gap.shape))
     state = descent.run(tolerance, MOST_ITERATIONS)
     if state.residual > tolerance:
@@ -221,6 +233,7 @@ def _no_load(problem: Problem, lowest: float) -> ContactSolution:
         max_pressure=None if math.isinf(problem.max_pressure) else problem.max_pressure,
         first_touch=lowest,
         coarser=None,
+        free_edges=problem.free_edges,
     )
 
 
@@ -259,11 +272,11 @@ def _finest(
     iterations = convolutions = 0
     for _ in range(MOST_CHECKS):
         descent.run(RESERVE * tolerance, MOST_ITERATIONS - iterations)
-        check = Convolution(shape, descent.grid.aspect, window, threads=problem.threads)
+        whole = problem.grid()
+        check = displacement_operator(shape, whole.aspect, whole.edges, window, threads=problem.threads)
         displacement = check(descent.settle(), np.empty(shape))
         pressure = np.zeros(shape)
         pressure[window] = descent.pressure
-        whole = problem.grid()
         state = judge(whole, pressure, np.add(displacement, whole.gap, out=whole.gap))
         iterations += descent.iterations
         convolutions += descent.convolutions + check.count
@@ -304,4 +317,5 @@ def _solution(
         max_pressure=None if math.isinf(problem.max_pressure) else problem.max_pressure,
         first_touch=lowest,
         coarser=None if coarse is None else replace(coarse, approach=lowest + coarse.approach),
+        free_edges=problem.free_edges,
     )

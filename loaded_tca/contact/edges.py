@@ -1,0 +1,290 @@
+r"""Free edges: a body that ends beside its contact yields more than a half-space.
+
+Pressure on a half-space would leave stresses on the plane where the body really ends. The same pressure mirrored in
+that plane takes the shear off it and doubles what the half-space yields there; the rest is tension across the
+plane, twice that of the half-space, and taking it off makes the edge yield more again. Both together are close to
+a single image of the pressure, multiplied by a factor psi > 1 that depends on Poisson's ratio:
+
+.. math:: u = K (p + \psi\, p_{mirrored})
+
+The influence matrix stays symmetric, and it stays positive definite for every psi >= 0: with K = T + psi H, H is the
+kernel 1/r of cells and images, a sum of decaying exponentials of the distance from the plane.
+
+References
+----------
+Hetenyi 1960, J. Appl. Mech. 27, 289-296 (quarter-space by overlapping half-spaces); Keer, Lee & Mura 1983, Int. J.
+Solids Struct. 19, 337-352 (the same in three dimensions); Guilbault 2011, J. Tribol. 133, 031402 (one image and a
+factor; the factor here is fitted anew).
+"""
+
+import math
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loaded_tca.contact.convolution import Convolution, Window
+from loaded_tca.errors import InputError
+
+Array = NDArray[Any]
+
+# Where a plane cuts the grid at more than this angle to an axis of it, no axis stands for the edge.
+MOST_OBLIQUE = math.radians(30.0)
+# psi = c0 + c1 nu + c2 nu^2, between what Hetenyi's solution gives for Hertz circles of radius a centred 0 to 1.5 a
+# from the edge (1.30 to 1.34 at nu = 0, 1.76 to 1.81 at 0.3) and for strips that end at it (1.21 to 1.25 and 1.70 to
+# 1.72); see validation/free_edge.py.
+FACTOR = (1.28, 0.44, 3.7)
+
+
+@dataclass(frozen=True)
+class FreeEdge:
+    """A straight edge along an axis of the grid, where one body or both end at right angles to the surface.
+
+    Parameters
+    ----------
+    axis : {0, 1}
+        The axis that the edge is crossed along: 0 for an edge x = const, 1 for y = const.
+    position : float [mm]
+        Distance from the outer border of the first cell along that axis; taken to half a cell.
+    material : {"below", "above"}
+        On which side of the position the bodies are; the cells beyond carry nothing.
+    factor : float
+        psi, not negative; see :func:`quarter_space_factor`. Zero: a half-space that merely carries nothing beyond.
+    """
+
+    axis: int
+    position: float
+    material: Literal["below", "above"]
+    factor: float
+
+
+@dataclass(frozen=True)
+class Mirror:
+    """A free edge in whole numbers: cell j of a window has its image at ``double - 1 - j``."""
+
+    axis: int
+    double: int
+    factor: float
+
+
+def quarter_space_factor(poisson_ratio: float, share: float = 1.0) -> float:
+    r"""Factor psi of the mirrored pressure for a body that ends at right angles to its surface.
+
+    .. math:: \psi = s (1.28 + 0.44 \nu + 3.7 \nu^2)
+
+    It gives the mean displacement of a quarter-space under contacts that touch the edge or are cut by it within 2 %,
+    and 6 % too much displacement at the edge itself, for nu = 0.3 (``docs/contact_solver.md``).
+
+    Parameters
+    ----------
+    poisson_ratio : float
+        Of the body that ends, between 0 and 0.5.
+    share : float
+        Share s of the bodies that end there in the compliance, between 0 and 1: E* (1 - nu1^2)/E1 where body 1 alone
+        ends; 1 where both do.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    InputError
+        With every problem of the arguments.
+
+    Examples
+    --------
+    >>> round(quarter_space_factor(0.3), 3)
+    1.745
+    >>> round(quarter_space_factor(0.3, share=0.5), 4)
+    0.8725
+    """
+    problems = []
+    if not 0.0 <= poisson_ratio <= 0.5:
+        problems.append(f"poisson_ratio: {poisson_ratio} is not between 0 and 0.5")
+    if not 0.0 <= share <= 1.0:
+        problems.append(f"share: {share} is not between 0 and 1")
+    if problems:
+        raise InputError(problems)
+    return share * float(np.polynomial.polynomial.polyval(poisson_ratio, FACTOR))
+
+
+def edge_of_plane(
+    normal: tuple[float, float, float],
+    distance: float,
+    spacing: tuple[float, float],
+    shape: tuple[int, int],
+    factor: float,
+) -> FreeEdge:
+    """The free edge that a plane cuts off a grid whose middle is the origin.
+
+    An oblique cut is replaced by the line along the nearer axis through its point on the other axis, which is right
+    for a contact that is narrow there.
+
+    Parameters
+    ----------
+    normal : (float, float, float)
+        Out of the material, in the axes of the grid (x, y, normal to it): ``separation.axes @ plane_normal``.
+    distance : float [mm]
+        Of the plane from the middle of the grid along the normal, positive where the middle is material:
+        ``plane_normal @ (point_of_plane - separation.origin)``.
+    spacing : (float, float) [mm]
+        Width of a cell.
+    shape : (int, int)
+        Cells of the grid.
+    factor : float
+        See :func:`quarter_space_factor`.
+
+    Returns
+    -------
+    FreeEdge
+
+    Raises
+    ------
+    InputError
+        If the cut is more than 30 degrees off both axes, or the plane is parallel to the grid.
+
+    Examples
+    --------
+    The side of a spur tooth, 2 mm from the contact point towards positive y, on 20 cells of 0.5 mm:
+
+    >>> edge_of_plane((0.0, 1.0, 0.0), 2.0, (0.01, 0.5), (32, 20), 1.745)
+    FreeEdge(axis=1, position=7.0, material='below', factor=1.745)
+    """
+    across, along = abs(normal[0]), abs(normal[1])
+    axis = 0 if across > along else 1
+    if not min(across, along) <= math.tan(MOST_OBLIQUE) * max(across, along) > 0.0:
+        angle = math.degrees(math.atan2(min(across, along), max(across, along)))
+        raise InputError(f"normal: the edge is {angle:.3g} degrees off the axes of the grid; 30 degrees are allowed")
+    position = 0.5 * shape[axis] * spacing[axis] + distance / normal[axis]
+    return FreeEdge(axis, position, "below" if normal[axis] > 0.0 else "above", factor)
+
+
+def check_edges(edges: tuple[FreeEdge, ...]) -> list[str]:
+    """Problems of the free edges."""
+    problems = []
+    for k, edge in enumerate(edges):
+        if edge.axis not in (0, 1):
+            problems.append(f"free_edges[{k}].axis: {edge.axis} is neither 0 nor 1")
+        if not math.isfinite(edge.position):
+            problems.append(f"free_edges[{k}].position: {edge.position} mm is not finite")
+        if edge.material not in ("below", "above"):
+            problems.append(f'free_edges[{k}].material: {edge.material!r} is neither "below" nor "above"')
+        if not 0.0 <= edge.factor < math.inf:
+            problems.append(f"free_edges[{k}].factor: {edge.factor} is negative or not finite")
+    return problems
+
+
+def without_material_beyond(
+    gap: NDArray[np.float64], spacing: tuple[float, float], edges: tuple[FreeEdge, ...]
+) -> NDArray[np.float64]:
+    """The gap, infinite where the centre of a cell lies beyond an edge."""
+    for edge in edges:
+        centres = (np.arange(gap.shape[edge.axis]) + 0.5) * spacing[edge.axis]
+        beyond = centres > edge.position if edge.material == "below" else centres < edge.position
+        gap = np.where(beyond[:, None] if edge.axis == 0 else beyond, np.inf, gap)
+    return gap
+
+
+def mirrors(
+    edges: tuple[FreeEdge, ...], spacing: tuple[float, float], window: Window | None = None
+) -> tuple[Mirror, ...]:
+    """The edges on a grid of a spacing, counted from the first cell of a window of it."""
+    found = []
+    for edge in edges:
+        start = 0 if window is None else window[edge.axis].start
+        found.append(Mirror(edge.axis, round(2.0 * edge.position / spacing[edge.axis]) - 2 * start, edge.factor))
+    return tuple(found)
+
+
+def amplification(edges: tuple[FreeEdge, ...]) -> float:
+    """Bound on how much the images add to a displacement: the factors of all of them, the pressure itself included."""
+    by_axis = [1.0 + sum(edge.factor for edge in edges if edge.axis == axis) for axis in (0, 1)]
+    return by_axis[0] * by_axis[1]
+
+
+class MirroredConvolution:
+    """Displacement of ``target`` cells under the pressure on a window of them and its images in free edges.
+
+    A corner of two edges across different axes mirrors the image too; edges across the same axis give one image each.
+
+    Parameters
+    ----------
+    target, aspect, window, dtype, threads
+        As for :class:`Convolution`.
+    edges : tuple of Mirror
+        Counted from the first cell of the target.
+    """
+
+    def __init__(
+        self,
+        target: tuple[int, int],
+        aspect: float,
+        edges: tuple[Mirror, ...],
+        window: Window | None = None,
+        dtype: str = "float64",
+        threads: int = 2,
+    ) -> None:
+        starts = (0, 0) if window is None else (window[0].start, window[1].start)
+        stops = target if window is None else (window[0].stop, window[1].stop)
+        self._images = _images(edges, starts, stops)
+        least = [min(place[axis][0] for place, _, _ in self._images) for axis in (0, 1)]
+        most = [max(place[axis][1] for place, _, _ in self._images) for axis in (0, 1)]
+        self._least, self._dtype = least, dtype
+        self._loaded = np.zeros((most[0] - least[0], most[1] - least[1]), dtype=dtype)
+        # Images below the first cell: the grid is counted from the first of them.
+        shift = [max(0, -first) for first in least]
+        extended = (target[0] + shift[0], target[1] + shift[1])
+        within = tuple(slice(a + s, b + s) for a, b, s in zip(least, most, shift, strict=True))
+        self._convolve = Convolution(extended, aspect, (within[0], within[1]), dtype, threads)
+        self._displaced = np.empty(extended, dtype=dtype)
+        self._target = (slice(shift[0], None), slice(shift[1], None))
+
+    @property
+    def count(self) -> int:
+        """Convolutions so far."""
+        return self._convolve.count
+
+    def __call__(self, pressure: Array, out: Array) -> Array:
+        """Write the displacement into ``out`` and return it."""
+        self._loaded[:] = 0.0
+        for place, flips, factor in self._images:
+            rows, columns = (slice(a - first, b - first) for (a, b), first in zip(place, self._least, strict=True))
+            self._loaded[rows, columns] += factor * pressure[:: flips[0], :: flips[1]]
+        self._convolve(self._loaded, self._displaced)
+        np.copyto(out, self._displaced[self._target], casting="same_kind")
+        return out
+
+
+Image = tuple[tuple[tuple[int, int], tuple[int, int]], tuple[int, int], float]
+
+
+def _images(edges: tuple[Mirror, ...], starts: tuple[int, int], stops: tuple[int, int]) -> list[Image]:
+    """Place of the pressure and of every image of it, the direction it is read in along each axis, and its factor."""
+    chosen: list[tuple[Mirror, ...]] = [(), *((edge,) for edge in edges)]
+    chosen += [pair for pair in combinations(edges, 2) if pair[0].axis != pair[1].axis]
+    images: list[Image] = []
+    for reflections in chosen:
+        place, flips, factor = [(starts[0], stops[0]), (starts[1], stops[1])], [1, 1], 1.0
+        for edge in reflections:
+            first, last = place[edge.axis]
+            place[edge.axis], flips[edge.axis] = (edge.double - last, edge.double - first), -1
+            factor *= edge.factor
+        images.append(((place[0], place[1]), (flips[0], flips[1]), factor))
+    return images
+
+
+def displacement_operator(
+    target: tuple[int, int],
+    aspect: float,
+    edges: tuple[Mirror, ...],
+    window: Window | None = None,
+    dtype: str = "float64",
+    threads: int = 2,
+) -> Convolution | MirroredConvolution:
+    """Convolution with the coefficients of a half-space, and with the images of the pressure if there are edges."""
+    if not edges:
+        return Convolution(target, aspect, window, dtype, threads)
+    return MirroredConvolution(target, aspect, edges, window, dtype, threads)
