@@ -68,8 +68,9 @@ def _positions(pair: GearPair, count: int) -> Array:
 def _grid_choice(scene: Scene) -> GridChoice:
     wanted = scene.analysis
     if wanted.cells is not None:
-        return GridChoice(cells=(wanted.cells[0], wanted.cells[1]), tolerance=wanted.tolerance)
-    return GridChoice(accuracy=wanted.accuracy, tolerance=wanted.tolerance)
+        cells = (wanted.cells[0], wanted.cells[1])
+        return GridChoice(cells=cells, tolerance=wanted.tolerance, free_edges=wanted.free_edges)
+    return GridChoice(accuracy=wanted.accuracy, tolerance=wanted.tolerance, free_edges=wanted.free_edges)
 
 
 def _compliance(scene: Scene, pair: GearPair) -> MakeCompliance:
@@ -103,9 +104,8 @@ def _doubts(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[str
     solution = loaded.solution
     found = []
     if loaded.at_border:
-        found.append(
-            "the contact reaches a border of a flank: Hertz does not hold, and pressure there grows with the grid"
-        )
+        border = "the contact reaches a border of a flank: Hertz does not hold, and pressure there grows with the grid"
+        found.append(border + ("" if grid.free_edges else "; sides that yield are left out (analysis.free_edges)"))
     if loaded.at_crease:
         found.append("the contact lies across the start of a linear relief: its peak pressure grows with the grid")
     smooth = not (loaded.at_border or loaded.at_crease)

@@ -17,6 +17,7 @@ from loaded_tca.memory import memory_problem
 from loaded_tca.pair import GearPair
 from loaded_tca.reference.hertz import PointContact, point_contact
 from loaded_tca.separation import Separation, sample_separation
+from loaded_tca.side_edges import side_edges
 from loaded_tca.unloaded import ContactPoint
 
 FIRST_CELLS = (16, 16)
@@ -37,11 +38,15 @@ MOST_BOXES = 8
 
 @dataclass(frozen=True)
 class GridChoice:
-    """How finely a contact is resolved: on ``cells`` as given, or on as many as ``accuracy`` needs."""
+    """How finely a contact is resolved: on ``cells`` as given, or on as many as ``accuracy`` needs.
+
+    ``free_edges``: whether the sides of the teeth yield more than a half-space.
+    """
 
     cells: tuple[int, int] | None = None
     accuracy: float = 1e-3
     tolerance: float = 1e-6
+    free_edges: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,6 +171,7 @@ class LoadedContact:
             max_pressure=solution.max_pressure,
             tolerance=tolerance,
             initial_pressure=solution.pressure,
+            free_edges=solution.free_edges,
             warn=False,
         )
 
@@ -236,10 +242,18 @@ def _press_in_box(
         return finest[0].gap, finest[0].spacing
 
     modulus, cap = pair.contact_modulus, pair.max_pressure
+    edges = side_edges(pair, contact, first) if grid.free_edges else ()
     tolerance = grid.tolerance if grid.cells is not None else min(grid.tolerance, TOLERANCE_SHARE * grid.accuracy)
     if grid.cells is not None:
         solution = solve_contact(
-            first.gap, first.spacing, modulus, load=load, max_pressure=cap, tolerance=grid.tolerance, warn=False
+            first.gap,
+            first.spacing,
+            modulus,
+            load=load,
+            max_pressure=cap,
+            tolerance=grid.tolerance,
+            free_edges=edges,
+            warn=False,
         )
     else:
         solution = solve_to_accuracy(
@@ -251,6 +265,7 @@ def _press_in_box(
             tolerance=grid.tolerance,
             smooth=not _crosses_crease(pair, contact, first, _inner_ellipse(first)),
             first_cells=FIRST_CELLS,
+            free_edges=edges,
             warn=False,
         )
     pressed = solution.pressure > 0.0

@@ -144,6 +144,11 @@ class Analysis(Section):
         "follows from accuracy",
     )
     tolerance: float = key(Number(1e-14, 0.1), "relative tolerance of the contact solver", 1e-6)
+    free_edges: bool = key(
+        Choice((False, True)),
+        "whether the sides of the teeth yield more than a half-space, by mirrored pressure",
+        False,
+    )
     load_sharing: bool = key(
         Choice((False, True)),
         "whether several tooth pairs share the torque; false: one carries all",
