@@ -5,10 +5,12 @@ import math
 import numpy as np
 from hypothesis import strategies as st
 
+from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.modification import NO_POLYNOMIAL
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.pair import Mounting, cylindrical_pair
+from loaded_tca.unloaded import trace_contact
 
 NONE = FlankModifications()
 
@@ -80,6 +82,26 @@ def polynomials(draw, width, profile):
 
 
 @st.composite
+def reliefs(draw, module, diameters):
+    """Modifications up to a hundredth of the module; reliefs start between the diameters of the active profile."""
+    low, high = diameters
+    most = 0.01 * module
+    return FlankModifications(
+        lead_crowning=draw(amounts(most)),
+        lead_crowning_form=draw(st.sampled_from(["parabolic", "circular", "logarithmic"])),
+        profile_crowning=draw(amounts(most)),
+        tip_relief=draw(amounts(most)),
+        tip_relief_start=low + (high - low) * draw(st.floats(0.3, 0.95)),
+        tip_relief_form=draw(st.sampled_from(["parabolic", "linear"])),
+        root_relief=draw(amounts(most)),
+        root_relief_start=low + (high - low) * draw(st.floats(0.05, 0.6)),
+        root_relief_form=draw(st.sampled_from(["parabolic", "linear"])),
+        helix_slope=draw(st.floats(-most, most)),
+        profile_slope=draw(st.floats(-most, most)),
+    )
+
+
+@st.composite
 def meshes(draw):
     """Macro geometries that exist: no undercut from 20 teeth on."""
     return cylindrical_mesh(
@@ -118,8 +140,8 @@ def wheel_lag(pair, phi1, rho, z):
     offset = np.stack([rho * np.cos(theta), rho * np.sin(theta), z + 0.0 * rho], axis=-1) - pair.wheel_origin
     x, y, along = (offset @ axis for axis in pair.wheel_axes)
     radius = np.hypot(x, y)
-    angle = pair.sense * (pair.wheel.theta(radius, along).value - np.arctan2(y, x))
-    return angle - pair.ratio * phi1, pair.wheel.inside(radius, along)
+    lag = pair.sense * (pair.wheel.theta(radius, along).value - np.arctan2(y, x)) - pair.ratio * phi1
+    return np.remainder(lag + np.pi, 2.0 * np.pi) - np.pi, pair.wheel.inside(radius, along)
 
 
 def highest_on_grid(pair, phi1, counts=(60, 60)):
@@ -127,3 +149,33 @@ def highest_on_grid(pair, phi1, counts=(60, 60)):
     rho, z = pair.pinion.grid(*counts)
     lag, there = wheel_lag(pair, phi1, rho, z)
     return pair.driving * np.where(there, pair.driving * lag, -np.inf).max()
+
+
+TURNS = st.lists(st.floats(-1.0, 1.0), min_size=2, max_size=4)
+"""Positions of the pinion, in pitches."""
+ROUNDING = 1e-12
+"""Height of a grid point above the contact, over r_b2, that is rounding."""
+
+
+def assert_certified_or_refused(draw_pair, turns):
+    """No point of the flanks penetrates at any position where they touch, and a pair that is refused says why."""
+    try:
+        pair = draw_pair()
+        angles = np.array(turns) * pair.pitch
+        path = trace_contact(pair, angles, warn=False)
+    except (GeometryError, InputError) as error:
+        assert_names_its_cause(str(error))
+        return
+    for row, angle in enumerate(angles):
+        highest = highest_on_grid(pair, angle, (40, 40))
+        if path.touches[row]:
+            found = path.transmission_error[row]
+            assert pair.driving * (highest - found) <= ROUNDING, "no point of the flanks penetrates"
+        else:
+            assert not np.isfinite(highest), "the flanks cover a common region"
+
+
+def assert_names_its_cause(message):
+    """A refusal begins with what it is about: a gear, a key, or that there is no common flank."""
+    about = message.partition(":")[0].partition(".")[0]
+    assert about in ("pinion", "wheel", "profile_shift", "no common flank", "undercut", "centre_distance"), message

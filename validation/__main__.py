@@ -24,6 +24,7 @@ CASES = (
     "face_milled_settings",
     "seed_004_start",
     "iso_tr_6336_30",
+    "mesh_cycle_limits",
     "subsurface",
     "free_edge",
 )

@@ -42,6 +42,8 @@ from validation.table import render
 Array = NDArray[np.float64]
 OFFSETS = (0.0, 0.05, 0.1, 0.13, 0.15, 0.2, 0.3)
 """E [mm] of the table."""
+FINE = 30
+"""Sections of the golden-section search in the table."""
 WIDE = np.linspace(-1.5, 1.5, 241)
 """Positions of the curves of transmission error, in pitches."""
 DOTS_PER_INCH = 90
@@ -124,7 +126,7 @@ def _edge_line(offset: float) -> str:
     gears = pair(mounting=BevelMounting(offset=offset))
     path = path_of(gears)
     own, best = (five_equations(gears, path, from_answer=start).found for start in (False, True))
-    angle, place = golden(gears, path_of(gears, FEW)).largest
+    angle, place = golden(gears, path_of(gears, FEW), FINE).largest
     return f"| {offset:g} | {path.on_edge.sum()} | {own} | {best} | {angle:.1e} | {place:.1e} |"
 
 

@@ -75,10 +75,12 @@ class StructuredGrid:
         """Warn where the fit is continued far beyond the points."""
         for name, ends in zip(DIRECTIONS, self._uncovered(flank), strict=True):
             if max(ends) > UNCOVERED:
-                before, after = (f"{100.0 * max(end, 0.0):.0f} %" for end in ends)
+                names = flank.frame.borders[1::-1] if name == DIRECTIONS[0] else flank.frame.borders[2:]
+                left = " and ".join(
+                    f"{100.0 * max(end, 0.0):.0f} % at the {border}" for end, border in zip(ends, names, strict=True)
+                )
                 warnings.warn(
-                    f"{name}: the points leave {before} and {after} of the flank uncovered at its two ends; there the "
-                    "deviation is a continuation",
+                    f"{name}: the points leave {left} of the flank uncovered; there the deviation is a continuation",
                     AccuracyWarning,
                     stacklevel=3,
                 )

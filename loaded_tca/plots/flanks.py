@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
@@ -57,7 +58,8 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
         axes.plot(*flank.frame.to_picture(radius, axial), ".", color=ACCENT, markersize=4.0)
     if maps:
         figure.colorbar(ScalarMappable(scale, COLOURS), ax=panels, label="contact pressure [MPa]")
-    _explain(figure, len(drawn), len(path))
+    unreached = any(_profile_start(flank) < start for flank, start, *_ in sides)
+    _explain(figure, len(drawn), len(path), unreached)
     what = "contact on the flanks" if maps else "no load, no pressure on the flanks"
     set_title(figure, result, f"{what}, {load(result, torque)}", range_of_positions(result))
     return figure
@@ -72,23 +74,27 @@ def _drawn_maps(result: MeshCycle, torque: int) -> list[list[PressureMap]]:
     return [row for row in pressed if row]
 
 
-def _explain(figure: Figure, drawn: int, positions: int) -> None:
+def _explain(figure: Figure, drawn: int, positions: int, unreached: bool) -> None:
     """The legend of the picture of the flanks."""
-    handles = [
+    handles: list[Artist] = [
         Line2D([], [], color=ACCENT, marker=".", linestyle="", label="unloaded contact points of all positions"),
-        Patch(facecolor=NO_MATE, edgecolor="black", label="flank that the mate does not reach"),
     ]
+    if unreached:
+        handles.append(Patch(facecolor=NO_MATE, edgecolor="black", label="flank that the mate does not reach"))
     pressure = f"pressure drawn at {drawn} of {positions} positions"
     figure.legend(
         handles=handles, title=pressure, loc="outside lower center", ncols=2, fontsize="small", title_fontsize="small"
     )
 
 
+def _profile_start(flank: Flank) -> float:
+    """Smallest profile coordinate of a flank."""
+    return float(flank.profile_coordinate(*flank.grid(*FINENESS)).value.min())
+
+
 def draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:
     """The flank from root to tip, with the part from profile coordinate ``start`` on in white; returns its outline."""
-    rho, z = flank.grid(*FINENESS)
-    along = flank.profile_coordinate(rho, z).value
-    outline = _region(flank, float(along.min()), NO_MATE)
+    outline = _region(flank, _profile_start(flank), NO_MATE)
     for piece in (outline, _region(flank, start, "white")):
         axes.add_patch(piece)
     lower, upper = outline.get_xy().min(axis=0), outline.get_xy().max(axis=0)

@@ -155,7 +155,9 @@ class Analysis(Section):
         False,
     )
     compliance: str = key(
-        Choice(("contact", "contact+tooth")), "what yields under load: the flanks, or the teeth and bodies too", "contact"
+        Choice(("contact", "contact+tooth")),
+        "what yields under load: the flanks, or the teeth and bodies too",
+        "contact",
     )
     torques_Nm: tuple[float, ...] | None = key(
         List(TORQUE_Nm, 1, 1000), "several pinion torques, all analysed", None, "the one of [load]"

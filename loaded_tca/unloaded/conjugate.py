@@ -204,8 +204,8 @@ def _azimuths(pair: GearPair) -> Array:
     rows = np.flatnonzero(_near(pair, EaseOff(pair).heights(angle, rho, z)[1]).any(axis=-1))
     if not rows.size:
         raise GeometryError(
-            "no common flank: the pinion's flank comes nowhere near the wheel's; check tip diameters, centre distance "
-            "and axial offset"
+            "no common flank: the pinion's flank comes nowhere near the wheel's; check the tips of the teeth "
+            "and how the gears are mounted"
         )
     low, high = coarse[rows[0]] - pair.pitch / SCANS, coarse[rows[-1]] + pair.pitch / SCANS
     return np.linspace(low, high, math.ceil((high - low) / pair.pitch * SAMPLES) + 1)

@@ -84,7 +84,7 @@ def _ends(shares: Array, room: Array, border: Border) -> tuple[Array, Array]:
     if not on.any(axis=0).all():
         raise GeometryError(
             "no common flank: at the constant ratio the mate does not reach the whole length of the flank, or none of "
-            "it; check tip diameters, centre distance, axial offset and mounting errors"
+            "it; check the tips of the teeth and how the gears are mounted"
         )
     lines, count = np.arange(room.shape[1]), len(shares)
     first, last = on.argmax(axis=0), count - 1 - on[::-1].argmax(axis=0)

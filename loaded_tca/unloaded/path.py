@@ -172,7 +172,7 @@ def trace_contact(pair: GearPair, pinion_angles: ArrayLike | None = None, *, war
     if not touch.touches.any():
         raise GeometryError(
             f"no common flank: at none of the {len(phi1)} pinion angles between {phi1.min():.6g} and {phi1.max():.6g} "
-            "rad do the two flanks cover a common region; check tip diameters, centre distance and axial offset"
+            "rad do the two flanks cover a common region; check the tips of the teeth and how the gears are mounted"
         )
     path = _assemble(pair, phi1, touch)
     if warn:

@@ -5,7 +5,8 @@ sequential quadratic programme, all starts advanced together. In two dimensions 
 exactly by listing its candidates (free, on one border, in one corner), so that no active set is carried along.
 
 Safeguards: Newton on the absolute values of the curvatures (always uphill), steps below half the flank, a border
-or a bent ridge is kept to second order, and a step is accepted only if the merit e - mu * violation does not fall.
+or a bent ridge is kept to second order, and a step is accepted only if the merit e - mu * violation does not fall. An
+ascent that creeps outside the region (below a base cone the field has no meaning) first goes back to its borders.
 """
 
 from __future__ import annotations
@@ -24,10 +25,17 @@ MOST_STEPS = 300
 MOST_HALVINGS = 30
 SHORT_STEP = 1e-9
 """Fraction of the flank below which a Newton step is the last: the next would be its square."""
+FORGOTTEN = 0.1
+"""What is left, after a step, of the weight of a violation: beside a base cone slopes of 1e8 are met, which would bar
+the way along any bent border ever after."""
+CREEPING = 2.0**-6
+"""Share of a step; if no more of it is accepted outside the region, the field there is no guide, the borders are."""
+INWARDS = 1e6
+"""Weight of the violation against the ease-off on the way back into the region."""
 RIDGE_CORRECTIONS = 3
 """Newton steps back across a bent ridge: half a face width along it leaves it by 0.1 mm, then 1e-3, 1e-7."""
 MERIT_SLACK = 1e-15
-"""Rounding of the ease-off relative to r_b2, not to be mistaken for a fall."""
+"""Rounding of the ease-off relative to the sum of the base radii, not to be mistaken for a fall."""
 CURVATURE_FLOOR = 1e-12
 """Smallest curvature taken for real, relative to the largest: below it the ridge is flat to rounding."""
 SMALLEST_GAIN = 1e-18
@@ -96,17 +104,28 @@ def climb(field: EaseOff, phi1: Array, rho: Array, z: Array) -> Maxima:
     count, borders = len(phi1), len(field.border_owner())
     multipliers, penalty = np.zeros((count, borders)), np.ones(count)
     iterations, converged = np.zeros(count, dtype=int), np.zeros(count, dtype=bool)
-    rows = np.arange(count)
+    rows, (lost, stuck) = np.arange(count), np.zeros((2, count), dtype=bool)
     for number in range(1, MOST_STEPS + 1):
         part, angle = field.restricted(rows), phi1[rows]
         here = _look(part, angle, points[rows], scale)
-        step, multipliers[rows] = _propose(part, here, multipliers[rows], scale)
-        penalty[rows] = np.maximum(penalty[rows], 2.0 * multipliers[rows].max(axis=-1))
+        outside = _violation(here.borders) > FEASIBLE * scale[0]
+        lost[rows] &= outside
+        step, multipliers[rows] = _propose(part, here, multipliers[rows], scale, (lost[rows], stuck[rows]))
+        penalty[rows] = np.maximum.reduce(
+            [np.ones(len(rows)), FORGOTTEN * penalty[rows], 2.0 * multipliers[rows].max(axis=-1)]
+        )
         settled = _settled(part, here, step)
         iterations[rows] = number
-        points[rows], moved = _advance(part, angle, points[rows], step, here, multipliers[rows], penalty[rows])
+        weight = np.where(lost[rows], INWARDS, penalty[rows])
+        ahead, share = _advance(part, angle, points[rows], step, here, multipliers[rows], weight)
+        stays = (ahead == points[rows]).all(axis=-1)
+        points[rows] = ahead
         converged[rows] = settled
-        rows = rows[~settled & moved]
+        creeps = outside & ((share < CREEPING) | (np.abs(step).max(axis=-1) <= SHORT_STEP))
+        ended = settled | (stays & stuck[rows]) | (creeps & lost[rows])
+        lost[rows] |= creeps & ~stays
+        stuck[rows] = stays
+        rows = rows[~ended]
         if not rows.size:
             break
     value, distances = field.heights(phi1, *(points * scale).T)
@@ -135,7 +154,7 @@ def _settled(field: EaseOff, here: _Local, step: Array) -> Array:
 def _advance(
     field: EaseOff, phi1: Array, points: Array, step: Array, here: _Local, multipliers: Array, penalty: Array
 ) -> tuple[Array, Array]:
-    """Points after the longest step, halved as often as needed, that does not lower the merit; whether it moved."""
+    """Points after the longest step, halved as often as needed, that does not lower the merit; the share accepted."""
     scale = np.asarray(field.pair.pinion.extent)
 
     def merit(rows: Array, trial: Array) -> tuple[Array, Array]:
@@ -144,8 +163,8 @@ def _advance(
 
     rows = np.arange(len(points))
     before = field.value(here.station, phi1) - penalty * np.maximum(0.0, -here.borders).sum(axis=-1)
-    before -= MERIT_SLACK * field.pair.base_radii[1]
-    moved, result = np.zeros(len(points), dtype=bool), points.copy()
+    before -= MERIT_SLACK * sum(field.pair.base_radii)
+    share, result = np.zeros(len(points)), points.copy()
     for halving in range(MOST_HALVINGS):
         trial = points[rows] + step[rows] * 0.5**halving
         after, borders = merit(rows, trial)
@@ -160,11 +179,11 @@ def _advance(
             after[astray], _ = merit(part, trial[astray])
         good = after >= before[rows]
         result[rows[good]] = trial[good]
-        moved[rows[good]] = True
+        share[rows[good]] = 0.5**halving
         rows = rows[~good]
         if not rows.size:
             break
-    return result, moved
+    return result, share
 
 
 def _back_to_border(slopes: Array, borders: Array, multipliers: Array) -> Array:
@@ -196,21 +215,32 @@ def _back_to_ridge(field: EaseOff, phi1: Array, points: Array, multipliers: Arra
     return points
 
 
-def _propose(field: EaseOff, here: _Local, multipliers: Array, scale: Array) -> tuple[Array, Array]:
-    """Step (n, 2) of the quadratic model within the linearised borders, and its multipliers (n, borders)."""
+def _propose(
+    field: EaseOff, here: _Local, multipliers: Array, scale: Array, plain: tuple[Array, Array]
+) -> tuple[Array, Array]:
+    """Step (n, 2) of the quadratic model within the linearised borders, and its multipliers (n, borders).
+
+    Where an ascent is lost (the first of ``plain``, (n,) bool) the model is level, and the step the shortest one into
+    the borders; where it is stuck (the second) the model is equally bent in all directions, so that the step rises.
+    """
+    lost, stuck = plain
     bend = field.hessian(here.station)
     held = np.asarray((multipliers > 0.0).any(axis=-1))
     if held.any():
         bend = bend + field.border_hessian(here.station, multipliers)
     bend = -bend * np.outer(scale, scale)
+    if (lost | stuck).any():
+        size = np.where(lost, 1.0, np.linalg.norm(bend, axis=(-2, -1)))
+        bend = np.where((lost | stuck)[:, None, None], size[:, None, None] * np.eye(2), bend)
+    gradient = np.where(lost[:, None], 0.0, here.gradient)
     inverse, curvature = _positive(bend)
-    step = inverse[..., 0] * here.gradient[..., :1] + inverse[..., 1] * here.gradient[..., 1:]
+    step = inverse[..., 0] * gradient[..., :1] + inverse[..., 1] * gradient[..., 1:]
     found = np.zeros_like(multipliers)
     tolerance = ROOM * scale[0]
     room = here.borders + here.slopes[..., 0] * step[:, :1] + here.slopes[..., 1] * step[:, 1:]
     out = np.flatnonzero(room.min(axis=-1) < -tolerance)
     if out.size:
-        problem = Quadratic(here.gradient[out], curvature[out], here.borders[out], here.slopes[out], bend[out])
+        problem = Quadratic(gradient[out], curvature[out], here.borders[out], here.slopes[out], bend[out])
         step[out], found[out] = best_step(problem, tolerance)
     length = np.linalg.norm(step, axis=-1, keepdims=True)
     return step * np.minimum(1.0, LARGEST_STEP / np.maximum(length, 1e-300)), found

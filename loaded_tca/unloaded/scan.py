@@ -1,7 +1,8 @@
 """Points of both flanks that see what an ascent may have missed: where to start, and where to doubt a contact.
 
-The pinion's flank is seen by a grid and by dense points on its borders, which tell heights of the ease-off; the wheel's
-by its own grid and borders, which must not lie inside the pinion once the wheel stands where the contact found puts it.
+The pinion's flank is seen by a grid and by dense points on its borders, which tell heights of the ease-off, and where
+its borders leave the wheel's flank, in the corners of the common region; the wheel's by its own grid and borders, which
+must not lie inside the pinion once the wheel stands where the contact found puts it.
 """
 
 from __future__ import annotations
@@ -24,8 +25,12 @@ BORDER = 33
 """Points along each border of the pinion's flank."""
 WHEEL_GRID, WHEEL_BORDER = (9, 17), 65
 """The same of the wheel's flank, whose borders the pinion's grid does not see: a contact on them may be short."""
+WHEEL_BORDERS = slice(4, 8)
+"""Columns of the borders of the wheel's flank."""
 AT_ONCE = 16
 """Positions looked at together."""
+CORNER_STEPS = 4
+"""Steps of false position from a spacing of border points to a corner: its square, three times over."""
 LEVEL = 1e-11
 """Difference of heights [mm] that is rounding: on a level ridge one start is enough."""
 BETWEEN = 2.0
@@ -71,6 +76,64 @@ class Scan:
         best = height.argmax(axis=1)
         above = np.flatnonzero(height[np.arange(len(rows)), best] > value)
         return rows[above], self.rho[best[above]], self.z[best[above]]
+
+
+@dataclass(frozen=True, eq=False)
+class Corners:
+    """Where the pinion's borders cross those of the wheel, m corners of the common regions of all positions.
+
+    Attributes
+    ----------
+    owner : (m,) int array
+        Position.
+    rho, z : (m,) array [mm]
+    height : (m,) array [mm]
+        Ease-off; the corner is placed to about 1e-9 of a spacing.
+    """
+
+    owner: NDArray[np.int_]
+    rho: Array
+    z: Array
+    height: Array
+
+    def higher(self, rows: NDArray[np.int_], value: Array) -> Starts:
+        """Corners of some positions that are higher than ``value`` (rows,) [mm]."""
+        level = np.full(max(self.owner.max(initial=-1), rows.max(initial=-1)) + 1, np.inf)
+        level[rows] = value
+        above = self.height > level[self.owner]
+        return self.owner[above], self.rho[above], self.z[above]
+
+
+def region_corners(pair: GearPair, phi1: Array, scan: Scan) -> Corners:
+    """Corners between neighbouring points of a border of which one lies in the common region, the other does not."""
+    field, chains = EaseOff(pair), _border_chains()
+    inside = np.isfinite(scan.height)[:, chains]
+    owner, border, place = np.nonzero(inside[..., 1:] != inside[..., :-1])
+    first, last = chains[border, place], chains[border, place + 1]
+    angle = phi1[owner]
+
+    def look(share: Array) -> tuple[Array, Array, Array, Array]:
+        rho, z = (part[first] + share * (part[last] - part[first]) for part in (scan.rho, scan.z))
+        value, borders = field.heights(angle, rho, z)
+        return rho, z, value, borders[:, WHEEL_BORDERS].min(axis=-1)
+
+    ends = np.stack([np.zeros(len(owner)), np.ones(len(owner))])
+    room = np.stack([look(end)[3] for end in ends])
+    for _ in range(CORNER_STEPS):
+        fall = room[0] - room[1]
+        share = ends[0] + (ends[1] - ends[0]) * np.clip(room[0] / np.where(fall == 0.0, 1.0, fall), 0.0, 1.0)
+        rho, z, value, here = look(share)
+        side = (np.sign(here) != np.sign(room[0])).astype(int)
+        ends[side, np.arange(len(owner))], room[side, np.arange(len(owner))] = share, here
+    return Corners(owner, rho, z, value)
+
+
+def _border_chains() -> NDArray[np.int_]:
+    """Numbers of the points of a scan along the borders of the pinion's flank: (4, BORDER)."""
+    count = GRID[0] * GRID[1]
+    along_profile = np.arange(2 * BORDER).reshape(BORDER, 2).T
+    along_face = 2 * BORDER + np.arange(2 * BORDER).reshape(2, BORDER)
+    return count + np.concatenate([along_profile, along_face])
 
 
 def scan_pinion(pair: GearPair, phi1: Array) -> Scan:

@@ -17,7 +17,7 @@ from loaded_tca.flanks.jet import Array
 from loaded_tca.pair import GearPair
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import Maxima, climb
-from loaded_tca.unloaded.scan import Scan, Starts, inside_pinion, scan_pinion
+from loaded_tca.unloaded.scan import Corners, Scan, Starts, inside_pinion, region_corners, scan_pinion
 
 POSITIONS_AT_ONCE = 1024
 """Positions searched together: some 0.2 GB."""
@@ -29,6 +29,10 @@ PIERCED = 1e-9
 """Depth over the module at which a point of the wheel's flank lies inside the pinion: rounding is 1e-13."""
 NUDGE = 0.05
 """Step away from a saddle, as a fraction of the flank."""
+CLOSE = (1e-4, 1e-3, 1e-2)
+"""Steps away from a corner along its borders, as a fraction of the flank."""
+OFF_BORDER = 0.01
+"""Distance by which such a step may leave the region, relative to it, since borders are bent."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,8 +87,13 @@ def _first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
     scan = scan_pinion(pair, phi1)
     found = _ascend(pair, phi1, *scan.hills())
     result, rows = _best(phi1, found), np.arange(len(phi1))
+    close = _beside_corners(pair, phi1, result)
+    if close[0].size:
+        found = found.joined(_ascend(pair, phi1, *close))
+        result = _best(phi1, found)
+    corners = region_corners(pair, phi1, scan)
     for _ in range(ROUNDS):
-        owner, rho, z = _doubts(pair, phi1, scan, result, rows)
+        owner, rho, z = _doubts(pair, phi1, (scan, corners), result, rows)
         if not owner.size:
             return result
         found = found.joined(_ascend(pair, phi1, owner, rho, z))
@@ -93,12 +102,16 @@ def _first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
     return result
 
 
-def _doubts(pair: GearPair, phi1: Array, scan: Scan, touch: FirstTouch, rows: NDArray[np.int_]) -> Starts:
+def _doubts(
+    pair: GearPair, phi1: Array, seen: tuple[Scan, Corners], touch: FirstTouch, rows: NDArray[np.int_]
+) -> Starts:
     """Points from which some positions are to be searched again."""
+    scan, corners = seen
     missed = scan.higher(rows, touch.value[rows] + CERTIFICATE * pair.base_radii[1])
+    cut = corners.higher(rows, touch.value[rows] + PIERCED * pair.module)
     rows = rows[touch.touches[rows]]
     pierced, *place = inside_pinion(pair, phi1[rows], touch.value[rows], PIERCED * pair.module)
-    parts = (missed, (rows[pierced], *place), _beside_saddles(pair, phi1, touch, rows))
+    parts = (missed, cut, (rows[pierced], *place), _beside_saddles(pair, phi1, touch, rows))
     owner, rho, z = (np.concatenate(part) for part in zip(*parts, strict=True))
     return owner, rho, z
 
@@ -121,6 +134,29 @@ def _beside_saddles(pair: GearPair, phi1: Array, touch: FirstTouch, rows: NDArra
     owner = np.repeat(rows[saddle], 2)
     step = (NUDGE * way[saddle] * scale)[:, None, :] * np.array([1.0, -1.0])[:, None]
     return owner, touch.rho[owner] + step[..., 0].ravel(), touch.z[owner] + step[..., 1].ravel()
+
+
+def _beside_corners(pair: GearPair, phi1: Array, touch: FirstTouch) -> Starts:
+    """Points on the two borders that meet in a contact, close to it, that are higher.
+
+    Towards a base cone a modification falls like the root of the distance, so that the corner itself may be a maximum.
+    """
+    rows = np.flatnonzero(touch.touches & ((touch.multipliers > 0.0).sum(axis=1) > 1))
+    field = EaseOff(pair, touch.beyond[rows] if touch.beyond.shape[1] else None)
+    scale = np.asarray(pair.pinion.extent)
+    station = field.station(phi1[rows], touch.rho[rows], touch.z[rows])
+    two = np.argsort(touch.multipliers[rows], axis=1)[:, -2:]
+    edges = np.take_along_axis(field.borders(station)[1] * scale, two[..., None], axis=1)
+    along = np.stack([-edges[..., 1], edges[..., 0]], axis=-1)
+    along /= np.maximum(np.linalg.norm(along, axis=-1, keepdims=True), 1e-300)
+    along *= np.sign((along * edges[:, ::-1]).sum(axis=-1, keepdims=True))
+    step = (along[:, :, None, :] * np.array(CLOSE)[:, None] * scale).reshape(-1, 2)
+    row = np.repeat(np.arange(len(rows)), 2 * len(CLOSE))
+    rho, z = touch.rho[rows[row]] + step[:, 0], touch.z[rows[row]] + step[:, 1]
+    value, borders = field.restricted(row).heights(phi1[rows[row]], rho, z)
+    inside = borders.min(axis=-1) >= -OFF_BORDER * np.linalg.norm(step, axis=-1)
+    higher = inside & (value > touch.value[rows[row]] + PIERCED * pair.module)
+    return rows[row[higher]], rho[higher], z[higher]
 
 
 def _certify(pair: GearPair, phi1: Array, scan: Scan, touch: FirstTouch, rows: NDArray[np.int_]) -> None:

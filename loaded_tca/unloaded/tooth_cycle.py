@@ -205,8 +205,8 @@ def reach(pair: GearPair) -> tuple[float, float]:
         first, last = first - 1, last + 1
     if not near.any():
         raise GeometryError(
-            "no common flank: the flanks of no tooth pair cover a common region; check tip diameters, centre distance "
-            "and axial offset"
+            "no common flank: the flanks of no tooth pair cover a common region; check the tips of the "
+            "teeth and how the gears are mounted"
         )
     touching = step * (first * SCANS + np.flatnonzero(near))
     return float(touching[0]) - step, float(touching[-1]) + step
