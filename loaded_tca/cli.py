@@ -53,6 +53,9 @@ TEETH = """files in DIR:
   pinion.stl, wheel.stl     closed solids, each in its gear's own frame
   teeth.png                 a picture of all that
 All lengths are in mm."""
+EASE_OFF = """files in DIR:
+  ease_off.png              what the flank lacks of the conjugate of its mating flank, in um, with the values at its
+                            corners, and its angles, crownings and twist"""
 EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
 
 
@@ -125,7 +128,7 @@ def _parser() -> argparse.ArgumentParser:
 
     def command(name: str, run: Callable[[argparse.Namespace], None], text: str) -> argparse.ArgumentParser:
         layout = argparse.RawDescriptionHelpFormatter
-        epilogs: dict[object, str | None] = {_check: None, _tooth: TEETH}
+        epilogs: dict[object, str | None] = {_check: None, _tooth: TEETH, _ease_off: EASE_OFF}
         epilog = epilogs.get(run, FILES)
         added = commands.add_parser(
             name, help=text, description=text, epilog=epilog, formatter_class=layout, parents=[common]
@@ -150,6 +153,10 @@ def _parser() -> argparse.ArgumentParser:
     tooth.add_argument("--position", metavar="N", type=int, help="position of the teeth, from 1; default: peak")
     tooth.add_argument("--fillet-radius", metavar="MM", type=float, help="of arcs at the root; default: by the module")
     tooth.add_argument("--whole-gears", action="store_true", help="all teeth in the STL files, not one")
+    ease_off = command("ease-off", _ease_off, "draw the ease-off of a scene, without load")
+    ease_off.add_argument("scene", metavar="SCENE.toml", help="scene file")
+    ease_off.add_argument("--out", metavar="DIR", required=True, type=Path, help="directory for the picture")
+    ease_off.add_argument("--gear", choices=("pinion", "wheel"), default="pinion", help="whose flank; default: pinion")
     check = command("check", _check, "read a scene and show its geometry, without computing a contact")
     check.add_argument("scene", metavar="SCENE.toml", help="scene file")
     return parser
@@ -222,6 +229,21 @@ def _tooth(options: argparse.Namespace) -> None:
     written = write_teeth(shown, teeth, directory, title=result.title, whole_gears=options.whole_gears)
     save_figure(draw_teeth(result, shown), directory / "teeth.png")
     _print_files([*written, directory / "teeth.png"])
+
+
+def _ease_off(options: argparse.Namespace) -> None:
+    from loaded_tca.plots import save_figure
+    from loaded_tca.plots.ease_off import plot_ease_off
+    from loaded_tca.report import make_directory
+    from loaded_tca.scene import read_scene
+    from loaded_tca.unloaded.ease_off_map import ease_off_map
+
+    scene = read_scene(options.scene)
+    _check_place(options.out)
+    ease_off = ease_off_map(scene.pair(), options.gear)
+    make_directory(options.out)
+    save_figure(plot_ease_off(ease_off, scene.title), options.out / "ease_off.png")
+    _print_files([options.out / "ease_off.png"])
 
 
 def _loaded(options: argparse.Namespace) -> tuple[MeshCycle, Path]:

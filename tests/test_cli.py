@@ -347,3 +347,21 @@ def test_closed_pipe_is_no_fault():
         process.stdout.close()
         assert "fault" not in process.stderr.read()
         assert process.wait() in (0, 120)  # 120: Python's own word that stdout could not be flushed
+
+
+# Ease-off
+
+
+@pytest.mark.parametrize("gear", ["pinion", "wheel"])
+def test_ease_off_of_a_scene_is_drawn(run, gear):
+    code, out, err = run("ease-off", scene(), "--out", "maps", "--gear", gear)
+    assert (code, err) == (0, [])
+    assert out == "Written to maps: ease_off.png\n"
+    assert Path("maps/ease_off.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_ease_off_of_an_unknown_gear_is_refused(run):
+    code, _, err = run("ease-off", scene(), "--out", "maps", "--gear", "rack")
+    assert code == 2
+    assert "rack" in err[0]
+    assert not Path("maps").exists()

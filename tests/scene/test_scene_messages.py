@@ -116,7 +116,8 @@ ONE_PROBLEM = [
     ({"analysis.load_sharing": 0}, "analysis.load_sharing: found 0; allowed false or true"),
     (
         {"analysis.compliance": "contact+teeth"},
-        'analysis.compliance: found "contact+teeth"; allowed "contact" or "contact+tooth"; did you mean "contact+tooth"?',
+        'analysis.compliance: found "contact+teeth"; allowed "contact" or "contact+tooth"; did you mean '
+        '"contact+tooth"?',
     ),
     # together
     (
