@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: demo test validate lint clean
+.PHONY: demo test validate reference-fem lint clean
 
 .venv/installed: pyproject.toml
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
@@ -23,6 +23,11 @@ test: lint
 
 validate: .venv/installed
 	$(BIN)/python -m validation
+
+# Takes hours on one core; what is in reference-fem-runs/ already is not run again.
+reference-fem: .venv/installed
+	@command -v ccx > /dev/null || { echo "needs CalculiX (program ccx; Debian: apt install calculix-ccx)"; exit 1; }
+	$(BIN)/python -m validation.reference_fem --work reference-fem-runs
 
 clean:
 	rm -rf .venv loaded-tca-demo .pytest_cache .mypy_cache .ruff_cache .hypothesis

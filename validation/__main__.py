@@ -25,6 +25,7 @@ CASES = (
     "seed_004_start",
     "iso_tr_6336_30",
     "mesh_cycle_limits",
+    "mesh_cycle_fem",
     "subsurface",
     "free_edge",
 )
