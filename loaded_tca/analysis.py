@@ -11,7 +11,7 @@ import numpy as np
 from loaded_tca.carried_load import Carried, Contacts, MakeCompliance, Progress, carried_by_all, carried_by_one
 from loaded_tca.errors import AccuracyWarning
 from loaded_tca.flanks.jet import Array
-from loaded_tca.load_sharing import RigidTeeth, TeethYield
+from loaded_tca.load_sharing import TeethYield
 from loaded_tca.loaded_contact import GridChoice, LoadedContact
 from loaded_tca.mesh_cycle import MeshCycle
 from loaded_tca.pair import GearPair
@@ -76,7 +76,7 @@ def _grid_choice(scene: Scene) -> GridChoice:
 def _compliance(scene: Scene, pair: GearPair) -> MakeCompliance:
     """What yields beside the contacts, once it is known how far apart the loaded teeth of a position may be."""
     if scene.analysis.compliance == "contact":
-        return lambda _: RigidTeeth()
+        return lambda _: None
 
     def make(neighbours: int) -> TeethYield:
         backs = scene.pair("negative" if pair.sense > 0 else "positive")
@@ -197,7 +197,7 @@ def _numbers(pair: GearPair, loaded: LoadedContact | None) -> dict[str, float | 
         "contact_length": min(length, longest),
         "line_load": loaded.line_load,
         "face_load_factor": loaded.line_load * longest / solution.load if solution.load > 0.0 else math.nan,
-        "approach": solution.approach,
+        "approach": loaded.approach,
         "on_edge": loaded.at_border,
         "at_crease": loaded.at_crease,
         "cells_across": solution.pressure.shape[0],

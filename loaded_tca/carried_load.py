@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,14 +13,14 @@ from numpy.typing import NDArray
 from loaded_tca.contact_laws import PowerLaw
 from loaded_tca.flanks.jet import Array
 from loaded_tca.load_sharing import SharedLoad, TeethYield, share_load, touches_at
-from loaded_tca.loaded_contact import GridChoice, LoadedContact, press
+from loaded_tca.loaded_contact import Beneath, GridChoice, LoadedContact, press
 from loaded_tca.pair import GearPair
 from loaded_tca.unloaded import ContactPath, MeshPath, trace_contact, trace_teeth
 
 Progress = Callable[[int, int], None]
 """Called with what is done and what there is to do, in torques times positions."""
-MakeCompliance = Callable[[int], TeethYield]
-"""Makes what yields beside the contacts, where loaded teeth are up to so many pitches apart."""
+MakeCompliance = Callable[[int], TeethYield | None]
+"""Makes what yields beside the contacts, where loaded teeth are up to so many pitches apart; None: nothing does."""
 Contacts = list[list[list[LoadedContact | None]]]
 """By torque, position and tooth pair; None where a pair carries nothing."""
 
@@ -86,19 +87,23 @@ def carried_by_one(
     contacts: Contacts = [[[None] for _ in range(shape[1])] for _ in range(shape[0])]
     rotation, rate, deflection = np.full((3, *shape), math.nan)
     teeth = compliance(0)
+    beneath = None if teeth is None else alone(teeth)
     for t, n in _told(shape, progress):
         contact = path[n]
         if contact.touches:
-            loaded = press(pair, contact, torques[t] / contact.pinion_lever, grid)
-            yields = float(teeth.matrix([0], [loaded])[0, 0])
+            loaded = press(pair, contact, torques[t] / contact.pinion_lever, grid, beneath)
             contacts[t][n][0] = loaded
-            deflection[t, n] = yields * loaded.solution.load
-            rotation[t, n] = (loaded.solution.approach + deflection[t, n]) / contact.wheel_lever
-            stiffness = loaded.stiffness / (1.0 + yields * loaded.stiffness)
-            rate[t, n] = contact.pinion_lever * contact.wheel_lever * stiffness
+            deflection[t, n] = loaded.own_deflection
+            rotation[t, n] = loaded.solution.approach / contact.wheel_lever
+            rate[t, n] = contact.pinion_lever * contact.wheel_lever * loaded.stiffness
     share = np.broadcast_to(np.where(path.touches, 1.0, math.nan)[:, None], (*shape, 1)).copy()
     number = np.zeros(1, dtype=int)
     return Carried(path, torques, number, (path,), contacts, rotation, rate, share, deflection[..., None])
+
+
+def alone(teeth: TeethYield) -> Beneath:
+    """Return what yields beneath the contact of tooth pair 0 where no other one carries anything."""
+    return Beneath(partial(teeth.within, 0), lambda separation: np.zeros(len(separation.y)))
 
 
 def carried_by_all(

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.flanks.jet import Array
@@ -17,10 +16,15 @@ EXPONENTS = (0.3, 2.0)
 POINT_EXPONENT = 2.0 / 3.0
 TELLING = 1e-4
 """Relative difference of two loads from which an exponent follows."""
-MOST_SWEEPS = 500
 MOST_STEPS = 200
-"""Of a rotation that grows threefold, until its torque is more than asked for."""
-SWEEP_TOLERANCE = 1e-13
+"""Newton steps before giving up; five to ten are the rule."""
+STEP_TOLERANCE = 1e-12
+"""Change of the forces, over the largest, that is none."""
+LARGEST_FALL = 0.1
+ROUNDING = 1e-8
+"""Change below which steps that do not shrink are rounding, where the lags are large against the approaches."""
+NOTHING = 1e-12
+"""Force of a pair over the largest that may be none at all."""
 
 
 @dataclass(frozen=True)
@@ -95,50 +99,38 @@ def balance(laws: Sequence[PowerLaw], lags: Array, levers: Array, torque: float,
     >>> balance(laws, np.array([0.0, 1.0]), levers, 1e5, np.zeros((2, 2))).round(6)
     array([2000.,    0.])
     """
-
-    def missing(rotation: float) -> float:
-        return float(levers[0] @ _forces(laws, levers[1] * (rotation - lags), compliance)) - torque
-
-    low, high = float(lags.min()), float(lags.min()) + laws[0].approach / float(levers[1, 0])
+    if not (levers > 0.0).all():
+        raise ConvergenceError(f"load sharing: no rotation gives a torque of {torque:.6g} N mm", last=levers)
+    given = np.array([(law.load, law.approach, law.exponent) for law in laws]).T
+    lags = lags - lags.min()
+    forces, change = np.full(len(laws), torque / float(levers[0].sum())), math.inf
     for _ in range(MOST_STEPS):
-        if missing(high) >= 0.0:
-            break
-        low, high = high, high + 2.0 * (high - low)
-    else:
-        raise ConvergenceError(f"load sharing: no rotation gives a torque of {torque:.6g} N mm", last=high)
-    rotation = brentq(missing, low, high, xtol=SWEEP_TOLERANCE * high, rtol=SWEEP_TOLERANCE)
-    forces = _forces(laws, levers[1] * (rotation - lags), compliance)
-    return forces * (torque / (levers[0] @ forces))
+        target = _newton_step(given, lags, levers, torque, compliance, forces)
+        before, change = change, float(np.abs(target - forces).max() / target.max())
+        forces = target
+        if change <= STEP_TOLERANCE or before <= change <= ROUNDING:
+            return forces * (torque / (levers[0] @ forces))
+    raise ConvergenceError(f"load sharing: forces of the tooth pairs not found in {MOST_STEPS} steps", last=forces)
 
 
-def _forces(laws: Sequence[PowerLaw], closing: Array, compliance: Array) -> Array:
-    """Forces (k,) [N] under the closings of the pairs [mm]; one after the other until they agree.
+def _newton_step(given: Array, lags: Array, levers: Array, torque: float, compliance: Array, forces: Array) -> Array:
+    """Forces (k,) after one step for the pairs under load, and those that come under load or part.
 
-    They minimise the complementary energy, which is convex: minimising over one force after the other converges.
+    No force falls below a tenth at once. The approach grows without end over a force that vanishes (or not at all), so
+    that a pair is parted once its force is next to nothing and what the others leave it does not close it.
     """
-    forces = np.zeros(len(laws))
-    for _ in range(MOST_SWEEPS):
-        before = forces.copy()
-        for index, law in enumerate(laws):
-            own = float(compliance[index, index])
-            left = float(closing[index] - compliance[index] @ forces + own * forces[index])
-            forces[index] = _force_of_one(law, left, own)
-        if np.abs(forces - before).max() <= SWEEP_TOLERANCE * forces.max():
-            return forces
-        if not compliance.any():
-            return forces
-    raise ConvergenceError(f"load sharing: forces of the tooth pairs not found in {MOST_SWEEPS} sweeps", last=forces)
-
-
-def _force_of_one(law: PowerLaw, closing: float, compliance: float) -> float:
-    """Force [N] of a contact and a spring in series under a closing [mm]."""
-    if compliance == 0.0 or closing <= 0.0:
-        return law.force_at(closing)
-
-    def excess(force: float) -> float:
-        return law.approach_under(force) + compliance * force - closing
-
-    highest = min(law.force_at(closing), closing / compliance)
-    if excess(highest) <= 0.0:  # one of the two yields less than rounding of the other
-        return highest
-    return float(brentq(excess, 0.0, highest, xtol=SWEEP_TOLERANCE * highest, rtol=SWEEP_TOLERANCE))
+    load, approach, exponent = given
+    loaded = forces > 0.0
+    part = np.ix_(loaded, loaded)
+    own = approach[loaded] * (forces[loaded] / load[loaded]) ** exponent[loaded]
+    yielding = np.diag(exponent[loaded] * own / forces[loaded]) + compliance[part]
+    missing = -own - compliance[part] @ forces[loaded] - levers[1, loaded] * lags[loaded]
+    by_rotation, by_rest = np.linalg.solve(yielding, np.stack([levers[1, loaded], missing], axis=-1)).T
+    rotation = (torque - levers[0, loaded] @ (forces[loaded] + by_rest)) / (levers[0, loaded] @ by_rotation)
+    target = forces.copy()
+    target[loaded] = np.maximum(forces[loaded] + rotation * by_rotation + by_rest, LARGEST_FALL * forces[loaded])
+    closing = levers[1] * (rotation - lags) - compliance @ target + np.diag(compliance) * target
+    target[(target < NOTHING * target.max()) & (closing <= 0.0)] = 0.0
+    comes = ~loaded & (closing > 0.0)
+    target[comes] = np.minimum(load * (np.maximum(closing, 0.0) / approach) ** (1.0 / exponent), target.max())[comes]
+    return target

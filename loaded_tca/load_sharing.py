@@ -28,15 +28,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 from typing import Protocol
 
 import numpy as np
 
+from loaded_tca.contact.edges import FreeEdge
 from loaded_tca.contact_laws import PowerLaw, balance
 from loaded_tca.errors import ConvergenceError, InputError
 from loaded_tca.flanks.jet import Array
-from loaded_tca.loaded_contact import GridChoice, LoadedContact, press
+from loaded_tca.loaded_contact import Beneath, GridChoice, LoadedContact, press
 from loaded_tca.pair import GearPair
+from loaded_tca.separation import Separation
 from loaded_tca.unloaded import ContactPoint, MeshPath
 
 MOST_BALANCES = 40
@@ -52,33 +55,24 @@ SOFTEST_START = 4.0
 
 
 class TeethYield(Protocol):
-    """What bends and shears beneath the contacts, for instance by finite elements."""
+    """What bends and shears beneath the contacts, for instance by finite elements.
 
-    def matrix(self, pairs: Sequence[int], contacts: Sequence[LoadedContact]) -> Array:
-        """Deflections along the normals under unit forces, both gears together.
+    Tooth pairs are told by their numbers: 0 touches at the pitch point at phi1 = 0, +1 comes into mesh after it. The
+    grid of a contact stands in the angles of its own tooth: pair k as if it were pair 0, k pitches ago. Its columns are
+    cells of one place along the contact.
+    """
 
-        Parameters
-        ----------
-        pairs : sequence of int, (k,)
-            Numbers of the tooth pairs: 0 touches at the pitch point at phi1 = 0, +1 comes into mesh after it.
-        contacts : sequence of LoadedContact, (k,)
-            Their contacts under some load: ``contact`` is the point, with radius, axial place and normal, and
-            ``separation.points`` with ``solution.pressure`` tell how the force lies over the flank. The angle of the
-            contact point is that of its own tooth: pair k as if it were pair 0, k pitches ago.
+    def within(self, number: int, separation: Separation, edges: Sequence[FreeEdge] = ()) -> Array:
+        """Closing of every column that a unit force on each takes up, (ny, ny) [mm/N], symmetric.
 
-        Returns
-        -------
-        (k, k) array [mm/N]
-            Entry (i, j): closing of pair i that a unit force on pair j takes up; symmetric, positive definite or zero.
+        On top of two half-spaces under the same pressures, corrected for free ``edges``.
         """
 
+    def between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
+        """Closing of every column of one contact that a unit force on each column of another takes up [mm/N].
 
-class RigidTeeth:
-    """Teeth that do not bend: contact alone yields."""
-
-    def matrix(self, pairs: Sequence[int], contacts: Sequence[LoadedContact]) -> Array:  # noqa: ARG002
-        """Zero, (k, k)."""
-        return np.zeros((len(pairs), len(pairs)))
+        Its transpose is that of ``between(under, at)``.
+        """
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +127,7 @@ class Share:
     @property
     def rotation(self) -> float:
         """Rotation that its closing asks for [rad]."""
-        closing = self.loaded.solution.approach + self.deflection
+        closing = self.loaded.approach + self.deflection
         return float(self.touch.lag + closing / self.touch.contact.wheel_lever)
 
 
@@ -150,7 +144,7 @@ class SharedLoad:
     shares : tuple of Share
         Of the k pairs that carry load; without load the leading one.
     compliance : (k, k) array [mm/N]
-        Of their teeth.
+        Of their teeth, the mean over the forces.
     residual : float
         Largest difference of the rotation that a pair asks for from the common one, over the rotation.
     balances : int
@@ -175,8 +169,9 @@ class SharedLoad:
         if self.torque == 0.0:
             return 0.0
         contacts = [share.touch.contact for share in self.shares]
-        own = np.diag([1.0 / share.loaded.stiffness for share in self.shares])
-        forces = np.linalg.solve(own + self.compliance, [contact.wheel_lever for contact in contacts])
+        closings = self.compliance.copy()
+        np.fill_diagonal(closings, [1.0 / share.loaded.stiffness for share in self.shares])
+        forces = np.linalg.solve(closings, [contact.wheel_lever for contact in contacts])
         return float(forces @ [contact.pinion_lever for contact in contacts])
 
 
@@ -186,7 +181,7 @@ def share_load(
     torque: float,
     grid: GridChoice,
     *,
-    compliance: TeethYield = RigidTeeth(),
+    compliance: TeethYield | None = None,
     start: Mapping[int, PowerLaw] | None = None,
 ) -> SharedLoad:
     """Share a torque over the tooth pairs of one position.
@@ -200,7 +195,7 @@ def share_load(
         Of the pinion, >= 0.
     grid : GridChoice
         How finely each contact is resolved.
-    compliance : TeethYield
+    compliance : TeethYield, optional
         What yields beside the contacts; default: nothing.
     start : mapping of int to PowerLaw, optional
         Contact laws of a neighbouring position or torque, by the number of the pair.
@@ -243,6 +238,21 @@ def share_load(
     return _Balance(pair, touches, torque, grid, compliance, start or {}).run()
 
 
+@dataclass(frozen=True, eq=False)
+class _Coupling:
+    """Compliance (m, n) [mm/N] of the columns of one grid under those of another."""
+
+    at: Separation
+    under: Separation
+    compliance: Array
+
+
+def _shares(loaded: LoadedContact) -> Array:
+    """Shares of the columns in the force of a contact, (ny,)."""
+    force = loaded.column_force
+    return np.asarray(force / force.sum())
+
+
 class _Balance:
     """Alternates between the balance of the contact laws and presses that correct them."""
 
@@ -252,7 +262,7 @@ class _Balance:
         touches: Sequence[Touch],
         torque: float,
         grid: GridChoice,
-        compliance: TeethYield,
+        compliance: TeethYield | None,
         start: Mapping[int, PowerLaw],
     ) -> None:
         self.pair, self.touches, self.torque, self.grid, self.teeth = pair, tuple(touches), torque, grid, compliance
@@ -261,6 +271,7 @@ class _Balance:
         self.laws = [start.get(touch.pair) or self._borrowed(start, touch) for touch in touches]
         self.pressed: list[LoadedContact | None] = [None] * len(touches)
         self.matrix = np.zeros((len(touches), len(touches)))
+        self.couplings: dict[tuple[int, int], _Coupling] = {}
         self.agreement = AGREEMENT_ON_CELLS if grid.cells is not None else AGREEMENT * grid.accuracy
 
     def _borrowed(self, start: Mapping[int, PowerLaw], touch: Touch) -> PowerLaw:
@@ -275,8 +286,8 @@ class _Balance:
         for count in range(1, MOST_BALANCES + 1):
             forces = balance(self.laws, self.lags, self.levers, self.torque, self.matrix)
             for index in np.flatnonzero(forces):
-                self._press(int(index), float(forces[index]))
-            before, self.matrix = self.matrix, self._compliance(forces)
+                self._press(int(index), forces)
+            before, self.matrix = self.matrix, self._compliance()
             shared = self._shared(forces, count)
             residual = shared.residual
             if residual <= self.agreement and np.allclose(before, self.matrix, rtol=self.agreement, atol=0.0):
@@ -288,26 +299,58 @@ class _Balance:
             last=shared,
         )
 
-    def _press(self, index: int, force: float) -> None:
-        """Press a pair with a force, on the grid it has if that still fits, and correct its law."""
-        before, law = self.pressed[index], self.laws[index]
+    def _press(self, index: int, forces: Array) -> None:
+        """Press a pair with its force, on the grid it has if that still fits, and correct its law."""
+        force, before, law = float(forces[index]), self.pressed[index], self.laws[index]
         if before is not None and SAME_BOX[0] * before.solution.load <= force <= SAME_BOX[1] * before.solution.load:
-            loaded = before.under(force)
+            lift = None if self.teeth is None else self._lift(index, before.separation, forces)
+            loaded = before.under(force, lift)
         else:
-            loaded = press(self.pair, self.touches[index].contact, force, self.grid)
+            beneath = None if self.teeth is None else self._beneath(index, forces, self.teeth)
+            loaded = press(self.pair, self.touches[index].contact, force, self.grid, beneath)
         self.pressed[index] = loaded
-        approach = loaded.solution.approach
+        approach = loaded.approach
         if loaded.solution.load > 0.0 and approach > 0.0:
             self.laws[index] = (
                 replace(law, load=force, approach=approach) if before is None else law.through(force, approach)
             )
 
-    def _compliance(self, forces: Array) -> Array:
-        """Compliance of all touches (n, n), zero for those never pressed."""
-        known = [index for index, loaded in enumerate(self.pressed) if loaded is not None]
-        loaded = [one for one in self.pressed if one is not None]
-        matrix = np.zeros((len(forces), len(forces)))
-        matrix[np.ix_(known, known)] = self.teeth.matrix([self.touches[index].pair for index in known], loaded)
+    def _beneath(self, index: int, forces: Array, teeth: TeethYield) -> Beneath:
+        """What yields beneath a contact while the others carry their forces."""
+        return Beneath(
+            own=lambda separation, edges: teeth.within(self.touches[index].pair, separation, edges),
+            lift=lambda separation: self._lift(index, separation, forces),
+        )
+
+    def _lift(self, index: int, separation: Separation, forces: Array) -> Array:
+        """Displacement of the columns of a grid (ny,) [mm] by what the other pairs carry."""
+        lift = np.zeros(len(separation.y))
+        for other, loaded in enumerate(self.pressed):
+            if other != index and loaded is not None and forces[other] > 0.0:
+                lift += forces[other] * (self._coupling(index, separation, other, loaded) @ _shares(loaded))
+        return lift
+
+    def _coupling(self, index: int, separation: Separation, other: int, loaded: LoadedContact) -> Array:
+        """Compliance of the columns of a grid under those of another contact, known as long as both grids stay."""
+        assert self.teeth is not None
+        kept = self.couplings.get((index, other))
+        if kept is None or kept.at is not separation or kept.under is not loaded.separation:
+            numbers = self.touches[index].pair, self.touches[other].pair
+            found = self.teeth.between((numbers[0], separation), (numbers[1], loaded.separation))
+            kept = self.couplings[index, other] = _Coupling(separation, loaded.separation, found)
+        return kept.compliance
+
+    def _compliance(self) -> Array:
+        """Compliance of all touches (n, n), the mean over the forces; zero for those never pressed."""
+        matrix = np.zeros((len(self.touches), len(self.touches)))
+        known = [(index, loaded) for index, loaded in enumerate(self.pressed) if loaded is not None]
+        if self.teeth is None:
+            return matrix
+        for index, loaded in known:
+            matrix[index, index] = loaded.own_deflection / loaded.solution.load
+        for (index, one), (other, two) in combinations(known, 2):
+            coupling = _shares(one) @ self._coupling(index, one.separation, other, two) @ _shares(two)
+            matrix[index, other] = matrix[other, index] = coupling
         return matrix
 
     def _shared(self, forces: Array, count: int) -> SharedLoad:

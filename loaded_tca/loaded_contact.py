@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from loaded_tca.contact import ContactSolution, solve_contact, solve_to_accuracy
 from loaded_tca.contact.adaptive import TOLERANCE_SHARE
+from loaded_tca.contact.edges import FreeEdge
 from loaded_tca.contact.solution import CoarserGrid
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.jet import Array
@@ -49,6 +51,22 @@ class GridChoice:
     free_edges: bool = False
 
 
+@dataclass(frozen=True)
+class Beneath:
+    """What yields beneath a contact: its tooth pair under its own load, and under that of other pairs.
+
+    Attributes
+    ----------
+    own : callable
+        ``own(separation, free_edges)``: displacement of every column of the grid per force on each, (ny, ny) [mm/N].
+    lift : callable
+        ``lift(separation)``: displacement of every column under the load of other pairs, (ny,) [mm].
+    """
+
+    own: Callable[[Separation, Sequence[FreeEdge]], Array]
+    lift: Callable[[Separation], Array]
+
+
 @dataclass(frozen=True, eq=False)
 class LoadedContact:
     """Pressure of one tooth pair at one position.
@@ -63,6 +81,8 @@ class LoadedContact:
         Whether the start of a linear relief lies in the contact.
     tolerance : float
         To which the solver kept the contact conditions.
+    lift : (ny,) array or None [mm]
+        Displacement of the columns under the load of other tooth pairs; None if nothing bends.
     """
 
     contact: ContactPoint
@@ -70,6 +90,7 @@ class LoadedContact:
     solution: ContactSolution
     at_crease: bool
     tolerance: float = 1e-6
+    lift: Array | None = None
 
     @property
     def at_border(self) -> bool:
@@ -127,9 +148,32 @@ class LoadedContact:
         (nx, ny), (dx, dy) = self.solution.cells_across, self.separation.spacing
         return nx * dx, ny * dy
 
+    @property
+    def column_force(self) -> Array:
+        """Force on every column of the grid, (ny,) [N]."""
+        return np.asarray(self.solution.pressure.sum(axis=0) * self.solution.cell_area)
+
+    @cached_property
+    def own_deflection(self) -> float:
+        """What the tooth pair bends under its own load, the mean over the force [mm]."""
+        compliance, force = self.solution.column_compliance, self.column_force
+        if compliance is None or not force.any():
+            return 0.0
+        return float(force @ compliance @ force / force.sum())
+
+    @property
+    def approach(self) -> float:
+        """Approach of the flanks [mm]: of the closing what is left beside the bending, the mean over the force."""
+        force, closing = self.column_force, self.solution.approach
+        if self.lift is None or not force.any():
+            return closing
+        return float(closing - self.own_deflection - self.lift @ force / force.sum())
+
     @cached_property
     def stiffness(self) -> float:
-        """Stiffness dF/d approach [N/mm], by the chord over +-10 % of the load; zero without load.
+        """Stiffness dF/d closing [N/mm], by the chord over +-10 % of the load; zero without load.
+
+        The closing is that of the flanks and of what bends beneath them, under other loads as they are.
 
         A contact grows by whole cells, so the exact tangent of the discrete problem (``contact_stiffness``) scatters
         by a percent or two about that of the continuum; the chord scatters less, and is off by 0.1 %.
@@ -138,22 +182,24 @@ class LoadedContact:
         if load <= 0.0:
             return 0.0
         loads = ((1.0 - CHORD) * load, min((1.0 + CHORD) * load, self._largest_load))
-        approaches = [self._solved(chord_end).approach for chord_end in loads]
+        approaches = [self._solved(chord_end, lift=self.lift).approach for chord_end in loads]
         return (loads[1] - loads[0]) / (approaches[1] - approaches[0])
 
-    def under(self, load: float) -> LoadedContact:
+    def under(self, load: float, lift: Array | None = None) -> LoadedContact:
         """Return the contact under another load > 0 [N] near this one, on the same grid and as closely solved.
+
+        ``lift``: displacement of the columns under the load of other pairs, if anything bends, (ny,) [mm].
 
         The estimated error is that of the grid: its share of the peak and of the approach is kept.
         """
-        solution, before = self._solved(load, self.tolerance), self.solution
+        solution, before = self._solved(load, self.tolerance, lift), self.solution
         coarser = before.coarser
         if coarser is not None:
             higher = float(solution.pressure.max()) / float(before.pressure.max())
             deeper = (solution.approach - solution.first_touch) / (before.approach - before.first_touch)
-            approach = before.first_touch + deeper * (coarser.approach - before.first_touch)
+            approach = solution.first_touch + deeper * (coarser.approach - before.first_touch)
             solution = replace(solution, coarser=CoarserGrid(higher * coarser.largest, approach))
-        return replace(self, solution=solution)
+        return replace(self, solution=solution, lift=lift)
 
     @property
     def _largest_load(self) -> float:
@@ -161,10 +207,10 @@ class LoadedContact:
         cap = self.solution.max_pressure
         return math.inf if cap is None else cap * self.separation.material_area
 
-    def _solved(self, load: float, tolerance: float = 1e-6) -> ContactSolution:
+    def _solved(self, load: float, tolerance: float = 1e-6, lift: Array | None = None) -> ContactSolution:
         solution = self.solution
         return solve_contact(
-            self.separation.gap,
+            self.separation.gap if lift is None else self.separation.gap + lift,
             self.separation.spacing,
             solution.contact_modulus,
             load=load,
@@ -172,11 +218,14 @@ class LoadedContact:
             tolerance=tolerance,
             initial_pressure=solution.pressure,
             free_edges=solution.free_edges,
+            column_compliance=solution.column_compliance,
             warn=False,
         )
 
 
-def press(pair: GearPair, contact: ContactPoint, load: float, grid: GridChoice) -> LoadedContact:
+def press(
+    pair: GearPair, contact: ContactPoint, load: float, grid: GridChoice, beneath: Beneath | None = None
+) -> LoadedContact:
     """Press one tooth pair together at one position.
 
     The box is the estimated one, made larger as long as the contact reaches it.
@@ -188,6 +237,8 @@ def press(pair: GearPair, contact: ContactPoint, load: float, grid: GridChoice) 
     load : float [N]
         Normal force, >= 0.
     grid : GridChoice
+    beneath : Beneath, optional
+        What yields beside the half-spaces; default: nothing.
 
     Returns
     -------
@@ -206,7 +257,7 @@ def press(pair: GearPair, contact: ContactPoint, load: float, grid: GridChoice) 
     load = 0.0 if 0.0 < load <= SMALLEST_LOAD * pair.contact_modulus * pair.module**2 else load
     separation = _box_for_cap(pair, contact, load, sample_separation(pair, contact, cells=cells, load=load))
     for _ in range(MOST_BOXES):
-        loaded = _press_in_box(pair, contact, load, grid, separation)
+        loaded = _press_in_box(pair, contact, load, grid, separation, beneath)
         grown = _grown_box(loaded.solution)
         if grown is None:
             break
@@ -231,45 +282,58 @@ def _box_for_cap(pair: GearPair, contact: ContactPoint, load: float, separation:
 
 
 def _press_in_box(
-    pair: GearPair, contact: ContactPoint, load: float, grid: GridChoice, first: Separation
+    pair: GearPair,
+    contact: ContactPoint,
+    load: float,
+    grid: GridChoice,
+    first: Separation,
+    beneath: Beneath | None,
 ) -> LoadedContact:
     """Solve in the box of ``first``, on its grid if cells were given, else on finer and finer ones."""
     finest = [first]
+    edges = side_edges(pair, contact, first) if grid.free_edges else ()
 
     def sampler(cells: tuple[int, int]) -> tuple[Array, tuple[float, float]]:
         if cells != first.gap.shape:
             finest[0] = sample_separation(pair, contact, cells=cells, box=first.half_lengths)
-        return finest[0].gap, finest[0].spacing
+        return _lifted(finest[0], beneath), finest[0].spacing
 
-    modulus, cap = pair.contact_modulus, pair.max_pressure
-    edges = side_edges(pair, contact, first) if grid.free_edges else ()
     tolerance = grid.tolerance if grid.cells is not None else min(grid.tolerance, TOLERANCE_SHARE * grid.accuracy)
     if grid.cells is not None:
         solution = solve_contact(
-            first.gap,
+            _lifted(first, beneath),
             first.spacing,
-            modulus,
+            pair.contact_modulus,
             load=load,
-            max_pressure=cap,
+            max_pressure=pair.max_pressure,
             tolerance=grid.tolerance,
             free_edges=edges,
+            column_compliance=None if beneath is None else beneath.own(first, edges),
             warn=False,
         )
     else:
         solution = solve_to_accuracy(
             sampler,
-            modulus,
+            pair.contact_modulus,
             load=load,
-            max_pressure=cap,
+            max_pressure=pair.max_pressure,
             accuracy=grid.accuracy,
             tolerance=grid.tolerance,
             smooth=not _crosses_crease(pair, contact, first, _inner_ellipse(first)),
             first_cells=FIRST_CELLS,
             free_edges=edges,
+            column_compliance=None if beneath is None else lambda _: beneath.own(finest[0], edges),
             warn=False,
         )
     pressed = solution.pressure > 0.0
-    return LoadedContact(contact, finest[0], solution, _crosses_crease(pair, contact, finest[0], pressed), tolerance)
+    at_crease = _crosses_crease(pair, contact, finest[0], pressed)
+    lift = None if beneath is None else beneath.lift(finest[0])
+    return LoadedContact(contact, finest[0], solution, at_crease, tolerance, lift)
+
+
+def _lifted(separation: Separation, beneath: Beneath | None) -> Array:
+    """Gap (nx, ny) [mm] that the load of other tooth pairs leaves."""
+    return separation.gap if beneath is None else separation.gap + beneath.lift(separation)
 
 
 def _crosses_crease(pair: GearPair, contact: ContactPoint, separation: Separation, where: Array) -> bool:

@@ -38,6 +38,7 @@ def solve_to_accuracy(
     threads: int = 2,
     warn: bool = True,
     free_edges: Sequence[FreeEdge] = (),
+    column_compliance: Callable[[Cells], ArrayLike] | None = None,
 ) -> ContactSolution:
     """Refine the grid until the estimated error is below the accuracy.
 
@@ -60,6 +61,8 @@ def solve_to_accuracy(
         False where the surfaces have a crease or an end inside the contact: treated as where a border bounds it.
     first_cells : (int, int)
         Where to begin. The estimate needs two grids: the answer has at least twice as many.
+    column_compliance : callable, optional
+        What :func:`solve_contact` takes by this name, for the grid that the sampler gave last.
 
     Returns
     -------
@@ -103,6 +106,7 @@ def solve_to_accuracy(
             threads=threads,
             warn=False,
             free_edges=free_edges,
+            column_compliance=None if column_compliance is None else column_compliance(cells),
         )
 
     cells, solution = first_cells, solve(first_cells, None)

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from loaded_tca.contact.convolution import Preconditioner
-from loaded_tca.contact.edges import Mirror, displacement_operator
+from loaded_tca.contact.columns import YieldingColumns, yielding
+from loaded_tca.contact.convolution import Convolution, Preconditioner, Window
+from loaded_tca.contact.edges import Mirror, MirroredConvolution, displacement_operator
 
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]
@@ -57,6 +58,8 @@ class Grid:
         Largest pressure, infinity if there is none.
     edges : tuple of Mirror
         Free edges, whose images of the pressure K holds too.
+    columns : (ny, ny) array, optional
+        What yields beneath: displacement of every column under a unit sum of pressures on each, a part of K too.
     """
 
     gap: Array
@@ -65,6 +68,15 @@ class Grid:
     approach: float
     cap: float
     edges: tuple[Mirror, ...] = ()
+    columns: Array | None = None
+
+    def operator(
+        self, window: Window | None = None, dtype: str = "float64", threads: int = 2
+    ) -> Convolution | MirroredConvolution | YieldingColumns:
+        """K for pressures on a window of the grid, or on all of it."""
+        shape = (self.gap.shape[0], self.gap.shape[1])
+        convolve = displacement_operator(shape, self.aspect, self.edges, window, dtype, threads)
+        return yielding(convolve, self.columns, window, dtype)
 
     def clip(self, pressure: Array, movable: Mask) -> Array:
         """Pressure within the bounds and with the right sum: scaled where there is no cap, projected otherwise."""
@@ -195,7 +207,7 @@ class Descent:
         self.pressure = pressure
         self.iterations = 0
         self._threads = threads
-        self._fast = displacement_operator(shape, grid.aspect, grid.edges, dtype="float32", threads=threads)
+        self._fast = grid.operator(dtype="float32", threads=threads)
         self._precondition = Preconditioner(shape, grid.aspect, threads)
         self._refreshed = 0
         self._displacement = displacement if displacement is not None else self._displaced(exact)
@@ -231,8 +243,7 @@ class Descent:
         if not exact:
             return self._fast(self.pressure, np.empty(shape))
         self._refreshed += 1
-        exactly = displacement_operator(shape, self.grid.aspect, self.grid.edges, threads=self._threads)
-        return exactly(self.pressure, np.empty(shape))
+        return self.grid.operator(threads=self._threads)(self.pressure, np.empty(shape))
 
     def settle(self) -> Array:
         """Take the rounding errors of the steps off the sum of the pressures; return these."""

@@ -18,9 +18,10 @@ factor; the factor here is fitted anew).
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,6 +59,9 @@ class FreeEdge:
     position: float
     material: Literal["below", "above"]
     factor: float
+
+
+Edge = TypeVar("Edge", FreeEdge, "Mirror")
 
 
 @dataclass(frozen=True)
@@ -199,6 +203,12 @@ def mirrors(
     return tuple(found)
 
 
+def edge_images(edges: Sequence[Edge]) -> list[tuple[Edge, ...]]:
+    """Edges that each image of the pressure is mirrored in: one after the other, and two that make a corner."""
+    found: list[tuple[Edge, ...]] = [(edge,) for edge in edges]
+    return found + [pair for pair in combinations(edges, 2) if pair[0].axis != pair[1].axis]
+
+
 def amplification(edges: tuple[FreeEdge, ...]) -> float:
     """Bound on how much the images add to a displacement: the factors of all of them, the pressure itself included."""
     by_axis = [1.0 + sum(edge.factor for edge in edges if edge.axis == axis) for axis in (0, 1)]
@@ -263,10 +273,8 @@ Image = tuple[tuple[tuple[int, int], tuple[int, int]], tuple[int, int], float]
 
 def _images(edges: tuple[Mirror, ...], starts: tuple[int, int], stops: tuple[int, int]) -> list[Image]:
     """Place of the pressure and of every image of it, the direction it is read in along each axis, and its factor."""
-    chosen: list[tuple[Mirror, ...]] = [(), *((edge,) for edge in edges)]
-    chosen += [pair for pair in combinations(edges, 2) if pair[0].axis != pair[1].axis]
     images: list[Image] = []
-    for reflections in chosen:
+    for reflections in ((), *edge_images(edges)):
         place, flips, factor = [(starts[0], stops[0]), (starts[1], stops[1])], [1, 1], 1.0
         for edge in reflections:
             first, last = place[edge.axis]

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from loaded_tca.contact.columns import merge_columns
 from loaded_tca.contact.convolution import Window
 from loaded_tca.contact.descent import AT_BOUND, Grid
 from loaded_tca.contact.edges import FreeEdge, amplification, mirrors
@@ -41,6 +42,8 @@ class Problem:
         Threads of a transform.
     free_edges : tuple of FreeEdge
         Where the bodies end beside the contact.
+    columns : (ny, ny) array [mm/N], optional
+        What yields beneath the half-spaces: displacement of every column of cells under a unit force on each.
     """
 
     gap: Array
@@ -51,6 +54,7 @@ class Problem:
     max_pressure: float
     threads: int
     free_edges: tuple[FreeEdge, ...] = ()
+    columns: Array | None = None
 
     @property
     def unit(self) -> float:
@@ -63,7 +67,12 @@ class Problem:
         total = None if self.load is None else self.load / (self.spacing[1] * self.contact_modulus)
         gap = np.minimum(gap, OUT_OF_REACH * self.reach)
         edges = mirrors(self.free_edges, self.spacing, window)
-        return Grid(gap, self.spacing[1] / self.spacing[0], total, self.approach, self.max_pressure * self.unit, edges)
+        columns = None
+        if self.columns is not None:
+            part = slice(None) if window is None else window[1]
+            columns = self.columns[part, part] * (self.spacing[1] * self.contact_modulus)
+        cap = self.max_pressure * self.unit
+        return Grid(gap, self.spacing[1] / self.spacing[0], total, self.approach, cap, edges, columns)
 
     @cached_property
     def reach(self) -> float:
@@ -77,6 +86,8 @@ class Problem:
             return self.approach
         own = float(influence_coefficients((1, 1), self.spacing[1] / self.spacing[0])[0, 0])
         farthest = amplification(self.free_edges) * own * self.load / (self.spacing[1] * self.contact_modulus)
+        if self.columns is not None:
+            farthest += float(np.abs(self.columns).max()) * self.load
         full = int(self.load / (self.max_pressure * self.spacing[0] * self.spacing[1]))
         if not full:
             return farthest + float(self.gap.min())
@@ -92,7 +103,8 @@ class Problem:
         """The same problem on the next coarser grid."""
         spacing = (self.spacing[0] * merge[0], self.spacing[1] * merge[1])
         gap = np.where(self.reachable, self.gap, np.inf)
-        return replace(self, gap=coarsen(gap, merge), spacing=spacing)
+        columns = merge_columns(self.columns, merge[1])
+        return replace(self, gap=coarsen(gap, merge), spacing=spacing, columns=columns)
 
     def fitted(self, pressure: Array) -> Array:
         """A pressure within the bounds and with the load of the problem, none where there is no material."""

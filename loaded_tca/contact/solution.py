@@ -96,6 +96,8 @@ class ContactSolution:
         The grid that ``error_estimate`` compares with, if there was one.
     free_edges : tuple of FreeEdge
         The edges that were corrected for.
+    column_compliance : (ny, ny) array or None [mm/N]
+        What yielded beneath the half-spaces.
     """
 
     pressure: Array
@@ -112,6 +114,7 @@ class ContactSolution:
     first_touch: float
     coarser: CoarserGrid | None
     free_edges: tuple[FreeEdge, ...] = ()
+    column_compliance: Array | None = None
 
     def __repr__(self) -> str:
         cells = "x".join(str(n) for n in self.pressure.shape)

@@ -25,9 +25,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from loaded_tca.contact import checks
+from loaded_tca.contact.columns import check_columns
 from loaded_tca.contact.convolution import Window
 from loaded_tca.contact.descent import Descent, Grid, Judgement, judge
-from loaded_tca.contact.edges import FreeEdge, check_edges, displacement_operator, mirrors, without_material_beyond
+from loaded_tca.contact.edges import FreeEdge, check_edges, mirrors, without_material_beyond
 from loaded_tca.contact.levels import coarsening, prolong, window_around
 from loaded_tca.contact.problem import OUT_OF_REACH, Problem, Spacing
 from loaded_tca.contact.solution import CoarserGrid, ContactSolution, ContactStatus
@@ -63,6 +64,7 @@ def solve_contact(
     threads: int = 2,
     warn: bool = True,
     free_edges: Sequence[FreeEdge] = (),
+    column_compliance: ArrayLike | None = None,
 ) -> ContactSolution:
     r"""Press two elastic half-spaces together over a gap.
 
@@ -94,6 +96,9 @@ def solve_contact(
     free_edges : sequence of FreeEdge
         Where the bodies end beside the contact: nothing is carried beyond, and the images of the pressure in these
         edges make up for what a half-space would be too stiff. Half-spaces if there are none.
+    column_compliance : (ny, ny) array_like [mm/N], optional
+        What bends beneath the half-spaces: displacement of every column (cells of one place along the second axis)
+        under a unit force on each of them; symmetric, and positive definite together with the half-spaces.
 
     Returns
     -------
@@ -124,11 +129,13 @@ def solve_contact(
     True
     """
     gap, start = np.asarray(gap, dtype=np.float64), _optional_array(initial_pressure)
+    columns = _optional_array(column_compliance)
     spacing, edges = (float(spacing[0]), float(spacing[1])), tuple(free_edges)
     checks.raise_if(
         checks.check_grid(gap, spacing, contact_modulus)
         + checks.check_run(tolerance, on_failure, start, gap.shape)
         + check_edges(edges)
+        + check_columns(columns, gap.shape)
     )
     gap = without_material_beyond(gap, spacing, edges)
     checks.raise_if([] if np.isfinite(gap).any() else ["free_edges: no cell within them holds material"])
@@ -145,6 +152,7 @@ def solve_contact(
         max_pressure=math.inf if max_pressure is None else max_pressure,
         threads=threads,
         free_edges=edges,
+        columns=columns,
     )
     solution = _solve(problem, lowest, tolerance, start)
     if warn:
@@ -186,7 +194,10 @@ def contact_stiffness(solution: ContactSolution, tolerance: float = 1e-6) -> flo
     # A flat punch of the shape of the cells between the bounds, pressed in by one: its load is the stiffness.
     gap = np.where(active[window], 0.0, OUT_OF_REACH)
     edges = mirrors(solution.free_edges, solution.spacing, window)
-    grid = Grid(gap, solution.spacing[1] / solution.spacing[0], None, 1.0, math.inf, edges)
+    columns = solution.column_compliance
+    if columns is not None:
+        columns = columns[window[1], window[1]] * (solution.spacing[1] * solution.contact_modulus)
+    grid = Grid(gap, solution.spacing[1] / solution.spacing[0], None, 1.0, math.inf, edges, columns)
     descent = Descent(grid, np.zeros(gap.shape))
     state = descent.run(tolerance, MOST_ITERATIONS)
     if state.residual > tolerance:
@@ -234,6 +245,7 @@ def _no_load(problem: Problem, lowest: float) -> ContactSolution:
         first_touch=lowest,
         coarser=None,
         free_edges=problem.free_edges,
+        column_compliance=problem.columns,
     )
 
 
@@ -273,7 +285,7 @@ def _finest(
     for _ in range(MOST_CHECKS):
         descent.run(RESERVE * tolerance, MOST_ITERATIONS - iterations)
         whole = problem.grid()
-        check = displacement_operator(shape, whole.aspect, whole.edges, window, threads=problem.threads)
+        check = whole.operator(window, threads=problem.threads)
         displacement = check(descent.settle(), np.empty(shape))
         pressure = np.zeros(shape)
         pressure[window] = descent.pressure
@@ -318,4 +330,5 @@ def _solution(
         first_touch=lowest,
         coarser=None if coarse is None else replace(coarse, approach=lowest + coarse.approach),
         free_edges=problem.free_edges,
+        column_compliance=problem.columns,
     )

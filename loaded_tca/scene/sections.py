@@ -127,14 +127,6 @@ class Load(Section):
     pinion_torque_Nm: float = key(TORQUE_Nm, "magnitude of the torque on the pinion")
 
 
-def _edges_without_teeth(free_edges: bool, compliance: str) -> str | None:
-    """The teeth take the half-space off what the flanks yield, and know nothing of mirrored pressure."""
-    if free_edges and compliance != "contact":
-        reason = "the free ends are in the model of the teeth"
-        return f'found true; allowed false with compliance = "{compliance}": {reason}'
-    return None
-
-
 @dataclass(frozen=True, kw_only=True)
 class Analysis(Section):
     """[analysis]: how finely it is computed."""
@@ -170,5 +162,3 @@ class Analysis(Section):
     torques_Nm: tuple[float, ...] | None = key(
         List(TORQUE_Nm, 1, 1000), "several pinion torques, all analysed", None, "the one of [load]"
     )
-
-    rules: ClassVar[tuple[Rule, ...]] = (Rule(("free_edges", "compliance"), _edges_without_teeth),)

@@ -2,94 +2,27 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from loaded_tca.contact.edges import FreeEdge, edge_images
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.jet import Array
-from loaded_tca.loaded_contact import LoadedContact
 from loaded_tca.pair import GearPair
 from loaded_tca.reference.weber_banaschek import ring_wind_up
+from loaded_tca.separation import Separation
 from loaded_tca.tooth.form import ToothForm
 from loaded_tca.tooth_compliance.body import GearTooth
-from loaded_tca.tooth_compliance.influence import GearCompliance, LineForce, gear_compliance
+from loaded_tca.tooth_compliance.influence import FlankLine, GearCompliance, Image, gear_compliance
 from loaded_tca.tooth_compliance.layout import MeshDensity
 
 LAYERS_PER_HEIGHT = 2.5
 """Layers of elements across a face as wide as the teeth are high; between the two numbers below."""
 FEWEST_LAYERS, MOST_LAYERS = 6, 24
 NAMES = ("pinion", "wheel")
-
-
-@dataclass(frozen=True, eq=False)
-class PairForce:
-    """How the force of one tooth pair is spread over its line of contact.
-
-    Attributes
-    ----------
-    pair : int
-        Number of the tooth pair: 0 is the one at phi1, +1 the next one.
-    pinion, wheel : (array, array) [mm]
-        (rho, z) of the m places on either flank, each in its gear's own frame.
-    distance : (m, m) array [mm]
-        Between the places.
-    weight : (m,) array
-        Share of the force at each place; the sum is 1.
-    """
-
-    pair: int
-    pinion: tuple[Array, Array]
-    wheel: tuple[Array, Array]
-    distance: Array
-    weight: Array
-
-
-def pair_force(pair: GearPair, number: int, points: Array, force: Array) -> PairForce:
-    """Spread of a tooth pair's force from points in the fixed frame.
-
-    Parameters
-    ----------
-    pair : GearPair
-    number : int
-        Of the tooth pair.
-    points : (m, 3) array [mm]
-        In the fixed frame, the gears turned by the pair's own angles; m cells or lines across the contact.
-    force : (m,) array
-        Force at each, in any unit, >= 0.
-
-    Raises
-    ------
-    InputError
-        If there is no force, one is negative or not finite, or the shapes do not fit.
-    """
-    points, force = np.asarray(points, dtype=float), np.asarray(force, dtype=float)
-    problems = []
-    if points.ndim != 2 or points.shape[1] != 3 or force.shape != points.shape[:1] or not np.isfinite(points).all():
-        problems.append(f"points: finite (m, 3) and a force (m,) are needed, not {points.shape} and {force.shape}")
-    if not (np.isfinite(force).all() and (force >= 0.0).all() and force.sum() > 0.0):
-        problems.append("force: must be finite, nowhere negative, and positive somewhere")
-    if problems:
-        raise InputError(problems)
-    loaded = force > 0.0
-    points, force = points[loaded], force[loaded]
-    distance = np.linalg.norm(points[:, None] - points, axis=-1)
-    on_pinion, (radius, _, axial) = np.hypot(points[:, 0], points[:, 1]), pair.to_wheel(points)
-    return PairForce(number, (on_pinion, points[:, 2]), (radius, axial), distance, force / force.sum())
-
-
-def force_of_contact(pair: GearPair, number: int, loaded: LoadedContact) -> PairForce:
-    """Spread of the force of a pressed contact along its longer axis; each cross-section acts in its middle.
-
-    Without load: all of it at the contact point, where the first load will be.
-    """
-    pressure = loaded.solution.pressure
-    force = pressure.sum(axis=0)
-    if not force.any():
-        return pair_force(pair, number, loaded.contact.point[None], np.ones(1))
-    share = pressure / np.where(force > 0.0, force, 1.0)
-    return pair_force(pair, number, np.einsum("xy,xyc->yc", share, loaded.separation.points), force)
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,61 +48,80 @@ class ToothCompliance:
     def wind_up(self) -> tuple[float, float]:
         """Of pinion and wheel: what the twist of the ring between bore and root adds, as a closed form [mm/N].
 
-        It is a part of :meth:`matrix`, told to show what a bore diameter does; of bevel gears that of the mean section.
+        It is a part of :meth:`within`, told to show what a bore diameter does; of bevel gears that of the mean section.
         """
         gears = zip((self.pinion, self.wheel), self.pair.base_radii, strict=True)
         return tuple(_wind_up(gear, base_radius) for gear, base_radius in gears)  # type: ignore[return-value]
 
-    def matrix(self, pairs: Sequence[int], contacts: Sequence[LoadedContact]) -> Array:
-        """Return :meth:`matrix_of` the forces of pressed contacts.
+    def within(self, number: int, separation: Separation, edges: Sequence[FreeEdge] = ()) -> Array:
+        """Closing of every column of a contact's grid per force on each, both gears together.
+
+        It comes on top of the displacement of the two half-spaces that carry the same pressures.
 
         Parameters
         ----------
-        pairs : sequence of int, (n,)
-            Numbers of the tooth pairs.
-        contacts : sequence of LoadedContact, (n,)
-            Pressed, each in its own angles: as if its pair were pair 0.
+        number : int
+            Of the tooth pair: 0 touches at the pitch point at phi1 = 0, +1 comes into mesh after it.
+        separation : Separation
+            Grid of its contact, in the angles of its own tooth: as if it were pair 0.
+        edges : sequence of FreeEdge
+            For which the half-spaces are corrected.
 
         Returns
         -------
-        (n, n) array [mm/N]
+        (ny, ny) array [mm/N]
+            Symmetric.
+        """
+        along = separation.y
+        distance, images = np.abs(along[:, None] - along), _images(separation, edges)
+        lines = zip((self.pinion, self.wheel), self._lines(number, separation), strict=True)
+        pinion, wheel = (gear.within(line, distance, images) for gear, line in lines)
+        return np.asarray(pinion + wheel)
+
+    def between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
+        """Closing of every column of one contact's grid per force on each column of another's.
+
+        Parameters
+        ----------
+        at, under : (int, Separation)
+            Numbers of two different tooth pairs and grids of their contacts, as in :meth:`within`.
+
+        Returns
+        -------
+        (m, n) array [mm/N]
+            Its transpose is that of ``between(under, at)``.
 
         Raises
         ------
         InputError
-            As :meth:`matrix_of`.
+            If the pairs are further apart than the modelled teeth.
         """
-        forces = [force_of_contact(self.pair, *one) for one in zip(pairs, contacts, strict=True)]
-        return self.matrix_of(forces)
+        there, here = self._lines(*at), self._lines(*under)
+        return self.pinion.between(there[0], here[0]) + self.wheel.between(there[1], here[1])
 
-    def matrix_of(self, forces: Sequence[PairForce]) -> Array:
-        """Displacement along the line of action at each tooth pair per normal force at each, both gears together.
+    def _lines(self, number: int, separation: Separation) -> tuple[FlankLine, FlankLine]:
+        """Middles of the columns of a grid on both flanks."""
+        points = separation.origin + separation.y[:, None] * separation.axes[1]
+        radius, _, axial = self.pair.to_wheel(points)
+        tooth = self.pair.sense * number
+        on_pinion = FlankLine(-tooth, np.hypot(points[:, 0], points[:, 1]), points[:, 2])
+        return on_pinion, FlankLine(tooth, radius, axial)
 
-        It comes on top of the approach of two half-spaces under the same forces: delta = approach(F) + C F.
 
-        Parameters
-        ----------
-        forces : sequence of n PairForce
-            Of different tooth pairs.
-
-        Returns
-        -------
-        (n, n) array [mm/N]
-            Symmetric. Row and column i belong to ``forces[i]``.
-
-        Raises
-        ------
-        InputError
-            If a tooth pair comes twice, two are further apart than the modelled teeth, or weights do not add up to 1.
-        """
-        numbers = [force.pair for force in forces]
-        if len(set(numbers)) < len(numbers):
-            raise InputError(f"forces: a tooth pair comes twice in {numbers}")
-        sense = self.pair.sense
-        spread = [(force.distance, force.weight) for force in forces]
-        on_pinion = [LineForce(-sense * f.pair, *f.pinion, *also) for f, also in zip(forces, spread, strict=True)]
-        on_wheel = [LineForce(sense * f.pair, *f.wheel, *also) for f, also in zip(forces, spread, strict=True)]
-        return self.pinion.matrix(on_pinion) + self.wheel.matrix(on_wheel)
+def _images(separation: Separation, edges: Sequence[FreeEdge]) -> list[Image]:
+    """Distances (ny, ny) of the middles of columns from their images in free edges, and the factors of these."""
+    half_across, half_along = separation.half_lengths
+    found = []
+    for chosen in edge_images(edges):
+        across, along = 0.0, separation.y
+        for edge in chosen:
+            if edge.axis == 0:
+                across = 2.0 * (edge.position - half_across)
+            else:
+                along = 2.0 * (edge.position - half_along) - along
+        factor = math.prod(edge.factor for edge in chosen)
+        found.append((np.hypot(across, separation.y[:, None] - along), factor))
+    return found
 
 
 def tooth_compliance(
@@ -208,15 +160,15 @@ def tooth_compliance(
     --------
     >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
     >>> from loaded_tca.pair import cylindrical_pair
+    >>> from loaded_tca.separation import sample_separation
     >>> from loaded_tca.tooth import tooth_forms
     >>> from loaded_tca.unloaded import trace_contact
     >>> mesh = CylindricalMesh(*(CylindricalGear(teeth=z, normal_module=3.0, face_width=10.0) for z in (25, 37)))
     >>> pair, backs = (cylindrical_pair(mesh, sense=sense) for sense in ("positive", "negative"))
     >>> compliance = tooth_compliance(tooth_forms(mesh), pair, backs)
-    >>> along = np.array([[0.0, 0.0, z] for z in np.linspace(-4.5, 4.5, 10)])
-    >>> points = trace_contact(pair, [0.0])[0].point * [1.0, 1.0, 0.0] + along
-    >>> compliance.matrix_of([pair_force(pair, 0, points, np.ones(10))]).round(8)
-    array([[4.24e-06]])
+    >>> separation = sample_separation(pair, trace_contact(pair, [0.0])[0], cells=(4, 10), box=(0.2, 5.0))
+    >>> float(compliance.within(0, separation).mean().round(8))  # of an even force
+    4.24e-06
     """
     if pair.pinion.side == backs.pinion.side:
         raise InputError("backs: this pair touches with the same flanks; the one in the other sense is needed")

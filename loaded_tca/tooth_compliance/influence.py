@@ -40,26 +40,24 @@ LEAST_LENGTHS = 11
 
 
 @dataclass(frozen=True, eq=False)
-class LineForce:
-    """A unit normal force along a line of places of one flank.
+class FlankLine:
+    """Places along a line on one flank of a gear.
 
     Attributes
     ----------
     tooth : int
-        Tooth of the gear that carries it, counted in the sense of +theta.
+        Tooth of the gear, counted in the sense of +theta.
     rho, z : (m,) array [mm]
-        Places, in the gear's own frame.
-    distance : (m, m) array [mm]
-        Between the places.
-    weight : (m,) array
-        Share of the force at each place; the sum is 1.
+        In the gear's own frame; places beyond the flank count as its border.
     """
 
     tooth: int
     rho: Array
     z: Array
-    distance: Array
-    weight: Array
+
+
+Image = tuple[Array, float]
+"""Distances (m, m) [mm] of places from the images of places in a free edge, and the factor of the image."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,52 +88,54 @@ class GearCompliance:
         """Teeth on either side of a loaded one whose displacement is known."""
         return len(self.displacement) // 2
 
-    def matrix(self, forces: Sequence[LineForce]) -> Array:
-        """Displacements along the line of action (m, m) [mm/N], at each force under each, symmetric.
+    def between(self, at: FlankLine, under: FlankLine) -> Array:
+        """Displacements (m, n) of the middles of the teeth below m places per force at n others [mm/N].
+
+        As the finite elements have them, the mean of both ways: forces act on the flank, displacements are taken in
+        the middle, so that they are reciprocal but for a few per cent.
 
         Parameters
         ----------
-        forces : sequence of m LineForce
-            On different teeth.
+        at, under : FlankLine
 
         Raises
         ------
         InputError
-            If two of them are further apart than the teeth of the model, or a weight is not usable.
+            If the two are further apart than the teeth of the model.
         """
-        found = self.middle_displacements(forces)
-        own = [self._own(force, _Places.of(self, force)) for force in forces]
-        return 0.5 * (found + found.T) + np.diag(own)
-
-    def middle_displacements(self, forces: Sequence[LineForce]) -> Array:
-        """Displacements (m, m) of the middles of the teeth alone [mm/N], as the finite elements have them.
-
-        Not quite symmetric: forces act on the flank. For parameters and errors see :meth:`matrix`.
-        """
-        _require_usable(forces)
-        shared = [(force.tooth, _Places.of(self, force).shares(force.weight)) for force in forces]
-        return np.array([[self._between(at, under) for under in shared] for at in shared])
-
-    def _between(self, at: tuple[int, Array], under: tuple[int, Array]) -> float:
-        """Displacement by the finite elements at one force under another: their teeth, and shares of the places."""
         teeth = self.frame.gear.form.teeth
-        away = (at[0] - under[0] + teeth // 2) % teeth - teeth // 2
+        away = (at.tooth - under.tooth + teeth // 2) % teeth - teeth // 2
         if abs(away) > self.neighbours:
             raise InputError(
                 f"tooth: two loaded teeth are {abs(away)} pitches apart, the model has {self.neighbours} neighbours of "
                 "a loaded tooth; ask for more neighbours"
             )
-        return float(at[1] @ self.displacement[away + self.neighbours] @ under[1])
+        there, here = (_Places.of(self, line).shares for line in (at, under))
+        forth, back = (self.displacement[self.neighbours + step] for step in (away, -away))
+        return np.asarray(0.5 * there @ (forth + back.T) @ here.T)
 
-    def _own(self, force: LineForce, places: _Places) -> float:
-        """Local term less the displacement of the half-space, both on the mean over the force."""
+    def within(self, line: FlankLine, distance: Array, images: Sequence[Image] = ()) -> Array:
+        """Displacements (m, m) of places of one tooth per force at each [mm/N], on top of those of a half-space.
+
+        Parameters
+        ----------
+        line : FlankLine
+            m places.
+        distance : (m, m) array [mm]
+            Between them, along the line.
+        images : sequence of Image
+            Of free edges for which the half-space was corrected: their displacements in the middle go off as well.
+        """
+        places = _Places.of(self, line)
         depth = np.einsum("ma,ab,mb->m", places.across, self.depth, places.along)[:, None]
-        spread = _spread(depth, force.distance) + sum(_spread(depth, image) for image in self._images(places.length))
-        local = self.local.at(places.height)[:, None] * spread
-        half_space = depth_displacement(depth, force.distance, self.frame.gear.material)
-        return float(force.weight @ (local - half_space) @ force.weight)
+        spread = _spread(depth, distance) + sum(_spread(depth, image) for image in self._beyond_ends(places.length))
+        material = self.frame.gear.material
+        half_space = depth_displacement(depth, distance, material)
+        half_space = half_space + sum(factor * depth_displacement(depth, image, material) for image, factor in images)
+        found = self.local.at(places.height)[:, None] * spread - half_space
+        return self.between(line, line) + 0.5 * (found + found.T)
 
-    def _images(self, length: Array) -> tuple[Array, Array]:
+    def _beyond_ends(self, length: Array) -> tuple[Array, Array]:
         """Distances (m, m) from the mirror images beyond both ends of the face [mm]."""
         width = float(np.ptp(self.frame.nodes.coordinate))
         from_start = width * (length[:, None] + length)
@@ -144,7 +144,7 @@ class GearCompliance:
 
 @dataclass(frozen=True, eq=False)
 class _Places:
-    """Parts (m,) of height and face width of the places of a force, and their Lagrange polynomials (m, a), (m, b)."""
+    """Parts (m,) of height and face width of the places of a line, and their Lagrange polynomials (m, a), (m, b)."""
 
     height: Array
     length: Array
@@ -152,14 +152,15 @@ class _Places:
     along: Array
 
     @classmethod
-    def of(cls, gear: GearCompliance, force: LineForce) -> _Places:
-        """Where a force lies among the places of a gear's table."""
-        height, length = gear.frame.parts(force.rho, force.z)
+    def of(cls, gear: GearCompliance, line: FlankLine) -> _Places:
+        """Where a line lies among the places of a gear's table."""
+        height, length = gear.frame.parts(line.rho, line.z)
         return cls(height, length, _lagrange(gear.heights, height), _lagrange(gear.lengths, length))
 
-    def shares(self, weight: Array) -> Array:
-        """Shares (a b,) of the places of the table in a force."""
-        return ((weight[:, None] * self.across).T @ self.along).ravel()
+    @property
+    def shares(self) -> Array:
+        """Shares (m, a b) of the places of the table in every place."""
+        return (self.across[:, :, None] * self.along[:, None, :]).reshape(len(self.across), -1)
 
 
 def gear_compliance(gear: GearTooth, side: int, density: MeshDensity = MeshDensity()) -> GearCompliance:
@@ -194,17 +195,6 @@ def gear_compliance(gear: GearTooth, side: int, density: MeshDensity = MeshDensi
         found.append(frame.on_middle(places, tooth, number).displacements(solution, turned))
     depth = places.depth.reshape(len(heights), len(lengths))
     return GearCompliance(frame, heights, lengths, np.stack(found), depth, local_flexibility(gear, side))
-
-
-def _require_usable(forces: Sequence[LineForce]) -> None:
-    """Refuse weights that are no shares of one force."""
-    problems = [
-        f"weight: the shares of force {number} must be finite and add up to 1"
-        for number, force in enumerate(forces)
-        if not (np.isfinite(force.weight).all() and math.isclose(float(force.weight.sum()), 1.0, rel_tol=1e-6))
-    ]
-    if problems:
-        raise InputError(problems)
 
 
 def _spread(depth: Array, distance: Array) -> Array:

@@ -115,11 +115,6 @@ ONE_PROBLEM = [
     # what shares and yields
     ({"analysis.load_sharing": 0}, "analysis.load_sharing: found 0; allowed false or true"),
     (
-        {"analysis.free_edges": True, "analysis.compliance": "contact+tooth"},
-        'analysis.free_edges: found true; allowed false with compliance = "contact+tooth": the free ends are in the '
-        "model of the teeth",
-    ),
-    (
         {"analysis.compliance": "contact+teeth"},
         'analysis.compliance: found "contact+teeth"; allowed "contact" or "contact+tooth"; did you mean '
         '"contact+tooth"?',

@@ -7,7 +7,7 @@ import numpy as np
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.pair import GearPair, cylindrical_pair
 from loaded_tca.tooth import tooth_forms
-from loaded_tca.tooth_compliance import GearCompliance, GearTooth, LineForce, MeshDensity, gear_compliance
+from loaded_tca.tooth_compliance import FlankLine, GearCompliance, GearTooth, MeshDensity, gear_compliance
 
 WIDTH = 20.0
 COARSE = MeshDensity(lengthwise=4)
@@ -36,10 +36,27 @@ def model(density: MeshDensity = COARSE, side: int = 1, bore_diameter: float | N
     return gear_compliance(pinion(bore_diameter), side, density)
 
 
-def line(gear: GearCompliance, height: float, part: float = 1.0, tooth: int = 0, middle: float = 0.5) -> LineForce:
-    """Even force along a part of the face at a height on the flank."""
-    places, weight = np.polynomial.legendre.leggauss(40)
-    flank = gear.frame.places(np.full(40, height), middle + 0.5 * part * places)
+PLACES, WEIGHTS = np.polynomial.legendre.leggauss(40)
+
+
+def line(gear: GearCompliance, height: float, part: float = 1.0, tooth: int = 0, middle: float = 0.5) -> FlankLine:
+    """Along a part of the face at a height on the flank."""
+    flank = gear.frame.places(np.full(40, height), middle + 0.5 * part * PLACES)
     x, y, z = flank.point.T
-    distance = np.linalg.norm(flank.point[:, None] - flank.point, axis=-1)
-    return LineForce(tooth, np.hypot(x, y), z, distance, 0.5 * weight)
+    return FlankLine(tooth, np.hypot(x, y), z)
+
+
+def even(compliance: np.ndarray) -> float:
+    """Mean displacement under a unit force spread evenly over the line."""
+    return 0.25 * float(WEIGHTS @ compliance @ WEIGHTS)
+
+
+def within(gear: GearCompliance, height: float, part: float = 1.0, middle: float = 0.5) -> float:
+    """Mean displacement of a line of a spur gear under a unit force spread evenly over it."""
+    one = line(gear, height, part, middle=middle)
+    return even(gear.within(one, np.abs(one.z[:, None] - one.z)))
+
+
+def between(gear: GearCompliance, at: FlankLine, under: FlankLine) -> float:
+    """Mean displacement of the middles below a line under a unit force spread evenly over another."""
+    return even(gear.between(at, under))

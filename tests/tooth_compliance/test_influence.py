@@ -3,14 +3,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bodies import COARSE, WIDTH, line, model, pinion, spur_mesh
+from bodies import COARSE, WIDTH, between, line, model, pinion, spur_mesh, within
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import InputError
 from loaded_tca.gears.transverse_profile import half_tooth
 from loaded_tca.material import Material
 from loaded_tca.reference.weber_banaschek import ring_wind_up, tooth_deflection
-from loaded_tca.tooth_compliance import MeshDensity, gear_compliance
+from loaded_tca.tooth_compliance import FlankLine, MeshDensity, gear_compliance
 from loaded_tca.tooth_compliance.dissection import factorise
 from loaded_tca.tooth_compliance.finite_elements import discretise
 
@@ -27,12 +27,13 @@ ROUNDING = 1e-9
 
 
 def whole(gear, height, part=1.0):
-    return WIDTH * gear.matrix([line(gear, height, part)])[0, 0]
+    return WIDTH * within(gear, height, part)
 
 
 def below(gear, height):
     """Displacement of the middle of the tooth per line load [mm per N/mm]."""
-    return WIDTH * gear.middle_displacements([line(gear, height)])[0, 0]
+    one = line(gear, height)
+    return WIDTH * between(gear, one, one)
 
 
 @pytest.mark.parametrize("height", HEIGHTS)
@@ -63,7 +64,7 @@ def test_a_short_line_gives_way_more_than_a_long_one():
 
 def test_the_end_of_the_face_gives_way_more_than_its_middle():
     gear = model()
-    ends = [gear.matrix([line(gear, 0.5, 0.2, middle=middle)])[0, 0] for middle in (0.1, 0.5, 0.9)]
+    ends = [within(gear, 0.5, 0.2, middle) for middle in (0.1, 0.5, 0.9)]
     assert ends[0] > 1.3 * ends[1]
     assert_allclose(ends[0], ends[2], rtol=1e-6)
 
@@ -74,38 +75,73 @@ def test_compliance_is_inverse_to_the_modulus():
 
 
 def test_coupling_of_two_teeth_is_reciprocal():
+    """The finite elements alone: forces act on the flank, displacements are taken in the middle of the tooth."""
     gear = model()
-    found = gear.middle_displacements([line(gear, 0.2), line(gear, 0.8, tooth=1)])
-    assert_allclose(found[0, 1], found[1, 0], rtol=BETTI)
+    shape = (len(gear.heights), len(gear.lengths)) * 2
+    forth, back = (gear.displacement[gear.neighbours + away].reshape(shape).mean(axis=(1, 3)) for away in (1, -1))
+    assert_allclose(forth[1:, 1:], back.T[1:, 1:], rtol=BETTI)  # above the foot, whose middle is in the body
+    low, high = line(gear, 0.2), line(gear, 0.8, tooth=1)
+    assert_allclose(gear.between(low, high), gear.between(high, low).T, rtol=ROUNDING)
 
 
-def test_matrix_is_symmetric_and_positive_definite():
+@pytest.mark.parametrize(("low", "high"), [(0.1, 0.8), (0.4, 0.5), (0.0, 1.0)])
+def test_two_teeth_are_positive_definite_together(low, high):
     gear = model()
-    for low, high in ((0.1, 0.8), (0.4, 0.5), (0.0, 1.0)):
-        matrix = gear.matrix([line(gear, low), line(gear, high, tooth=1)])
-        assert matrix[0, 1] == matrix[1, 0]
-        assert np.linalg.eigvalsh(matrix).min() > 0.0
-        assert 0.0 < matrix[0, 1] < matrix[1, 1]
+    lines = line(gear, low), line(gear, high, tooth=1)
+    coupling = between(gear, *lines)
+    matrix = np.array([[within(gear, low), coupling], [coupling, within(gear, high)]])
+    assert np.linalg.eigvalsh(matrix).min() > 0.0
+    assert 0.0 < coupling < matrix[1, 1]
 
 
-def test_matrix_counts_teeth_around_the_gear():
+def test_displacements_within_a_tooth_are_symmetric():
     gear = model()
-    near = gear.matrix([line(gear, 0.3), line(gear, 0.6, tooth=1)])
-    around = gear.matrix([line(gear, 0.3, tooth=24), line(gear, 0.6, tooth=25)])
+    one = line(gear, 0.6)
+    found = gear.within(one, np.abs(one.z[:, None] - one.z))
+    assert_allclose(found, found.T, rtol=ROUNDING)
+
+
+def test_a_force_moves_what_is_near_more_than_what_is_far():
+    """Bending spreads along the face: what is left of it at the other end is a small part."""
+    gear = model()
+    one = line(gear, 0.9)
+    found = gear.between(one, one)
+    assert found[20, 20] > 1.2 * found[20, 0] > 0.0
+    assert found[0, 0] > 3.0 * found[0, -1]
+
+
+def test_images_of_a_free_edge_are_taken_off():
+    """Where the half-space was corrected for a free edge, so much less is left to the finite elements."""
+    gear = model()
+    one = line(gear, 0.6)
+    distance, far = np.abs(one.z[:, None] - one.z), np.full((40, 40), 1e9)
+    plain = gear.within(one, distance)
+    assert_allclose(gear.within(one, distance, [(far, 1.7)]), plain, atol=1e-6 * plain.max())
+    image = np.abs(one.z[:, None] + one.z - WIDTH)
+    half, whole = (plain - gear.within(one, distance, [(image, factor)]) for factor in (0.85, 1.7))
+    assert (half > 0.0).all()
+    assert_allclose(whole, 2.0 * half, rtol=1e-6)
+
+
+def test_between_counts_teeth_around_the_gear():
+    gear = model()
+    near = gear.between(line(gear, 0.3), line(gear, 0.6, tooth=1))
+    around = gear.between(line(gear, 0.3, tooth=24), line(gear, 0.6, tooth=25))
     assert_allclose(around, near, rtol=ROUNDING)
 
 
 def test_teeth_too_far_apart_are_refused():
     gear = model()
     with pytest.raises(InputError, match="2 pitches apart, the model has 1"):
-        gear.matrix([line(gear, 0.3), line(gear, 0.6, tooth=2)])
+        gear.between(line(gear, 0.3), line(gear, 0.6, tooth=2))
 
 
-def test_weights_that_are_no_shares_are_refused():
+def test_places_beyond_the_flank_count_as_its_border():
     gear = model()
     one = line(gear, 0.5)
-    with pytest.raises(InputError, match=r"force 0.*\n.*force 1"):
-        gear.matrix([replace(one, weight=2.0 * one.weight), replace(one, tooth=1, weight=np.full(40, np.nan))])
+    beyond = FlankLine(0, one.rho + 100.0, one.z)
+    top = line(gear, 1.0)
+    assert_allclose(gear.between(beyond, beyond), gear.between(top, top), rtol=1e-9)
 
 
 def test_wind_up_is_that_of_a_ring():
@@ -115,7 +151,8 @@ def test_wind_up_is_that_of_a_ring():
     found = []
     for bore in bores:
         gear = model(density, bore_diameter=bore)
-        found.append(WIDTH * gear.middle_displacements([line(gear, 0.5, tooth=tooth) for tooth in range(25)])[0].sum())
+        middle = line(gear, 0.5)
+        found.append(WIDTH * sum(between(gear, middle, line(gear, 0.5, tooth=tooth)) for tooth in range(25)))
     wound = 25.0 * spur_mesh().pinion.base_radius ** 2 * ring_wind_up(0.5 * bores[1], 0.5 * bores[0])
     assert_allclose(found[1] - found[0], wound, rtol=RING)
 
