@@ -19,6 +19,7 @@ from loaded_tca.pair_contacts import NUMBERS, PairContacts, PressureMap
 from loaded_tca.scene import Scene
 from loaded_tca.tooth import tooth_forms
 from loaded_tca.tooth_compliance import tooth_compliance
+from loaded_tca.tooth_edges import oblique_ends
 from loaded_tca.unloaded import heelwards
 
 BORE = "bore_diameter_mm"
@@ -105,7 +106,9 @@ def _doubts(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[str
     found = []
     if loaded.at_border:
         border = "the contact reaches a border of a flank: Hertz does not hold, and pressure there grows with the grid"
-        found.append(border + ("" if grid.free_edges else "; sides that yield are left out (analysis.free_edges)"))
+        found.append(border + ("" if grid.free_edges else "; ends that yield are left out (analysis.free_edges)"))
+        oblique = oblique_ends(pair, loaded.contact, loaded.separation) if grid.free_edges else ()
+        found += [f"the {end} is oblique to the contact and taken for that of a half-space" for end in oblique]
     if loaded.at_crease:
         found.append("the contact lies across the start of a linear relief: its peak pressure grows with the grid")
     smooth = not (loaded.at_border or loaded.at_crease)

@@ -10,9 +10,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from loaded_tca.contact_laws import PowerLaw
 from loaded_tca.flanks.jet import Array
-from loaded_tca.load_sharing import SharedLoad, TeethYield, share_load, touches_at
+from loaded_tca.load_sharing import Laws, SharedLoad, TeethYield, share_load, touches_at
 from loaded_tca.loaded_contact import Beneath, GridChoice, LoadedContact, press
 from loaded_tca.pair import GearPair
 from loaded_tca.unloaded import ContactPath, MeshPath, trace_contact, trace_teeth
@@ -119,10 +118,11 @@ def carried_by_all(
     shape = len(torques), len(mesh)
     teeth = compliance(_farthest_apart(mesh))
     shared: list[list[SharedLoad]] = [[] for _ in torques]
-    laws: dict[int, PowerLaw] = {}
+    touches = [touches_at(mesh, n) for n in range(len(mesh))]
+    laws = Laws()
     for t, n in _told(shape, progress):
-        found = share_load(pair, touches_at(mesh, n), float(torques[t]), grid, compliance=teeth, start=laws)
-        laws = laws | found.laws
+        found = share_load(pair, touches[n], float(torques[t]), grid, compliance=teeth, start=laws)
+        laws = laws.updated(found.laws)
         shared[t].append(found)
     carrying = {0} | {share.touch.pair for row in shared for one in row for share in one.shares}
     columns = [column for column, number in enumerate(mesh.pairs.tolist()) if number in carrying]

@@ -33,6 +33,7 @@ FILES = """files in DIR:
   result.nc                 everything, to be read by loaded_tca.load_result, xarray or 'loaded-tca plot'
   summary.json              the key figures
   positions.csv             one row per torque and position
+  contacts.csv              one row per torque, position and tooth pair, only where pairs share the load
   contact_path.png          where the flanks carry pressure, under the largest torque
   transmission_error.png    over the positions, all torques
   peak_pressure.png         over the positions, all torques
@@ -44,6 +45,7 @@ and where tooth pairs share the load
   harmonics.png             orders of the tooth mesh in the transmission error, all torques
   mesh_stiffness.png        over the positions, all torques
   line_load.png             over the positions, all torques
+  line_load_distribution.png    along the contacts on the flanks, under the largest torque
   pressure_envelope.png     the highest pressure on the flanks, under the largest torque
   path_pressure.png         from the begin to the end of contact, all torques
 Pictures of these names that the result does not have are removed; docs/results.md says more."""
@@ -56,6 +58,14 @@ All lengths are in mm."""
 EASE_OFF = """files in DIR:
   ease_off.png              what the flank lacks of the conjugate of its mating flank, in um, with the values at its
                             corners, and its angles, crownings and twist"""
+SUBSURFACE = """files in DIR:
+  subsurface.nc             six stresses, von Mises and greatest shear, at every depth below every cell of the map
+  subsurface.csv            the same over the depth, below the highest pressure
+  subsurface_max_shear.png, subsurface_von_mises.png
+Stresses in MPa, tension positive, of a half-space without friction; docs/results.md says more."""
+BAR = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt}, {elapsed} gone, {remaining} left"
+NOT_BY_ITSELF = 1e-9
+"""Delay [s] of a bar that does not draw itself while it is made."""
 EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
 
 
@@ -128,7 +138,7 @@ def _parser() -> argparse.ArgumentParser:
 
     def command(name: str, run: Callable[[argparse.Namespace], None], text: str) -> argparse.ArgumentParser:
         layout = argparse.RawDescriptionHelpFormatter
-        epilogs: dict[object, str | None] = {_check: None, _tooth: TEETH, _ease_off: EASE_OFF}
+        epilogs: dict[object, str | None] = {_check: None, _tooth: TEETH, _ease_off: EASE_OFF, _subsurface: SUBSURFACE}
         epilog = epilogs.get(run, FILES)
         added = commands.add_parser(
             name, help=text, description=text, epilog=epilog, formatter_class=layout, parents=[common]
@@ -153,6 +163,15 @@ def _parser() -> argparse.ArgumentParser:
     tooth.add_argument("--position", metavar="N", type=int, help="position of the teeth, from 1; default: peak")
     tooth.add_argument("--fillet-radius", metavar="MM", type=float, help="of arcs at the root; default: by the module")
     tooth.add_argument("--whole-gears", action="store_true", help="all teeth in the STL files, not one")
+    below = command("subsurface", _subsurface, "show the stresses below a pressure map of a result")
+    below.add_argument("result", metavar="DIR|FILE", type=Path, help="result.nc, or the directory that holds it")
+    below.add_argument("--out", metavar="DIR", type=Path, help="directory for the files; default: beside the result")
+    below.add_argument("--torque", metavar="NM", type=float, help="pinion torque; default: largest")
+    below.add_argument("--position", metavar="N", type=int, help="position, from 1; default: peak")
+    below.add_argument("--pair", metavar="K", type=int, help="tooth pair, as load_share.png counts; default: peak")
+    below.add_argument(
+        "--gear", choices=("pinion", "wheel"), default="pinion", help="below whose flank; default: pinion"
+    )
     ease_off = command("ease-off", _ease_off, "draw the ease-off of a scene, without load")
     ease_off.add_argument("scene", metavar="SCENE.toml", help="scene file")
     ease_off.add_argument("--out", metavar="DIR", required=True, type=Path, help="directory for the picture")
@@ -202,7 +221,7 @@ def _analyse_to(scene_file: str, directory: Path) -> None:
 
     scene = read_scene(scene_file)
     _check_place(directory)
-    with _progress_bar() as progress:
+    with _progress_bar(len(scene.torques), scene.analysis.positions) as progress:
         result = analyse(scene, progress=progress)
     written = [*write_report(result, directory), *_draw(result, directory)]
     print(result.summary(), end="\n\n")
@@ -229,6 +248,22 @@ def _tooth(options: argparse.Namespace) -> None:
     written = write_teeth(shown, teeth, directory, title=result.title, whole_gears=options.whole_gears)
     save_figure(draw_teeth(result, shown), directory / "teeth.png")
     _print_files([*written, directory / "teeth.png"])
+
+
+def _subsurface(options: argparse.Namespace) -> None:
+    from loaded_tca.plots import plot_stress_below, save_figure
+    from loaded_tca.subsurface import NAMES, stress_below
+    from loaded_tca.subsurface_files import write_subsurface
+
+    result, directory = _loaded(options)
+    torque, position = _chosen_torque(result, options.torque), _chosen_position(result, options.position)
+    below = stress_below(result, torque, position, options.pair, gear=options.gear)
+    written = [*write_subsurface(below, directory)]
+    for quantity in NAMES:
+        written.append(directory / f"subsurface_{quantity}.png")
+        save_figure(plot_stress_below(below, quantity), written[-1])
+    print(below.summary(), end="\n\n")
+    _print_files(written)
 
 
 def _ease_off(options: argparse.Namespace) -> None:
@@ -309,14 +344,19 @@ def _check_place(directory: Path) -> None:
 
 
 @contextmanager
-def _progress_bar() -> Iterator[Callable[[int, int], None] | None]:
-    """A bar on a terminal; nothing in a file or a pipe."""
+def _progress_bar(torques: int, positions: int) -> Iterator[Callable[[int, int], None] | None]:
+    """A bar on a terminal, with what is done, of how much, and the time left; nothing in a file or a pipe.
+
+    It is there from the start: before the first position teeth that yield are modelled.
+    """
     if not sys.stderr.isatty():
         yield None
         return
     from tqdm import tqdm
 
-    with tqdm(desc="positions", unit="position") as bar:
+    count = "positions" if torques == 1 else f"{torques} torques x {positions} positions"
+    with tqdm(desc=count, total=torques * positions, bar_format=BAR, delay=NOT_BY_ITSELF) as bar:
+        bar.refresh()  # drawn only where an interrupt ends its line
 
         def show(done: int, total: int) -> None:
             bar.total = total

@@ -14,8 +14,8 @@ from loaded_tca.flanks.jet import Array
 EXPONENTS = (0.3, 2.0)
 """Range of the exponent of an approach over the force; above 1: at a cap on the pressure."""
 POINT_EXPONENT = 2.0 / 3.0
-TELLING = 1e-4
-"""Relative difference of two loads from which an exponent follows."""
+TELLING = 0.05
+"""Relative difference of two loads from which an exponent follows: whole cells hide it where they are closer."""
 MOST_STEPS = 200
 """Newton steps before giving up; five to ten are the rule."""
 STEP_TOLERANCE = 1e-12
@@ -49,6 +49,11 @@ class PowerLaw:
     load: float
     approach: float
     exponent: float = POINT_EXPONENT
+
+    @classmethod
+    def along(cls, load: float, approach: float, slope: float) -> PowerLaw:
+        """Return the law through a press whose approach grows by ``slope`` [mm/N] with the load."""
+        return cls(load, approach, float(np.clip(slope * load / approach, *EXPONENTS)))
 
     def approach_under(self, force: float) -> float:
         """Approach [mm] under a force >= 0 [N]."""

@@ -96,6 +96,8 @@ def key_figures(
         "mesh_stiffness_mean_N_per_mm_um": _reduced(np.mean, cycle["mesh_stiffness"]),
         "secant_stiffness_mean_N_per_mm_um": _reduced(np.mean, cycle["secant_stiffness"]),
         "loaded_contact_ratio": _mean_over_a_pitch(cycle["loaded_pairs"]),
+        "fewest_loaded_pairs": _reduced(np.min, cycle["loaded_pairs"]),
+        "most_loaded_pairs": _reduced(np.max, cycle["loaded_pairs"]),
         "line_load_max_N_per_mm": _reduced(np.max, row["line_load"]),
         "face_load_factor_at_largest_force": _at(row["face_load_factor"], _highest(row["normal_force"])),
         "max_pressure_MPa": max_pressure,

@@ -12,6 +12,7 @@ import numpy as np
 from loaded_tca.contact import ContactSolution, solve_contact, solve_to_accuracy
 from loaded_tca.contact.adaptive import TOLERANCE_SHARE
 from loaded_tca.contact.edges import FreeEdge
+from loaded_tca.contact.levels import under_other_load
 from loaded_tca.contact.solution import CoarserGrid
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.jet import Array
@@ -19,13 +20,15 @@ from loaded_tca.memory import memory_problem
 from loaded_tca.pair import GearPair
 from loaded_tca.reference.hertz import PointContact, point_contact
 from loaded_tca.separation import Separation, sample_separation
-from loaded_tca.side_edges import side_edges
+from loaded_tca.tooth_edges import tooth_edges
 from loaded_tca.unloaded import ContactPoint
 
 FIRST_CELLS = (16, 16)
 """Grid from which an accuracy is approached, doubled as often as needed."""
-CHORD = 0.1
-"""Half width, relative to the load, of the interval over which the stiffness is taken."""
+CHORD = 0.8
+"""Part of the load down to which the stiffness is taken."""
+CHORD_TOLERANCE = 1e-5
+"""Of the solution at that end: 1e-4 of the stiffness."""
 MARGIN_LEFT = 0.8
 """Expected contact over its box."""
 SMALLEST_LOAD = 1e-15
@@ -42,7 +45,7 @@ MOST_BOXES = 8
 class GridChoice:
     """How finely a contact is resolved: on ``cells`` as given, or on as many as ``accuracy`` needs.
 
-    ``free_edges``: whether the sides of the teeth yield more than a half-space.
+    ``free_edges``: whether the tips and sides of the teeth yield more than a half-space.
     """
 
     cells: tuple[int, int] | None = None
@@ -171,19 +174,19 @@ class LoadedContact:
 
     @cached_property
     def stiffness(self) -> float:
-        """Stiffness dF/d closing [N/mm], by the chord over +-10 % of the load; zero without load.
+        """Stiffness dF/d closing [N/mm], of the power law through the load and 0.8 of it; zero without load.
 
-        The closing is that of the flanks and of what bends beneath them, under other loads as they are.
-
-        A contact grows by whole cells, so the exact tangent of the discrete problem (``contact_stiffness``) scatters
-        by a percent or two about that of the continuum; the chord scatters less, and is off by 0.1 %.
+        The closing is that of the flanks and of what bends beneath them, under other loads as they are. A contact
+        grows by whole cells, so that the exact tangent of the discrete problem (``contact_stiffness``) scatters by a
+        percent or two about that of the continuum; a chord scatters less, and the power makes up for its width.
         """
-        load = self.solution.load
-        if load <= 0.0:
+        solution = self.solution
+        if solution.load <= 0.0:
             return 0.0
-        loads = ((1.0 - CHORD) * load, min((1.0 + CHORD) * load, self._largest_load))
-        approaches = [self._solved(chord_end, lift=self.lift).approach for chord_end in loads]
-        return (loads[1] - loads[0]) / (approaches[1] - approaches[0])
+        less = self._solved(CHORD * solution.load, max(self.tolerance, CHORD_TOLERANCE), self.lift)
+        closings = solution.approach - solution.first_touch, less.approach - solution.first_touch
+        exponent = math.log(closings[1] / closings[0]) / math.log(CHORD)
+        return solution.load / (exponent * closings[0])
 
     def under(self, load: float, lift: Array | None = None) -> LoadedContact:
         """Return the contact under another load > 0 [N] near this one, on the same grid and as closely solved.
@@ -201,12 +204,6 @@ class LoadedContact:
             solution = replace(solution, coarser=CoarserGrid(higher * coarser.largest, approach))
         return replace(self, solution=solution, lift=lift)
 
-    @property
-    def _largest_load(self) -> float:
-        """What the cap on the pressure lets the material in the box carry [N]."""
-        cap = self.solution.max_pressure
-        return math.inf if cap is None else cap * self.separation.material_area
-
     def _solved(self, load: float, tolerance: float = 1e-6, lift: Array | None = None) -> ContactSolution:
         solution = self.solution
         return solve_contact(
@@ -216,7 +213,7 @@ class LoadedContact:
             load=load,
             max_pressure=solution.max_pressure,
             tolerance=tolerance,
-            initial_pressure=solution.pressure,
+            initial_pressure=under_other_load(solution.pressure, load / solution.load),
             free_edges=solution.free_edges,
             column_compliance=solution.column_compliance,
             warn=False,
@@ -291,7 +288,7 @@ def _press_in_box(
 ) -> LoadedContact:
     """Solve in the box of ``first``, on its grid if cells were given, else on finer and finer ones."""
     finest = [first]
-    edges = side_edges(pair, contact, first) if grid.free_edges else ()
+    edges = tooth_edges(pair, contact, first) if grid.free_edges else ()
 
     def sampler(cells: tuple[int, int]) -> tuple[Array, tuple[float, float]]:
         if cells != first.gap.shape:

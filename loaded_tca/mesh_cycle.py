@@ -126,7 +126,7 @@ class MeshCycle(ContactNumbers):
         """Highest pressure that is no matter of the grid [MPa], (..., n).
 
         The peak; where that grows with the grid, the pressure beside the contact point; NaN where the contact point
-        itself lies on a border or a crease.
+        itself lies on a border or a crease, or nearer to a border than half the contact is wide.
         """
         return np.fmax.reduce(self.contacts.inner_pressure, axis=-1).reshape(self.peak_pressure.shape)
 

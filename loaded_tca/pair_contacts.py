@@ -71,7 +71,9 @@ class ContactNumbers:
     central_pressure: Array = quantity("MPa", "contact pressure beside the unloaded contact point")
     peak_radius: Array = quantity("mm", "radius on the pinion of the cell with the largest pressure")
     peak_axial: Array = quantity("mm", "axial coordinate on the pinion of the cell with the largest pressure")
-    hertz_pressure: Array = quantity("MPa", "peak pressure after Hertz; NaN where Hertz does not hold")
+    hertz_pressure: Array = quantity(
+        "MPa", "peak pressure after Hertz for the curvatures at the contact point; NaN where Hertz does not hold"
+    )
     hertz_semi_minor: Array = quantity("mm", "semi-axis of the Hertz ellipse across the contact")
     hertz_semi_major: Array = quantity("mm", "semi-axis of the Hertz ellipse along the contact")
     contact_width: Array = quantity("mm", "full width of the contact across, from the pressure map")
@@ -126,10 +128,19 @@ class PairContacts(ContactNumbers):
         """Highest pressure that is no matter of the grid [MPa], (m, n, pairs).
 
         The peak; where that grows with the grid, the pressure beside the contact point; NaN where the contact point
-        itself lies on a border or a crease.
+        itself lies on a border or a crease, or nearer to a border than half the contact is wide: the spike reaches it.
         """
-        held = np.stack([path.on_edge | path.on_crease for path in self.paths], axis=1)
+        held = np.stack([path.on_edge | path.on_crease for path in self.paths], axis=1) | self._within_spike
         return np.where(self.peak_at_border, np.where(held, math.nan, self.central_pressure), self.peak_pressure)
+
+    @property
+    def _within_spike(self) -> Array:
+        """Whether a flank ends nearer to the contact point than half the contact is wide: bool, (m, n, pairs)."""
+        within = np.zeros(self.peak_pressure.shape, dtype=bool)
+        for at in map(tuple, np.argwhere(self.on_edge > 0).tolist()):
+            one = _nested(self.maps, at)
+            within[at] = one is not None and _ends_within(one, 0.5 * self.contact_width[at])
+        return within
 
     @property
     def highest_inner(self) -> NDArray[np.int_]:
@@ -311,6 +322,14 @@ def unpack_contacts(variables: Mapping[str, Variable], pairs: NDArray[np.int_]) 
         paths=tuple(ContactPath(**{name: part[k] for name, part in stacked.items()}) for k in range(len(pairs))),
         maps=maps_from(variables, PAIRS, "pair_map_"),
     )
+
+
+def _ends_within(one: PressureMap, distance: float) -> bool:
+    """Whether there are cells without material, their borders counted, nearer to the contact point than so many mm."""
+    x, y = (
+        np.maximum(np.abs(centres) - 0.5 * step, 0.0) for centres, step in zip((one.x, one.y), one.spacing, strict=True)
+    )
+    return bool((np.isinf(one.gap) & (np.hypot(x[:, None], y) < distance)).any())
 
 
 def _peaks_at_end(one: PressureMap) -> bool:

@@ -1,4 +1,4 @@
-"""What an analysis leaves behind: the whole result, its key figures, and a table of the positions."""
+"""What an analysis leaves behind: the whole result, its key figures, tables of the positions and of all contacts."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import math
+from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -16,12 +17,14 @@ from loaded_tca.errors import InputError
 from loaded_tca.flanks.jet import Array
 from loaded_tca.key_figures import ARCSEC
 from loaded_tca.mesh_cycle import MeshCycle, cycle_parts
-from loaded_tca.pair_contacts import MAP_PARTS, PAIRS, PATH_PARTS, contact_parts
-from loaded_tca.storage import FilePath, Part, replacing
+from loaded_tca.pair_contacts import MAP_PARTS, NUMBERS, PAIRS, PATH_PARTS, contact_parts
+from loaded_tca.reached_borders import NAMES as BORDERS
+from loaded_tca.reached_borders import reached_borders
+from loaded_tca.storage import FilePath, Part, remove, replacing
 from loaded_tca.summary import without_rounding
 
-RESULT, SUMMARY, POSITIONS = "result.nc", "summary.json", "positions.csv"
-"""Names of the three files."""
+RESULT, SUMMARY, POSITIONS, CONTACTS = "result.nc", "summary.json", "positions.csv", "contacts.csv"
+"""Names of the files; the last one is there only where tooth pairs share the load."""
 
 ENGINEERS_UNITS = {
     "rad": (ARCSEC, "arcsec"),
@@ -42,8 +45,10 @@ COLUMNS = {
 """Field -> column and factor, where these do not follow from the unit: full widths, diameters, um."""
 
 
-def write_report(result: MeshCycle, directory: FilePath) -> tuple[Path, Path, Path]:
+def write_report(result: MeshCycle, directory: FilePath) -> tuple[Path, ...]:
     """Write ``result.nc``, ``summary.json`` and ``positions.csv``, each whole or not at all.
+
+    Where tooth pairs share the load ``contacts.csv`` too; elsewhere one that an earlier result left is removed.
 
     Parameters
     ----------
@@ -53,8 +58,8 @@ def write_report(result: MeshCycle, directory: FilePath) -> tuple[Path, Path, Pa
 
     Returns
     -------
-    (Path, Path, Path)
-        The three files.
+    tuple of Path
+        The three or four files.
 
     Raises
     ------
@@ -63,12 +68,16 @@ def write_report(result: MeshCycle, directory: FilePath) -> tuple[Path, Path, Pa
     """
     folder = Path(directory)
     make_directory(folder)
-    paths = folder / RESULT, folder / SUMMARY, folder / POSITIONS
-    result.save(paths[0])
-    for path, text in zip(paths[1:], (summary_json(result), positions_csv(result)), strict=True):
-        with replacing(path) as temporary:
+    texts = {SUMMARY: summary_json(result), POSITIONS: positions_csv(result)}
+    if result.pair_contacts is not None:
+        texts[CONTACTS] = contacts_csv(result)
+    else:
+        remove(folder / CONTACTS)
+    result.save(folder / RESULT)
+    for name, text in texts.items():
+        with replacing(folder / name) as temporary:
             temporary.write_text(text, encoding="utf-8", newline="")
-    return paths
+    return tuple(folder / name for name in (RESULT, *texts))
 
 
 def make_directory(directory: Path) -> None:
@@ -88,9 +97,18 @@ def summary_json(result: MeshCycle) -> str:
         "face_width_mm": result.face_width,
         "wheel_base_radius_mm": result.wheel_base_radius,
         "mesh_stiffness_is": f"d(F_bt/b)/d(r_b2 TE); {result.yielding}",
-        "torques": [{name: _known(value, name) for name, value in figures.items()} for figures in result.key_figures()],
+        "torques": [
+            {**{name: _known(value, name) for name, value in figures.items()}, **_pair_at_peak(result, torque)}
+            for torque, figures in enumerate(result.key_figures())
+        ],
     }
     return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _pair_at_peak(result: MeshCycle, torque: int) -> dict[str, int | None]:
+    """Tooth pair that carries the peak pressure."""
+    place = result.peak_contact(torque)
+    return {"tooth_pair_at_peak": None if place is None else int(result.pairs[place[1]])}
 
 
 def _known(value: float, name: str) -> float | None:
@@ -102,13 +120,52 @@ def _known(value: float, name: str) -> float | None:
 
 def positions_csv(result: MeshCycle) -> str:
     """Return one row per torque and position, units in the header; an empty cell: not known."""
-    columns = _columns(result)
+    return _table(_columns(result))
+
+
+def contacts_csv(result: MeshCycle) -> str:
+    """Return one row per torque, position and tooth pair under load, units in the header; an empty cell: not known.
+
+    The last column names the borders that the contact reaches, the tip of a gear or a side of its teeth.
+    """
+    shape = result.contacts.normal_force.shape
+    rows = result.contacts.normal_force > 0.0
+    columns = {name: np.broadcast_to(values, shape)[rows] for name, values in _contact_columns(result).items()}
+    reached = reached_borders(result)[rows]
+    words = [" + ".join(name for name, one in zip(BORDERS, row, strict=True) if one) for row in reached]
+    return _table({**columns, "borders": np.array(words, dtype=object)})
+
+
+def _table(columns: Mapping[str, Array]) -> str:
+    """Columns as CSV, one row per entry."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(columns)
     cells = ([_cell(value, name) for value in values.ravel()] for name, values in columns.items())
     writer.writerows(zip(*cells, strict=True))
     return text.getvalue()
+
+
+def _contact_columns(result: MeshCycle) -> dict[str, Array]:
+    """Every contact: header -> array that spreads to (m, n, pairs)."""
+    contacts = result.contacts
+    places = {
+        f"contact_point_{gear}_{name}": np.stack([factor * getattr(path, f"{gear}_{field}") for path in contacts.paths])
+        for gear in ("pinion", "wheel")
+        for name, field, factor in (("diameter_mm", "radius", 2.0), ("axial_mm", "axial", 1.0))
+    }
+    columns = {
+        "pinion_torque_Nm": 1e-3 * result.torque[:, None, None],
+        "position": np.arange(1, len(result.path) + 1)[:, None],
+        "pinion_angle_deg": np.degrees(result.pinion_angle)[:, None],
+        "tooth_pair": result.pairs,
+        "load_share": result.load_share.reshape(contacts.normal_force.shape),
+        **{name: values.T for name, values in places.items()},
+    }
+    for name, (unit, _) in NUMBERS.items():
+        column, factor = _column(name, unit)
+        columns[column] = getattr(contacts, name) * factor
+    return {**columns, "peak_at_border": contacts.peak_at_border}
 
 
 def _columns(result: MeshCycle) -> dict[str, Array]:
@@ -158,12 +215,14 @@ def _column(name: str, unit: str) -> tuple[str, float]:
 
 
 def _cell(value: Any, name: str) -> str:
-    """Nine digits, zero for what is rounding, or nothing where the number is not known."""
+    """Nine digits, zero for what is rounding, or nothing where the number is not known; words as they are."""
+    if isinstance(value, str):
+        return value
     return f"{without_rounding(value, name):.9g}" if math.isfinite(value) else ""
 
 
 def describe_results() -> str:
-    """Return the reference of a result in Markdown: one table for the result, its path and its maps.
+    """Return the reference of a result in Markdown: one table for the result, its path, its contacts and its maps.
 
     Examples
     --------
@@ -172,16 +231,17 @@ def describe_results() -> str:
     """
     own = {name: _column(name, unit)[0] for name, (axes, unit, _) in cycle_parts(2).items() if "position" in axes}
     own |= {"torque": "pinion_torque_Nm", "load_share": "load_share_pair_0, ..."}
-    lines = ["### The result", "", *_described(cycle_parts(2), own)]
+    lines = ["### The result", "", *_described(cycle_parts(2), POSITIONS, own)]
     lines += ["", "### `result.path`: the unloaded contact", "", *_described(PATH_PARTS)]
-    lines += ["", "### `result.contacts`: every tooth pair", "", *_described(contact_parts(PAIRS))]
+    every = {name: _column(name, unit)[0] for name, (unit, _) in NUMBERS.items()}
+    lines += ["", "### `result.contacts`: every tooth pair", "", *_described(contact_parts(PAIRS), CONTACTS, every)]
     lines += ["", "### `result.maps[torque][position]`: one pressure map", "", *_described(MAP_PARTS)]
     return "\n".join(lines) + "\n"
 
 
-def _described(parts: dict[str, Part], columns: dict[str, str] | None = None) -> list[str]:
-    """A table of arrays, with the columns of ``positions.csv`` where these are given."""
-    titles = ["field", "axes", "unit", "what it is", *(["in positions.csv"] if columns else [])]
+def _described(parts: dict[str, Part], file: str = "", columns: dict[str, str] | None = None) -> list[str]:
+    """A table of arrays, with their columns in a file where these are given."""
+    titles = ["field", "axes", "unit", "what it is", *([f"in {file}"] if columns else [])]
     rows = [titles, ["---"] * len(titles)]
     for name, (axes, unit, text) in parts.items():
         column = (columns or {}).get(name, "")

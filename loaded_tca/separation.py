@@ -22,14 +22,16 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.jet import Array
 from loaded_tca.memory import memory_problem
-from loaded_tca.pair import GearPair, cylindrical_basis
-from loaded_tca.reference.hertz import point_contact
+from loaded_tca.normal_gap import NormalGap
+from loaded_tca.pair import GearPair
+from loaded_tca.reference.hertz import line_contact, point_contact
 from loaded_tca.unloaded import ContactPoint, RelativeCurvature, relative_curvature
+from loaded_tca.unloaded.roots import find_roots
 
 PEAK_ERROR = 0.26
 """Relative error of the peak pressure times the square of the number of cells across a smooth contact (measured on
@@ -47,10 +49,14 @@ PROBE = (17, 33)
 """Cells of the coarse grids on which the contact is estimated."""
 SMALLEST_LOAD = 1e-6
 """Load [N] that sizes the box of an unloaded contact: small enough for its smallest gap to be rounding."""
+ROOM = 1.5
+"""Wanted half lengths of a coarse grid over those of the contact."""
 MOST_PROBES = 16
-MOST_NEWTON_STEPS = 30
-ROUNDING = 1e-13
-"""Newton steps shorter than this times the sum of the base radii are rounding."""
+END_OF_MATERIAL = 1e-6
+"""Accuracy of the end of the material, over the half length of the box."""
+STRAIGHT = 5e-5
+"""Change of the fall of the room from row to row, relative, below which its chord ends where the material does: to
+an eighth of that, of the distance of the rows."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,6 +120,7 @@ def sample_separation(
     load: float | None = None,
     accuracy: float = 1e-3,
     box: tuple[float, float] | None = None,
+    guess: tuple[float, float] | None = None,
 ) -> Separation:
     """Gap between the flanks on a grid that just holds the contact.
 
@@ -130,6 +137,9 @@ def sample_separation(
         Relative error of the peak pressure of a smooth contact that chooses the cells.
     box : (float, float) [mm], optional
         Half lengths across and along, instead of the estimated ones.
+    guess : (float, float) [mm], optional
+        Half lengths to start the estimate of the box from: those of the same contact under a load near this one. It
+        saves time on edges, whose boxes the curvatures do not tell; elsewhere it is not needed, and not used.
 
     Returns
     -------
@@ -140,7 +150,7 @@ def sample_separation(
     InputError
         If an argument is out of range, or neither load nor box is given.
     GeometryError
-        If the tooth pair does not touch at this position.
+        If the tooth pair does not touch at this position, or the contact point lies off the flanks.
 
     Examples
     --------
@@ -154,14 +164,16 @@ def sample_separation(
     >>> [round(k, 6) for k in separation.curvatures]
     [0.091526, 6.4e-05]
     """
-    _check(contact, cells, load, accuracy, box)
+    _check(contact, cells, load, accuracy, {"box": box, "guess": guess})
     curvature = relative_curvature(pair, contact)
-    gap = _Gap(pair, contact, curvature.axes)
+    gap = NormalGap(pair, contact, curvature.axes)
     shape = (int(cells[0]), int(cells[1])) if cells is not None else (cells_for_accuracy(accuracy),) * 2
     half = (
         box
         if box is not None
-        else _box_of_whole_cells(*_estimate_box(gap, curvature, contact, load if load else SMALLEST_LOAD), shape[1])
+        else _box_of_whole_cells(
+            *_estimate_box(gap, curvature, contact, load if load else SMALLEST_LOAD, guess), shape[1]
+        )
     )
     spacing = (2.0 * half[0] / shape[0], 2.0 * half[1] / shape[1])
     x, y = ((np.arange(n) - 0.5 * (n - 1)) * step for n, step in zip(shape, spacing, strict=True))
@@ -174,7 +186,7 @@ def _check(
     cells: tuple[int, int] | None,
     load: float | None,
     accuracy: float,
-    box: tuple[float, float] | None,
+    boxes: dict[str, tuple[float, float] | None],
 ) -> None:
     if not isinstance(contact, ContactPoint):
         raise InputError(f"contact: {contact!r} is not one position of a path; take path[i]")
@@ -183,12 +195,11 @@ def _check(
         problems.append(f"cells: {cells} are not two whole numbers >= 1")
     elif cells is not None and (memory := memory_problem(tuple(cells))) is not None:
         problems.append(memory)
-    if load is None and box is None:
+    if load is None and boxes["box"] is None:
         problems.append("load: none given; a load [N] or a box [mm] is needed to size the grid")
     if load is not None and not 0.0 <= load < math.inf:
         problems.append(f"load: {load} N is not a finite number >= 0")
-    if box is not None and not (_two_numbers(box) and all(0.0 < length < math.inf for length in box)):
-        problems.append(f"box: {box} are not two positive lengths [mm]")
+    problems += [f"{name}: {box} are not two positive lengths [mm]" for name, box in boxes.items() if not _is_box(box)]
     if not 1e-8 <= accuracy < 1.0:
         problems.append(f"accuracy: {accuracy} is not between 1e-8 and 1")
     if problems:
@@ -206,13 +217,17 @@ def _box_of_whole_cells(half: tuple[float, float], material: float, cells: int) 
     return half[0], material * (cells / (cells - 2) if cells > 2 else 1.0)
 
 
+def _is_box(box: tuple[float, float] | None) -> bool:
+    return box is None or (_two_numbers(box) and all(0.0 < length < math.inf for length in box))
+
+
 def _two_numbers(values: object) -> bool:
     array = np.asarray(values)
     return array.shape == (2,) and array.dtype.kind in "iuf" and not np.isnan(array.astype(float)).any()
 
 
 def _estimate_box(
-    gap: _Gap, curvature: RelativeCurvature, contact: ContactPoint, load: float
+    gap: NormalGap, curvature: RelativeCurvature, contact: ContactPoint, load: float, guess: tuple[float, float] | None
 ) -> tuple[tuple[float, float], float]:
     """Half lengths across and along of a box that holds the contact under a load > 0 [N], and the end of the material.
 
@@ -222,118 +237,114 @@ def _estimate_box(
     pair = gap.pair
     modulus = pair.contact_modulus
     longest = math.hypot(pair.face_width, *(flank.extent[0] for flank in (pair.pinion, pair.wheel)))
-    window = _first_window(curvature, load, modulus, longest)
-    needed = (0.0, 0.0)
+    window = _window_in(guess) if guess is not None and contact.on_edge else _first_window(curvature, load, pair)
+    window = (window[0], min(window[1], longest))
     for _ in range(MOST_PROBES):
         x, y = (np.linspace(-half, half, count) for half, count in zip(window, PROBE, strict=True))
-        probe = gap(x, y)
-        if not np.isfinite(probe).any():
+        fall, room = gap.at(x[:, None], y)
+        if room.max() < 0.0:
             window = (2.0 * window[0], min(2.0 * window[1], longest))
             continue
-        needed = _strip_extent(probe, x, y, load, modulus)
-        fits = [0.4 * have <= need <= 0.85 * have for need, have in zip(needed, window, strict=True)]
-        fits[1] |= needed[1] > 0.85 * window[1] and window[1] == longest
+        *needed, end = _strip_extent(np.where(room >= 0.0, fall, np.inf), x, y, load, modulus)
+        fits = [0.4 * have <= need <= have / MARGIN for need, have in zip(needed, window, strict=True)]
+        fits[1] |= needed[1] > window[1] / MARGIN and window[1] == longest
         if all(fits):
             break
         window = (_resized(needed[0], window[0]), min(_resized(needed[1], window[1]), longest))
-    material = _material_length(gap, window[0], MARGIN * needed[1])
-    spiked = needed[1] > CERTAINLY_INSIDE * material
+    if room.max() < 0.0:
+        raise GeometryError(f"no flank around the contact point at pinion angle {contact.pinion_angle:.6g} rad")
+    material = _material_length(gap, room, x, y, MARGIN * needed[1])
+    spiked = end > CERTAINLY_INSIDE * material
     margin = EDGE_MARGIN if contact.on_edge else SPIKE_MARGIN if spiked else MARGIN
     return (margin * needed[0], MARGIN * needed[1]), material
 
 
-def _first_window(curvature: RelativeCurvature, load: float, modulus: float, longest: float) -> tuple[float, float]:
-    across = max(curvature.across, 1e-6 / longest)
+def _first_window(curvature: RelativeCurvature, load: float, pair: GearPair) -> tuple[float, float]:
+    """A window that a Hertzian ellipse would fill to two thirds, or across a line that the face cuts off."""
+    across = max(curvature.across, 1e-6 / pair.face_width)
     along = max(curvature.along, 1e-8 * across)
-    ellipse = point_contact(load, (across, along), modulus)
-    return 1.5 * ellipse.semi_minor, min(1.5 * ellipse.semi_major, longest)
+    ellipse = point_contact(load, (across, along), pair.contact_modulus)
+    line = line_contact(load / pair.face_width, across, pair.contact_modulus)
+    return ROOM * max(ellipse.semi_minor, line.half_width), ROOM * ellipse.semi_major
+
+
+def _window_in(box: tuple[float, float]) -> tuple[float, float]:
+    """A window that a contact on an edge with this box would fill to two thirds."""
+    return ROOM / EDGE_MARGIN * box[0], ROOM / MARGIN * box[1]
 
 
 def _resized(needed: float, window: float) -> float:
     """A window that a contact of the needed half length fills to two thirds, growing at most fourfold."""
-    return min(max(1.5 * needed, 0.1 * window), 4.0 * window) if needed < 0.85 * window else 2.0 * window
+    return min(max(ROOM * needed, 0.1 * window), 4.0 * window) if needed < 0.85 * window else 2.0 * window
 
 
-def _strip_extent(gap: Array, x: Array, y: Array, load: float, modulus: float) -> tuple[float, float]:
-    """Half lengths across and along [mm] of the contact that the strip model gives on a coarse gap."""
+def _strip_extent(gap: Array, x: Array, y: Array, load: float, modulus: float) -> tuple[float, float, float]:
+    """Half lengths across and along [mm] of the contact that the strip model gives on a coarse gap, and where it ends.
+
+    The half lengths are rounded up to half a cell; the end is that of a penetration which falls as a parabola.
+    """
     floor = gap.min(axis=0)
-    dx, dy = x[1] - x[0], y[1] - y[0]
-    length, width = y[-1], x[-1]
+    there = np.isfinite(floor)
+    floor, depth, reach = floor[there], gap[:, there] - floor[there], np.abs(y[there])
+    ordered = np.sort(floor)
+    sums = np.cumsum(ordered)
+    across, dx, dy = np.abs(x), x[1] - x[0], y[1] - y[0]
+    width, length = x[-1], y[-1]
     for _ in range(4):
         stiffness = 0.5 * math.pi * modulus / max(math.log(4.0 * max(length / width, 1.0)) - 1.0, 0.25 * math.pi)
-        line_load = stiffness * _penetration(floor, load / (stiffness * dy))
-        rise = 2.0 * line_load / (math.pi * modulus)
-        with np.errstate(invalid="ignore"):
-            loaded = (gap - floor <= rise) & (line_load > 0.0)
-        width = float(np.abs(x)[loaded.any(axis=1)].max()) + 0.5 * dx
-        length = float(np.abs(y)[loaded.any(axis=0)].max()) + 0.5 * dy
-    return width, length
+        penetration = _water_level(ordered, sums, load / (stiffness * dy)) - floor
+        pressed = penetration > 0.0
+        loaded = (depth <= 2.0 * stiffness / (math.pi * modulus) * penetration) & pressed
+        width = float(across[loaded.any(axis=1)].max()) + 0.5 * dx
+        length = float(reach[pressed].max()) + 0.5 * dy
+    return width, length, _end_of_parabola(reach[pressed], penetration[pressed])
 
 
-def _penetration(floor: Array, total: float) -> Array:
-    """(delta - floor)_+ with delta such that its sum is ``total``: water filling."""
-    order = np.sort(floor[np.isfinite(floor)])
-    levels = (total + np.cumsum(order)) / np.arange(1, len(order) + 1)
-    above = np.append(order[1:], np.inf)
-    delta = levels[np.argmax(levels <= above)]
-    return np.maximum(delta - np.where(np.isfinite(floor), floor, np.inf), 0.0)
+def _end_of_parabola(distance: Array, penetration: Array) -> float:
+    """Distance at which the penetration ends that falls as a parabola about y = 0; infinite if it does not fall."""
+    last = int(distance.argmax())
+    beside = min(max(last + (1 if last == 0 else -1), 0), len(distance) - 1)
+    fall = penetration[beside] - penetration[last]
+    if fall <= 0.0:
+        return math.inf
+    squares = distance[last] ** 2, distance[beside] ** 2
+    return math.sqrt(squares[0] + penetration[last] * (squares[0] - squares[1]) / fall)
 
 
-def _material_length(gap: _Gap, across: float, reach: float) -> float:
-    """Distance along y to the farthest end of the material within ``reach``, refined to 1e-6 of it.
+def _water_level(ordered: Array, sums: Array, total: float) -> float:
+    """The delta at which (delta - floor)_+ adds up to ``total``; the floor in its order, and its running sums."""
+    levels = (total + sums) / np.arange(1, len(ordered) + 1)
+    above = np.append(ordered[1:], np.inf)
+    return float(levels[np.argmax(levels <= above)])
 
-    Looked for over the whole width ``across`` on either side: in a corner of a flank there is none straight ahead.
+
+def _material_length(gap: NormalGap, room: Array, x: Array, y: Array, reach: float) -> float:
+    """Distance along y to the farthest end of the material within ``reach``, to 1e-6 of it.
+
+    Looked for over the whole width of a probe, whose distances to the borders are ``room`` (x, y): in a corner of a
+    flank there is none straight ahead.
     """
-    x = np.linspace(-across, across, PROBE[0])
-    if np.isfinite(gap(x, np.array([-reach, reach]))).any():
+    lowest = 4.0 * (y[0] - y[1])
+    room = np.maximum(room.max(axis=0), lowest)
+    middle = len(y) // 2
+    last = np.abs(np.flatnonzero(room >= 0.0) - middle).max()
+    if last == middle or y[middle + last] >= reach:
         return reach
-    low, high = np.zeros(2), np.full(2, reach)
-    for _ in range(4):
-        trial = np.linspace(low, high, PROBE[1])
-        has = np.isfinite(gap(x, (trial * [-1.0, 1.0]).ravel())).any(axis=0).reshape(trial.shape)
-        last = np.where(has, np.arange(PROBE[1])[:, None], 0).max(axis=0)
-        low, high = (
-            np.take_along_axis(trial, row[None], axis=0)[0] for row in (last, np.minimum(last + 1, PROBE[1] - 1))
-        )
-    return float(high.max())
+    sides = np.array([side for side in (-1, 1) if room[middle + side * last] >= 0.0])
+    before, inner, outer, beyond = middle + np.arange(last - 1, last + 3)[:, None] * sides
+    fall = room[inner] - room[outer]
+    if (np.abs(room[before] - room[inner] - fall) <= STRAIGHT * fall).all():
+        return min(float(np.abs(y[inner] + room[inner] / fall * (y[outer] - y[inner])).max()), reach)
+    tolerance = END_OF_MATERIAL * reach
 
+    def room_at(place: Array, _: NDArray[np.int_] | None = None) -> Array:
+        return np.maximum(gap.at(x[:, None], place)[1].max(axis=0), lowest)
 
-class _Gap:
-    """Distance of the two flanks along the normal, at points of the tangent plane."""
-
-    def __init__(self, pair: GearPair, contact: ContactPoint, axes: Array) -> None:
-        self.pair, self.contact, self.axes = pair, contact, axes
-        turn, identity = pair.sense, np.eye(3)
-        self._frames = (
-            (pair.pinion, np.zeros(3), identity, turn * contact.pinion_angle),
-            (pair.wheel, pair.wheel_origin, pair.wheel_axes, -turn * contact.wheel_angle),
-        )
-        self._size = sum(pair.base_radii)
-
-    def __call__(self, x: Array, y: Array) -> Array:
-        """Gap (nx, ny) [mm] over the grid of x and y; +inf where a flank ends or bends away from the normal."""
-        points = self.contact.point + x[:, None, None] * self.axes[0] + y[None, :, None] * self.axes[1]
-        heights, exists = zip(*(self._height(points, *frame) for frame in self._frames), strict=True)
-        return np.where(exists[0] & exists[1], heights[1] - heights[0], np.inf)
-
-    def _height(self, points: Array, flank: Flank, origin: Array, frame: Array, turn: float) -> tuple[Array, Array]:
-        """Height of a flank over the tangent plane along the normal [mm], and whether it is there."""
-        start, normal = (points - origin) @ frame.T, self.axes[2] @ frame.T
-        height = np.zeros(points.shape[:-1])
-        longest = 0.25 * self.pair.module
-        for _ in range(MOST_NEWTON_STEPS):
-            rho, theta, z = _cylindrical(start + height[..., None] * normal)
-            jet = flank.theta(rho, z)
-            basis = cylindrical_basis(theta)
-            slope = (basis @ normal * np.stack(np.broadcast_arrays(-jet.rho, 1.0 / rho, -jet.z), axis=-1)).sum(axis=-1)
-            step = (jet.value + turn - theta) / np.where(np.abs(slope) > 1e-6 / self._size, slope, np.inf)
-            height = height + np.clip(step, -longest, longest)
-            if (np.abs(step) <= ROUNDING * self._size).all():
-                break
-        rho, _, z = _cylindrical(start + height[..., None] * normal)
-        there = flank.inside(rho, z, tolerance=1e-9 * self.pair.module)
-        return height, there & (np.abs(step) <= 1e3 * ROUNDING * self._size)
-
-
-def _cylindrical(point: Array) -> tuple[Array, Array, Array]:
-    return np.hypot(point[..., 0], point[..., 1]), np.arctan2(point[..., 1], point[..., 0]), point[..., 2]
+    if last + 2 <= middle:  # in a corner the other border rules inside, but seldom outside
+        steep = room[outer] - room[beyond]
+        end = y[outer] + room[outer] / np.where(steep > 0.0, steep, np.inf) * (y[outer] - y[inner])
+        around = room_at((end + 0.5 * tolerance * np.array([[-1.0], [1.0]]) * sides).ravel()).reshape(2, -1)
+        if (around[0] >= 0.0).all() and (around[1] < 0.0).all():
+            return min(float(np.abs(end).max()), reach)
+    ends = np.stack([inner, outer])
+    return min(float(np.abs(find_roots(room_at, y[ends], room[ends], tolerance)).max()), reach)

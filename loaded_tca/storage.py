@@ -17,8 +17,8 @@ from scipy.io import netcdf_file
 from loaded_tca.errors import InputError
 
 FORMAT = "loaded_tca"
-FORMAT_VERSION = 1
-"""Raised whenever a file of the new kind cannot be read by the old code."""
+FORMAT_VERSION = 2
+"""Raised whenever the code of one version cannot read the files of another."""
 
 FilePath = str | os.PathLike[str]
 
@@ -129,7 +129,7 @@ def read_netcdf(path: FilePath) -> tuple[dict[str, Variable], dict[str, str]]:
     Raises
     ------
     InputError
-        If the file cannot be read, is damaged, no NetCDF-3 file, not of this package, or of a later format.
+        If the file cannot be read, is damaged, no NetCDF-3 file, not of this package, or of another format.
     """
     content = read_bytes(path)
     try:
@@ -232,7 +232,9 @@ def _check_format(path: FilePath, attributes: Mapping[str, str]) -> None:
     version = attributes.get("format_version", "")
     if attributes.get("format") != FORMAT or not version.isdecimal():
         raise InputError(f"{path}: a NetCDF-3 file, but not a result of loaded_tca")
-    if int(version) > FORMAT_VERSION:
+    if int(version) != FORMAT_VERSION:
+        age = "a later" if int(version) > FORMAT_VERSION else "an earlier"
         raise InputError(
-            f"{path}: written in format {version} by a later loaded_tca; this one reads formats up to {FORMAT_VERSION}"
+            f"{path}: written in format {version} by {age} loaded_tca; this one reads format {FORMAT_VERSION}: "
+            "run the scene again, its text is the attribute scene_toml of the file"
         )

@@ -19,7 +19,7 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("  pinion diameter | axial place [mm]", ("pinion_diameter_at_peak_mm", "pinion_axial_at_peak_mm")),
     ("  contact length | width [mm]", ("contact_length_at_peak_mm", "contact_width_at_peak_mm")),
     ("at a border or crease [MPa] | angle [deg]", ("border_pressure_MPa", "pinion_angle_at_border_deg")),
-    ("highest where Hertz holds | Hertz [MPa]", ("peak_pressure_where_hertz_holds_MPa", "hertz_pressure_there_MPa")),
+    ("highest of smooth contacts | Hertz [MPa]", ("peak_pressure_where_hertz_holds_MPa", "hertz_pressure_there_MPa")),
     ("  length | width after Hertz [mm]", ("hertz_length_there_mm", "hertz_width_there_mm")),
     ("transmission error, mean [arcsec | um]", ("transmission_error_mean_arcsec", "transmission_error_mean_um")),
     ("  peak to peak [arcsec | um]", ("transmission_error_span_arcsec", "transmission_error_span_um")),
@@ -30,7 +30,10 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
         ("mesh_stiffness_mean_N_per_mm_um", "secant_stiffness_mean_N_per_mm_um"),
     ),
     ("line load, largest [N/mm] | face load factor", ("line_load_max_N_per_mm", "face_load_factor_at_largest_force")),
-    ("tooth pairs under load, on average", ("loaded_contact_ratio",)),
+    (
+        "tooth pairs under load, mean | fewest | most",
+        ("loaded_contact_ratio", "fewest_loaded_pairs", "most_loaded_pairs"),
+    ),
     ("most cells across | along, worst residual", ("most_cells_across", "most_cells_along", "worst_solver_residual")),
 )
 """Label and key figures of each line of the summary."""

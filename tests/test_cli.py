@@ -293,6 +293,19 @@ def test_progress_is_shown_on_a_terminal_only(run, monkeypatch):
     assert cli.main(["run", str(scene()), "--out", "out"]) == 0
     assert "positions: 100%" in terminal.getvalue()
     assert "3/3" in terminal.getvalue()
+    assert "gone, 00:00 left" in terminal.getvalue()
+
+
+def test_progress_counts_torques_and_positions(monkeypatch):
+    changes = {"positions = 21": "positions = 3\ntorques_Nm = [20.0, 40.0]"}
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    monkeypatch.setattr(cli, "_draw", lambda *_: ())
+    assert cli.main(["run", str(scene(**changes)), "--out", "out"]) == 0
+    shown = terminal.getvalue()
+    assert "2 torques x 3 positions: 100%" in shown
+    assert "0/6" in shown
+    assert "6/6" in shown
 
 
 def test_version_is_that_of_the_package(capsys):
@@ -307,7 +320,7 @@ def test_help_lists_every_file(capsys):
         cli.main(["run", "--help"])
     shown = capsys.readouterr().out
     names = [f"{name}.png" for name in loaded_tca.plots.PICTURES]
-    assert all(name in shown for name in (*REPORT, *names))
+    assert all(name in shown for name in (*REPORT, "contacts.csv", *names))
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"]])

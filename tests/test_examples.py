@@ -14,6 +14,7 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 
 EXPECTED = {
     "plot_pressure_distribution": (1.0, 1e-10),  # the map carries the load: equilibrium
+    "plot_subsurface_stress": (1.0, 5e-3),  # the shear of Hertz's ellipse, on 48 cells and 31 depths
     "plot_contact_from_arrays": (1.018, 2e-3),  # the profile takes load off the ends and gives it to the middle
     "plot_convergence_of_methods": (100.0, 1e-9),  # every start finds the contact
     "plot_misalignment_sensitivity": (-1.0, 0.02),  # shift of the contact over f/(2 c1): first order

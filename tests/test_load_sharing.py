@@ -68,7 +68,7 @@ def test_loaded_pairs_ask_for_one_rotation_and_the_others_are_apart(pair_of, phi
     found, pair = shared(pair_of, phi1), pair_of()
     assert_allclose([share.rotation for share in found.shares], found.rotation, rtol=COMPATIBLE)
     assert found.residual <= COMPATIBLE
-    loaded = set(found.laws)
+    loaded = set(found.laws.contact)
     for touch in touches_at(trace_teeth(pair, [phi1]), 0):
         assert (touch.pair in loaded) == (touch.lag < found.rotation)
 

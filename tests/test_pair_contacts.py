@@ -293,3 +293,33 @@ def test_progress_is_told_after_every_torque_and_position():
         warnings.simplefilter("ignore", AccuracyWarning)  # a coarse grid is wanted here
         analyse(scene.with_changes(changes), progress=lambda done, total: told.append((done, total)))
     assert told == [(1, 4), (2, 4), (3, 4), (4, 4)]
+
+
+def test_pressure_beside_a_tip_is_none_of_the_flank():
+    """The pair that leaves the mesh: its contact point comes to the tip, and the spike there to its pressure."""
+    result = cycle_at_the_tip()
+    contacts, column = result.contacts, result.pairs.tolist().index(-1)
+    near = contacts.peak_at_border[0, :, column] & ~contacts.paths[column].on_edge
+    central = np.where(near, contacts.central_pressure[0, :, column], 0.0)
+    spiked = int(central.argmax())
+    smooth = np.fmax.reduce(np.where(contacts.peak_at_border, np.nan, contacts.peak_pressure), axis=None)
+    assert central[spiked] > smooth
+    assert np.isnan(contacts.inner_pressure[0, spiked, column])
+    (figures,) = result.key_figures()
+    assert figures["peak_pressure_MPa"] == smooth
+
+
+@cache
+def cycle_at_the_tip():
+    """At one of its positions the contact point of pair -1 lies a tenth of a millimetre from the tip."""
+    scene = read_scene(SCENES / "mesh_cycle_helical.toml").with_changes(
+        {
+            "analysis.positions": 33,
+            "analysis.cells": (20, 20),
+            "analysis.accuracy": None,
+            "analysis.torques_Nm": [260.0],
+        }
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        return analyse(scene)

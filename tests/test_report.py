@@ -11,11 +11,19 @@ from results import assert_same, result, with_a_gap
 
 from loaded_tca.errors import InputError
 from loaded_tca.mesh_cycle import MeshCycle
-from loaded_tca.report import describe_results, positions_csv, summary_json, write_report
+from loaded_tca.report import contacts_csv, describe_results, positions_csv, summary_json, write_report
 
 
 def table(cycle):
     return list(csv.DictReader(positions_csv(cycle).splitlines()))
+
+
+def shared():
+    return result("mesh_cycle_helical", positions=5, torques=(40.0, 260.0))
+
+
+def contact_rows(cycle):
+    return list(csv.DictReader(contacts_csv(cycle).splitlines()))
 
 
 def test_report_is_three_files_and_nothing_else(tmp_path):
@@ -26,6 +34,65 @@ def test_report_is_three_files_and_nothing_else(tmp_path):
     assert_same(MeshCycle.load(paths[0]), result())
     assert json.loads(paths[1].read_text(encoding="utf-8"))["title"] == result().title
     assert paths[2].read_bytes() == positions_csv(result()).encode()
+
+
+def test_contacts_are_a_fourth_file_where_pairs_share_the_load(tmp_path):
+    paths = write_report(shared(), tmp_path)
+    assert paths[3].name == "contacts.csv"
+    assert paths[3].read_bytes() == contacts_csv(shared()).encode()
+    write_report(result(), tmp_path)
+    assert not paths[3].exists()
+
+
+def test_contacts_carry_the_torque_together():
+    rows, carried = contact_rows(shared()), {}
+    for row in rows:
+        at = row["pinion_torque_Nm"], row["position"]
+        carried[at] = carried.get(at, 0.0) + float(row["load_share"])
+    assert len(carried) == shared().transmission_error.size
+    assert_allclose(list(carried.values()), 1.0, rtol=1e-8)  # nine digits
+
+
+def test_contacts_are_those_of_the_pairs_under_load():
+    cycle, rows = shared(), contact_rows(shared())
+    assert len(rows) == int((cycle.contacts.normal_force > 0.0).sum())
+    for row in rows:
+        at = (
+            [f"{1e-3 * torque:g}" for torque in cycle.torque].index(row["pinion_torque_Nm"]),
+            int(row["position"]) - 1,
+            cycle.pairs.tolist().index(int(row["tooth_pair"])),
+        )
+        contacts = cycle.contacts
+        near = {"rtol": 1e-8}  # nine digits
+        assert_allclose(float(row["normal_force_N"]), contacts.normal_force[at], **near)
+        assert_allclose(float(row["contact_width_mm"]), contacts.contact_width[at], **near)
+        assert_allclose(float(row["approach_um"]), 1e3 * contacts.approach[at], **near)
+        assert_allclose(float(row["contact_point_wheel_diameter_mm"]), 2.0 * contacts.paths[at[2]][at[1]].wheel_radius)
+        assert bool(row["borders"]) == (row["on_edge"] == "1") == bool(contacts.on_edge[at])
+
+
+def test_contacts_name_the_tip_that_comes_first_into_mesh():
+    early = [row for row in contact_rows(shared()) if row["tooth_pair"] == "1" and "tip" in row["borders"]]
+    assert early
+    assert {"wheel tip"} == {word for row in early for word in row["borders"].split(" + ") if "tip" in word}
+
+
+def test_every_column_of_the_contacts_is_in_the_reference_or_tells_its_unit():
+    described = describe_results().partition("### `result.contacts`")[2]
+    known = {"position", "tooth_pair", "load_share", "peak_at_border", "borders"}
+    units = ("_mm", "_deg", "_Nm")
+    for name in contact_rows(shared())[0]:
+        assert f"`{name}`" in described or name in known or name.endswith(units)
+
+
+def test_summary_names_the_pair_at_the_peak():
+    (first, *_) = json.loads(summary_json(shared()))["torques"]
+    _, column = shared().peak_contact(0)
+    assert first["tooth_pair_at_peak"] == shared().pairs[column]
+    counts = shared().by_torque("loaded_pairs")[0]
+    assert (first["fewest_loaded_pairs"], first["most_loaded_pairs"]) == (counts.min(), counts.max())
+    (alone,) = json.loads(summary_json(result()))["torques"]
+    assert alone["most_loaded_pairs"] is None
 
 
 def test_report_replaces_an_older_one(tmp_path):

@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,10 @@ from pairs import SEED_002_TORQUE, cylindrical_mesh, gear_pair, pairs, seed_002
 from scipy.optimize import brentq
 
 from loaded_tca import AccuracyWarning, GeometryError, InputError, sample_separation, solve_contact, trace_contact
+from loaded_tca.bevel_pair import bevel_pair
 from loaded_tca.flanks import FlankModifications
+from loaded_tca.gears import bevel_mesh
+from loaded_tca.normal_gap import NormalGap
 from loaded_tca.pair import Mounting
 from loaded_tca.reference import hertz
 from loaded_tca.separation import cells_for_accuracy
@@ -158,6 +162,7 @@ def test_gap_is_infinite_beyond_the_tip_of_either_gear_and_below_the_form_circle
 # The box
 
 
+ROUNDED = FlankModifications(profile_crowning=0.013)
 CONTACTS = {
     "point": (lambda: seed_002(15.0), 0.0),
     "circle": (lambda: gear_pair(FlankModifications(lead_crowning=2.0)), 0.1),
@@ -166,6 +171,8 @@ CONTACTS = {
     "misaligned edge": (lambda: seed_002(mounting=Mounting(out_of_plane=0.005)), 0.0),
     "tip edge": (lambda: seed_002(), 0.9),
     "tip line": (lambda: gear_pair(), -0.9),
+    "helical corner": (lambda: gear_pair(ROUNDED, ROUNDED, helix_deg=28.0, teeth=(31, 57)), -0.026),
+    "bevel line": (lambda: bevel_pair(bevel_mesh((20, 30), 3.0, 18.0)), 0.1),
 }
 
 
@@ -182,6 +189,39 @@ def test_box_holds_the_contact_and_is_not_much_larger(name, load):
     # half of the box across, a fifth on an edge; along, a wedge at the end of a face is short beside its box
     assert solution.cells_across[0] >= (10 if "edge" in name or "tip" in name else 24)
     assert solution.cells_across[1] >= (4 if name == "misaligned edge" else 36)
+
+
+@pytest.mark.parametrize("name", CONTACTS)
+@pytest.mark.parametrize("factor", [1e-3, 0.4, 2.5, 1e3])
+def test_box_hardly_depends_on_the_guess_it_starts_from(name, factor):
+    make, turn = CONTACTS[name]
+    pair = make()
+    contact, separation = separation_of(pair, turn, load=100.0, cells=(16, 16))
+    guess = (factor * separation.half_lengths[0], factor * separation.half_lengths[1])
+    guessed = sample_separation(pair, contact, load=100.0, cells=(16, 16), guess=guess)
+    # lengths are rounded up to half a cell of a coarse grid, which a contact fills to between 0.4 and 0.8
+    assert_allclose(guessed.half_lengths, separation.half_lengths, rtol=0.25)
+
+
+@pytest.mark.parametrize(
+    ("name", "load"),
+    [("line", 1e3), ("helical line", 1e3), ("tip line", 1e3), ("bevel line", 1e3), ("helical corner", 9e3)],
+)
+def test_box_ends_one_cell_beyond_the_end_of_the_material(name, load):
+    make, turn = CONTACTS[name]
+    pair = make()
+    contact, separation = separation_of(pair, turn, load=load, cells=(16, 16))
+    gap = NormalGap(pair, contact, separation.axes)
+    x, end = np.linspace(-1.0, 1.0, 65)[:, None] * separation.half_lengths[0], 14.0 / 16.0 * separation.half_lengths[1]
+    before, beyond = (gap.at(x, np.array([-end, end]) * (1.0 + shift))[1].max() for shift in (-1e-3, 1e-3))
+    assert before >= 0.0 > beyond
+    assert np.isinf(separation.gap[:, [0, -1]]).all()
+    assert np.isfinite(separation.gap[:, [1, -2]]).any()
+
+
+def test_end_of_the_material_of_a_spur_pair_is_that_of_the_face():
+    _, separation = separation_of(gear_pair(), load=1e3, cells=(16, 16))
+    assert_allclose(separation.half_lengths[1] * 14.0 / 16.0, 12.5, rtol=2e-6)  # looked for to 1e-6 of the box
 
 
 def test_cells_for_accuracy_are_even_and_grow_with_the_root_of_the_accuracy():
@@ -219,6 +259,7 @@ def test_load_of_zero_gets_a_box_so_small_that_its_smallest_gap_is_rounding():
         ({"load": 1.0, "cells": (4.5, 4)}, "cells: (4.5, 4) are not two whole numbers >= 1"),
         ({"box": (0.0, 1.0)}, "box: (0.0, 1.0) are not two positive lengths [mm]"),
         ({"box": (1.0, math.inf)}, "box: (1.0, inf) are not two positive lengths [mm]"),
+        ({"load": 1.0, "guess": (0.0, 1.0)}, "guess: (0.0, 1.0) are not two positive lengths [mm]"),
         ({"load": 1.0, "accuracy": 0.0}, "accuracy: 0.0 is not between 1e-8 and 1"),
     ],
 )
@@ -234,3 +275,11 @@ def test_position_that_does_not_touch_is_refused():
     contact = trace_contact(pair, [0.0, 1.5])[1]
     with pytest.raises(GeometryError, match=r"no common flank: the tooth pair does not touch at pinion angle 1.5 rad"):
         sample_separation(pair, contact, load=1.0)
+
+
+def test_contact_point_off_the_flanks_is_refused():
+    pair = seed_002()
+    contact = at_pitch_point(pair)
+    away = replace(contact, point=contact.point + [0.0, 0.0, 100.0])  # noqa: RUF005 (a sum)
+    with pytest.raises(GeometryError, match="no flank around the contact point at pinion angle 0 rad"):
+        sample_separation(pair, away, load=1.0)

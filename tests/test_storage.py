@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 
 from loaded_tca.errors import InputError
-from loaded_tca.storage import Variable, pack, read_netcdf, remove, replacing, unpack, write_netcdf
+from loaded_tca.storage import FORMAT_VERSION, Variable, pack, read_netcdf, remove, replacing, unpack, write_netcdf
 
 NUMBERS = Variable(("row", "column"), np.array([[1.5, np.inf], [np.nan, -0.0]]), "mm", "some lengths")
 FLAGS = Variable(("row",), np.array([True, False]), "1", "some flags")
@@ -142,9 +142,12 @@ def test_netcdf_file_of_another_program_is_told(path):
     assert problem(path) == f"{path}: a NetCDF-3 file, but not a result of loaded_tca"
 
 
-def test_file_of_a_later_format_is_told(path):
-    write_netcdf(path, ALL, {"format_version": "2"})
-    assert "written in format 2 by a later loaded_tca; this one reads formats up to 1" in problem(path)
+@pytest.mark.parametrize(("step", "age"), [(1, "a later"), (-1, "an earlier")])
+def test_file_of_another_format_is_told(path, step, age):
+    other = FORMAT_VERSION + step
+    write_netcdf(path, ALL, {"format_version": str(other)})
+    assert f"written in format {other} by {age} loaded_tca; this one reads format {FORMAT_VERSION}" in problem(path)
+    assert "run the scene again" in problem(path)
 
 
 def test_missing_and_misshapen_parts_are_told_together():

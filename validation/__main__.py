@@ -28,6 +28,7 @@ CASES = (
     "mesh_cycle_fem",
     "subsurface",
     "free_edge",
+    "wedge",
 )
 
 

@@ -1,8 +1,7 @@
 """Positions of a loaded spur pair, kept from finite elements and computed here, in the same few numbers.
 
-The finite elements are in plane strain. A face of the package has free ends, where the teeth yield more, and its
-half-spaces end without a mirror, so that the ends carry more than the middle. So it is made wide, under the same line
-load, and pressures are read at mid-face.
+The finite elements are in plane strain. A face of the package has free ends, where the teeth yield more. So it is made
+wide, under the same line load, and pressures are read at mid-face.
 """
 
 from __future__ import annotations
@@ -59,8 +58,10 @@ CROWNING: dict[str, object] = {
     "analysis.load_sharing": True,
     "analysis.compliance": "contact+tooth",
 }
-GRID = GridChoice(cells=(32, 128))
-"""Across and along; along, the tooth beneath a wide face is to see a line, not steps longer than it is thick."""
+GRID = GridChoice(cells=(32, 64))
+"""Across and along; along a wide face cells should be no longer than the tooth is thick."""
+GOOD_FIT = 1e-2
+"""Difference of a fitted half ellipse from the largest node, relative, beyond which it is no fit."""
 NEIGHBOURS = 1
 """Pitches between the loaded pairs of a position: never more than two pairs carry load here."""
 
@@ -163,7 +164,7 @@ def _place(row: dict[str, float | str]) -> tuple[str, float, int]:
 def _kept_pair(row: dict[str, float | str]) -> PairLoad:
     """Tooth pair of a row; the largest node where no half ellipse fits."""
     fitted, node = float(row["fitted_pressure_MPa"]), float(row["peak_pressure_MPa"])
-    pressure = fitted if np.isfinite(fitted) else node
+    pressure = fitted if abs(fitted / node - 1.0) <= GOOD_FIT else node
     return PairLoad(float(row["load_share"]), pressure, pressure, row["corner"] != "no")
 
 
@@ -259,12 +260,15 @@ class Crowned:
     Attributes
     ----------
     peak_line_load : float [N/mm]
+    pressure : float [MPa]
+        At mid-face.
     transmission_error : float [um]
     seconds : float
         Processor time, compliance and all.
     """
 
     peak_line_load: float
+    pressure: float
     transmission_error: float
     seconds: float
 
@@ -279,7 +283,7 @@ def read_crowned(path: Path = CROWNED_FILE) -> Crowned | None:
     if not path.exists():
         return None
     kept = json.loads(path.read_text())
-    return Crowned(kept["peak_line_load"], kept["transmission_error"], kept["seconds"])
+    return Crowned(kept["peak_line_load"], kept["mid_pressure"], kept["transmission_error"], kept["seconds"])
 
 
 def crowned() -> Crowned:
@@ -289,4 +293,5 @@ def crowned() -> Crowned:
     result = analyse(scene)
     seconds = time.process_time() - start
     error = 1e3 * result.wheel_base_radius * float(result.transmission_error[0])
-    return Crowned(float(result.contacts.line_load[0, 0, 0]), error, seconds)
+    contact = result.contacts
+    return Crowned(float(contact.line_load[0, 0, 0]), float(contact.peak_pressure[0, 0, 0]), error, seconds)

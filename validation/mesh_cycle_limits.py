@@ -18,10 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca import AccuracyWarning, analyse, read_scene
-from loaded_tca.contact_laws import PowerLaw
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.load_sharing import SharedLoad, share_load, touches_at
+from loaded_tca.load_sharing import Laws, SharedLoad, share_load, touches_at
 from loaded_tca.loaded_contact import GridChoice
 from loaded_tca.mesh_cycle import MeshCycle
 from loaded_tca.pair import GearPair, cylindrical_pair
@@ -153,7 +152,7 @@ def _mean_stiffness(
         tooth_forms(mesh), pair, backs, bore_diameters=bores, neighbours=neighbours, density=density
     )
     cycle = trace_teeth(pair, pair.pitch * np.linspace(-0.5, 0.5, STIFFNESS_POSITIONS, endpoint=False))
-    rates, laws = [], dict[int, PowerLaw]()
+    rates, laws = [], Laws()
     for position in range(STIFFNESS_POSITIONS):
         found = share_load(pair, touches_at(cycle, position), torque, GRID, compliance=teeth, start=laws)
         laws = found.laws

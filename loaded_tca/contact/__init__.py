@@ -1,7 +1,7 @@
 """Contact of two elastic half-spaces over a gap given on a grid."""
 
 from loaded_tca.contact.adaptive import solve_to_accuracy
-from loaded_tca.contact.edges import FreeEdge, edge_of_plane, quarter_space_factor
+from loaded_tca.contact.edges import FreeEdge, edge_of_plane, quarter_space_factor, wedge_factor
 from loaded_tca.contact.solution import ContactSolution, ContactStatus, ErrorEstimate
 from loaded_tca.contact.solver import contact_stiffness, solve_contact
 from loaded_tca.contact.subsurface import SubsurfaceStress, depths_below, subsurface_stress
@@ -19,4 +19,5 @@ __all__ = [
     "solve_contact",
     "solve_to_accuracy",
     "subsurface_stress",
+    "wedge_factor",
 ]

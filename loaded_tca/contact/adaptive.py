@@ -56,7 +56,8 @@ def solve_to_accuracy(
     accuracy : float
         Wanted relative error, between 0 and 1.
     load, approach, max_pressure, tolerance, threads, warn, free_edges
-        As in :func:`solve_contact`; the tolerance is tightened to a hundredth of the accuracy.
+        As in :func:`solve_contact`; the tolerance is tightened to a hundredth of the accuracy. A first grid that
+        cannot be the last is solved to that hundredth.
     smooth : bool
         False where the surfaces have a crease or an end inside the contact: treated as where a border bounds it.
     first_cells : (int, int)
@@ -92,7 +93,9 @@ def solve_to_accuracy(
     if not 0.0 < accuracy < 1.0:
         raise InputError(f"accuracy: {accuracy} is not between 0 and 1")
 
-    def solve(cells: Cells, start: Array | None) -> ContactSolution:
+    closely = TOLERANCE_SHARE * accuracy
+
+    def solve(cells: Cells, start: Array | None, tolerance: float) -> ContactSolution:
         gap, spacing = sampler(cells)
         return solve_contact(
             gap,
@@ -101,7 +104,7 @@ def solve_to_accuracy(
             load=load,
             approach=approach,
             max_pressure=max_pressure,
-            tolerance=min(TOLERANCE_SHARE * accuracy, tolerance),
+            tolerance=tolerance,
             initial_pressure=start,
             threads=threads,
             warn=False,
@@ -109,10 +112,11 @@ def solve_to_accuracy(
             column_compliance=None if column_compliance is None else column_compliance(cells),
         )
 
-    cells, solution = first_cells, solve(first_cells, None)
+    tolerance, refined = min(closely, tolerance), max(first_cells) < MOST_CELLS_AT_A_BORDER
+    cells, solution = first_cells, solve(first_cells, None, closely if refined else tolerance)
     while not (good := _error(solution, smooth) <= accuracy) and max(cells) < _most_cells(solution, smooth):
         coarse, cells = solution, (2 * cells[0], 2 * cells[1])
-        solution = _compared(solve(cells, prolong(coarse.pressure, cells, (2, 2))), coarse)
+        solution = _compared(solve(cells, prolong(coarse.pressure, cells, (2, 2)), tolerance), coarse)
     if warn:
         late = () if good else (f"estimated error {_error(solution, smooth):.1e} is above the accuracy {accuracy:.1e}",)
         for doubt in late + solution.doubts:

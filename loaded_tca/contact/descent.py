@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from loaded_tca.contact.columns import YieldingColumns, yielding
 from loaded_tca.contact.convolution import Convolution, Preconditioner, Window
-from loaded_tca.contact.edges import Mirror, MirroredConvolution, displacement_operator
+from loaded_tca.contact.edges import AnyMirror, MirroredConvolution, displacement_operator
 
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]
@@ -56,7 +56,7 @@ class Grid:
         Prescribed approach, counted as ``gap`` is; of no meaning if the total is given.
     cap : float [mm]
         Largest pressure, infinity if there is none.
-    edges : tuple of Mirror
+    edges : tuple of Mirror or ObliqueMirror
         Free edges, whose images of the pressure K holds too.
     columns : (ny, ny) array, optional
         What yields beneath: displacement of every column under a unit sum of pressures on each, a part of K too.
@@ -67,7 +67,7 @@ class Grid:
     total: float | None
     approach: float
     cap: float
-    edges: tuple[Mirror, ...] = ()
+    edges: tuple[AnyMirror, ...] = ()
     columns: Array | None = None
 
     def operator(

@@ -10,6 +10,8 @@ Mask = NDArray[np.bool_]
 
 COARSEST = 16
 MARGIN = 3
+# Newton steps for the constant between the squares of two pressures; the solver takes care of what is left.
+SHIFTS = 3
 
 
 def coarsening(shape: tuple[int, int]) -> tuple[int, int]:
@@ -54,6 +56,22 @@ def prolong(pressure: Array, shape: tuple[int, int], merge: tuple[int, int]) -> 
         if merge[axis] == 2:
             square = split(square, axis)
     return np.asarray(np.sqrt(np.maximum(square[: shape[0], : shape[1]], 0.0)))
+
+
+def under_other_load(pressure: Array, ratio: float) -> Array:
+    """Pressure near that under another load, ``ratio`` times the one it has; its sum is only nearly that.
+
+    The squares of the pressures under two ellipses of the same shape, or two strips, differ by a constant.
+    """
+    square = continue_outside(pressure * pressure)
+    square[square == 0.0] = -np.inf  # no neighbour tells how these would go on
+    total, shift = ratio * float(pressure.sum()), 0.0
+    for _ in range(SHIFTS):
+        shifted = np.sqrt(np.maximum(square + shift, 0.0))
+        surplus = float(shifted.sum()) - total
+        slope = 0.5 * float((1.0 / shifted[shifted > 0.0]).sum()) if shifted.any() else 0.0
+        shift -= surplus / slope if slope > 0.0 else 0.0
+    return np.asarray(np.sqrt(np.maximum(square + shift, 0.0)))
 
 
 def continue_outside(square: Array) -> Array:

@@ -156,13 +156,13 @@ class ContactSolution:
             return 0.0, 0.0, 0.0
         return patch.area_and_semi_axes(self.pressure, self.spacing)
 
-    @property
+    @cached_property
     def reaches_border(self) -> bool:
         """Whether the outermost cells of the grid carry pressure: the grid, not the bodies, bounds the contact."""
         rim = (self.pressure[[0, -1]], self.pressure[:, [0, -1]])
         return any(bool((cells > 0.0).any()) for cells in rim)
 
-    @property
+    @cached_property
     def reaches_material_edge(self) -> bool:
         """Whether the end of the material ends the contact, told within the last cell (see ``patch``)."""
         return patch.ends_at_material(self.pressure, np.isinf(self.gap))

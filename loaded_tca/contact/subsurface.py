@@ -204,8 +204,19 @@ def depths_below(solution: ContactSolution, count: int = 31) -> Array:
     if not solution.in_contact.any():
         problems.append("solution: nothing is in contact, there is no depth to measure by")
     checks.raise_if(problems)
+    return graded_depths(solution.semi_axes[0], count)
+
+
+def graded_depths(half_width: float, count: int) -> Array:
+    """Depths (count,) from the surface to three half widths of a contact [mm], their steps growing linearly.
+
+    Examples
+    --------
+    >>> graded_depths(0.1, 4).round(3)
+    array([0.   , 0.067, 0.167, 0.3  ])
+    """
     fraction = np.linspace(0.0, 1.0, count)
-    return np.asarray(DEEPEST * solution.semi_axes[0] * 0.5 * (fraction + fraction**2))
+    return np.asarray(DEEPEST * half_width * 0.5 * (fraction + fraction**2))
 
 
 def _problems(pressure: Array, spacing: tuple[float, float], depths: Array, poisson_ratio: float) -> list[str]:

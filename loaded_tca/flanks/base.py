@@ -10,6 +10,7 @@ basis grad F = (-Theta_rho, 1/rho, -Theta_z).
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -78,10 +79,13 @@ class Flank(ABC):
     def gradient_norm(self, rho: Array, z: Array) -> Jet:
         """|grad F| of the unmodified flank [1/mm]: what turns a distance along the normal into an angle."""
 
+    def room(self, rho: Array, z: Array) -> Any:
+        """Distance to the nearest border [mm], positive inside."""
+        return reduce(np.minimum, [jet.value for jet in self.borders(rho, z)])
+
     def inside(self, rho: Array, z: Array, tolerance: float = 0.0) -> Any:
         """Whether (rho, z) lies in the region, borders included, to within ``tolerance`` [mm]."""
-        values = [jet.value for jet in self.borders(rho, z)]
-        return np.min(np.stack(np.broadcast_arrays(*values)), axis=0) >= -tolerance
+        return self.room(rho, z) >= -tolerance
 
 
 def outward_normal(flank: Flank, rho: Array, z: Array) -> Array:

@@ -65,12 +65,11 @@ class InvoluteFlank(Flank):
 
     def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:  # noqa: ARG002 (it has no crease)
         """Theta of the involute helicoid."""
-        roll, base, side = self._roll_length(rho), self.base_radius, float(self.side)
-        involute = roll / base - np.arctan(roll / base)
-        slope = roll / (base * rho)
-        bend = (1.0 / roll - roll / rho**2) / base
-        value = side * (self._working_involute - involute) + self._twist * z
-        return Jet(value, -side * slope, self._twist, -side * bend)
+        roll, inward = self._roll_length(rho), -float(self.side) / self.base_radius
+        angle, steepness = roll / self.base_radius, roll / rho
+        involute = angle - np.arctan(angle) - self._working_involute
+        value = (-float(self.side)) * involute + self._twist * z
+        return Jet(value, inward * steepness, self._twist, inward * (1.0 / roll - steepness / rho))
 
     def borders(self, rho: Array, z: Array) -> tuple[Jet, ...]:
         """Tip circle, root form circle, the two ends of the face."""
@@ -93,7 +92,7 @@ class InvoluteFlank(Flank):
     def profile_coordinate(self, rho: Array, z: Array) -> Jet:  # noqa: ARG002 (it depends on the radius alone)
         """Roll length a = sqrt(rho^2 - r_b^2)."""
         roll = self._roll_length(rho)
-        return Jet(roll, rho=rho / roll, rho_rho=-(self.base_radius**2) / roll**3)
+        return Jet(roll, rho=rho / roll, rho_rho=-(self.base_radius**2) / (roll * roll * roll))
 
     def lengthwise_coordinate(self, rho: Array, z: Array) -> Jet:  # noqa: ARG002
         """Z itself, counted from the middle of the face."""

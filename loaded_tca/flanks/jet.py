@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ Array = NDArray[Any]
 class Jet:
     """Value, gradient and Hessian of a function of (rho, z); arrays that broadcast against each other.
 
-    Plain floats stand for constants, so that a derivative that vanishes costs nothing.
+    Plain floats stand for constants, and a derivative that is the number zero costs nothing.
     """
 
     value: Any
@@ -28,28 +28,27 @@ class Jet:
     @property
     def is_constant(self) -> bool:
         """Whether all derivatives are the number zero."""
-        parts = (self.rho, self.z, self.rho_rho, self.rho_z, self.z_z)
-        return all(isinstance(part, float) and part == 0.0 for part in parts)
+        return all(_is_zero(part) for part in (self.rho, self.z, self.rho_rho, self.rho_z, self.z_z))
 
     def __add__(self, other: Jet) -> Jet:
         return Jet(
             self.value + other.value,
-            self.rho + other.rho,
-            self.z + other.z,
-            self.rho_rho + other.rho_rho,
-            self.rho_z + other.rho_z,
-            self.z_z + other.z_z,
+            _sum(self.rho, other.rho),
+            _sum(self.z, other.z),
+            _sum(self.rho_rho, other.rho_rho),
+            _sum(self.rho_z, other.rho_z),
+            _sum(self.z_z, other.z_z),
         )
 
     def __mul__(self, factor: Any) -> Jet:
         """Multiply by a number, or by an array that does not depend on (rho, z)."""
         return Jet(
             self.value * factor,
-            self.rho * factor,
-            self.z * factor,
-            self.rho_rho * factor,
-            self.rho_z * factor,
-            self.z_z * factor,
+            _product(self.rho, factor),
+            _product(self.z, factor),
+            _product(self.rho_rho, factor),
+            _product(self.rho_z, factor),
+            _product(self.z_z, factor),
         )
 
     __rmul__ = __mul__
@@ -58,30 +57,50 @@ class Jet:
         """Product of two functions (Leibniz)."""
         if other.is_constant:
             return self * other.value
+        f, g = self, other
+        mixed = _sum(_product(f.rho, g.z), _product(f.z, g.rho))
         return Jet(
-            self.value * other.value,
-            self.rho * other.value + self.value * other.rho,
-            self.z * other.value + self.value * other.z,
-            self.rho_rho * other.value + 2.0 * self.rho * other.rho + self.value * other.rho_rho,
-            self.rho_z * other.value + self.rho * other.z + self.z * other.rho + self.value * other.rho_z,
-            self.z_z * other.value + 2.0 * self.z * other.z + self.value * other.z_z,
+            f.value * g.value,
+            _sum(_product(f.rho, g.value), _product(g.rho, f.value)),
+            _sum(_product(f.z, g.value), _product(g.z, f.value)),
+            _sum(2.0 * _product(f.rho, g.rho), _sum(_product(f.rho_rho, g.value), _product(g.rho_rho, f.value))),
+            _sum(mixed, _sum(_product(f.rho_z, g.value), _product(g.rho_z, f.value))),
+            _sum(2.0 * _product(f.z, g.z), _sum(_product(f.z_z, g.value), _product(g.z_z, f.value))),
         )
 
     def compose(self, value: Any, first: Any, second: Any) -> Jet:
         """f(self), given f, f' and f'' at ``self.value`` (chain rule)."""
+        bend_rho, bend_z = _product(self.rho, second), _product(self.z, second)
         return Jet(
             value,
-            first * self.rho,
-            first * self.z,
-            second * self.rho**2 + first * self.rho_rho,
-            second * self.rho * self.z + first * self.rho_z,
-            second * self.z**2 + first * self.z_z,
+            _product(self.rho, first),
+            _product(self.z, first),
+            _sum(_product(bend_rho, self.rho), _product(self.rho_rho, first)),
+            _sum(_product(bend_rho, self.z), _product(self.rho_z, first)),
+            _sum(_product(bend_z, self.z), _product(self.z_z, first)),
         )
 
     def shifted_scaled(self, origin: float, length: float) -> Jet:
         """(self - origin)/length."""
-        scaled = self * (1.0 / length)
-        return replace(scaled, value=scaled.value - origin / length)
+        return Jet(self.value - origin, self.rho, self.z, self.rho_rho, self.rho_z, self.z_z) * (1.0 / length)
+
+
+def _is_zero(part: Any) -> bool:
+    return type(part) is float and part == 0.0
+
+
+def _product(part: Any, factor: Any) -> Any:
+    if (type(part) is float and part == 0.0) or (type(factor) is float and factor == 0.0):
+        return 0.0
+    return part * factor
+
+
+def _sum(part: Any, other: Any) -> Any:
+    if type(part) is float and part == 0.0:
+        return other
+    if type(other) is float and other == 0.0:
+        return part
+    return part + other
 
 
 def weighted_sum(jets: Sequence[Jet], weights: Array) -> Jet:

@@ -330,8 +330,8 @@ class ModifiedFlank(DerivedFlank):
 
     def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:
         """Theta of the modified flank."""
-        off = self.removal(rho, z, beyond).times(self.nominal.gradient_norm(rho, z))
-        return self.nominal.theta(rho, z) + off * (-float(self.side))
+        turned = self.nominal.gradient_norm(rho, z) * -float(self.side)
+        return self.nominal.theta(rho, z) + self.removal(rho, z, beyond).times(turned)
 
     def creases(self, rho: Array, z: Array) -> tuple[Jet, ...]:
         """Starts of the linear reliefs, in millimetres of roll length beyond them."""

@@ -32,14 +32,13 @@ import numpy as np
 
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.cone_coordinates import cone_angle, cone_distance
 from loaded_tca.flanks.frame import ConeFrame
 from loaded_tca.flanks.jet import Array, Jet
 
 SMALLEST_Q = 3e-5
 """Q is kept above this: at the base cone itself the curvature is infinite, below it there is no involute. That
 concerns 1e-9 rad beside the base cone, where Theta is then off by less than 1e-13 rad."""
-SMALLEST_DISTANCE = 1e-3
-"""Cone distances are kept above this fraction of R_m: at the apex there is no flank."""
 
 
 def unwound_arc(cone_angle: Array, base_angle: float) -> Array:
@@ -57,6 +56,12 @@ def _q(sine: Array, base_angle: float) -> Array:
     """Q = sqrt(sin^2 u - sin^2 delta_b), from sin u."""
     base = math.sin(base_angle)
     return np.sqrt(np.maximum((sine - base) * (sine + base), SMALLEST_Q**2))
+
+
+def _sine_and_cosine(rho: Array, z: Array) -> tuple[Array, Array]:
+    """Of the cone angle."""
+    distance = np.sqrt(rho * rho + z * z)
+    return rho / distance, z / distance
 
 
 class SphericalInvoluteFlank(Flank):
@@ -111,13 +116,13 @@ class SphericalInvoluteFlank(Flank):
 
     def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:  # noqa: ARG002 (it has no crease)
         """Theta of the spherical involute, log spiral included."""
-        angle, sine_base = _cone_angle(rho, z), math.sin(self.base_angle)
-        sine, cosine = np.sin(angle.value), np.cos(angle.value)
+        angle, sine_base = cone_angle(rho, z), math.sin(self.base_angle)
+        sine, cosine = _sine_and_cosine(rho, z)
         q = _q(sine, self.base_angle)
         involute = np.arctan2(q, cosine) / sine_base - np.arctan2(q, sine_base * cosine)
-        slope, bend = q / (sine_base * sine), sine_base * cosine / (q * sine**2)
         side = float(self.side)
-        profile = angle.compose(side * (self._pitch_involute - involute), -side * slope, -side * bend)
+        slope, bend = -side / sine_base * q / sine, -side * sine_base * cosine / (q * (sine * sine))
+        profile = angle.compose(side * (self._pitch_involute - involute), slope, bend)
         if self._spiral == 0.0:
             return profile
         distance = self._cone_distance(rho, z)
@@ -146,10 +151,11 @@ class SphericalInvoluteFlank(Flank):
 
     def profile_coordinate(self, rho: Array, z: Array) -> Jet:
         """Unwound arc w, cos u = cos(delta_b) cos(w)."""
-        angle = _cone_angle(rho, z)
-        sine, cosine = np.sin(angle.value), np.cos(angle.value)
+        angle = cone_angle(rho, z)
+        sine, cosine = _sine_and_cosine(rho, z)
         q = _q(sine, self.base_angle)
-        return angle.compose(np.arctan2(q, cosine), sine / q, -cosine * math.sin(self.base_angle) ** 2 / q**3)
+        bend = (-(math.sin(self.base_angle) ** 2)) * cosine / (q * q * q)
+        return angle.compose(np.arctan2(q, cosine), sine / q, bend)
 
     def lengthwise_coordinate(self, rho: Array, z: Array) -> Jet:
         """R - R_m."""
@@ -159,16 +165,9 @@ class SphericalInvoluteFlank(Flank):
         """|grad F|, which falls with 1/R and is the same all along the profile."""
         size = math.hypot(1.0 / math.sin(self.base_angle), self._spiral)
         distance = self._cone_distance(rho, z)
-        inverse = 1.0 / distance.value
-        return distance.compose(size * inverse, -size * inverse**2, 2.0 * size * inverse**3)
+        value = size / distance.value
+        slope = -value / distance.value
+        return distance.compose(value, slope, -2.0 * slope / distance.value)
 
     def _cone_distance(self, rho: Array, z: Array) -> Jet:
-        value = np.maximum(np.hypot(rho, z), SMALLEST_DISTANCE * self.mean_cone_distance)
-        return Jet(value, rho / value, z / value, z**2 / value**3, -rho * z / value**3, rho**2 / value**3)
-
-
-def _cone_angle(rho: Array, z: Array) -> Jet:
-    """U = atan2(rho, z)."""
-    square = rho**2 + z**2
-    cross, difference = 2.0 * rho * z / square**2, (rho**2 - z**2) / square**2
-    return Jet(np.arctan2(rho, z), z / square, -rho / square, -cross, difference, cross)
+        return cone_distance(rho, z, self.mean_cone_distance)

@@ -23,13 +23,12 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.cone_coordinates import cone_angle, cone_distance
 from loaded_tca.flanks.frame import ConeFrame
 from loaded_tca.flanks.jet import Array, Jet
 
 NODES = 11
 """Cone distances at which a curve over R is known; they resolve it to the last digits."""
-SMALLEST_DISTANCE = 1e-3
-"""Cone distances are kept above this part of R_m: at the apex there is no flank."""
 
 
 def chebyshev_nodes(interval: tuple[float, float], count: int) -> Array:
@@ -128,7 +127,7 @@ class ToothRegion(Flank):
         tip, apex = self.face_cone
         sine, cosine = math.sin(tip), math.cos(tip)
         distance = self._distance(rho, z)
-        above = _cone_angle(rho, z) + self._form_line(distance) * -1.0
+        above = cone_angle(rho, z) + self._form_line(distance) * -1.0
         return (
             Jet((z + apex) * sine - rho * cosine, rho=-cosine, z=sine),
             distance.times(above),
@@ -148,25 +147,17 @@ class ToothRegion(Flank):
     def profile_coordinate(self, rho: Array, z: Array) -> Jet:
         """Height above the form line, scaled to that at mid-face [mm]."""
         distance = self._distance(rho, z)
-        return _cone_angle(rho, z).times(self._rise(distance)) + self._foot(distance) * -1.0
+        return cone_angle(rho, z).times(self._rise(distance)) + self._foot(distance) * -1.0
 
     def lengthwise_coordinate(self, rho: Array, z: Array) -> Jet:
         """R - R_m."""
         return self._distance(rho, z) + Jet(-self.mean_cone_distance)
 
     def _distance(self, rho: Array, z: Array) -> Jet:
-        value = np.maximum(np.hypot(rho, z), SMALLEST_DISTANCE * self.mean_cone_distance)
-        return Jet(value, rho / value, z / value, z**2 / value**3, -rho * z / value**3, rho**2 / value**3)
+        return cone_distance(rho, z, self.mean_cone_distance)
 
 
 def face_cone_angles(face_cone: tuple[float, float], distance: Array) -> Array:
     """u_a(R) of a cone with its apex off the origin [rad]."""
     tip, apex = face_cone
     return tip + np.arcsin(np.clip(apex * math.sin(tip) / distance, -1.0, 1.0))
-
-
-def _cone_angle(rho: Array, z: Array) -> Jet:
-    """U = atan2(rho, z)."""
-    square = rho**2 + z**2
-    cross, difference = 2.0 * rho * z / square**2, (rho**2 - z**2) / square**2
-    return Jet(np.arctan2(rho, z), z / square, -rho / square, -cross, difference, cross)

@@ -181,6 +181,7 @@ def _factors(header: list[str]) -> list[tuple[str, float]]:
 def _grid_order(table: dict[str, Array], lines: _Lines) -> tuple[Array, tuple[int, int]]:
     """Order of the rows in which they fill a grid (profile, lengthwise), and its shape."""
     if INDICES[0] in table:
+        _require_whole_indices(table)
         return _order_by_indices(*(table[name] for name in INDICES))
     count, found = len(lines.values), re.fullmatch(r"(\d+)\s*x\s*(\d+)", lines.notes.get("points", ""))
     if found is None:
@@ -190,6 +191,17 @@ def _grid_order(table: dict[str, Array], lines: _Lines) -> tuple[Array, tuple[in
     if shape[0] * shape[1] != count:
         raise InputError(f"points = {shape[0]} x {shape[1]} are {shape[0] * shape[1]}, but there are {count} rows")
     return np.arange(count).reshape(shape[::-1]).T.ravel(), shape
+
+
+def _require_whole_indices(table: dict[str, Array]) -> None:
+    """Refuse indices between whole numbers: each would be a line of the grid of its own."""
+    problems = []
+    for name in INDICES:
+        fractions = table[name][table[name] != np.round(table[name])]
+        if fractions.size:
+            problems.append(f"{name}: {fractions[0]:g} is not a whole number ({fractions.size} such rows)")
+    if problems:
+        raise InputError(problems)
 
 
 def _order_by_indices(profile: Array, lengthwise: Array) -> tuple[Array, tuple[int, int]]:

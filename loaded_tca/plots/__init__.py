@@ -13,12 +13,14 @@ from loaded_tca.plots.pressure_map import plot_pressure_map
 from loaded_tca.plots.sharing import (
     plot_harmonics,
     plot_line_load,
+    plot_line_load_distribution,
     plot_load_share,
     plot_mesh_stiffness,
     plot_path_pressure,
     plot_pressure_envelope,
 )
 from loaded_tca.plots.style import highest_torque, save_figure
+from loaded_tca.plots.subsurface import plot_stress_below, plot_subsurface
 from loaded_tca.storage import FilePath, remove
 
 __all__ = [
@@ -27,12 +29,15 @@ __all__ = [
     "plot_contact_path",
     "plot_harmonics",
     "plot_line_load",
+    "plot_line_load_distribution",
     "plot_load_share",
     "plot_mesh_stiffness",
     "plot_path_pressure",
     "plot_peak_pressure",
     "plot_pressure_envelope",
     "plot_pressure_map",
+    "plot_stress_below",
+    "plot_subsurface",
     "plot_transmission_error",
     "save_figure",
 ]
@@ -48,6 +53,7 @@ PICTURES = (
     "harmonics",
     "mesh_stiffness",
     "line_load",
+    "line_load_distribution",
     "pressure_envelope",
     "path_pressure",
 )
@@ -77,7 +83,8 @@ def plot_all(
         ``pressure_map.png`` of the peak pressure; if a higher one lies at a border or a crease in another position,
         ``pressure_map_border.png``; if Hertz holds in other positions only, ``pressure_map_hertz.png`` of the highest
         pressure where it holds. Where tooth pairs share the load: ``load_share.png``, ``harmonics.png``,
-        ``mesh_stiffness.png``, ``line_load.png``, ``pressure_envelope.png``, ``path_pressure.png``.
+        ``mesh_stiffness.png``, ``line_load.png``, ``line_load_distribution.png``, ``pressure_envelope.png``,
+        ``path_pressure.png``.
 
     Raises
     ------
@@ -110,6 +117,7 @@ def _shared_figures(result: MeshCycle, torque: int) -> dict[str, Figure]:
         "harmonics": plot_harmonics(result),
         "mesh_stiffness": plot_mesh_stiffness(result),
         "line_load": plot_line_load(result),
+        "line_load_distribution": plot_line_load_distribution(result, torque),
         "pressure_envelope": plot_pressure_envelope(result, torque),
         "path_pressure": plot_path_pressure(result),
     }

@@ -50,19 +50,34 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     )
     drawn = _drawn_maps(result, torque)
     maps = [one for row in drawn for one in row]
-    scale = Normalize(0.0, max((float(one.pressure.max()) for one in maps), default=1.0))
+    scale = Normalize(0.0, highest_inner_pressure(result, torque, maps))
     for axes, name, (flank, start, radius, axial) in zip(panels, scene.flank_names, sides, strict=True):
         outline = draw_flank(axes, name, flank, start)
         for one in maps:
             _draw_area(axes, outline, one, flank.frame.to_picture(*on_gear(pair, flank, one.corners)), scale)
         axes.plot(*flank.frame.to_picture(radius, axial), ".", color=ACCENT, markersize=4.0)
     if maps:
-        figure.colorbar(ScalarMappable(scale, COLOURS), ax=panels, label="contact pressure [MPa]")
+        beyond = any(one.pressure.max() > scale.vmax for one in maps)
+        bar = ScalarMappable(scale, COLOURS)
+        figure.colorbar(bar, ax=panels, label="contact pressure [MPa]", extend="max" if beyond else "neither")
     unreached = any(_profile_start(flank) < start for flank, start, *_ in sides)
     _explain(figure, len(drawn), len(path), unreached)
     what = "contact on the flanks" if maps else "no load, no pressure on the flanks"
     set_title(figure, result, f"{what}, {load(result, torque)}", range_of_positions(result))
     return figure
+
+
+def pressed_maps(result: MeshCycle, torque: int) -> list[PressureMap]:
+    """Maps under pressure, of all pairs and positions."""
+    return [one for row in result.contacts.maps[torque] for one in row if one is not None and one.pressure.any()]
+
+
+def highest_inner_pressure(result: MeshCycle, torque: int, maps: list[PressureMap]) -> float:
+    """Highest pressure that is no matter of the grid [MPa]; the highest at all if there is none: the end of a scale."""
+    inner = result.contacts.inner_pressure[torque]
+    if np.isfinite(inner).any():
+        return float(np.nanmax(inner)) or 1.0
+    return max((float(one.pressure.max()) for one in maps), default=1.0)
 
 
 def _drawn_maps(result: MeshCycle, torque: int) -> list[list[PressureMap]]:

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
+from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.jet import Array
 from loaded_tca.mesh_cycle import MeshCycle
 from loaded_tca.pair import GearPair
 from loaded_tca.pair_contacts import PressureMap
-from loaded_tca.plots.flanks import draw_flank, on_gear
+from loaded_tca.plots.flanks import draw_flank, highest_inner_pressure, on_gear, pressed_maps
 from loaded_tca.plots.style import (
     ACCENT,
     COLOURS,
@@ -24,15 +28,19 @@ from loaded_tca.plots.style import (
     loads,
     range_of_positions,
     set_title,
+    signed,
     torque_styles,
     widen,
 )
 from loaded_tca.scene import parse_scene
+from loaded_tca.unloaded import trace_contact
 
-EDGE = "contact on an edge"
+EDGE = "contact at an edge"
 MOST_ORDERS = 8
 """Orders of the tooth mesh that are drawn."""
 SMALLEST_AMPLITUDE_UM = 1e-4
+ROUNDS, FINENESS = 3, 33
+"""Rounds in which the ends of the path of contact are found, and angles of each: to 3e-5 of the span."""
 
 
 def plot_load_share(result: MeshCycle, torque: int | None = None) -> Figure:
@@ -56,7 +64,7 @@ def plot_load_share(result: MeshCycle, torque: int | None = None) -> Figure:
     order = np.argsort(result.pairs)
     for number, share in zip(result.pairs[order], shares.T[order], strict=True):
         marker = MARKERS[int(number) % len(MARKERS)]
-        above.plot(angle, 100.0 * share, marker=marker, markersize=4.0, label=f"tooth pair {number:+d}")
+        above.plot(angle, 100.0 * share, marker=marker, markersize=4.0, label=f"tooth pair {signed(int(number))}")
     below.step(angle, result.by_torque("loaded_pairs")[torque], where="mid", color="black")
     above.set_ylabel("share of the torque [%]")
     above.set_ylim(-4.0, 104.0)
@@ -161,30 +169,88 @@ def plot_pressure_envelope(result: MeshCycle, torque: int | None = None) -> Figu
     matplotlib.figure.Figure
     """
     torque = highest_torque(result) if torque is None else torque
-    figure = Figure(figsize=(11.0, 5.5), layout="constrained")
-    scene = parse_scene(result.scene_toml)
-    pair, starts = scene.pair(), scene.active_starts()
-    maps = [one for row in result.contacts.maps[torque] for one in row if one is not None and one.pressure.any()]
-    scale = Normalize(0.0, _scale_end(result, torque, maps))
-    sides = zip(figure.subplots(1, 2), scene.flank_names, (pair.pinion, pair.wheel), starts, strict=True)
-    panels = []
-    for axes, name, flank, start in sides:
-        outline = draw_flank(axes, name, flank, start)
+    maps = pressed_maps(result, torque)
+    scale = Normalize(0.0, highest_inner_pressure(result, torque, maps))
+
+    def draw(axes: Axes, pair: GearPair, flank: Flank) -> PolyCollection:
         cells, pressure = _cells(maps, pair, flank)
         drawn = PolyCollection(list(cells), array=pressure, cmap=COLOURS, norm=scale, edgecolors="face", linewidths=0.3)
-        drawn.set_rasterized(True)
         axes.add_collection(drawn, autolim=False)
-        drawn.set_clip_path(outline)
-        panels.append(axes)
+        return drawn
+
+    figure, panels = _both_flanks(result, draw)
     figure.colorbar(ScalarMappable(scale, COLOURS), ax=panels, label="highest contact pressure [MPa]", extend="max")
     set_title(figure, result, f"pressure envelope, {load(result, torque)}", range_of_positions(result))
     return figure
 
 
+def plot_line_load_distribution(result: MeshCycle, torque: int | None = None) -> Figure:
+    """Line load along the contacts of all pairs and positions, each where it lies on both flanks.
+
+    Every contact is drawn as the line through the middles of its pressure, coloured by the force per length along it.
+
+    Parameters
+    ----------
+    result : MeshCycle
+    torque : int, optional
+        Index of the torque; default: the largest one.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    torque = highest_torque(result) if torque is None else torque
+    lines = [_line_load(one) for one in pressed_maps(result, torque)]
+    scale = Normalize(0.0, max((float(line_load.max()) for _, line_load in lines), default=1.0))
+
+    def draw(axes: Axes, pair: GearPair, flank: Flank) -> LineCollection:
+        segments, values = [np.zeros((0, 2, 2))], [np.zeros(0)]
+        for points, line_load in lines:
+            at = np.stack(flank.frame.to_picture(*on_gear(pair, flank, points)), axis=-1)
+            segments.append(np.stack([at[:-1], at[1:]], axis=1))
+            values.append(0.5 * (line_load[:-1] + line_load[1:]))
+        drawn = LineCollection(list(np.concatenate(segments)), cmap=COLOURS, norm=scale, linewidths=2.0)
+        drawn.set_array(np.concatenate(values))
+        axes.add_collection(drawn, autolim=False)
+        return drawn
+
+    figure, panels = _both_flanks(result, draw)
+    figure.colorbar(ScalarMappable(scale, COLOURS), ax=panels, label="line load [N/mm]")
+    set_title(figure, result, f"line load along the contacts, {load(result, torque)}", range_of_positions(result))
+    return figure
+
+
+def _both_flanks(
+    result: MeshCycle, draw: Callable[[Axes, GearPair, Flank], PolyCollection | LineCollection]
+) -> tuple[Figure, list[Axes]]:
+    """A panel for each flank, with what is drawn cut off at its outline."""
+    figure = Figure(figsize=(11.0, 5.5), layout="constrained")
+    scene = parse_scene(result.scene_toml)
+    pair, panels = scene.pair(), list(figure.subplots(1, 2))
+    sides = zip(panels, scene.flank_names, (pair.pinion, pair.wheel), scene.active_starts(), strict=True)
+    for axes, name, flank, start in sides:
+        outline = draw_flank(axes, name, flank, start)
+        drawn = draw(axes, pair, flank)
+        drawn.set_rasterized(True)
+        drawn.set_clip_path(outline)
+    return figure, panels
+
+
+def _line_load(one: PressureMap) -> tuple[Array, Array]:
+    """Middles (k, 3) of the pressure of the loaded columns of a map, in the fixed frame, and line load (k,) [N/mm]."""
+    sums = one.pressure.sum(axis=0)
+    loaded = sums > 0.0
+    across = one.x @ one.pressure[:, loaded] / sums[loaded]
+    points = one.origin + across[:, None] * one.axes[0] + one.y[loaded, None] * one.axes[1]
+    return points, sums[loaded] * one.spacing[0]
+
+
 def plot_path_pressure(result: MeshCycle) -> Figure:
     """Pressure from the begin to the end of contact: every tooth pair at the angle of its own teeth, one curve.
 
-    For a spur pair that is the pressure from A to E: begin of contact, single contact from B to D, end of contact.
+    For a spur pair that is the pressure from A to E, single contact from B to D. Dotted lines mark where the unloaded
+    contact point comes into the flanks and leaves them (A, E), a pitch before the end and after the begin (B, D: only
+    one pair touches between them without load, if they lie in this order) and the pitch point (C).
 
     Parameters
     ----------
@@ -195,22 +261,58 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
     matplotlib.figure.Figure
     """
     figure, axes = _one_panel()
-    contacts = result.contacts
-    inner, peak = contacts.inner_pressure, contacts.peak_pressure
-    pitch = 2.0 * np.pi / parse_scene(result.scene_toml).pair().teeth[0]
-    angle = np.degrees(result.pinion_angle[:, None] - pitch * result.pairs).ravel()
+    contacts, pair = result.contacts, parse_scene(result.scene_toml).pair()
+    inner, peak, hertz = contacts.inner_pressure, contacts.peak_pressure, contacts.hertz_pressure
+    angle = np.degrees(result.pinion_angle[:, None] - pair.pitch * result.pairs).ravel()
     order = np.argsort(angle, kind="stable")
     for torque, label, colour, marker in torque_styles(result):
-        curve, largest = inner[torque].ravel()[order], peak[torque].ravel()[order]
+        curve, largest, ellipse = (values[torque].ravel()[order] for values in (inner, peak, hertz))
         known = np.isfinite(curve)
         axes.plot(angle[order][known], curve[known], color=colour, marker=marker, markersize=4.0, label=label)
+        axes.plot(angle[order], ellipse, color=ACCENT, linestyle="--", linewidth=1.0)
         _draw_ends(axes, angle[order], np.where(np.isfinite(largest) & ~known, largest, np.nan), inner)
+    if np.isfinite(hertz).any():
+        axes.plot([], [], color=ACCENT, linestyle="--", linewidth=1.0, label="after Hertz")
     axes.set_xlabel("pinion angle from the pitch point of the tooth pair [deg]")
     axes.set_ylabel("contact pressure [MPa]")
     axes.set_ylim(bottom=0.0)
+    _mark_points(axes, pair, float(np.abs(np.radians(angle)).max()))
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
     set_title(figure, result, f"pressure over the path of contact, {loads(result)}")
     return figure
+
+
+def _mark_points(axes: Axes, pair: GearPair, reach: float) -> None:
+    """Dotted lines at the points A to E of the path of contact that lie within the picture."""
+    begin, end = (_leaves_flanks(pair, side * reach) for side in (-1.0, 1.0))
+    marks = {"A": begin, "B": end - pair.pitch, "C": 0.0, "D": begin + pair.pitch, "E": end}
+    if not marks["A"] < marks["B"] < marks["D"] < marks["E"]:  # a NaN, or never one pair alone
+        marks = {name: marks[name] for name in "ACE"}
+    for name, angle in marks.items():
+        if np.isfinite(angle):
+            at = np.degrees(angle)
+            axes.axvline(at, color="0.5", linestyle=":", linewidth=1.0, zorder=0.0)
+            axes.annotate(name, (at, 1.0), xycoords=("data", "axes fraction"), ha="center", va="bottom", color="0.4")
+
+
+def _leaves_flanks(pair: GearPair, farthest: float) -> float:
+    """Angle [rad] between zero and the farthest at which the unloaded contact point of a pair comes to a border.
+
+    NaN if it does not, or lies on one at zero already.
+    """
+    low, high = 0.0, farthest
+    for _ in range(ROUNDS):
+        angles = np.linspace(low, high, FINENESS)
+        try:
+            path = trace_contact(pair, angles, warn=False)
+        except GeometryError:  # nothing touches on that side
+            return math.nan
+        outside = path.on_edge | ~path.touches
+        if not outside.any() or outside[0]:
+            return math.nan
+        first = int(np.argmax(outside))
+        low, high = angles[first - 1], angles[first]
+    return high
 
 
 def _draw_ends(axes: Axes, angle: Array, edge: Array, inner: Array) -> None:
@@ -240,11 +342,3 @@ def _cells(maps: list[PressureMap], pair: GearPair, flank: Flank) -> tuple[Array
     pressure = np.concatenate(pressures)
     order = np.argsort(pressure, kind="stable")
     return np.concatenate(corners)[order], pressure[order]
-
-
-def _scale_end(result: MeshCycle, torque: int, maps: list[PressureMap]) -> float:
-    """Highest pressure that is no matter of the grid; the highest at all if there is none."""
-    inner = result.contacts.inner_pressure[torque]
-    if np.isfinite(inner).any():
-        return float(np.nanmax(inner)) or 1.0
-    return max((float(one.pressure.max()) for one in maps), default=1.0)

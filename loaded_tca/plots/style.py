@@ -76,11 +76,16 @@ def loads(result: MeshCycle) -> str:
 def place(result: MeshCycle, position: int, frame: FlankFrame, column: int = 0) -> tuple[str, str]:
     """Return what a title says of one position, and of a pair's contact point in the frame of the pinion's flank."""
     where = result.contacts.paths[column][position]
-    which = f", tooth pair {result.pairs[column]:+d}" if len(result.pairs) > 1 else ""
+    which = f", tooth pair {signed(int(result.pairs[column]))}" if len(result.pairs) > 1 else ""
     return (
         f"position {position + 1} of {len(result.path)}{which}: pinion angle {_degrees(where.pinion_angle)} deg",
         f"contact point on the pinion: {frame.place(where.pinion_radius, where.pinion_axial)}",
     )
+
+
+def signed(number: int) -> str:
+    """Return the number of a tooth pair as pictures show it: 0, +1, -1."""
+    return f"{number:+d}" if number else "0"
 
 
 def range_of_positions(result: MeshCycle) -> str:

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from loaded_tca.contact import SubsurfaceStress
 from loaded_tca.errors import InputError
-from loaded_tca.plots.style import ACCENT, COLOURS
+from loaded_tca.plots.style import ACCENT, COLOURS, set_title
+from loaded_tca.subsurface import NAMES, Quantity, StressBelow, depth_of_largest
 
-Quantity = Literal["max_shear", "von_mises"]
-
-NAMES = {"max_shear": "greatest shear stress", "von_mises": "equivalent stress after von Mises"}
 LINES = 8
 DEEPEST_DRAWN = 0.1
 
@@ -47,17 +43,17 @@ def plot_subsurface(stress: SubsurfaceStress, quantity: Quantity = "max_shear") 
     """
     _check(stress, quantity)
     values = stress.max_shear if quantity == "max_shear" else stress.von_mises
-    level, row, column = (int(k) for k in np.unravel_index(int(np.argmax(values)), values.shape))
-    largest = float(values[level, row, column])
+    _, row, column = (int(k) for k in np.unravel_index(int(np.argmax(values)), values.shape))
+    largest = float(values.max())
     order = np.argsort(stress.depths)
     across = (np.arange(values.shape[1]) - 0.5 * (values.shape[1] - 1)) * stress.spacing[0]
-    figure = Figure(figsize=(8.0, 5.5), layout="constrained")
+    figure = Figure(figsize=(8.0, 5.5), layout="compressed")
     axes = figure.add_subplot()
     norm, section = Normalize(0.0, largest), values[order, :, column]
     filled = axes.contourf(across, stress.depths[order], section, 4 * LINES, cmap=COLOURS, norm=norm)
     axes.contour(across, stress.depths[order], section, LINES, colors="white", linewidths=0.5)
     figure.colorbar(filled, ax=axes, label=f"{NAMES[quantity]} [MPa]")
-    depth = float(stress.depths[level])
+    depth = depth_of_largest(stress.depths, values[:, row, column])
     label = f"{largest:.4g} MPa at a depth of {depth:.3g} mm"
     axes.plot(across[row], depth, "+", color=ACCENT, markersize=10.0, label=label)
     axes.invert_yaxis()
@@ -66,6 +62,29 @@ def plot_subsurface(stress: SubsurfaceStress, quantity: Quantity = "max_shear") 
     axes.set_ylabel("depth [mm]")
     figure.legend(loc="outside lower center", fontsize="small")
     figure.suptitle(f"Below the surface: {NAMES[quantity]}, Poisson's ratio {stress.poisson_ratio:g}")
+    return figure
+
+
+def plot_stress_below(below: StressBelow, quantity: Quantity = "max_shear") -> Figure:
+    """Picture of ``plot_subsurface`` for one pressure map of a result, which the title names.
+
+    Parameters
+    ----------
+    below : StressBelow
+        Of :func:`loaded_tca.subsurface.stress_below`.
+    quantity : {"max_shear", "von_mises"}
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        For another quantity.
+    """
+    figure = plot_subsurface(below.stress, quantity)
+    set_title(figure, below.result, f"below the surface: {NAMES[quantity]}", *below.where)
     return figure
 
 

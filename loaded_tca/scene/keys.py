@@ -79,10 +79,9 @@ class Whole:
 
 @dataclass(frozen=True)
 class Choice:
-    """One of a few words or numbers (or of true and false); ``later`` are not available in this version."""
+    """One of a few words or numbers (or of true and false)."""
 
     options: tuple[str | int, ...]
-    later: tuple[str | int, ...] = ()
 
     @property
     def allowed(self) -> str:
@@ -94,8 +93,6 @@ class Choice:
         for option in self.options:
             if type(value) is type(option) and value == option:
                 return option
-        if any(type(value) is type(option) and value == option for option in self.later):
-            raise ValueError(f"{shown(value)} is not available in this version; allowed {self.allowed}")
         raise _refusal(self, value, self._hint(value))
 
     def _hint(self, value: Any) -> str:

@@ -146,7 +146,7 @@ class Analysis(Section):
     tolerance: float = key(Number(1e-14, 0.1), "relative tolerance of the contact solver", 1e-6)
     free_edges: bool = key(
         Choice((False, True)),
-        "whether the sides of the teeth yield more than a half-space, by mirrored pressure",
+        "whether the tips and sides of the teeth yield more than a half-space, by mirrored pressure",
         False,
     )
     load_sharing: bool = key(

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from loaded_tca.flanks.base import Flank, outward_normal
 from loaded_tca.flanks.jet import Array
@@ -68,18 +69,12 @@ class SurfacePlaces:
     nodes: Indices
     shares: Array
 
-    def loads(self, directions: Array, nodes: int) -> Array:
-        """Load vectors (3 nodes, m) of unit forces along directions (m, 3)."""
-        found = np.zeros((len(directions), nodes, 3))
-        np.add.at(
-            found, (np.arange(len(directions))[:, None], self.nodes), self.shares[..., None] * directions[:, None]
-        )
-        return found.reshape(len(directions), -1).T
-
-    def displacements(self, solution: Array, directions: Array) -> Array:
-        """Displacements (m, n) along directions (m, 3) in solutions (3 nodes, n)."""
-        at_nodes = solution.reshape(-1, 3, solution.shape[-1])[self.nodes]
-        return np.einsum("ms,mscn,mc->mn", self.shares, at_nodes, directions)
+    def along(self, directions: Array, nodes: int) -> csr_array:
+        """Displacements along directions (m, 3) as a matrix (m, 3 nodes); its rows are unit forces along them."""
+        values = self.shares[..., None] * directions[:, None]
+        columns = 3 * self.nodes[..., None] + np.arange(3)
+        starts = np.arange(len(directions) + 1) * values[0].size
+        return csr_array((values.ravel(), columns.ravel(), starts), shape=(len(directions), 3 * nodes))
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,10 +221,12 @@ def _among_nodes(number: Indices, row: Array, layer: Array) -> SurfacePlaces:
     last = int((number[:, 0] >= 0).sum()) - 1
     lowest = np.stack([np.minimum(0.5 * row, last // 2 - 1), np.minimum(0.5 * layer, number.shape[1] // 2 - 1)])
     lowest = lowest.astype(int)
-    local = 0.5 * np.stack([row, layer]) - lowest
-    offsets = np.rint(2.0 * np.asarray(element.doflocs)).astype(int)
-    nodes = 2 * lowest[:, :, None] + offsets.T[:, None]
-    shares = np.stack([element.lbasis(local, i)[0] for i in range(len(offsets))], axis=-1)
+    span = np.where(number[2 * lowest[0], 2 * lowest[1] + 1] < 0, 2, 1)  # a middle that is missing: a thick element
+    lowest[1] -= lowest[1] % span
+    local = np.stack([0.5 * row - lowest[0], (0.5 * layer - lowest[1]) / span])
+    offsets = np.rint(2.0 * np.asarray(element.doflocs)).astype(int).T[:, None]
+    nodes = 2 * lowest[0, :, None] + offsets[0], 2 * lowest[1, :, None] + offsets[1] * span[:, None]
+    shares = np.stack([element.lbasis(local, i)[0] for i in range(offsets.shape[-1])], axis=-1)
     return SurfacePlaces(number[nodes[0], nodes[1]], shares)
 
 
@@ -249,17 +246,18 @@ class GearBody:
 
 def gear_body(nodes: BodyNodes, material: Material) -> GearBody:
     """Assemble and factorise the stiffness of a ring held at its bore."""
-    section = nodes.layout.elements
-    layers = range(nodes.layout.density.lengthwise)
-    lowest = np.concatenate([np.column_stack([section, np.full(len(section), 2 * k)]) for k in layers])
-    mesh = discretise(nodes.points, lowest)
-    return GearBody(mesh, factorised(mesh, material)[0])
+    layout = nodes.layout
+    lowest, spans, blocks = layout.bricks
+    mesh = discretise(nodes.points, lowest, layout.turns, spans)
+    return GearBody(mesh, factorised(mesh, material, blocks)[0])
 
 
-def factorised(mesh: Discretisation, material: Material) -> tuple[Factorisation, Array]:
-    """Factor of the stiffness of a mesh whose first row is held, and the matrices of its elements."""
+def factorised(mesh: Discretisation, material: Material, blocks: Indices | None = None) -> tuple[Factorisation, Array]:
+    """Factor of the stiffness of a mesh whose first row is held, and the matrices of its elements' kinds."""
     held = mesh.number[:, 0].ravel()
     free = np.ones((len(mesh.points), mesh.dimension), dtype=bool)
     free[held[held >= 0]] = False
-    matrices = mesh.stiffness(material)
-    return factorise(matrices, mesh.dofs, mesh.lowest // 2, free.ravel()), matrices
+    matrices, places = mesh.stiffness(material), mesh.lowest // 2
+    places[:, 2:] -= places[:, 2:] % 2  # no cut through an element that is twice as thick
+    factor = factorise(matrices, mesh.dofs, places, free.ravel(), kinds=mesh.kinds, blocks=blocks)
+    return factor, matrices

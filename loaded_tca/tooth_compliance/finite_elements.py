@@ -10,6 +10,7 @@ Gustafsson, McBain 2020, scikit-fem: A Python package for finite element assembl
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,10 +20,13 @@ from numpy.typing import NDArray
 from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.jet import Array
 from loaded_tca.material import Material
+from loaded_tca.tooth_compliance.hanging import FACES, following, nodes_of
 
 Indices = NDArray[np.int_]
 QUADRATURE_ORDER = 4
 """Three points in each direction."""
+SAME_FORM = 1e-9
+"""Elements are of one kind if their nodes agree to this part of the size of the body: far above rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,15 +43,25 @@ class Discretisation:
         Nodes of each element.
     lowest : (n, d) int array
         Lowest whole coordinates of each element.
-    products : (n, k d, k d) array [mm^(d - 2)]
-        Integrals of the products of the derivatives of any two shape functions, over each element.
+    kinds : (n,) int array
+        Which of q kinds each element is; elements of one kind have the same form.
+    products : (q, k d, k d) array [mm^(d - 2)]
+        Integrals of the products of the derivatives of any two shape functions, over one element of each kind, in the
+        frame of its first column.
+    turns : (q, k) array [rad]
+        From there to the frames in which the displacements of the nodes are counted.
+    shares : (q, k, k) array
+        Of these in the displacements of the element's own nodes: the identity where none hangs on a thicker element.
     """
 
     number: Indices
     points: Array
     elements: Indices
     lowest: Indices
+    kinds: Indices
     products: Array
+    turns: Array
+    shares: Array
 
     @property
     def dimension(self) -> int:
@@ -61,23 +75,30 @@ class Discretisation:
         return (d * self.elements[:, :, None] + np.arange(d)).reshape(len(self.elements), -1)
 
     def stiffness(self, material: Material) -> Array:
-        r"""Stiffness matrices (n, k d, k d) of the elements [N/mm]; in the plane per mm of width, strain being plane.
+        r"""Stiffness matrices (q, k d, k d) of the kinds [N/mm]; in the plane per mm of width, strain being plane.
 
         .. math:: K_{ia,jb} = \int \lambda\,\phi_{i,a}\phi_{j,b} + \mu\,\phi_{i,b}\phi_{j,a}
                   + \mu\,\delta_{ab} \nabla\phi_i\cdot\nabla\phi_j
         """
-        n, k, d = *self.elements.shape, self.dimension
+        k, d = self.elements.shape[1], self.dimension
         shear = 0.5 * material.youngs_modulus / (1.0 + material.poisson_ratio)
         lame = 2.0 * shear * material.poisson_ratio / (1.0 - 2.0 * material.poisson_ratio)
-        products = self.products.reshape(n, k, d, k, d)
+        products = self.products.reshape(-1, k, d, k, d)
         matrices = lame * products + shear * products.transpose(0, 1, 4, 3, 2)
         trace = shear * sum(products[:, :, a, :, a] for a in range(d))
         for a in range(d):
             matrices[:, :, a, :, a] += trace
-        return matrices.reshape(n, k * d, k * d)
+        matrices = matrices.reshape(-1, k * d, k * d)
+        other = np.flatnonzero(self.turns.any(axis=1) | (self.shares != np.eye(k)).any(axis=(1, 2)))
+        turns = _turn(self.turns[other], d)
+        change = (self.shares[other, :, None, :, None] * turns.transpose(0, 2, 1, 3)[:, None]).reshape(-1, k * d, k * d)
+        matrices[other] = change.transpose(0, 2, 1) @ matrices[other] @ change
+        return matrices
 
 
-def discretise(points: Array, lowest: Indices) -> Discretisation:
+def discretise(
+    points: Array, lowest: Indices, turns: Array | None = None, spans: Indices | None = None
+) -> Discretisation:
     """Number the nodes of a logical mesh and integrate over its elements.
 
     Parameters
@@ -86,6 +107,10 @@ def discretise(points: Array, lowest: Indices) -> Discretisation:
         Nodes by their d whole coordinates, of which the first closes to a ring.
     lowest : (n, d) int array
         Lowest node of each element; its others are up to 2 further.
+    turns : (columns,) array [rad], optional
+        About the origin or the last axis, by which the frame is turned in which displacements of a column are counted.
+    spans : (n,) int array, optional
+        In space: 2 where an element is twice as thick along the last axis, and starts at a multiple of 4; default: 1.
 
     Raises
     ------
@@ -93,15 +118,44 @@ def discretise(points: Array, lowest: Indices) -> Discretisation:
         If an element is turned inside out.
     """
     shape, d = points.shape[:-1], points.shape[-1]
-    element = _element(d)
-    nodes = np.rint(2.0 * np.asarray(element.doflocs)).astype(int) + lowest[:, None]
-    nodes[..., 0] %= shape[0]
+    element, offsets = _element(d), _offsets(d)
+    if spans is None:
+        nodes, hanging = offsets + lowest[:, None], np.zeros((len(lowest), len(FACES)), dtype=int)
+        nodes[..., 0] %= shape[0]
+    else:
+        nodes, hanging = nodes_of(lowest, spans, offsets, shape[0])
     used, elements = np.unique(np.ravel_multi_index(tuple(np.moveaxis(nodes, -1, 0)), shape), return_inverse=True)
     number = np.full(shape, -1)
     number.reshape(-1)[used] = np.arange(len(used))
     found = points.reshape(-1, d)[used]
     elements = elements.reshape(nodes.shape[:2])
-    return Discretisation(number, found, elements, lowest, _products(element, found[elements]))
+    frames = np.zeros(shape[0]) if turns is None else turns
+    first = frames[lowest[:, 0] % shape[0]]
+    corners = np.einsum("nba,nkb->nka", _turn(first, d), found[elements])
+    onwards = np.remainder(frames[nodes[..., 0]] - first[:, None], 2.0 * math.pi)
+    one, kinds = _kinds(corners, onwards, hanging)
+    shares = following(hanging[one], offsets, _element(2))
+    products = _products(element, shares @ corners[one])
+    return Discretisation(number, found, elements, lowest, kinds, products, onwards[one], shares)
+
+
+def _kinds(corners: Array, turns: Array, hanging: Indices) -> tuple[Indices, Indices]:
+    """One element of each kind, and the kind of each element: the same form but for where it lies along the axis."""
+    size, along = np.abs(corners).max(), corners - corners[:, :1] * (np.arange(corners.shape[-1]) == 2)
+    form = np.concatenate([along / size, turns[..., None]], axis=-1).reshape(len(corners), -1)
+    rounded = np.concatenate([np.rint(form / SAME_FORM).astype(int), hanging], axis=1)
+    seen: dict[bytes, int] = {}
+    kinds = np.array([seen.setdefault(row.tobytes(), len(seen)) for row in rounded])
+    return np.unique(kinds, return_index=True)[1], kinds
+
+
+def _turn(angle: Array, dimension: int) -> Array:
+    """Turns (..., d, d) about the origin or the last axis: from components in turned frames to those before."""
+    turn = np.zeros((*angle.shape, dimension, dimension))
+    turn[..., range(dimension), range(dimension)] = 1.0
+    cosine, sine = np.cos(angle), np.sin(angle)
+    turn[..., 0, 0], turn[..., 0, 1], turn[..., 1, 0], turn[..., 1, 1] = cosine, -sine, sine, cosine
+    return turn
 
 
 def _element(dimension: int) -> Any:
@@ -109,6 +163,11 @@ def _element(dimension: int) -> Any:
     from skfem import ElementHexS2, ElementQuadS2  # on use: it takes half a second
 
     return {2: ElementQuadS2, 3: ElementHexS2}[dimension]()
+
+
+def _offsets(dimension: int) -> Indices:
+    """Nodes (k, d) of an element, 0 to 2 from the lowest."""
+    return np.rint(2.0 * np.asarray(_element(dimension).doflocs)).astype(int)
 
 
 def _products(element: Any, corners: Array) -> Array:
@@ -123,6 +182,6 @@ def _products(element: Any, corners: Array) -> Array:
     determinant = np.linalg.det(jacobian)
     if not (np.isfinite(determinant).all() and (determinant * np.sign(determinant[0, 0]) > 0.0).all()):
         raise GeometryError("the mesh of the gear body turns an element inside out; change its density")
-    gradient = np.linalg.solve(jacobian, np.broadcast_to(local.transpose(2, 1, 0), (n, len(weights), d, k)))
+    gradient = np.linalg.inv(jacobian) @ local.transpose(2, 1, 0)
     gradient = np.ascontiguousarray(gradient.transpose(0, 3, 2, 1)).reshape(n, k * d, -1)
     return (gradient * (np.abs(determinant) * weights)[:, None]) @ gradient.transpose(0, 2, 1)

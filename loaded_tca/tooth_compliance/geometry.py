@@ -28,6 +28,8 @@ GROWTH = 1.8
 """Each layer of the rim is so much thicker than the one above."""
 LARGEST_BORE = 0.98
 """Of the smallest root circle."""
+SHARP = math.pi / 3.0
+"""Bend of an edge between its halves from which it is made straight; 29 deg on usual teeth, 66 where one folded."""
 BISECTIONS = 60
 
 
@@ -45,6 +47,8 @@ class BodyNodes:
         Polar coordinates of the images.
     bore_diameter : float [mm]
         Smallest one.
+    outline : (n, k, 3) array [mm]
+        Of the tooth between which the nodes were drawn, finer than they are.
     """
 
     layout: RingLayout
@@ -53,6 +57,7 @@ class BodyNodes:
     radius: Array
     angle: Array
     bore_diameter: float
+    outline: Array
 
     @property
     def points(self) -> Array:
@@ -127,7 +132,7 @@ def body_nodes(tooth: ToothSurface, sections: Sections, bore_radius: float | Arr
         columns = slice(sector.first, sector.first + 2 * sector.columns)
         block = _sector(sector, layout, sides, bore)
         radius[columns], angle[columns] = block[0][:-1], block[1][:-1] + turn
-    return BodyNodes(layout, sections, coordinate, radius, angle, 2.0 * float(np.min(bore_radius)))
+    return BodyNodes(layout, sections, coordinate, radius, angle, 2.0 * float(np.min(bore_radius)), outline)
 
 
 def _side(tooth: ToothSurface, polar: tuple[Array, Array], sign: int) -> _Side:
@@ -159,12 +164,24 @@ def _sector(sector: SectorLayout, layout: RingLayout, sides: tuple[_Side, _Side]
         columns = slice(2 * density.land, 2 * (density.land + density.through) + 1)
         filled = slice(layout.base_row, layout.base_row + block[0].shape[1])
         radius[columns, filled], angle[columns, filled] = block
-        part = 1.0 + np.linspace(0.0, 1.0, 2 * density.land + 1)[1:]
-        right, left = (side.on_foot(part) for side in sides)
+        part = 1.0 + np.linspace(0.0, 1.0, 2 * density.land + 1)
+        right, left = (_without_folds(*side.on_foot(part)) for side in sides)
         top = tuple(np.concatenate([left[n][::-1], block[n][:, 0], right[n]]) for n in range(2))
     filled = slice(0, layout.base_row + 1)
     radius[:, filled], angle[:, filled] = _rim(top[0], bore, layout.density.rim), top[1][:, None]
     return radius, angle
+
+
+def _without_folds(radius: Array, angle: Array) -> tuple[Array, Array]:
+    """Radius and angle (2 m, k) of the nodes of m elements along a foot, the first one left off.
+
+    An edge that bends too much, at a sharp fillet, is made straight: its element would fold over.
+    """
+    place = radius * np.exp(1j * angle)
+    steps = np.diff(place, axis=0)
+    bend = np.abs(np.angle(steps[1::2] * np.conj(steps[::2])))
+    place[1::2] = np.where(bend > SHARP, 0.5 * (place[:-1:2] + place[2::2]), place[1::2])
+    return np.abs(place[1:]), angle[1:] + np.angle(place[1:] * np.exp(-1j * angle[1:]))
 
 
 def _tooth(density: MeshDensity, sides: tuple[_Side, _Side], bore: Array) -> tuple[Array, Array]:

@@ -18,25 +18,20 @@ strain).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from numpy.polynomial.chebyshev import chebpts2
+from numpy.polynomial.chebyshev import chebvander
 
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.jet import Array
-from loaded_tca.tooth_compliance.body import GearTooth, ToothFrame, gear_body
+from loaded_tca.tooth_compliance.body import GearTooth, ToothFrame
 from loaded_tca.tooth_compliance.half_space import depth_displacement
+from loaded_tca.tooth_compliance.kept import kept_flexibility
 from loaded_tca.tooth_compliance.layout import MeshDensity
-from loaded_tca.tooth_compliance.local_term import LocalFlexibility, local_flexibility
-
-HEIGHTS = 6
-"""Places along the profile between which the displacements are interpolated."""
-LENGTHS_PER_LAYER = 2.0
-"""Places across the face, over the layers of elements, and at least:"""
-LEAST_LENGTHS = 11
+from loaded_tca.tooth_compliance.local_term import LocalFlexibility
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,16 +98,19 @@ class GearCompliance:
         InputError
             If the two are further apart than the teeth of the model.
         """
+        return self._displaced((at, _Places.of(self, at)), (under, _Places.of(self, under)))
+
+    def _displaced(self, at: tuple[FlankLine, _Places], under: tuple[FlankLine, _Places]) -> Array:
+        """As :meth:`between`, of lines whose places are known."""
         teeth = self.frame.gear.form.teeth
-        away = (at.tooth - under.tooth + teeth // 2) % teeth - teeth // 2
+        away = (at[0].tooth - under[0].tooth + teeth // 2) % teeth - teeth // 2
         if abs(away) > self.neighbours:
             raise InputError(
                 f"tooth: two loaded teeth are {abs(away)} pitches apart, the model has {self.neighbours} neighbours of "
                 "a loaded tooth; ask for more neighbours"
             )
-        there, here = (_Places.of(self, line).shares for line in (at, under))
         forth, back = (self.displacement[self.neighbours + step] for step in (away, -away))
-        return np.asarray(0.5 * there @ (forth + back.T) @ here.T)
+        return np.asarray(0.5 * at[1].shares @ (forth + back.T) @ under[1].shares.T)
 
     def within(self, line: FlankLine, distance: Array, images: Sequence[Image] = ()) -> Array:
         """Displacements (m, m) of places of one tooth per force at each [mm/N], on top of those of a half-space.
@@ -126,14 +124,21 @@ class GearCompliance:
         images : sequence of Image
             Of free edges for which the half-space was corrected: their displacements in the middle go off as well.
         """
-        places = _Places.of(self, line)
+        own = line, (places := _Places.of(self, line))
         depth = np.einsum("ma,ab,mb->m", places.across, self.depth, places.along)[:, None]
         spread = _spread(depth, distance) + sum(_spread(depth, image) for image in self._beyond_ends(places.length))
         material = self.frame.gear.material
         half_space = depth_displacement(depth, distance, material)
         half_space = half_space + sum(factor * depth_displacement(depth, image, material) for image, factor in images)
         found = self.local.at(places.height)[:, None] * spread - half_space
-        return self.between(line, line) + 0.5 * (found + found.T)
+        return self._displaced(own, own) + 0.5 * (found + found.T)
+
+    @cached_property
+    def interpolation(self) -> tuple[Array, Array]:
+        """Chebyshev coefficients (a, a) and (b, b) of the Lagrange polynomials of the heights and the lengths."""
+        nodes = self.heights, self.lengths
+        across, along = (np.linalg.inv(chebvander(2.0 * part - 1.0, len(part) - 1)) for part in nodes)
+        return across, along
 
     def _beyond_ends(self, length: Array) -> tuple[Array, Array]:
         """Distances (m, m) from the mirror images beyond both ends of the face [mm]."""
@@ -155,16 +160,18 @@ class _Places:
     def of(cls, gear: GearCompliance, line: FlankLine) -> _Places:
         """Where a line lies among the places of a gear's table."""
         height, length = gear.frame.parts(line.rho, line.z)
-        return cls(height, length, _lagrange(gear.heights, height), _lagrange(gear.lengths, length))
+        parts = zip((height, length), gear.interpolation, strict=True)
+        across, along = (chebvander(2.0 * part - 1.0, len(to) - 1) @ to for part, to in parts)
+        return cls(height, length, across, along)
 
-    @property
+    @cached_property
     def shares(self) -> Array:
         """Shares (m, a b) of the places of the table in every place."""
         return (self.across[:, :, None] * self.along[:, None, :]).reshape(len(self.across), -1)
 
 
 def gear_compliance(gear: GearTooth, side: int, density: MeshDensity = MeshDensity()) -> GearCompliance:
-    """Load a gear body by unit forces all over one flank.
+    """Load a gear body by unit forces all over one flank, or take what is known of it.
 
     Parameters
     ----------
@@ -181,39 +188,10 @@ def gear_compliance(gear: GearTooth, side: int, density: MeshDensity = MeshDensi
         If the tooth is pointed or cut off, or the mesh is turned inside out.
     """
     frame = ToothFrame(gear, side, gear.nodes(density))
-    heights = 0.5 + 0.5 * chebpts2(HEIGHTS)
-    lengths = 0.5 + 0.5 * chebpts2(max(LEAST_LENGTHS, math.ceil(LENGTHS_PER_LAYER * density.lengthwise)))
-    places = frame.places(*(grid.ravel() for grid in np.meshgrid(heights, lengths, indexing="ij")))
-    body = gear_body(frame.nodes, gear.material)
-    number = body.mesh.number
-    loads = frame.on_flank(places, number).loads(-places.normal, len(body.mesh.points))
-    solution = body.factorisation.solve(loads)
-    near = frame.nodes.layout.neighbours
-    found = []
-    for tooth in range(-near, near + 1):
-        turned = -places.normal @ _turn(2.0 * math.pi * tooth / gear.form.teeth)
-        found.append(frame.on_middle(places, tooth, number).displacements(solution, turned))
-    depth = places.depth.reshape(len(heights), len(lengths))
-    return GearCompliance(frame, heights, lengths, np.stack(found), depth, local_flexibility(gear, side))
+    known = kept_flexibility(frame)
+    return GearCompliance(frame, known.heights, known.lengths, known.displacement, known.depth, known.local)
 
 
 def _spread(depth: Array, distance: Array) -> Array:
     """Line density [1/mm] at a depth below a point force: its integral over the distances of a line is 1."""
     return 0.5 * depth**2 / (depth**2 + distance**2) ** 1.5
-
-
-def _lagrange(nodes: Array, places: Array) -> Array:
-    """Lagrange polynomials (m, n) of nodes (n,) at places (m,)."""
-    differences = np.where(np.eye(len(nodes), dtype=bool), 1.0, nodes[:, None] - nodes)
-    found = np.ones((len(places), len(nodes)))
-    for n, node in enumerate(nodes):
-        factor = (places[:, None] - node) / differences[:, n]
-        factor[:, n] = 1.0
-        found *= factor
-    return found
-
-
-def _turn(angle: float) -> Array:
-    """Turn about z for vectors in rows (3, 3)."""
-    cosine, sine = math.cos(angle), math.sin(angle)
-    return np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])

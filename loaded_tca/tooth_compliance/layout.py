@@ -6,6 +6,7 @@ neighbours coarsely, and the rest of the ring is a rim without teeth, one elemen
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields
 from functools import cached_property
 
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.errors import InputError
+from loaded_tca.flanks.jet import Array
 
 Indices = NDArray[np.int_]
 
@@ -65,7 +67,7 @@ class MeshDensity:
 
     def coarse(self) -> MeshDensity:
         """Density of the neighbouring teeth, which move almost as rigid bodies."""
-        return MeshDensity(2, 3, 1, 1, self.rim, self.lengthwise, 0)
+        return MeshDensity(2, min(3, self.flank), 1, 1, self.rim, self.lengthwise, 0)
 
 
 @dataclass(frozen=True)
@@ -125,6 +127,32 @@ class RingLayout:
         last = self.sectors[-1]
         tooth = self.density.flank + self.density.fillet
         return last.first + 2 * last.columns, 2 * (self.density.rim + tooth) + 1
+
+    @cached_property
+    def turns(self) -> Array:
+        """Angle (columns,) [rad] by which the pitch that a column belongs to is turned from the resolved tooth."""
+        numbers = np.concatenate([np.full(2 * sector.columns, sector.number) for sector in self.sectors])
+        return 2.0 * math.pi / self.teeth * numbers
+
+    @cached_property
+    def blocks(self) -> Indices:
+        """Which element (n,) of a section belongs to which tooth, counted around the gear; the bare rim is one."""
+        bare = np.array([sector.density is None for sector in self.sectors])
+        number = np.cumsum(np.append(True, ~(bare[1:] & bare[:-1]))) - 1
+        return np.repeat(number, [len(self._elements_of(sector)) for sector in self.sectors])
+
+    @cached_property
+    def bricks(self) -> tuple[Indices, Indices, Indices]:
+        """Elements of the body: lowest nodes (n, 3), layers (n,) that each spans, and blocks (n,).
+
+        Beside the resolved tooth two layers are one, but for an odd last one: displacements are smooth there.
+        """
+        section, layers = self.elements, np.arange(self.density.lengthwise)
+        lowest = np.column_stack([np.tile(section, (len(layers), 1)), np.repeat(2 * layers, len(section))])
+        blocks = np.tile(self.blocks, len(layers))
+        first, thick = lowest[:, 2] % 4 == 0, (blocks > 0) & (lowest[:, 2] < 4 * (len(layers) // 2))
+        stay = first | ~thick
+        return lowest[stay], np.where(thick, 2, 1)[stay], blocks[stay]
 
     @property
     def base_row(self) -> int:

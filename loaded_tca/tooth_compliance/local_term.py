@@ -68,7 +68,7 @@ def local_flexibility(gear: GearTooth, side: int, density: MeshDensity = DENSITY
     loads = np.stack([section.rest_loads(force) for force in forces], axis=-1)
     lift = np.stack([section.lift(force) for force in forces], axis=-1)
     factor, matrices = factorised(section.mesh, gear.material)
-    loads -= _product(matrices, section.mesh.dofs, lift)
+    loads -= _product(matrices[section.mesh.kinds], section.mesh.dofs, lift)
     rest = (factor.solve(loads) + lift).reshape(-1, 2, len(forces))
     value = [section.between(force, rest[..., n]) for n, force in enumerate(forces)]
     return LocalFlexibility((section.rows - section.first) / (2.0 * density.flank), np.array(value))

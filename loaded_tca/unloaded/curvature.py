@@ -11,13 +11,14 @@ is the difference of the curvature tensors of the two flanks (Johnson 1985, eq. 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from weakref import ReferenceType, WeakKeyDictionary, ref
 
 import numpy as np
 
 from loaded_tca.flanks.base import lengthwise_direction
 from loaded_tca.flanks.jet import Array
 from loaded_tca.pair import GearPair, cylindrical_basis
-from loaded_tca.unloaded.ease_off import PARTS, EaseOff
+from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.path import ContactPoint
 
 
@@ -39,16 +40,28 @@ class RelativeCurvature:
     axes: Array
 
 
+_KEPT: WeakKeyDictionary[ContactPoint, tuple[ReferenceType[GearPair], RelativeCurvature]] = WeakKeyDictionary()
+"""Curvatures of the contact points in use: every grid of a contact asks for them again."""
+
+
 def relative_curvature(pair: GearPair, contact: ContactPoint) -> RelativeCurvature:
-    """Principal relative curvatures at a contact point."""
+    """Principal relative curvatures at a contact point; kept as long as the contact point is."""
+    kept = _KEPT.get(contact)
+    if kept is None or kept[0]() is not pair:
+        kept = _KEPT[contact] = ref(pair), _curvature(pair, contact)
+    return kept[1]
+
+
+def _curvature(pair: GearPair, contact: ContactPoint) -> RelativeCurvature:
     lengthwise = heelwards(pair, contact)
     tangent_plane = _tangent_plane(contact.normal, lengthwise)
     tensor = _tensor(pair, contact, tangent_plane)
     values, vectors = np.linalg.eigh(0.5 * (tensor + tensor.T))
     along = vectors[:, 0] @ tangent_plane
     along = along if along @ lengthwise >= 0.0 else -along
-    across = np.cross(along, contact.normal)
-    return RelativeCurvature(float(values[1]), float(values[0]), np.stack([across, along, contact.normal]))
+    axes = np.stack([_cross(along, contact.normal), along, contact.normal])
+    axes.flags.writeable = False  # every grid of the contact shares them
+    return RelativeCurvature(float(values[1]), float(values[0]), axes)
 
 
 def heelwards(pair: GearPair, contact: ContactPoint) -> Array:
@@ -62,7 +75,7 @@ def _tangent_plane(normal: Array, lengthwise: Array) -> Array:
     """Two orthonormal directions (2, 3) across a unit normal; the second as near to ``lengthwise`` as can be."""
     lengthwise = lengthwise - (normal @ lengthwise) * normal
     lengthwise /= np.linalg.norm(lengthwise)
-    return np.stack([np.cross(lengthwise, normal), lengthwise])
+    return np.stack([_cross(lengthwise, normal), lengthwise])
 
 
 def _tensor(pair: GearPair, contact: ContactPoint, plane: Array) -> Array:
@@ -70,12 +83,14 @@ def _tensor(pair: GearPair, contact: ContactPoint, plane: Array) -> Array:
     field = EaseOff(pair)
     angle, rho, z = (np.atleast_1d(v) for v in (contact.pinion_angle, contact.pinion_radius, contact.pinion_axial))
     station = field.station(angle, rho, z)
-    inverse = np.linalg.inv(plane @ station.tangents[0].T)
-    slope = inverse.T @ field.gradient(station)[0]
-    bend = field.hessian(station)[0]
-    for k, (i, j) in enumerate(PARTS):
-        drift = slope @ (plane @ station.second[0, k])
-        bend[i, j] -= drift
-        if i != j:
-            bend[j, i] -= drift
+    in_wheel = plane @ station.wheel_basis[0].T
+    inverse, drifts = np.linalg.inv(in_wheel @ station.slopes[..., 0]), in_wheel @ station.bends[..., 0]
+    drift = inverse.T @ field.gradient(station)[0] @ drifts
+    bend = field.hessian(station)[0] - np.array([[drift[0], drift[1]], [drift[1], drift[2]]])
     return -(contact.wheel_lever / pair.base_radii[1]) * (inverse.T @ bend @ inverse)
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """Cross product of two single vectors."""
+    (a1, a2, a3), (b1, b2, b3) = a.tolist(), b.tolist()
+    return np.array([a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1])

@@ -21,6 +21,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -128,10 +129,14 @@ class EaseOff:
 
     def __init__(self, pair: GearPair, beyond: Array | None = None) -> None:
         self.pair, self.beyond = pair, beyond
-        probe = [np.atleast_1d(part)[:1] for part in pair.pinion.grid(2, 2)]
-        self._pinion_creases = len(pair.pinion.creases(probe[0].ravel(), probe[1].ravel()))
-        wheel_probe = [part.ravel() for part in pair.wheel.grid(2, 2)]
-        self._wheel_creases = len(pair.wheel.creases(*wheel_probe))
+
+    @cached_property
+    def _pinion_creases(self) -> int:
+        return len(self.pair.pinion.creases(*self.pair.pinion.grid(2, 2)))
+
+    @cached_property
+    def _wheel_creases(self) -> int:
+        return len(self.pair.wheel.creases(*self.pair.wheel.grid(2, 2)))
 
     @property
     def creases(self) -> int:

@@ -46,6 +46,8 @@ CLOSED = 1e-11
 COVERED = 1e-9
 """Distance beyond a border, relative to the flank's height, that counts as rounding."""
 
+FULL_TURN = 2.0 * math.pi
+
 Bools = NDArray[np.bool_]
 
 
@@ -158,6 +160,7 @@ class _Search:
         radius, azimuth, axial = self.pair.to_wheel(self.points(rows, rho, z))
         jet = flank.theta(radius, axial)
         behind = azimuth - jet.value + self.pair.sense * phi2
+        behind -= FULL_TURN * np.round(behind / FULL_TURN)  # azimuths are known up to whole turns
         distance = flank.side * behind / np.sqrt(radius**-2.0 + jet.rho**2 + jet.z**2)
         return distance + PENALTY * self._beyond(rho, z, radius, axial)
 
@@ -209,7 +212,9 @@ def _golden(function: Callable[[Array], Array], low: Array, high: Array, section
 def _close(search: _Search, rows: Array) -> tuple[Array, Array]:
     """Wheel angles (k,) [rad] at which the smallest gap vanishes, and what is left of it (k,) [mm]: regula falsi."""
     pair, phi1 = search.pair, search.phi1[rows]
-    mean, half_pitch = pair.ratio * phi1, math.pi / pair.teeth[1]
+    turned = FULL_TURN * np.round(phi1 / FULL_TURN)  # whole turns bring the same tooth of the pinion back
+    mean = pair.ratio * (phi1 - turned) + FULL_TURN * np.round(pair.ratio * turned / FULL_TURN)
+    half_pitch = math.pi / pair.teeth[1]
     ends = np.stack([mean - pair.driving * half_pitch, mean + pair.driving * half_pitch])
     gaps = search.narrowest(np.tile(rows, 2), ends.ravel())[0].reshape(ends.shape)
     wrong = (gaps[0] > 0.0) | (gaps[1] < 0.0)

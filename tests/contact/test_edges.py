@@ -15,8 +15,9 @@ from loaded_tca.contact import (
     quarter_space_factor,
     solve_contact,
     solve_to_accuracy,
+    wedge_factor,
 )
-from loaded_tca.contact.edges import Mirror, MirroredConvolution
+from loaded_tca.contact.edges import POWER, Mirror, MirroredConvolution
 from loaded_tca.contact.love import influence_coefficients
 from loaded_tca.errors import InputError
 from loaded_tca.reference import hertz
@@ -245,6 +246,58 @@ def test_factor_grows_with_poissons_ratio_and_with_the_share():
     assert quarter_space_factor(0.3, share=0.0) == 0.0
 
 
+def test_wedge_of_a_right_angle_is_the_quarter_space_and_of_two_no_edge():
+    for nu in (0.0, 0.3, 0.5):
+        assert wedge_factor(0.5 * math.pi, nu, 0.5) == quarter_space_factor(nu, 0.5)
+        assert_allclose(wedge_factor(math.pi, nu), 0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
+def test_factor_falls_with_the_angle_of_the_material(nu):
+    factors = [wedge_factor(math.radians(angle), nu) for angle in range(30, 181, 5)]
+    assert (np.diff(factors) < 0.0).all()
+    assert factors[-1] >= 0.0
+
+
+def michell(angle):
+    """What a wedge yields more than a half-space under a line load normal to one face at its edge, over the latter.
+
+    Radial stresses (a cos t + b sin t)/r balance the load, and the edge moves with it by the same a and b.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    turn = 0.5 * angle * (1.0 + nodes)
+    rays = np.array([np.cos(turn), np.sin(turn)])
+    balance = (0.5 * angle * weights * rays) @ rays.T
+    return 0.5 * math.pi * np.linalg.inv(balance)[1, 1] - 1.0
+
+
+@pytest.mark.parametrize("degrees", [50.0, 75.0, 105.0, 117.0, 135.0, 160.0])
+def test_factor_follows_michells_wedge(degrees):
+    ratio = wedge_factor(math.radians(degrees), 0.3) / quarter_space_factor(0.3)
+    assert_allclose(ratio, (michell(math.radians(degrees)) / michell(0.5 * math.pi)) ** POWER, rtol=1e-9)
+    # Hetenyi in plane strain: the side returns 2/pi of a load, and twice that falls on the top again
+    assert_allclose(1.0 + michell(0.5 * math.pi), 2.0 / (1.0 - (2.0 / math.pi) ** 2), rtol=1e-12)
+
+
+@pytest.mark.parametrize("degrees", [30.0, 60.0, 120.0])
+def test_contact_at_a_sharp_or_blunt_edge_converges_and_yields_more_the_sharper_it_is(degrees):
+    gap, spacing = bowl(offset=0.1)
+    approaches = []
+    for angle in (degrees, degrees + 15.0):
+        edge = FreeEdge(1, 40 * spacing[1], "below", wedge_factor(math.radians(angle), 0.3))
+        found = solve_contact(gap, spacing, E_STAR, load=LOAD, tolerance=1e-8, free_edges=[edge], warn=False)
+        assert found.status is ContactStatus.CONVERGED
+        assert_allclose(found.pressure.sum() * spacing[0] * spacing[1], LOAD, rtol=1e-12)
+        approaches.append(found.approach)
+    assert approaches[0] > approaches[1]
+
+
+@pytest.mark.parametrize("angle", [0.0, math.radians(29.0), 3.2, math.nan])
+def test_wedges_that_no_factor_is_known_for_are_refused(angle):
+    with pytest.raises(InputError, match=r"angle: .* is not between 30 and 180 degrees"):
+        wedge_factor(angle, 0.3)
+
+
 def test_plane_square_to_an_axis_is_an_edge_at_its_distance():
     below = edge_of_plane((1.0, 0.0, 0.0), 0.3, (0.1, 0.5), (10, 20), PSI)
     assert below == FreeEdge(0, 0.8, "below", PSI)
@@ -285,5 +338,5 @@ def test_edges_that_cannot_be_used_are_named(change, words):
 
 def test_factor_refuses_what_is_no_material():
     with pytest.raises(InputError) as caught:
-        quarter_space_factor(0.6, share=-0.1)
-    assert len(caught.value.problems) == 2
+        wedge_factor(0.1, 0.6, share=-0.1)
+    assert len(caught.value.problems) == 3

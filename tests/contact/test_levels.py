@@ -91,3 +91,15 @@ def test_window_holds_the_cells_and_a_margin(corner):
         assert span.start <= max(0, place - levels.MARGIN)
         assert span.stop >= min(size, place + 1 + levels.MARGIN)
         assert 0 <= span.start < span.stop <= size
+
+
+@pytest.mark.parametrize("ratio", [0.8, 0.95, 1.0, 1.1])
+def test_pressure_under_another_load_is_that_of_hertz(ratio):
+    """p^2 = p0^2 (1 - r^2/a^2) with p0/a the same under every load."""
+    x = np.linspace(-1.2, 1.2, 64)
+    square = 1.0 - (x[:, None] ** 2 + (x / 0.9) ** 2)
+    pressure = np.sqrt(np.maximum(square, 0.0))
+    expected = np.sqrt(np.maximum(square + ratio ** (2.0 / 3.0) - 1.0, 0.0))
+    found = levels.under_other_load(pressure, ratio)
+    assert_allclose(found.sum(), ratio * pressure.sum(), rtol=1e-2)
+    assert np.abs(found - expected).sum() < 0.1 * abs(ratio - 1.0) * pressure.sum() + 1e-3 * pressure.sum()

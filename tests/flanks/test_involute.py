@@ -137,6 +137,11 @@ def test_grid_spans_the_region_borders_included():
     assert flank().inside(rho, z).all()
 
 
+def test_room_is_the_distance_to_the_nearest_border():
+    rho, z = np.array([50.0, 53.0, 49.0, 51.0, 56.0]), np.array([0.0, 0.0, 2.0, -12.0, 13.0])
+    assert_allclose(flank().room(rho, z), [1.5, 1.0, 0.5, 0.5, -2.0], rtol=ROUNDING)
+
+
 def test_inside_counts_the_borders_and_a_tolerance():
     one = flank()
     rho = np.array([RADII[1], RADII[1] + 1e-6, RADII[1] + 1e-6])

@@ -74,3 +74,21 @@ def test_weighted_sum_weighs_each_row_by_its_own_numbers():
 def test_shift_and_scale_is_the_linear_map_of_the_value_and_scales_the_derivatives():
     jet = cubic(1.5, 0.5)
     assert_allclose(parts(jet.shifted_scaled(2.0, 4.0)), [(jet.value - 2.0) / 4.0, *[v / 4.0 for v in parts(jet)[1:]]])
+
+
+@given(coordinates, coordinates)
+def test_derivative_that_is_the_number_zero_counts_like_an_array_of_zeros_and_stays_one(r, z):
+    along, across = Jet(np.array(z**2), z=2.0 * z, z_z=2.0), Jet(np.array(r**2), rho=2.0 * r, rho_rho=2.0)
+    full = [
+        Jet(jet.value, *(np.array(float(part)) for part in (jet.rho, jet.z, jet.rho_rho, jet.rho_z, jet.z_z)))
+        for jet in (along, across)
+    ]
+
+    def combined(first, second):
+        whole = first.times(second) + first * 3.0 + second.shifted_scaled(1.0, 2.0)
+        return whole + second.compose(np.exp(second.value), np.exp(second.value), np.exp(second.value))
+
+    assert_allclose(parts(combined(along, across)), parts(combined(*full)), rtol=ROUNDING)
+    untouched = along + along * 2.0 + along.compose(np.sin(along.value), np.cos(along.value), -np.sin(along.value))
+    assert (untouched.rho, untouched.rho_rho, untouched.rho_z) == (0.0, 0.0, 0.0)
+    assert all(type(part) is float for part in (untouched.rho, untouched.rho_rho, untouched.rho_z))

@@ -147,6 +147,16 @@ def test_many_bad_lines_are_counted():
     assert problems[-1] == "and 15 more problems of this kind"
 
 
+@pytest.mark.parametrize(("place", "column"), [("1.5,1", "profile_index"), ("1,1.5", "lengthwise_index")])
+def test_index_between_whole_numbers_is_told_as_such(place, column):
+    places = [f"{i},{j}" for i in range(3) for j in range(3)]
+    places[4] = place
+    rows = [f"{indices},{50 + k // 3},{k % 3},0" for k, indices in enumerate(places)]
+    with pytest.raises(InputError) as caught:
+        parse_topography("\n".join([HEADER, *rows]))
+    assert caught.value.problems == (f"{column}: 1.5 is not a whole number (1 such rows)",)
+
+
 def test_missing_and_double_points_are_refused(grid):
     rows = rows_of(*grid)
     assert problems_of("\n".join([HEADER, *rows[:10], rows[3], *rows[12:]])) == (

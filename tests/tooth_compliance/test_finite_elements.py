@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from bodies import WIDTH, pinion
@@ -25,7 +27,7 @@ def body():
 
 def energies(mesh, displacement):
     flat = displacement.ravel()[mesh.dofs]
-    return np.einsum("na,nab,nb->n", flat, mesh.stiffness(STEEL), flat)
+    return np.einsum("na,nab,nb->n", flat, mesh.stiffness(STEEL)[mesh.kinds], flat)
 
 
 def test_rigid_motions_cost_no_energy():
@@ -95,6 +97,31 @@ def test_stiffness_is_that_of_the_library(rng):
     used = mesh.number >= 0
     nodal[mesh.number[used]] = np.concatenate([displacement, np.zeros((2, 5, 2))])[used]
     assert_allclose(energies(mesh, nodal).sum(), expected, rtol=ROUNDING)
+
+
+def test_pitches_of_a_rim_are_of_one_kind():
+    """Whatever the tooth: one column of elements, in one layer of a spur gear, serves for the whole rim."""
+    nodes = pinion().nodes(replace(DENSITY, lengthwise=2))
+    lowest = nodes.layout.elements
+    layers = np.repeat([0, 2], len(lowest))
+    mesh = discretise(nodes.points, np.column_stack([np.tile(lowest, (2, 1)), layers]), nodes.layout.turns)
+    bare = np.tile(nodes.layout.blocks == nodes.layout.blocks.max(), 2)
+    assert len(np.unique(mesh.kinds[bare])) == DENSITY.rim
+    assert len(np.unique(mesh.kinds)) == len(np.unique(mesh.kinds[: len(lowest)]))
+
+
+def test_energy_does_not_depend_on_the_frames(rng):
+    nodes = pinion().nodes(DENSITY)
+    lowest = nodes.layout.elements
+    lowest = np.column_stack([lowest, np.zeros(len(lowest), dtype=int)])
+    turned, plain = (discretise(nodes.points, lowest, turns) for turns in (nodes.layout.turns, None))
+    displacement = rng.standard_normal(plain.points.shape)
+    columns = np.empty(len(plain.points), dtype=int)
+    columns[plain.number[plain.number >= 0]] = np.nonzero(plain.number >= 0)[0]
+    cosine, sine = np.cos(nodes.layout.turns[columns]), np.sin(nodes.layout.turns[columns])
+    x, y, z = displacement.T
+    local = np.stack([cosine * x + sine * y, cosine * y - sine * x, z], axis=-1)
+    assert_allclose(energies(turned, local), energies(plain, displacement), rtol=ROUNDING)
 
 
 def test_an_element_inside_out_is_refused():

@@ -1,6 +1,8 @@
 """Relative curvature from the ease-off against the two flanks' own curvatures, and against closed forms."""
 
+import gc
 import math
+import weakref
 
 import numpy as np
 import pytest
@@ -111,3 +113,22 @@ def test_second_axis_of_a_bevel_contact_leads_to_the_heel_also_on_a_flat_gear(te
 def test_heelwards_is_the_axis_of_a_cylindrical_pinion():
     pair = seed_002(15.0)
     assert_allclose(heelwards(pair, trace_contact(pair, [0.1])[0]), [0.0, 0.0, 1.0], atol=0)
+
+
+def test_curvature_is_kept_for_as_long_as_its_contact_point():
+    pair, other = seed_002(), seed_002(15.0)
+    contact = trace_contact(pair, [0.1])[0]
+    found = relative_curvature(pair, contact)
+    assert relative_curvature(pair, contact) is found
+    assert relative_curvature(other, contact).axes[1, 0] != found.axes[1, 0]  # of the pair that is asked about
+    assert_allclose(relative_curvature(pair, contact).across, found.across, rtol=0)
+    kept = weakref.ref(relative_curvature(pair, contact))
+    del contact
+    gc.collect()
+    assert kept() is None
+
+
+def test_axes_of_the_curvature_cannot_be_changed():
+    pair = seed_002()
+    with pytest.raises(ValueError, match="read-only"):
+        relative_curvature(pair, trace_contact(pair, [0.1])[0]).axes[0] = 0.0

@@ -100,6 +100,15 @@ def test_smallest_gap_grows_with_the_wheel_angle_where_the_distance_without_sign
         assert gaps.min() < 0.0 < gaps.max()
 
 
+@pytest.mark.parametrize("turns", [1, -2, 57])
+def test_contact_whole_turns_away_is_that_of_the_same_tooth(turns):
+    angle = [0.01 + 2.0 * np.pi * turns]
+    found = search_golden_section(seed_002(), angle, sections=INTERIOR)
+    expected = trace_contact(seed_002(), angle).wheel_angle
+    rounding = 1e-12  # of angles of hundreds of radians
+    assert_allclose(found.wheel_angle, expected, rtol=0, atol=rounding)
+
+
 def test_line_contact_of_an_unmodified_pair_is_found():
     found = search_golden_section(gear_pair(), [0.01], sections=INTERIOR)
     assert_allclose(found.wheel_angle, 0.01 * 34 / 57, rtol=0, atol=2.0 * CLOSED)

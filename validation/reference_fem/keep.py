@@ -64,7 +64,8 @@ def keep_crowned(program: str, work: Path) -> None:
         "In space: C3D20R, half the face (z >= 0), whole rings; 100 N m, phi1 = 0; pinion with parabolic lead crowning",
         "of 10 um at the ends of the face. transmission_error [um] at the hubs, height [mm] of the layers' middles,",
         "line_load [N/mm] their means, covered_width [mm] the area under pressure over the height of the layer,",
-        "peak_line_load [N/mm] at mid-face, total [N] of the whole face, seconds of processor time.",
+        "peak_line_load [N/mm] at mid-face, total [N] of the whole face, mid_pressure [MPa] and mid_half_width [mm]",
+        "of the half ellipse through the pressures at mid-face, seconds of processor time.",
     )
     content = {"provenance": provenance(program, notes), **asdict(run_crowned(work))}
     CROWNED_FILE.write_text(json.dumps(content, indent=1) + "\n")

@@ -1,0 +1,89 @@
+"""Pictures of the shared load: what is drawn is what the result holds."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.collections import LineCollection
+from numpy.testing import assert_allclose
+from results import result
+
+from loaded_tca.errors import GeometryError
+from loaded_tca.plots import (
+    plot_contact_path,
+    plot_line_load_distribution,
+    plot_load_share,
+    plot_path_pressure,
+    sharing,
+)
+from loaded_tca.scene import parse_scene
+
+
+def shared(name="mesh_cycle_helical", torques=(260.0,)):
+    return result(name, positions=5, torques=torques)
+
+
+def marks(figure):
+    """Letter -> pinion angle [deg]."""
+    return {text.get_text(): text.xy[0] for text in figure.axes[0].texts}
+
+
+def test_marks_of_a_spur_pair_are_those_of_its_involutes():
+    """Without relief a pair touches unloaded as long as its transverse contact ratio says."""
+    changes = {f"{gear}.modifications.tip_relief_um": 0.0 for gear in ("pinion", "wheel")}
+    cycle = replace(
+        shared("mesh_cycle_spur"),
+        scene_toml=parse_scene(shared("mesh_cycle_spur").scene_toml).with_changes(changes).to_toml(),
+    )
+    mesh = parse_scene(cycle.scene_toml).mesh()
+    found = marks(plot_path_pressure(cycle))
+    pitch = 360.0 / 34
+    assert_allclose((found["E"] - found["A"]) / pitch, mesh.transverse_contact_ratio, rtol=1e-3)
+    assert_allclose([found["B"], found["C"], found["D"]], [found["E"] - pitch, 0.0, found["A"] + pitch], atol=1e-9)
+    assert found["A"] < found["B"] < found["C"] < found["D"] < found["E"]
+
+
+def test_path_without_ends_on_the_flanks_has_no_marks_for_them():
+    """Positions end where no contact has left the flanks yet."""
+    cycle = result("mesh_cycle_bevel", positions=5, torques=(0.2,))
+    assert set(marks(plot_path_pressure(cycle))) <= {"A", "C", "E"}
+
+
+def test_hertz_is_drawn_beside_the_pressure_of_the_path():
+    figure = plot_path_pressure(shared(torques=(40.0,)))
+    labels = figure.axes[0].get_legend_handles_labels()[1]
+    assert "after Hertz" in labels
+    drawn = [line for line in figure.axes[0].lines if line.get_linestyle() == "--" and len(line.get_xdata())]
+    hertz = shared(torques=(40.0,)).contacts.hertz_pressure
+    assert np.nanmax(drawn[0].get_ydata()) == np.nanmax(hertz)
+
+
+@pytest.mark.parametrize("name", ["mesh_cycle_helical", "mesh_cycle_bevel"])
+def test_line_load_on_the_flanks_carries_the_largest_line_load(name):
+    cycle = shared(name, (1.0,))
+    figure = plot_line_load_distribution(cycle)
+    for axes in figure.axes[:2]:
+        (lines,) = [one for one in axes.collections if isinstance(one, LineCollection)]
+        # A segment has the mean of its ends; the top of a contact is flat.
+        assert_allclose(lines.get_array().max(), np.nanmax(cycle.contacts.line_load), rtol=0.01)
+    assert "[N/mm]" in figure.axes[2].get_ylabel()
+
+
+def test_pair_at_the_pitch_point_has_no_sign():
+    labels = plot_load_share(shared()).axes[0].get_legend_handles_labels()[1]
+    assert labels == ["tooth pair -1", "tooth pair 0", "tooth pair +1"]
+
+
+def test_colours_of_the_flanks_do_not_follow_the_spikes_of_edges():
+    cycle = shared()
+    assert cycle.contacts.peak_at_border.any()
+    bar = plot_contact_path(cycle).axes[-1]
+    assert_allclose(bar.get_ylim()[1], np.nanmax(cycle.contacts.inner_pressure), rtol=1e-12)
+
+
+def test_side_on_which_nothing_touches_has_no_mark(monkeypatch):
+    def nothing_touches(*_, **__):
+        raise GeometryError("no common flank")
+
+    monkeypatch.setattr(sharing, "trace_contact", nothing_touches)
+    assert set(marks(plot_path_pressure(shared(torques=(40.0,))))) == {"C"}
