@@ -11,8 +11,8 @@ import numpy as np
 from loaded_tca.carried_load import Carried, Contacts, MakeCompliance, Progress, carried_by_all, carried_by_one
 from loaded_tca.errors import AccuracyWarning
 from loaded_tca.flanks.jet import Array
-from loaded_tca.load_sharing import TeethYield
 from loaded_tca.loaded_contact import GridChoice, LoadedContact
+from loaded_tca.loaded_teeth import TeethYield
 from loaded_tca.mesh_cycle import MeshCycle
 from loaded_tca.pair import GearPair
 from loaded_tca.pair_contacts import NUMBERS, PairContacts, PressureMap

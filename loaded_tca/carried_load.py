@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.flanks.jet import Array
-from loaded_tca.load_sharing import Laws, SharedLoad, TeethYield, share_load, touches_at
+from loaded_tca.load_sharing import Laws, SharedLoad, share_load, touches_at
 from loaded_tca.loaded_contact import Beneath, GridChoice, LoadedContact, press
+from loaded_tca.loaded_teeth import TeethYield
 from loaded_tca.pair import GearPair
 from loaded_tca.unloaded import ContactPath, MeshPath, trace_contact, trace_teeth
 

@@ -23,8 +23,8 @@ STEP_TOLERANCE = 1e-12
 LARGEST_FALL = 0.1
 ROUNDING = 1e-8
 """Change below which steps that do not shrink are rounding, where the lags are large against the approaches."""
-NOTHING = 1e-12
-"""Force of a pair over the largest that may be none at all."""
+LITTLE = 1e-3
+"""Force of a pair over the largest, below which it is parted at once where nothing closes it; it may come back."""
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ def _newton_step(given: Array, lags: Array, levers: Array, torque: float, compli
     """Forces (k,) after one step for the pairs under load, and those that come under load or part.
 
     No force falls below a tenth at once. The approach grows without end over a force that vanishes (or not at all), so
-    that a pair is parted once its force is next to nothing and what the others leave it does not close it.
+    that a pair is parted once its force is little and what the others leave it does not close it.
     """
     load, approach, exponent = given
     loaded = forces > 0.0
@@ -135,7 +135,7 @@ def _newton_step(given: Array, lags: Array, levers: Array, torque: float, compli
     target = forces.copy()
     target[loaded] = np.maximum(forces[loaded] + rotation * by_rotation + by_rest, LARGEST_FALL * forces[loaded])
     closing = levers[1] * (rotation - lags) - compliance @ target + np.diag(compliance) * target
-    target[(target < NOTHING * target.max()) & (closing <= 0.0)] = 0.0
+    target[(target < LITTLE * target.max()) & (closing <= 0.0)] = 0.0
     comes = ~loaded & (closing > 0.0)
     target[comes] = np.minimum(load * (np.maximum(closing, 0.0) / approach) ** (1.0 / exponent), target.max())[comes]
     return target

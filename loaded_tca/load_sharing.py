@@ -28,18 +28,16 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import combinations, product
-from typing import Protocol
+from itertools import product
 
 import numpy as np
 
-from loaded_tca.contact.edges import FreeEdge
 from loaded_tca.contact_laws import PowerLaw, balance
 from loaded_tca.errors import ConvergenceError, InputError
 from loaded_tca.flanks.jet import Array
-from loaded_tca.loaded_contact import Beneath, GridChoice, LoadedContact, press
+from loaded_tca.loaded_contact import GridChoice, LoadedContact, press
+from loaded_tca.loaded_teeth import LoadedTeeth, TeethYield
 from loaded_tca.pair import GearPair
-from loaded_tca.separation import Separation
 from loaded_tca.unloaded import ContactPoint, MeshPath
 
 MOST_BALANCES = 40
@@ -54,27 +52,6 @@ SAME_BOX = (0.75, 1.25)
 """Loads over the one a box was made for, between which the contact still fills it well."""
 SOFTEST_START = 4.0
 """First guess of an approach: so many times F/(E* b), as slender contacts of gears have it."""
-
-
-class TeethYield(Protocol):
-    """What bends and shears beneath the contacts, for instance by finite elements.
-
-    Tooth pairs are told by their numbers: 0 touches at the pitch point at phi1 = 0, +1 comes into mesh after it. The
-    grid of a contact stands in the angles of its own tooth: pair k as if it were pair 0, k pitches ago. Its columns are
-    cells of one place along the contact.
-    """
-
-    def within(self, number: int, separation: Separation, edges: Sequence[FreeEdge] = ()) -> Array:
-        """Closing of every column that a unit force on each takes up, (ny, ny) [mm/N], symmetric.
-
-        On top of two half-spaces under the same pressures, corrected for free ``edges``.
-        """
-
-    def between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
-        """Closing of every column of one contact that a unit force on each column of another takes up [mm/N].
-
-        Its transpose is that of ``between(under, at)``.
-        """
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,12 +170,13 @@ class SharedLoad:
 
     @property
     def torque_rate(self) -> float:
-        """Tangent dT1/d rotation of the whole mesh [N mm/rad]; zero without load."""
-        if self.torque == 0.0:
+        """Tangent dT1/d rotation of the whole mesh [N mm/rad]; zero where a load is next to none."""
+        stiffness = np.array([share.loaded.stiffness for share in self.shares])
+        if not stiffness.all():
             return 0.0
         contacts = [share.touch.contact for share in self.shares]
         closings = self.compliance.copy()
-        np.fill_diagonal(closings, [1.0 / share.loaded.stiffness for share in self.shares])
+        np.fill_diagonal(closings, 1.0 / stiffness)
         forces = np.linalg.solve(closings, [contact.wheel_lever for contact in contacts])
         return float(forces @ [contact.pinion_lever for contact in contacts])
 
@@ -266,21 +244,6 @@ def share_load(
     return _Balance(pair, touches, torque, grid, compliance, start).run()
 
 
-@dataclass(frozen=True, eq=False)
-class _Coupling:
-    """Compliance (m, n) [mm/N] of the columns of one grid under those of another."""
-
-    at: Separation
-    under: Separation
-    compliance: Array
-
-
-def _shares(loaded: LoadedContact) -> Array:
-    """Shares of the columns in the force of a contact, (ny,)."""
-    force = loaded.column_force
-    return np.asarray(force / force.sum())
-
-
 class _Balance:
     """Alternates between the balance of the contact laws and presses that correct them."""
 
@@ -293,14 +256,14 @@ class _Balance:
         compliance: TeethYield | None,
         start: Laws,
     ) -> None:
-        self.pair, self.touches, self.torque, self.grid, self.teeth = pair, tuple(touches), torque, grid, compliance
+        self.pair, self.touches, self.torque, self.grid = pair, tuple(touches), torque, grid
+        numbers = [touch.pair for touch in touches]
+        self.teeth = None if compliance is None else LoadedTeeth(compliance, numbers)
         self.lags = np.array([touch.lag for touch in touches])
         self.levers = np.array([(touch.contact.pinion_lever, touch.contact.wheel_lever) for touch in touches]).T
         self.laws = [start.contact.get(touch.pair) or self._borrowed(start.contact, touch) for touch in touches]
         self.pressed: list[LoadedContact | None] = [None] * len(touches)
-        numbers = [touch.pair for touch in touches]
         self.matrix = np.array([[start.bending.get((one, other), 0.0) for other in numbers] for one in numbers])
-        self.couplings: dict[tuple[int, int], _Coupling] = {}
         self.agreement = AGREEMENT_ON_CELLS if grid.cells is not None else AGREEMENT * grid.accuracy
 
     def _borrowed(self, start: Mapping[int, PowerLaw], touch: Touch) -> PowerLaw:
@@ -316,7 +279,8 @@ class _Balance:
             forces = balance(self.laws, self.lags, self.levers, self.torque, self.matrix)
             for index in np.flatnonzero(forces):
                 self._press(int(index), forces)
-            self._take_compliance()
+            if self.teeth is not None:
+                self.teeth.correct(self.matrix, self.pressed)
             shared = self._shared(forces, count)
             residual = shared.residual
             if residual <= self.agreement and self._settled(forces, shared.rotation):
@@ -332,10 +296,10 @@ class _Balance:
         """Press a pair with its force, on the grid it has if that still fits, and correct its law."""
         force, before, law = float(forces[index]), self.pressed[index], self.laws[index]
         if before is not None and SAME_BOX[0] * before.solution.load <= force <= SAME_BOX[1] * before.solution.load:
-            lift = None if self.teeth is None else self._lift(index, before.separation, forces)
+            lift = None if self.teeth is None else self.teeth.lift(index, before.separation, self.pressed, forces)
             loaded = before.under(force, lift)
         else:
-            beneath = None if self.teeth is None else self._beneath(index, forces, self.teeth)
+            beneath = None if self.teeth is None else self.teeth.beneath(index, self.pressed, forces)
             loaded = press(self.pair, self.touches[index].contact, force, self.grid, beneath)
         self.pressed[index] = loaded
         approach = loaded.approach
@@ -344,51 +308,13 @@ class _Balance:
                 replace(law, load=force, approach=approach) if before is None else law.through(force, approach)
             )
 
-    def _beneath(self, index: int, forces: Array, teeth: TeethYield) -> Beneath:
-        """What yields beneath a contact while the others carry their forces."""
-        return Beneath(
-            own=lambda separation, edges: teeth.within(self.touches[index].pair, separation, edges),
-            lift=lambda separation: self._lift(index, separation, forces),
-        )
-
-    def _lift(self, index: int, separation: Separation, forces: Array) -> Array:
-        """Displacement of the columns of a grid (ny,) [mm] by what the other pairs carry."""
-        lift = np.zeros(len(separation.y))
-        for other, loaded in enumerate(self.pressed):
-            if other != index and loaded is not None and forces[other] > 0.0:
-                lift += forces[other] * (self._coupling(index, separation, other, loaded) @ _shares(loaded))
-        return lift
-
-    def _coupling(self, index: int, separation: Separation, other: int, loaded: LoadedContact) -> Array:
-        """Compliance of the columns of a grid under those of another contact, known as long as both grids stay."""
-        assert self.teeth is not None
-        kept = self.couplings.get((index, other))
-        if kept is None or kept.at is not separation or kept.under is not loaded.separation:
-            numbers = self.touches[index].pair, self.touches[other].pair
-            found = self.teeth.between((numbers[0], separation), (numbers[1], loaded.separation))
-            kept = self.couplings[index, other] = _Coupling(separation, loaded.separation, found)
-        return kept.compliance
-
-    def _take_compliance(self) -> None:
-        """Correct the compliances of all pairs that were pressed, the mean over their forces."""
-        if self.teeth is None:
-            return
-        known = [(index, loaded) for index, loaded in enumerate(self.pressed) if loaded is not None]
-        for index, loaded in known:
-            self.matrix[index, index] = loaded.own_deflection / loaded.solution.load
-        for (index, one), (other, two) in combinations(known, 2):
-            coupling = _shares(one) @ self._coupling(index, one.separation, other, two) @ _shares(two)
-            self.matrix[index, other] = self.matrix[other, index] = coupling
-
     def _settled(self, forces: Array, rotation: float) -> bool:
-        """Whether the pairs were pressed on columns displaced as the others displace them now, but for a constant."""
-        for index, loaded in enumerate(self.pressed):
-            if self.teeth is None or loaded is None or loaded.lift is None or not forces[index]:
-                continue
-            moved = (self._lift(index, loaded.separation, forces) - loaded.lift)[loaded.column_force > 0.0]
-            if np.ptp(moved) > SETTLED * self.agreement * self.levers[1, index] * rotation:
-                return False
-        return True
+        """Whether every pair was pressed on columns that the others still displace alike, but for a constant."""
+        if self.teeth is None:
+            return True
+        allowed = SETTLED * self.agreement * rotation * self.levers[1]
+        moved = (self.teeth.moved(int(index), self.pressed, forces) for index in np.flatnonzero(forces))
+        return all(part <= most for part, most in zip(moved, allowed[forces > 0.0], strict=True))
 
     def _shared(self, forces: Array, count: int) -> SharedLoad:
         carrying = np.flatnonzero(forces)

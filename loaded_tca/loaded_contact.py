@@ -309,6 +309,7 @@ def _press_in_box(
             warn=False,
         )
     else:
+        expected = _expected(first)
         solution = solve_to_accuracy(
             sampler,
             pair.contact_modulus,
@@ -316,8 +317,9 @@ def _press_in_box(
             max_pressure=pair.max_pressure,
             accuracy=grid.accuracy,
             tolerance=grid.tolerance,
-            smooth=not _crosses_crease(pair, contact, first, _inner_ellipse(first)),
+            smooth=not _crosses_crease(pair, contact, first, expected > 0.0),
             first_cells=FIRST_CELLS,
+            initial_pressure=expected,
             free_edges=edges,
             column_compliance=None if beneath is None else lambda _: beneath.own(finest[0], edges),
             warn=False,
@@ -344,10 +346,11 @@ def _crosses_crease(pair: GearPair, contact: ContactPoint, separation: Separatio
     return any(value.size and value.min() < 0.0 < value.max() for value in values)
 
 
-def _inner_ellipse(separation: Separation) -> Array:
-    """Cells of the ellipse that the contact is expected to fill, (nx, ny) bool."""
+def _expected(separation: Separation) -> Array:
+    """Pressure over the ellipse that the contact is expected to fill, (nx, ny), the highest one 1."""
     across, along = (MARGIN_LEFT * length for length in separation.half_lengths)
-    return (separation.x[:, None] / across) ** 2 + (separation.y / along) ** 2 <= 1.0
+    square = 1.0 - (separation.x[:, None] / across) ** 2 - (separation.y / along) ** 2
+    return np.where(np.isfinite(separation.gap), np.sqrt(np.maximum(square, 0.0)), 0.0)
 
 
 def _grown_box(solution: ContactSolution) -> tuple[float, float] | None:

@@ -16,8 +16,8 @@ import numpy as np
 
 from loaded_tca.analysis import analyse
 from loaded_tca.carried_load import Carried, carried_by_all
-from loaded_tca.load_sharing import TeethYield
 from loaded_tca.loaded_contact import GridChoice, LoadedContact
+from loaded_tca.loaded_teeth import TeethYield
 from loaded_tca.pair import GearPair
 from loaded_tca.scene import parse_scene
 from loaded_tca.tooth import tooth_forms

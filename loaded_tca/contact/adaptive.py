@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from loaded_tca.contact.edges import FreeEdge
 from loaded_tca.contact.levels import prolong
-from loaded_tca.contact.problem import Array, Spacing
+from loaded_tca.contact.problem import Spacing
 from loaded_tca.contact.solution import CoarserGrid, ContactSolution
 from loaded_tca.contact.solver import solve_contact
 from loaded_tca.errors import AccuracyWarning, InputError
@@ -35,6 +35,7 @@ def solve_to_accuracy(
     tolerance: float = 1e-6,
     smooth: bool = True,
     first_cells: Cells = (16, 16),
+    initial_pressure: ArrayLike | None = None,
     threads: int = 2,
     warn: bool = True,
     free_edges: Sequence[FreeEdge] = (),
@@ -62,6 +63,8 @@ def solve_to_accuracy(
         False where the surfaces have a crease or an end inside the contact: treated as where a border bounds it.
     first_cells : (int, int)
         Where to begin. The estimate needs two grids: the answer has at least twice as many.
+    initial_pressure : array_like of first_cells, optional [MPa]
+        A guess on the first grid, in any unit if the load is given.
     column_compliance : callable, optional
         What :func:`solve_contact` takes by this name, for the grid that the sampler gave last.
 
@@ -95,7 +98,7 @@ def solve_to_accuracy(
 
     closely = TOLERANCE_SHARE * accuracy
 
-    def solve(cells: Cells, start: Array | None, tolerance: float) -> ContactSolution:
+    def solve(cells: Cells, start: ArrayLike | None, tolerance: float) -> ContactSolution:
         gap, spacing = sampler(cells)
         return solve_contact(
             gap,
@@ -113,7 +116,7 @@ def solve_to_accuracy(
         )
 
     tolerance, refined = min(closely, tolerance), max(first_cells) < MOST_CELLS_AT_A_BORDER
-    cells, solution = first_cells, solve(first_cells, None, closely if refined else tolerance)
+    cells, solution = first_cells, solve(first_cells, initial_pressure, closely if refined else tolerance)
     while not (good := _error(solution, smooth) <= accuracy) and max(cells) < _most_cells(solution, smooth):
         coarse, cells = solution, (2 * cells[0], 2 * cells[1])
         solution = _compared(solve(cells, prolong(coarse.pressure, cells, (2, 2)), tolerance), coarse)

@@ -246,7 +246,7 @@ class Convolution:
         self.target = target
         self.corner = first
         self.count = 0
-        self._symbol = _cache.get(("love", box, aspect, dtype), lambda: _Symbol(_love_symbol(box, aspect), dtype))
+        self._symbol = _cache.get(("love", box, aspect, dtype), lambda: _kernel(box, aspect, dtype))
         self._transform = _cache.get((rows, box, dtype, threads), lambda: _Transform(rows, box, dtype, threads))
 
     def __call__(self, pressure: Array, out: Array) -> Array:
@@ -285,6 +285,14 @@ def useful_threads(box: tuple[int, int], wanted: int) -> int:
     """One for small transforms, and in workers: threads do not survive a fork, and a pool fills the machine."""
     worker = _forked or multiprocessing.parent_process() is not None
     return 1 if worker or box[0] * box[1] < THREADED_POINTS else min(wanted, os.cpu_count() or 1)
+
+
+def _kernel(box: tuple[int, int], aspect: float, dtype: str) -> _Symbol:
+    """Return Love's kernel in a box; in single precision the kept one rounded."""
+    if dtype == "float64":
+        return _Symbol(_love_symbol(box, aspect), dtype)
+    exact = _cache.get(("love", box, aspect, "float64"), lambda: _kernel(box, aspect, "float64"))
+    return _Symbol(exact.values.T, dtype)
 
 
 def _love_symbol(box: tuple[int, int], aspect: float) -> Array:
