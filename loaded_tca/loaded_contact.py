@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -287,7 +288,7 @@ def _press_in_box(
     beneath: Beneath | None,
 ) -> LoadedContact:
     """Solve in the box of ``first``, on its grid if cells were given, else on finer and finer ones."""
-    finest = [first]
+    finest, modulus = [first], pair.contact_modulus
     edges = tooth_edges(pair, contact, first) if grid.free_edges else ()
 
     def sampler(cells: tuple[int, int]) -> tuple[Array, tuple[float, float]]:
@@ -295,34 +296,31 @@ def _press_in_box(
             finest[0] = sample_separation(pair, contact, cells=cells, box=first.half_lengths)
         return _lifted(finest[0], beneath), finest[0].spacing
 
-    tolerance = grid.tolerance if grid.cells is not None else min(grid.tolerance, TOLERANCE_SHARE * grid.accuracy)
+    def columns(_: tuple[int, int]) -> Array | None:
+        return None if beneath is None else beneath.own(finest[0], edges)
+
+    common: dict[str, Any] = {
+        "load": load,
+        "max_pressure": pair.max_pressure,
+        "tolerance": grid.tolerance,
+        "free_edges": edges,
+        "warn": False,
+    }
     if grid.cells is not None:
-        solution = solve_contact(
-            _lifted(first, beneath),
-            first.spacing,
-            pair.contact_modulus,
-            load=load,
-            max_pressure=pair.max_pressure,
-            tolerance=grid.tolerance,
-            free_edges=edges,
-            column_compliance=None if beneath is None else beneath.own(first, edges),
-            warn=False,
-        )
+        tolerance = grid.tolerance
+        gap, spacing = sampler(grid.cells)
+        solution = solve_contact(gap, spacing, modulus, column_compliance=columns(grid.cells), **common)
     else:
-        expected = _expected(first)
+        tolerance, expected = min(grid.tolerance, TOLERANCE_SHARE * grid.accuracy), _expected(first)
         solution = solve_to_accuracy(
             sampler,
-            pair.contact_modulus,
-            load=load,
-            max_pressure=pair.max_pressure,
+            modulus,
             accuracy=grid.accuracy,
-            tolerance=grid.tolerance,
             smooth=not _crosses_crease(pair, contact, first, expected > 0.0),
             first_cells=FIRST_CELLS,
             initial_pressure=expected,
-            free_edges=edges,
-            column_compliance=None if beneath is None else lambda _: beneath.own(finest[0], edges),
-            warn=False,
+            column_compliance=columns,
+            **common,
         )
     pressed = solution.pressure > 0.0
     at_crease = _crosses_crease(pair, contact, finest[0], pressed)

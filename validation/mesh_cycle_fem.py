@@ -212,7 +212,7 @@ plane strain, which know one section of the face where the pair here has the who
 ```
 """
 
-NAMES = {"unmodified": "unmodified", "tip_relief": "tip relief 15 um on both gears"}
+NAMES = {"unmodified": "unmodified", "tip_relief": "tip relief 15 µm on both gears"}
 TORQUE_COLOURS = {20.0: "#009E73", 100.0: "#0072B2", 200.0: "#D55E00"}
 """Okabe and Ito."""
 
@@ -323,9 +323,9 @@ def picture(kept: Cycles, ours: Model) -> Figure:
 
 
 PANELS: tuple[tuple[str, Callable[[Position], float]], ...] = (
-    ("loaded transmission error [um]", lambda position: position.transmission_error),
+    ("loaded transmission error [µm]", lambda position: position.transmission_error),
     ("load share of tooth pair 0", lambda position: position.share(0)),
-    ("mesh stiffness [N/(mm um)]", stiffness),
+    ("mesh stiffness [N/(mm µm)]", stiffness),
     ("peak pressure, no corner [MPa]", lambda position: np.nan if position.at_corner else peak(position)),
 )
 

@@ -39,7 +39,7 @@ def solve_to_accuracy(
     threads: int = 2,
     warn: bool = True,
     free_edges: Sequence[FreeEdge] = (),
-    column_compliance: Callable[[Cells], ArrayLike] | None = None,
+    column_compliance: Callable[[Cells], ArrayLike | None] | None = None,
 ) -> ContactSolution:
     """Refine the grid until the estimated error is below the accuracy.
 

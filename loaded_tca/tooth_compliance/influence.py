@@ -109,8 +109,7 @@ class GearCompliance:
                 f"tooth: two loaded teeth are {abs(away)} pitches apart, the model has {self.neighbours} neighbours of "
                 "a loaded tooth; ask for more neighbours"
             )
-        forth, back = (self.displacement[self.neighbours + step] for step in (away, -away))
-        return np.asarray(0.5 * at[1].shares @ (forth + back.T) @ under[1].shares.T)
+        return np.asarray(at[1].shares @ self._mutual[self.neighbours + away] @ under[1].shares.T)
 
     def within(self, line: FlankLine, distance: Array, images: Sequence[Image] = ()) -> Array:
         """Displacements (m, m) of places of one tooth per force at each [mm/N], on top of those of a half-space.
@@ -132,6 +131,11 @@ class GearCompliance:
         half_space = half_space + sum(factor * depth_displacement(depth, image, material) for image, factor in images)
         found = self.local.at(places.height)[:, None] * spread - half_space
         return self._displaced(own, own) + 0.5 * (found + found.T)
+
+    @cached_property
+    def _mutual(self) -> Array:
+        """Displacements as in ``displacement``, the mean of both ways."""
+        return np.asarray(0.5 * (self.displacement + self.displacement[::-1].transpose(0, 2, 1)))
 
     @cached_property
     def interpolation(self) -> tuple[Array, Array]:

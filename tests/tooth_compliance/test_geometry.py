@@ -1,4 +1,5 @@
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,9 +9,10 @@ from numpy.testing import assert_allclose
 from loaded_tca.bevel_pair import bevel_pair
 from loaded_tca.errors import InputError
 from loaded_tca.gears import bevel_mesh
+from loaded_tca.scene import read_scene
 from loaded_tca.tooth import Resolution, build_tooth, tooth_forms
 from loaded_tca.tooth_compliance import GearTooth, MeshDensity
-from loaded_tca.tooth_compliance.body import ToothFrame
+from loaded_tca.tooth_compliance.body import ToothFrame, gear_body
 from loaded_tca.tooth_compliance.geometry import body_nodes
 from loaded_tca.tooth_compliance.layout import RingLayout
 
@@ -19,6 +21,7 @@ ON_FLANK = 2e-4
 BETWEEN_NODES = 0.05
 """mm: quadratic between the nodes."""
 DENSITY = MeshDensity(lengthwise=2)
+SCENES = Path(__file__).parents[2] / "examples" / "scenes"
 
 
 def gears():
@@ -80,3 +83,13 @@ def test_sections_that_do_not_fit_the_layout_are_refused():
     tooth = build_tooth(gear.flanks, gear.form, Resolution(lengthwise=4))
     with pytest.raises(InputError, match="4 sections, 5 are needed"):
         body_nodes(tooth, gear.form.sections, 20.0, RingLayout(25, DENSITY))
+
+
+def test_a_sharp_fillet_does_not_fold_the_body():
+    """Edges of elements that turned by 66 deg at the foot of this pinion folded over."""
+    scene = read_scene(SCENES / "face_milled_19x62_matched.toml")
+    pair, backs = scene.pair(), scene.pair("positive")
+    flanks = (backs.pinion, pair.pinion) if pair.pinion.side < 0 else (pair.pinion, backs.pinion)
+    gear = GearTooth(flanks, tooth_forms(scene.mesh())[0])
+    body = gear_body(gear.nodes(DENSITY), gear.material)
+    assert len(body.mesh.elements) > 100
