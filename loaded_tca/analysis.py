@@ -21,6 +21,7 @@ from loaded_tca.tooth import tooth_forms
 from loaded_tca.tooth_compliance import tooth_compliance
 from loaded_tca.tooth_edges import oblique_ends
 from loaded_tca.unloaded import heelwards
+from loaded_tca.unloaded.tooth_cycle import REACH
 
 BORE = "bore_diameter_mm"
 """Key of a gear that each family of scenes has of its own."""
@@ -59,6 +60,8 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
     carry = carried_by_all if scene.analysis.load_sharing else carried_by_one
     carried = carry(pair, angles, torques, grid, _compliance(scene, pair), progress)
     _warn_of_doubts(pair, grid, carried.contacts)
+    if scene.analysis.load_sharing:
+        _warn_of_reach(pair, carried)
     return _mesh_cycle(scene, pair, carried)
 
 
@@ -99,6 +102,18 @@ def _warn_of_doubts(pair: GearPair, grid: GridChoice, contacts: Contacts) -> Non
     what = "positions" if alone else "pressure maps"
     for reason, count in reasons.items():
         warnings.warn(f"{reason} (at {count} of {len(solved)} {what})", AccuracyWarning, stacklevel=3)
+
+
+def _warn_of_reach(pair: GearPair, carried: Carried) -> None:
+    """An AccuracyWarning if the load closes the teeth by more than the gap within which pairs are looked for."""
+    closing = float(np.nanmax(carried.rotation, initial=0.0)) * pair.base_radii[1]
+    if closing > REACH * pair.module:
+        warnings.warn(
+            f"the load closes the teeth by up to {closing:.3g} mm, more than {REACH:g} modules: tooth pairs that are "
+            "further apart without load are not looked for",
+            AccuracyWarning,
+            stacklevel=3,
+        )
 
 
 def _doubts(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[str]:
@@ -152,7 +167,7 @@ def _mesh_cycle(scene: Scene, pair: GearPair, carried: Carried) -> MeshCycle:
         mesh_stiffness=squeeze(carried.torque_rate / lengths),
         secant_stiffness=squeeze(secant / lengths),
         pair_contacts=contacts if scene.analysis.load_sharing else None,
-        **{name: squeeze(contacts.at_highest(getattr(contacts, name))) for name in NUMBERS},
+        **{name: squeeze(contacts.at_position(name)) for name in NUMBERS},
     )
 
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from loaded_tca.errors import ConvergenceError
 from loaded_tca.flanks.jet import Array
 from loaded_tca.load_sharing import Laws, SharedLoad, share_load, touches_at
 from loaded_tca.loaded_contact import Beneath, GridChoice, LoadedContact, press
@@ -91,7 +93,8 @@ def carried_by_one(
     for t, n in _told(shape, progress):
         contact = path[n]
         if contact.touches:
-            loaded = press(pair, contact, torques[t] / contact.pinion_lever, grid, beneath)
+            with _told_where(torques[t], angles[n]):
+                loaded = press(pair, contact, torques[t] / contact.pinion_lever, grid, beneath)
             contacts[t][n][0] = loaded
             deflection[t, n] = loaded.own_deflection
             rotation[t, n] = loaded.solution.approach / contact.wheel_lever
@@ -122,7 +125,8 @@ def carried_by_all(
     touches = [touches_at(mesh, n) for n in range(len(mesh))]
     laws = Laws()
     for t, n in _told(shape, progress):
-        found = share_load(pair, touches[n], float(torques[t]), grid, compliance=teeth, start=laws)
+        with _told_where(torques[t], angles[n]):
+            found = share_load(pair, touches[n], float(torques[t]), grid, compliance=teeth, start=laws)
         laws = laws.updated(found.laws)
         shared[t].append(found)
     carrying = {0} | {share.touch.pair for row in shared for one in row for share in one.shares}
@@ -148,6 +152,16 @@ def _told(shape: tuple[int, int], progress: Progress | None) -> Iterator[tuple[i
         yield t, n
         if progress is not None:
             progress(done, total)
+
+
+@contextmanager
+def _told_where(torque: float, angle: float) -> Iterator[None]:
+    """Say under which torque [N mm] and at which pinion angle [rad] something did not converge."""
+    try:
+        yield
+    except ConvergenceError as error:
+        where = f"{1e-3 * torque:g} N m at pinion angle {math.degrees(angle):.6g} deg"
+        raise ConvergenceError(f"{where}: {error}", error.last) from error
 
 
 def _farthest_apart(mesh: MeshPath) -> int:

@@ -11,11 +11,14 @@ import numpy as np
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.flanks.jet import Array
 
-EXPONENTS = (0.3, 2.0)
+EXPONENTS = (0.3, 3.0)
 """Range of the exponent of an approach over the force; above 1: at a cap on the pressure."""
 POINT_EXPONENT = 2.0 / 3.0
 TELLING = 0.05
-"""Relative difference of two loads from which an exponent follows: whole cells hide it where they are closer."""
+"""Relative difference of two loads from which an exponent follows: whole cells hide it where they are closer, ..."""
+SURPRISE = 1e-3
+"""... but for an approach that misses the law by more than this part, as at a cap on the pressure."""
+SAME_LOAD = 1e-4
 MOST_STEPS = 200
 """Newton steps before giving up; five to ten are the rule."""
 STEP_TOLERANCE = 1e-12
@@ -66,7 +69,8 @@ class PowerLaw:
     def through(self, load: float, approach: float) -> PowerLaw:
         """Return the law through a further press, its exponent that between the two."""
         exponent, ratio = self.exponent, load / self.load
-        if abs(ratio - 1.0) > TELLING:
+        surprise = abs(approach / self.approach_under(load) - 1.0)
+        if abs(ratio - 1.0) > TELLING or (surprise > SURPRISE and abs(ratio - 1.0) > SAME_LOAD):
             exponent = float(np.clip(math.log(approach / self.approach) / math.log(ratio), *EXPONENTS))
         return PowerLaw(load, approach, exponent)
 
@@ -133,7 +137,8 @@ def _newton_step(given: Array, lags: Array, levers: Array, torque: float, compli
     by_rotation, by_rest = np.linalg.solve(yielding, np.stack([levers[1, loaded], missing], axis=-1)).T
     rotation = (torque - levers[0, loaded] @ (forces[loaded] + by_rest)) / (levers[0, loaded] @ by_rotation)
     target = forces.copy()
-    target[loaded] = np.maximum(forces[loaded] + rotation * by_rotation + by_rest, LARGEST_FALL * forces[loaded])
+    wanted = forces[loaded] + rotation * by_rotation + by_rest
+    target[loaded] = np.clip(wanted, LARGEST_FALL * forces[loaded], torque / levers[0, loaded])
     closing = levers[1] * (rotation - lags) - compliance @ target + np.diag(compliance) * target
     target[(target < LITTLE * target.max()) & (closing <= 0.0)] = 0.0
     comes = ~loaded & (closing > 0.0)

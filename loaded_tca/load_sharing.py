@@ -26,7 +26,7 @@ Meth. Eng. 31, 525-545 (contact by the half-space, teeth by finite elements); Jo
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
 
@@ -128,6 +128,11 @@ class Laws:
 
     contact: Mapping[int, PowerLaw] = field(default_factory=dict)
     bending: Mapping[tuple[int, int], float] = field(default_factory=dict)
+
+    def compliance(self, one: int, other: int) -> float:
+        """Mean compliance of two pairs [mm/N]; of unknown ones the least known, so that the matrix stays definite."""
+        alike = (value for (a, b), value in self.bending.items() if (a == b) == (one == other))
+        return self.bending.get((one, other), min(alike, default=0.0))
 
     def updated(self, later: Laws) -> Laws:
         """Return these laws and later ones, which count where both know a pair."""
@@ -263,7 +268,7 @@ class _Balance:
         self.levers = np.array([(touch.contact.pinion_lever, touch.contact.wheel_lever) for touch in touches]).T
         self.laws = [start.contact.get(touch.pair) or self._borrowed(start.contact, touch) for touch in touches]
         self.pressed: list[LoadedContact | None] = [None] * len(touches)
-        self.matrix = np.array([[start.bending.get((one, other), 0.0) for other in numbers] for one in numbers])
+        self.matrix = np.array([[start.compliance(one, other) for other in numbers] for one in numbers])
         self.agreement = AGREEMENT_ON_CELLS if grid.cells is not None else AGREEMENT * grid.accuracy
 
     def _borrowed(self, start: Mapping[int, PowerLaw], touch: Touch) -> PowerLaw:
@@ -283,30 +288,48 @@ class _Balance:
                 self.teeth.correct(self.matrix, self.pressed)
             shared = self._shared(forces, count)
             residual = shared.residual
-            if residual <= self.agreement and self._settled(forces, shared.rotation):
+            fits = residual <= self.agreement and self._stay_apart(forces, shared.rotation)
+            if fits and self._settled(forces, shared.rotation):
                 return shared
         raise ConvergenceError(
             f"load sharing not converged: the tooth pairs' rotations differ by {residual:.1e} > {self.agreement:.1e} "
-            f"of the rotation after {MOST_BALANCES} balances at pinion angle "
-            f"{self.touches[0].contact.pinion_angle:.6g} rad",
+            f"of the rotation after {MOST_BALANCES} balances{self._cap_told()}",
             last=shared,
         )
+
+    def _cap_told(self) -> str:
+        """What a cap on the pressure has to do with it, if there is one."""
+        cap = self.pair.max_pressure
+        return "" if cap is None else f"; with max_pressure {cap:g} MPa contacts near their limit yield without end"
 
     def _press(self, index: int, forces: Array) -> None:
         """Press a pair with its force, on the grid it has if that still fits, and correct its law."""
         force, before, law = float(forces[index]), self.pressed[index], self.laws[index]
         if before is not None and SAME_BOX[0] * before.solution.load <= force <= SAME_BOX[1] * before.solution.load:
             lift = None if self.teeth is None else self.teeth.lift(index, before.separation, self.pressed, forces)
-            loaded = before.under(force, lift)
+            loaded = self._tell(index, lambda: before.under(force, lift))
         else:
             beneath = None if self.teeth is None else self.teeth.beneath(index, self.pressed, forces)
-            loaded = press(self.pair, self.touches[index].contact, force, self.grid, beneath)
+            contact = self.touches[index].contact
+            loaded = self._tell(index, lambda: press(self.pair, contact, force, self.grid, beneath))
         self.pressed[index] = loaded
         approach = loaded.approach
         if loaded.solution.load > 0.0 and approach > 0.0:
             self.laws[index] = (
                 replace(law, load=force, approach=approach) if before is None else law.through(force, approach)
             )
+
+    def _tell(self, index: int, solve: Callable[[], LoadedContact]) -> LoadedContact:
+        """Solve; say of which pair it is if that does not converge."""
+        try:
+            return solve()
+        except ConvergenceError as error:
+            raise ConvergenceError(f"tooth pair {self.touches[index].pair:+d}: {error}", error.last) from error
+
+    def _stay_apart(self, forces: Array, rotation: float) -> bool:
+        """Whether the rotation closes none of the pairs that carry nothing."""
+        closing = self.levers[1] * (rotation - self.lags) - self.matrix @ forces
+        return bool((closing <= self.agreement * rotation * self.levers[1])[forces == 0.0].all())
 
     def _settled(self, forces: Array, rotation: float) -> bool:
         """Whether every pair was pressed on columns that the others still displace alike, but for a constant."""

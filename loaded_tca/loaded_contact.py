@@ -38,6 +38,9 @@ CAP_USE = 0.6
 """Share of what the material in the box can carry at the cap that may be used: the contact needs room to spread."""
 EQUAL = 1e-3
 """Relative difference below which two cells have the same pressure, as the middle cells of an even grid do."""
+LARGEST_MISFIT = 0.3
+"""Of a gap from its paraboloid, where Hertz's pressure is still told: it differs by up to a tenth then; where a relief
+begins in the ellipse the misfit is above 1."""
 GROWTH = 1.5
 MOST_BOXES = 8
 
@@ -134,14 +137,28 @@ class LoadedContact:
         """Hertz's contact of the same curvatures and load; None where it does not hold.
 
         That is at a border, on a crease or a line, without load, and where the curvature of the contact point is not
-        that of the contact: on a flank with end relief alone the ellipse would be longer than the box.
+        that of the contact: on a flank with end relief alone the ellipse would be longer than the box, and where a
+        relief begins in the ellipse the gap leaves the paraboloid.
         """
         across, along = self.separation.curvatures
         smooth = along > 0.0 and not (self.at_border or self.at_crease or self.contact.on_line)
         if not smooth or self.solution.load <= 0.0:
             return None
         ellipse = point_contact(self.solution.load, (across, along), self.solution.contact_modulus)
-        return ellipse if ellipse.semi_major < self.separation.half_lengths[1] else None
+        if ellipse.semi_major >= self.separation.half_lengths[1] or self._misfit(ellipse) > LARGEST_MISFIT:
+            return None
+        return ellipse
+
+    def _misfit(self, ellipse: PointContact) -> float:
+        """How far the gap leaves the paraboloid of the contact point, weighted with Hertz's pressure, over its mean."""
+        grid = self.separation
+        x, y = grid.x[:, None], grid.y
+        below = 1.0 - (x / ellipse.semi_minor) ** 2 - (y / ellipse.semi_major) ** 2
+        weight = np.sqrt(np.maximum(below, 0.0))
+        paraboloid = 0.5 * (grid.curvatures[0] * x**2 + grid.curvatures[1] * y**2)
+        inside = weight > 0.0
+        gap = np.abs(grid.gap - paraboloid)
+        return float(weight[inside] @ gap[inside] / (weight[inside] @ paraboloid[inside]))
 
     @property
     def extent(self) -> tuple[float, float]:

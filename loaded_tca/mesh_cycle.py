@@ -44,8 +44,8 @@ class MeshCycle(ContactNumbers):
     """Loaded contact over the positions of a pitch.
 
     Arrays are (n,) over the positions, with several torques (m, n). NaN where the tooth pair does not touch. Where
-    several pairs share the load, the numbers of a contact are those of the pair with the highest peak pressure, and
-    ``contacts`` has those of all.
+    several pairs share the load, peak pressure, its place and ``maps`` are those of the pair with the highest one, the
+    other numbers of a contact those of the pair with the largest force, and ``contacts`` has those of all.
 
     Attributes
     ----------

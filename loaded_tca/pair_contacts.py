@@ -78,7 +78,9 @@ class ContactNumbers:
     hertz_semi_major: Array = quantity("mm", "semi-axis of the Hertz ellipse along the contact")
     contact_width: Array = quantity("mm", "full width of the contact across, from the pressure map")
     contact_length: Array = quantity("mm", "full length of the contact, from the pressure map, but not beyond the face")
-    line_load: Array = quantity("N/mm", "largest force per length along the contact")
+    line_load: Array = quantity(
+        "N/mm", "largest force per length along the contact; at an end it grows with the grid unless free_edges"
+    )
     face_load_factor: Array = quantity("1", "largest line load over the force spread evenly along the whole face")
     approach: Array = quantity("mm", "approach of the two flanks along the normal")
     deflection: Array = quantity("mm", "deflection of the teeth along the normal, beside the approach")
@@ -90,6 +92,10 @@ class ContactNumbers:
     residual: Array = quantity("1", "residual of the contact solver")
 
 
+OF_THE_PEAK = frozenset({"peak_pressure", "peak_radius", "peak_axial", "on_edge", "at_crease"}) | frozenset(
+    {"cells_across", "cells_along", "iterations", "residual"}
+)
+"""Numbers of a position that belong to its highest peak pressure."""
 NUMBERS = {entry.name: (entry.metadata["unit"], entry.metadata["text"]) for entry in fields(ContactNumbers)}
 """Field of ``ContactNumbers`` -> unit and text."""
 
@@ -161,6 +167,19 @@ class PairContacts(ContactNumbers):
     def at_highest(self, values: Array) -> Array:
         """Pick from (m, n, pairs) what belongs to the pair with the highest peak pressure, (m, n)."""
         return np.take_along_axis(values, self.highest[..., None], axis=-1)[..., 0]
+
+    @property
+    def most_loaded(self) -> NDArray[np.int_]:
+        """Column of the pair with the largest force, (m, n)."""
+        return np.asarray(np.nan_to_num(self.normal_force, nan=-1.0).argmax(axis=-1))
+
+    def at_position(self, name: str) -> Array:
+        """Pick a number of every position, (m, n): of :data:`OF_THE_PEAK` from the pair with the highest peak pressure.
+
+        The others belong to the pair with the largest force: a tip corner may have the highest peak under next to none.
+        """
+        chosen = self.highest if name in OF_THE_PEAK else self.most_loaded
+        return np.take_along_axis(getattr(self, name), chosen[..., None], axis=-1)[..., 0]
 
     def row(self, torque: int, max_pressure: float) -> dict[str, Array]:
         """Every number under one torque, one after the other over positions and pairs, (n pairs,)."""
@@ -333,7 +352,8 @@ def _ends_within(one: PressureMap, distance: float) -> bool:
 
 
 def _peaks_at_end(one: PressureMap) -> bool:
-    """Whether the largest cell is one of those beside cells without material."""
+    """Whether the largest cell is one of those beside cells without material, or at the end of the grid."""
     across, along = np.unravel_index(int(one.pressure.argmax()), one.pressure.shape)
+    inside = 0 < across < len(one.x) - 1 and 0 < along < len(one.y) - 1
     around = one.gap[max(across - 1, 0) : across + 2, max(along - 1, 0) : along + 2]
-    return bool(one.pressure.any() and np.isinf(around).any())
+    return bool(one.pressure.any() and (not inside or np.isinf(around).any()))

@@ -52,6 +52,8 @@ SMALLEST_LOAD = 1e-6
 ROOM = 1.5
 """Wanted half lengths of a coarse grid over those of the contact."""
 MOST_PROBES = 16
+LEAST_GROWTH, MOST_GROWTH = 2.0, 100.0
+"""Of a probe that a contact fills."""
 END_OF_MATERIAL = 1e-6
 """Accuracy of the end of the material, over the half length of the box."""
 STRAIGHT = 5e-5
@@ -245,12 +247,13 @@ def _estimate_box(
         if room.max() < 0.0:
             window = (2.0 * window[0], min(2.0 * window[1], longest))
             continue
-        *needed, end = _strip_extent(np.where(room >= 0.0, fall, np.inf), x, y, load, modulus)
+        *needed, end, growth = _strip_extent(np.where(room >= 0.0, fall, np.inf), x, y, load, modulus)
         fits = [0.4 * have <= need <= have / MARGIN for need, have in zip(needed, window, strict=True)]
         fits[1] |= needed[1] > window[1] / MARGIN and window[1] == longest
         if all(fits):
             break
-        window = (_resized(needed[0], window[0]), min(_resized(needed[1], window[1]), longest))
+        across, along = (_resized(need, have, growth) for need, have in zip(needed, window, strict=True))
+        window = (across, min(along, longest))
     if room.max() < 0.0:
         raise GeometryError(f"no flank around the contact point at pinion angle {contact.pinion_angle:.6g} rad")
     material = _material_length(gap, room, x, y, MARGIN * needed[1])
@@ -273,15 +276,17 @@ def _window_in(box: tuple[float, float]) -> tuple[float, float]:
     return ROOM / EDGE_MARGIN * box[0], ROOM / MARGIN * box[1]
 
 
-def _resized(needed: float, window: float) -> float:
-    """A window that a contact of the needed half length fills to two thirds, growing at most fourfold."""
-    return min(max(ROOM * needed, 0.1 * window), 4.0 * window) if needed < 0.85 * window else 2.0 * window
+def _resized(needed: float, window: float, growth: float) -> float:
+    """A window that a contact of the needed half length fills to two thirds, or ``growth`` times as large."""
+    return min(max(ROOM * needed, 0.1 * window), 4.0 * window) if needed < 0.85 * window else growth * window
 
 
-def _strip_extent(gap: Array, x: Array, y: Array, load: float, modulus: float) -> tuple[float, float, float]:
+def _strip_extent(gap: Array, x: Array, y: Array, load: float, modulus: float) -> tuple[float, float, float, float]:
     """Half lengths across and along [mm] of the contact that the strip model gives on a coarse gap, and where it ends.
 
-    The half lengths are rounded up to half a cell; the end is that of a penetration which falls as a parabola.
+    The half lengths are rounded up to half a cell; the end is that of a penetration which falls as a parabola. The last
+    number is how much larger the window should be if the contact fills it: the cube root of the penetration over the
+    gap in it, as of point contacts, between two bounds.
     """
     floor = gap.min(axis=0)
     there = np.isfinite(floor)
@@ -297,7 +302,10 @@ def _strip_extent(gap: Array, x: Array, y: Array, load: float, modulus: float) -
         loaded = (depth <= 2.0 * stiffness / (math.pi * modulus) * penetration) & pressed
         width = float(across[loaded.any(axis=1)].max()) + 0.5 * dx
         length = float(reach[pressed].max()) + 0.5 * dy
-    return width, length, _end_of_parabola(reach[pressed], penetration[pressed])
+    rise = float(np.ptp(gap[np.isfinite(gap)]))
+    growth = (float(penetration.max()) / rise) ** (1.0 / 3.0) if rise > 0.0 else 0.0
+    growth = min(max(growth, LEAST_GROWTH), MOST_GROWTH)
+    return width, length, _end_of_parabola(reach[pressed], penetration[pressed]), growth
 
 
 def _end_of_parabola(distance: Array, penetration: Array) -> float:

@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 from results import assert_same
 
-from loaded_tca import AccuracyWarning, GeometryError, InputError, analyse, load_result, read_scene
+from loaded_tca import AccuracyWarning, ConvergenceError, GeometryError, InputError, analyse, load_result, read_scene
 from loaded_tca.reference import hertz
 from loaded_tca.scene import parse_scene
 from loaded_tca.unloaded import relative_curvature
@@ -265,3 +265,20 @@ def test_line_contact_of_a_straight_bevel_pair_is_as_long_as_the_face(teeth):
     with pytest.warns(AccuracyWarning, match="reaches a border"):
         result = analyse(scene)
     assert_allclose(result.contact_length, scene.pinion.face_width_mm, rtol=1e-6)
+
+
+def test_load_beyond_the_reach_of_tooth_pairs_is_told():
+    scene = read_scene(SCENES / "mesh_cycle_spur.toml")
+    changes = {"analysis.positions": 1, "analysis.cells": (16, 16), "analysis.torques_Nm": (50e3,)}
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always", AccuracyWarning)
+        analyse(scene.with_changes(changes))
+    assert any("more than 0.05 modules" in str(one.message) for one in told)
+
+
+def test_what_does_not_converge_is_told_with_its_place(monkeypatch):
+    monkeypatch.setattr("loaded_tca.contact.solver.MOST_ITERATIONS", 1)
+    scene = read_scene(SCENES / "mesh_cycle_spur.toml")
+    changes = {"positions": 1, "cells": (16, 16), "torques_Nm": (40.0,)}
+    with pytest.raises(ConvergenceError, match=r"40 N m at pinion angle 0 deg: tooth pair \+0: contact not converged"):
+        analyse(scene.with_changes({f"analysis.{key}": value for key, value in changes.items()}))

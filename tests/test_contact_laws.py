@@ -27,7 +27,7 @@ def test_law_keeps_its_exponent_where_the_loads_do_not_tell():
     assert PowerLaw(1000.0, 0.004, 0.8).through(1000.0, 0.0041) == PowerLaw(1000.0, 0.0041, 0.8)
 
 
-@pytest.mark.parametrize(("approach", "expected"), [(0.0040001, EXPONENTS[0]), (0.1, EXPONENTS[1])])
+@pytest.mark.parametrize(("approach", "expected"), [(0.0040001, EXPONENTS[0]), (1e6, EXPONENTS[1])])
 def test_exponent_stays_in_its_range(approach, expected):
     assert PowerLaw(1000.0, 0.004).through(2000.0, approach).exponent == expected
 

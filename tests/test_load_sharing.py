@@ -11,7 +11,7 @@ from pairs import NONE, gear_pair, seed_002
 
 from loaded_tca.errors import ConvergenceError, InputError
 from loaded_tca.flanks import FlankModifications
-from loaded_tca.load_sharing import Touch, share_load, touches_at
+from loaded_tca.load_sharing import Laws, Touch, share_load, touches_at
 from loaded_tca.loaded_contact import GridChoice
 from loaded_tca.unloaded import trace_teeth
 
@@ -160,6 +160,36 @@ def test_start_from_a_neighbour_gives_the_same_answer():
     assert_allclose(again.rotation, found.rotation, rtol=1e-3)  # the boxes, made for other first guesses, differ
     for first, second in zip(again.shares, found.shares, strict=True):
         assert_allclose(first.torque, second.torque, atol=1e-3 * TORQUE)
+
+
+def test_pairs_apart_are_not_closed_by_the_rotation():
+    """What the first balance, without the springs, leaves apart comes under load as these give way."""
+    pair, torque, own = helical(), 300.0, 1e-3
+    touches = touches_at(trace_teeth(pair, [0.0]), 0)
+    assert len(share_load(pair, touches, torque, GRID).shares) == 1
+    found = share_load(pair, touches, torque, GRID, compliance=Springs(own))
+    assert len(found.shares) == 3
+    for touch in touches:
+        assert (touch.lag < found.rotation) == (touch.pair in found.laws.contact)
+
+
+def test_unknown_compliances_are_the_least_known():
+    laws = Laws({}, {(0, 0): 3e-6, (1, 1): 2e-6, (0, 1): 1e-6, (1, 0): 1e-6})
+    assert laws.compliance(0, 0) == 3e-6
+    assert laws.compliance(2, 2) == 2e-6
+    assert laws.compliance(0, 2) == 1e-6
+    assert Laws().compliance(0, 0) == 0.0
+
+
+@pytest.mark.parametrize("torque", [1e-13, 1e-9, 1e-6])
+@pytest.mark.parametrize("springs", [None, (2e-6, 1e-6)])
+def test_next_to_no_torque_is_carried_by_the_leading_pair(torque, springs):
+    pair = helical()
+    touches = touches_at(trace_teeth(pair, [0.2 * CENTRE]), 0)
+    found = share_load(pair, touches, torque, GRID, compliance=None if springs is None else Springs(*springs))
+    assert len(found.shares) == 1
+    assert 0.0 <= found.rotation < 1e-8
+    assert found.torque_rate >= 0.0
 
 
 class Springs:

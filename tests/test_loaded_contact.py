@@ -3,6 +3,7 @@
 import math
 import warnings
 
+import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from pairs import SEED_002_TORQUE, cylindrical_mesh, gear_pair, seed_002
@@ -13,6 +14,8 @@ from loaded_tca.loaded_contact import GridChoice, press
 from loaded_tca.material import Material
 from loaded_tca.pair import Mounting, cylindrical_pair
 from loaded_tca.reference import hertz
+from loaded_tca.separation import sample_separation
+from loaded_tca.unloaded import trace_teeth
 
 BALANCE = 1e-10
 HERTZ = 5e-3  # the flanks are no paraboloids over an ellipse as long as the face
@@ -111,6 +114,31 @@ def test_hertz_holds_nothing_on_a_flank_with_end_relief_alone(helix_deg):
     assert loaded.hertz is None
     assert not loaded.at_border
     assert_allclose(loaded.contact.pinion_axial, 0.0, atol=0.1)
+
+
+def test_hertz_holds_nothing_where_a_relief_begins_in_the_ellipse():
+    """A parabolic tip relief from the pitch circle on: its curvature is added on one side of the contact point."""
+    relief = FlankModifications(lead_crowning=0.01, tip_relief=0.1, tip_relief_start=102.0)
+    helical = gear_pair(relief, helix_deg=15.0)
+    assert pressed(helical, 2700.0).hertz is None
+    assert pressed(seed_002(15.0), 2700.0).hertz is not None
+
+
+def test_box_of_a_corner_holds_its_contact():
+    """At the corner of a tip and a side nearly all of a long window is void; the first box holds the contact."""
+    pair = gear_pair(helix_deg=20.0, teeth=(22, 41))
+    mesh = trace_teeth(pair, np.linspace(-0.5, 0.5, 17) * pair.pitch)
+    corners = [
+        path[n] for path in mesh.paths for n in range(17) if path[n].touches and path[n].edges.reshape(2, 4).sum() >= 2
+    ]
+    assert corners
+    for contact in corners:
+        for load in (5.0, 150.0):
+            first = sample_separation(pair, contact, cells=(32, 32), load=load)
+            loaded = press(pair, contact, load, GridChoice(cells=(32, 32)))
+            assert np.isfinite(first.gap).any()
+            assert loaded.separation.half_lengths[0] < 3.0 * first.half_lengths[0]
+            assert not loaded.solution.reaches_border
 
 
 def test_grid_that_is_too_large_for_the_memory_is_refused_before_it_is_made():

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from validation.mesh_cycle_comparison import Crowned, PairLoad, Position, model, read_crowned, read_cycles
-from validation.mesh_cycle_fem import is_parting, rows_of, rows_of_crowned, share_difference
+from validation.mesh_cycle_comparison import PairLoad, Position, model, read_cycles
+from validation.mesh_cycle_fem import is_parting, rows_of, share_difference
+from validation.pairs_in_space import InSpace, read_in_space, rows_of_crowned, rows_of_flat
 from validation.reference_fem.case import pinion_angle
 from validation.reference_fem.tables import write_table
 
@@ -66,7 +67,7 @@ def test_cycles_are_read_in_the_order_of_their_positions(tables):
 
 def test_cycles_that_are_not_kept_are_none(tmp_path):
     assert read_cycles(tmp_path / "positions.csv", tmp_path / "contacts.csv") == {}
-    assert read_crowned(tmp_path / "crowned.json") is None
+    assert read_in_space(tmp_path / "crowned.json") is None
 
 
 def test_share_difference_counts_pairs_that_one_side_alone_has():
@@ -77,11 +78,20 @@ def test_share_difference_counts_pairs_that_one_side_alone_has():
 
 
 def test_rows_tell_a_quantity_beyond_what_is_asked():
-    kept, ours = Crowned(240.0, 1050.0, -13.4, 600.0), Crowned(250.0, 1045.0, -14.3, 5.0)
-    line_load, pressure, error = rows_of_crowned(kept, ours)
+    kept, ours = InSpace(240.0, (), 1050.0, -13.4, 600.0), InSpace(250.0, (), 1045.0, -14.3, 5.0)
+    line_load, pressure, error = rows_of_crowned("a pair", kept, ours)
     assert pressure.holds
     assert not line_load.holds
     assert not error.holds
+
+
+def test_rows_of_the_flat_pair_are_at_mid_face_at_the_largest_load_and_at_the_end():
+    kept, ours = (
+        InSpace(141.0, (141.0, 145.0, 137.0), 0.0, -10.3, 300.0),
+        InSpace(140.0, (140.0, 151.0, 138.0), 0.0, -10.2, 2.0),
+    )
+    assert [row.obtained for row in rows_of_flat("a pair", kept, ours)] == [140.0, 151.0, 138.0, -10.2]
+    assert [row.holds for row in rows_of_flat("a pair", kept, ours)] == [True, False, True, True]
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,7 @@
 
 import json
 import warnings
-from dataclasses import fields
+from dataclasses import fields, replace
 from functools import cache
 
 import numpy as np
@@ -12,7 +12,7 @@ from results import SCENES, assert_same
 
 from loaded_tca import AccuracyWarning, InputError, analyse, load_result, read_scene
 from loaded_tca.key_figures import harmonic_amplitudes
-from loaded_tca.pair_contacts import NUMBERS, ContactNumbers
+from loaded_tca.pair_contacts import NUMBERS, ContactNumbers, _peaks_at_end
 from loaded_tca.plots import PICTURES, plot_all
 from loaded_tca.report import positions_csv, summary_json
 from loaded_tca.scene import parse_scene
@@ -123,7 +123,26 @@ def test_numbers_of_the_cycle_are_those_of_the_highest_pair():
     for torque, position in np.ndindex(result.peak_pressure.shape):
         column = contacts.highest[torque, position]
         assert result.maps[torque][position] is contacts.maps[torque][position][column]
-        assert result.normal_force[torque, position] == contacts.normal_force[torque, position, column]
+        assert result.peak_radius[torque, position] == contacts.peak_radius[torque, position, column]
+
+
+def test_forces_of_the_cycle_are_those_of_the_pair_that_carries_most():
+    """A tip corner may have the highest peak under next to no force."""
+    result = cycle()
+    contacts = result.contacts
+    assert_array_equal(result.normal_force, np.nanmax(contacts.normal_force, axis=-1))
+    for torque, position in np.ndindex(result.peak_pressure.shape):
+        column = contacts.most_loaded[torque, position]
+        assert result.line_load[torque, position] == contacts.line_load[torque, position, column]
+        assert result.approach[torque, position] == contacts.approach[torque, position, column]
+
+
+def test_peak_at_the_end_of_a_grid_is_one_at_a_border():
+    one = next(one for row in cycle().contacts.maps[0] for one in row if one is not None)
+    pressure = np.zeros_like(one.pressure)
+    assert not _peaks_at_end(replace(one, pressure=one.pressure, gap=np.zeros_like(one.gap)))
+    pressure[5, 0] = 1.0
+    assert _peaks_at_end(replace(one, pressure=pressure, gap=np.zeros_like(one.gap)))
 
 
 def test_pair_that_is_apart_has_no_map_and_no_force():

@@ -6,7 +6,6 @@ wide, under the same line load, and pressures are read at mid-face.
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,7 +13,6 @@ from pathlib import Path
 
 import numpy as np
 
-from loaded_tca.analysis import analyse
 from loaded_tca.carried_load import Carried, carried_by_all
 from loaded_tca.loaded_contact import GridChoice, LoadedContact
 from loaded_tca.loaded_teeth import TeethYield
@@ -24,7 +22,7 @@ from loaded_tca.tooth import tooth_forms
 from loaded_tca.tooth_compliance import MeshDensity, tooth_compliance
 from validation.reference_fem.case import FACE_WIDTH, POSITIONS, pinion_angle
 from validation.reference_fem.deck import LOAD_STEPS
-from validation.reference_fem.tables import CONTACTS_FILE, CROWNED_FILE, POSITIONS_FILE, read_table
+from validation.reference_fem.tables import CONTACTS_FILE, POSITIONS_FILE, read_table
 
 SCENE = """
 title = "Spur pair 25/37"
@@ -52,12 +50,6 @@ RELIEF = {
     for key, value in (("tip_relief_um", 15.0), ("tip_relief_start_mm", start))
 }
 CHANGES: dict[str, dict[str, float]] = {"unmodified": {}, "tip_relief": RELIEF}
-CROWNING: dict[str, object] = {
-    "pinion.modifications.lead_crowning_um": 10.0,
-    "analysis.positions": 1,
-    "analysis.load_sharing": True,
-    "analysis.compliance": "contact+tooth",
-}
 GRID = GridChoice(cells=(32, 64))
 """Across and along; along a wide face cells should be no longer than the tooth is thick."""
 GOOD_FIT = 1e-2
@@ -251,47 +243,3 @@ def model(face_width: float, layers: int | None = None) -> Model:
     compliance = tooth_compliance(forms, plain.pair(), backs, neighbours=NEIGHBOURS, density=density)
     seconds = time.process_time() - start
     return Model({variant: scene.pair() for variant, scene in scenes.items()}, compliance, face_width, seconds)
-
-
-@dataclass(frozen=True)
-class Crowned:
-    """Pinion with lead crowning at the pitch point, 20 mm wide.
-
-    Attributes
-    ----------
-    peak_line_load : float [N/mm]
-    pressure : float [MPa]
-        At mid-face.
-    transmission_error : float [um]
-    seconds : float
-        Processor time, compliance and all.
-    """
-
-    peak_line_load: float
-    pressure: float
-    transmission_error: float
-    seconds: float
-
-
-def read_crowned(path: Path = CROWNED_FILE) -> Crowned | None:
-    """Kept crowned pair; None where it is not there.
-
-    Parameters
-    ----------
-    path : Path
-    """
-    if not path.exists():
-        return None
-    kept = json.loads(path.read_text())
-    return Crowned(kept["peak_line_load"], kept["mid_pressure"], kept["transmission_error"], kept["seconds"])
-
-
-def crowned() -> Crowned:
-    """Compute the crowned pair under 100 N m."""
-    start = time.process_time()
-    scene = parse_scene(SCENE.format(face_width=FACE_WIDTH)).with_changes(CROWNING)
-    result = analyse(scene)
-    seconds = time.process_time() - start
-    error = 1e3 * result.wheel_base_radius * float(result.transmission_error[0])
-    contact = result.contacts
-    return Crowned(float(contact.line_load[0, 0, 0]), float(contact.peak_pressure[0, 0, 0]), error, seconds)

@@ -21,6 +21,8 @@ REFRESH = 25
 # whole step sets the cells that reach a bound exactly on it.
 WHOLE_STEP = 0.5
 MOST_PROJECTIONS = 100
+# Pressures below this part of the largest one move nothing by more than single precision resolves.
+DUST = 1e-8
 # Relative error of the sum of some thousand pressures.
 ROUNDING = 1e-15
 AT_BOUND = 1e-12
@@ -266,7 +268,8 @@ class Descent:
             self._displacement -= length * image
         elif not self._move(self.grid.clip(trial, free)):
             self._last = None
-            self._project_gradient(residual, free)
+            if not self._drop_dust():
+                self._project_gradient(residual, free)
 
     def _conjugate(self, residual: Single, free: Mask) -> Single:
         """Direction of Polak and Ribiere from the preconditioned residual; a restart where it does not descend."""
@@ -310,6 +313,15 @@ class Descent:
             self.pressure = target
             self._displacement += self._scale * image
         return True
+
+    def _drop_dust(self) -> bool:
+        """Set pressures to zero that are next to none over an open gap; False if there are none.
+
+        What that gains is lost in the rounding of single precision, so that no step would find it.
+        """
+        dust = (self._excess > 0.0) & (self.pressure > 0.0) & (self.pressure < DUST * self.pressure.max())
+        self.pressure = np.where(dust, 0.0, self.pressure)
+        return bool(dust.any())
 
     def _project_gradient(self, residual: Single, free: Mask) -> None:
         """One projected step down the plain gradient, which always descends."""

@@ -44,6 +44,8 @@ FACTOR = (1.28, 0.44, 3.7)
 # across it ask for, see validation/wedge.py.
 POWER = 1.07
 SHARPEST = math.radians(30.0)
+# Part of a cell by which the place of an edge may miss half cells and count as there.
+WHOLE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,7 @@ class FreeEdge:
     axis : {0, 1}
         The axis that the edge is crossed along: 0 for an edge x = const, 1 for y = const.
     position : float [mm]
-        Distance from the outer border of the first cell along that axis; a straight edge is taken to half a cell.
+        Distance from the outer border of the first cell along that axis.
     material : {"below", "above"}
         On which side of the position the bodies are; the cells beyond carry nothing.
     factor : float
@@ -272,12 +274,22 @@ def mirrors(
     for edge in edges:
         across, start = spacing[edge.axis], starts[edge.axis]
         if edge.slope == 0.0:
-            found.append(Mirror(edge.axis, round(2.0 * edge.position / across) - 2 * start, edge.factor))
+            found += _straight_mirrors(edge, 2.0 * edge.position / across - 2 * start)
             continue
         slope = edge.slope * spacing[1 - edge.axis] / across
         first = edge.position / across - start + slope * starts[1 - edge.axis]
         found.append(ObliqueMirror(edge.axis, first, slope, edge.material == "below", edge.factor))
     return tuple(found)
+
+
+def _straight_mirrors(edge: FreeEdge, double: float) -> list[AnyMirror]:
+    """The mirror at a place, twice which is given in cells; between half cells, parts of those at either side."""
+    first = math.floor(double + WHOLE)
+    part = double - first
+    if part <= WHOLE:
+        return [Mirror(edge.axis, first, edge.factor)]
+    shares = (1.0 - part, part)
+    return [Mirror(edge.axis, first + n, share * edge.factor) for n, share in enumerate(shares)]
 
 
 def edge_images(edges: Sequence[Edge]) -> list[tuple[Edge, ...]]:

@@ -212,7 +212,8 @@ def _optional_array(values: ArrayLike | None) -> Array | None:
 def _failure(solution: ContactSolution, tolerance: float) -> str:
     return (
         f"contact not converged: residual {solution.residual:.1e} > tolerance {tolerance:.1e} after "
-        f"{solution.iterations} iterations; try a larger tolerance, or on_failure='return' to look at it"
+        f"{solution.iterations} iterations; try a larger tolerance (in scenes: analysis.tolerance), or "
+        "on_failure='return' to look at it"
     )
 
 

@@ -180,7 +180,9 @@ def test_contact_conditions_hold_with_an_edge_anywhere(position, cap):
     options = {"max_pressure": cap, "tolerance": 1e-8, "free_edges": [edge], "warn": False}
     found = solve_contact(gap, spacing, E_STAR, load=LOAD, **options)
     unit = spacing[0] / E_STAR
-    whole = matrix(shape, 1.0, (Mirror(1, round(position), PSI),))
+    low, part = int(position), position % 1.0
+    images = (Mirror(1, low, (1.0 - part) * PSI), Mirror(1, low + 1, part * PSI))  # parts of both between half cells
+    whole = matrix(shape, 1.0, images)
     excess = unit * (whole @ found.pressure.ravel()).reshape(shape) + gap - found.approach
     top = math.inf if cap is None else cap
     inner = (found.pressure > 0.0) & (found.pressure < top)
@@ -340,3 +342,18 @@ def test_factor_refuses_what_is_no_material():
     with pytest.raises(InputError) as caught:
         wedge_factor(0.1, 0.6, share=-0.1)
     assert len(caught.value.problems) == 3
+
+
+def test_approach_does_not_jump_with_the_place_of_an_edge():
+    """An edge beside the contact, moved by tenths of a cell: the approach falls evenly."""
+    gap, spacing = bowl((20, 24), width=0.025, offset=0.05)
+    places = np.arange(26.0, 27.01, 0.1)
+    found = [
+        solve_contact(
+            gap, spacing, E_STAR, load=LOAD, free_edges=[FreeEdge(1, place * spacing[1], "below", PSI)], warn=False
+        ).approach
+        for place in places
+    ]
+    steps = np.diff(found)
+    assert (steps < 0.0).all()
+    assert steps.min() > 3.0 * steps.max()

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 from validation.reference_fem.campaign import run_all
-from validation.reference_fem.keep import keep_crowned, keep_cycles, keep_study
+from validation.reference_fem.keep import keep_cycles, keep_in_space, keep_study
 from validation.reference_fem.run import program_version
 
 
@@ -18,7 +18,7 @@ def main() -> int:
     work = asked.work
     program = program_version()
     keep_study(program, work)
-    keep_crowned(program, work)
+    keep_in_space(program, work)
     keep_cycles(program, run_all(work, asked.every))
     return 0
 

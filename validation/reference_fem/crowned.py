@@ -169,8 +169,10 @@ class SpatialDeck:
         out.write("*BOUNDARY\nSYMMETRY,3,3\nPBORE,1,1\nPBORE,3,3\nWBORE,1,3\n")
 
 
-def crowned_deck(lag: float, meshing: Meshing = SPATIAL_MESHING, layers: int = LAYERS) -> tuple[Position, SpatialDeck]:
-    """Deck of the crowned pair at the pitch point.
+def crowned_deck(
+    lag: float, meshing: Meshing = SPATIAL_MESHING, layers: int = LAYERS, crowning: float = CROWNING
+) -> tuple[Position, SpatialDeck]:
+    """Deck of the crowned pair, or one without crowning, at the pitch point.
 
     Parameters
     ----------
@@ -178,10 +180,12 @@ def crowned_deck(lag: float, meshing: Meshing = SPATIAL_MESHING, layers: int = L
         Expected at mid-face.
     meshing : Meshing
     layers : int
+    crowning : float [mm]
+        Of the pinion's lead, parabolic, at the ends of the face.
     """
     pinion, wheel = VARIANTS["unmodified"]
     position = Position(pinion, wheel, CENTRE_DISTANCE, 0.0, lag)
-    crowned = replace(position, pinion=replace(pinion, thinning=CROWNING))
+    crowned = replace(position, pinion=replace(pinion, thinning=crowning))
     touches = touching_pairs(position)
     load = line_load(TORQUE)
     bottom, mate = sections(position, touches, load, meshing)

@@ -10,14 +10,16 @@ from pathlib import Path
 import numpy as np
 
 from validation.reference_fem.case import FACE_WIDTH
-from validation.reference_fem.crowned import LAYERS, SPATIAL_MESHING, crowned_deck
+from validation.reference_fem.crowned import CROWNING, LAYERS, SPATIAL_MESHING, crowned_deck
 from validation.reference_fem.evaluate import fit_half_ellipse
 from validation.reference_fem.model import Meshing
 from validation.reference_fem.run import Run, run
 from validation.reference_fem.tooth_form import Array
 
-FIRST_LAG = 0.01345
-"""Guess of the lag that places the wheel [mm]; the results do not depend on it."""
+FIRST_LAG = {"crowned": 0.01345, "flat": 0.0102}
+"""Guesses of the lag that places the wheel [mm]; the results do not depend on them."""
+AMOUNT = {"crowned": CROWNING, "flat": 0.0}
+"""Lead crowning of the pinion [mm]."""
 PEAK_LAYERS = 6
 """Layers beside mid-face whose mean line loads give the even parabola of fourth order with the peak."""
 
@@ -61,20 +63,23 @@ class CrownedResult:
     seconds: float
 
 
-def run_crowned(work: Path, layers: int = LAYERS, meshing: Meshing = SPATIAL_MESHING) -> CrownedResult:
-    """Results of the crowned pair, run unless they are in the directory already.
+def run_crowned(
+    work: Path, name: str = "crowned", layers: int = LAYERS, meshing: Meshing = SPATIAL_MESHING
+) -> CrownedResult:
+    """Results of the crowned pair or the flat one, run unless they are in the directory already.
 
     Parameters
     ----------
     work : Path
         Directory for the files.
+    name : {"crowned", "flat"}
     layers : int
     meshing : Meshing
     """
-    kept = work / f"crowned_{layers}.json"
+    kept = work / f"{name}_{layers}.json"
     if kept.exists():
         return CrownedResult(**json.loads(kept.read_text()))
-    position, deck = crowned_deck(FIRST_LAG, meshing, layers)
+    position, deck = crowned_deck(FIRST_LAG[name], meshing, layers, AMOUNT[name])
     done = run(deck.text(), kept.with_suffix(""), list(range(layers)), len(deck.load_steps))
     step = 0.5 * FACE_WIDTH / layers
     force = np.array([done.forces[-1][layer].normal_force for layer in range(layers)])

@@ -14,6 +14,7 @@ from validation.reference_fem.model import Meshing
 from validation.reference_fem.tables import (
     CONTACTS_FILE,
     CROWNED_FILE,
+    FLAT_FILE,
     MESH_FILE,
     POSITIONS_FILE,
     provenance,
@@ -58,17 +59,18 @@ def keep_study(program: str, work: Path) -> None:
     write_table(MESH_FILE, provenance(program, ["Plane strain; what mesh and penalty change."]), run_study(work))
 
 
-def keep_crowned(program: str, work: Path) -> None:
-    """Table of the crowned pair, run if need be."""
+def keep_in_space(program: str, work: Path) -> None:
+    """Tables of the crowned pair and of the flat one, run if need be."""
     notes = (
-        "In space: C3D20R, half the face (z >= 0), whole rings; 100 N m, phi1 = 0; pinion with parabolic lead crowning",
-        "of 10 um at the ends of the face. transmission_error [um] at the hubs, height [mm] of the layers' middles,",
-        "line_load [N/mm] their means, covered_width [mm] the area under pressure over the height of the layer,",
-        "peak_line_load [N/mm] at mid-face, total [N] of the whole face, mid_pressure [MPa] and mid_half_width [mm]",
-        "of the half ellipse through the pressures at mid-face, seconds of processor time.",
+        "In space: C3D20R, half the face (z >= 0), whole rings; 100 N m, phi1 = 0; crowned pair: pinion with parabolic",
+        "lead crowning of 10 um at the ends of the face; flat pair: none. transmission_error [um] at the hubs, height",
+        "[mm] of the layers' middles, line_load [N/mm] their means, covered_width [mm] the area under pressure over",
+        "the height of the layer, peak_line_load [N/mm] at mid-face, total [N] of the whole face, mid_pressure [MPa]",
+        "and mid_half_width [mm] of the half ellipse through the pressures at mid-face, seconds of processor time.",
     )
-    content = {"provenance": provenance(program, notes), **asdict(run_crowned(work))}
-    CROWNED_FILE.write_text(json.dumps(content, indent=1) + "\n")
+    for name, file in (("crowned", CROWNED_FILE), ("flat", FLAT_FILE)):
+        content = {"provenance": provenance(program, notes), **asdict(run_crowned(work, name))}
+        file.write_text(json.dumps(content, indent=1) + "\n")
 
 
 def _position_row(record: Record) -> dict[str, object]:

@@ -15,6 +15,7 @@ POSITIONS_FILE = DATA / "calculix_spur_25_37_positions.csv"
 CONTACTS_FILE = DATA / "calculix_spur_25_37_contacts.csv"
 MESH_FILE = DATA / "calculix_spur_25_37_mesh_study.csv"
 CROWNED_FILE = DATA / "calculix_crowned_pair.json"
+FLAT_FILE = DATA / "calculix_flat_pair.json"
 
 COMMON = (
     "Spur pair 25/37, m 3 mm, alpha 20 deg, no profile shift, face width 20 mm, centre distance 93.000 mm; tip",
