@@ -86,7 +86,7 @@ def _compliance(scene: Scene, pair: GearPair) -> MakeCompliance:
         backs = scene.pair("negative" if pair.sense > 0 else "positive")
         bores = getattr(scene.pinion, BORE), getattr(scene.wheel, BORE)
         forms = tooth_forms(scene.mesh())
-        return tooth_compliance(forms, pair, backs, bore_diameters=bores, neighbours=neighbours)
+        return tooth_compliance(forms, pair, backs, bore_diameters=bores, neighbours=max(neighbours, 1))
 
     return make
 
