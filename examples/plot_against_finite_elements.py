@@ -36,13 +36,16 @@ def main() -> float:
     angle, error = kept(scene.load.pinion_torque_Nm)
     ours = 1e3 * result.wheel_base_radius * result.transmission_error
 
-    figure = Figure(figsize=(7.0, 4.0), layout="constrained")
+    figure = Figure(figsize=(7.0, 4.5), layout="constrained")
     axes = figure.subplots()
-    axes.plot(np.degrees(result.pinion_angle), ours, label="loaded_tca, face 20 mm")
+    axes.plot(np.degrees(result.pinion_angle), ours, ".-", label="loaded_tca, face 20 mm")
     axes.plot(np.degrees(angle), error, "o", label="finite elements, plane strain")
     axes.set_xlabel("pinion angle [deg]")
-    axes.set_ylabel("loaded transmission error [um]")
-    axes.legend()
+    axes.set_ylabel("loaded transmission error [µm]")
+    torque, cells = scene.load.pinion_torque_Nm, " x ".join(map(str, scene.analysis.cells))
+    grid = f"pinion torque {torque:g} N m, {len(ours)} positions, {cells} cells"
+    figure.suptitle(f"{scene.title}\n{grid}", fontsize="medium")
+    figure.legend(loc="outside lower center", ncols=2, fontsize="small")
     save_figure(figure, "against_finite_elements.png")
 
     at_pitch_point = [values[np.argmin(np.abs(at))] for at, values in ((result.pinion_angle, ours), (angle, error))]

@@ -41,7 +41,7 @@ FILES = """files in DIR:
   pressure_map_border.png   only if a peak lies at a border or crease, at another position
   pressure_map_hertz.png    only if Hertz holds, but not where the peak pressure is
 and where tooth pairs share the load
-  load_share.png            of each tooth pair, under the largest torque
+  load_share.png            of each tooth pair, all torques
   harmonics.png             orders of the tooth mesh in the transmission error, all torques
   mesh_stiffness.png        over the positions, all torques
   line_load.png             over the positions, all torques
@@ -153,7 +153,8 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--out", metavar="DIR", required=True, type=Path, help="directory for the results")
     plot = command("plot", _plot, "draw the pictures of a result again")
     plot.add_argument("result", metavar="DIR|FILE", type=Path, help="result.nc, or the directory that holds it")
-    plot.add_argument("--out", metavar="DIR", type=Path, help="directory for the pictures; default: beside the result")
+    own = "beside the result, with --torque or --position in a directory there that these name"
+    plot.add_argument("--out", metavar="DIR", type=Path, help=f"directory for the pictures; default: {own}")
     plot.add_argument("--torque", metavar="NM", type=float, help="pinion torque of maps and flanks; default: largest")
     plot.add_argument("--position", metavar="N", type=int, help="position of pressure_map.png, from 1; default: peak")
     tooth = command("tooth", _tooth, "write the complete teeth of a result as surfaces (VTK, STL) and as a picture")
@@ -167,8 +168,9 @@ def _parser() -> argparse.ArgumentParser:
     below.add_argument("result", metavar="DIR|FILE", type=Path, help="result.nc, or the directory that holds it")
     below.add_argument("--out", metavar="DIR", type=Path, help="directory for the files; default: beside the result")
     below.add_argument("--torque", metavar="NM", type=float, help="pinion torque; default: largest")
-    below.add_argument("--position", metavar="N", type=int, help="position, from 1; default: peak")
-    below.add_argument("--pair", metavar="K", type=int, help="tooth pair, as load_share.png counts; default: peak")
+    first = "default: that of the first number of the summary"
+    below.add_argument("--position", metavar="N", type=int, help=f"position, from 1; {first}")
+    below.add_argument("--pair", metavar="K", type=int, help=f"tooth pair, as load_share.png counts; {first}")
     below.add_argument(
         "--gear", choices=("pinion", "wheel"), default="pinion", help="below whose flank; default: pinion"
     )
@@ -229,9 +231,20 @@ def _analyse_to(scene_file: str, directory: Path) -> None:
 
 
 def _plot(options: argparse.Namespace) -> None:
+    from loaded_tca.report import make_directory
+
     result, directory = _loaded(options)
     torque, position = _chosen_torque(result, options.torque), _chosen_position(result, options.position)
+    if options.out is None:
+        directory /= _place_of_its_own(options)
+        make_directory(directory)
     _print_files(_draw(result, directory, torque, position))
+
+
+def _place_of_its_own(options: argparse.Namespace) -> str:
+    """Directory of pictures that are not those of the result as a whole, which they would replace; empty: they are."""
+    chosen = {"torque_{:g}_Nm": options.torque, "position_{}": options.position}
+    return "_".join(name.format(value) for name, value in chosen.items() if value is not None)
 
 
 def _tooth(options: argparse.Namespace) -> None:

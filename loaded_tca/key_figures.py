@@ -64,6 +64,32 @@ def harmonic_amplitudes(error: Array, count: int) -> Array:
     return amplitudes
 
 
+def mean_over_a_pitch(values: Array) -> float:
+    """Mean of the finite values at even positions of which the first and the last are a pitch apart.
+
+    Both ends are the same place of the mesh, so that each of them counts half.
+
+    Parameters
+    ----------
+    values : (n,) array
+
+    Returns
+    -------
+    float
+        NaN if no value is finite.
+
+    Examples
+    --------
+    >>> mean_over_a_pitch(np.array([4.0, 1.0, 1.0, 4.0]))
+    2.0
+    """
+    weights = np.ones(len(values))
+    if len(values) > 1:
+        weights[[0, -1]] = 0.5
+    known = np.isfinite(values)
+    return float(np.average(values[known], weights=weights[known])) if known.any() else math.nan
+
+
 def key_figures(
     path: ContactPath, row: Row, cycle: Row, *, wheel_base_radius: float, max_pressure: float
 ) -> dict[str, float]:
@@ -93,22 +119,17 @@ def key_figures(
             for order, amplitude in enumerate(cycle["harmonics"], start=1)
         },
         **_error_figures("unloaded_error", cycle["unloaded_error"], wheel_base_radius),
-        "mesh_stiffness_mean_N_per_mm_um": _reduced(np.mean, cycle["mesh_stiffness"]),
-        "secant_stiffness_mean_N_per_mm_um": _reduced(np.mean, cycle["secant_stiffness"]),
-        "loaded_contact_ratio": _mean_over_a_pitch(cycle["loaded_pairs"]),
+        "mesh_stiffness_mean_N_per_mm_um": mean_over_a_pitch(cycle["mesh_stiffness"]),
+        "secant_stiffness_mean_N_per_mm_um": mean_over_a_pitch(cycle["secant_stiffness"]),
+        "loaded_contact_ratio": mean_over_a_pitch(cycle["loaded_pairs"]),
         "fewest_loaded_pairs": _reduced(np.min, cycle["loaded_pairs"]),
         "most_loaded_pairs": _reduced(np.max, cycle["loaded_pairs"]),
         "line_load_max_N_per_mm": _reduced(np.max, row["line_load"]),
-        "face_load_factor_at_largest_force": _at(row["face_load_factor"], _highest(row["normal_force"])),
+        **_line_load_figures(row, _highest(row["normal_force"])),
         "max_pressure_MPa": max_pressure,
         **_solver_figures(row),
         **_counts(path, row, cycle),
     }
-
-
-def _mean_over_a_pitch(values: Array) -> float:
-    """Mean over even positions of which the first and the last are a pitch apart."""
-    return float(0.5 * (values[:-1] + values[1:]).mean()) if len(values) > 1 else float(values.mean())
 
 
 def _highest(values: Array) -> int | None:
@@ -159,9 +180,18 @@ def _hertz_figures(row: Row, at: int | None) -> dict[str, float]:
     }
 
 
+def _line_load_figures(row: Row, at: int | None) -> dict[str, float]:
+    """Line load and face load factor of the most loaded contact, and whether they grow with the grid."""
+    return {
+        "line_load_at_largest_force_N_per_mm": _at(row["line_load"], at),
+        "face_load_factor_at_largest_force": _at(row["face_load_factor"], at),
+        "largest_force_is_at_border": at is not None and bool(row["peak_at_border"][at]),
+    }
+
+
 def _error_figures(name: str, error: Array, wheel_base_radius: float) -> dict[str, float]:
     """Mean and peak-to-peak of a transmission error, as an angle and as a length at the wheel's base circle."""
-    mean, span = _reduced(np.mean, error), _reduced(np.ptp, error)
+    mean, span = mean_over_a_pitch(error), _reduced(np.ptp, error)
     length = 1e3 * wheel_base_radius
     return {
         f"{name}_mean_arcsec": mean * ARCSEC,
@@ -200,6 +230,6 @@ def _counts(path: ContactPath, row: Row, cycle: Row) -> dict[str, float]:
 
 
 def _reduced(reduction: Any, values: Array) -> float:
-    """Mean, maximum or span of the finite values; NaN if there is none."""
+    """Least, largest or span of the finite values; NaN if there is none."""
     finite = values[np.isfinite(values)]
     return float(reduction(finite)) if finite.size else math.nan

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
 from loaded_tca.pair import GearPair
+from loaded_tca.rigid_bores import rigid_bores
 from loaded_tca.scene import Scene
 from loaded_tca.scene.model import Row
 from loaded_tca.scene.section import Section, contents
@@ -25,7 +26,8 @@ def describe_scene(scene: Scene) -> str:
     """
     pair = scene.pair()
     cap = [] if pair.max_pressure is None else [("cap on the pressure [MPa]", f"{pair.max_pressure:g}")]
-    rows = [*scene.geometry_rows(), *_load_rows(scene), *cap, *_departures(scene), *_spline_rows(scene, pair)]
+    asked = [*_load_rows(scene), *cap, *_analysis_rows(scene)]
+    rows = [*scene.geometry_rows(), *asked, *_departures(scene), *_spline_rows(scene, pair)]
     lines = [f"{label:<{LABEL}}" + "".join(f"{cell:>14}" for cell in cells) for label, *cells in rows]
     return "\n".join([scene.title or "Scene", *lines, *(f"note: {note}" for note in scene.notes())])
 
@@ -36,6 +38,17 @@ def _load_rows(scene: Scene) -> list[Row]:
         torques = (min(torques), max(torques))
     label = "pinion torque" if len(torques) == len(scene.torques) else f"{len(scene.torques)} pinion torques from, to"
     return [(f"{label} [N m]", *(f"{1e-3 * torque:g}" for torque in torques)), *scene.force_rows(torques)]
+
+
+def _analysis_rows(scene: Scene) -> Iterator[Row]:
+    """What the analysis is asked to do, and the bores that it holds where teeth bend."""
+    wanted = scene.analysis
+    switches = ("on" if switch else "off" for switch in (wanted.load_sharing, wanted.free_edges))
+    yield "load sharing, free edges, compliance", *switches, wanted.compliance
+    yield "positions, torques", f"{wanted.positions}", f"{len(scene.torques)}"
+    bores = rigid_bores(scene)
+    if bores is not None:
+        yield "bores held rigid, smallest diameter [mm]", *(f"{bore:.4f}" for bore in bores)
 
 
 def _departures(scene: Scene) -> Iterator[Row]:

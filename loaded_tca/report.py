@@ -20,6 +20,8 @@ from loaded_tca.mesh_cycle import MeshCycle, cycle_parts
 from loaded_tca.pair_contacts import MAP_PARTS, NUMBERS, PAIRS, PATH_PARTS, contact_parts
 from loaded_tca.reached_borders import NAMES as BORDERS
 from loaded_tca.reached_borders import reached_borders
+from loaded_tca.rigid_bores import rigid_bores
+from loaded_tca.scene import parse_scene
 from loaded_tca.storage import FilePath, Part, remove, replacing
 from loaded_tca.summary import without_rounding
 
@@ -97,6 +99,7 @@ def summary_json(result: MeshCycle) -> str:
         "face_width_mm": result.face_width,
         "wheel_base_radius_mm": result.wheel_base_radius,
         "mesh_stiffness_is": f"d(F_bt/b)/d(r_b2 TE); {result.yielding}",
+        "rigid_bore_diameters_mm": rigid_bores(parse_scene(result.scene_toml)),
         "torques": [
             {**{name: _known(value, name) for name, value in figures.items()}, **_pair_at_peak(result, torque)}
             for torque, figures in enumerate(result.key_figures())
@@ -126,12 +129,15 @@ def positions_csv(result: MeshCycle) -> str:
 def contacts_csv(result: MeshCycle) -> str:
     """Return one row per torque, position and tooth pair under load, units in the header; an empty cell: not known.
 
-    The last column names the borders that the contact reaches, the tip of a gear or a side of its teeth.
+    The pairs of a position stand in the order of the mesh. The last column names the borders that the contact reaches,
+    the tip of a gear or a side of its teeth.
     """
     shape = result.contacts.normal_force.shape
-    rows = result.contacts.normal_force > 0.0
-    columns = {name: np.broadcast_to(values, shape)[rows] for name, values in _contact_columns(result).items()}
-    reached = reached_borders(result)[rows]
+    order = np.argsort(result.pairs)
+    rows = (result.contacts.normal_force > 0.0)[..., order]
+    every = _contact_columns(result)
+    columns = {name: np.broadcast_to(values, shape)[..., order][rows] for name, values in every.items()}
+    reached = reached_borders(result)[:, :, order][rows]
     words = [" + ".join(name for name, one in zip(BORDERS, row, strict=True) if one) for row in reached]
     return _table({**columns, "borders": np.array(words, dtype=object)})
 
@@ -176,7 +182,7 @@ def _columns(result: MeshCycle) -> dict[str, Array]:
         "pinion_torque_Nm": np.repeat(1e-3 * result.torque[:, None], shape[1], axis=1),
         **{name: np.broadcast_to(values, shape) for name, values in _path_columns(result).items()},
         **_loaded_columns(result),
-        **{f"load_share_pair_{pair}": shares[..., column] for column, pair in enumerate(result.pairs)},
+        **{f"load_share_pair_{result.pairs[column]}": shares[..., column] for column in np.argsort(result.pairs)},
     }
 
 

@@ -86,13 +86,50 @@ class StressBelow:
 
     @property
     def half_width(self) -> float:
-        """Half the width of the contact [mm]."""
+        """Half the width of the contact [mm], of the column beside a spike where there is one."""
+        if (column := self.beside_spike) is not None:
+            return 0.5 * self.pressure_map.spacing[0] * float((self.pressure_map.pressure[:, column] > 0.0).sum())
         return 0.5 * float(self.result.contacts.contact_width[self.torque, self.position, self.column])
 
-    def largest(self, quantity: Quantity) -> LargestStress:
-        """Return value, depth and place of the largest ``max_shear`` or ``von_mises``."""
-        values = getattr(self.stress, quantity)
+    @property
+    def beside_spike(self) -> int | None:
+        """Column of the map through the contact point where the peak lies at a border and grows with the grid.
+
+        There the stresses are those below the first number of the summary. None where the peak is no spike, or where
+        the contact point itself lies within it.
+        """
+        contacts, at = self.result.contacts, (self.torque, self.position, self.column)
+        if not contacts.peak_at_border[at] or math.isnan(contacts.inner_pressure[at]):
+            return None
+        return int(np.argmin(np.abs(self.pressure_map.y)))
+
+    @property
+    def highest_pressure(self) -> tuple[int, int]:
+        """Row and column of the cell with the highest pressure, of the column beside a spike where there is one."""
+        pressure, beside = self.pressure_map.pressure, self.beside_spike
+        if beside is not None:
+            return int(pressure[:, beside].argmax()), beside
+        row, column = np.unravel_index(int(pressure.argmax()), pressure.shape)
+        return int(row), int(column)
+
+    def largest(self, quantity: Quantity, *, anywhere: bool = False) -> LargestStress:
+        """Return value, depth and place of the largest ``max_shear`` or ``von_mises``.
+
+        Parameters
+        ----------
+        quantity : {"max_shear", "von_mises"}
+        anywhere : bool
+            Below a spike at a border too, where stresses grow with the grid; default: ``beside_spike``.
+
+        Returns
+        -------
+        LargestStress
+        """
+        values, first = getattr(self.stress, quantity), None if anywhere else self.beside_spike
         level, row, column = getattr(self.stress, f"{quantity}_at")
+        if first is not None:
+            level, row = map(int, np.unravel_index(int(values[:, :, first].argmax()), values.shape[:2]))
+            column = first
         one = self.pressure_map
         x, y, z = one.origin + one.x[row] * one.axes[0] + one.y[column] * one.axes[1]
         depth = depth_of_largest(self.stress.depths, values[:, row, column])
@@ -116,7 +153,8 @@ class StressBelow:
         if not bool(contacts.paths[self.column].on_line[self.position]) or contacts.at_crease[at]:
             return None
         one = self.pressure_map
-        section = one.pressure[:, self.stress.max_shear_at[2]]
+        beside = self.beside_spike
+        section = one.pressure[:, self.stress.max_shear_at[2] if beside is None else beside]
         line_load, pressure = float(section.sum()) * one.spacing[0], float(section.max())
         line = LineContact(line_load, math.nan, 2.0 * line_load / (math.pi * pressure), pressure)
         return *line.subsurface_shear(), pressure
@@ -124,19 +162,20 @@ class StressBelow:
     @property
     def where(self) -> tuple[str, str]:
         """Load and position of the map, and the flank, in words."""
-        result, peak = self.result, float(self.pressure_map.pressure.max())
+        result, peak = self.result, float(self.pressure_map.pressure[self.highest_pressure])
+        across = "" if self.beside_spike is None else " across the contact point"
         angle = round(math.degrees(result.pinion_angle[self.position]), 3) + 0.0
         return (
             f"pinion torque {1e-3 * result.torque[self.torque]:.4g} N m, position {self.position + 1} of "
             f"{len(result.path)}, tooth pair {self.pair}, pinion angle {angle:.4g} deg",
             f"flank of the {self.gear}, Poisson's ratio {self.stress.poisson_ratio:g}: "
-            f"highest pressure {peak:.4g} MPa, half width b {self.half_width:.4g} mm",
+            f"highest pressure{across} {peak:.4g} MPa, half width b {self.half_width:.4g} mm",
         )
 
     def summary(self) -> str:
         """Return what is largest, how deep and where, beside what Hertz says, in a few lines."""
         frame = parse_scene(self.result.scene_toml).pair().pinion.frame
-        peak = float(self.pressure_map.pressure.max())
+        peak = float(self.pressure_map.pressure[self.highest_pressure])
         lines = [self.result.title or "Stresses below the surface", *self.where]
         for quantity, name in NAMES.items():
             found = self.largest(quantity)
@@ -145,8 +184,20 @@ class StressBelow:
         if (hertz := self.hertz_shear) is not None:
             lines.append(self._row("greatest shear stress after Hertz", *hertz))
         if self.result.contacts.on_edge[self.torque, self.position, self.column]:
-            lines.append("note: the contact reaches a border, where pressure and stress grow with the grid")
+            note = "note: the contact reaches a border, where pressure and stress grow with the grid"
+            lines.append(note + self._spike)
         return "\n".join(lines)
+
+    @property
+    def _spike(self) -> str:
+        """What lies below a spike that the numbers leave out, in words."""
+        if self.beside_spike is None:
+            return ""
+        peak, shear = float(self.pressure_map.pressure.max()), self.largest("max_shear", anywhere=True)
+        return (
+            f"; the numbers above are those across the contact point, not those of the border: there the cells have up "
+            f"to {peak:.4g} MPa and {shear.value:.4g} MPa of shear"
+        )
 
     def _row(self, name: str, value: float, depth: float, pressure: float) -> str:
         relative = f"{value / pressure:.3f} of the pressure at {depth / self.half_width:.2f} b"
@@ -171,9 +222,10 @@ def stress_below(
     torque : int, optional
         Index of the torque; default: the largest one.
     position : int, optional
-        Index along the path; default: that of the highest pressure, of the pair if one is asked for.
+        Index along the path; default: that of the first number of the summary, the highest inner pressure, of the
+        pair if one is asked for.
     pair : int, optional
-        Number of the tooth pair, one of ``result.pairs``; default: that with the highest pressure.
+        Number of the tooth pair, one of ``result.pairs``; default: that with the highest inner pressure.
     gear : {"pinion", "wheel"}
         Below whose flank.
     depths : int

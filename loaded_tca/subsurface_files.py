@@ -75,9 +75,12 @@ def _variables(below: StressBelow) -> dict[str, Variable]:
 
 
 def subsurface_csv(below: StressBelow) -> str:
-    """Return the stresses at each depth below the highest pressure, and the largest of the whole depth; mm, MPa."""
+    """Return the stresses at each depth below the highest pressure, and the largest of the whole depth; mm, MPa.
+
+    Where the peak is a spike at a border, the highest pressure is that across the contact point.
+    """
     stress = below.stress
-    row, column = np.unravel_index(int(below.pressure_map.pressure.argmax()), below.pressure_map.pressure.shape)
+    row, column = below.highest_pressure
     columns = {"depth_mm": stress.depths}
     columns |= {f"{name}_MPa": getattr(stress, name)[:, row, column] for name in STRESSES}
     columns |= {f"largest_{name}_MPa": getattr(stress, name).max(axis=(1, 2)) for name in ("von_mises", "max_shear")}

@@ -10,12 +10,16 @@ Figures = Mapping[str, float]
 
 ROUNDING = 1e-6
 """Figures below this, in the engineer's units, are rounding; residuals are not."""
+FOUR_DIGITS = 9999.5
+"""From here on four digits would be written with an exponent."""
+REMEDY = "unless the ends yield (analysis.free_edges = true)"
 MOST_TORQUES = 6
 """Torques that a note names one by one."""
 
 ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
-    ("pinion torque [N m] | normal force [N]", ("pinion_torque_Nm", "normal_force_at_peak_N")),
+    ("pinion torque [N m]", ("pinion_torque_Nm",)),
     ("peak pressure [MPa] | pinion angle [deg]", ("peak_pressure_MPa", "pinion_angle_at_peak_deg")),
+    ("  normal force of that tooth pair [N]", ("normal_force_at_peak_N",)),
     ("  pinion diameter | axial place [mm]", ("pinion_diameter_at_peak_mm", "pinion_axial_at_peak_mm")),
     ("  contact length | width [mm]", ("contact_length_at_peak_mm", "contact_width_at_peak_mm")),
     ("at a border or crease [MPa] | angle [deg]", ("border_pressure_MPa", "pinion_angle_at_border_deg")),
@@ -26,10 +30,11 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("  unloaded, peak to peak [arcsec | um]", ("unloaded_error_span_arcsec", "unloaded_error_span_um")),
     ("  orders 1 | 2 | 3 of the tooth mesh [um]", tuple(f"transmission_error_order_{order}_um" for order in (1, 2, 3))),
     (
-        "mesh stiffness, tangent | secant [N/(mm um)]",
+        "mesh stiffness, mean, tangent | secant [N/(mm um)]",
         ("mesh_stiffness_mean_N_per_mm_um", "secant_stiffness_mean_N_per_mm_um"),
     ),
-    ("line load, largest [N/mm] | face load factor", ("line_load_max_N_per_mm", "face_load_factor_at_largest_force")),
+    ("line load of the most loaded pair [N/mm]", ("line_load_at_largest_force_N_per_mm",)),
+    ("  its face load factor", ("face_load_factor_at_largest_force",)),
     (
         "tooth pairs under load, mean | fewest | most",
         ("loaded_contact_ratio", "fewest_loaded_pairs", "most_loaded_pairs"),
@@ -38,7 +43,7 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
 )
 """Label and key figures of each line of the summary."""
 
-ONLY_IF_KNOWN = ("_at_border_", "border_pressure", "_order_", "loaded_contact_ratio")
+ONLY_IF_KNOWN = ("_at_border_", "border_pressure", "_order_", "loaded_contact_ratio", "_where_hertz_holds_", "_there_")
 """Figures whose line is left out where no torque has them."""
 
 NOTES = (
@@ -87,10 +92,12 @@ def _cell(figures: Figures, names: tuple[str, ...]) -> str:
 
 
 def _shown(value: float, name: str) -> str:
-    """Four digits; a dash for what is not known."""
+    """Four digits, all those before the point; a dash for what is not known."""
     if math.isnan(value):
         return "-"
-    return f"{value:.1e}" if "residual" in name else f"{value:.4g}"
+    if "residual" in name:
+        return f"{value:.1e}"
+    return f"{value:.0f}" if abs(value) >= FOUR_DIGITS else f"{value:.4g}"
 
 
 def _notes(figures: Sequence[Figures]) -> Iterator[str]:
@@ -103,6 +110,10 @@ def _notes(figures: Sequence[Figures]) -> Iterator[str]:
     if any(at_border):
         where = "the contact point itself lies on a border or crease"
         yield f"{where}{_for_torques(figures, at_border)}: the peak pressure given grows with the grid too"
+    grows = [bool(entry["largest_force_is_at_border"]) for entry in figures]
+    if any(grows):
+        what = f"the most loaded contact has its peak at a border or crease{_for_torques(figures, grows)}"
+        yield f"{what}: where that is an end of the face, line load and face load factor grow with the grid {REMEDY}"
     cap = figures[0]["max_pressure_MPa"]
     if math.isfinite(cap):
         yield from _cap_notes(figures, cap)

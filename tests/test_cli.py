@@ -119,8 +119,13 @@ def test_plot_draws_another_torque_and_position(run):
     changes = {"positions = 21": "positions = 3\ntorques_Nm = [20.0, 40.0]"}
     run("run", scene(**changes), "--out", "out")
     before = Path("out", "pressure_map.png").read_bytes()
-    assert run("plot", "out", "--torque", 20, "--position", 2)[0] == 0
-    assert Path("out", "pressure_map.png").read_bytes() != before
+    Path("out", "pressure_map_border.png").write_bytes(b"of the largest torque")
+    own = {"torque_20_Nm_position_2", "torque_20_Nm", "position_2"}
+    for options in (("--torque", 20, "--position", 2), ("--torque", 20), ("--position", 2)):
+        assert run("plot", "out", *options)[0] == 0
+    assert set(os.listdir("out")) == REPORT | PICTURES | own | {"pressure_map_border.png"}
+    assert Path("out", "pressure_map.png").read_bytes() == before
+    assert Path("out", "torque_20_Nm_position_2", "pressure_map.png").read_bytes() != before
     for wrong, told in ((("--torque", 30), "the result has 20, 40 N m"), (("--position", 4), "positions 1 to 3")):
         code, _, err = run("plot", "out", *wrong)
         assert code == 2

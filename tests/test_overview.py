@@ -156,3 +156,18 @@ def test_measured_flank_shows_its_points_and_deviations():
     rms = float(cells(text, "wheel: fit at points, largest, rms [um]")[1])
     assert rms < 0.2  # what smoothing leaves out: noise of 0.15 um
     assert "between them" not in text
+
+
+def test_analysis_is_shown_as_it_is_asked_for():
+    text = described("mesh_cycle_helical")
+    assert cells(text, "load sharing, free edges, compliance")[0] == "on"
+    assert cells(text, "load sharing, free edges, compliance")[2] == "contact"
+    assert cells(text, "positions, torques") == ["33", "3"]
+    assert "bores" not in text  # nothing is held where the flanks alone yield
+    assert cells(described(), "load sharing, free edges, compliance") == ["off", "off", "contact"]
+
+
+def test_bores_are_shown_where_teeth_bend():
+    given, default = cells(described("mesh_cycle_finite_elements", pinion__bore_diameter_mm=30.0), "bores held rigid")
+    assert given == "30.0000"
+    assert_allclose(float(default), 0.55 * 103.5, rtol=1e-6)  # m (z - 2.5)

@@ -237,9 +237,9 @@ def test_summary_names_the_pairs_and_what_yields():
 def test_table_has_a_share_for_every_pair():
     header = positions_csv(cycle()).splitlines()[0].split(",")
     assert [name for name in header if name.startswith("load_share")] == [
+        "load_share_pair_-1",
         "load_share_pair_0",
         "load_share_pair_1",
-        "load_share_pair_-1",
     ]
     assert "loaded_pairs" in header
     assert "line_load_N_per_mm" in header

@@ -120,18 +120,42 @@ def test_rounding_of_the_transmission_error_is_not_blown_up():
 def test_peak_pressure_is_drawn_beside_hertz():
     (axes,) = plot_peak_pressure(result(torques=(20.0, 50.0))).axes
     labels = axes.get_legend_handles_labels()[1]
-    assert labels == ["pinion torque 20 N m", "pinion torque 50 N m", "beside the contact point", "after Hertz"]
-    assert_allclose(axes.get_lines()[0].get_ydata(), result(torques=(20.0, 50.0)).peak_pressure[0])
+    assert labels == ["pinion torque 20 N m", "pinion torque 50 N m", "after Hertz"]
+    peak, hertz = axes.get_lines()[:2]
+    assert_allclose(peak.get_ydata(), result(torques=(20.0, 50.0)).peak_pressure[0])
+    assert_allclose(hertz.get_ydata(), result(torques=(20.0, 50.0)).hertz_pressure[0])
+    assert hertz.get_zorder() < peak.get_zorder()
+    assert hertz.get_color() == peak.get_color()
+
+
+def drawn(axes, marker):
+    """Lines of one marker that have points, not those of the legend."""
+    return [line for line in axes.get_lines() if line.get_marker() == marker and len(line.get_xdata())]
+
+
+def test_marks_at_a_border_have_the_colours_of_their_torques():
+    (axes,) = plot_peak_pressure(result("misaligned", positions=2, torques=(20.0, 80.0))).axes
+    marks = [*drawn(axes, "x"), *drawn(axes, "^")]
+    colours = {line.get_label(): line.get_color() for line in axes.get_lines() if "torque" in line.get_label()}
+    assert {line.get_color() for line in marks} == set(colours.values())
+    assert len(colours) == 2
+
+
+def test_pressure_over_the_positions_begins_at_zero_with_its_markers_whole():
+    (axes,) = plot_peak_pressure(result()).axes
+    low, high = axes.get_ylim()
+    assert low == 0.0
+    assert high > 1.05 * result().peak_pressure.max()
 
 
 def test_edge_contacts_are_marked_and_no_hertz_is_drawn():
     (axes,) = plot_peak_pressure(result("misaligned", positions=2)).axes
     labels = [line.get_label() for line in axes.get_lines()]
     assert "after Hertz" not in labels
-    crosses = axes.get_lines()[-1]
-    assert len(crosses.get_xdata()) == 2
-    assert crosses.get_linestyle() == "None"
-    assert "at a border or crease (grows with the grid)" in labels[-1]
+    crosses = [*drawn(axes, "x"), *drawn(axes, "^")]
+    assert sum(len(line.get_xdata()) for line in crosses) == 2
+    assert {line.get_linestyle() for line in crosses} == {"None"}
+    assert any("at a border or crease (grows with the grid)" in label for label in labels)
     assert np.isnan(axes.get_lines()[0].get_ydata()).all()
     assert_allclose(axes.get_lines()[1].get_ydata(), result("misaligned", positions=2).central_pressure)
 
@@ -140,8 +164,8 @@ def test_high_peaks_at_a_border_do_not_rule_the_axis():
     cycle = result("fzg_c14", positions=3)
     (axes,) = plot_peak_pressure(cycle).axes
     assert axes.get_ylim()[1] < cycle.peak_pressure.max()
-    arrows = axes.get_lines()[-1]
-    assert "above" in arrows.get_label()
+    assert "above" in axes.get_lines()[-1].get_label()
+    (arrows,) = drawn(axes, "^")
     assert (arrows.get_ydata() < axes.get_ylim()[1]).all()
 
 
@@ -259,3 +283,24 @@ def test_pictures_touch_no_global_state():
 def test_picture_that_cannot_be_written_is_told(tmp_path):
     with pytest.raises(InputError, match="cannot be written"):
         save_figure(Figure(), tmp_path / "absent" / "a.png")
+
+
+def test_colours_of_a_border_map_do_not_follow_its_spike():
+    cycle = result("fzg_c14", positions=3)
+    at = cycle.border_contact(0)
+    bar = plot_pressure_map(cycle, at[0], 0, at[1]).axes[-1]
+    one = cycle.contacts.maps[0][at[0]][at[1]].pressure
+    assert np.nanmax(cycle.inner_pressure) <= bar.get_ylim()[1] < 0.9 * cycle.peak_pressure.max()
+    assert (one > bar.get_ylim()[1]).sum() <= 0.05 * (one > 0.0).sum() + 1
+    assert f"up to {cycle.peak_pressure.max():.0f}" in bar.get_ylabel()
+
+
+@pytest.mark.parametrize(("part", "told"), [(0.001, False), (0.1, True)])
+def test_legend_of_the_flanks_names_a_grey_area_only_where_it_is_seen(part, told, monkeypatch):
+    scene = parse_scene(result().scene_toml)
+    pair = scene.pair()
+    heights = [flank.profile_coordinate(*flank.grid(129, 33)).value for flank in (pair.pinion, pair.wheel)]
+    starts = tuple(float(height.min() + part * np.ptp(height)) for height in heights)
+    monkeypatch.setattr(type(scene), "active_starts", lambda _: starts)
+    names = [text.get_text() for text in plot_contact_path(result()).legends[0].get_texts()]
+    assert ("flank that the mate does not reach" in names) is told

@@ -1,6 +1,7 @@
 """Pictures of the shared load: what is drawn is what the result holds."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -87,3 +88,63 @@ def test_side_on_which_nothing_touches_has_no_mark(monkeypatch):
 
     monkeypatch.setattr(sharing, "trace_contact", nothing_touches)
     assert set(marks(plot_path_pressure(shared(torques=(40.0,))))) == {"C"}
+
+
+def test_load_shares_of_all_torques_have_a_panel_each():
+    cycle = shared(torques=(40.0, 260.0))
+    *panels, below = plot_load_share(cycle).axes
+    assert [axes.get_title() for axes in panels] == ["pinion torque 40 N m", "pinion torque 260 N m"]
+    for axes, share in zip(panels, cycle.load_share, strict=True):
+        drawn = np.array([line.get_ydata() for line in axes.get_lines()])
+        assert_allclose(drawn.T[:, np.argsort(np.argsort(cycle.pairs))], 100.0 * share)
+    assert len(below.get_lines()) == 2
+    assert len(plot_load_share(cycle, 1).axes) == 2
+
+
+def test_load_shares_of_many_torques_stay_few():
+    cycle = shared(torques=tuple(float(torque) for torque in range(10, 80, 10)))
+    *panels, _ = plot_load_share(cycle).axes
+    titles = [axes.get_title() for axes in panels]
+    assert titles[0] == "pinion torque 10 N m"
+    assert titles[-1] == "pinion torque 70 N m"
+    assert len(titles) == 4
+
+
+def test_contacts_at_an_edge_stand_above_the_pressure_not_at_zero():
+    figure = plot_path_pressure(shared(torques=(40.0, 260.0)))
+    figure.draw_without_rendering()
+    (axes,) = figure.axes
+    assert "contact at an edge (its peak grows with the grid)" in axes.get_legend_handles_labels()[1]
+    marks = [line for line in axes.lines if line.get_marker() == "^" and len(line.get_xdata())]
+    curves = [line.get_ydata() for line in axes.lines if line.get_linestyle() == "-" and len(line.get_xdata()) > 2]
+    highest = max(float(np.nanmax(curve)) for curve in curves)
+    assert marks
+    for line in marks:  # their heights are parts of the axis
+        assert min(line.get_ydata()) * axes.get_ylim()[1] > 1.02 * highest
+
+
+def test_letters_say_what_they_are_and_do_not_cover_each_other():
+    figure = plot_path_pressure(shared())
+    figure.draw_without_rendering()
+    (axes,) = figure.axes
+    assert sharing.WHAT_LETTERS_ARE in axes.get_xlabel()
+    boxes = sorted((text.get_window_extent() for text in axes.texts), key=lambda box: box.x0)
+    assert len(boxes) == 5
+    assert all(one.x1 <= other.x0 for one, other in pairwise(boxes))
+
+
+@pytest.mark.parametrize("plot", [sharing.plot_line_load, sharing.plot_mesh_stiffness])
+def test_markers_at_the_top_are_whole(plot):
+    (axes,) = plot(shared()).axes
+    low, high = axes.get_ylim()
+    highest = max(float(np.nanmax(line.get_ydata())) for line in axes.lines if len(line.get_xdata()))
+    assert low == 0.0
+    assert high > 1.05 * highest
+
+
+def test_contact_points_of_every_pair_are_drawn():
+    cycle = shared()
+    points = [line for line in plot_contact_path(cycle).axes[0].get_lines() if line.get_marker() == "."]
+    assert len(points) == len(cycle.pairs)
+    for line, path in zip(points, cycle.contacts.paths, strict=True):
+        assert_allclose(line.get_ydata(), 2.0 * path.pinion_radius)

@@ -1,17 +1,21 @@
 import csv
 import json
 import os
+import warnings
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from results import assert_same, result, with_a_gap
+from results import SCENES, assert_same, result, with_a_gap
 
+from loaded_tca.analysis import analyse
 from loaded_tca.errors import InputError
 from loaded_tca.mesh_cycle import MeshCycle
 from loaded_tca.report import contacts_csv, describe_results, positions_csv, summary_json, write_report
+from loaded_tca.scene import parse_scene, read_scene
 
 
 def table(cycle):
@@ -69,6 +73,16 @@ def test_contacts_are_those_of_the_pairs_under_load():
         assert_allclose(float(row["approach_um"]), 1e3 * contacts.approach[at], **near)
         assert_allclose(float(row["contact_point_wheel_diameter_mm"]), 2.0 * contacts.paths[at[2]][at[1]].wheel_radius)
         assert bool(row["borders"]) == (row["on_edge"] == "1") == bool(contacts.on_edge[at])
+
+
+def test_tooth_pairs_stand_in_the_order_of_the_mesh():
+    cycle = shared()
+    assert cycle.pairs.tolist() != sorted(cycle.pairs.tolist())
+    headers = [name for name in table(cycle)[0] if name.startswith("load_share_pair")]
+    assert headers == ["load_share_pair_-1", "load_share_pair_0", "load_share_pair_1"]
+    for one, other in pairwise(contact_rows(cycle)):
+        if one["position"] == other["position"] and one["pinion_torque_Nm"] == other["pinion_torque_Nm"]:
+            assert int(one["tooth_pair"]) < int(other["tooth_pair"])
 
 
 def test_contacts_name_the_tip_that_comes_first_into_mesh():
@@ -196,6 +210,44 @@ def test_summary_is_strict_json_with_null_for_the_unknown():
 
 def test_summary_says_what_the_stiffness_is():
     assert json.loads(summary_json(result()))["mesh_stiffness_is"].endswith("teeth do not bend")
+
+
+def test_summary_tells_the_bores_that_are_held_where_teeth_bend():
+    bending = parse_scene(result().scene_toml).with_changes({"analysis.compliance": "contact+tooth"})
+    told = [
+        json.loads(summary_json(replace(result(), scene_toml=one.to_toml())))
+        for one in (bending, bending.with_changes({"analysis.compliance": "contact"}))
+    ]
+    pinion, wheel = told[0]["rigid_bore_diameters_mm"]
+    assert 0.0 < pinion < wheel
+    assert told[1]["rigid_bore_diameters_mm"] is None
+
+
+def test_every_key_figure_is_in_the_reference():
+    page = (Path(__file__).parents[1] / "docs" / "results.md").read_text(encoding="utf-8")
+    content = json.loads(summary_json(shared()))
+    keys = {*content, *(key for figures in content["torques"] for key in figures)} - {"torques"}
+    orders = {f"transmission_error_order_{order}_um" for order in (2, 3)}  # shown by the first
+    assert [key for key in sorted(keys - orders) if f"`{key}`" not in page] == []
+
+
+@pytest.mark.parametrize(
+    ("name", "changes"),
+    [
+        ("misaligned", {"analysis.cells": (6, 6)}),
+        ("misaligned", {"analysis.cells": (20, 20), "load.pinion_torque_Nm": 1e5}),
+        ("mesh_cycle_spur", {"pinion.modifications.tip_relief_form": "linear", "analysis.cells": (20, 20)}),
+    ],
+)
+def test_every_warning_of_an_analysis_is_explained(name, changes):
+    page = (Path(__file__).parents[1] / "docs" / "results.md").read_text(encoding="utf-8")
+    scene = read_scene(SCENES / f"{name}.toml").with_changes({"analysis.positions": 5, **changes})
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        analyse(scene)
+    sentences = {str(entry.message).rpartition(" (at ")[0] for entry in caught}
+    assert sentences
+    assert [sentence for sentence in sentences if sentence not in page] == []
 
 
 def test_reference_of_the_results_is_up_to_date():

@@ -123,6 +123,47 @@ def test_depth_of_what_falls_from_the_surface_is_the_surface():
     assert depth_of_largest(np.array([0.0, 1.0, 2.0]), np.array([3.0, 2.0, 1.0])) == 0.0
 
 
+# A spike at a border
+
+
+def spike():
+    """A line of contact that ends at the sides of the teeth."""
+    return stress_below(result("fzg_c14", positions=3))
+
+
+def test_stress_beside_a_spike_is_that_across_the_contact_point():
+    below = spike()
+    contacts, at = below.result.contacts, (below.torque, below.position, below.column)
+    assert contacts.peak_at_border[at]
+    row, column = below.highest_pressure
+    assert abs(below.pressure_map.y[column]) <= 0.5 * below.pressure_map.spacing[1] * (1.0 + 1e-9)
+    assert_allclose(below.pressure_map.pressure[row, column], contacts.inner_pressure[at], rtol=COARSE)
+    inner, anywhere = (below.largest("max_shear", anywhere=one) for one in (False, True))
+    assert inner.value < 0.9 * anywhere.value
+    assert_allclose(inner.value, 0.3003 * contacts.inner_pressure[at], rtol=COARSE)  # as below a long line
+
+
+def test_summary_beside_a_spike_tells_the_spike_in_its_note_alone():
+    below = spike()
+    peak, text = f"{below.pressure_map.pressure.max():.4g} MPa", below.summary()
+    assert [peak in line for line in text.splitlines()] == [False] * (text.count("\n")) + [True]
+    assert "not those of the border" in text
+
+
+def test_picture_and_table_show_the_plane_beside_a_spike():
+    below = spike()
+    label = plot_stress_below(below).axes[0].get_legend_handles_labels()[1][0]
+    assert label.startswith(f"{below.largest('max_shear').value:.4g} MPa")
+    first = next(csv.DictReader(subsurface_csv(below).splitlines()))
+    assert float(first["sigma_z_MPa"]) == pytest.approx(-below.pressure_map.pressure[below.highest_pressure], rel=1e-8)
+
+
+def test_contact_without_a_spike_has_no_other_plane():
+    below = stress_below(result(positions=1))
+    assert below.beside_spike is None
+    assert below.largest("von_mises") == below.largest("von_mises", anywhere=True)
+
+
 # Files
 
 

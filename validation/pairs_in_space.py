@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import json
 import time
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from loaded_tca.analysis import analyse
+from loaded_tca.errors import AccuracyWarning
 from loaded_tca.scene import parse_scene
 from validation.mesh_cycle_comparison import SCENE
 from validation.reference_fem.case import FACE_WIDTH
@@ -81,7 +83,9 @@ def in_space(changes: dict[str, object]) -> InSpace:
     """
     start = time.process_time()
     scene = parse_scene(SCENE.format(face_width=FACE_WIDTH)).with_changes({**ONE_POSITION, **changes})
-    result = analyse(scene)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # the flat pair carries load up to the ends of the face
+        result = analyse(scene)
     seconds = time.process_time() - start
     error = 1e3 * result.wheel_base_radius * float(result.transmission_error[0])
     one = result.contacts.maps[0][0][0]

@@ -72,7 +72,7 @@ def plot_all(
     result : MeshCycle
     directory : str or path
     torque : int, optional
-        Index of the torque of maps and flanks; default: the largest one.
+        Index of the torque of maps and flanks, and of the only load shares; default: the largest one, and all.
     position : int, optional
         Index of the position of the pressure map; default: those of the highest pressures.
 
@@ -91,7 +91,7 @@ def plot_all(
     InputError
         If a file cannot be written.
     """
-    torque = highest_torque(result) if torque is None else torque
+    asked, torque = torque, highest_torque(result) if torque is None else torque
     figures = {
         "contact_path": plot_contact_path(result, torque),
         "transmission_error": plot_transmission_error(result),
@@ -100,7 +100,7 @@ def plot_all(
     for name, (place, column) in _map_places(result, torque, position).items():
         figures[name] = plot_pressure_map(result, place, torque, column)
     if result.pair_contacts is not None and len(result.path) > 1:
-        figures |= _shared_figures(result, torque)
+        figures |= _shared_figures(result, torque) | {"load_share": plot_load_share(result, asked)}
     files = {name: Path(directory) / f"{name}.png" for name in PICTURES}
     for name, file in files.items():
         if name in figures:
@@ -113,7 +113,6 @@ def plot_all(
 def _shared_figures(result: MeshCycle, torque: int) -> dict[str, Figure]:
     """What there is to see where tooth pairs share the load."""
     return {
-        "load_share": plot_load_share(result, torque),
         "harmonics": plot_harmonics(result),
         "mesh_stiffness": plot_mesh_stiffness(result),
         "line_load": plot_line_load(result),

@@ -7,13 +7,24 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from loaded_tca.flanks.jet import Array
-from loaded_tca.key_figures import ARCSEC
+from loaded_tca.key_figures import ARCSEC, mean_over_a_pitch
 from loaded_tca.mesh_cycle import MeshCycle
-from loaded_tca.plots.style import ACCENT, loads, range_of_positions, set_title, tell_no_load, torque_styles, widen
+from loaded_tca.plots.style import (
+    HEADROOM,
+    HERTZ,
+    from_zero,
+    loads,
+    range_of_positions,
+    set_title,
+    tell_no_load,
+    torque_styles,
+    widen,
+)
 
 SMALLEST_SPAN_ARCSEC = 0.02
 """Height of a transmission error axis below which a curve would be rounding."""
-HEADROOM = 1.25
+BESIDE = "there beside the contact point"
+BORDER_HEADROOM = 1.15
 """How far above the curves a peak at a border may draw the axis: the grid alone says how high it is."""
 
 
@@ -35,8 +46,7 @@ def plot_transmission_error(result: MeshCycle) -> Figure:
     curves += [(*style, errors[torque]) for torque, *style in torque_styles(result)]
     angle = np.degrees(result.pinion_angle)
     for label, colour, marker, error in curves:
-        finite = error[np.isfinite(error)]
-        mean = finite.mean() if finite.size else 0.0
+        mean = mean_over_a_pitch(error)
         absolute.plot(angle, error * ARCSEC, color=colour, marker=marker, markersize=4.0, label=label)
         about_mean.plot(angle, (error - mean) * ARCSEC, color=colour, marker=marker, markersize=4.0)
     absolute.set_ylabel("transmission error [arcsec]")
@@ -61,9 +71,9 @@ def _add_length_axis(axes: Axes, base_radius: float) -> None:
 def plot_peak_pressure(result: MeshCycle) -> Figure:
     """Peak pressure over the positions for each torque, with the pressure beside the contact point and after Hertz.
 
-    Where tooth pairs share the load, each of these is the highest of all pairs, or of the pair of the highest pressure.
-
-    Peaks at a border or a crease, which grow with the grid, are single crosses; the axis does not follow them far.
+    Where tooth pairs share the load, the peak and that after Hertz are those of the pair with the highest inner
+    pressure. Peaks at a border or a crease, which grow with the grid, are single crosses, and the axis does not follow
+    them far; there the pressure beside the contact point of the most loaded pair is drawn too.
 
     Parameters
     ----------
@@ -74,22 +84,25 @@ def plot_peak_pressure(result: MeshCycle) -> Figure:
     matplotlib.figure.Figure
     """
     figure = Figure(figsize=(8.0, 5.5), layout="constrained")
-    axes = figure.add_subplot()
+    axes, contacts = figure.add_subplot(), result.contacts
     angle = np.degrees(result.pinion_angle)
     peak, at_border = result.by_torque("peak_pressure"), result.by_torque("peak_at_border")
-    contacts = result.contacts
-    smooth = np.fmax.reduce(np.where(contacts.peak_at_border, np.nan, contacts.peak_pressure), axis=-1)
-    central, hertz = (contacts.at_inner(values) for values in (contacts.central_pressure, contacts.hertz_pressure))
+    central = np.where(at_border, result.by_torque("central_pressure"), np.nan)
+    hertz = contacts.at_inner(contacts.hertz_pressure)
+    smooth = contacts.at_inner(np.where(contacts.peak_at_border, np.nan, contacts.peak_pressure))
     for torque, label, colour, marker in torque_styles(result):
         axes.plot(angle, smooth[torque], color=colour, marker=marker, markersize=5.0, label=label)
-        axes.plot(angle, central[torque], color=colour, marker=".", markersize=3.0, linestyle=":")
-    axes.plot([], [], color="black", marker=".", markersize=3.0, linestyle=":", label="beside the contact point")
-    if np.isfinite(hertz).any():
-        lines = axes.plot(angle, hertz.T, color=ACCENT, linestyle="--", marker="_")
-        lines[0].set_label("after Hertz")
-    widen(axes, 0.02 * max(1.0, float(np.nanmax(peak, initial=0.0))))
+        if at_border[torque].any():
+            axes.plot(angle, central[torque], color=colour, marker=".", markersize=3.0, linestyle=":")
+        if np.isfinite(hertz[torque]).any():
+            axes.plot(angle, hertz[torque], color=colour, **HERTZ)
     if at_border.any():
-        _draw_border_peaks(axes, np.broadcast_to(angle, peak.shape)[at_border], peak[at_border])
+        axes.plot([], [], color="black", marker=".", markersize=3.0, linestyle=":", label=BESIDE)
+    if np.isfinite(hertz).any():
+        axes.plot([], [], color="black", label="after Hertz", **HERTZ)
+    from_zero(axes)
+    if at_border.any():
+        _draw_border_peaks(axes, result, angle, np.where(at_border, peak, np.nan))
     if not (peak > 0.0).any():
         tell_no_load(axes)
     axes.set_xlabel("pinion angle [deg]")
@@ -100,19 +113,21 @@ def plot_peak_pressure(result: MeshCycle) -> Figure:
     return figure
 
 
-def _draw_border_peaks(axes: Axes, angle: Array, peak: Array) -> None:
-    """Crosses, unconnected; arrows at the upper end of the axis where they lie beyond it."""
-    low, high = axes.get_ylim()
-    limit = HEADROOM * high
-    beyond = peak > limit
-    label = "largest cell, at a border or crease (grows with the grid)"
-    if not beyond.all():
-        top = float(peak[~beyond].max())
-        axes.plot(angle[~beyond], peak[~beyond], "x", color="black", label=label)
-        axes.set_ylim(low, max(high, top + 0.05 * (top - low)))
+def _draw_border_peaks(axes: Axes, result: MeshCycle, angle: Array, peak: Array) -> None:
+    """Crosses, unconnected, for a peak (m, n) that is none elsewhere; arrows at the upper end where they lie beyond."""
+    _, high = axes.get_ylim()
+    within, beyond = peak <= BORDER_HEADROOM * high, peak > BORDER_HEADROOM * high
+    high = max(high, (1.0 + HEADROOM) * float(peak[within].max(initial=0.0)))
+    edge = 1.06 * high if beyond.any() else high
+    for torque, _, colour, _ in torque_styles(result):
+        axes.plot(angle[within[torque]], peak[torque][within[torque]], "x", color=colour)
+        axes.plot(angle[beyond[torque]], np.full(beyond[torque].sum(), edge), "^", color=colour)
+    label = "at a border or crease (grows with the grid)"
+    if within.any():
+        axes.plot([], [], "x", color="black", label=label)
     if beyond.any():
-        span = " to ".join(dict.fromkeys(f"{value:.4g}" for value in (peak[beyond].min(), peak[beyond].max())))
-        _, high = axes.get_ylim()
-        edge = high + 0.06 * (high - low)
-        axes.plot(angle[beyond], np.full(beyond.sum(), edge), "^", color="black", label=f"{label}: above, {span} MPa")
-        axes.set_ylim(low, edge + 0.03 * (high - low))
+        span = " to ".join(dict.fromkeys(f"{value:.0f}" for value in (peak[beyond].min(), peak[beyond].max())))
+        told = "the same" if within.any() else label
+        axes.plot([], [], "^", color="black", label=f"{told}, above: {span} MPa")
+        high = 1.03 * edge
+    axes.set_ylim(0.0, high)

@@ -19,7 +19,10 @@ from loaded_tca.pair_contacts import PressureMap
 from loaded_tca.plots.style import ACCENT, COLOURS, NO_MATE, highest_torque, load, range_of_positions, set_title
 from loaded_tca.scene import parse_scene
 
+CONTACT_POINTS = "unloaded contact points of all positions and pairs"
 MOST_AREAS = 7
+LEAST_SEEN = 0.01
+"""Part of the height of a flank from which an area of it is seen."""
 FINENESS = (129, 33)
 """Points along the profile and lengthwise from which the outline of a flank is drawn."""
 
@@ -43,25 +46,26 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     figure = Figure(figsize=(11.0, 5.5), layout="constrained")
     panels = figure.subplots(1, 2)
     scene = parse_scene(result.scene_toml)
-    starts, pair, path = scene.active_starts(), scene.pair(), result.path
+    starts, pair, paths = scene.active_starts(), scene.pair(), result.contacts.paths
     sides = (
-        (pair.pinion, starts[0], path.pinion_radius, path.pinion_axial),
-        (pair.wheel, starts[1], path.wheel_radius, path.wheel_axial),
+        (pair.pinion, starts[0], [(path.pinion_radius, path.pinion_axial) for path in paths]),
+        (pair.wheel, starts[1], [(path.wheel_radius, path.wheel_axial) for path in paths]),
     )
     drawn = _drawn_maps(result, torque)
     maps = [one for row in drawn for one in row]
     scale = Normalize(0.0, highest_inner_pressure(result, torque, maps))
-    for axes, name, (flank, start, radius, axial) in zip(panels, scene.flank_names, sides, strict=True):
+    for axes, name, (flank, start, points) in zip(panels, scene.flank_names, sides, strict=True):
         outline = draw_flank(axes, name, flank, start)
         for one in maps:
             _draw_area(axes, outline, one, flank.frame.to_picture(*on_gear(pair, flank, one.corners)), scale)
-        axes.plot(*flank.frame.to_picture(radius, axial), ".", color=ACCENT, markersize=4.0)
+        for point in points:
+            axes.plot(*flank.frame.to_picture(*point), ".", color=ACCENT, markersize=4.0)
     if maps:
         beyond = any(one.pressure.max() > scale.vmax for one in maps)
         bar = ScalarMappable(scale, COLOURS)
         figure.colorbar(bar, ax=panels, label="contact pressure [MPa]", extend="max" if beyond else "neither")
-    unreached = any(_profile_start(flank) < start for flank, start, *_ in sides)
-    _explain(figure, len(drawn), len(path), unreached)
+    unreached = any(_unreached(flank, start) > LEAST_SEEN for flank, start, _ in sides)
+    _explain(figure, len(drawn), len(result.path), unreached)
     what = "contact on the flanks" if maps else "no load, no pressure on the flanks"
     set_title(figure, result, f"{what}, {load(result, torque)}", range_of_positions(result))
     return figure
@@ -92,7 +96,7 @@ def _drawn_maps(result: MeshCycle, torque: int) -> list[list[PressureMap]]:
 def _explain(figure: Figure, drawn: int, positions: int, unreached: bool) -> None:
     """The legend of the picture of the flanks."""
     handles: list[Artist] = [
-        Line2D([], [], color=ACCENT, marker=".", linestyle="", label="unloaded contact points of all positions"),
+        Line2D([], [], color=ACCENT, marker=".", linestyle="", label=CONTACT_POINTS),
     ]
     if unreached:
         handles.append(Patch(facecolor=NO_MATE, edgecolor="black", label="flank that the mate does not reach"))
@@ -100,6 +104,12 @@ def _explain(figure: Figure, drawn: int, positions: int, unreached: bool) -> Non
     figure.legend(
         handles=handles, title=pressure, loc="outside lower center", ncols=2, fontsize="small", title_fontsize="small"
     )
+
+
+def _unreached(flank: Flank, start: float) -> float:
+    """Part of the height of a flank below profile coordinate ``start``."""
+    coordinate = flank.profile_coordinate(*flank.grid(*FINENESS)).value
+    return (start - float(coordinate.min())) / float(np.ptp(coordinate))
 
 
 def _profile_start(flank: Flank) -> float:

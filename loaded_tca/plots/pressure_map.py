@@ -14,8 +14,12 @@ from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.flanks.jet import Array
 from loaded_tca.mesh_cycle import MeshCycle
 from loaded_tca.pair_contacts import PressureMap
+from loaded_tca.plots.flanks import highest_inner_pressure
 from loaded_tca.plots.style import ACCENT, COLOURS, NO_MATERIAL, highest_torque, load, place, set_title, tell_no_load
 from loaded_tca.scene import parse_scene
+
+CELLS_OF_A_SPIKE = 0.05
+"""Part of the cells under pressure that may lie beyond the scale of colours."""
 
 
 def plot_pressure_map(
@@ -55,7 +59,7 @@ def plot_pressure_map(
     scale, height = _scale_factor(one)
     figure = Figure(figsize=(9.0, 1.8 + height), layout="constrained")
     axes = figure.add_subplot()
-    _draw_pressure(figure, axes, one)
+    _draw_pressure(figure, axes, one, _end_of_scale(result, (torque, position, column), one))
     _draw_ellipse(axes, result, (torque, position, column))
     axes.plot(0.0, 0.0, "+", color=ACCENT, label="unloaded contact point")
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
@@ -85,8 +89,17 @@ def _on_pinion(frame: FlankFrame, point: Array) -> tuple[Array, Array]:
     return frame.to_picture(np.hypot(point[0], point[1]), point[2])
 
 
-def _draw_pressure(figure: Figure, axes: Axes, one: PressureMap) -> None:
-    """Pressure of each cell; white without pressure, grey without material."""
+def _end_of_scale(result: MeshCycle, at: tuple[int, int, int], one: PressureMap) -> float:
+    """The peak; of a spike at a border what nearly all cells stay below, or the highest that is no spike [MPa]."""
+    peak = float(one.pressure.max())
+    if not result.contacts.peak_at_border[at]:
+        return peak
+    most = float(np.quantile(one.pressure[one.pressure > 0.0], 1.0 - CELLS_OF_A_SPIKE))
+    return min(peak, max(most, highest_inner_pressure(result, at[0], [one])))
+
+
+def _draw_pressure(figure: Figure, axes: Axes, one: PressureMap, highest: float) -> None:
+    """Pressure of each cell, in colours up to the highest; white without pressure, grey without material."""
     y, x = (borders(centres, step) for centres, step in ((one.y, one.spacing[1]), (one.x, one.spacing[0])))
     void = np.isinf(one.gap)
     axes.set_facecolor(NO_MATERIAL)
@@ -97,8 +110,12 @@ def _draw_pressure(figure: Figure, axes: Axes, one: PressureMap) -> None:
         tell_no_load(axes)
         return
     loaded = np.where(one.pressure > 0.0, one.pressure, np.nan)
-    mesh = axes.pcolormesh(y, x, loaded, cmap=COLOURS, norm=Normalize(0.0, float(one.pressure.max())))
-    figure.colorbar(mesh, ax=axes, label="contact pressure [MPa]")
+    mesh = axes.pcolormesh(y, x, loaded, cmap=COLOURS, norm=Normalize(0.0, highest))
+    peak = float(one.pressure.max())
+    label = "contact pressure [MPa]"
+    if highest < peak:
+        label += f"\n(few cells at the border: up to {peak:.0f})"
+    figure.colorbar(mesh, ax=axes, label=label, extend="max" if highest < peak else "neither")
 
 
 def _draw_ellipse(axes: Axes, result: MeshCycle, at: tuple[int, int, int]) -> None:

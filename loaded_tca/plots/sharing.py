@@ -20,9 +20,10 @@ from loaded_tca.pair import GearPair
 from loaded_tca.pair_contacts import PressureMap
 from loaded_tca.plots.flanks import draw_flank, highest_inner_pressure, on_gear, pressed_maps
 from loaded_tca.plots.style import (
-    ACCENT,
     COLOURS,
+    HERTZ,
     MARKERS,
+    from_zero,
     highest_torque,
     load,
     loads,
@@ -35,7 +36,14 @@ from loaded_tca.plots.style import (
 from loaded_tca.scene import parse_scene
 from loaded_tca.unloaded import trace_contact
 
-EDGE = "contact at an edge"
+EDGE = "contact at an edge (its peak grows with the grid)"
+ROW_OF_ENDS, MOST_ROWS = 0.035, 4
+"""Height of a row of such marks over that of the axis, and how many rows there are at most."""
+WHAT_LETTERS_ARE = "A, E: the unloaded contact of these flanks begins, ends; B, D: a pitch from E, A; C: pitch point"
+NEAR_LETTERS = 0.03
+"""Part of the axis below which two letters stand to either side of their lines."""
+MOST_PANELS = 4
+"""Torques with a panel each."""
 MOST_ORDERS = 8
 """Orders of the tooth mesh that are drawn."""
 SMALLEST_AMPLITUDE_UM = 1e-4
@@ -44,38 +52,59 @@ ROUNDS, FINENESS = 3, 33
 
 
 def plot_load_share(result: MeshCycle, torque: int | None = None) -> Figure:
-    """Share of each tooth pair in the torque over the positions, and how many carry load.
+    """Share of each tooth pair in the torque over the positions, a panel for each torque, and how many carry load.
 
     Parameters
     ----------
     result : MeshCycle
     torque : int, optional
-        Index of the torque; default: the largest one.
+        Index of the only torque to show; default: all, of many torques four from the least to the largest.
 
     Returns
     -------
     matplotlib.figure.Figure
     """
-    torque = highest_torque(result) if torque is None else torque
-    figure = Figure(figsize=(8.0, 6.0), layout="constrained")
-    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3.0, 1.0))
+    shown = _shown_torques(result) if torque is None else [torque]
+    figure = Figure(figsize=(8.0, 2.8 + (3.0 if len(shown) == 1 else 1.8 * len(shown))), layout="constrained")
+    *panels, below = figure.subplots(len(shown) + 1, 1, sharex=True, height_ratios=(*(3.0,) * len(shown), 1.5))
     angle = np.degrees(result.pinion_angle)
+    styles = {index: style for index, *style in torque_styles(result)}
+    for axes, index in zip(panels, shown, strict=True):
+        _draw_shares(axes, result, index)
+        torque_label, colour, _ = styles[index]
+        below.step(angle, result.by_torque("loaded_pairs")[index], where="mid", color=colour, label=torque_label)
+        if len(shown) > 1:
+            axes.set_title(load(result, index).partition(" (")[0], fontsize="small")
+    below.set_ylabel("pairs\nunder load")
+    below.set_ylim(0.0, len(result.pairs) + 0.5)
+    below.set_yticks(range(len(result.pairs) + 1))
+    if len(shown) > 1:
+        below.legend(loc="lower right", ncols=len(shown), fontsize="x-small")
+    below.set_xlabel("pinion angle [deg]")
+    below.grid(alpha=0.3)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=5, fontsize="small")
+    about = load(result, shown[0]) if len(shown) == 1 else loads(result)
+    set_title(figure, result, f"load sharing, {about}", range_of_positions(result))
+    return figure
+
+
+def _shown_torques(result: MeshCycle) -> list[int]:
+    """Indices of all torques, from the least to the largest; of many, a few spread over them."""
+    order = np.argsort(result.torque, kind="stable")
+    chosen = np.unique(np.linspace(0.0, len(order) - 1.0, min(len(order), MOST_PANELS)).round().astype(int))
+    return [int(index) for index in order[chosen]]
+
+
+def _draw_shares(axes: Axes, result: MeshCycle, torque: int) -> None:
+    """One curve per tooth pair, in the order of the mesh."""
+    angle, order = np.degrees(result.pinion_angle), np.argsort(result.pairs)
     shares = result.load_share.reshape(len(result.torque), len(angle), len(result.pairs))[torque]
-    order = np.argsort(result.pairs)
     for number, share in zip(result.pairs[order], shares.T[order], strict=True):
         marker = MARKERS[int(number) % len(MARKERS)]
-        above.plot(angle, 100.0 * share, marker=marker, markersize=4.0, label=f"tooth pair {signed(int(number))}")
-    below.step(angle, result.by_torque("loaded_pairs")[torque], where="mid", color="black")
-    above.set_ylabel("share of the torque [%]")
-    above.set_ylim(-4.0, 104.0)
-    below.set_ylabel("pairs under load")
-    below.set_ylim(0.0, len(result.pairs) + 0.5)
-    below.set_xlabel("pinion angle [deg]")
-    for axes in (above, below):
-        axes.grid(alpha=0.3)
-    figure.legend(*above.get_legend_handles_labels(), loc="outside lower center", ncols=5, fontsize="small")
-    set_title(figure, result, f"load sharing, {load(result, torque)}", range_of_positions(result))
-    return figure
+        axes.plot(angle, 100.0 * share, marker=marker, markersize=4.0, label=f"tooth pair {signed(int(number))}")
+    axes.set_ylabel("share of\nthe torque [%]")
+    axes.set_ylim(-4.0, 106.0)
+    axes.grid(alpha=0.3)
 
 
 def plot_mesh_stiffness(result: MeshCycle) -> Figure:
@@ -97,7 +126,7 @@ def plot_mesh_stiffness(result: MeshCycle) -> Figure:
         axes.plot(angle, secant[torque], color=colour, marker=".", markersize=3.0, linestyle=":")
     axes.plot([], [], color="black", linestyle=":", label="secant, from no load")
     axes.set_ylabel("mesh stiffness [N/(mm µm)]")
-    axes.set_ylim(bottom=0.0)
+    from_zero(axes)
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
     set_title(figure, result, f"mesh stiffness, {result.yielding}, {loads(result)}", range_of_positions(result))
     return figure
@@ -121,7 +150,7 @@ def plot_line_load(result: MeshCycle) -> Figure:
             np.degrees(result.pinion_angle), line_load[torque], color=colour, marker=marker, markersize=4.0, label=label
         )
     axes.set_ylabel("largest line load [N/mm]")
-    axes.set_ylim(bottom=0.0)
+    from_zero(axes)
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
     set_title(figure, result, f"line load along the contact, {loads(result)}", range_of_positions(result))
     return figure
@@ -264,18 +293,18 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
     contacts, pair = result.contacts, parse_scene(result.scene_toml).pair()
     inner, peak, hertz = contacts.inner_pressure, contacts.peak_pressure, contacts.hertz_pressure
     angle = np.degrees(result.pinion_angle[:, None] - pair.pitch * result.pairs).ravel()
-    order = np.argsort(angle, kind="stable")
+    order, ends = np.argsort(angle, kind="stable"), []
     for torque, label, colour, marker in torque_styles(result):
         curve, largest, ellipse = (values[torque].ravel()[order] for values in (inner, peak, hertz))
         known = np.isfinite(curve)
         axes.plot(angle[order][known], curve[known], color=colour, marker=marker, markersize=4.0, label=label)
-        axes.plot(angle[order], ellipse, color=ACCENT, linestyle="--", linewidth=1.0)
-        _draw_ends(axes, angle[order], np.where(np.isfinite(largest) & ~known, largest, np.nan), inner)
+        axes.plot(angle[order], ellipse, color=colour, **HERTZ)
+        ends.append((angle[order][np.isfinite(largest) & ~known], colour))
     if np.isfinite(hertz).any():
-        axes.plot([], [], color=ACCENT, linestyle="--", linewidth=1.0, label="after Hertz")
-    axes.set_xlabel("pinion angle from the pitch point of the tooth pair [deg]")
+        axes.plot([], [], color="black", label="after Hertz", **HERTZ)
+    axes.set_xlabel(f"pinion angle from the pitch point of the tooth pair [deg]\n{WHAT_LETTERS_ARE}")
     axes.set_ylabel("contact pressure [MPa]")
-    axes.set_ylim(bottom=0.0)
+    _draw_ends(axes, ends)
     _mark_points(axes, pair, float(np.abs(np.radians(angle)).max()))
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
     set_title(figure, result, f"pressure over the path of contact, {loads(result)}")
@@ -288,11 +317,13 @@ def _mark_points(axes: Axes, pair: GearPair, reach: float) -> None:
     marks = {"A": begin, "B": end - pair.pitch, "C": 0.0, "D": begin + pair.pitch, "E": end}
     if not marks["A"] < marks["B"] < marks["D"] < marks["E"]:  # a NaN, or never one pair alone
         marks = {name: marks[name] for name in "ACE"}
-    for name, angle in marks.items():
-        if np.isfinite(angle):
-            at = np.degrees(angle)
-            axes.axvline(at, color="0.5", linestyle=":", linewidth=1.0, zorder=0.0)
-            axes.annotate(name, (at, 1.0), xycoords=("data", "axes fraction"), ha="center", va="bottom", color="0.4")
+    places = {name: math.degrees(angle) for name, angle in marks.items() if math.isfinite(angle)}
+    near = NEAR_LETTERS * float(np.ptp(axes.get_xlim()))
+    for name, at in places.items():
+        beside = [other for letter, other in places.items() if letter != name and abs(other - at) < near]
+        side = "center" if not beside else "left" if at > max(beside) else "right"
+        axes.axvline(at, color="0.5", linestyle=":", linewidth=1.0, zorder=0.0)
+        axes.annotate(name, (at, 1.0), xycoords=("data", "axes fraction"), ha=side, va="bottom", color="0.4")
 
 
 def _leaves_flanks(pair: GearPair, farthest: float) -> float:
@@ -315,12 +346,15 @@ def _leaves_flanks(pair: GearPair, farthest: float) -> float:
     return high
 
 
-def _draw_ends(axes: Axes, angle: Array, edge: Array, inner: Array) -> None:
-    """Crosses at the lower end of the axis where a contact lies on an edge, of which the grid alone says the peak."""
-    there = np.isfinite(edge)
-    if there.any() and np.isfinite(inner).any():
-        known = "_nolegend_" if axes.get_legend_handles_labels()[1].count(EDGE) else EDGE
-        axes.plot(angle[there], np.zeros(there.sum()), "x", color=ACCENT, label=known, clip_on=False)
+def _draw_ends(axes: Axes, ends: list[tuple[Array, str]]) -> None:
+    """Arrows above the curves, a row for each torque, where a contact lies on an edge: the grid alone says its peak."""
+    rows = [(angles, colour) for angles, colour in ends if angles.size]
+    from_zero(axes, 1.0 - ROW_OF_ENDS * (min(len(rows), MOST_ROWS) + 1.0) if rows else 1.0)
+    for row, (angles, colour) in enumerate(reversed(rows)):
+        height = np.full(angles.size, 1.0 - ROW_OF_ENDS * (min(row, MOST_ROWS - 1) + 1.0))
+        axes.plot(angles, height, "^", color=colour, markersize=4.0, transform=axes.get_xaxis_transform())
+    if rows:
+        axes.plot([], [], "^", color="black", markersize=4.0, linestyle="", label=EDGE)
 
 
 def _one_panel() -> tuple[Figure, Axes]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 from matplotlib import colormaps
@@ -20,7 +21,11 @@ COLOURS = "viridis"
 """Even in lightness, and told apart by colour-blind readers and in grey."""
 ACCENT, NO_MATERIAL, NO_MATE = "#d55e00", "0.8", "0.9"
 MARKERS = "osD^vP*X"
+HERTZ: dict[str, Any] = {"linestyle": "--", "linewidth": 4.0, "alpha": 0.4, "zorder": 1.0}
+"""How a curve after Hertz is drawn: broad, below the curve that it is compared with, in the colour of its torque."""
 MOST_LABELS = 8
+HEADROOM = 0.08
+"""Part of an axis above the highest curve."""
 LONGEST_LINE = 100
 """Characters of a title in one line."""
 DOTS_PER_INCH = 120
@@ -48,6 +53,16 @@ def widen(axes: Axes, smallest: float) -> None:
     if high - low < smallest:
         middle = 0.5 * (low + high)
         axes.set_ylim(middle - 0.5 * smallest, middle + 0.5 * smallest)
+
+
+def from_zero(axes: Axes, part: float = 1.0) -> None:
+    """Let the vertical axis begin at zero and end above all curves, whose markers stay whole below a part of it."""
+    heights = [np.asarray(line.get_ydata(), dtype=float) for line in axes.lines]
+    highest = max((float(np.nanmax(one)) for one in heights if np.isfinite(one).any()), default=0.0)
+    if highest > 0.0:
+        axes.set_ylim(0.0, (1.0 + HEADROOM) * highest / part)
+    else:
+        axes.set_ylim(bottom=0.0)
 
 
 def tell_no_load(axes: Axes) -> None:

@@ -15,7 +15,7 @@ LINES = 8
 DEEPEST_DRAWN = 0.1
 
 
-def plot_subsurface(stress: SubsurfaceStress, quantity: Quantity = "max_shear") -> Figure:
+def plot_subsurface(stress: SubsurfaceStress, quantity: Quantity = "max_shear", column: int | None = None) -> Figure:
     """Depth against the direction across the contact, in the plane that holds the largest value.
 
     Parameters
@@ -23,6 +23,8 @@ def plot_subsurface(stress: SubsurfaceStress, quantity: Quantity = "max_shear") 
     stress : SubsurfaceStress
         At two depths at least.
     quantity : {"max_shear", "von_mises"}
+    column : int, optional
+        Index along the contact of another plane.
 
     Returns
     -------
@@ -43,8 +45,9 @@ def plot_subsurface(stress: SubsurfaceStress, quantity: Quantity = "max_shear") 
     """
     _check(stress, quantity)
     values = stress.max_shear if quantity == "max_shear" else stress.von_mises
-    _, row, column = (int(k) for k in np.unravel_index(int(np.argmax(values)), values.shape))
-    largest = float(values.max())
+    column = int(np.unravel_index(int(np.argmax(values)), values.shape)[2]) if column is None else column
+    row = int(values[:, :, column].max(axis=0).argmax())
+    largest = float(values[:, :, column].max())
     order = np.argsort(stress.depths)
     across = (np.arange(values.shape[1]) - 0.5 * (values.shape[1] - 1)) * stress.spacing[0]
     figure = Figure(figsize=(8.0, 5.5), layout="compressed")
@@ -83,7 +86,7 @@ def plot_stress_below(below: StressBelow, quantity: Quantity = "max_shear") -> F
     InputError
         For another quantity.
     """
-    figure = plot_subsurface(below.stress, quantity)
+    figure = plot_subsurface(below.stress, quantity, below.beside_spike)
     set_title(figure, below.result, f"below the surface: {NAMES[quantity]}", *below.where)
     return figure
 

@@ -8,7 +8,7 @@ from typing import ClassVar, Literal
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Scene
 from loaded_tca.scene.section import Rule, subsection
-from loaded_tca.scene.sections import DIAMETER_mm, Gear, below
+from loaded_tca.scene.sections import DEFAULT_BORE, DIAMETER_mm, Gear, below
 
 Hand = Literal["right", "left"]
 
@@ -25,7 +25,7 @@ class BlankGear(Gear):
         "right for the pinion, and the other for the wheel",
     )
     profile_shift: float = key(Number(-5.0, 5.0), "profile shift coefficient x", 0.0)
-    bore_diameter_mm: float | None = key(DIAMETER_mm, "bore diameter, for the tooth compliance", None, "no bore")
+    bore_diameter_mm: float | None = key(DIAMETER_mm, "bore diameter, held rigid", None, DEFAULT_BORE)
 
     rules: ClassVar[tuple[Rule, ...]] = (below("modifications.end_relief_length_mm", "face_width_mm", 0.5),)
 

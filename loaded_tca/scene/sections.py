@@ -15,6 +15,7 @@ from loaded_tca.scene.section import Rule, Section, subsection
 AMOUNT_um = Number(0.0, 10000.0)
 SLOPE_um = Number(-10000.0, 10000.0)
 DIAMETER_mm = above_zero(100000.0)
+DEFAULT_BORE = "0.55 of the root diameter where teeth bend"
 RELIEF_FORM = Choice(("parabolic", "linear"))
 ERROR_deg = Number(-10.0, 10.0)
 ERROR_mm = Number(-1000.0, 1000.0)
@@ -146,7 +147,8 @@ class Analysis(Section):
     tolerance: float = key(Number(1e-14, 0.1), "relative tolerance of the contact solver", 1e-6)
     free_edges: bool = key(
         Choice((False, True)),
-        "whether the tips and sides of the teeth yield more than a half-space, by mirrored pressure",
+        "whether the tips and sides of the teeth yield more than a half-space, by mirrored pressure: "
+        "what a mesh cycle without crowning or end relief wants",
         False,
     )
     load_sharing: bool = key(
