@@ -10,8 +10,9 @@ the closing is the approach of its contact and the deflection of the teeth:
 A pair that is apart carries nothing. The torque grows with the rotation, so that there is one answer.
 
 The contact law delta_k(F) is known from presses alone. Between them it is a power of the force, 2/3 for points and
-nearly 1 for lines, its exponent taken from the last two presses: balance the powers, press every pair with its force,
-correct the powers, until the approaches agree. The forces of the last press fulfil the balance of the torque to
+nearly 1 for lines, its exponent that of the tangent in a neighbouring position, or between two presses that lie far
+enough apart: balance the powers, press every pair with its force, correct the powers, until the approaches agree and
+the rotation closes no pair that was left apart. The forces of the last press fulfil the balance of the torque to
 rounding; what is left is a difference in the rotation that each pair asks for, ``residual``.
 
 The lever is that of the contact point for the whole contact. It is the same at every point of two involute helicoids
