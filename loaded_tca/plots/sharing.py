@@ -133,7 +133,7 @@ def plot_mesh_stiffness(result: MeshCycle) -> Figure:
 
 
 def plot_line_load(result: MeshCycle) -> Figure:
-    """Largest line load of any tooth pair over the positions, under each torque.
+    """Largest line load of the tooth pair that carries most, over the positions, under each torque.
 
     Parameters
     ----------
@@ -144,12 +144,12 @@ def plot_line_load(result: MeshCycle) -> Figure:
     matplotlib.figure.Figure
     """
     figure, axes = _one_panel()
-    line_load = np.fmax.reduce(result.contacts.line_load, axis=-1)
+    line_load = result.by_torque("line_load")
     for torque, label, colour, marker in torque_styles(result):
         axes.plot(
             np.degrees(result.pinion_angle), line_load[torque], color=colour, marker=marker, markersize=4.0, label=label
         )
-    axes.set_ylabel("largest line load [N/mm]")
+    axes.set_ylabel("line load of the most loaded pair [N/mm]")
     from_zero(axes)
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
     set_title(figure, result, f"line load along the contact, {loads(result)}", range_of_positions(result))
