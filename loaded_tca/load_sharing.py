@@ -43,6 +43,8 @@ from loaded_tca.unloaded import ContactPoint, MeshPath
 
 MOST_BALANCES = 40
 """Balances before giving up; two to four are the rule."""
+SWINGING = 8
+"""Balances after which forces go half the way only: near a cap on the pressure they swing to and fro."""
 AGREEMENT = 5e-2
 """Wanted agreement of the rotations, relative, over the accuracy of the peak pressure."""
 AGREEMENT_ON_CELLS = 1e-5
@@ -280,9 +282,12 @@ class _Balance:
         return PowerLaw(load, SOFTEST_START * load / (self.pair.contact_modulus * self.pair.face_width))
 
     def run(self) -> SharedLoad:
-        residual = math.inf
+        residual, forces = math.inf, np.zeros(len(self.laws))
         for count in range(1, MOST_BALANCES + 1):
+            before = forces
             forces = balance(self.laws, self.lags, self.levers, self.torque, self.matrix)
+            if count > SWINGING:
+                forces = 0.5 * (before + forces)
             for index in np.flatnonzero(forces):
                 self._press(int(index), forces)
             if self.teeth is not None:
