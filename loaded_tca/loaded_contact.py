@@ -169,7 +169,7 @@ class LoadedContact:
         (nx, ny), (dx, dy) = self.solution.cells_across, self.separation.spacing
         return nx * dx, ny * dy
 
-    @property
+    @cached_property
     def column_force(self) -> Array:
         """Force on every column of the grid, (ny,) [N]."""
         return np.asarray(self.solution.pressure.sum(axis=0) * self.solution.cell_area)
@@ -305,16 +305,18 @@ def _press_in_box(
     beneath: Beneath | None,
 ) -> LoadedContact:
     """Solve in the box of ``first``, on its grid if cells were given, else on finer and finer ones."""
-    finest, modulus = [first], pair.contact_modulus
+    finest, modulus = [(first, _lift(first, beneath))], pair.contact_modulus
     edges = tooth_edges(pair, contact, first) if grid.free_edges else ()
 
     def sampler(cells: tuple[int, int]) -> tuple[Array, tuple[float, float]]:
         if cells != first.gap.shape:
-            finest[0] = sample_separation(pair, contact, cells=cells, box=first.half_lengths)
-        return _lifted(finest[0], beneath), finest[0].spacing
+            finer = sample_separation(pair, contact, cells=cells, box=first.half_lengths)
+            finest[0] = finer, _lift(finer, beneath)
+        separation, lift = finest[0]
+        return separation.gap if lift is None else separation.gap + lift, separation.spacing
 
     def columns(_: tuple[int, int]) -> Array | None:
-        return None if beneath is None else beneath.own(finest[0], edges)
+        return None if beneath is None else beneath.own(finest[0][0], edges)
 
     common: dict[str, Any] = {
         "load": load,
@@ -340,14 +342,14 @@ def _press_in_box(
             **common,
         )
     pressed = solution.pressure > 0.0
-    at_crease = _crosses_crease(pair, contact, finest[0], pressed)
-    lift = None if beneath is None else beneath.lift(finest[0])
-    return LoadedContact(contact, finest[0], solution, at_crease, tolerance, lift)
+    separation, lift = finest[0]
+    at_crease = _crosses_crease(pair, contact, separation, pressed)
+    return LoadedContact(contact, separation, solution, at_crease, tolerance, lift)
 
 
-def _lifted(separation: Separation, beneath: Beneath | None) -> Array:
-    """Gap (nx, ny) [mm] that the load of other tooth pairs leaves."""
-    return separation.gap if beneath is None else separation.gap + beneath.lift(separation)
+def _lift(separation: Separation, beneath: Beneath | None) -> Array | None:
+    """Displacement of the columns (ny,) [mm] under the load of other tooth pairs; None if nothing bends."""
+    return None if beneath is None else beneath.lift(separation)
 
 
 def _crosses_crease(pair: GearPair, contact: ContactPoint, separation: Separation, where: Array) -> bool:

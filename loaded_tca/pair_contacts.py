@@ -156,7 +156,7 @@ class PairContacts(ContactNumbers):
 
     def at_inner(self, values: Array) -> Array:
         """Pick from (m, n, pairs) what belongs to the pair with the highest inner pressure, (m, n)."""
-        return np.take_along_axis(values, self.highest_inner[..., None], axis=-1)[..., 0]
+        return _picked(values, self.highest_inner)
 
     @property
     def highest(self) -> NDArray[np.int_]:
@@ -166,7 +166,7 @@ class PairContacts(ContactNumbers):
 
     def at_highest(self, values: Array) -> Array:
         """Pick from (m, n, pairs) what belongs to the pair with the highest peak pressure, (m, n)."""
-        return np.take_along_axis(values, self.highest[..., None], axis=-1)[..., 0]
+        return _picked(values, self.highest)
 
     @property
     def most_loaded(self) -> NDArray[np.int_]:
@@ -179,7 +179,7 @@ class PairContacts(ContactNumbers):
         The others belong to the pair with the largest force: a tip corner may have the highest peak under next to none.
         """
         chosen = self.highest if name in OF_THE_PEAK else self.most_loaded
-        return np.take_along_axis(getattr(self, name), chosen[..., None], axis=-1)[..., 0]
+        return _picked(getattr(self, name), chosen)
 
     def row(self, torque: int, max_pressure: float) -> dict[str, Array]:
         """Every number under one torque, one after the other over positions and pairs, (n pairs,)."""
@@ -349,6 +349,11 @@ def _ends_within(one: PressureMap, distance: float) -> bool:
         np.maximum(np.abs(centres) - 0.5 * step, 0.0) for centres, step in zip((one.x, one.y), one.spacing, strict=True)
     )
     return bool((np.isinf(one.gap) & (np.hypot(x[:, None], y) < distance)).any())
+
+
+def _picked(values: Array, columns: NDArray[np.int_]) -> Array:
+    """Values (m, n) in columns (m, n) of (m, n, pairs)."""
+    return np.take_along_axis(values, columns[..., None], axis=-1)[..., 0]
 
 
 def _peaks_at_end(one: PressureMap) -> bool:

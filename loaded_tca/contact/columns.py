@@ -52,6 +52,16 @@ def yielding(
     return YieldingColumns(convolve, columns if window is None else columns[:, window[1]], dtype)
 
 
+def in_grid_units(
+    columns: Array | None, window: Window | None, spacing: tuple[float, float], contact_modulus: float
+) -> Array | None:
+    """Compliance [mm/N] of the columns in a window, per sum of pressures p dx/E*, as a grid counts them."""
+    if columns is None:
+        return None
+    part = slice(None) if window is None else window[1]
+    return np.asarray(columns[part, part] * (spacing[1] * contact_modulus))
+
+
 def merge_columns(columns: Array | None, merge: int) -> Array | None:
     """Compliance where pairs of columns are one: the mean over both; an odd last one stays alone."""
     if columns is None or merge == 1:

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from loaded_tca.contact.columns import merge_columns
+from loaded_tca.contact.columns import in_grid_units, merge_columns
 from loaded_tca.contact.convolution import Window
 from loaded_tca.contact.descent import AT_BOUND, Grid
 from loaded_tca.contact.edges import FreeEdge, amplification, mirrors
@@ -67,10 +67,7 @@ class Problem:
         total = None if self.load is None else self.load / (self.spacing[1] * self.contact_modulus)
         gap = np.minimum(gap, OUT_OF_REACH * self.reach)
         edges = mirrors(self.free_edges, self.spacing, window)
-        columns = None
-        if self.columns is not None:
-            part = slice(None) if window is None else window[1]
-            columns = self.columns[part, part] * (self.spacing[1] * self.contact_modulus)
+        columns = in_grid_units(self.columns, window, self.spacing, self.contact_modulus)
         cap = self.max_pressure * self.unit
         return Grid(gap, self.spacing[1] / self.spacing[0], total, self.approach, cap, edges, columns)
 

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from loaded_tca.contact import checks
-from loaded_tca.contact.columns import check_columns
+from loaded_tca.contact.columns import check_columns, in_grid_units
 from loaded_tca.contact.convolution import Window
 from loaded_tca.contact.descent import Descent, Grid, Judgement, judge
 from loaded_tca.contact.edges import FreeEdge, check_edges, mirrors, without_material_beyond
@@ -194,9 +194,7 @@ def contact_stiffness(solution: ContactSolution, tolerance: float = 1e-6) -> flo
     # A flat punch of the shape of the cells between the bounds, pressed in by one: its load is the stiffness.
     gap = np.where(active[window], 0.0, OUT_OF_REACH)
     edges = mirrors(solution.free_edges, solution.spacing, window)
-    columns = solution.column_compliance
-    if columns is not None:
-        columns = columns[window[1], window[1]] * (solution.spacing[1] * solution.contact_modulus)
+    columns = in_grid_units(solution.column_compliance, window, solution.spacing, solution.contact_modulus)
     grid = Grid(gap, solution.spacing[1] / solution.spacing[0], None, 1.0, math.inf, edges, columns)
     descent = Descent(grid, np.zeros(gap.shape))
     state = descent.run(tolerance, MOST_ITERATIONS)

@@ -127,9 +127,7 @@ def plot_mesh_stiffness(result: MeshCycle) -> Figure:
     axes.plot([], [], color="black", linestyle=":", label="secant, from no load")
     axes.set_ylabel("mesh stiffness [N/(mm µm)]")
     from_zero(axes)
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
-    set_title(figure, result, f"mesh stiffness, {result.yielding}, {loads(result)}", range_of_positions(result))
-    return figure
+    return _finished(figure, axes, result, f"mesh stiffness, {result.yielding}, {loads(result)}")
 
 
 def plot_line_load(result: MeshCycle) -> Figure:
@@ -151,8 +149,13 @@ def plot_line_load(result: MeshCycle) -> Figure:
         )
     axes.set_ylabel("line load of the most loaded pair [N/mm]")
     from_zero(axes)
+    return _finished(figure, axes, result, f"line load along the contact, {loads(result)}")
+
+
+def _finished(figure: Figure, axes: Axes, result: MeshCycle, what: str) -> Figure:
+    """The figure with its legend and title."""
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
-    set_title(figure, result, f"line load along the contact, {loads(result)}", range_of_positions(result))
+    set_title(figure, result, what, range_of_positions(result))
     return figure
 
 
@@ -178,10 +181,7 @@ def plot_harmonics(result: MeshCycle) -> Figure:
     axes.set_ylabel("amplitude at the wheel's base circle [µm]")
     widen(axes, SMALLEST_AMPLITUDE_UM)
     axes.grid(alpha=0.3, axis="y")
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
-    what = f"harmonics of the transmission error, {loads(result)}"
-    set_title(figure, result, what, range_of_positions(result))
-    return figure
+    return _finished(figure, axes, result, f"harmonics of the transmission error, {loads(result)}")
 
 
 def plot_pressure_envelope(result: MeshCycle, torque: int | None = None) -> Figure:

@@ -28,10 +28,10 @@ from numpy.polynomial.chebyshev import chebvander
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.jet import Array
 from loaded_tca.tooth_compliance.body import GearTooth, ToothFrame
+from loaded_tca.tooth_compliance.flexibility import ToothFlexibility
 from loaded_tca.tooth_compliance.half_space import depth_displacement
 from loaded_tca.tooth_compliance.kept import kept_flexibility
 from loaded_tca.tooth_compliance.layout import MeshDensity
-from loaded_tca.tooth_compliance.local_term import LocalFlexibility
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,26 +62,17 @@ class GearCompliance:
     Attributes
     ----------
     frame : ToothFrame
-    heights, lengths : (a,), (b,) array
-        Parts of the flank's height and of the face width, where the finite elements were loaded and read.
-    displacement : (teeth, a b, a b) array [mm/N]
-        Of the teeth ``-neighbours`` to ``+neighbours``: at the second place under a force at the third on tooth 0.
-    depth : (a, b) array [mm]
-        From there along the normal to the middle of the tooth.
-    local : LocalFlexibility
+    table : ToothFlexibility
+        What the finite elements say.
     """
 
     frame: ToothFrame
-    heights: Array
-    lengths: Array
-    displacement: Array
-    depth: Array
-    local: LocalFlexibility
+    table: ToothFlexibility
 
     @property
     def neighbours(self) -> int:
         """Teeth on either side of a loaded one whose displacement is known."""
-        return len(self.displacement) // 2
+        return len(self.table.displacement) // 2
 
     def between(self, at: FlankLine, under: FlankLine) -> Array:
         """Displacements (m, n) of the middles of the teeth below m places per force at n others [mm/N].
@@ -124,23 +115,23 @@ class GearCompliance:
             Of free edges for which the half-space was corrected: their displacements in the middle go off as well.
         """
         own = line, (places := _Places.of(self, line))
-        depth = np.einsum("ma,ab,mb->m", places.across, self.depth, places.along)[:, None]
+        depth = np.einsum("ma,ab,mb->m", places.across, self.table.depth, places.along)[:, None]
         spread = _spread(depth, distance) + sum(_spread(depth, image) for image in self._beyond_ends(places.length))
         material = self.frame.gear.material
         half_space = depth_displacement(depth, distance, material)
         half_space = half_space + sum(factor * depth_displacement(depth, image, material) for image, factor in images)
-        found = self.local.at(places.height)[:, None] * spread - half_space
+        found = self.table.local.at(places.height)[:, None] * spread - half_space
         return self._displaced(own, own) + 0.5 * (found + found.T)
 
     @cached_property
     def _mutual(self) -> Array:
         """Displacements as in ``displacement``, the mean of both ways."""
-        return np.asarray(0.5 * (self.displacement + self.displacement[::-1].transpose(0, 2, 1)))
+        return np.asarray(0.5 * (self.table.displacement + self.table.displacement[::-1].transpose(0, 2, 1)))
 
     @cached_property
     def interpolation(self) -> tuple[Array, Array]:
         """Chebyshev coefficients (a, a) and (b, b) of the Lagrange polynomials of the heights and the lengths."""
-        nodes = self.heights, self.lengths
+        nodes = self.table.heights, self.table.lengths
         across, along = (np.linalg.inv(chebvander(2.0 * part - 1.0, len(part) - 1)) for part in nodes)
         return across, along
 
@@ -192,8 +183,7 @@ def gear_compliance(gear: GearTooth, side: int, density: MeshDensity = MeshDensi
         If the tooth is pointed or cut off, or the mesh is turned inside out.
     """
     frame = ToothFrame(gear, side, gear.nodes(density))
-    known = kept_flexibility(frame)
-    return GearCompliance(frame, known.heights, known.lengths, known.displacement, known.depth, known.local)
+    return GearCompliance(frame, kept_flexibility(frame))
 
 
 def _spread(depth: Array, distance: Array) -> Array:

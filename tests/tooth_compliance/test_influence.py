@@ -77,8 +77,9 @@ def test_compliance_is_inverse_to_the_modulus():
 def test_coupling_of_two_teeth_is_reciprocal():
     """The finite elements alone: forces act on the flank, displacements are taken in the middle of the tooth."""
     gear = model()
-    shape = (len(gear.heights), len(gear.lengths)) * 2
-    forth, back = (gear.displacement[gear.neighbours + away].reshape(shape).mean(axis=(1, 3)) for away in (1, -1))
+    table, near = gear.table, gear.neighbours
+    shape = (len(table.heights), len(table.lengths)) * 2
+    forth, back = (table.displacement[near + away].reshape(shape).mean(axis=(1, 3)) for away in (1, -1))
     assert_allclose(forth[1:, 1:], back.T[1:, 1:], rtol=BETTI)  # above the foot, whose middle is in the body
     low, high = line(gear, 0.2), line(gear, 0.8, tooth=1)
     assert_allclose(gear.between(low, high), gear.between(high, low).T, rtol=ROUNDING)
