@@ -27,7 +27,7 @@ validate: .venv/installed
 # Takes hours on one core; what is in reference-fem-runs/ already is not run again.
 reference-fem: .venv/installed
 	@command -v ccx > /dev/null || { echo "needs CalculiX (program ccx; Debian: apt install calculix-ccx)"; exit 1; }
-	$(BIN)/python -m validation.reference_fem --work reference-fem-runs
+	$(BIN)/python -m validation.calculix --work reference-fem-runs
 
 clean:
 	rm -rf .venv loaded-tca-demo .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -14,7 +14,7 @@ from loaded_tca import AccuracyWarning, analyse, read_scene
 from loaded_tca.plots import save_figure
 
 SCENE = Path(__file__).parent / "scenes" / "mesh_cycle_finite_elements.toml"
-KEPT = Path(__file__).parents[1] / "validation" / "data" / "calculix_spur_25_37_positions.csv"
+KEPT = Path(__file__).parents[1] / "validation" / "calculix" / "data" / "calculix_spur_25_37_positions.csv"
 
 
 def kept(torque):

@@ -10,8 +10,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from loaded_tca import read_scene
+from loaded_tca.flank_maps.pattern import contact_area, contact_pattern
 from loaded_tca.plots import save_figure
-from loaded_tca.unloaded.pattern import contact_area, contact_pattern
 from loaded_tca.unloaded.teeth import trace_teeth
 
 SCENE = Path(__file__).parent / "scenes" / "helical.toml"

@@ -10,8 +10,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from loaded_tca import read_scene, trace_contact
+from loaded_tca.baselines.conventional import solve_conventional
 from loaded_tca.plots import save_figure
-from loaded_tca.unloaded.conventional import solve_conventional
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import climb
 

@@ -8,23 +8,22 @@ from importlib.metadata import version
 
 import numpy as np
 
-from loaded_tca.carried_load import Carried, Contacts, MakeCompliance, Progress, carried_by_all, carried_by_one
+from loaded_tca.arrays import Array
+from loaded_tca.compliance import tooth_compliance
+from loaded_tca.compliance.compliance import BORE
 from loaded_tca.errors import AccuracyWarning
-from loaded_tca.flanks.jet import Array
-from loaded_tca.loaded_contact import GridChoice, LoadedContact
-from loaded_tca.loaded_teeth import TeethYield
-from loaded_tca.mesh_cycle import MeshCycle
-from loaded_tca.pair import GearPair
-from loaded_tca.pair_contacts import NUMBERS, PairContacts, PressureMap
+from loaded_tca.loaded.cycle import Carried, Contacts, MakeCompliance, Progress, carried_by_all, carried_by_one
+from loaded_tca.loaded.free_edges import oblique_ends
+from loaded_tca.loaded.pair_coupling import TeethYield
+from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.contacts import NUMBERS, PairContacts, PressureMap
+from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
 from loaded_tca.tooth import tooth_forms
-from loaded_tca.tooth_compliance import tooth_compliance
-from loaded_tca.tooth_edges import oblique_ends
 from loaded_tca.unloaded import heelwards
 from loaded_tca.unloaded.tooth_cycle import REACH
 
-BORE = "bore_diameter_mm"
-"""Key of a gear that each family of scenes has of its own."""
 THICKEST_CONTACT = 0.25
 """Half width of a contact, over the module, above which a tooth is no half-space: it is 1.6 modules thick."""
 

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, NoReturn
 from loaded_tca.errors import ConvergenceError, InputError, LoadedTCAError
 
 if TYPE_CHECKING:
-    from loaded_tca.mesh_cycle import MeshCycle
+    from loaded_tca.results.mesh_cycle import MeshCycle
 
 # The modules that compute and draw take most of a second to import: each command imports what it needs.
 
@@ -194,8 +194,8 @@ class _Version(argparse.Action):
 
 
 def _demo(options: argparse.Namespace) -> None:
-    from loaded_tca.report import make_directory
-    from loaded_tca.storage import replacing
+    from loaded_tca.output.report import make_directory
+    from loaded_tca.results.files import replacing
 
     directory = options.out
     _check_place(directory)
@@ -218,7 +218,7 @@ def _run(options: argparse.Namespace) -> None:
 def _analyse_to(scene_file: str, directory: Path) -> None:
     """Read, analyse, write everything, and show the summary."""
     from loaded_tca.analysis import analyse
-    from loaded_tca.report import write_report
+    from loaded_tca.output.report import write_report
     from loaded_tca.scene import read_scene
 
     scene = read_scene(scene_file)
@@ -231,7 +231,7 @@ def _analyse_to(scene_file: str, directory: Path) -> None:
 
 
 def _plot(options: argparse.Namespace) -> None:
-    from loaded_tca.report import make_directory
+    from loaded_tca.output.report import make_directory
 
     result, directory = _loaded(options)
     torque, position = _chosen_torque(result, options.torque), _chosen_position(result, options.position)
@@ -248,11 +248,11 @@ def _place_of_its_own(options: argparse.Namespace) -> str:
 
 
 def _tooth(options: argparse.Namespace) -> None:
+    from loaded_tca.output.surface_files import write_teeth
+    from loaded_tca.output.teeth_in_space import complete_teeth, teeth_in_space
     from loaded_tca.plots import save_figure
     from loaded_tca.plots.three_d import draw_teeth
     from loaded_tca.scene import parse_scene
-    from loaded_tca.surface_files import write_teeth
-    from loaded_tca.teeth_in_space import complete_teeth, teeth_in_space
 
     result, directory = _loaded(options)
     torque, position = _chosen_torque(result, options.torque), _chosen_position(result, options.position)
@@ -264,9 +264,9 @@ def _tooth(options: argparse.Namespace) -> None:
 
 
 def _subsurface(options: argparse.Namespace) -> None:
+    from loaded_tca.output.subsurface_files import write_subsurface
     from loaded_tca.plots import plot_stress_below, save_figure
-    from loaded_tca.subsurface import NAMES, stress_below
-    from loaded_tca.subsurface_files import write_subsurface
+    from loaded_tca.results.stress_below import NAMES, stress_below
 
     result, directory = _loaded(options)
     torque, position = _chosen_torque(result, options.torque), _chosen_position(result, options.position)
@@ -280,11 +280,11 @@ def _subsurface(options: argparse.Namespace) -> None:
 
 
 def _ease_off(options: argparse.Namespace) -> None:
+    from loaded_tca.flank_maps.ease_off_map import ease_off_map
+    from loaded_tca.output.report import make_directory
     from loaded_tca.plots import save_figure
     from loaded_tca.plots.ease_off import plot_ease_off
-    from loaded_tca.report import make_directory
     from loaded_tca.scene import read_scene
-    from loaded_tca.unloaded.ease_off_map import ease_off_map
 
     scene = read_scene(options.scene)
     _check_place(options.out)
@@ -296,8 +296,8 @@ def _ease_off(options: argparse.Namespace) -> None:
 
 def _loaded(options: argparse.Namespace) -> tuple[MeshCycle, Path]:
     """The result that the command line names, and the directory to write to."""
-    from loaded_tca.mesh_cycle import MeshCycle
-    from loaded_tca.report import RESULT, make_directory
+    from loaded_tca.output.report import RESULT, make_directory
+    from loaded_tca.results.mesh_cycle import MeshCycle
 
     path = options.result / RESULT if options.result.is_dir() else options.result
     result = MeshCycle.load(path)
@@ -329,7 +329,7 @@ def _chosen_position(result: MeshCycle, wanted: int | None) -> int | None:
 
 
 def _check(options: argparse.Namespace) -> None:
-    from loaded_tca.overview import describe_scene
+    from loaded_tca.output.overview import describe_scene
     from loaded_tca.scene import read_scene
 
     print(describe_scene(read_scene(options.scene)))

@@ -7,12 +7,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from results import assert_same
 
-from loaded_tca import AccuracyWarning, ConvergenceError, GeometryError, InputError, analyse, load_result, read_scene
+from loaded_tca import (
+    AccuracyWarning,
+    ConvergenceError,
+    GeometryError,
+    InputError,
+    analyse,
+    load_result,
+    read_scene,
+)
 from loaded_tca.reference import hertz
 from loaded_tca.scene import parse_scene
 from loaded_tca.unloaded import relative_curvature
+from tests.samples.results import assert_same
 
 EQUILIBRIUM = 1e-10
 """Asked for: the pressures sum up to the load; rounding of a sum of 1e4 cells is 1e-13."""

@@ -1,7 +1,7 @@
 import pytest
-from results import result
 
 from loaded_tca import cli
+from tests.samples.results import result
 
 FILES = {"pinion.vtk", "wheel.vtk", "pressure.vtk", "pinion.stl", "wheel.stl", "teeth.png"}
 

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
+from loaded_tca.arrays import Array
 from loaded_tca.contact.convolution import Convolution, Window
 from loaded_tca.contact.edges import MirroredConvolution
-
-Array = NDArray[Any]
 
 # A compliance is symmetric; rounding of its maker is not.
 SYMMETRY = 1e-9

@@ -16,12 +16,11 @@ from typing import Any
 
 import numpy as np
 import pyfftw
-from numpy.typing import NDArray
 from scipy.fft import dctn
 
+from loaded_tca.arrays import Array
 from loaded_tca.contact.love import influence_coefficients
 
-Array = NDArray[Any]
 Window = tuple[slice, slice]
 Piece = tuple[Any, ...]
 

@@ -7,13 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.columns import YieldingColumns, yielding
 from loaded_tca.contact.convolution import Convolution, Preconditioner, Window
 from loaded_tca.contact.edges import AnyMirror, MirroredConvolution, displacement_operator
 
-Array = NDArray[np.float64]
 Single = NDArray[np.float32]
-Mask = NDArray[np.bool_]
 
 # Steps in single precision let the displacement drift; it is computed anew after so many of them.
 REFRESH = 25

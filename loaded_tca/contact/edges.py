@@ -23,25 +23,24 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any, ClassVar, Literal, TypeVar
+from typing import ClassVar, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from loaded_tca.arrays import Array
 from loaded_tca.contact.convolution import Convolution, Window
 from loaded_tca.contact.oblique import ObliqueImage, ObliqueMirror
 from loaded_tca.errors import InputError
-
-Array = NDArray[Any]
 
 # Where a plane cuts the grid at more than this angle to an axis of it, no axis stands for the edge.
 MOST_OBLIQUE = math.radians(30.0)
 # psi = c0 + c1 nu + c2 nu^2, between what Hetenyi's solution gives for Hertz circles of radius a centred 0 to 1.5 a
 # from the edge (1.30 to 1.34 at nu = 0, 1.76 to 1.81 at 0.3) and for strips that end at it (1.21 to 1.25 and 1.70 to
-# 1.72); see validation/free_edge.py.
+# 1.72); see validation/contact/free_edge.py.
 FACTOR = (1.28, 0.44, 3.7)
 # Of the ratio by the angle of a wedge: at angles of 30 to 150 deg and nu = 0.3 between what strips along the edge and
-# across it ask for, see validation/wedge.py.
+# across it ask for, see validation/contact/wedge.py.
 POWER = 1.07
 SHARPEST = math.radians(30.0)
 # Part of a cell by which the place of an edge may miss half cells and count as there.

@@ -1,12 +1,9 @@
 """From grid to grid: coarser gaps, pressures carried to a finer grid, windows around a contact."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.convolution import Window, fast_length
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 COARSEST = 16
 MARGIN = 3

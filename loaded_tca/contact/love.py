@@ -1,9 +1,8 @@
 """Surface displacement of a half-space under uniform pressure on a rectangle (Love 1929)."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from loaded_tca.arrays import Array
 
 # Beyond this many cell widths the series replaces the four-term formula: its error, of the order of
 # (cell/distance)^4/100, and the cancellation of the formula, eps (distance/cell)^2, are both below 1e-9 there.

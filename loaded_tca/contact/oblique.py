@@ -7,14 +7,11 @@ its angle.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loaded_tca.arrays import Array
 from loaded_tca.contact.convolution import Convolution, Window
-
-Array = NDArray[Any]
 
 # Cells from the edge beyond which a pressure has no image: on long and very thin contacts there would be millions.
 DEEPEST = 2048

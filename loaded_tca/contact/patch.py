@@ -7,10 +7,8 @@ an ellipse it is a quadratic.
 import numpy as np
 from numpy.typing import NDArray
 
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.levels import continue_outside, split, window_around
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 # The fit is that of a quadratic if it leaves this part of the squared peak unexplained (root mean square);
 # a peak of another shape is taken from its cell.

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from loaded_tca.arrays import Array
 from loaded_tca.contact.columns import in_grid_units, merge_columns
 from loaded_tca.contact.convolution import Window
 from loaded_tca.contact.descent import AT_BOUND, Grid
@@ -13,7 +14,6 @@ from loaded_tca.contact.edges import FreeEdge, amplification, mirrors
 from loaded_tca.contact.levels import coarsen
 from loaded_tca.contact.love import influence_coefficients
 
-Array = NDArray[np.float64]
 Spacing = tuple[float, float]
 
 # Gaps are cut at this multiple of the largest that could close, to stay far from the limits of single precision.

@@ -6,13 +6,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact import patch
 from loaded_tca.contact.edges import FreeEdge
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 # Fewer cells than this across a contact leave errors above 1 % in its pressure.
 FEWEST_CELLS = 8

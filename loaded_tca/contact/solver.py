@@ -22,8 +22,9 @@ from dataclasses import replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from loaded_tca.arrays import Array
 from loaded_tca.contact import checks
 from loaded_tca.contact.columns import check_columns, in_grid_units
 from loaded_tca.contact.convolution import Window
@@ -33,8 +34,6 @@ from loaded_tca.contact.levels import coarsening, prolong, window_around
 from loaded_tca.contact.problem import OUT_OF_REACH, Problem, Spacing
 from loaded_tca.contact.solution import CoarserGrid, ContactSolution, ContactStatus
 from loaded_tca.errors import AccuracyWarning, ConvergenceError
-
-Array = NDArray[np.float64]
 
 # Iterations on one grid. Rough surfaces need about a hundred, smooth ones less than ten.
 MOST_ITERATIONS = 500

@@ -17,14 +17,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.fft import irfft2, next_fast_len, rfft2
 
+from loaded_tca.arrays import Array
 from loaded_tca.contact import checks
+from loaded_tca.contact.checks import memory_problem
 from loaded_tca.contact.solution import ContactSolution
-from loaded_tca.memory import memory_problem
 
-Array = NDArray[np.float64]
 Kernel = Callable[[Array, Array, float, float], Array]
 
 # Below this depth, in semi-minor axes, the greatest shear of every Hertz contact has been passed.

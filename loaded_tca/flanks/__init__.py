@@ -1,11 +1,11 @@
 """Tooth flanks, each a function theta = Theta(rho, z)."""
 
 from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.bevel import SphericalInvoluteFlank
+from loaded_tca.flanks.cylindrical import InvoluteFlank
+from loaded_tca.flanks.face_milled import FlankAngles, GeneratedFlank
 from loaded_tca.flanks.frame import ConeFrame, CylinderFrame, FlankFrame
-from loaded_tca.flanks.generated import FlankAngles, GeneratedFlank
-from loaded_tca.flanks.involute import InvoluteFlank
 from loaded_tca.flanks.modification import FlankModifications, ModifiedFlank
-from loaded_tca.flanks.spherical_involute import SphericalInvoluteFlank
 from loaded_tca.flanks.spline import SplineFlank, fitted, measured
 from loaded_tca.flanks.topography import MeasuredDeviations, MeasuredPoints, Topography
 from loaded_tca.flanks.topography_file import read_topography

@@ -15,8 +15,9 @@ from typing import Any
 
 import numpy as np
 
+from loaded_tca.arrays import Array
 from loaded_tca.flanks.frame import FlankFrame
-from loaded_tca.flanks.jet import Array, Jet
+from loaded_tca.flanks.jet import Jet
 
 BORDER_NAMES = ("tip", "root", "lower side", "upper side")
 """Names of the borders, in the order of ``Flank.borders``; the sides are the ends of the face, lower at

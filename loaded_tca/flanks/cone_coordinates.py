@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from loaded_tca.flanks.jet import Array, Jet
+from loaded_tca.arrays import Array
+from loaded_tca.flanks.jet import Jet
 
 SMALLEST_DISTANCE = 1e-3
 """Cone distances are kept above this fraction of R_m: at the apex there is no flank."""

@@ -40,7 +40,8 @@ from typing import Any
 
 import numpy as np
 
-from loaded_tca.flanks.jet import Array, Jet
+from loaded_tca.arrays import Array
+from loaded_tca.flanks.jet import Jet
 from loaded_tca.gears.cutter import BLADE_SIGNS, Blade, FlankName
 from loaded_tca.gears.machine_settings import MachineSettings
 

@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from loaded_tca.arrays import Array
 from loaded_tca.flanks.base import Flank
-from loaded_tca.flanks.jet import Array, Jet
+from loaded_tca.flanks.jet import Jet
 
 
 class DerivedFlank(Flank):

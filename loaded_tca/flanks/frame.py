@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loaded_tca.flanks.jet import Array
+from loaded_tca.arrays import Array
 
 Point = tuple[float, float]
 """(rho, z) [mm]."""

@@ -6,9 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from numpy.typing import NDArray
-
-Array = NDArray[Any]
+from loaded_tca.arrays import Array
 
 
 @dataclass(frozen=True)

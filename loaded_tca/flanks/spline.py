@@ -17,10 +17,11 @@ from typing import Any
 
 import numpy as np
 
+from loaded_tca.arrays import Array
 from loaded_tca.errors import AccuracyWarning, GeometryError, InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.derived import DerivedFlank, Region, unmodified
-from loaded_tca.flanks.jet import Array, Jet
+from loaded_tca.flanks.jet import Jet
 from loaded_tca.flanks.structured_grid import FEWEST_POINTS, StructuredGrid, flank_coordinates
 from loaded_tca.flanks.tensor_spline import TensorSpline, fit
 from loaded_tca.flanks.topography import Topography, excess_problems
@@ -127,7 +128,7 @@ def fitted(flank: Flank, points: tuple[int, int] = DEFAULT_POINTS, degree: int =
     Examples
     --------
     >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
-    >>> from loaded_tca.pair import cylindrical_pair
+    >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
     >>> gears = [CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)]
     >>> wheel = fitted(cylindrical_pair(CylindricalMesh(*gears)).wheel)
     >>> wheel.check_error.largest < 1e-9
@@ -198,7 +199,7 @@ def measured(
     --------
     >>> from loaded_tca.flanks.topography import MeasuredDeviations
     >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
-    >>> from loaded_tca.pair import cylindrical_pair
+    >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
     >>> gears = [CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)]
     >>> nominal = cylindrical_pair(CylindricalMesh(*gears)).wheel
     >>> radius, axial = nominal.grid(5, 9)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loaded_tca.arrays import Array
 from loaded_tca.errors import AccuracyWarning
 from loaded_tca.flanks.base import Flank
-from loaded_tca.flanks.jet import Array
 
 FEWEST_POINTS = {3: 4, 5: 6}
 """Degree of a B-spline -> points, or coefficients, that it needs in its direction."""

@@ -25,7 +25,8 @@ from scipy.linalg import solve_triangular
 from scipy.sparse import csr_array
 from scipy.sparse.linalg import LinearOperator, lsmr
 
-from loaded_tca.flanks.jet import Array, Jet
+from loaded_tca.arrays import Array
+from loaded_tca.flanks.jet import Jet
 
 POINTS_AT_ONCE = 4096
 """Points evaluated together: their coefficients take 1.2 MB."""

@@ -18,9 +18,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
+from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import Flank
-from loaded_tca.flanks.jet import Array
 
 LARGEST_EXCESS = 0.1
 """Part of the flank's height that no deviation reaches: beyond it the points belong to another flank."""

@@ -26,8 +26,8 @@ from pathlib import Path
 
 import numpy as np
 
+from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
-from loaded_tca.flanks.jet import Array
 from loaded_tca.flanks.topography import MeasuredDeviations, MeasuredPoints, Topography
 
 LARGEST_FILE = 2**23

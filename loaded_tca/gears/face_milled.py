@@ -52,3 +52,24 @@ class FaceMilledGear:
     def flank_name(self, side: int) -> FlankName:
         """The flank with a sign s."""
         return "concave" if self.side("concave") == side else "convex"
+
+
+@dataclass(frozen=True)
+class FaceMilledMesh:
+    """Both members of a face-milled pair.
+
+    Parameters
+    ----------
+    pinion, wheel : FaceMilledGear
+    shaft_angle : float [rad]
+        Sigma.
+    """
+
+    pinion: FaceMilledGear
+    wheel: FaceMilledGear
+    shaft_angle: float
+
+    @property
+    def gears(self) -> tuple[FaceMilledGear, FaceMilledGear]:
+        """Pinion and wheel."""
+        return self.pinion, self.wheel

@@ -6,7 +6,6 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from loaded_tca.mesh_cycle import MeshCycle
 from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
 from loaded_tca.plots.flanks import plot_contact_path
 from loaded_tca.plots.pressure_map import plot_pressure_map
@@ -21,7 +20,8 @@ from loaded_tca.plots.sharing import (
 )
 from loaded_tca.plots.style import highest_torque, save_figure
 from loaded_tca.plots.subsurface import plot_stress_below, plot_subsurface
-from loaded_tca.storage import FilePath, remove
+from loaded_tca.results.files import FilePath, remove
+from loaded_tca.results.mesh_cycle import MeshCycle
 
 __all__ = [
     "PICTURES",

@@ -6,9 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from loaded_tca.flanks.jet import Array
-from loaded_tca.key_figures import ARCSEC, mean_over_a_pitch
-from loaded_tca.mesh_cycle import MeshCycle
+from loaded_tca.arrays import Array
 from loaded_tca.plots.style import (
     HEADROOM,
     HERTZ,
@@ -20,6 +18,8 @@ from loaded_tca.plots.style import (
     torque_styles,
     widen,
 )
+from loaded_tca.results.key_figures import ARCSEC, mean_over_a_pitch
+from loaded_tca.results.mesh_cycle import MeshCycle
 
 SMALLEST_SPAN_ARCSEC = 0.02
 """Height of a transmission error axis below which a curve would be rounding."""

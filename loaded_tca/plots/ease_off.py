@@ -9,10 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from loaded_tca.flanks.jet import Array
+from loaded_tca.arrays import Array
+from loaded_tca.flank_maps.ease_off_map import EaseOffMap
+from loaded_tca.flank_maps.second_order import SecondOrder
 from loaded_tca.plots.style import ACCENT, COLOURS
-from loaded_tca.unloaded.ease_off_map import EaseOffMap
-from loaded_tca.unloaded.second_order import SecondOrder
 
 LEVELS = 10
 SMALLEST_SPAN_um = 0.01

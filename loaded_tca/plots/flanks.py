@@ -11,12 +11,12 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon
 
+from loaded_tca.arrays import Array
 from loaded_tca.flanks.base import Flank
-from loaded_tca.flanks.jet import Array
-from loaded_tca.mesh_cycle import MeshCycle
-from loaded_tca.pair import GearPair
-from loaded_tca.pair_contacts import PressureMap
+from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.plots.style import ACCENT, COLOURS, NO_MATE, highest_torque, load, range_of_positions, set_title
+from loaded_tca.results.contacts import PressureMap
+from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import parse_scene
 
 CONTACT_POINTS = "unloaded contact points of all positions and pairs"

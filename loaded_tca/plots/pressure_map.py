@@ -10,12 +10,12 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
+from loaded_tca.arrays import Array
 from loaded_tca.flanks.frame import FlankFrame
-from loaded_tca.flanks.jet import Array
-from loaded_tca.mesh_cycle import MeshCycle
-from loaded_tca.pair_contacts import PressureMap
 from loaded_tca.plots.flanks import highest_inner_pressure
 from loaded_tca.plots.style import ACCENT, COLOURS, NO_MATERIAL, highest_torque, load, place, set_title, tell_no_load
+from loaded_tca.results.contacts import PressureMap
+from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import parse_scene
 
 CELLS_OF_A_SPIKE = 0.05

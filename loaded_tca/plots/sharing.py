@@ -12,12 +12,10 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
+from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.base import Flank
-from loaded_tca.flanks.jet import Array
-from loaded_tca.mesh_cycle import MeshCycle
-from loaded_tca.pair import GearPair
-from loaded_tca.pair_contacts import PressureMap
+from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.plots.flanks import draw_flank, highest_inner_pressure, on_gear, pressed_maps
 from loaded_tca.plots.style import (
     COLOURS,
@@ -33,6 +31,8 @@ from loaded_tca.plots.style import (
     torque_styles,
     widen,
 )
+from loaded_tca.results.contacts import PressureMap
+from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import parse_scene
 from loaded_tca.unloaded import trace_contact
 

@@ -14,8 +14,8 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from loaded_tca.flanks.frame import FlankFrame
-from loaded_tca.mesh_cycle import MeshCycle
-from loaded_tca.storage import FilePath, replacing
+from loaded_tca.results.files import FilePath, replacing
+from loaded_tca.results.mesh_cycle import MeshCycle
 
 COLOURS = "viridis"
 """Even in lightness, and told apart by colour-blind readers and in grey."""

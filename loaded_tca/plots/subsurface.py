@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from loaded_tca.contact import SubsurfaceStress
 from loaded_tca.errors import InputError
 from loaded_tca.plots.style import ACCENT, COLOURS, set_title
-from loaded_tca.subsurface import NAMES, Quantity, StressBelow, depth_of_largest
+from loaded_tca.results.stress_below import NAMES, Quantity, StressBelow, depth_of_largest
 
 LINES = 8
 DEEPEST_DRAWN = 0.1
@@ -74,7 +74,7 @@ def plot_stress_below(below: StressBelow, quantity: Quantity = "max_shear") -> F
     Parameters
     ----------
     below : StressBelow
-        Of :func:`loaded_tca.subsurface.stress_below`.
+        Of :func:`loaded_tca.results.stress_below.stress_below`.
     quantity : {"max_shear", "von_mises"}
 
     Returns

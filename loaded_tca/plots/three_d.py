@@ -14,12 +14,12 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
+from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
-from loaded_tca.flanks.jet import Array
-from loaded_tca.mesh_cycle import MeshCycle
+from loaded_tca.output.teeth_in_space import TeethInSpace, complete_teeth, teeth_in_space
 from loaded_tca.plots.style import ACCENT, COLOURS, load, place, set_title
+from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import parse_scene
-from loaded_tca.teeth_in_space import TeethInSpace, complete_teeth, teeth_in_space
 from loaded_tca.tooth import PATCHES, Resolution, TriangleMesh
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def plot_teeth(result: MeshCycle, position: int | None = None, torque: int | Non
     ------
     InputError, GeometryError
         If nothing touches at that position, or there are no complete teeth, see
-        :func:`loaded_tca.teeth_in_space.complete_teeth`.
+        :func:`loaded_tca.output.teeth_in_space.complete_teeth`.
     """
     return draw_teeth(result, _shown(result, position, torque))
 
@@ -69,7 +69,7 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
     ----------
     result : MeshCycle
     shown : TeethInSpace
-        See :func:`loaded_tca.teeth_in_space.teeth_in_space`.
+        See :func:`loaded_tca.output.teeth_in_space.teeth_in_space`.
 
     Returns
     -------

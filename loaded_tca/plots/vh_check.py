@@ -10,11 +10,11 @@ from matplotlib.axes import Axes
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 
+from loaded_tca.arrays import Array
+from loaded_tca.flank_maps.pattern import ContactPattern
+from loaded_tca.flank_maps.vh_check import BEYOND, VHCheck
 from loaded_tca.flanks.frame import FlankFrame
-from loaded_tca.flanks.jet import Array
 from loaded_tca.plots.style import ACCENT, COLOURS, NO_MATE
-from loaded_tca.unloaded.pattern import ContactPattern
-from loaded_tca.unloaded.vh_check import BEYOND, VHCheck
 
 CELL = (2.0, 1.35)
 """Size of a cell [inch]."""

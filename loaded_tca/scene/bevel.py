@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from math import sin
 from typing import ClassVar, Literal
 
-from loaded_tca.bevel_pair import BevelMounting, bevel_pair
 from loaded_tca.errors import InputError
 from loaded_tca.gears.bevel import BevelGear, BevelMesh, pitch_angles
-from loaded_tca.pair import GearPair, Sense
+from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
+from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene import bevel_rows
 from loaded_tca.scene.blank import BlankGear, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units

@@ -14,7 +14,7 @@ from loaded_tca.flanks.modification import FlankModifications
 from loaded_tca.flanks.spline import DEFAULT_POINTS, fitted, measured
 from loaded_tca.flanks.topography import MeasuredDeviations, MeasuredPoints, Topography
 from loaded_tca.material import Material
-from loaded_tca.pair import GearPair
+from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene.flank_form import FITTED_DEGREE, FlankForm, Measurement
 from loaded_tca.scene.section import Section, as_table
 from loaded_tca.scene.sections import ElasticMaterial, Gear

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.pair import GearPair, Mounting, Sense, cylindrical_pair
+from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
+from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene import cylindrical_rows
 from loaded_tca.scene.blank import BlankGear, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units

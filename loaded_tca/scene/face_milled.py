@@ -7,15 +7,14 @@ from dataclasses import dataclass
 from math import degrees, isclose, radians, sin
 from typing import ClassVar
 
-from loaded_tca.bevel_pair import BevelMounting
 from loaded_tca.errors import InputError
-from loaded_tca.face_milled_pair import face_milled_pair
 from loaded_tca.gears import cutter
 from loaded_tca.gears.bevel import pitch_angles
-from loaded_tca.gears.face_milled import FaceMilledGear
-from loaded_tca.gears.face_milled_mesh import FaceMilledMesh
+from loaded_tca.gears.face_milled import FaceMilledGear, FaceMilledMesh
 from loaded_tca.gears.machine_settings import FaceMilledBlank, MachineSettings
-from loaded_tca.pair import GearPair, Sense
+from loaded_tca.pairs.bevel import BevelMounting
+from loaded_tca.pairs.face_milled import face_milled_pair
+from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene import bevel_rows, face_milled_rows
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units
 from loaded_tca.scene.face_milled_keys import Blade, Blank, Cutter, FaceMilled, Geometry, Machine

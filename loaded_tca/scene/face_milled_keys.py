@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 from loaded_tca.gears.cutter import BLADE_SIGNS, MINUTES_PER_NUMBER
-from loaded_tca.pair import Driving, Sense
+from loaded_tca.pairs.gear_pair import Driving, Sense
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.section import Rule, Section, subsection
 from loaded_tca.scene.sections import DEFAULT_BORE, DRIVING, SENSE, DIAMETER_mm, Gear, Pair, below

@@ -7,9 +7,8 @@ from math import cos, degrees, pi, sin
 
 import numpy as np
 
-from loaded_tca.flanks.generated import GeneratedFlank, tooth_angle
-from loaded_tca.gears.face_milled import FaceMilledGear
-from loaded_tca.gears.face_milled_mesh import FaceMilledMesh
+from loaded_tca.flanks.face_milled import GeneratedFlank, tooth_angle
+from loaded_tca.gears.face_milled import FaceMilledGear, FaceMilledMesh
 from loaded_tca.scene.bevel_rows import Point, pitch_point
 from loaded_tca.scene.model import Row
 from loaded_tca.scene.spiral import Side

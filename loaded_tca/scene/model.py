@@ -8,20 +8,10 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, TypeVar
 
 from loaded_tca.errors import InputError
-from loaded_tca.pair import GearPair, Sense
+from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene.build import build_flanks, in_base_units
 from loaded_tca.scene.keys import Choice, Key, Line, key
-from loaded_tca.scene.section import (
-    Rule,
-    Section,
-    Subsection,
-    as_table,
-    check,
-    contents,
-    entries,
-    made,
-    subsection,
-)
+from loaded_tca.scene.section import Rule, Section, Subsection, as_table, check, contents, entries, made, subsection
 from loaded_tca.scene.sections import Analysis, ElasticMaterial, Gear, Load, Pair
 from loaded_tca.scene.text import literal
 

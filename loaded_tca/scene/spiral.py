@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from loaded_tca.pair import Driving, Sense, signs_of
+from loaded_tca.pairs.gear_pair import Driving, Sense, signs_of
 from loaded_tca.scene.keys import Choice, Number, key
 from loaded_tca.scene.section import Rule, Section
 from loaded_tca.scene.sections import ERROR_deg, ERROR_mm

@@ -7,9 +7,9 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import Flank
-from loaded_tca.flanks.jet import Array
 from loaded_tca.tooth.fillet import ArcFillet, Fillet, FilletCurve
 from loaded_tca.tooth.form import ToothForm
 from loaded_tca.tooth.profile import Profile, profile_of
@@ -77,7 +77,7 @@ def build_tooth(flanks: tuple[Flank, Flank], form: ToothForm, resolution: Resolu
     Examples
     --------
     >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
-    >>> from loaded_tca.pair import cylindrical_pair
+    >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
     >>> from loaded_tca.tooth import tooth_forms
     >>> mesh = CylindricalMesh(*(CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)))
     >>> plus, minus = (cylindrical_pair(mesh, sense=sense).pinion for sense in ("positive", "negative"))

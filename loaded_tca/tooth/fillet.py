@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.flanks.jet import Array
 from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.tooth.profile import Profile, turned
 

@@ -12,23 +12,10 @@ from functools import singledispatch
 
 import numpy as np
 
+from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
-from loaded_tca.flanks.generated import GeneratedFlank, tooth_angle
-from loaded_tca.flanks.jet import Array
-from loaded_tca.gears import (
-    BevelGear,
-    BevelMesh,
-    CylindricalGear,
-    CylindricalMesh,
-    FaceMilledGear,
-    FaceMilledMesh,
-)
-from loaded_tca.gears.cutter import BLADE_SIGNS
-from loaded_tca.tooth.fillet import ArcFillet, Fillet, RackFillet
-from loaded_tca.tooth.sections import ApexSpheres, Sections, TransversePlanes
-
-FILLET_RADIUS_COEFFICIENT = 0.38
-"""Radius of the fillet of bevel gears in mean normal modules, as that of the basic rack of ISO 53, profile A."""
+from loaded_tca.tooth.fillet import Fillet
+from loaded_tca.tooth.sections import Sections
 
 
 @dataclass(frozen=True)
@@ -119,52 +106,10 @@ def tooth_forms(
 
     Examples
     --------
+    >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
     >>> gears = [CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)]
     >>> pinion, wheel = tooth_forms(CylindricalMesh(*gears))
     >>> round(pinion.half_thickness_angle * 34, 6)  # without profile shift half a tooth is a quarter of a pitch
     1.570796
     """
     raise InputError(f"mesh: no complete tooth is known for a {type(mesh).__name__}")
-
-
-@tooth_forms.register
-def _of_cylindrical_gears(mesh: CylindricalMesh, *, fillet_radius: float | None = None) -> tuple[ToothForm, ToothForm]:
-    def form(gear: CylindricalGear, working_radius: float) -> ToothForm:
-        fillet = RackFillet(gear) if fillet_radius is None else ArcFillet(fillet_radius)
-        angle = 0.5 * gear.tooth_thickness_at(working_radius) / working_radius
-        return ToothForm(gear.teeth, angle, TransversePlanes(), RootCylinder(gear.root_radius), fillet)
-
-    return form(mesh.pinion, mesh.pinion_working_radius), form(mesh.wheel, mesh.wheel_working_radius)
-
-
-@tooth_forms.register
-def _of_bevel_gears(mesh: BevelMesh, *, fillet_radius: float | None = None) -> tuple[ToothForm, ToothForm]:
-    def form(gear: BevelGear) -> ToothForm:
-        default = FILLET_RADIUS_COEFFICIENT * gear.mean_normal_module
-        radius = default if fillet_radius is None else fillet_radius
-        fillet, root = ArcFillet(radius, gear.mean_cone_distance), RootCone(gear.root_cone_angle)
-        return ToothForm(gear.teeth, gear.half_thickness_angle, ApexSpheres(), root, fillet, fillet_radius is None)
-
-    return form(mesh.pinion), form(mesh.wheel)
-
-
-@tooth_forms.register
-def _of_face_milled_gears(mesh: FaceMilledMesh, *, fillet_radius: float | None = None) -> tuple[ToothForm, ToothForm]:
-    def form(gear: FaceMilledGear) -> ToothForm:
-        distance, delta = gear.blank.mean_cone_distance, gear.blank.pitch_angle
-        rho, z = np.array([distance * math.sin(delta)]), np.array([distance * math.cos(delta)])
-        half = 0.5 * float(tooth_angle(gear, rho, z)[0])
-        fillet = ArcFillet(_edge_radius(gear, float(rho[0])) if fillet_radius is None else fillet_radius)
-        root = RootCone(gear.blank.root_angle, -gear.blank.root_apex)
-        return ToothForm(gear.teeth, half, ApexSpheres(), root, fillet, fillet_radius is None)
-
-    return form(mesh.pinion), form(mesh.wheel)
-
-
-def _edge_radius(gear: FaceMilledGear, pitch_radius: float) -> float:
-    """Larger edge radius of the blades, or that of a basic rack of the mean normal module [mm]."""
-    edge = max(gear.cutter.blade(flank).edge_radius for flank in BLADE_SIGNS)
-    if edge > 0.0:
-        return edge
-    spiral = GeneratedFlank(gear, "concave").angles.spiral
-    return FILLET_RADIUS_COEFFICIENT * 2.0 * pitch_radius * math.cos(spiral) / gear.teeth

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.base import Flank
-from loaded_tca.flanks.jet import Array
 from loaded_tca.tooth.sections import Sections
 
 SAME_SECTION = 1e-9

@@ -19,7 +19,7 @@ from abc import ABC, abstractmethod
 
 import numpy as np
 
-from loaded_tca.flanks.jet import Array
+from loaded_tca.arrays import Array
 
 
 class Sections(ABC):

@@ -10,13 +10,11 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loaded_tca.arrays import Array, Indices
 from loaded_tca.errors import InputError
-from loaded_tca.flanks.jet import Array
 from loaded_tca.tooth.triangles import TriangleMesh, grid_triangles
 
-Indices = NDArray[np.int_]
 PATCHES = ("root land -", "fillet -", "flank -", "tip land", "flank +", "fillet +", "root land +")
 """Patches along the outline; "+" is the side s = +1, whose outward normal has a positive azimuthal part."""
 CLOSING = {"lower side": -1, "upper side": -2, "foot": -3, "cut": -4}

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
-from loaded_tca.flanks.jet import Array
 
 
 @dataclass(frozen=True, eq=False)

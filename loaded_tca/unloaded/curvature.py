@@ -15,9 +15,9 @@ from weakref import ReferenceType, WeakKeyDictionary, ref
 
 import numpy as np
 
+from loaded_tca.arrays import Array
 from loaded_tca.flanks.base import lengthwise_direction
-from loaded_tca.flanks.jet import Array
-from loaded_tca.pair import GearPair, cylindrical_basis
+from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.path import ContactPoint
 

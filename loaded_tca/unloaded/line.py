@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loaded_tca.flanks.jet import Array
+from loaded_tca.arrays import Array
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import FEASIBLE
 

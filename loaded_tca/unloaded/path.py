@@ -10,10 +10,10 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from loaded_tca.arrays import Array, finite_row
 from loaded_tca.errors import AccuracyWarning, GeometryError, InputError
 from loaded_tca.flanks.base import BORDER_NAMES, outward_normal
-from loaded_tca.flanks.jet import Array
-from loaded_tca.pair import GearPair, cylindrical_basis, finite_row
+from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
 from loaded_tca.unloaded.ease_off import EaseOff, Station
 from loaded_tca.unloaded.line import find_lines
 from loaded_tca.unloaded.reduced import FEASIBLE
@@ -161,7 +161,7 @@ def trace_contact(pair: GearPair, pinion_angles: ArrayLike | None = None, *, war
     Examples
     --------
     >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
-    >>> from loaded_tca.pair import cylindrical_pair
+    >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
     >>> gears = [CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)]
     >>> path = trace_contact(cylindrical_pair(CylindricalMesh(*gears)), [0.0])
     >>> [round(float(x), 6) for x in (*path.pinion_radius, *path.wheel_radius)]

@@ -11,7 +11,7 @@ from itertools import combinations
 
 import numpy as np
 
-from loaded_tca.flanks.jet import Array
+from loaded_tca.arrays import Array
 
 PARALLEL = 1e-9
 """Sine of the angle between two borders below which they have no corner."""

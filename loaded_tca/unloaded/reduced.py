@@ -15,7 +15,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from loaded_tca.flanks.jet import Array
+from loaded_tca.arrays import Array
 from loaded_tca.unloaded.ease_off import EaseOff, Station
 from loaded_tca.unloaded.quadratic import Quadratic, best_step
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from loaded_tca.flanks.jet import Array
+from loaded_tca.arrays import Array
 
 MOST_STEPS = 100
 FIRST = 0.05

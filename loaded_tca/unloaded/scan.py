@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from loaded_tca.arrays import Array
 from loaded_tca.flanks.base import Flank
-from loaded_tca.flanks.jet import Array
-from loaded_tca.pair import GearPair
+from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import ROOM
 

@@ -12,9 +12,9 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
+from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError
-from loaded_tca.flanks.jet import Array
-from loaded_tca.pair import GearPair
+from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import Maxima, climb
 from loaded_tca.unloaded.scan import Corners, Scan, Starts, inside_pinion, region_corners, scan_pinion

@@ -24,9 +24,9 @@ from numbers import Real
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.flanks.jet import Array
-from loaded_tca.pair import GearPair
+from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.path import POSITIONS, ContactPath, trace_contact, warn_of_fillets
 from loaded_tca.unloaded.tooth_cycle import COINCIDE, REACH, ToothCycle, leading, reach, teeth_between, tooth_cycle
 from loaded_tca.unloaded.transfers import Transfer, find_transfers
@@ -241,7 +241,7 @@ def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: I
     Examples
     --------
     >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
-    >>> from loaded_tca.pair import cylindrical_pair
+    >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
     >>> gears = [CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)]
     >>> mesh = trace_teeth(cylindrical_pair(CylindricalMesh(*gears)))
     >>> mesh.peak_to_peak < 1e-14, mesh.is_continuous

@@ -18,9 +18,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError
-from loaded_tca.flanks.jet import Array
-from loaded_tca.pair import GearPair
+from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.roots import find_roots
 from loaded_tca.unloaded.search import first_touch

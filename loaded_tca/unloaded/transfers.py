@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.flanks.base import BORDER_NAMES
-from loaded_tca.pair import GearPair
+from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.path import ContactPoint, trace_contact
 from loaded_tca.unloaded.tooth_cycle import ToothCycle
 

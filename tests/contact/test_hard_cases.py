@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from conditions import contact_conditions
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
@@ -12,6 +11,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.contact import ContactStatus, solve_contact
 from loaded_tca.errors import InputError
 from loaded_tca.reference import hertz, punch
+from tests.samples.contact_conditions import contact_conditions
 
 E_STAR = 115e3
 LOAD = 100.0

@@ -6,15 +6,15 @@ import warnings
 
 import numpy as np
 import pytest
-from conditions import contact_conditions
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from loaded_tca.contact import ContactStatus, contact_stiffness, solve_contact, solver
+from loaded_tca.contact.checks import memory_problem
 from loaded_tca.errors import AccuracyWarning, ConvergenceError, InputError
-from loaded_tca.memory import memory_problem
 from loaded_tca.reference import hertz
+from tests.samples.contact_conditions import contact_conditions
 
 E_STAR = 115e3
 LOAD = 100.0

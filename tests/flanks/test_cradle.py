@@ -10,7 +10,7 @@ from scipy.optimize import fsolve
 
 from loaded_tca.flanks.cradle import CradleGeneration
 from loaded_tca.gears import Blade, MachineSettings
-from tests.face_milled import published_pinion, published_wheel
+from tests.samples.face_milled import published_pinion, published_wheel
 
 EVERY_SETTING = MachineSettings(
     radial=97.0,

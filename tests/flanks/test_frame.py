@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from pairs import gear_pair
 
-from loaded_tca.bevel_pair import bevel_pair
 from loaded_tca.flanks import ConeFrame, CylinderFrame, FlankModifications
 from loaded_tca.flanks.base import BORDER_NAMES, lengthwise_direction
 from loaded_tca.gears import bevel_mesh
+from loaded_tca.pairs.bevel import bevel_pair
+from tests.samples.gear_pairs import gear_pair
 
 CROWNED = FlankModifications(lead_crowning=0.01, profile_crowning=0.005)
 

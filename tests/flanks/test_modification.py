@@ -8,9 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
-from pairs import cylindrical_mesh, gear_pair, meshes, modifications
 
-from loaded_tca.bevel_pair import bevel_pair
 from loaded_tca.errors import InputError
 from loaded_tca.flanks import FlankModifications, InvoluteFlank, ModifiedFlank
 from loaded_tca.flanks.base import outward_normal
@@ -24,7 +22,10 @@ from loaded_tca.flanks.modification import (
     parabola,
 )
 from loaded_tca.gears import bevel_mesh
-from loaded_tca.pair import cylindrical_basis, cylindrical_pair
+from loaded_tca.pairs.bevel import bevel_pair
+from loaded_tca.pairs.cylindrical import cylindrical_pair
+from loaded_tca.pairs.gear_pair import cylindrical_basis
+from tests.samples.gear_pairs import cylindrical_mesh, gear_pair, meshes, modifications
 
 ROUNDING = 1e-12
 AMOUNT = 0.02

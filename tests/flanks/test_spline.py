@@ -9,15 +9,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
-from pairs import gear_pair
 
 from loaded_tca import AccuracyWarning, GeometryError, InputError, trace_contact
-from loaded_tca.bevel_pair import bevel_pair
 from loaded_tca.flanks import FlankModifications, InvoluteFlank, SplineFlank, fitted
 from loaded_tca.flanks.derived import Region, unmodified
 from loaded_tca.flanks.spline import pitch_point
 from loaded_tca.gears import bevel_mesh
+from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.unloaded.curvature import relative_curvature
+from tests.samples.gear_pairs import gear_pair
 
 POINT = 1e-6  # mm; asked for, and reached with 33 x 33 points
 CURVATURE = 1e-4  # relative; asked for

@@ -6,14 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from pairs import gear_pair
 
 from loaded_tca import AccuracyWarning, InputError, trace_contact
-from loaded_tca.bevel_pair import bevel_pair
 from loaded_tca.flanks import FlankModifications, MeasuredDeviations, MeasuredPoints, measured
 from loaded_tca.flanks.derived import unmodified
 from loaded_tca.flanks.spline import pitch_point
 from loaded_tca.gears import bevel_mesh
+from loaded_tca.pairs.bevel import bevel_pair
+from tests.samples.gear_pairs import gear_pair
 
 POINT = 1e-6  # mm
 SAME = 1e-12  # rad; the parabolas of crowning and twist lie in the spline space

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.errors import InputError
 from loaded_tca.gears import FaceMilledBlank, MachineSettings
-from tests.face_milled import published_pinion, published_wheel
+from tests.samples.face_milled import published_pinion, published_wheel
 
 
 def test_settings_out_of_range_are_all_named():

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.bevel_pair import BevelMounting, bevel_pair
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.base import outward_normal
 from loaded_tca.gears import bevel_mesh
+from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.scene import BevelScene, CylindricalScene, parse_scene, scene_from_table
 from loaded_tca.scene.bevel import Gear, Geometry, MountingErrors
 

@@ -10,18 +10,18 @@ import hypothesis
 import hypothesis.strategies as st
 import numpy as np
 import pytest
-from face_milled import matched_pinion, published_wheel
 from numpy.testing import assert_allclose
 
-from loaded_tca.bevel_pair import BevelMounting
 from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.face_milled_pair import face_milled_pair
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.base import outward_normal
-from loaded_tca.overview import describe_scene
+from loaded_tca.output.overview import describe_scene
+from loaded_tca.pairs.bevel import BevelMounting
+from loaded_tca.pairs.face_milled import face_milled_pair
 from loaded_tca.scene import FaceMilledScene, parse_scene, read_scene, scene_from_table
 from loaded_tca.scene.face_milled import Blade, Blank, Cutter, FaceMilled, Geometry, Machine, MountingErrors
 from loaded_tca.unloaded import trace_contact
+from tests.samples.face_milled import matched_pinion, published_wheel
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
 MATCHED = SCENES / "face_milled_19x62_matched.toml"

@@ -7,8 +7,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
-from pairs import cylindrical_mesh, meshes
-from teeth import COARSE, CROWNED, MESHES, NONE, RELIEVED, crossings, flanks_of, image, tooth_of
 
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks import FlankModifications, InvoluteFlank
@@ -25,6 +23,8 @@ from loaded_tca.tooth import (
     build_tooth,
     tooth_forms,
 )
+from tests.samples.gear_pairs import cylindrical_mesh, meshes
+from tests.samples.teeth import COARSE, CROWNED, MESHES, NONE, RELIEVED, crossings, flanks_of, image, tooth_of
 
 ROUNDING = 1e-12
 

@@ -4,13 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from face_milled import published_pinion, published_wheel
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import InputError
-from loaded_tca.face_milled_pair import face_milled_pair
 from loaded_tca.gears import Cutter, FaceMilledMesh
-from loaded_tca.tooth import ArcFillet, Resolution, build_tooth, mating_teeth, tooth_forms
+from loaded_tca.pairs import mating_teeth
+from loaded_tca.pairs.face_milled import face_milled_pair
+from loaded_tca.tooth import ArcFillet, Resolution, build_tooth, tooth_forms
+from tests.samples.face_milled import published_pinion, published_wheel
 
 SIGMA = np.radians(95.0)
 

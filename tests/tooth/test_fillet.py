@@ -3,11 +3,11 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from teeth import CROWNED, MESHES, NONE, RELIEVED, flanks_of
 
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.tooth import ArcFillet, RackFillet, tooth_forms
 from loaded_tca.tooth.profile import profile_of
+from tests.samples.teeth import CROWNED, MESHES, NONE, RELIEVED, flanks_of
 
 TANGENT = 1e-9
 """Angle between tangents that counts as none [rad]."""

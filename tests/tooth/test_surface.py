@@ -3,12 +3,12 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from teeth import CROWNED, MESHES, tooth_of
 
 from loaded_tca.errors import InputError
 from loaded_tca.gears.transverse_profile import transverse_profile
 from loaded_tca.tooth import PATCHES, Resolution
 from loaded_tca.tooth.surface import CLOSING
+from tests.samples.teeth import CROWNED, MESHES, tooth_of
 
 
 def shoelace(points):

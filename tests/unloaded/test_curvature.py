@@ -9,13 +9,13 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
-from pairs import cylindrical_mesh, gear_pair, pairs, seed_002
 
-from loaded_tca.bevel_pair import bevel_pair
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import bevel_mesh
-from loaded_tca.pair import cylindrical_basis
+from loaded_tca.pairs.bevel import bevel_pair
+from loaded_tca.pairs.gear_pair import cylindrical_basis
 from loaded_tca.unloaded import heelwards, relative_curvature, trace_contact
+from tests.samples.gear_pairs import cylindrical_mesh, gear_pair, pairs, seed_002
 
 RELATIVE = 1e-9  # two chains of some hundred operations each, cancelling by a factor of up to 1e4
 CLOSED_FORM = 1e-9

@@ -5,13 +5,14 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
-from pairs import gear_pair, pairs, wheel_lag
 
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.base import outward_normal
 from loaded_tca.flanks.modification import Term, logarithmic
-from loaded_tca.pair import Mounting, cylindrical_basis
+from loaded_tca.pairs.cylindrical import Mounting
+from loaded_tca.pairs.gear_pair import cylindrical_basis
 from loaded_tca.unloaded.ease_off import EaseOff
+from tests.samples.gear_pairs import gear_pair, pairs, wheel_lag
 
 STEP = 1e-4  # mm
 FIRST = 2e-8  # rounding 1e-14 * 100 mm over the step, and step^2 times the third derivative

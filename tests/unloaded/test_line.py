@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from pairs import cylindrical_mesh, gear_pair
 
 from loaded_tca import trace_contact
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.base import BORDER_NAMES
-from loaded_tca.pair import Mounting
+from loaded_tca.pairs.cylindrical import Mounting
+from tests.samples.gear_pairs import cylindrical_mesh, gear_pair
 
 ON_BORDER = 1e-7  # mm; twelve Newton steps end there
 FLATNESS = 1e-9  # of the module: where a line ends and a point begins

@@ -8,14 +8,23 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
-from pairs import NONE, cylindrical_mesh, gear_pair, meshes, modifications, pairs, seed_002, wheel_lag
 
 from loaded_tca import AccuracyWarning, GeometryError, InputError, trace_contact
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.base import BORDER_NAMES
 from loaded_tca.gears import CylindricalMesh
-from loaded_tca.pair import Mounting, cylindrical_pair
+from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.unloaded import ContactPath, ContactPoint
+from tests.samples.gear_pairs import (
+    NONE,
+    cylindrical_mesh,
+    gear_pair,
+    meshes,
+    modifications,
+    pairs,
+    seed_002,
+    wheel_lag,
+)
 
 ARCSEC = math.degrees(1.0) * 3600.0
 CONJUGATE = 1e-14  # rad; rounding of angles of order 0.1

@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from pairs import ROUNDING, TURNS, assert_certified_or_refused, highest_on_grid, reliefs
 
-from loaded_tca.bevel_pair import BevelMounting, bevel_pair
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import bevel_mesh
 from loaded_tca.gears.bevel import pitch_angles
+from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.unloaded import trace_contact
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import climb
+from tests.samples.gear_pairs import ROUNDING, TURNS, assert_certified_or_refused, highest_on_grid, reliefs
 
 PAIRS = 2000 if os.environ.get("HYPOTHESIS_PROFILE") == "nightly" else 120
 MOST_TEETH, MOST_RATIO = 80, 6.0

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from pairs import TURNS, assert_certified_or_refused, reliefs
 
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.pair import Mounting, cylindrical_pair
+from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.unloaded import trace_contact
+from tests.samples.gear_pairs import TURNS, assert_certified_or_refused, reliefs
 
 PAIRS = 2000 if os.environ.get("HYPOTHESIS_PROFILE") == "nightly" else 200
 

@@ -7,15 +7,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
-from pairs import cylindrical_mesh, gear_pair, highest_on_grid, pairs, wheel_lag
 
 from loaded_tca import trace_contact
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.pair import Mounting, cylindrical_pair
+from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.unloaded import search
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import climb
+from tests.samples.gear_pairs import cylindrical_mesh, gear_pair, highest_on_grid, pairs, wheel_lag
 
 ROUNDING = 1e-14  # rad, angles of order 0.1
 STATIONARY = 1e-9  # residual at which rounding ends a Newton iteration on a ridge of ratio 1e6
@@ -240,7 +240,7 @@ def test_basin_on_a_border_of_the_wheel_is_found(pair, share):
 
 def test_long_bent_ridge_is_climbed_to_its_end(monkeypatch):
     """Unmodified, turned by a microradian, wider than is allowed: a ridge that is level to 1e-4 mm and winds."""
-    monkeypatch.setattr("loaded_tca.pair._require_less_than_a_turn", lambda _mesh: None)
+    monkeypatch.setattr("loaded_tca.pairs.cylindrical._require_less_than_a_turn", lambda _mesh: None)
     gears = [
         CylindricalGear(z, 2.298922117910948, 185.8487990044376, helix_angle=s * 0.6548669727032047, profile_shift=x)
         for z, s, x in ((14, -1.0, -0.44666563633052614), (62, 1.0, 0.030512516822514324))

@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
-from pairs import cylindrical_mesh, gear_pair, highest_on_grid, pairs
 
 from loaded_tca import AccuracyWarning, GeometryError, InputError, trace_contact
 from loaded_tca.flanks import FlankModifications
-from loaded_tca.pair import Mounting
+from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.unloaded.teeth import MeshPath, trace_teeth
 from loaded_tca.unloaded.tooth_cycle import REACH
+from tests.samples.gear_pairs import cylindrical_mesh, gear_pair, highest_on_grid, pairs
 
 ARCSEC = math.degrees(3600.0)
 ROUNDING = 1e-13  # rad

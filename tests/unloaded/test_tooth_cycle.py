@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from pairs import gear_pair
 
 from loaded_tca import GeometryError, trace_contact
 from loaded_tca.flanks import FlankModifications
-from loaded_tca.pair import Mounting
+from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.unloaded.tooth_cycle import REACH, height_and_slope, reach, teeth_between, tooth_cycle
+from tests.samples.gear_pairs import gear_pair
 
 BOTH = FlankModifications(lead_crowning=0.02, profile_crowning=0.01)
 RELIEF = FlankModifications(

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from pairs import gear_pair
 
 from loaded_tca import trace_contact
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.base import BORDER_NAMES
-from loaded_tca.pair import Mounting
+from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.unloaded.teeth import trace_teeth
+from tests.samples.gear_pairs import gear_pair
 
 LEAD = FlankModifications(lead_crowning=0.02)
 BOTH = FlankModifications(lead_crowning=0.02, profile_crowning=0.01)

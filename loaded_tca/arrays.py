@@ -1,0 +1,30 @@
+"""Arrays of numbers: the types that annotations use, and arguments checked to be arrays."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from loaded_tca.errors import InputError
+
+Array = NDArray[Any]
+Indices = NDArray[np.int_]
+Mask = NDArray[np.bool_]
+
+
+def numbers(name: str, values: ArrayLike) -> Array:
+    """An argument as an array of floats; InputError if it is none."""
+    try:
+        return np.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: an array of finite numbers is asked for, not {values!r:.60}") from None
+
+
+def finite_row(name: str, values: ArrayLike) -> Array:
+    """An argument as a row (n,) of finite numbers, at least one; InputError if it is none."""
+    row = numbers(name, values)
+    if row.ndim != 1 or not row.size or not np.isfinite(row).all():
+        raise InputError(f"{name}: shape {row.shape} with finite numbers only in one dimension is asked for")
+    return row

@@ -1,0 +1,261 @@
+"""A gear body held at its bore: whole ring, one resolved tooth, its neighbours, in space or in one section."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from loaded_tca.arrays import Array, Indices
+from loaded_tca.compliance.dissection import Factorisation, factorise
+from loaded_tca.compliance.finite_elements import Discretisation, discretise
+from loaded_tca.compliance.geometry import BodyNodes, body_nodes
+from loaded_tca.compliance.layout import MeshDensity, RingLayout
+from loaded_tca.flanks.base import Flank, outward_normal
+from loaded_tca.material import Material
+from loaded_tca.tooth.build import Resolution, build_tooth
+from loaded_tca.tooth.form import ToothForm
+
+DEFAULT_BORE = 0.55
+"""Bore of a gear that has none given, over its (smallest) root diameter."""
+BISECTIONS = 50
+FIRST_CHORD = 0.25
+"""First guess of the distance from a flank to the middle of the tooth, over the height of the flank."""
+
+
+@dataclass(frozen=True, eq=False)
+class GearTooth:
+    """What the compliance of a gear is made from.
+
+    Attributes
+    ----------
+    flanks : (Flank, Flank)
+        Of the sides s = +1 and s = -1.
+    form : ToothForm
+    material : Material
+    bore_diameter : float [mm], optional
+        Held rigid; default: 0.55 of the root diameter.
+    """
+
+    flanks: tuple[Flank, Flank]
+    form: ToothForm
+    material: Material = Material()
+    bore_diameter: float | None = None
+
+    def nodes(self, density: MeshDensity) -> BodyNodes:
+        """Nodes of the whole ring.
+
+        Raises
+        ------
+        InputError
+            If the bore reaches the teeth.
+        GeometryError
+            If the tooth is pointed or cut off.
+        """
+        resolution = Resolution(flank=65, fillet=65, land=9, lengthwise=2 * density.lengthwise + 1)
+        tooth = build_tooth(self.flanks, self.form, resolution)
+        root = np.hypot(*tooth.outline[0, :, :2].T)
+        bore = DEFAULT_BORE * root if self.bore_diameter is None else 0.5 * self.bore_diameter
+        return body_nodes(tooth, self.form.sections, bore, RingLayout(self.form.teeth, density))
+
+
+@dataclass(frozen=True, eq=False)
+class SurfacePlaces:
+    """Points on surfaces between nodes: numbers of 8 nodes each, and their shares (m, 8)."""
+
+    nodes: Indices
+    shares: Array
+
+    def along(self, directions: Array, nodes: int) -> csr_array:
+        """Displacements along directions (m, 3) as a matrix (m, 3 nodes); its rows are unit forces along them."""
+        values = self.shares[..., None] * directions[:, None]
+        columns = 3 * self.nodes[..., None] + np.arange(3)
+        starts = np.arange(len(directions) + 1) * values[0].size
+        return csr_array((values.ravel(), columns.ravel(), starts), shape=(len(directions), 3 * nodes))
+
+
+@dataclass(frozen=True, eq=False)
+class FlankPlaces:
+    """Points of a flank, and what is below them.
+
+    Attributes
+    ----------
+    height, length : (m,) array
+        Parts of the flank's height and of the face width, 0 to 1.
+    point, normal : (m, 3) array [mm]
+        In the frame of the tooth; normals out of the material.
+    depth : (m,) array [mm]
+        Along the normal to the middle of the tooth.
+    """
+
+    height: Array
+    length: Array
+    point: Array
+    normal: Array
+    depth: Array
+
+    @property
+    def middle(self) -> Array:
+        """Where the normals cut the middle of the tooth (m, 3) [mm]."""
+        return self.point - self.depth[:, None] * self.normal
+
+
+@dataclass(frozen=True, eq=False)
+class ToothFrame:
+    """One gear's tooth on its mesh: places on the flank in contact and on the middle of the teeth.
+
+    Attributes
+    ----------
+    gear : GearTooth
+    side : int
+        s of the flank in contact.
+    nodes : BodyNodes
+    """
+
+    gear: GearTooth
+    side: int
+    nodes: BodyNodes
+
+    @property
+    def flank(self) -> Flank:
+        """The flank in contact."""
+        return self.gear.flanks[0 if self.side > 0 else 1]
+
+    def _column(self, part: float, tooth: int = 0) -> int:
+        """Column of nodes at a part of the thickness, 0 at s = -1 and 1 at s = +1."""
+        sector = self.nodes.layout.sector(tooth)
+        assert sector.density is not None
+        return sector.first + 2 * sector.density.land + round(2 * sector.density.through * part)
+
+    def _flank_rows(self) -> slice:
+        """Rows of nodes on the flank, from its root."""
+        layout = self.nodes.layout
+        first = layout.base_row + 2 * layout.density.fillet
+        return slice(first, first + 2 * layout.density.flank + 1)
+
+    def parts(self, rho: Array, z: Array) -> tuple[Array, Array]:
+        """Parts (m,) of the flank's height and of the face width, of points of the flank or just beyond it."""
+        sections, coordinate = self.nodes.sections, self.nodes.coordinate
+        where = sections.coordinate(rho, z)
+        radii = self.nodes.radius[self._column(0.5 + 0.5 * self.side), self._flank_rows()]
+        low, high = (np.interp(where, coordinate, radii[end]) for end in (0, -1))
+        length = (where - coordinate[0]) / (coordinate[-1] - coordinate[0])
+        return np.clip((sections.radius(rho, z) - low) / (high - low), 0.0, 1.0), np.clip(length, 0.0, 1.0)
+
+    def places(self, height: Array, length: Array) -> FlankPlaces:
+        """Points at parts (m,) of the flank's height and of the face width."""
+        coordinate = self.nodes.coordinate
+        where = coordinate[0] + length * (coordinate[-1] - coordinate[0])
+        radii = self.nodes.radius[self._column(0.5 + 0.5 * self.side), self._flank_rows()]
+        low, high = (np.interp(where, coordinate, radii[end]) for end in (0, -1))
+        rho, z = self.nodes.sections.point(low + height * (high - low), where)
+        theta = self.flank.theta(rho, z).value + self.side * self.gear.form.half_thickness_angle
+        radial, hoop, axial = outward_normal(self.flank, rho, z).T
+        cosine, sine = np.cos(theta), np.sin(theta)
+        normal = np.stack([radial * cosine - hoop * sine, radial * sine + hoop * cosine, axial], axis=-1)
+        point = np.stack([rho * cosine, rho * sine, z], axis=-1)
+        return FlankPlaces(height, length, point, normal, self._depth(point, normal, float((high - low).max())))
+
+    def _depth(self, point: Array, normal: Array, scale: float) -> Array:
+        """Distances (m,) along the normals to the middle of the tooth [mm]."""
+
+        def beyond(depth: Array) -> Array:
+            place = point - depth[:, None] * normal
+            azimuth = np.arctan2(place[:, 1], place[:, 0])
+            return self.side * (azimuth - self._middle_angle(place))
+
+        low, high = np.zeros(len(point)), np.full(len(point), FIRST_CHORD * scale)
+        for _ in range(BISECTIONS):
+            far = beyond(high) > 0.0
+            if not far.any():
+                break
+            high = np.where(far, 1.5 * high, high)
+        for _ in range(BISECTIONS):
+            middle = 0.5 * (low + high)
+            outside = beyond(middle) > 0.0
+            low, high = np.where(outside, middle, low), np.where(outside, high, middle)
+        return 0.5 * (low + high)
+
+    def _middle_angle(self, place: Array) -> Array:
+        """Azimuth (m,) of the middle of the tooth at half the height of the flank, in the sections of points (m, 3)."""
+        where = self.nodes.sections.coordinate(np.hypot(place[:, 0], place[:, 1]), place[:, 2])
+        rows = self._flank_rows()
+        angle = self.nodes.angle[self._column(0.5), (rows.start + rows.stop) // 2]
+        return np.interp(where, self.nodes.coordinate, angle)
+
+    def on_flank(self, places: FlankPlaces, number: Indices) -> SurfacePlaces:
+        """Places among the nodes (columns, rows, layers) numbered ``number``, on the flank in contact."""
+        rows = self._flank_rows()
+        row = rows.start + places.height * (rows.stop - 1 - rows.start)
+        return _among_nodes(number[self._column(0.5 + 0.5 * self.side)], row, places.length * (number.shape[2] - 1))
+
+    def on_middle(self, places: FlankPlaces, tooth: int, number: Indices) -> SurfacePlaces:
+        """Places below those of a flank, on the middle of a tooth of the model."""
+        column, sections, coordinate = self._column(0.5, tooth), self.nodes.sections, self.nodes.coordinate
+        rho, z = np.hypot(places.middle[:, 0], places.middle[:, 1]), places.middle[:, 2]
+        where = np.clip(sections.coordinate(rho, z), coordinate[0], coordinate[-1])
+        layer = np.interp(where, coordinate, np.arange(len(coordinate)))
+        radii = self.nodes.radius[column]
+        radii = radii[np.isfinite(radii[:, 0])]
+        row = _rows_at(radii, layer, sections.radius(rho, z))
+        return _among_nodes(number[column], row, layer)
+
+
+def _rows_at(radii: Array, layer: Array, radius: Array) -> Array:
+    """Rows (m,) at which a column with the radii (rows, layers), growing, reaches ``radius`` (m,) at ``layer`` (m,)."""
+    lower = np.minimum(layer.astype(int), radii.shape[1] - 2)
+    part = layer - lower
+    columns = radii[:, lower] * (1.0 - part) + radii[:, lower + 1] * part
+    rows = np.arange(len(radii))
+    return np.array([np.interp(r, column, rows) for r, column in zip(radius, columns.T, strict=True)])
+
+
+def _among_nodes(number: Indices, row: Array, layer: Array) -> SurfacePlaces:
+    """Serendipity interpolation at rows and layers (m,) of a surface of nodes (rows, layers)."""
+    from skfem import ElementQuadS2
+
+    element = ElementQuadS2()
+    last = int((number[:, 0] >= 0).sum()) - 1
+    lowest = np.stack([np.minimum(0.5 * row, last // 2 - 1), np.minimum(0.5 * layer, number.shape[1] // 2 - 1)])
+    lowest = lowest.astype(int)
+    span = np.where(number[2 * lowest[0], 2 * lowest[1] + 1] < 0, 2, 1)  # a middle that is missing: a thick element
+    lowest[1] -= lowest[1] % span
+    local = np.stack([0.5 * row - lowest[0], (0.5 * layer - lowest[1]) / span])
+    offsets = np.rint(2.0 * np.asarray(element.doflocs)).astype(int).T[:, None]
+    nodes = 2 * lowest[0, :, None] + offsets[0], 2 * lowest[1, :, None] + offsets[1] * span[:, None]
+    shares = np.stack([element.lbasis(local, i)[0] for i in range(offsets.shape[-1])], axis=-1)
+    return SurfacePlaces(number[nodes[0], nodes[1]], shares)
+
+
+@dataclass(frozen=True, eq=False)
+class GearBody:
+    """The stiffness of a whole gear body in space, factorised.
+
+    Attributes
+    ----------
+    mesh : Discretisation
+    factorisation : Factorisation
+    """
+
+    mesh: Discretisation
+    factorisation: Factorisation
+
+
+def gear_body(nodes: BodyNodes, material: Material) -> GearBody:
+    """Assemble and factorise the stiffness of a ring held at its bore."""
+    layout = nodes.layout
+    lowest, spans, blocks = layout.bricks
+    mesh = discretise(nodes.points, lowest, layout.turns, spans)
+    return GearBody(mesh, factorised(mesh, material, blocks)[0])
+
+
+def factorised(mesh: Discretisation, material: Material, blocks: Indices | None = None) -> tuple[Factorisation, Array]:
+    """Factor of the stiffness of a mesh whose first row is held, and the matrices of its elements' kinds."""
+    held = mesh.number[:, 0].ravel()
+    free = np.ones((len(mesh.points), mesh.dimension), dtype=bool)
+    free[held[held >= 0]] = False
+    matrices, places = mesh.stiffness(material), mesh.lowest // 2
+    places[:, 2:] -= places[:, 2:] % 2  # no cut through an element that is twice as thick
+    factor = factorise(matrices, mesh.dofs, places, free.ravel(), kinds=mesh.kinds, blocks=blocks)
+    return factor, matrices

@@ -1,0 +1,185 @@
+"""Quadratic serendipity elements on a logical mesh: numbers of the nodes, matrices of the elements.
+
+Shape functions and quadrature are those of scikit-fem; the rest is what a logical mesh allows, all elements at once. It
+works in the plane (plane strain) and in space alike. Degrees of freedom are dimension * node + component.
+
+References
+----------
+Gustafsson, McBain 2020, scikit-fem: A Python package for finite element assembly, JOSS 5(52), 2369.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from loaded_tca.arrays import Array, Indices
+from loaded_tca.compliance.hanging import FACES, following, nodes_of
+from loaded_tca.errors import GeometryError
+from loaded_tca.material import Material
+
+QUADRATURE_ORDER = 4
+"""Three points in each direction."""
+SAME_FORM = 1e-9
+"""Elements are of one kind if their nodes agree to this part of the size of the body: far above rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Discretisation:
+    """Elements between nodes on a grid of whole coordinates, two to an element.
+
+    Attributes
+    ----------
+    number : int array
+        Numbers of the nodes by their whole coordinates; -1 where there is none.
+    points : (nodes, d) array [mm]
+        Where they stand.
+    elements : (n, k) int array
+        Nodes of each element.
+    lowest : (n, d) int array
+        Lowest whole coordinates of each element.
+    kinds : (n,) int array
+        Which of q kinds each element is; elements of one kind have the same form.
+    products : (q, k d, k d) array [mm^(d - 2)]
+        Integrals of the products of the derivatives of any two shape functions, over one element of each kind, in the
+        frame of its first column.
+    turns : (q, k) array [rad]
+        From there to the frames in which the displacements of the nodes are counted.
+    shares : (q, k, k) array
+        Of these in the displacements of the element's own nodes: the identity where none hangs on a thicker element.
+    """
+
+    number: Indices
+    points: Array
+    elements: Indices
+    lowest: Indices
+    kinds: Indices
+    products: Array
+    turns: Array
+    shares: Array
+
+    @property
+    def dimension(self) -> int:
+        """2 or 3."""
+        return int(self.points.shape[1])
+
+    @property
+    def dofs(self) -> Indices:
+        """Degrees of freedom of each element (n, k d)."""
+        d = self.dimension
+        return (d * self.elements[:, :, None] + np.arange(d)).reshape(len(self.elements), -1)
+
+    def stiffness(self, material: Material) -> Array:
+        r"""Stiffness matrices (q, k d, k d) of the kinds [N/mm]; in the plane per mm of width, strain being plane.
+
+        .. math:: K_{ia,jb} = \int \lambda\,\phi_{i,a}\phi_{j,b} + \mu\,\phi_{i,b}\phi_{j,a}
+                  + \mu\,\delta_{ab} \nabla\phi_i\cdot\nabla\phi_j
+        """
+        k, d = self.elements.shape[1], self.dimension
+        shear = 0.5 * material.youngs_modulus / (1.0 + material.poisson_ratio)
+        lame = 2.0 * shear * material.poisson_ratio / (1.0 - 2.0 * material.poisson_ratio)
+        products = self.products.reshape(-1, k, d, k, d)
+        matrices = lame * products + shear * products.transpose(0, 1, 4, 3, 2)
+        trace = shear * sum(products[:, :, a, :, a] for a in range(d))
+        for a in range(d):
+            matrices[:, :, a, :, a] += trace
+        matrices = matrices.reshape(-1, k * d, k * d)
+        other = np.flatnonzero(self.turns.any(axis=1) | (self.shares != np.eye(k)).any(axis=(1, 2)))
+        turns = _turn(self.turns[other], d)
+        change = (self.shares[other, :, None, :, None] * turns.transpose(0, 2, 1, 3)[:, None]).reshape(-1, k * d, k * d)
+        matrices[other] = change.transpose(0, 2, 1) @ matrices[other] @ change
+        return matrices
+
+
+def discretise(
+    points: Array, lowest: Indices, turns: Array | None = None, spans: Indices | None = None
+) -> Discretisation:
+    """Number the nodes of a logical mesh and integrate over its elements.
+
+    Parameters
+    ----------
+    points : (..., d) array [mm]
+        Nodes by their d whole coordinates, of which the first closes to a ring.
+    lowest : (n, d) int array
+        Lowest node of each element; its others are up to 2 further.
+    turns : (columns,) array [rad], optional
+        About the origin or the last axis, by which the frame is turned in which displacements of a column are counted.
+    spans : (n,) int array, optional
+        In space: 2 where an element is twice as thick along the last axis, and starts at a multiple of 4; default: 1.
+
+    Raises
+    ------
+    GeometryError
+        If an element is turned inside out.
+    """
+    shape, d = points.shape[:-1], points.shape[-1]
+    element, offsets = _element(d), _offsets(d)
+    if spans is None:
+        nodes, hanging = offsets + lowest[:, None], np.zeros((len(lowest), len(FACES)), dtype=int)
+        nodes[..., 0] %= shape[0]
+    else:
+        nodes, hanging = nodes_of(lowest, spans, offsets, shape[0])
+    used, elements = np.unique(np.ravel_multi_index(tuple(np.moveaxis(nodes, -1, 0)), shape), return_inverse=True)
+    number = np.full(shape, -1)
+    number.reshape(-1)[used] = np.arange(len(used))
+    found = points.reshape(-1, d)[used]
+    elements = elements.reshape(nodes.shape[:2])
+    frames = np.zeros(shape[0]) if turns is None else turns
+    first = frames[lowest[:, 0] % shape[0]]
+    corners = np.einsum("nba,nkb->nka", _turn(first, d), found[elements])
+    onwards = np.remainder(frames[nodes[..., 0]] - first[:, None], 2.0 * math.pi)
+    one, kinds = _kinds(corners, onwards, hanging)
+    shares = following(hanging[one], offsets, _element(2))
+    products = _products(element, shares @ corners[one])
+    return Discretisation(number, found, elements, lowest, kinds, products, onwards[one], shares)
+
+
+def _kinds(corners: Array, turns: Array, hanging: Indices) -> tuple[Indices, Indices]:
+    """One element of each kind, and the kind of each element: the same form but for where it lies along the axis."""
+    size, along = np.abs(corners).max(), corners - corners[:, :1] * (np.arange(corners.shape[-1]) == 2)
+    form = np.concatenate([along / size, turns[..., None]], axis=-1).reshape(len(corners), -1)
+    rounded = np.concatenate([np.rint(form / SAME_FORM).astype(int), hanging], axis=1)
+    seen: dict[bytes, int] = {}
+    kinds = np.array([seen.setdefault(row.tobytes(), len(seen)) for row in rounded])
+    return np.unique(kinds, return_index=True)[1], kinds
+
+
+def _turn(angle: Array, dimension: int) -> Array:
+    """Turns (..., d, d) about the origin or the last axis: from components in turned frames to those before."""
+    turn = np.zeros((*angle.shape, dimension, dimension))
+    turn[..., range(dimension), range(dimension)] = 1.0
+    cosine, sine = np.cos(angle), np.sin(angle)
+    turn[..., 0, 0], turn[..., 0, 1], turn[..., 1, 0], turn[..., 1, 1] = cosine, -sine, sine, cosine
+    return turn
+
+
+def _element(dimension: int) -> Any:
+    """Serendipity element of scikit-fem."""
+    from skfem import ElementHexS2, ElementQuadS2  # on use: it takes half a second
+
+    return {2: ElementQuadS2, 3: ElementHexS2}[dimension]()
+
+
+def _offsets(dimension: int) -> Indices:
+    """Nodes (k, d) of an element, 0 to 2 from the lowest."""
+    return np.rint(2.0 * np.asarray(_element(dimension).doflocs)).astype(int)
+
+
+def _products(element: Any, corners: Array) -> Array:
+    """Integrals (n, k d, k d) of products of derivatives, from the nodes (n, k, d) of the elements."""
+    from skfem.quadrature import get_quadrature
+
+    places, weights = get_quadrature(element, QUADRATURE_ORDER)
+    n, k, d = corners.shape
+    local = np.stack([element.lbasis(places, i)[1] for i in range(k)])  # (k, d, q)
+    jacobian = (corners.transpose(0, 2, 1).reshape(n * d, k) @ local.reshape(k, -1)).reshape(n, d, d, -1)
+    jacobian = np.ascontiguousarray(jacobian.transpose(0, 3, 2, 1))  # (n, q, local, global)
+    determinant = np.linalg.det(jacobian)
+    if not (np.isfinite(determinant).all() and (determinant * np.sign(determinant[0, 0]) > 0.0).all()):
+        raise GeometryError("the mesh of the gear body turns an element inside out; change its density")
+    gradient = np.linalg.inv(jacobian) @ local.transpose(2, 1, 0)
+    gradient = np.ascontiguousarray(gradient.transpose(0, 3, 2, 1)).reshape(n, k * d, -1)
+    return (gradient * (np.abs(determinant) * weights)[:, None]) @ gradient.transpose(0, 2, 1)

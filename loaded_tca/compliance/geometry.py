@@ -1,0 +1,224 @@
+"""Where the nodes of a gear body stand: the layout laid over the complete tooth, section by section.
+
+Everything is drawn in the images of the sections, in polar coordinates, for all sections at once: arrays end with the
+axis of the sections. Rows of the tooth join points of equal height on both flanks; towards the root they sag, so that
+they meet the fillets under open angles. Columns of the rim are radial.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.compliance.layout import MeshDensity, RingLayout, SectorLayout
+from loaded_tca.errors import InputError
+from loaded_tca.tooth.sections import Sections
+from loaded_tca.tooth.surface import ToothSurface
+
+FILLET_SHARE = 0.5
+"""Part of the fillet's length that belongs to the tooth; the rest to the columns of the space."""
+SAG = 0.2
+"""Sag of the lowest row of the tooth over its width."""
+SHALLOW = 0.3
+"""The same at most over the depth of the rim."""
+GROWTH = 1.8
+"""Each layer of the rim is so much thicker than the one above."""
+LARGEST_BORE = 0.98
+"""Of the smallest root circle."""
+SHARP = math.pi / 3.0
+"""Bend of an edge between its halves from which it is made straight; 29 deg on usual teeth, 66 where one folded."""
+BISECTIONS = 60
+
+
+@dataclass(frozen=True, eq=False)
+class BodyNodes:
+    """Nodes of a ring in the images of its sections, NaN where there are none.
+
+    Attributes
+    ----------
+    layout : RingLayout
+    sections : Sections
+    coordinate : (k,) array [mm]
+        Which sections.
+    radius, angle : (columns, rows, k) array [mm], [rad]
+        Polar coordinates of the images.
+    bore_diameter : float [mm]
+        Smallest one.
+    outline : (n, k, 3) array [mm]
+        Of the tooth between which the nodes were drawn, finer than they are.
+    """
+
+    layout: RingLayout
+    sections: Sections
+    coordinate: Array
+    radius: Array
+    angle: Array
+    bore_diameter: float
+    outline: Array
+
+    @property
+    def points(self) -> Array:
+        """Nodes (columns, rows, k, 3) in the gear's frame [mm]."""
+        rho, z = self.sections.point(self.radius, self.coordinate)
+        return np.stack([rho * np.cos(self.angle), rho * np.sin(self.angle), z], axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class _Side:
+    """One side of a tooth in the images, radius and angle (n, k): the flank from its root up, the foot on down.
+
+    The foot is the fillet with the length ``fillet`` (k,) [mm], then half the root land.
+    """
+
+    flank: tuple[Array, Array]
+    foot: tuple[Array, Array]
+    foot_length: Array
+    fillet: Array
+
+    def on_flank(self, height: Array) -> tuple[Array, Array]:
+        """Radius and angle (n, k) at parts (n,) of the flank's height."""
+        radius, angle = self.flank
+        wanted = radius[0] + height[:, None] * (radius[-1] - radius[0])
+        return wanted, _interpolated(wanted, radius, angle)
+
+    def on_foot(self, part: Array) -> tuple[Array, Array]:
+        """Radius and angle (n, k): part 0 is the flank, 1 the end of the tooth's rows, 2 the middle of the space."""
+        split = FILLET_SHARE * self.fillet
+        part = part[:, None]
+        length = np.where(part <= 1.0, part * split, split + (part - 1.0) * (self.foot_length[-1] - split))
+        radius, angle = (_interpolated(length, self.foot_length, values) for values in self.foot)
+        return radius, angle
+
+
+def body_nodes(tooth: ToothSurface, sections: Sections, bore_radius: float | Array, layout: RingLayout) -> BodyNodes:
+    """Nodes of a whole ring.
+
+    Parameters
+    ----------
+    tooth : ToothSurface
+        Finely resolved, with 2 lengthwise + 1 sections.
+    sections : Sections
+        Those that the tooth was built of.
+    bore_radius : float or (k,) array [mm]
+        Distance from the axis at which each section meets the bore.
+    layout : RingLayout
+
+    Raises
+    ------
+    InputError
+        If the sections are not those of the layout, or the bore reaches the teeth.
+    """
+    outline = tooth.outline
+    wanted = 2 * layout.density.lengthwise + 1
+    if outline.shape[1] != wanted:
+        raise InputError(f"tooth: {outline.shape[1]} sections, {wanted} are needed")
+    rho, z = np.hypot(outline[..., 0], outline[..., 1]), outline[..., 2]
+    part_of_root = bore_radius / rho.min(axis=0)
+    if not ((part_of_root > 0.0) & (part_of_root < LARGEST_BORE)).all():
+        raise InputError(
+            f"bore_diameter: {2.0 * np.max(bore_radius):.6g} mm is not between 0 and {LARGEST_BORE:g} times the "
+            f"smallest root diameter, {2.0 * rho.min():.6g} mm: no rim is left below the teeth"
+        )
+    coordinate = sections.coordinate(rho[0], z[0])
+    polar = sections.radius(rho, z), np.unwrap(np.arctan2(outline[..., 1], outline[..., 0]), axis=0)
+    bore = _image_of_circle(sections, bore_radius, coordinate, polar[0].min(axis=0))
+    sides = _side(tooth, polar, 1), _side(tooth, polar, -1)
+    radius, angle = (np.full((*layout.shape, len(coordinate)), np.nan) for _ in range(2))
+    for sector in layout.sectors:
+        turn = 2.0 * math.pi / tooth.teeth * sector.number
+        columns = slice(sector.first, sector.first + 2 * sector.columns)
+        block = _sector(sector, layout, sides, bore)
+        radius[columns], angle[columns] = block[0][:-1], block[1][:-1] + turn
+    return BodyNodes(layout, sections, coordinate, radius, angle, 2.0 * float(np.min(bore_radius)), outline)
+
+
+def _side(tooth: ToothSurface, polar: tuple[Array, Array], sign: int) -> _Side:
+    """One side of the outline, from the root of its flank up and down."""
+    joints = tooth.joints if sign > 0 else tuple(len(tooth.outline) - 1 - joint for joint in tooth.joints[::-1])
+    radius, angle = polar if sign > 0 else (polar[0][::-1], polar[1][::-1])
+    flank, foot = slice(joints[4], joints[5] + 1), slice(joints[5], None)
+    points = np.stack([radius[foot] * np.cos(angle[foot]), radius[foot] * np.sin(angle[foot])])
+    steps = np.linalg.norm(np.diff(points, axis=1), axis=0)
+    length = np.concatenate([np.zeros_like(steps[:1]), np.cumsum(steps, axis=0)])
+    return _Side(
+        (radius[flank][::-1], angle[flank][::-1]),
+        (radius[foot], angle[foot]),
+        length,
+        length[joints[6] - joints[5]],
+    )
+
+
+def _sector(sector: SectorLayout, layout: RingLayout, sides: tuple[_Side, _Side], bore: Array) -> tuple[Array, Array]:
+    """Radius and angle (columns, rows, k) of one pitch, both ends included."""
+    density, rows = sector.density, layout.shape[1]
+    radius, angle = (np.full((2 * sector.columns + 1, rows, len(bore)), np.nan) for _ in range(2))
+    if density is None:
+        ends = [side.on_foot(np.array([2.0])) for side in sides]
+        part = np.array([0.0, 0.5, 1.0])[:, None]
+        top = tuple(ends[1][n] + part * (ends[0][n] - ends[1][n]) for n in range(2))
+    else:
+        block = _tooth(density, sides, bore)
+        columns = slice(2 * density.land, 2 * (density.land + density.through) + 1)
+        filled = slice(layout.base_row, layout.base_row + block[0].shape[1])
+        radius[columns, filled], angle[columns, filled] = block
+        part = 1.0 + np.linspace(0.0, 1.0, 2 * density.land + 1)
+        right, left = (_without_folds(*side.on_foot(part)) for side in sides)
+        top = tuple(np.concatenate([left[n][::-1], block[n][:, 0], right[n]]) for n in range(2))
+    filled = slice(0, layout.base_row + 1)
+    radius[:, filled], angle[:, filled] = _rim(top[0], bore, layout.density.rim), top[1][:, None]
+    return radius, angle
+
+
+def _without_folds(radius: Array, angle: Array) -> tuple[Array, Array]:
+    """Radius and angle (2 m, k) of the nodes of m elements along a foot, the first one left off.
+
+    An edge that bends too much, at a sharp fillet, is made straight: its element would fold over.
+    """
+    place = radius * np.exp(1j * angle)
+    steps = np.diff(place, axis=0)
+    bend = np.abs(np.angle(steps[1::2] * np.conj(steps[::2])))
+    place[1::2] = np.where(bend > SHARP, 0.5 * (place[:-1:2] + place[2::2]), place[1::2])
+    return np.abs(place[1:]), angle[1:] + np.angle(place[1:] * np.exp(-1j * angle[1:]))
+
+
+def _tooth(density: MeshDensity, sides: tuple[_Side, _Side], bore: Array) -> tuple[Array, Array]:
+    """Radius and angle (columns, rows, k) of a tooth, from its lowest row up."""
+    below = np.linspace(1.0, 0.0, 2 * density.fillet + 1)
+    up = np.linspace(0.0, 1.0, 2 * density.flank + 1)[1:]
+    right, left = (
+        tuple(np.concatenate(both) for both in zip(side.on_foot(below), side.on_flank(up), strict=True))
+        for side in sides
+    )
+    across = np.linspace(0.0, 1.0, 2 * density.through + 1)[:, None, None]
+    angle = left[1] + across * (right[1] - left[1])
+    width = 0.5 * (left[0] + right[0]) * (right[1] - left[1])
+    deepest = np.minimum(SAG * width[0], SHALLOW * (np.minimum(left[0][0], right[0][0]) - bore))
+    sag = np.concatenate([below, 0.0 * up])[:, None] * deepest
+    radius = left[0] + across * (right[0] - left[0]) - 4.0 * across * (1.0 - across) * sag
+    return radius, angle
+
+
+def _rim(top: Array, bore: Array, layers: int) -> Array:
+    """Radii (columns, rows, k) from the bore to the tops (columns, k), in layers that grow inwards."""
+    above = layers - 0.5 * np.arange(2 * layers + 1)
+    part = (GROWTH**above - 1.0) / (GROWTH**layers - 1.0)
+    return top[:, None] - part[:, None] * (top - bore)[:, None]
+
+
+def _interpolated(wanted: Array, places: Array, values: Array) -> Array:
+    """Values (n, k) at places (n, k), between those of increasing places (m, k)."""
+    columns = [np.interp(wanted[:, k], places[:, k], values[:, k]) for k in range(places.shape[1])]
+    return np.stack(columns, axis=-1)
+
+
+def _image_of_circle(sections: Sections, rho: float | Array, coordinate: Array, largest: Array) -> Array:
+    """Radii (k,) of the images of circles about the axis, below ``largest``."""
+    low, high = 0.0 * largest, largest
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        below = sections.point(middle, coordinate)[0] < rho
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    return 0.5 * (low + high)

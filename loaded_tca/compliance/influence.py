@@ -1,0 +1,191 @@
+r"""Compliance of one gear: displacement along the line of action at one place of a flank under a force at another.
+
+The contact solver takes each flank for a half-space, whose displacement it measures from infinity. What the gear adds:
+
+.. math:: c(p, q) = u_{FE}(\text{middle below } p;\ q) - u_B(t_p, |p - q|) + c_{loc}\,k(p, q)
+
+u_FE is the displacement of the gear body under a unit force at q, where the line of action through p cuts the middle of
+the tooth; u_B that of the half-space at the same depth t (it is part of u_FE, and would count twice); c_loc the local
+term of a line force in the plane, spread lengthwise as the stress spreads down to the middle,
+:math:`k = t^2/(2 (t^2 + s^2)^{3/2})`, with its mirror images beyond the ends of the face: along a whole face width the
+local term is that of the plane. Another tooth of the gear has the first term only.
+
+References
+----------
+Weber, Banaschek 1953, Formänderung und Profilrücknahme bei gerad- und schrägverzahnten Rädern (the same split in plane
+strain).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial.chebyshev import chebvander
+
+from loaded_tca.arrays import Array
+from loaded_tca.compliance.body import GearTooth, ToothFrame
+from loaded_tca.compliance.flexibility import ToothFlexibility
+from loaded_tca.compliance.half_space import depth_displacement
+from loaded_tca.compliance.kept import kept_flexibility
+from loaded_tca.compliance.layout import MeshDensity
+from loaded_tca.errors import InputError
+
+
+@dataclass(frozen=True, eq=False)
+class FlankLine:
+    """Places along a line on one flank of a gear.
+
+    Attributes
+    ----------
+    tooth : int
+        Tooth of the gear, counted in the sense of +theta.
+    rho, z : (m,) array [mm]
+        In the gear's own frame; places beyond the flank count as its border.
+    """
+
+    tooth: int
+    rho: Array
+    z: Array
+
+
+Image = tuple[Array, float]
+"""Distances (m, m) [mm] of places from the images of places in a free edge, and the factor of the image."""
+
+
+@dataclass(frozen=True, eq=False)
+class GearCompliance:
+    """Compliance of one gear, made once.
+
+    Attributes
+    ----------
+    frame : ToothFrame
+    table : ToothFlexibility
+        What the finite elements say.
+    """
+
+    frame: ToothFrame
+    table: ToothFlexibility
+
+    @property
+    def neighbours(self) -> int:
+        """Teeth on either side of a loaded one whose displacement is known."""
+        return len(self.table.displacement) // 2
+
+    def between(self, at: FlankLine, under: FlankLine) -> Array:
+        """Displacements (m, n) of the middles of the teeth below m places per force at n others [mm/N].
+
+        As the finite elements have them, the mean of both ways: forces act on the flank, displacements are taken in
+        the middle, so that they are reciprocal but for a few per cent.
+
+        Parameters
+        ----------
+        at, under : FlankLine
+
+        Raises
+        ------
+        InputError
+            If the two are further apart than the teeth of the model.
+        """
+        return self._displaced((at, _Places.of(self, at)), (under, _Places.of(self, under)))
+
+    def _displaced(self, at: tuple[FlankLine, _Places], under: tuple[FlankLine, _Places]) -> Array:
+        """As :meth:`between`, of lines whose places are known."""
+        teeth = self.frame.gear.form.teeth
+        away = (at[0].tooth - under[0].tooth + teeth // 2) % teeth - teeth // 2
+        if abs(away) > self.neighbours:
+            raise InputError(
+                f"tooth: two loaded teeth are {abs(away)} pitches apart, the model has {self.neighbours} neighbours of "
+                "a loaded tooth; ask for more neighbours"
+            )
+        return np.asarray(at[1].shares @ self._mutual[self.neighbours + away] @ under[1].shares.T)
+
+    def within(self, line: FlankLine, distance: Array, images: Sequence[Image] = ()) -> Array:
+        """Displacements (m, m) of places of one tooth per force at each [mm/N], on top of those of a half-space.
+
+        Parameters
+        ----------
+        line : FlankLine
+            m places.
+        distance : (m, m) array [mm]
+            Between them, along the line.
+        images : sequence of Image
+            Of free edges for which the half-space was corrected: their displacements in the middle go off as well.
+        """
+        own = line, (places := _Places.of(self, line))
+        depth = np.einsum("ma,ab,mb->m", places.across, self.table.depth, places.along)[:, None]
+        spread = _spread(depth, distance) + sum(_spread(depth, image) for image in self._beyond_ends(places.length))
+        material = self.frame.gear.material
+        half_space = depth_displacement(depth, distance, material)
+        half_space = half_space + sum(factor * depth_displacement(depth, image, material) for image, factor in images)
+        found = self.table.local.at(places.height)[:, None] * spread - half_space
+        return self._displaced(own, own) + 0.5 * (found + found.T)
+
+    @cached_property
+    def _mutual(self) -> Array:
+        """Displacements as in ``displacement``, the mean of both ways."""
+        return np.asarray(0.5 * (self.table.displacement + self.table.displacement[::-1].transpose(0, 2, 1)))
+
+    @cached_property
+    def interpolation(self) -> tuple[Array, Array]:
+        """Chebyshev coefficients (a, a) and (b, b) of the Lagrange polynomials of the heights and the lengths."""
+        nodes = self.table.heights, self.table.lengths
+        across, along = (np.linalg.inv(chebvander(2.0 * part - 1.0, len(part) - 1)) for part in nodes)
+        return across, along
+
+    def _beyond_ends(self, length: Array) -> tuple[Array, Array]:
+        """Distances (m, m) from the mirror images beyond both ends of the face [mm]."""
+        width = float(np.ptp(self.frame.nodes.coordinate))
+        from_start = width * (length[:, None] + length)
+        return from_start, 2.0 * width - from_start
+
+
+@dataclass(frozen=True, eq=False)
+class _Places:
+    """Parts (m,) of height and face width of the places of a line, and their Lagrange polynomials (m, a), (m, b)."""
+
+    height: Array
+    length: Array
+    across: Array
+    along: Array
+
+    @classmethod
+    def of(cls, gear: GearCompliance, line: FlankLine) -> _Places:
+        """Where a line lies among the places of a gear's table."""
+        height, length = gear.frame.parts(line.rho, line.z)
+        parts = zip((height, length), gear.interpolation, strict=True)
+        across, along = (chebvander(2.0 * part - 1.0, len(to) - 1) @ to for part, to in parts)
+        return cls(height, length, across, along)
+
+    @cached_property
+    def shares(self) -> Array:
+        """Shares (m, a b) of the places of the table in every place."""
+        return (self.across[:, :, None] * self.along[:, None, :]).reshape(len(self.across), -1)
+
+
+def gear_compliance(gear: GearTooth, side: int, density: MeshDensity = MeshDensity()) -> GearCompliance:
+    """Load a gear body by unit forces all over one flank, or take what is known of it.
+
+    Parameters
+    ----------
+    gear : GearTooth
+    side : int
+        s of the flank in contact.
+    density : MeshDensity
+
+    Raises
+    ------
+    InputError
+        If the bore reaches the teeth.
+    GeometryError
+        If the tooth is pointed or cut off, or the mesh is turned inside out.
+    """
+    frame = ToothFrame(gear, side, gear.nodes(density))
+    return GearCompliance(frame, kept_flexibility(frame))
+
+
+def _spread(depth: Array, distance: Array) -> Array:
+    """Line density [1/mm] at a depth below a point force: its integral over the distances of a line is 1."""
+    return 0.5 * depth**2 / (depth**2 + distance**2) ** 1.5

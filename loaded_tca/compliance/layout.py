@@ -1,0 +1,176 @@
+"""Logical layout of a gear body: columns around the gear, rows from the bore to the tips, elements between them.
+
+Nodes have whole coordinates (column, row), two to an element, so that even ones are corners. One tooth is resolved, its
+neighbours coarsely, and the rest of the ring is a rim without teeth, one element to a pitch.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+from functools import cached_property
+
+import numpy as np
+
+from loaded_tca.arrays import Array, Indices
+from loaded_tca.errors import InputError
+
+
+@dataclass(frozen=True)
+class MeshDensity:
+    """Elements of a gear body.
+
+    Parameters
+    ----------
+    through : int
+        Through the thickness of the tooth, even: its middle line is a line of nodes.
+    flank, fillet : int
+        Up the flank and along the part of the fillet that belongs to the tooth.
+    land : int
+        From there to the middle of the space.
+    rim : int
+        From the root to the bore.
+    lengthwise : int
+        Across the face.
+    neighbours : int
+        Neighbouring teeth on either side that are modelled; of further ones the rim alone.
+
+    Raises
+    ------
+    InputError
+        If a number is not a whole one, not positive, or ``through`` is odd.
+    """
+
+    through: int = 4
+    flank: int = 6
+    fillet: int = 2
+    land: int = 2
+    rim: int = 4
+    lengthwise: int = 10
+    neighbours: int = 1
+
+    def __post_init__(self) -> None:
+        counts = {entry.name: getattr(self, entry.name) for entry in fields(self)}
+        least = {"neighbours": 0}
+        problems = [
+            f"{name}: {count!r} is not a whole number from {least.get(name, 1)} on"
+            for name, count in counts.items()
+            if not (isinstance(count, int | np.integer) and count >= least.get(name, 1))
+        ]
+        if not problems and self.through % 2:
+            problems.append(f"through: {self.through} is not even: the middle of the tooth must be a line of nodes")
+        if problems:
+            raise InputError(problems)
+
+    def coarse(self) -> MeshDensity:
+        """Density of the neighbouring teeth, which move almost as rigid bodies."""
+        return MeshDensity(2, min(3, self.flank), 1, 1, self.rim, self.lengthwise, 0)
+
+
+@dataclass(frozen=True)
+class SectorLayout:
+    """Columns of one pitch: a tooth of some density, or the rim alone (None)."""
+
+    number: int
+    first: int
+    density: MeshDensity | None
+
+    @property
+    def columns(self) -> int:
+        """Elements around the gear."""
+        return 1 if self.density is None else self.density.through + 2 * self.density.land
+
+
+@dataclass(frozen=True)
+class RingLayout:
+    """A whole ring of teeth.
+
+    Parameters
+    ----------
+    teeth : int
+    density : MeshDensity
+    """
+
+    teeth: int
+    density: MeshDensity
+
+    @property
+    def neighbours(self) -> int:
+        """Teeth on either side of the resolved one: not so many that they meet behind the gear."""
+        return min(self.density.neighbours, (self.teeth - 1) // 2)
+
+    @cached_property
+    def sectors(self) -> tuple[SectorLayout, ...]:
+        """Pitches in the sense of +theta, the resolved tooth first."""
+        near = self.neighbours
+        found: list[SectorLayout] = []
+        for number in range(self.teeth):
+            away = min(number, self.teeth - number)
+            density = self.density if number == 0 else self.density.coarse() if away <= near else None
+            first = found[-1].first + 2 * found[-1].columns if found else 0
+            found.append(SectorLayout(number if number <= self.teeth // 2 else number - self.teeth, first, density))
+        return tuple(found)
+
+    def sector(self, number: int) -> SectorLayout:
+        """Sector of the tooth ``number``, counted in the sense of +theta; InputError if it has no tooth."""
+        for sector in self.sectors:
+            if sector.density is not None and (sector.number - number) % self.teeth == 0:
+                return sector
+        raise InputError(f"tooth: {number} is not one of the {2 * self.neighbours + 1} teeth of the model")
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Nodes around the gear, and from the bore to the tip of the resolved tooth."""
+        last = self.sectors[-1]
+        tooth = self.density.flank + self.density.fillet
+        return last.first + 2 * last.columns, 2 * (self.density.rim + tooth) + 1
+
+    @cached_property
+    def turns(self) -> Array:
+        """Angle (columns,) [rad] by which the pitch that a column belongs to is turned from the resolved tooth."""
+        numbers = np.concatenate([np.full(2 * sector.columns, sector.number) for sector in self.sectors])
+        return 2.0 * math.pi / self.teeth * numbers
+
+    @cached_property
+    def blocks(self) -> Indices:
+        """Which element (n,) of a section belongs to which tooth, counted around the gear; the bare rim is one."""
+        bare = np.array([sector.density is None for sector in self.sectors])
+        number = np.cumsum(np.append(True, ~(bare[1:] & bare[:-1]))) - 1
+        return np.repeat(number, [len(self._elements_of(sector)) for sector in self.sectors])
+
+    @cached_property
+    def bricks(self) -> tuple[Indices, Indices, Indices]:
+        """Elements of the body: lowest nodes (n, 3), layers (n,) that each spans, and blocks (n,).
+
+        Beside the resolved tooth two layers are one, but for an odd last one: displacements are smooth there.
+        """
+        section, layers = self.elements, np.arange(self.density.lengthwise)
+        lowest = np.column_stack([np.tile(section, (len(layers), 1)), np.repeat(2 * layers, len(section))])
+        blocks = np.tile(self.blocks, len(layers))
+        first, thick = lowest[:, 2] % 4 == 0, (blocks > 0) & (lowest[:, 2] < 4 * (len(layers) // 2))
+        stay = first | ~thick
+        return lowest[stay], np.where(thick, 2, 1)[stay], blocks[stay]
+
+    @property
+    def base_row(self) -> int:
+        """Row between rim and teeth."""
+        return 2 * self.density.rim
+
+    @cached_property
+    def elements(self) -> Indices:
+        """Lowest column and row (n, 2) of each element of a section."""
+        return np.concatenate([self._elements_of(sector) for sector in self.sectors])
+
+    def _elements_of(self, sector: SectorLayout) -> Indices:
+        rim = _block(sector.first, sector.columns, 0, self.density.rim)
+        density = sector.density
+        if density is None:
+            return rim
+        rows = density.flank + density.fillet
+        return np.concatenate([rim, _block(sector.first + 2 * density.land, density.through, self.base_row, rows)])
+
+
+def _block(column: int, columns: int, row: int, rows: int) -> Indices:
+    """Lowest nodes (n, 2) of a block of elements."""
+    grid = np.meshgrid(column + 2 * np.arange(columns), row + 2 * np.arange(rows), indexing="ij")
+    return np.stack(grid, axis=-1).reshape(-1, 2)

@@ -1,0 +1,211 @@
+r"""The conjugate of the mating flank: what the mate would sweep out of a gear if both turned at the constant ratio.
+
+Let both gears turn at the constant ratio z1/z2 and take a point P of the pinion's flank. At the angle phi1 it asks the
+wheel for a lead e(P; phi1), the field of :mod:`loaded_tca.unloaded.ease_off`; over the whole passage for no more than
+
+.. math:: E(P) = \max_{\varphi_1} e(P;\,\varphi_1).
+
+A wheel that leads by E(P) touches P once and never passes through it: P lies on the conjugate of the wheel's flank.
+Along the circle of P the lead depends on Theta of the pinion in one way only, as an angle added to phi1. So the pinion
+departs from that conjugate by exactly (E_0 - E)/(r_b2 z1/z2) as an angle of its Theta, whatever the departure. The
+maximum is where the normal obeys the law of gearing.
+
+References
+----------
+Litvin & Fuentes 2004, Gear Geometry and Applied Theory, chapter 6 (conjugated surfaces).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import GeometryError
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.unloaded.ease_off import EaseOff, Station
+from loaded_tca.unloaded.roots import find_roots
+
+SAMPLES = 16
+"""Angles per pitch at which the lead of a point is sampled."""
+SCANS = 4
+"""Angles per pitch at which the way of the teeth through the mate is looked for."""
+SCAN = (5, 9)
+"""Points of a flank along the profile and along the face that tell it."""
+SLACK = (0.5, 0.1)
+"""How far [modules] the mate's flank is continued beyond its tip and below its form circle; near the base circle, below
+which there is no flank, not far."""
+SIDE_SLACK = 0.5
+"""How far [face widths] it is continued beyond its ends."""
+CLOSE = 1e-10
+"""Accuracy of the angle of contact [rad]: the lead is then right to rounding, on a crease to 1e-12 mm."""
+BLOCK = 4096
+"""Points that are looked at together: memory stays small on any grid."""
+
+
+@dataclass(frozen=True, eq=False)
+class ConjugateContact:
+    """Where points of the pinion's flank would touch a mate that turns at the constant ratio.
+
+    Attributes
+    ----------
+    angle : (...) array [rad]
+        phi1 at which the point asks for the largest lead; NaN where it does so nowhere on the mate or near it.
+    lead : (...) array [mm]
+        E, as a length at r_b2; NaN likewise.
+    mate_radius, mate_axial : (...) array [mm]
+        The point on the wheel's flank.
+    profile_room, lengthwise_room : (...) array [mm]
+        Distance to the nearer one of the wheel's tip and root borders, and of its ends; negative beyond them; NaN
+        likewise.
+    """
+
+    angle: Array
+    lead: Array
+    mate_radius: Array
+    mate_axial: Array
+    profile_room: Array
+    lengthwise_room: Array
+
+    @property
+    def exists(self) -> NDArray[np.bool_]:
+        """Whether there is such a contact."""
+        return np.isfinite(self.lead)
+
+
+def exchanged(pair: GearPair) -> GearPair:
+    """The same two gears with the wheel in the place of the pinion: its axis is +z of the fixed frame.
+
+    What is computed on the flank of the pinion is had on the flank of the wheel so. Both angles keep their sense of
+    motion; each gear still touches with the same flank.
+
+    Examples
+    --------
+    >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
+    >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
+    >>> gears = [CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)]
+    >>> exchanged(cylindrical_pair(CylindricalMesh(*gears)))
+    GearPair(57/34, module 3 mm, face 25 mm)
+    """
+    return replace(
+        pair,
+        pinion=pair.wheel,
+        wheel=pair.pinion,
+        teeth=pair.teeth[::-1],
+        wheel_origin=-pair.wheel_axes @ pair.wheel_origin,
+        wheel_axes=pair.wheel_axes.T,
+        sense=-pair.sense,
+        driving=-pair.driving,
+        materials=pair.materials[::-1],
+        base_radii=pair.base_radii[::-1],
+    )
+
+
+def conjugate_contact(pair: GearPair, rho: Array, z: Array) -> ConjugateContact:
+    """Contact of points of the pinion's flank with a wheel that turns at the constant ratio.
+
+    The wheel's flank is continued beyond its borders a little, where ``profile_room`` or ``lengthwise_room`` is
+    negative. Of several maxima of the lead (a wavy flank) the highest counts.
+
+    Parameters
+    ----------
+    pair : GearPair
+    rho, z : (...) array [mm]
+        Points of the pinion's flank.
+
+    Returns
+    -------
+    ConjugateContact
+
+    Raises
+    ------
+    GeometryError
+        If no point of the pinion's flank comes near the wheel's.
+
+    Examples
+    --------
+    >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
+    >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
+    >>> gears = [CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)]
+    >>> contact = conjugate_contact(cylindrical_pair(CylindricalMesh(*gears)), np.array([51.0, 53.0]), np.zeros(2))
+    >>> bool(np.abs(contact.lead).max() < 1e-12), contact.mate_radius.round(3).tolist()
+    (True, [85.5, 83.867])
+    """
+    field, azimuth = EaseOff(pair), _azimuths(pair)
+    shape = np.broadcast_shapes(np.shape(rho), np.shape(z))
+    places = [np.broadcast_to(part, shape).ravel() for part in (rho, z)]
+    blocks = range(0, places[0].size, BLOCK)
+    parts = [_highest(field, azimuth, *(part[first : first + BLOCK] for part in places)) for first in blocks]
+    joined = (np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(ConjugateContact))
+    return ConjugateContact(*(part.reshape(shape) for part in joined))
+
+
+def _highest(field: EaseOff, azimuth: Array, rho: Array, z: Array) -> ConjugateContact:
+    """Contact of points (n,), from samples at the azimuths (s,)."""
+    pair, step = field.pair, azimuth[1] - azimuth[0]
+    sampled = pair.sense * (azimuth[:, None] - pair.pinion.theta(rho, z).value)
+    lead, borders = field.heights(sampled, rho, z)
+    lead = np.where(_near(pair, borders), lead, -np.inf)
+    best = (lead.argmax(axis=0), np.arange(len(rho)))
+    first = sampled[best]
+
+    def slope(angle: Array, rows: NDArray[np.int_]) -> Array:
+        return _slope(pair, field.station(angle, rho[rows], z[rows]))
+
+    every = np.arange(len(rho))
+    rises = slope(first, every) > 0.0
+    brackets = np.stack([np.where(rises, first, first - step), np.where(rises, first + step, first)])
+    values = np.stack([slope(end, every) for end in brackets])
+    angle = find_roots(slope, brackets, values, CLOSE)
+    found = np.isfinite(lead[best]) & (values[0] >= 0.0) & (values[1] <= 0.0)
+    station = field.station(angle, rho, z)
+    distances = _wheel_borders(field.heights(angle, rho, z)[1])
+    known = (
+        angle,
+        field.value(station, angle),
+        station.wheel_rho,
+        station.wheel_z,
+        distances[..., :2].min(axis=-1),
+        distances[..., 2:].min(axis=-1),
+    )
+    return ConjugateContact(*(np.where(found, part, np.nan) for part in known))
+
+
+def _slope(pair: GearPair, station: Station) -> Array:
+    """de/d phi1 (n,) [mm/rad] at points that stay where they are on the pinion."""
+    x, y, _ = np.moveaxis(station.point, -1, 0)
+    swept = np.stack([-y, x, np.zeros_like(x)], axis=-1)
+    radial, around, axial = np.moveaxis(np.einsum("nij,nj->ni", station.wheel_basis, swept), -1, 0)
+    rate = station.wheel.rho * radial - around / station.wheel_rho + station.wheel.z * axial
+    return pair.driving * pair.base_radii[1] * (rate - pair.ratio)
+
+
+def _wheel_borders(borders: Array) -> Array:
+    """Distances (..., 4) to the wheel's borders, of those of both flanks."""
+    return borders[..., 4:8]
+
+
+def _near(pair: GearPair, borders: Array) -> NDArray[np.bool_]:
+    """Whether the wheel has a flank at the points, continued beyond its borders a little."""
+    side = SIDE_SLACK * pair.face_width
+    slack = np.array([SLACK[0] * pair.module, SLACK[1] * pair.module, side, side])
+    return np.asarray((_wheel_borders(borders) >= -slack).all(axis=-1))
+
+
+def _azimuths(pair: GearPair) -> Array:
+    """Even azimuths of the pinion (s,) [rad] between which its points pass through the wheel's teeth."""
+    half = math.ceil(0.5 * math.pi / pair.pitch * SCANS)
+    coarse = np.arange(-half, half + 1) * (pair.pitch / SCANS)
+    rho, z = (part.ravel() for part in pair.pinion.grid(*SCAN))
+    angle = pair.sense * (coarse[:, None] - pair.pinion.theta(rho, z).value)
+    rows = np.flatnonzero(_near(pair, EaseOff(pair).heights(angle, rho, z)[1]).any(axis=-1))
+    if not rows.size:
+        raise GeometryError(
+            "no common flank: the pinion's flank comes nowhere near the wheel's; check the tips of the teeth "
+            "and how the gears are mounted"
+        )
+    low, high = coarse[rows[0]] - pair.pitch / SCANS, coarse[rows[-1]] + pair.pitch / SCANS
+    return np.linspace(low, high, math.ceil((high - low) / pair.pitch * SAMPLES) + 1)

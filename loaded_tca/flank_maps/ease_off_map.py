@@ -1,0 +1,172 @@
+r"""The ease-off topography: how much a flank lacks of the conjugate of its mating flank, point by point.
+
+.. math:: \delta(P) = \frac{E_0 - E(P)}{r_{b2}\,(z_1/z_2)\,|\nabla F|} \ge 0
+
+with the largest lead E of :mod:`loaded_tca.flank_maps.conjugate`, E_0 its highest value on the map and \|grad F\| of
+the unmodified flank: material removed along the normal, counted as ``FlankModifications`` count it. Zero where the
+flanks are nearest, and everywhere for conjugate flanks; a modified pinion with an unmodified wheel shows its
+modification, and to first order the modifications of both gears and the mounting errors add up. It does not depend on the position, nor
+on the number of teeth in contact: it is what the pair is made of.
+
+References
+----------
+Stadtfeld 1993, Handbook of Bevel and Hypoid Gears (ease-off); Litvin & Fuentes 2004, Gear Geometry and Applied Theory,
+chapter 6 (conjugated surfaces).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.flank_maps.conjugate import conjugate_contact, exchanged
+from loaded_tca.flank_maps.mated_part import ROUNDING, mated_grid
+from loaded_tca.flank_maps.rotary_gap import Gear
+from loaded_tca.flank_maps.second_order import SecondOrder, central, flank_lengths, second_order
+from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.frame import FlankFrame
+from loaded_tca.pairs.gear_pair import GearPair
+
+GRID = (31, 41)
+FEWEST = 3
+BORDER = 2.0 * ROUNDING
+"""Distance beyond a border of the mate [modules] that still counts as on it."""
+
+
+@dataclass(frozen=True, eq=False)
+class EaseOffMap:
+    """Ease-off of a flank over the part of it that the mate works with.
+
+    Attributes
+    ----------
+    gear : {"pinion", "wheel"}
+    frame : FlankFrame
+        How the flank is shown.
+    radius, axial : (profile, lengthwise) array [mm]
+        (rho, z) of the grid, from the foot to the tip and from toe to heel (z < 0 to z > 0).
+    lengthwise, profile : (profile, lengthwise) array [mm]
+        Distance from the middle of the face, and the profile coordinate: roll length, of bevel gears R_m times the arc.
+    ease_off : (profile, lengthwise) array [mm]
+        Material removed along the normal from the conjugate of the mating flank; zero at its highest point.
+    mate_radius, mate_axial : (profile, lengthwise) array [mm]
+        The point of the mate that each point would touch at the constant ratio.
+    angle : (profile, lengthwise) array [rad]
+        phi1 (wheel: phi2) at which it would.
+    covered : (profile, lengthwise) bool array
+        Whether the mate's flank reaches so far; where not, beside its slanted borders, it was continued.
+    second_order : SecondOrder
+        Angles, crownings and twist, of the flank turned about its axis until nothing is off in the middle of the map:
+        what is off a bevel gear's flank when it is turned grows with the cone distance.
+    """
+
+    gear: Gear
+    frame: FlankFrame
+    radius: Array
+    axial: Array
+    lengthwise: Array
+    profile: Array
+    ease_off: Array
+    mate_radius: Array
+    mate_axial: Array
+    angle: Array
+    covered: NDArray[np.bool_]
+    second_order: SecondOrder
+
+    @property
+    def corners(self) -> Array:
+        """Ease-off [mm] at the foot and at the tip (rows), at toe and heel, or z < 0 and z > 0 (columns): (2, 2)."""
+        return self.ease_off[[[0], [-1]], [0, -1]]
+
+    def __repr__(self) -> str:
+        shape = " x ".join(str(count) for count in self.ease_off.shape)
+        return f"EaseOffMap({self.gear}, {shape} points, up to {1e3 * float(self.ease_off.max()):.4g} um)"
+
+
+def ease_off_map(pair: GearPair, gear: Gear = "pinion", grid: tuple[int, int] = GRID) -> EaseOffMap:
+    """Ease-off of a flank against the conjugate of its mating flank.
+
+    The map covers the part of the flank that the mate reaches: along the profile from where the mate's tip works to
+    the own tip (or the mate's form circle), lengthwise between the ends of the narrower gear.
+
+    Parameters
+    ----------
+    pair : GearPair
+        Of any kind, its modifications and mounting errors included.
+    gear : {"pinion", "wheel"}
+        Whose flank.
+    grid : (int, int)
+        Points along the profile and along the face, borders included; at least 3 each. Odd numbers have a point in the
+        middle, where a crowned flank is highest.
+
+    Returns
+    -------
+    EaseOffMap
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range.
+    GeometryError
+        If no part of the flank ever meets the mate's, or a part of it meets no flank that could be continued so far.
+
+    Examples
+    --------
+    >>> from loaded_tca.flanks import FlankModifications
+    >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
+    >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
+    >>> mesh = CylindricalMesh(*(CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)))
+    >>> pair = cylindrical_pair(mesh, modifications=(FlankModifications(lead_crowning=0.01), FlankModifications()))
+    >>> found = ease_off_map(pair)
+    >>> (1e3 * found.corners).round(6).tolist()
+    [[10.0, 10.0], [10.0, 10.0]]
+    >>> found.second_order
+    SecondOrder(spiral angle 0 arcmin, pressure angle 0 arcmin, crownings 10 um and 0 um, twist 0 um)
+    """
+    problems = _problems(gear, grid)
+    if problems:
+        raise InputError(problems)
+    seen = pair if gear == "pinion" else exchanged(pair)
+    flank, (rho, z) = seen.pinion, mated_grid(seen, *grid)
+    contact = conjugate_contact(seen, rho, z)
+    _require_contact(flank, rho, z, contact.exists)
+    per_lead = 1.0 / (seen.base_radii[1] * seen.ratio * flank.gradient_norm(rho, z).value)
+    from_middle = (contact.lead[central(grid)].mean() - contact.lead) * per_lead
+    room = np.minimum(contact.profile_room, contact.lengthwise_room)
+    return EaseOffMap(
+        gear,
+        flank.frame,
+        rho,
+        z,
+        *flank_lengths(flank, rho, z),
+        (contact.lead.max() - contact.lead) * per_lead,
+        contact.mate_radius,
+        contact.mate_axial,
+        contact.angle,
+        room >= -BORDER * pair.module,
+        second_order(flank, rho, z, from_middle),
+    )
+
+
+def _problems(gear: Any, grid: Any) -> list[str]:
+    problems = [] if gear in ("pinion", "wheel") else [f"gear: {gear!r} is not 'pinion' or 'wheel'"]
+    counts = list(grid) if isinstance(grid, Sequence | np.ndarray) else []
+    if len(counts) != 2 or not all(isinstance(n, int | np.integer) and n >= FEWEST for n in counts):
+        problems.append(f"grid: {grid!r} are not two whole numbers >= {FEWEST}")
+    return problems
+
+
+def _require_contact(flank: Flank, rho: Array, z: Array, exists: NDArray[np.bool_]) -> None:
+    if exists.all():
+        return
+    first = tuple(np.argwhere(~exists)[0])
+    where = flank.frame.place(float(rho[first]), float(z[first]))
+    raise GeometryError(
+        f"no ease-off: at {int((~exists).sum())} of {exists.size} points, first at {where}, the flank meets no flank "
+        "of the mate at the constant ratio; the mounting errors are too large"
+    )

@@ -1,0 +1,186 @@
+"""V-H check: the contact pattern over a grid of two mounting errors, as a roll testing machine shows it.
+
+The gears of a bevel pair are moved in steps by V (the offset) and H (along an axis); each time the marking compound
+tells where they touch. How far the pattern goes for a tenth of a millimetre, and when it runs onto an edge, says how a
+pair bears its mounting. For parallel axes the errors of the axes take their place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.ndimage import zoom
+
+from loaded_tca.arrays import Array, finite_row
+from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.flank_maps.pattern import COMPOUND, ContactPattern, contact_pattern
+from loaded_tca.flank_maps.rotary_gap import Gear
+from loaded_tca.flanks.frame import FlankFrame
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.unloaded.teeth import trace_teeth
+
+POSITIONS = 31
+"""Positions per pitch of each pattern: between two of them the gap of a pair of module 3 mm rises by 1 um."""
+GRID = (31, 41)
+FINER = 8
+"""The gap between two points is interpolated at so many steps to find the centre of a pattern."""
+BEYOND = 2.0
+"""Gap [compounds] that stands for all larger ones, so that an interpolated pattern ends between two points."""
+
+Build = Callable[[float, float], GearPair]
+"""The pair under two mounting errors, v and h."""
+
+
+@dataclass(frozen=True, eq=False)
+class VHCheck:
+    """Contact patterns over a grid of two mounting errors.
+
+    Attributes
+    ----------
+    v, h : (m,), (n,) array
+        The errors, in the unit of whoever asked.
+    patterns : m tuples of n ContactPattern
+        All of one gear, on one grid, with one compound.
+    frame : FlankFrame
+        How the flank is shown.
+    centre : (m, n, 2) array [mm]
+        Centre of area of each pattern, as the frame shows it: lengthwise, and the height or the diameter. NaN if the
+        pattern passes between the points of the grid.
+    edge_share : (m, n) array
+        Part of the positions of a pitch at which the leading contact lies on the border of a flank.
+    """
+
+    v: Array
+    h: Array
+    patterns: tuple[tuple[ContactPattern, ...], ...]
+    frame: FlankFrame
+    centre: Array
+    edge_share: Array
+
+    @property
+    def nominal(self) -> tuple[int, int]:
+        """Row and column of the cell nearest to no error."""
+        return int(np.abs(self.v).argmin()), int(np.abs(self.h).argmin())
+
+    @property
+    def shift(self) -> Array:
+        """How far each centre lies from that of the nominal cell: (m, n, 2) [mm]."""
+        return self.centre - self.centre[self.nominal]
+
+    def __repr__(self) -> str:
+        gear, edge = self.patterns[0][0].gear, int((self.edge_share > 0.0).sum())
+        return f"VHCheck({len(self.v)} x {len(self.h)} patterns on the {gear}, {edge} with edge contact)"
+
+
+def vh_check(
+    build: Build,
+    v: ArrayLike,
+    h: ArrayLike,
+    *,
+    gear: Gear = "pinion",
+    compound: float = COMPOUND,
+    grid: tuple[int, int] = GRID,
+    positions: int = POSITIONS,
+) -> VHCheck:
+    """Contact pattern for each pair of mounting errors.
+
+    Parameters
+    ----------
+    build : callable
+        ``build(v, h)``: the GearPair under two errors; of scenes for example
+        ``lambda v, h: scene.with_changes({"mounting.offset_mm": v, "mounting.pinion_axial_mm": h}).pair()``.
+    v, h : (m,), (n,) array
+        The errors.
+    gear : {"pinion", "wheel"}
+        Whose flank.
+    compound : float [mm]
+        Thickness of the marking compound.
+    grid : (int, int)
+        Points of each pattern along the profile and along the face.
+    positions : int
+        Positions over one pitch, at least 2.
+
+    Returns
+    -------
+    VHCheck
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range, or ``build`` refuses an error.
+    GeometryError
+        If no tooth touches somewhere, told with the errors.
+
+    Examples
+    --------
+    >>> from loaded_tca.flanks import FlankModifications
+    >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
+    >>> from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
+    >>> mesh = CylindricalMesh(*(CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)))
+    >>> crowned = (FlankModifications(lead_crowning=0.05), FlankModifications())
+    >>> def build(v, h):
+    ...     return cylindrical_pair(mesh, modifications=crowned, mounting=Mounting(in_plane=v, out_of_plane=h))
+    >>> vh_check(build, [0.0], [-1e-3, 0.0, 1e-3]).shift[0, :, 0].round(2).tolist()
+    [-1.46, 0.0, 1.46]
+    """
+    rows, columns = finite_row("v", v), finite_row("h", h)
+    if not isinstance(positions, int | np.integer) or positions < 2:
+        raise InputError(f"positions: {positions!r} is not a whole number >= 2")
+    cells = [
+        [
+            _cell(build, first, second, positions, {"gear": gear, "compound": compound, "grid": grid})
+            for second in columns
+        ]
+        for first in rows
+    ]
+    return VHCheck(
+        rows,
+        columns,
+        tuple(tuple(cell.pattern for cell in line) for line in cells),
+        cells[0][0].frame,
+        np.array([[pattern_centre(cell.pattern, cell.frame) for cell in line] for line in cells]),
+        np.array([[cell.edge_share for cell in line] for line in cells]),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Cell:
+    """One cell of the grid."""
+
+    pattern: ContactPattern
+    frame: FlankFrame
+    edge_share: float
+
+
+def _cell(build: Build, v: float, h: float, positions: int, asked: dict[str, Any]) -> _Cell:
+    """The pattern under two errors, ``asked`` for as ``contact_pattern`` is."""
+    try:
+        pair = build(float(v), float(h))
+        mesh = trace_teeth(pair, np.linspace(-0.5, 0.5, positions) * pair.pitch)
+        pattern = contact_pattern(pair, mesh, **asked)
+    except GeometryError as error:
+        raise GeometryError(f"v = {v:.6g}, h = {h:.6g}: {error}") from error
+    frame = (pair.pinion if pattern.gear == "pinion" else pair.wheel).frame
+    return _Cell(pattern, frame, float(mesh.leading_contact.on_edge.mean()))
+
+
+def pattern_centre(pattern: ContactPattern, frame: FlankFrame) -> Array:
+    """Centre of area (2,) [mm] of a contact pattern as a frame shows the flank; NaN if no point of its grid touches."""
+    gap = np.minimum(pattern.gap, BEYOND * pattern.compound)
+    x, y, gap = (zoom(part, FINER, order=1) for part in (*frame.to_picture(pattern.radius, pattern.axial), gap))
+    weight = (gap <= pattern.compound) * _cell_areas(x, y)
+    total = weight.sum()
+    return np.array([(weight * x).sum(), (weight * y).sum()]) / total if total > 0.0 else np.full(2, np.nan)
+
+
+def _cell_areas(x: Array, y: Array) -> Array:
+    """Area that each point of a grid (n, m) stands for."""
+    (x_up, x_along), (y_up, y_along) = np.gradient(x), np.gradient(y)
+    area = np.abs(x_along * y_up - x_up * y_along)
+    area[[0, -1]] *= 0.5
+    area[:, [0, -1]] *= 0.5
+    return np.asarray(area)

@@ -1,0 +1,174 @@
+r"""Spherical involute, the flank of straight and spiral bevel gears.
+
+With the cone angle u = atan2(rho, z) and the cone distance R = hypot(rho, z), both from the apex,
+
+.. math:: \Theta = s\,[\mathrm{inv}_s u_w - \mathrm{inv}_s u]
+          + h \frac{\tan\beta_m}{\sin\delta} \ln\frac{R}{R_m},
+          \qquad \mathrm{inv}_s u = \frac{1}{\sin\delta_b}\arccos\frac{\cos u}{\cos\delta_b}
+          - \arccos\frac{\tan\delta_b}{\tan u},
+          \qquad \sin\delta_b = \sin\delta \cos\alpha
+
+turned so that the point of the pitch cone, u_w = delta, at the mean cone distance R_m has theta = 0. The profile is
+unwound from the base cone delta_b, alpha is the transverse pressure angle; lengthwise the tooth is a logarithmic
+spiral, which meets every generator of a cone under one angle (beta_m on the pitch cone). With
+Q = sqrt(sin(u - delta_b) sin(u + delta_b)):
+
+.. math:: \mathrm{inv}_s' = \frac{Q}{\sin\delta_b \sin u}, \quad
+          \mathrm{inv}_s'' = \frac{\sin\delta_b \cos u}{Q \sin^2 u}, \quad
+          |\nabla F| = \frac{1}{R}\sqrt{\frac{1}{\sin^2\delta_b} + \frac{\tan^2\beta_m}{\sin^2\delta}} .
+
+References
+----------
+Al-Daccak, Angeles & Gonzalez-Palacios 1994, The modeling of bevel gears using the exact spherical involute, J. Mech.
+Des. 116; Litvin & Fuentes 2004, Gear Geometry and Applied Theory, chapter 21.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import InputError
+from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.cone_coordinates import cone_angle, cone_distance
+from loaded_tca.flanks.frame import ConeFrame
+from loaded_tca.flanks.jet import Jet
+
+SMALLEST_Q = 3e-5
+"""Q is kept above this: at the base cone itself the curvature is infinite, below it there is no involute. That
+concerns 1e-9 rad beside the base cone, where Theta is then off by less than 1e-13 rad."""
+
+
+def unwound_arc(cone_angle: Array, base_angle: float) -> Array:
+    """Arc w from the base cone along the great circle that unwinds: cos u = cos(delta_b) cos(w) [rad]."""
+    return np.arctan2(_q(np.sin(cone_angle), base_angle), np.cos(cone_angle))
+
+
+def spherical_involute(cone_angle: Array, base_angle: float) -> Array:
+    """inv_s(u) [rad]: by arctangents, which keep their digits near the base cone."""
+    q, cosine, sine = _q(np.sin(cone_angle), base_angle), np.cos(cone_angle), math.sin(base_angle)
+    return np.arctan2(q, cosine) / sine - np.arctan2(q, sine * cosine)
+
+
+def _q(sine: Array, base_angle: float) -> Array:
+    """Q = sqrt(sin^2 u - sin^2 delta_b), from sin u."""
+    base = math.sin(base_angle)
+    return np.sqrt(np.maximum((sine - base) * (sine + base), SMALLEST_Q**2))
+
+
+def _sine_and_cosine(rho: Array, z: Array) -> tuple[Array, Array]:
+    """Of the cone angle."""
+    distance = np.sqrt(rho * rho + z * z)
+    return rho / distance, z / distance
+
+
+class SphericalInvoluteFlank(Flank):
+    """Unmodified flank of a bevel gear between root and face cone, toe and heel; all cones share the apex.
+
+    Parameters
+    ----------
+    pitch_angle : float [rad]
+        delta, where theta = 0 at the mean cone distance.
+    pressure_angle : float [rad]
+        alpha, transverse.
+    spiral_angle : float [rad]
+        beta_m on the pitch cone, positive for a right-hand gear; the same at every cone distance.
+    side : int
+        s, +1 or -1.
+    cone_angles : (float, float) [rad]
+        Root (form) cone, not below the base cone, and face cone.
+    cone_distances : (float, float) [mm]
+        Toe and heel.
+
+    Raises
+    ------
+    InputError
+        If the cones or the cone distances are not in order.
+    """
+
+    def __init__(
+        self,
+        pitch_angle: float,
+        pressure_angle: float,
+        spiral_angle: float,
+        side: int,
+        cone_angles: tuple[float, float],
+        cone_distances: tuple[float, float],
+    ) -> None:
+        base = math.asin(math.sin(pitch_angle) * math.cos(pressure_angle))
+        if not base <= cone_angles[0] < cone_angles[1] <= math.pi - base:
+            raise InputError(
+                f"cone_angles: base {base:.6g} <= root {cone_angles[0]:.6g} < face {cone_angles[1]:.6g} <= "
+                f"{math.pi - base:.6g} rad does not hold"
+            )
+        if not 0.0 < cone_distances[0] < cone_distances[1]:
+            raise InputError(f"cone_distances: 0 < toe {cone_distances[0]} < heel {cone_distances[1]} mm does not hold")
+        self.base_angle, self.side = base, side
+        self.cone_angles, self.cone_distances = cone_angles, cone_distances
+        self.mean_cone_distance = self.profile_unit = 0.5 * (cone_distances[0] + cone_distances[1])
+        self._spiral = math.tan(spiral_angle) / math.sin(pitch_angle)
+        self._pitch_involute = float(spherical_involute(np.array(pitch_angle), base))
+        rho, z = self.grid(9, 2)
+        self.extent = (float(np.ptp(rho)), float(np.ptp(z)))
+        self.frame = ConeFrame(pitch_angle, self.mean_cone_distance)
+
+    def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:  # noqa: ARG002 (it has no crease)
+        """Theta of the spherical involute, log spiral included."""
+        angle, sine_base = cone_angle(rho, z), math.sin(self.base_angle)
+        sine, cosine = _sine_and_cosine(rho, z)
+        q = _q(sine, self.base_angle)
+        involute = np.arctan2(q, cosine) / sine_base - np.arctan2(q, sine_base * cosine)
+        side = float(self.side)
+        slope, bend = -side / sine_base * q / sine, -side * sine_base * cosine / (q * (sine * sine))
+        profile = angle.compose(side * (self._pitch_involute - involute), slope, bend)
+        if self._spiral == 0.0:
+            return profile
+        distance = self._cone_distance(rho, z)
+        inverse = 1.0 / distance.value
+        logarithm = distance.compose(np.log(distance.value / self.mean_cone_distance), inverse, -(inverse**2))
+        return profile + logarithm * self._spiral
+
+    def borders(self, rho: Array, z: Array) -> tuple[Jet, ...]:
+        """Face cone, root cone (both R sin of the angle to the cone), toe and heel sphere."""
+        root, tip = self.cone_angles
+        distance = self._cone_distance(rho, z)
+        return (
+            Jet(z * math.sin(tip) - rho * math.cos(tip), rho=-math.cos(tip), z=math.sin(tip)),
+            Jet(rho * math.cos(root) - z * math.sin(root), rho=math.cos(root), z=-math.sin(root)),
+            distance + Jet(-self.cone_distances[0]),
+            distance * -1.0 + Jet(self.cone_distances[1]),
+        )
+
+    def grid(self, profile: int, lengthwise: int) -> tuple[Array, Array]:
+        """Even grid in the unwound arc and the cone distance: near the base cone the profile bends most."""
+        start, end = unwound_arc(np.array(self.cone_angles), self.base_angle)
+        angle = np.arccos(math.cos(self.base_angle) * np.cos(np.linspace(start, end, profile)))
+        angle[[0, -1]] = self.cone_angles
+        distance = np.linspace(*self.cone_distances, lengthwise)
+        return np.outer(np.sin(angle), distance), np.outer(np.cos(angle), distance)
+
+    def profile_coordinate(self, rho: Array, z: Array) -> Jet:
+        """Unwound arc w, cos u = cos(delta_b) cos(w)."""
+        angle = cone_angle(rho, z)
+        sine, cosine = _sine_and_cosine(rho, z)
+        q = _q(sine, self.base_angle)
+        bend = (-(math.sin(self.base_angle) ** 2)) * cosine / (q * q * q)
+        return angle.compose(np.arctan2(q, cosine), sine / q, bend)
+
+    def lengthwise_coordinate(self, rho: Array, z: Array) -> Jet:
+        """R - R_m."""
+        return self._cone_distance(rho, z) + Jet(-self.mean_cone_distance)
+
+    def gradient_norm(self, rho: Array, z: Array) -> Jet:
+        """|grad F|, which falls with 1/R and is the same all along the profile."""
+        size = math.hypot(1.0 / math.sin(self.base_angle), self._spiral)
+        distance = self._cone_distance(rho, z)
+        value = size / distance.value
+        slope = -value / distance.value
+        return distance.compose(value, slope, -2.0 * slope / distance.value)
+
+    def _cone_distance(self, rho: Array, z: Array) -> Jet:
+        return cone_distance(rho, z, self.mean_cone_distance)

@@ -1,0 +1,109 @@
+r"""Involute helicoid, the flank of spur and helical gears.
+
+.. math:: \Theta = s\,[\mathrm{inv}\,\alpha_w - \mathrm{inv}\,\alpha_\rho] + z \tan\beta_b / r_b,
+          \qquad \cos\alpha_\rho = r_b/\rho
+
+turned so that the point on the working circle at mid-face has theta = 0. With the roll length
+a = sqrt(rho^2 - r_b^2): inv = a/r_b - atan(a/r_b), d inv/d rho = a/(r_b rho).
+
+References
+----------
+ISO 21771, 5.2 to 5.5; Litvin & Fuentes 2004, Gear Geometry and Applied Theory, chapter 14.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import InputError
+from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.frame import CylinderFrame
+from loaded_tca.flanks.jet import Jet
+
+SMALLEST_ROLL_LENGTH = 1e-6
+"""Roll lengths are kept above this fraction of r_b: at the base circle itself the curvature is infinite."""
+
+
+class InvoluteFlank(Flank):
+    """Unmodified involute helicoid between form circle and tip circle, over the face width.
+
+    Parameters
+    ----------
+    base_radius : float [mm]
+    base_helix_angle : float [rad]
+        beta_b, positive for a right-hand gear.
+    side : int
+        s, +1 or -1.
+    working_radius : float [mm]
+        Radius of the point with theta = 0 at z = 0.
+    radii : (float, float) [mm]
+        Root form circle and tip circle.
+    face_width : float [mm]
+    """
+
+    def __init__(
+        self,
+        base_radius: float,
+        base_helix_angle: float,
+        side: int,
+        working_radius: float,
+        radii: tuple[float, float],
+        face_width: float,
+    ) -> None:
+        if not base_radius <= radii[0] < radii[1]:
+            raise InputError(f"radii: base {base_radius} <= form {radii[0]} < tip {radii[1]} mm does not hold")
+        self.base_radius, self.base_helix_angle, self.side = base_radius, base_helix_angle, side
+        self.radii, self.face_width = radii, face_width
+        self.extent = (radii[1] - radii[0], face_width)
+        self.frame = CylinderFrame()
+        self._twist = math.tan(base_helix_angle) / base_radius
+        roll = math.sqrt(working_radius**2 - base_radius**2) / base_radius
+        self._working_involute = roll - math.atan(roll)
+
+    def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:  # noqa: ARG002 (it has no crease)
+        """Theta of the involute helicoid."""
+        roll, inward = self._roll_length(rho), -float(self.side) / self.base_radius
+        angle, steepness = roll / self.base_radius, roll / rho
+        involute = angle - np.arctan(angle) - self._working_involute
+        value = (-float(self.side)) * involute + self._twist * z
+        return Jet(value, inward * steepness, self._twist, inward * (1.0 / roll - steepness / rho))
+
+    def borders(self, rho: Array, z: Array) -> tuple[Jet, ...]:
+        """Tip circle, root form circle, the two ends of the face."""
+        half = 0.5 * self.face_width
+        return (
+            Jet(self.radii[1] - rho, rho=-1.0),
+            Jet(rho - self.radii[0], rho=1.0),
+            Jet(z + half, z=1.0),
+            Jet(half - z, z=-1.0),
+        )
+
+    def grid(self, profile: int, lengthwise: int) -> tuple[Array, Array]:
+        """Even grid in roll length and face width: near the base circle the profile bends most."""
+        start, end = self._roll_length(np.array(self.radii))
+        rho = np.hypot(self.base_radius, np.linspace(start, end, profile))
+        rho[[0, -1]] = self.radii
+        z = np.linspace(-0.5 * self.face_width, 0.5 * self.face_width, lengthwise)
+        return tuple(np.meshgrid(rho, z, indexing="ij"))  # type: ignore[return-value]
+
+    def profile_coordinate(self, rho: Array, z: Array) -> Jet:  # noqa: ARG002 (it depends on the radius alone)
+        """Roll length a = sqrt(rho^2 - r_b^2)."""
+        roll = self._roll_length(rho)
+        return Jet(roll, rho=rho / roll, rho_rho=-(self.base_radius**2) / (roll * roll * roll))
+
+    def lengthwise_coordinate(self, rho: Array, z: Array) -> Jet:  # noqa: ARG002
+        """Z itself, counted from the middle of the face."""
+        return Jet(z, z=1.0)
+
+    def gradient_norm(self, rho: Array, z: Array) -> Jet:  # noqa: ARG002 (it is constant)
+        """1/(r_b cos beta_b), the same everywhere on an involute helicoid."""
+        return Jet(1.0 / (self.base_radius * math.cos(self.base_helix_angle)))
+
+    def _roll_length(self, rho: Array) -> Array:
+        smallest = SMALLEST_ROLL_LENGTH * self.base_radius
+        square = (rho - self.base_radius) * (rho + self.base_radius)
+        return np.sqrt(np.maximum(square, smallest**2))

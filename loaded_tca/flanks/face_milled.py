@@ -1,0 +1,274 @@
+r"""Generated flanks of face-milled bevel gears: exact by the equations of generation, or as a B-spline of them.
+
+The flank is turned about the axis of its gear until it holds the pitch point at the mean cone distance (theta = 0).
+Between form line, face cone, toe and heel every point is found from the generating equations
+(:mod:`loaded_tca.flanks.cradle`). Beyond these borders there is no flank, but searches step over them: there Theta goes
+on as the B-spline does, as a parabola from the border.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import GeometryError
+from loaded_tca.flanks.cradle import CradleGeneration, GeneratedPoints
+from loaded_tca.flanks.derived import Region
+from loaded_tca.flanks.frame import ConeFrame
+from loaded_tca.flanks.jet import Jet
+from loaded_tca.flanks.spline import FitError, SplineFlank
+from loaded_tca.flanks.tensor_spline import TensorSpline, fit
+from loaded_tca.flanks.tooth_region import NODES, ToothRegion, chebyshev_nodes, face_cone_angles
+from loaded_tca.gears.cutter import FlankName
+from loaded_tca.gears.face_milled import FaceMilledGear
+from loaded_tca.gears.machine_settings import FaceMilledBlank
+
+SPLINE_POINTS = (41, 33)
+"""Chebyshev-Lobatto points of the B-spline along the profile and lengthwise: it is within 1e-7 mm of usual flanks. The
+generated surface may turn back just below the form line, which takes more points along the profile."""
+SPLINE_DEGREE = 5
+ON_BORDER = 1e-7
+"""Part of the flank's height and width by which points on its borders may miss them."""
+CHECK_POINTS = (9, 5)
+"""Points along the profile and lengthwise that have to be there before a flank is one."""
+EDGE_HEIGHTS = 64
+"""Heights at which an undercut edge is looked for."""
+
+
+@dataclass(frozen=True)
+class FlankAngles:
+    """Angles of a flank at its pitch point.
+
+    Attributes
+    ----------
+    spiral : float [rad]
+        beta, positive for a right-hand gear.
+    pressure, transverse_pressure : float [rad]
+        Normal pressure angle, and that in the section across the pitch line.
+    """
+
+    spiral: float
+    pressure: float
+    transverse_pressure: float
+
+
+class GeneratedFlank(ToothRegion):
+    """Exact flank of a face-milled gear, generated or formate.
+
+    Parameters
+    ----------
+    gear : FaceMilledGear
+    flank : {"concave", "convex"}
+
+    Raises
+    ------
+    InputError
+        If the cutter has no blade for this flank.
+    GeometryError
+        If the cutter does not cut the whole flank, or undercuts it.
+
+    References
+    ----------
+    Litvin & Fuentes 2004, Gear Geometry and Applied Theory, chapter 21.
+
+    Examples
+    --------
+    >>> from loaded_tca.gears import BevelBlank
+    >>> from loaded_tca.gears.basic_settings import spread_blade
+    >>> blank = BevelBlank((20, 30), 5.0, 22.0, spiral_angle=math.radians(35), cutter_radius=50.0, taper="duplex")
+    >>> flank = GeneratedFlank(spread_blade(blank)[1], "concave")
+    >>> round(math.degrees(flank.angles.spiral), 1), flank.as_spline().check_error.largest < 1e-7
+    (35.1, True)
+    """
+
+    def __init__(self, gear: FaceMilledGear, flank: FlankName) -> None:
+        blank, self.gear, self.flank = gear.blank, gear, flank
+        self.generation = CradleGeneration(gear.cutter.blade(flank), flank, gear.machine)
+        self._mirror = float(gear.mirror)
+        super().__init__(
+            gear.side(flank),
+            blank.pitch_angle,
+            blank.cone_distances,
+            (blank.face_angle, blank.face_apex),
+            self._form_angles(),
+        )
+        self._require(*(part.ravel() for part in self.grid(*CHECK_POINTS)))
+        self._zero = 0.0
+        self._zero = float(self._require(*self._pitch_point).theta.value[0])
+
+    @property
+    def owner(self) -> str:
+        """Gear and flank, as messages call them."""
+        return f"{self.gear.name}, {self.flank} flank"
+
+    def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:  # noqa: ARG002 (it has no crease)
+        """Theta of the generated flank; beyond its borders that of the B-spline."""
+        rho, z = np.broadcast_arrays(np.asarray(rho, dtype=float), np.asarray(z, dtype=float))
+        flat = rho.ravel(), z.ravel()
+        on = self._on_flank(*flat)
+        if on.all():
+            return _shaped(self._exact(*flat), rho.shape)
+        parts = _stack(self._spline_flank.theta(*flat))
+        if on.any():
+            parts[:, on] = _stack(self._exact(flat[0][on], flat[1][on]))
+        return _shaped(Jet(*parts), rho.shape)
+
+    def gradient_norm(self, rho: Array, z: Array) -> Jet:
+        """|grad F| [1/mm]: its B-spline over the flank's coordinates."""
+        profile, lengthwise = self.profile_coordinate(rho, z), self.lengthwise_coordinate(rho, z)
+        return self._gradient_spline(profile.value, lengthwise.value).compose(profile, lengthwise)
+
+    def as_spline(self, points: tuple[int, int] = SPLINE_POINTS) -> SplineFlank:
+        """Quintic B-spline of this flank through Chebyshev-Lobatto points along the profile and lengthwise.
+
+        Returns
+        -------
+        SplineFlank
+            ``check_error``: how far it is from the exact flank midway between the points [mm].
+        """
+        places = self._nodes(points), self._between(points)
+        exact = [self._exact(rho.ravel(), z.ravel()) for rho, z in places]
+        bare = SplineFlank(Region(self), self._fitted(exact[0].value.reshape(points)), FitError(0.0, 0.0))
+        errors = [self._missed(bare, *at, jet) for at, jet in zip(places, exact, strict=True)]
+        return SplineFlank(Region(self), bare.spline, *errors)
+
+    @cached_property
+    def angles(self) -> FlankAngles:
+        """Spiral and pressure angles at the pitch point."""
+        rho, z = self._pitch_point
+        jet, delta = self._exact(rho, z), self.gear.blank.pitch_angle
+        slopes = float(jet.rho[0]), float(jet.z[0])
+        along = float(rho[0]) * (slopes[0] * math.sin(delta) + slopes[1] * math.cos(delta))
+        up = float(rho[0]) * abs(slopes[0] * math.cos(delta) - slopes[1] * math.sin(delta))
+        return FlankAngles(math.atan(along), math.atan(up / math.hypot(1.0, along)), math.atan(up))
+
+    def _form_angles(self) -> Array:
+        """Cone angles (NODES,) of the form line; refuses a line that the cutter does not cut, or undercuts."""
+        blank = self.gear.blank
+        distance = chebyshev_nodes(blank.cone_distances, NODES)
+        angles, points = self.generation.at_height(self.generation.blade.form_height, distance)
+        if not points.converged.all():
+            raise self._not_cut(distance, angles, points.converged)
+        tips = face_cone_angles((blank.face_angle, blank.face_apex), distance)
+        if not (angles < tips).all():
+            worst = int(np.argmax(angles - tips))
+            place = self._place(distance[worst] * np.sin(tips[worst]), distance[worst] * np.cos(tips[worst]))
+            raise GeometryError(f"{self.owner}: no flank is left: the form line lies above the face cone {place}")
+        if not points.found.all():
+            raise self._undercut(float(distance[np.argmin(points.sharpness)]))
+        return angles
+
+    def _undercut(self, distance: float) -> GeometryError:
+        """What to say of an undercut edge at a cone distance."""
+        form, blank = self.generation.blade.form_height, self.gear.blank
+        depths = np.linspace(0.0, distance * (blank.face_angle - blank.root_angle), EDGE_HEIGHTS)
+        cuts = [self.generation.at_height(form + depth, np.array([distance])) for depth in depths]
+        turned = np.array([points.converged[0] and points.sharpness[0] <= 0.0 for _, points in cuts])
+        last = max(0, int(np.argmin(turned)) - 1)
+        angle = float(cuts[last][0][0])
+        place = self._place(distance * math.sin(angle), distance * math.cos(angle))
+        return GeometryError(
+            f"{self.owner}: undercut: the generated surface turns back in an edge {place}, on the blade at least "
+            f"{depths[last]:.2g} mm above its rounded tip; cut less deep (sliding_base), or use a larger blade_angle "
+            "or edge_radius"
+        )
+
+    def _not_cut(self, distance: Array, angle: Array, found: Array) -> GeometryError:
+        """What to say of points that the cutter does not reach."""
+        worst = int(np.argmin(found))
+        place = self._place(distance[worst] * np.sin(angle[worst]), distance[worst] * np.cos(angle[worst]))
+        return GeometryError(
+            f"{self.owner}: the cutter does not cut {int((~found).sum())} of {found.size} points of the flank, first "
+            f"{place}; do radial, cradle_angle, root_angle and point_radius belong to this blank?"
+        )
+
+    def _place(self, rho: Any, z: Any) -> str:
+        blank: FaceMilledBlank = self.gear.blank
+        return ConeFrame(blank.pitch_angle, blank.mean_cone_distance).place(float(rho), float(z))
+
+    def _require(self, rho: Array, z: Array) -> GeneratedPoints:
+        """Points of the right-hand member; GeometryError if one is missing."""
+        points = self.generation.solve(rho, z)
+        if not points.found.all():
+            raise self._not_cut(np.hypot(rho, z), np.arctan2(rho, z), points.found)
+        return points
+
+    def _exact(self, rho: Array, z: Array) -> Jet:
+        """Theta of points (n,) on the flank, of this hand and turned to the pitch point."""
+        return (self._require(rho, z).theta + Jet(-self._zero)) * self._mirror
+
+    def _on_flank(self, rho: Array, z: Array) -> Array:
+        """Whether points lie in the region, borders included."""
+        tolerance = ON_BORDER * min(self.extent)
+        return self.inside(rho, z, tolerance)
+
+    @property
+    def _pitch_point(self) -> tuple[Array, Array]:
+        distance, delta = self.mean_cone_distance, self.gear.blank.pitch_angle
+        return np.array([distance * math.sin(delta)]), np.array([distance * math.cos(delta)])
+
+    @cached_property
+    def _spline_flank(self) -> SplineFlank:
+        return self.as_spline()
+
+    @cached_property
+    def _gradient_spline(self) -> TensorSpline:
+        rho, z = self._nodes(SPLINE_POINTS)
+        jet = self._exact(rho.ravel(), z.ravel())
+        return self._fitted(_gradient(rho.ravel(), jet).reshape(rho.shape))
+
+    def _lines(self, points: tuple[int, int]) -> tuple[Array, Array]:
+        """Profile coordinates and cone distances of the grid lines."""
+        return chebyshev_nodes((0.0, self.mean_height), points[0]), chebyshev_nodes(self.cone_distances, points[1])
+
+    def _nodes(self, points: tuple[int, int]) -> tuple[Array, Array]:
+        return self.places(*self._lines(points))
+
+    def _between(self, points: tuple[int, int]) -> tuple[Array, Array]:
+        """Midway between the nodes, where the B-spline is furthest from the flank."""
+        profile, distance = (0.5 * (line[1:] + line[:-1]) for line in self._lines(points))
+        return self.places(profile, distance)
+
+    def _fitted(self, values: Array) -> TensorSpline:
+        """B-spline through values at the nodes."""
+        profile, distance = self._lines((values.shape[0], values.shape[1]))
+        grid = np.meshgrid(profile, distance - self.mean_cone_distance, indexing="ij")
+        return fit(grid[0], grid[1], values, (SPLINE_DEGREE, SPLINE_DEGREE))
+
+    def _missed(self, spline: SplineFlank, rho: Array, z: Array, exact: Jet) -> FitError:
+        """Distance along the normal of a B-spline from this flank [mm]."""
+        rho, z = rho.ravel(), z.ravel()
+        return FitError.of((spline.theta(rho, z).value - exact.value) / _gradient(rho, exact))
+
+    def __repr__(self) -> str:
+        return f"GeneratedFlank({self.owner})"
+
+
+def tooth_angle(gear: FaceMilledGear, rho: Array, z: Array) -> Array:
+    """Angle of the tooth between its two flanks at (rho, z), (n,) each, both cut at one machine setting [rad].
+
+    Negative where they have crossed; a whole pitch where one of them is not cut at all.
+    """
+    names: tuple[FlankName, FlankName] = ("concave", "convex")
+    cuts = [CradleGeneration(gear.cutter.blade(name), name, gear.machine).solve(rho, z) for name in names]
+    slot = cuts[1].theta.value - cuts[0].theta.value
+    return 2.0 * math.pi / gear.teeth - np.where(cuts[0].found & cuts[1].found, slot, 0.0)
+
+
+def _gradient(rho: Array, theta: Jet) -> Array:
+    """|grad F| of a surface [1/mm]."""
+    return np.sqrt(1.0 / rho**2 + theta.rho**2 + theta.z**2)
+
+
+def _stack(jet: Jet) -> Array:
+    """The six parts of a jet (6, n)."""
+    return np.stack([jet.value, jet.rho, jet.z, jet.rho_rho, jet.rho_z, jet.z_z])
+
+
+def _shaped(jet: Jet, shape: tuple[int, ...]) -> Jet:
+    return Jet(*(part.reshape(shape) for part in _stack(jet)))

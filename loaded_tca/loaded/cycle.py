@@ -1,0 +1,192 @@
+"""What carries the torques over the positions of a pitch: one tooth pair, or all that touch."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import ConvergenceError
+from loaded_tca.loaded.load_sharing import Laws, SharedLoad, share_load, touches_at
+from loaded_tca.loaded.pair_coupling import TeethYield
+from loaded_tca.loaded.tooth_contact import Beneath, GridChoice, LoadedContact, press
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.unloaded import ContactPath, MeshPath, trace_contact, trace_teeth
+
+Progress = Callable[[int, int], None]
+"""Called with what is done and what there is to do, in torques times positions."""
+MakeCompliance = Callable[[int], TeethYield | None]
+"""Makes what yields beside the contacts, where loaded teeth are up to so many pitches apart; None: nothing does."""
+Contacts = list[list[list[LoadedContact | None]]]
+"""By torque, position and tooth pair; None where a pair carries nothing."""
+
+
+@dataclass(frozen=True, eq=False)
+class Carried:
+    """What the tooth pairs carry.
+
+    Attributes
+    ----------
+    path : ContactPath
+        Unloaded contact of the mesh, n positions in the angles of the gears.
+    torque : (m,) array [N mm]
+    pairs : (pairs,) int array
+        Those that carry load at some position, and 0.
+    paths : tuple of ContactPath
+        Unloaded contact of each pair, in the angles of the gears.
+    contacts : nested list of LoadedContact or None
+        By torque, position and pair.
+    rotation : (m, n) array [rad]
+        By how much load lets the wheel lag; NaN where nothing touches.
+    torque_rate : (m, n) array [N mm/rad]
+        Tangent of the torque over the rotation.
+    share : (m, n, pairs) array
+        In the torque.
+    deflection : (m, n, pairs) array [mm]
+        Of the teeth, beside the approach of the contact.
+    """
+
+    path: ContactPath
+    torque: Array
+    pairs: NDArray[np.int_]
+    paths: tuple[ContactPath, ...]
+    contacts: Contacts
+    rotation: Array
+    torque_rate: Array
+    share: Array
+    deflection: Array
+
+
+def carried_by_one(
+    pair: GearPair,
+    angles: Array,
+    torques: Array,
+    grid: GridChoice,
+    compliance: MakeCompliance,
+    progress: Progress | None = None,
+) -> Carried:
+    """Let the tooth pair at the pitch point carry the whole load.
+
+    Parameters
+    ----------
+    pair : GearPair
+    angles : (n,) array [rad]
+        Of the pinion.
+    torques : (m,) array [N mm]
+        Of the pinion.
+    grid : GridChoice
+    compliance : callable
+    progress : callable, optional
+    """
+    path = trace_contact(pair, angles)
+    shape = len(torques), len(path)
+    contacts: Contacts = [[[None] for _ in range(shape[1])] for _ in range(shape[0])]
+    rotation, rate, deflection = np.full((3, *shape), math.nan)
+    teeth = compliance(0)
+    beneath = None if teeth is None else alone(teeth)
+    for t, n in _told(shape, progress):
+        contact = path[n]
+        if contact.touches:
+            with _told_where(torques[t], angles[n]):
+                loaded = press(pair, contact, torques[t] / contact.pinion_lever, grid, beneath)
+            contacts[t][n][0] = loaded
+            deflection[t, n] = loaded.own_deflection
+            rotation[t, n] = loaded.solution.approach / contact.wheel_lever
+            rate[t, n] = contact.pinion_lever * contact.wheel_lever * loaded.stiffness
+    share = np.broadcast_to(np.where(path.touches, 1.0, math.nan)[:, None], (*shape, 1)).copy()
+    number = np.zeros(1, dtype=int)
+    return Carried(path, torques, number, (path,), contacts, rotation, rate, share, deflection[..., None])
+
+
+def alone(teeth: TeethYield) -> Beneath:
+    """Return what yields beneath the contact of tooth pair 0 where no other one carries anything."""
+    return Beneath(partial(teeth.within, 0), lambda separation: np.zeros(len(separation.y)))
+
+
+def carried_by_all(
+    pair: GearPair,
+    angles: Array,
+    torques: Array,
+    grid: GridChoice,
+    compliance: MakeCompliance,
+    progress: Progress | None = None,
+) -> Carried:
+    """Let all tooth pairs that touch share the load; parameters as of :func:`carried_by_one`."""
+    mesh = trace_teeth(pair, angles)
+    shape = len(torques), len(mesh)
+    teeth = compliance(_farthest_apart(mesh))
+    shared: list[list[SharedLoad]] = [[] for _ in torques]
+    touches = [touches_at(mesh, n) for n in range(len(mesh))]
+    laws = Laws()
+    for t, n in _told(shape, progress):
+        with _told_where(torques[t], angles[n]):
+            found = share_load(pair, touches[n], float(torques[t]), grid, compliance=teeth, start=laws)
+        laws = laws.updated(found.laws)
+        shared[t].append(found)
+    carrying = {0} | {share.touch.pair for row in shared for one in row for share in one.shares}
+    columns = [column for column, number in enumerate(mesh.pairs.tolist()) if number in carrying]
+    contacts, share, deflection = _by_column(shared, mesh.pairs[columns].tolist())
+    return Carried(
+        path=replace(mesh.leading_contact, pinion_angle=angles, wheel_angle=mesh.wheel_angle),
+        torque=torques,
+        pairs=mesh.pairs[columns],
+        paths=tuple(_in_gear_angles(pair, mesh, column) for column in columns),
+        contacts=contacts,
+        rotation=np.array([[one.rotation for one in row] for row in shared]),
+        torque_rate=np.array([[one.torque_rate for one in row] for row in shared]),
+        share=share,
+        deflection=deflection,
+    )
+
+
+def _told(shape: tuple[int, int], progress: Progress | None) -> Iterator[tuple[int, int]]:
+    """Torque and position one after the other; the progress is told after each."""
+    total = math.prod(shape)
+    for done, (t, n) in enumerate(np.ndindex(shape), start=1):
+        yield t, n
+        if progress is not None:
+            progress(done, total)
+
+
+@contextmanager
+def _told_where(torque: float, angle: float) -> Iterator[None]:
+    """Say under which torque [N mm] and at which pinion angle [rad] something did not converge."""
+    try:
+        yield
+    except ConvergenceError as error:
+        where = f"{1e-3 * torque:g} N m at pinion angle {math.degrees(angle):.6g} deg"
+        raise ConvergenceError(f"{where}: {error}", error.last) from error
+
+
+def _farthest_apart(mesh: MeshPath) -> int:
+    """How many pitches two pairs that can touch at the same position are apart."""
+    near = np.isfinite(mesh.lag)
+    spans = [int(np.ptp(mesh.pairs[column])) for column in near.T]
+    return max(spans, default=0)
+
+
+def _by_column(shared: list[list[SharedLoad]], pairs: list[int]) -> tuple[Contacts, Array, Array]:
+    """Contacts, shares and deflections by torque, position and pair."""
+    shape = len(shared), len(shared[0]), len(pairs)
+    contacts: Contacts = [[[None] * shape[2] for _ in range(shape[1])] for _ in range(shape[0])]
+    share, deflection = np.zeros((2, *shape))
+    for t, row in enumerate(shared):
+        for n, one in enumerate(row):
+            for part in one.shares:
+                place = t, n, pairs.index(part.touch.pair)
+                contacts[t][n][place[2]], deflection[place] = part.loaded, part.deflection
+                share[place] = part.torque / one.torque if one.torque > 0.0 else 1.0
+    return contacts, share, deflection
+
+
+def _in_gear_angles(pair: GearPair, mesh: MeshPath, column: int) -> ContactPath:
+    """Path of one of the pairs, in the angles of the gears instead of its own."""
+    path = mesh.paths[column]
+    turned = pair.ratio * (mesh.pinion_angle - path.pinion_angle)
+    return replace(path, pinion_angle=mesh.pinion_angle, wheel_angle=path.wheel_angle + turned)

@@ -1,0 +1,1 @@
+"""Reports, surfaces and stresses as files."""

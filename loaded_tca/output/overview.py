@@ -1,0 +1,82 @@
+"""What a scene amounts to before any contact is computed: its geometry, its load, and what departs from nominal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from loaded_tca.compliance.compliance import rigid_bores
+from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.scene import Scene
+from loaded_tca.scene.model import Row
+from loaded_tca.scene.section import Section, contents
+
+MOST_TORQUES = 4
+"""Torques that have a column each; of more, the least and the largest are shown."""
+LABEL = 44
+
+
+def describe_scene(scene: Scene) -> str:
+    """Return the geometry and the load of a scene, a line each, with notes on what the analysis leaves out.
+
+    Raises
+    ------
+    InputError, GeometryError
+        If the gears of the scene cannot exist or cannot mesh.
+    """
+    pair = scene.pair()
+    cap = [] if pair.max_pressure is None else [("cap on the pressure [MPa]", f"{pair.max_pressure:g}")]
+    asked = [*_load_rows(scene), *cap, *_analysis_rows(scene)]
+    rows = [*scene.geometry_rows(), *asked, *_departures(scene), *_spline_rows(scene, pair)]
+    lines = [f"{label:<{LABEL}}" + "".join(f"{cell:>14}" for cell in cells) for label, *cells in rows]
+    return "\n".join([scene.title or "Scene", *lines, *(f"note: {note}" for note in scene.notes())])
+
+
+def _load_rows(scene: Scene) -> list[Row]:
+    torques: Sequence[float] = scene.torques
+    if len(torques) > MOST_TORQUES:
+        torques = (min(torques), max(torques))
+    label = "pinion torque" if len(torques) == len(scene.torques) else f"{len(scene.torques)} pinion torques from, to"
+    return [(f"{label} [N m]", *(f"{1e-3 * torque:g}" for torque in torques)), *scene.force_rows(torques)]
+
+
+def _analysis_rows(scene: Scene) -> Iterator[Row]:
+    """What the analysis is asked to do, and the bores that it holds where teeth bend."""
+    wanted = scene.analysis
+    switches = ("on" if switch else "off" for switch in (wanted.load_sharing, wanted.free_edges))
+    yield "load sharing, free edges, compliance", *switches, wanted.compliance
+    yield "positions, torques", f"{wanted.positions}", f"{len(scene.torques)}"
+    bores = rigid_bores(scene)
+    if bores is not None:
+        yield "bores held rigid, smallest diameter [mm]", *(f"{bore:.4f}" for bore in bores)
+
+
+def _departures(scene: Scene) -> Iterator[Row]:
+    """Mounting errors and modifications that a scene asks for, by their keys."""
+    yield from _changed(scene.mounting, "mounting.") or [("mounting errors", "none")]
+    for name, gear in (("pinion", scene.pinion), ("wheel", scene.wheel)):
+        yield from _changed(gear.modifications, f"{name}.modifications.") or [(f"{name}.modifications", "none")]
+
+
+def _spline_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
+    """Forms of flanks that are not analytic, and how closely their B-splines follow their points."""
+    for name, gear, flank in (("pinion", scene.pinion, pair.pinion), ("wheel", scene.wheel, pair.wheel)):
+        if not isinstance(flank, SplineFlank):
+            continue
+        yield f"{name}.flank.form", gear.flank.form
+        if gear.flank.measurement is not None:
+            rho, z = flank.grid(*DEFAULT_POINTS)
+            excess = 1e3 * flank.distance_to(flank.nominal, rho, z)
+            yield f"{name}: measured points", " x ".join(map(str, gear.flank.measurement.shape))
+            yield f"{name}: deviations from, to [um]", f"{excess.min():.2f}", f"{excess.max():.2f}"
+        errors = {"at points": flank.fit_error, "between them": flank.check_error}
+        for where, error in errors.items():
+            if error is not None:
+                label = f"{name}: fit {where}, largest, rms [um]"
+                yield label, f"{1e3 * error.largest:.1e}", f"{1e3 * error.rms:.1e}"
+
+
+def _changed(section: Section, place: str) -> list[Row]:
+    """Values of a section that are not its defaults."""
+    usual = contents(type(section)())
+    return [(place + key, f"{value}") for key, value in contents(section).items() if value != usual[key]]

@@ -1,0 +1,159 @@
+"""Surfaces in files for viewers: legacy VTK (ParaView, VisIt) and STL, each written whole or not at all.
+
+Lengths are in mm; both formats have no place for a unit, so the header of each file says so.
+
+References
+----------
+Schroeder, Martin & Lorensen, The VTK User's Guide, "VTK File Formats", legacy format 3.0; 3D Systems 1989,
+StereoLithography Interface Specification.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import InputError
+from loaded_tca.output.teeth_in_space import TeethInSpace
+from loaded_tca.pairs import MatingTeeth
+from loaded_tca.results.files import FilePath, replacing
+from loaded_tca.tooth import TriangleMesh
+
+LONGEST_TITLE = 255
+"""Bytes of the second line of a VTK file."""
+STL_HEADER = 80
+"""Bytes before the number of triangles in an STL file."""
+_STL_RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+
+def write_vtk(path: FilePath, mesh: TriangleMesh, title: str = "", *, binary: bool = True) -> None:
+    """Write a surface with its point and cell data as legacy VTK PolyData.
+
+    Parameters
+    ----------
+    path : str or path
+        Replaced if it exists.
+    mesh : TriangleMesh
+        Data of integers are written as int, of floats as double.
+    title : str
+        Said in the header, beside the number of triangles and the unit.
+    binary : bool
+        False: as text, with every digit.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written, or the name of an array has a blank in it.
+    """
+    names = [name for data in (mesh.point_data, mesh.cell_data) for name in data]
+    problems = [f"data {name!r}: a name in a VTK file is one word" for name in names if len(name.split()) != 1]
+    if problems:
+        raise InputError(problems)
+    with replacing(path) as temporary, open(temporary, "wb") as file:
+        for part in _vtk_parts(mesh, title, binary=binary):
+            file.write(part)
+
+
+def _vtk_parts(mesh: TriangleMesh, title: str, *, binary: bool) -> Iterator[bytes]:
+    count = len(mesh.triangles)
+    yield f"# vtk DataFile Version 3.0\n{_header(mesh, title, LONGEST_TITLE)}\n".encode("ascii")
+    yield (b"BINARY" if binary else b"ASCII") + f"\nDATASET POLYDATA\nPOINTS {mesh.size} double\n".encode("ascii")
+    yield _numbers(np.asarray(mesh.vertices, dtype=float), binary=binary)
+    yield f"POLYGONS {count} {4 * count}\n".encode("ascii")
+    yield _numbers(np.insert(mesh.triangles, 0, 3, axis=1), binary=binary)
+    yield from _vtk_data("POINT_DATA", mesh.size, mesh.point_data, binary=binary)
+    yield from _vtk_data("CELL_DATA", count, mesh.cell_data, binary=binary)
+
+
+def _vtk_data(kind: str, count: int, data: Mapping[str, Array], *, binary: bool) -> Iterator[bytes]:
+    if data:
+        yield f"{kind} {count}\n".encode("ascii")
+    for name, values in data.items():
+        word = "double" if values.dtype.kind == "f" else "int"
+        yield f"SCALARS {name} {word} 1\nLOOKUP_TABLE default\n".encode("ascii")
+        yield _numbers(values, binary=binary)
+
+
+def _numbers(values: Array, *, binary: bool) -> bytes:
+    """Numbers as VTK reads them: big-endian, or as text of full precision, one row per line."""
+    real = values.dtype.kind == "f"
+    if binary:
+        return values.astype(">f8" if real else ">i4").tobytes() + b"\n"
+    rows = values.reshape(len(values), -1).tolist()
+    return "".join(" ".join(repr(number) for number in row) + "\n" for row in rows).encode("ascii")
+
+
+def write_stl(path: FilePath, mesh: TriangleMesh, title: str = "") -> None:
+    """Write a surface as binary STL: triangles in single precision, without data.
+
+    Parameters
+    ----------
+    path : str or path
+        Replaced if it exists.
+    mesh : TriangleMesh
+    title : str
+        Said in the header, beside the number of triangles and the unit.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written.
+    """
+    records = np.zeros(len(mesh.triangles), dtype=_STL_RECORD)
+    normals = mesh.normals
+    records["normal"] = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
+    records["corners"] = mesh.corners
+    header = _header(mesh, title, STL_HEADER).encode("ascii").ljust(STL_HEADER)
+    with replacing(path) as temporary, open(temporary, "wb") as file:
+        file.write(header + struct.pack("<I", len(records)) + records.tobytes())
+
+
+def _header(mesh: TriangleMesh, title: str, longest: int) -> str:
+    """One line of ASCII; the unit stands before the title, which may be cut off."""
+    about = f"loaded_tca surface in mm, {len(mesh.triangles)} triangles"
+    text = " ".join(f"{about}: {title}".split()) if title.split() else about
+    return text.encode("ascii", "replace").decode("ascii")[:longest]
+
+
+def write_teeth(
+    shown: TeethInSpace, teeth: MatingTeeth, directory: FilePath, *, title: str = "", whole_gears: bool = False
+) -> tuple[Path, ...]:
+    """Write the teeth in contact and the solids of both gears into an existing directory.
+
+    Parameters
+    ----------
+    shown : TeethInSpace
+    teeth : MatingTeeth
+    directory : str or path
+    title : str
+        Said in the header of each file.
+    whole_gears : bool
+        Whether the solids have all teeth, on their rim, instead of one.
+
+    Returns
+    -------
+    tuple of Path
+        ``pinion.vtk``, ``wheel.vtk``, ``pressure.vtk`` (fixed frame, teeth in contact; ``patch`` on each triangle of a
+        tooth, ``pressure_MPa`` on each of the pressure), and ``pinion.stl``, ``wheel.stl`` (each in its gear's own
+        frame, closed).
+
+    Raises
+    ------
+    InputError
+        If a file cannot be written.
+    """
+    solids = [tooth.triangles(tooth.teeth if whole_gears else 1, closed=True) for tooth in (teeth.pinion, teeth.wheel)]
+    content: dict[str, tuple[Callable[[FilePath, TriangleMesh, str], None], TriangleMesh]] = {
+        "pinion.vtk": (write_vtk, shown.pinion),
+        "wheel.vtk": (write_vtk, shown.wheel),
+        "pressure.vtk": (write_vtk, shown.pressure),
+        "pinion.stl": (write_stl, solids[0]),
+        "wheel.stl": (write_stl, solids[1]),
+    }
+    for name, (write, mesh) in content.items():
+        write(Path(directory) / name, mesh, title)
+    return tuple(Path(directory) / name for name in content)

@@ -1,0 +1,134 @@
+"""The teeth of a result where they touch, with the path of contact and the pressure, for pictures and files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import GeometryError
+from loaded_tca.pairs import MatingTeeth, mating_teeth
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.scene import Scene
+from loaded_tca.tooth import Resolution, TriangleMesh, tooth_forms
+from loaded_tca.unloaded import ContactPoint
+
+
+@dataclass(frozen=True, eq=False)
+class TeethInSpace:
+    """One position of a result in space, in the fixed frame.
+
+    Attributes
+    ----------
+    pair : GearPair
+    position, torque : int
+        Indices in the result.
+    pinion, wheel : TriangleMesh
+        The teeth in contact.
+    path : (n, 3) array [mm]
+        The unloaded contact points of all positions on the pinion's flank.
+    pressure : TriangleMesh
+        Cells under pressure on the pinion's flank, ``cell_data["pressure_MPa"]``; none without load.
+    point, normal : (3,) array
+        The contact point [mm] and the normal out of the pinion.
+    """
+
+    pair: GearPair
+    position: int
+    torque: int
+    pinion: TriangleMesh
+    wheel: TriangleMesh
+    path: Array
+    pressure: TriangleMesh
+    point: Array
+    normal: Array
+
+    @property
+    def eye(self) -> Array:
+        """Unit vector (3,) from which the pinion's flank is seen: along its normal, a little from tip and heel."""
+        outward = np.array([self.point[0], self.point[1], 0.0])
+        towards: Array = self.normal + 0.6 * outward / np.linalg.norm(outward) + np.array([0.0, 0.0, 0.5])
+        return towards / np.linalg.norm(towards)
+
+    @property
+    def highest_pressure(self) -> float:
+        """Largest pressure of a cell [MPa]; zero without load."""
+        return float(self.pressure.cell_data["pressure_MPa"].max(initial=0.0))
+
+
+def complete_teeth(
+    scene: Scene, resolution: Resolution = Resolution(), *, fillet_radius: float | None = None
+) -> MatingTeeth:
+    """Complete teeth of both gears of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    resolution : Resolution
+    fillet_radius : float [mm], optional
+        Of arcs at the root, see :func:`loaded_tca.tooth.tooth_forms`.
+
+    Raises
+    ------
+    InputError
+        If the fillet radius does not fit.
+    GeometryError
+        If a tooth is pointed, or cut off by its undercut.
+    """
+    pair = scene.pair()
+    backs = scene.pair("negative" if pair.sense > 0 else "positive")
+    return mating_teeth(tooth_forms(scene.mesh(), fillet_radius=fillet_radius), pair, backs, resolution)
+
+
+def teeth_in_space(
+    result: MeshCycle, teeth: MatingTeeth, position: int | None = None, torque: int | None = None
+) -> TeethInSpace:
+    """Place teeth, path and pressure of one position of a result.
+
+    Parameters
+    ----------
+    result : MeshCycle
+    teeth : MatingTeeth
+        Of the scene of the result, see :func:`complete_teeth`.
+    position : int, optional
+        Index along the path; default: that of the peak pressure, ``result.peak_position``.
+    torque : int, optional
+        Index of the torque; default: the largest one.
+
+    Raises
+    ------
+    GeometryError
+        If nothing touches at that position.
+    """
+    torque = int(np.argmax(result.torque)) if torque is None else torque
+    position = result.peak_position(torque) if position is None else position
+    column = 0 if position is None else result.highest_column(torque, position)
+    one = None if position is None else result.contacts.maps[torque][position][column]
+    if position is None or one is None:
+        raise GeometryError("no teeth in contact: the tooth pair does not touch at this position")
+    contact, path = _of_own_teeth(result, teeth.pair, position, column), result.path[result.path.touches]
+    pinion, wheel = teeth.in_mesh(contact.pinion_angle, contact.wheel_angle)
+    return TeethInSpace(
+        teeth.pair,
+        position,
+        torque,
+        pinion,
+        wheel,
+        teeth.on_pinion(path.pinion_radius, path.pinion_axial, contact.pinion_angle),
+        teeth.pressure_on_pinion(one.corners, one.pressure, contact.pinion_angle),
+        contact.point,
+        contact.normal,
+    )
+
+
+def _of_own_teeth(result: MeshCycle, pair: GearPair, position: int, column: int) -> ContactPoint:
+    """Unloaded contact of a tooth pair, in the angles of its own teeth, as if it were the pair at the pitch point."""
+    contact = result.contacts.paths[column][position]
+    pitches = float(result.pairs[column]) * pair.pitch
+    return replace(
+        contact,
+        pinion_angle=contact.pinion_angle - pitches,
+        wheel_angle=contact.wheel_angle - pair.ratio * pitches,
+    )

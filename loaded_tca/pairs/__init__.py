@@ -1,0 +1,20 @@
+"""Two gears in space: frames, mounting errors, senses of rotation, complete teeth in mesh."""
+
+from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
+from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
+from loaded_tca.pairs.face_milled import face_milled_pair
+from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
+from loaded_tca.pairs.mating_teeth import MatingTeeth, mating_teeth
+
+__all__ = [
+    "BevelMounting",
+    "Driving",
+    "GearPair",
+    "MatingTeeth",
+    "Mounting",
+    "Sense",
+    "bevel_pair",
+    "cylindrical_pair",
+    "face_milled_pair",
+    "mating_teeth",
+]

@@ -1,0 +1,167 @@
+"""Pairs of spur and helical gears: their mounting errors and their flanks."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.cylindrical import InvoluteFlank
+from loaded_tca.flanks.modification import FlankModifications, modified
+from loaded_tca.gears import CylindricalMesh
+from loaded_tca.material import Material
+from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense, require_finite, signs_of
+
+LARGEST_ANGLE = math.radians(45.0)
+"""Angular errors stay below this [rad]: the axes are those of parallel gears, which still face each other."""
+
+
+@dataclass(frozen=True)
+class Mounting:
+    """Mounting errors of parallel axes.
+
+    Parameters
+    ----------
+    in_plane : float [rad]
+        gamma, in the plane of the axes; positive when the wheel's axis leaves the pinion at z > 0.
+    out_of_plane : float [rad]
+        delta, across that plane; positive when the wheel moves towards -y at z > 0.
+    centre_distance_error : float [mm]
+        Positive: apart.
+    axial_offset : float [mm]
+        Positive: wheel towards +z.
+
+    Raises
+    ------
+    InputError
+        If a value is not finite, or an angle not between -45 and 45 deg.
+    """
+
+    in_plane: float = 0.0
+    out_of_plane: float = 0.0
+    centre_distance_error: float = 0.0
+    axial_offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_finite(self, ("rad", "rad", "mm", "mm"))
+        limit = f"is not between -{math.degrees(LARGEST_ANGLE):.3g} and {math.degrees(LARGEST_ANGLE):.3g} deg"
+        angles = {"in_plane": self.in_plane, "out_of_plane": self.out_of_plane}
+        problems = [
+            f"{name}: {angle:.6g} rad, {math.degrees(angle):.6g} deg, {limit}: the axes are nearly parallel"
+            for name, angle in angles.items()
+            if abs(angle) >= LARGEST_ANGLE
+        ]
+        if problems:
+            raise InputError(problems)
+
+    def place_parallel(self, centre_distance: float) -> tuple[Array, Array]:
+        """Origin (3,) and axes (3, 3), in rows, of the wheel frame: R_y(gamma) R_x(delta) about its mid-face."""
+        gamma, delta = self.in_plane, self.out_of_plane
+        about_x = np.array(
+            [[1, 0, 0], [0, math.cos(delta), -math.sin(delta)], [0, math.sin(delta), math.cos(delta)]],
+            dtype=float,
+        )
+        about_y = np.array(
+            [[math.cos(gamma), 0, math.sin(gamma)], [0, 1, 0], [-math.sin(gamma), 0, math.cos(gamma)]],
+            dtype=float,
+        )
+        nominal = np.diag([-1.0, -1.0, 1.0])
+        origin = np.array([centre_distance + self.centre_distance_error, 0.0, self.axial_offset])
+        return origin, nominal @ (about_y @ about_x).T
+
+
+def cylindrical_pair(
+    mesh: CylindricalMesh,
+    *,
+    modifications: tuple[FlankModifications, FlankModifications] = (
+        FlankModifications(),
+        FlankModifications(),
+    ),
+    mounting: Mounting = Mounting(),
+    materials: tuple[Material, Material] = (Material(), Material()),
+    driving: Driving = "pinion",
+    sense: Sense = "positive",
+) -> GearPair:
+    """Pair of external spur or helical gears.
+
+    Parameters
+    ----------
+    mesh : CylindricalMesh
+        Macro geometry.
+    modifications : (FlankModifications, FlankModifications)
+        Of pinion and wheel.
+    mounting : Mounting
+        Errors of the wheel's position.
+    materials : (Material, Material)
+        Of pinion and wheel.
+    driving : {"pinion", "wheel"}
+    sense : {"positive", "negative"}
+        "negative": the pinion turns about -z and touches with its other flank.
+
+    Raises
+    ------
+    InputError
+        If driving or sense is not one of the two, or a relief starts off the active profile.
+    GeometryError
+        If the teeth wind a whole turn around a gear over its face width.
+
+    Examples
+    --------
+    >>> from loaded_tca.gears import CylindricalGear
+    >>> gears = [CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)]
+    >>> cylindrical_pair(CylindricalMesh(*gears))
+    GearPair(34/57, module 3 mm, face 25 mm)
+    """
+    turning, drive = signs_of(driving, sense)
+    side = turning * drive
+    _require_less_than_a_turn(mesh)
+    flanks = [_involute_flank(mesh, member, side, modifications[member]) for member in (0, 1)]
+    origin, axes = mounting.place_parallel(mesh.working_centre_distance)
+    return GearPair(
+        pinion=flanks[0],
+        wheel=flanks[1],
+        teeth=(mesh.pinion.teeth, mesh.wheel.teeth),
+        wheel_origin=origin,
+        wheel_axes=axes,
+        sense=turning,
+        driving=drive,
+        materials=materials,
+        module=mesh.pinion.normal_module,
+        base_radii=(mesh.pinion.base_radius, mesh.wheel.base_radius),
+        face_width=min(mesh.pinion.face_width, mesh.wheel.face_width),
+    )
+
+
+def _require_less_than_a_turn(mesh: CylindricalMesh) -> None:
+    """Refuse teeth that wind around their gear: in one position they would be in mesh at two places."""
+    for gear in (mesh.pinion, mesh.wheel):
+        turn = gear.face_width * abs(math.tan(gear.base_helix_angle)) / gear.base_radius
+        if turn >= 2.0 * math.pi:
+            raise GeometryError(
+                f"{gear.name}: its teeth wind {turn / (2.0 * math.pi):.3g} times around the gear over its face width, "
+                f"{gear.face_width:.6g} mm; less than one turn is allowed"
+            )
+
+
+def _involute_flank(mesh: CylindricalMesh, member: int, side: int, modifications: FlankModifications) -> Flank:
+    gear = (mesh.pinion, mesh.wheel)[member]
+    working_radius = (mesh.pinion_working_radius, mesh.wheel_working_radius)[member]
+    active = (mesh.pinion_active_profile, mesh.wheel_active_profile)[member]
+    nominal = InvoluteFlank(
+        gear.base_radius,
+        gear.base_helix_angle,
+        side,
+        working_radius,
+        (gear.form_radius, gear.tip_radius),
+        gear.face_width,
+    )
+    diameters = (2.0 * active.start_radius, 2.0 * active.end_radius)
+
+    def roll_length(diameter: float) -> float:
+        return gear.roll_length(0.5 * diameter)
+
+    return modified(nominal, modifications, gear.face_width, diameters, roll_length, owner=gear.name)

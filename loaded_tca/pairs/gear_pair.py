@@ -1,0 +1,144 @@
+r"""Two gears in space: their frames, mounting errors, senses of rotation.
+
+Fixed frame: pinion axis = +z, origin at the pinion's mid-face, x towards the wheel. Wheel frame without errors:
+origin (a, 0, 0), axes e_x2 = (-1, 0, 0), e_y2 = (0, -1, 0), e_z2 = (0, 0, 1)::
+
+            y ^                          x2 <----o wheel axis (z2 out of the page)
+              |                                  |
+     pinion   o----> x                           v y2
+     axis (z out of the page)  <------ a ------->
+
+The pinion turns by ``sense * phi1`` about +z, the wheel by ``sense * phi2`` about -e_z2: both angles are positive
+in the sense of motion. A point of the pinion flank stands at theta1 = Theta1 + sense phi1, a point of the wheel
+flank at theta2 = Theta2 - sense phi2. Both touching flanks have the side s = sense * driving, where driving is +1
+if the pinion drives and -1 if the wheel does. At phi1 = phi2 = 0 the unmodified, aligned pair touches at the pitch
+point of the mid-face section. Mounting errors are counted in the fixed frame, whichever flank is in contact.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+from typing import Any, Literal
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import InputError
+from loaded_tca.flanks.base import Flank
+from loaded_tca.material import Material, contact_modulus
+
+Driving = Literal["pinion", "wheel"]
+Sense = Literal["positive", "negative"]
+
+
+def require_finite(errors: Any, units: tuple[str, ...]) -> None:
+    """Refuse a dataclass of mounting errors of which one is not finite, naming each with its unit."""
+    values = [
+        (entry.name, getattr(errors, entry.name), unit) for entry, unit in zip(fields(errors), units, strict=True)
+    ]
+    problems = [f"{name}: {value!r} {unit} is not finite" for name, value, unit in values if not _is_finite(value)]
+    if problems:
+        raise InputError(problems)
+
+
+def _is_finite(value: Any) -> bool:
+    return isinstance(value, int | float | np.number) and math.isfinite(value)
+
+
+@dataclass(frozen=True, eq=False)
+class GearPair:
+    """Two flanks that may touch, and where their gears stand.
+
+    Attributes
+    ----------
+    pinion, wheel : Flank
+        The flanks in contact, each in its gear's own frame.
+    teeth : (int, int)
+        Numbers of teeth of pinion and wheel.
+    wheel_origin : (3,) array [mm]
+        Origin of the wheel frame in the fixed frame, mounting errors included.
+    wheel_axes : (3, 3) array
+        Axes of the wheel frame, in rows, in the fixed frame.
+    sense : int
+        +1: the pinion turns about +z; -1: about -z, pushing with its other flank.
+    driving : int
+        +1: the pinion drives; -1: the wheel does.
+    materials : (Material, Material)
+    module : float [mm]
+        Normal module: the length that small distances are compared with.
+    base_radii : (float, float) [mm]
+        r_b1 and r_b2, which turn torques into tangential forces and angles into lengths.
+    face_width : float [mm]
+        Common face width.
+    """
+
+    pinion: Flank
+    wheel: Flank
+    teeth: tuple[int, int]
+    wheel_origin: Array
+    wheel_axes: Array
+    sense: int
+    driving: int
+    materials: tuple[Material, Material]
+    module: float
+    base_radii: tuple[float, float]
+    face_width: float
+
+    @property
+    def ratio(self) -> float:
+        """z1/z2, the mean of d phi2/d phi1."""
+        return self.teeth[0] / self.teeth[1]
+
+    @property
+    def pitch(self) -> float:
+        """Angular pitch of the pinion, 2 pi/z1 [rad]."""
+        return 2.0 * math.pi / self.teeth[0]
+
+    @property
+    def contact_modulus(self) -> float:
+        """E* of the two materials [MPa]."""
+        return contact_modulus(*self.materials)
+
+    @property
+    def max_pressure(self) -> float | None:
+        """Pressure cap of the softer material [MPa]; None if both are elastic."""
+        caps = [material.max_pressure for material in self.materials if material.max_pressure is not None]
+        return min(caps) if caps else None
+
+    def to_wheel(self, point: Array) -> tuple[Array, Array, Array]:
+        """Cylindrical coordinates (rho, theta, z) of points (..., 3) in the wheel frame."""
+        x, y, z = np.moveaxis((point - self.wheel_origin) @ self.wheel_axes.T, -1, 0)
+        return np.hypot(x, y), np.arctan2(y, x), z
+
+    def wheel_basis(self, theta: Array) -> Array:
+        """e_rho, e_theta, e_z of the wheel at the azimuth theta, in rows, in the fixed frame: (..., 3, 3)."""
+        return cylindrical_basis(theta) @ self.wheel_axes
+
+    def __repr__(self) -> str:
+        return f"GearPair({self.teeth[0]}/{self.teeth[1]}, module {self.module:g} mm, face {self.face_width:g} mm)"
+
+
+def cylindrical_basis(theta: Array) -> Array:
+    """e_rho, e_theta, e_z at the azimuth theta, in rows: (..., 3, 3)."""
+    basis = np.zeros((*np.shape(theta), 3, 3))
+    basis[..., 0, 0] = basis[..., 1, 1] = np.cos(theta)
+    basis[..., 0, 1] = np.sin(theta)
+    basis[..., 1, 0] = -basis[..., 0, 1]
+    basis[..., 2, 2] = 1.0
+    return basis
+
+
+def signs_of(driving: Driving, sense: Sense) -> tuple[int, int]:
+    """Signs of the sense of rotation and of the driving gear, as ``GearPair`` keeps them.
+
+    Raises
+    ------
+    InputError
+        If driving or sense is not one of the two.
+    """
+    if driving not in ("pinion", "wheel"):
+        raise InputError(f"driving: {driving!r} is not 'pinion' or 'wheel'")
+    if sense not in ("positive", "negative"):
+        raise InputError(f"sense: {sense!r} is not 'positive' or 'negative'")
+    return (1 if sense == "positive" else -1), (1 if driving == "pinion" else -1)

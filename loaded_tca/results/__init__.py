@@ -1,0 +1,1 @@
+"""What an analysis found: the mesh cycle, its key figures, its files."""

@@ -1,0 +1,52 @@
+"""Which borders of the two flanks a loaded contact reaches: the tips, the roots, the sides of the teeth."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import binary_dilation
+
+from loaded_tca.flanks.base import BORDER_NAMES
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.contacts import PressureMap
+from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.scene import parse_scene
+
+NAMES = tuple(f"{gear} {border}" for gear in ("pinion", "wheel") for border in BORDER_NAMES)
+"""Borders in the order of ``ContactPath.edges``."""
+
+
+def reached_borders(result: MeshCycle) -> NDArray[np.bool_]:
+    """Borders that each contact of a result reaches.
+
+    Parameters
+    ----------
+    result : MeshCycle
+
+    Returns
+    -------
+    (m, n, pairs, 8) array of bool
+        Over torques, positions, pairs, and ``NAMES``: those that hold the unloaded contact point of a pair under load,
+        and those beyond which the cells beside its pressure lie.
+    """
+    contacts, pair = result.contacts, parse_scene(result.scene_toml).pair()
+    held = np.stack([path.edges for path in contacts.paths], axis=1) > 0
+    reached = held & (contacts.normal_force > 0.0)[..., None]
+    for place in np.argwhere(contacts.on_edge > 0):
+        at = tuple(place.tolist())
+        one = contacts.maps[at[0]][at[1]][at[2]]
+        if one is not None:
+            reached[at] |= _beside_pressure(pair, one)
+    return reached
+
+
+def _beside_pressure(pair: GearPair, one: PressureMap) -> NDArray[np.bool_]:
+    """Borders (8,) beyond which cells without material lie that touch cells under pressure."""
+    row, column = np.nonzero(binary_dilation(one.pressure > 0.0) & np.isinf(one.gap))
+    points = one.origin + one.x[row, None] * one.axes[0] + one.y[column, None] * one.axes[1]
+    radius, _, axial = pair.to_wheel(points)
+    borders = [
+        *pair.pinion.borders(np.hypot(points[:, 0], points[:, 1]), points[:, 2]),
+        *pair.wheel.borders(radius, axial),
+    ]
+    return np.array([bool((np.broadcast_to(border.value, row.shape) < 0.0).any()) for border in borders])

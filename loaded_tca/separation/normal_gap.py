@@ -1,0 +1,150 @@
+"""The gap of two flanks along the common normal of their contact, at points of the tangent plane.
+
+Each flank is met on its own, in its gear's frame, by Newton's method along the normal: theta of the point less Theta
+of the flank. Two steps are the rule: the third is known beforehand, since the steps shrink quadratically.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loaded_tca.arrays import Array
+from loaded_tca.flanks.base import Flank
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.unloaded import ContactPoint
+
+ROUNDING = 1e-13
+"""Newton steps shorter than this times the sum of the base radii are rounding."""
+BEND = 100.0
+"""Factor by which the bend of a flank along the normal may differ from place to place."""
+NO_MORE = 1e3
+"""Steps shorter than this times rounding are the last: the next one shrinks quadratically."""
+STEPS_TOGETHER = 4
+"""Newton steps of all points; those that need more, near or beyond the end of an involute, go on alone from where
+they meet the other flank, for as many again, as long as the steps shrink to less than half."""
+FLATTEST = 1e-6
+"""Change of theta along the normal, times the sum of the base radii, below which a flank bends away from it."""
+ON_BORDER = 1e-9
+"""Distance from a border, over the module, up to which a flank has not ended."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Rays:
+    """Rays along the normal, in the frame of one gear turned back by ``turn``: start (3 of (...)), normal (3,)."""
+
+    flank: Flank
+    start: tuple[Array, ...]
+    normal: tuple[float, ...]
+    turn: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Meeting:
+    """Where rays meet a flank: heights (...), place (rho, z), length of the last step, whether it was the last."""
+
+    height: Array
+    rho: Array
+    z: Array
+    step: Array
+    settled: NDArray[np.bool_]
+
+
+class NormalGap:
+    """Distance of the two flanks of a contact along its normal, in coordinates of its tangent plane.
+
+    Parameters
+    ----------
+    pair : GearPair
+    contact : ContactPoint
+    axes : (3, 3) array
+        Rows: the directions of x and y, and the normal out of the pinion.
+
+    Examples
+    --------
+    >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
+    >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
+    >>> from loaded_tca.unloaded import relative_curvature, trace_contact
+    >>> mesh = CylindricalMesh(*(CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)))
+    >>> pair = cylindrical_pair(mesh)
+    >>> contact = trace_contact(pair, [0.0])[0]
+    >>> gap = NormalGap(pair, contact, relative_curvature(pair, contact).axes)
+    >>> [round(float(part[0]), 4) for part in gap.at(np.array([0.2]), np.array([12.0]))]
+    [0.0018, 0.5]
+    """
+
+    def __init__(self, pair: GearPair, contact: ContactPoint, axes: Array) -> None:
+        self.pair = pair
+        in_wheel = pair.wheel_axes.T
+        self._views = (
+            (pair.pinion, contact.point, axes, pair.sense * contact.pinion_angle),
+            (
+                pair.wheel,
+                (contact.point - pair.wheel_origin) @ in_wheel,
+                axes @ in_wheel,
+                -pair.sense * contact.wheel_angle,
+            ),
+        )
+        self._size = sum(pair.base_radii)
+        self._rounding = ROUNDING * self._size
+
+    def __call__(self, x: Array, y: Array) -> Array:
+        """Gap (nx, ny) [mm] over the grid of x (nx,) and y (ny,); +inf where a flank ends or bends away."""
+        gap, room = self.at(x[:, None], y)
+        return np.where(room >= 0.0, gap, np.inf)
+
+    def at(self, x: Array, y: Array) -> tuple[Array, Array]:
+        """Gap [mm], and distance to the nearest border of either flank [mm], at points that broadcast.
+
+        The distance is negative where a flank has ended, and -inf where the normal does not meet it.
+        """
+        rays = [self._rays(x, y, *view) for view in self._views]
+        met = [self._meet(ray, np.zeros(ray.start[0].shape)) for ray in rays]
+        rooms = [ray.flank.room(one.rho, one.z) for ray, one in zip(rays, met, strict=True)]
+        if not (met[0].settled & met[1].settled).all():
+            for own in (0, 1):
+                self._meet_rest(rays[own], met[own], rooms[own], met[1 - own])
+        return met[1].height - met[0].height, np.minimum(*rooms) + ON_BORDER * self.pair.module
+
+    def _rays(self, x: Array, y: Array, flank: Flank, origin: Array, axes: Array, turn: float) -> _Rays:
+        across, along, normal = axes.tolist()
+        start = tuple(o + (x * a + y * b) for o, a, b in zip(origin.tolist(), across, along, strict=True))
+        return _Rays(flank, start, tuple(normal), turn)
+
+    def _meet_rest(self, rays: _Rays, met: _Meeting, room: Array, mate: _Meeting) -> None:
+        """Take further steps as long as they shrink, from where the mate is met; elsewhere ``room`` becomes -inf."""
+        rest = np.nonzero(~met.settled & (mate.settled | (room > -2.0 * met.step)))
+        room[~met.settled] = -np.inf
+        height, step = np.where(mate.settled, mate.height, met.height)[rest], np.full(rest[0].shape, np.inf)
+        while step.size:
+            late = self._meet(replace(rays, start=tuple(part[rest] for part in rays.start)), height)
+            place = rays.flank.room(late.rho, late.z)
+            met.height[rest] = late.height
+            room[rest] = np.where(late.settled, place, -np.inf)
+            on = ~late.settled & (place > -2.0 * late.step) & (late.step < 0.5 * step)
+            rest, height, step = tuple(part[on] for part in rest), late.height[on], late.step[on]
+
+    def _meet(self, rays: _Rays, height: Array) -> _Meeting:
+        """Newton steps from ``height``, until the longest is rounding or the next one would be."""
+        (nx, ny, nz), longest, before = rays.normal, 0.25 * self.pair.module, 0.0
+        x, y, z = (part + height * n for part, n in zip(rays.start, rays.normal, strict=True))
+        for _ in range(STEPS_TOGETHER):
+            square = x * x + y * y
+            rho = np.sqrt(square)
+            jet = rays.flank.theta(rho, z)
+            outwards = (x * nx + y * ny) / rho
+            slope = (x * ny - y * nx) / square - jet.rho * outwards - jet.z * nz
+            slope = np.where(np.abs(slope) > FLATTEST / self._size, slope, np.inf)
+            step = (jet.value + rays.turn - np.arctan2(y, x)) / slope
+            length = np.abs(step)
+            largest = float(length.max())
+            if largest > longest:
+                step = np.clip(step, -longest, longest)
+            height = height + step
+            x, y, z, rho = x + step * nx, y + step * ny, z + step * nz, rho + step * outwards
+            if largest <= self._rounding or BEND * largest**3 <= self._rounding * before**2:
+                return _Meeting(height, rho, z, length, np.ones(length.shape, dtype=bool))
+            before = min(largest, longest)
+        return _Meeting(height, rho, z, length, length <= NO_MORE * self._rounding)

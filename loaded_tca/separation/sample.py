@@ -1,0 +1,202 @@
+r"""The separation matrix: the gap between the flanks on a small grid in the tangent plane of a contact point.
+
+The grid lies along the principal relative curvatures, x across (largest curvature), y along, centred on the contact
+point, which falls between the middle cells of even grids. The gap is the distance of the two flanks along the
+common normal; it is +inf where a flank ends.
+
+How large a box does a contact need? The contact is cut into strips across; a strip of gap g_j carries the line load
+
+.. math:: q_j = c\,(\delta - g_j)_+, \qquad c = \frac{\pi E^*}{2 D}, \quad D = \max(\ln(4 L/b) - 1, \pi/4),
+
+which is exact for the slender and for the circular Hertz contact, and its half width is where the gap has risen by
+2 q_j/(pi E*), as it does at the edge of a Hertzian line contact. The same rule serves points, lines and edges.
+
+References
+----------
+Johnson 1985, Contact Mechanics, eqs. 4.24 to 4.28 (slender ellipse), 4.45 (line).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.contact.checks import memory_problem
+from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.separation.box import (
+    MARGIN,
+    _box_of_whole_cells,
+    _estimate_box,
+)
+from loaded_tca.separation.normal_gap import NormalGap
+from loaded_tca.unloaded import ContactPoint, relative_curvature
+
+PEAK_ERROR = 0.26
+"""Relative error of the peak pressure times the square of the number of cells across a smooth contact (measured on
+circles and ellipses: 1e-3 at 16 cells, 2.5e-4 at 32)."""
+SMALLEST_LOAD = 1e-6
+"""Load [N] that sizes the box of an unloaded contact: small enough for its smallest gap to be rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Separation:
+    """Gap between the flanks around a contact point.
+
+    Attributes
+    ----------
+    gap : (nx, ny) array [mm]
+        +inf where a flank ends; zero at the contact point.
+    x, y : (nx,), (ny,) array [mm]
+        Cell centres across and along.
+    spacing : (float, float) [mm]
+        Cell sizes (dx, dy).
+    origin : (3,) array [mm]
+        The contact point in the fixed frame.
+    axes : (3, 3) array
+        Rows: x, y, and the normal out of the pinion.
+    curvatures : (float, float) [1/mm]
+        Principal relative curvatures, across and along.
+    """
+
+    gap: Array
+    x: Array
+    y: Array
+    spacing: tuple[float, float]
+    origin: Array
+    axes: Array
+    curvatures: tuple[float, float]
+
+    @property
+    def points(self) -> Array:
+        """Cell centres in the tangent plane, in the fixed frame: (nx, ny, 3) [mm]."""
+        return self.origin + self.x[:, None, None] * self.axes[0] + self.y[None, :, None] * self.axes[1]
+
+    @property
+    def material_area(self) -> float:
+        """Area of the cells that have material [mm^2]."""
+        return float(np.isfinite(self.gap).sum()) * self.spacing[0] * self.spacing[1]
+
+    @property
+    def half_lengths(self) -> tuple[float, float]:
+        """Half lengths of the box across and along [mm]."""
+        return 0.5 * self.gap.shape[0] * self.spacing[0], 0.5 * self.gap.shape[1] * self.spacing[1]
+
+    def __repr__(self) -> str:
+        nx, ny = self.gap.shape
+        return f"Separation({nx} x {ny} cells of {self.spacing[0]:.3g} x {self.spacing[1]:.3g} mm)"
+
+
+def cells_for_accuracy(accuracy: float) -> int:
+    """Even number of cells across the box that gives the peak pressure to a relative ``accuracy``."""
+    return 2 * math.ceil(0.5 * MARGIN * max(8.0, math.sqrt(PEAK_ERROR / accuracy)))
+
+
+def sample_separation(
+    pair: GearPair,
+    contact: ContactPoint,
+    *,
+    cells: tuple[int, int] | None = None,
+    load: float | None = None,
+    accuracy: float = 1e-3,
+    box: tuple[float, float] | None = None,
+    guess: tuple[float, float] | None = None,
+) -> Separation:
+    """Gap between the flanks on a grid that just holds the contact.
+
+    Parameters
+    ----------
+    pair : GearPair
+    contact : ContactPoint
+        One position of a contact path.
+    cells : (int, int), optional
+        Cells across and along; default: what ``accuracy`` asks for.
+    load : float [N], optional
+        Normal force that the box must hold; not needed if ``box`` is given. A load of zero gets the box of 1e-6 N.
+    accuracy : float
+        Relative error of the peak pressure of a smooth contact that chooses the cells.
+    box : (float, float) [mm], optional
+        Half lengths across and along, instead of the estimated ones.
+    guess : (float, float) [mm], optional
+        Half lengths to start the estimate of the box from: those of the same contact under a load near this one. It
+        saves time on edges, whose boxes the curvatures do not tell; elsewhere it is not needed, and not used.
+
+    Returns
+    -------
+    Separation
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range, or neither load nor box is given.
+    GeometryError
+        If the tooth pair does not touch at this position, or the contact point lies off the flanks.
+
+    Examples
+    --------
+    >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
+    >>> from loaded_tca.flanks import FlankModifications
+    >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
+    >>> from loaded_tca.unloaded import trace_contact
+    >>> mesh = CylindricalMesh(*(CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)))
+    >>> pair = cylindrical_pair(mesh, modifications=(FlankModifications(lead_crowning=0.005), FlankModifications()))
+    >>> separation = sample_separation(pair, trace_contact(pair, [0.0])[0], cells=(32, 32), load=2712.6)
+    >>> [round(k, 6) for k in separation.curvatures]
+    [0.091526, 6.4e-05]
+    """
+    _check(contact, cells, load, accuracy, {"box": box, "guess": guess})
+    curvature = relative_curvature(pair, contact)
+    gap = NormalGap(pair, contact, curvature.axes)
+    shape = (int(cells[0]), int(cells[1])) if cells is not None else (cells_for_accuracy(accuracy),) * 2
+    half = (
+        box
+        if box is not None
+        else _box_of_whole_cells(
+            *_estimate_box(gap, curvature, contact, load if load else SMALLEST_LOAD, guess), shape[1]
+        )
+    )
+    spacing = (2.0 * half[0] / shape[0], 2.0 * half[1] / shape[1])
+    x, y = ((np.arange(n) - 0.5 * (n - 1)) * step for n, step in zip(shape, spacing, strict=True))
+    curvatures = (curvature.across, curvature.along)
+    return Separation(gap(x, y), x, y, spacing, contact.point.copy(), curvature.axes, curvatures)
+
+
+def _check(
+    contact: ContactPoint,
+    cells: tuple[int, int] | None,
+    load: float | None,
+    accuracy: float,
+    boxes: dict[str, tuple[float, float] | None],
+) -> None:
+    if not isinstance(contact, ContactPoint):
+        raise InputError(f"contact: {contact!r} is not one position of a path; take path[i]")
+    problems = []
+    if cells is not None and not (_two_numbers(cells) and all(n == n // 1 and 1 <= n < math.inf for n in cells)):
+        problems.append(f"cells: {cells} are not two whole numbers >= 1")
+    elif cells is not None and (memory := memory_problem(tuple(cells))) is not None:
+        problems.append(memory)
+    if load is None and boxes["box"] is None:
+        problems.append("load: none given; a load [N] or a box [mm] is needed to size the grid")
+    if load is not None and not 0.0 <= load < math.inf:
+        problems.append(f"load: {load} N is not a finite number >= 0")
+    problems += [f"{name}: {box} are not two positive lengths [mm]" for name, box in boxes.items() if not _is_box(box)]
+    if not 1e-8 <= accuracy < 1.0:
+        problems.append(f"accuracy: {accuracy} is not between 1e-8 and 1")
+    if problems:
+        raise InputError(problems)
+    if not contact.touches:
+        raise GeometryError(
+            f"no common flank: the tooth pair does not touch at pinion angle {contact.pinion_angle} rad"
+        )
+
+
+def _is_box(box: tuple[float, float] | None) -> bool:
+    return box is None or (_two_numbers(box) and all(0.0 < length < math.inf for length in box))
+
+
+def _two_numbers(values: object) -> bool:
+    array = np.asarray(values)
+    return array.shape == (2,) and array.dtype.kind in "iuf" and not np.isnan(array.astype(float)).any()

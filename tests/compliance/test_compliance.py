@@ -1,0 +1,155 @@
+import math
+import pickle
+from functools import cache
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca.compliance import MeshDensity, default_density, tooth_compliance
+from loaded_tca.contact.edges import FreeEdge
+from loaded_tca.errors import InputError
+from loaded_tca.gears import bevel_mesh
+from loaded_tca.loaded.cycle import alone
+from loaded_tca.loaded.tooth_contact import GridChoice, press
+from loaded_tca.pairs.bevel import bevel_pair
+from loaded_tca.reference.iso6336 import theoretical_single_stiffness
+from loaded_tca.reference.weber_banaschek import ring_wind_up
+from loaded_tca.separation import sample_separation
+from loaded_tca.tooth import tooth_forms
+from loaded_tca.unloaded import trace_contact
+from tests.samples.bodies import both_senses, pinion, spur_mesh
+
+COARSE = MeshDensity(lengthwise=4)
+PITCH = 2.0 * math.pi / 25
+STANDARD = 0.1
+"""The standard's stiffness is an average of measurements."""
+ROUNDING = 1e-9
+
+
+@cache
+def made(helix_angle=0.0, sense=0):
+    mesh = spur_mesh(helix_angle=math.radians(helix_angle))
+    senses = both_senses(mesh)
+    return tooth_compliance(tooth_forms(mesh), senses[sense], senses[1 - sense], density=COARSE)
+
+
+@cache
+def made_of_bevels():
+    mesh = bevel_mesh((20, 40), outer_module=4.0, face_width=20.0, spiral_angle=math.radians(30.0))
+    pair, backs = (bevel_pair(mesh, sense=sense) for sense in ("positive", "negative"))
+    return tooth_compliance(tooth_forms(mesh), pair, backs, density=COARSE)
+
+
+def grids(compliance, *parts, cells=(8, 32), length=10.0):
+    """Grids of contacts at parts of a pitch from the pitch point."""
+    path = trace_contact(compliance.pair, np.array(parts) * compliance.pair.pitch)
+    return [sample_separation(compliance.pair, path[n], cells=cells, box=(0.2, length)) for n in range(len(parts))]
+
+
+def matrix(compliance, grids_by_pair):
+    """Mean compliance of tooth pairs under forces spread evenly over their grids."""
+    known = sorted(grids_by_pair.items())
+    return np.array(
+        [
+            [
+                (compliance.within(i, one) if i == j else compliance.between((i, one), (j, other))).mean()
+                for j, other in known
+            ]
+            for i, one in known
+        ]
+    )
+
+
+def test_stiffness_of_a_tooth_pair_is_that_of_the_standard():
+    """ISO 6336-1: 0.8 c'_th in single contact, N/(mm um)."""
+    compliance = made()
+    contact = trace_contact(compliance.pair, [0.0])[0]
+    loaded = press(compliance.pair, contact, 2000.0, GridChoice(cells=(16, 32)), alone(compliance))
+    stiffness = 1e-3 * 2000.0 / (loaded.solution.approach * compliance.pair.face_width)
+    assert_allclose(stiffness, 0.8 * theoretical_single_stiffness((25, 37), (0.0, 0.0)), rtol=STANDARD)
+
+
+@pytest.mark.parametrize("make", [made, lambda: made(20.0), made_of_bevels], ids=["spur", "helical", "bevel"])
+def test_compliance_is_symmetric_and_positive_definite(make):
+    compliance = make()
+    first, second = grids(compliance, 0.4, -0.4, length=4.0)
+    assert_allclose(compliance.within(0, first), compliance.within(0, first).T, rtol=ROUNDING)
+    forth, back = compliance.between((0, first), (1, second)), compliance.between((1, second), (0, first))
+    assert_allclose(forth, back.T, rtol=ROUNDING)
+    assert np.linalg.eigvalsh(matrix(compliance, {0: first, 1: second})).min() > 0.0
+
+
+def test_compliance_knows_which_tooth_comes_next():
+    """Pair +1 is on the other side of both teeth than pair -1: numbers may be turned round, neighbours not."""
+    compliance = made()
+    first, second = grids(compliance, 0.4, -0.4)
+    forwards = compliance.between((0, first), (1, second))
+    assert_allclose(compliance.between((7, first), (8, second)), forwards)
+    assert_allclose(compliance.between((1, second), (0, first)), forwards.T)
+    assert abs(compliance.between((1, first), (0, second)).mean() - forwards.mean()) > 1e-3 * forwards.mean()
+
+
+def test_compliance_of_the_other_sense_is_the_same():
+    both = made(20.0), made(20.0, 1)
+    found = [matrix(one, dict(enumerate(grids(one, 0.4, -0.4)))) for one in both]
+    assert_allclose(found[1], found[0], rtol=1e-4)  # the meshes and grids are no exact mirror images
+
+
+def test_free_edges_leave_less_to_the_teeth():
+    """The images that the half-spaces were corrected by are taken off again in the middle of the tooth."""
+    compliance = made()
+    grid = grids(compliance, 0.0)[0]
+    edges = tuple(FreeEdge(1, place, side, 1.7) for place, side in ((0.0, "above"), (20.0, "below")))
+    plain, corrected = compliance.within(0, grid), compliance.within(0, grid, edges)
+    taken = plain - corrected
+    assert (taken > 0.0).all()
+    assert_allclose(taken, taken[::-1, ::-1], rtol=1e-9)
+    assert taken[0, 0] > 2.0 * taken[16, 16]
+    assert_allclose(compliance.within(0, grid, [FreeEdge(1, 1e9, "below", 1.7)]), plain, rtol=1e-6)
+    corner = compliance.within(0, grid, [edges[0], FreeEdge(0, 0.4, "below", 1.0)])
+    assert (corner < compliance.within(0, grid, edges[:1])).all()
+
+
+def test_a_smaller_bore_makes_the_pair_softer():
+    mesh = spur_mesh()
+    pair, backs = both_senses(mesh)
+    small = tooth_compliance(tooth_forms(mesh), pair, backs, bore_diameters=(15.0, None), density=COARSE)
+    grid = grids(small, 0.0)[0]
+    assert small.within(0, grid).mean() > made().within(0, grid).mean()
+    assert small.bore_diameters[0] == 15.0
+    assert_allclose(made().bore_diameters, [0.55 * 2.0 * gear.root_radius for gear in (mesh.pinion, mesh.wheel)])
+
+
+def test_wind_up_is_a_part_of_the_compliance():
+    compliance = made()
+    assert 0.0 < sum(compliance.wind_up) < 0.2 * compliance.within(0, grids(compliance, 0.0)[0]).mean()
+    pinion_radius = spur_mesh().pinion.root_radius
+    expected = ring_wind_up(0.55 * pinion_radius, pinion_radius) * spur_mesh().pinion.base_radius ** 2 / 20.0
+    assert_allclose(compliance.wind_up[0], expected)
+
+
+def test_layers_follow_the_face_width():
+    layers = [default_density(pinion(width=width)).lengthwise for width in (1.0, 20.0, 40.0, 1000.0)]
+    assert layers == [6, 10, 20, 24]
+
+
+def test_compliance_survives_pickling():
+    compliance = made()
+    grid = grids(compliance, 0.0)[0]
+    again = pickle.loads(pickle.dumps(compliance))
+    assert_allclose(again.within(0, grid), compliance.within(0, grid))
+
+
+def test_pairs_of_the_same_flanks_are_refused():
+    mesh = spur_mesh()
+    pair, _ = both_senses(mesh)
+    with pytest.raises(InputError, match="backs"):
+        tooth_compliance(tooth_forms(mesh), pair, pair)
+
+
+def test_a_bore_that_reaches_the_teeth_names_its_gear():
+    mesh = spur_mesh()
+    pair, backs = both_senses(mesh)
+    with pytest.raises(InputError, match="wheel: bore_diameter"):
+        tooth_compliance(tooth_forms(mesh), pair, backs, bore_diameters=(None, 110.0), density=COARSE)

@@ -1,0 +1,98 @@
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.sparse import coo_array, csr_array
+from scipy.sparse.linalg import spsolve
+
+from loaded_tca.compliance import dissection
+from loaded_tca.compliance.dissection import factorise
+from loaded_tca.compliance.finite_elements import discretise
+from loaded_tca.errors import GeometryError
+from loaded_tca.material import Material
+
+ROUNDING = 1e-9
+
+
+def ring(columns=12, rows=4, turns=None):
+    angle = np.linspace(0.0, 2.0 * np.pi, 2 * columns, endpoint=False)[:, None]
+    radius = np.linspace(1.0, 2.0, 2 * rows + 1)
+    points = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
+    lowest = 2 * np.stack(np.meshgrid(np.arange(columns), np.arange(rows), indexing="ij"), axis=-1).reshape(-1, 2)
+    return discretise(points, lowest, turns)
+
+
+def turn(angle):
+    """Turns (n, 2, 2): from components in turned frames to those before."""
+    return np.moveaxis(np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]), -1, 0)
+
+
+def free_unknowns(mesh):
+    free = np.ones((len(mesh.points), 2), dtype=bool)
+    free[mesh.number[:, 0][mesh.number[:, 0] >= 0]] = False
+    return free.ravel()
+
+
+def test_solution_is_that_of_a_sparse_solver(rng):
+    mesh = ring()
+    matrices, free = mesh.stiffness(Material()), free_unknowns(mesh)
+    loads = rng.standard_normal((len(free), 3))
+    found = factorise(matrices, mesh.dofs, mesh.lowest // 2, free).solve(loads)
+    width = mesh.dofs.shape[1]
+    rows, columns = np.repeat(mesh.dofs, width, axis=1).ravel(), np.tile(mesh.dofs, (1, width)).ravel()
+    whole = coo_array((matrices.ravel(), (rows, columns))).tocsr()
+    expected = spsolve(whole[free][:, free].tocsc(), loads[free])
+    assert_allclose(found[free], expected, atol=ROUNDING * np.abs(expected).max())
+    assert not found[~free].any()
+
+
+def test_parts_that_are_alike_are_eliminated_once(rng, monkeypatch):
+    """A ring of 12 equal pitches: the same answer from the matrices of one, in one elimination for each halving."""
+    turns = np.repeat(np.arange(12), 2) * np.pi / 6.0
+    plain, turned = ring(rows=1), ring(rows=1, turns=turns)
+    free = free_unknowns(plain)
+    matrices = turned.stiffness(Material())
+    assert len(matrices) == len(plain.stiffness(Material())) / 12
+    loads = rng.standard_normal((len(free), 3))
+    expected = factorise(plain.stiffness(Material()), plain.dofs, plain.lowest // 2, free).solve(loads)
+    counts = []
+    eliminated = dissection._eliminated
+    monkeypatch.setattr(dissection, "_eliminated", lambda *given: counts.append(given[1]) or eliminated(*given))
+    monkeypatch.setattr(dissection, "LEAF", 1)
+    factor = factorise(matrices, turned.dofs, turned.lowest // 2, free, kinds=turned.kinds)
+    columns = np.empty(len(plain.points), dtype=int)
+    columns[plain.number[plain.number >= 0]] = np.nonzero(plain.number >= 0)[0]
+    frames = turn(turns[columns])
+    found = factor.solve(np.einsum("nba,nbm->nam", frames, loads.reshape(-1, 2, 3)).reshape(-1, 3))
+    found = np.einsum("nab,nbm->nam", frames, found.reshape(-1, 2, 3)).reshape(-1, 3)
+    assert_allclose(found, expected, atol=ROUNDING * np.abs(expected).max())
+    assert len(counts) == 5  # 12 pitches, 6, 3, 2 and 1
+
+
+def test_blocks_are_put_together_in_any_number(rng):
+    mesh = ring()
+    matrices, free = mesh.stiffness(Material()), free_unknowns(mesh)
+    loads = rng.standard_normal((len(free), 2))
+    expected = factorise(matrices, mesh.dofs, mesh.lowest // 2, free).solve(loads)
+    for blocks in (mesh.lowest[:, 0] // 8, np.where(mesh.lowest[:, 0] < 4, 0, 1)):
+        found = factorise(matrices, mesh.dofs, mesh.lowest // 2, free, blocks=blocks).solve(loads)
+        assert_allclose(found, expected, atol=ROUNDING * np.abs(expected).max())
+
+
+def test_flexibility_is_read_from_the_solution(rng):
+    mesh = ring()
+    matrices, free = mesh.stiffness(Material()), free_unknowns(mesh)
+    factor = factorise(matrices, mesh.dofs, mesh.lowest // 2, free)
+    loads, readings = np.zeros((2, len(free))), np.zeros((3, len(free)))
+    loaded, read = np.flatnonzero(free)[:9], np.flatnonzero(free)[-4:]
+    loads[:, loaded], readings[:, read] = rng.standard_normal((2, 9)), rng.standard_normal((3, 4))
+    expected = readings @ factor.solve(loads.T)
+    found = factor.flexibility(csr_array(loads), csr_array(readings))
+    assert_allclose(found, expected, atol=ROUNDING * np.abs(expected).max())
+    assert_allclose(factor.flexibility(csr_array(readings), csr_array(loads)), found.T, rtol=1e-6)
+
+
+def test_a_body_that_is_not_held_is_refused():
+    mesh = ring()
+    free = np.ones(2 * len(mesh.points), dtype=bool)
+    with pytest.raises(GeometryError, match="not held"):
+        factorise(mesh.stiffness(Material()), mesh.dofs, mesh.lowest // 2, free)

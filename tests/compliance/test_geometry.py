@@ -1,0 +1,95 @@
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca.compliance import GearTooth, MeshDensity
+from loaded_tca.compliance.body import ToothFrame, gear_body
+from loaded_tca.compliance.geometry import body_nodes
+from loaded_tca.compliance.layout import RingLayout
+from loaded_tca.errors import InputError
+from loaded_tca.gears import bevel_mesh
+from loaded_tca.pairs.bevel import bevel_pair
+from loaded_tca.scene import read_scene
+from loaded_tca.tooth import Resolution, build_tooth, tooth_forms
+from tests.samples.bodies import both_senses, pinion, spur_mesh
+
+ON_FLANK = 2e-4
+"""mm: flanks are resampled on the straight pieces of a fine outline."""
+BETWEEN_NODES = 0.05
+"""mm: quadratic between the nodes."""
+DENSITY = MeshDensity(lengthwise=2)
+SCENES = Path(__file__).parents[2] / "examples" / "scenes"
+
+
+def gears():
+    helical = both_senses(spur_mesh(helix_angle=math.radians(20.0)))
+    mesh = bevel_mesh((20, 40), outer_module=4.0, face_width=20.0, spiral_angle=math.radians(30.0))
+    bevel = [bevel_pair(mesh, sense=sense) for sense in ("positive", "negative")]
+    return {
+        "spur": pinion(),
+        "helical": GearTooth((helical[0].pinion, helical[1].pinion), tooth_forms(spur_mesh())[0]),
+        "bevel": GearTooth((bevel[0].pinion, bevel[1].pinion), tooth_forms(mesh)[0]),
+    }
+
+
+@pytest.mark.parametrize("kind", gears())
+@pytest.mark.parametrize("side", [1, -1])
+def test_nodes_of_the_flank_lie_on_it(kind, side):
+    gear = gears()[kind]
+    frame = ToothFrame(gear, side, gear.nodes(DENSITY))
+    density, nodes = DENSITY, frame.nodes
+    column = 2 * density.land + (2 * density.through if side > 0 else 0)
+    first = 2 * (density.rim + density.fillet)
+    radius, angle = nodes.radius[column, first:], nodes.angle[column, first:]
+    rho, z = nodes.sections.point(radius, nodes.coordinate)
+    azimuth = frame.flank.theta(rho, z).value + side * gear.form.half_thickness_angle
+    assert_allclose(rho * (angle - azimuth), 0.0, atol=ON_FLANK)
+
+
+@pytest.mark.parametrize("kind", gears())
+def test_places_of_a_flank_are_found_again(kind):
+    gear = gears()[kind]
+    frame = ToothFrame(gear, 1, gear.nodes(DENSITY))
+    height, length = (grid.ravel() for grid in np.meshgrid([0.1, 0.5, 0.9], [0.2, 0.7]))
+    places = frame.places(height, length)
+    found = frame.parts(np.hypot(places.point[:, 0], places.point[:, 1]), places.point[:, 2])
+    assert_allclose(found, [height, length], atol=1e-9)
+    numbers = np.arange(frame.nodes.radius.size).reshape(frame.nodes.radius.shape)
+    points = frame.nodes.points.reshape(-1, 3)
+    for surface, expected in ((frame.on_flank(places, numbers), places.point), (None, places.middle)):
+        surface = surface or frame.on_middle(places, 0, numbers)
+        reached = np.einsum("ms,msc->mc", surface.shares, points[surface.nodes])
+        assert_allclose(reached, expected, atol=BETWEEN_NODES)
+
+
+def test_bore_is_that_of_the_gear_or_the_default():
+    for bore, expected in ((None, 0.55 * 67.5), (30.0, 30.0)):
+        nodes = pinion(bore).nodes(DENSITY)
+        assert_allclose(nodes.bore_diameter, expected)
+        assert_allclose(nodes.radius[:, 0], 0.5 * expected, rtol=1e-12)
+
+
+@pytest.mark.parametrize("bore", [67.4, 70.0])
+def test_a_bore_without_a_rim_is_refused(bore):
+    with pytest.raises(InputError, match=r"bore_diameter: .* no rim is left"):
+        pinion(bore).nodes(DENSITY)
+
+
+def test_sections_that_do_not_fit_the_layout_are_refused():
+    gear = pinion()
+    tooth = build_tooth(gear.flanks, gear.form, Resolution(lengthwise=4))
+    with pytest.raises(InputError, match="4 sections, 5 are needed"):
+        body_nodes(tooth, gear.form.sections, 20.0, RingLayout(25, DENSITY))
+
+
+def test_a_sharp_fillet_does_not_fold_the_body():
+    """Edges of elements that turned by 66 deg at the foot of this pinion folded over."""
+    scene = read_scene(SCENES / "face_milled_19x62_matched.toml")
+    pair, backs = scene.pair(), scene.pair("positive")
+    flanks = (backs.pinion, pair.pinion) if pair.pinion.side < 0 else (pair.pinion, backs.pinion)
+    gear = GearTooth(flanks, tooth_forms(scene.mesh())[0])
+    body = gear_body(gear.nodes(DENSITY), gear.material)
+    assert len(body.mesh.elements) > 100

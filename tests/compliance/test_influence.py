@@ -1,0 +1,200 @@
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca.compliance import FlankLine, MeshDensity, gear_compliance
+from loaded_tca.compliance.dissection import factorise
+from loaded_tca.compliance.finite_elements import discretise
+from loaded_tca.errors import InputError
+from loaded_tca.gears.transverse_profile import half_tooth
+from loaded_tca.material import Material
+from loaded_tca.reference.weber_banaschek import ring_wind_up, tooth_deflection
+from tests.samples.bodies import COARSE, WIDTH, between, line, model, pinion, spur_mesh, within
+
+HEIGHTS = (0.1, 0.5, 0.9)
+CONVERGED = 0.015
+"""Change of the whole compliance on a finer mesh: half as many elements more in most directions."""
+BETTI = 0.03
+"""Forces act on the flank, displacements are taken in the middle of the tooth: part of the coupling of two teeth."""
+CLOSED_FORM = 0.15
+"""Weber and Banaschek take the body for a half-plane."""
+RING = 5e-3
+"""One quadratic element to a pitch."""
+ROUNDING = 1e-9
+
+
+def whole(gear, height, part=1.0):
+    return WIDTH * within(gear, height, part)
+
+
+def below(gear, height):
+    """Displacement of the middle of the tooth per line load [mm per N/mm]."""
+    one = line(gear, height)
+    return WIDTH * between(gear, one, one)
+
+
+@pytest.mark.parametrize("height", HEIGHTS)
+def test_compliance_is_converged(height):
+    fine = model(MeshDensity(6, 8, 3, 3, 6, 5, 1))
+    assert_allclose(whole(model(), height), whole(fine, height), rtol=CONVERGED)
+
+
+@pytest.mark.parametrize("part", [1.0, 0.4])
+def test_compliance_needs_no_more_layers(part):
+    fine = model(replace(COARSE, lengthwise=10))
+    assert_allclose(whole(model(replace(COARSE, lengthwise=5)), 0.6, part), whole(fine, 0.6, part), rtol=CONVERGED)
+
+
+def test_compliance_of_both_sides_is_the_same():
+    assert_allclose([whole(model(side=-1), h) for h in HEIGHTS], [whole(model(), h) for h in HEIGHTS], rtol=1e-5)
+
+
+def test_compliance_grows_towards_the_tip():
+    found = [whole(model(), height) for height in np.linspace(0.0, 1.0, 6)]
+    assert (np.diff(found) > 0.0).all()
+
+
+def test_a_short_line_gives_way_more_than_a_long_one():
+    found = [whole(model(), 0.5, part) for part in (0.1, 0.3, 0.6, 1.0)]
+    assert (np.diff(found) < 0.0).all()
+
+
+def test_the_end_of_the_face_gives_way_more_than_its_middle():
+    gear = model()
+    ends = [within(gear, 0.5, 0.2, middle) for middle in (0.1, 0.5, 0.9)]
+    assert ends[0] > 1.3 * ends[1]
+    assert_allclose(ends[0], ends[2], rtol=1e-6)
+
+
+def test_compliance_is_inverse_to_the_modulus():
+    soft = gear_compliance(pinion(material=Material(103000.0, 0.3)), 1, COARSE)
+    assert_allclose(whole(soft, 0.5), 2.0 * whole(model(), 0.5), rtol=ROUNDING)
+
+
+def test_coupling_of_two_teeth_is_reciprocal():
+    """The finite elements alone: forces act on the flank, displacements are taken in the middle of the tooth."""
+    gear = model()
+    table, near = gear.table, gear.neighbours
+    shape = (len(table.heights), len(table.lengths)) * 2
+    forth, back = (table.displacement[near + away].reshape(shape).mean(axis=(1, 3)) for away in (1, -1))
+    assert_allclose(forth[1:, 1:], back.T[1:, 1:], rtol=BETTI)  # above the foot, whose middle is in the body
+    low, high = line(gear, 0.2), line(gear, 0.8, tooth=1)
+    assert_allclose(gear.between(low, high), gear.between(high, low).T, rtol=ROUNDING)
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.1, 0.8), (0.4, 0.5), (0.0, 1.0)])
+def test_two_teeth_are_positive_definite_together(low, high):
+    gear = model()
+    lines = line(gear, low), line(gear, high, tooth=1)
+    coupling = between(gear, *lines)
+    matrix = np.array([[within(gear, low), coupling], [coupling, within(gear, high)]])
+    assert np.linalg.eigvalsh(matrix).min() > 0.0
+    assert 0.0 < coupling < matrix[1, 1]
+
+
+def test_displacements_within_a_tooth_are_symmetric():
+    gear = model()
+    one = line(gear, 0.6)
+    found = gear.within(one, np.abs(one.z[:, None] - one.z))
+    assert_allclose(found, found.T, rtol=ROUNDING)
+
+
+def test_a_force_moves_what_is_near_more_than_what_is_far():
+    """Bending spreads along the face: what is left of it at the other end is a small part."""
+    gear = model()
+    one = line(gear, 0.9)
+    found = gear.between(one, one)
+    assert found[20, 20] > 1.2 * found[20, 0] > 0.0
+    assert found[0, 0] > 3.0 * found[0, -1]
+
+
+def test_images_of_a_free_edge_are_taken_off():
+    """Where the half-space was corrected for a free edge, so much less is left to the finite elements."""
+    gear = model()
+    one = line(gear, 0.6)
+    distance, far = np.abs(one.z[:, None] - one.z), np.full((40, 40), 1e9)
+    plain = gear.within(one, distance)
+    assert_allclose(gear.within(one, distance, [(far, 1.7)]), plain, atol=1e-6 * plain.max())
+    image = np.abs(one.z[:, None] + one.z - WIDTH)
+    half, whole = (plain - gear.within(one, distance, [(image, factor)]) for factor in (0.85, 1.7))
+    assert (half > 0.0).all()
+    assert_allclose(whole, 2.0 * half, rtol=1e-6)
+
+
+def test_between_counts_teeth_around_the_gear():
+    gear = model()
+    near = gear.between(line(gear, 0.3), line(gear, 0.6, tooth=1))
+    around = gear.between(line(gear, 0.3, tooth=24), line(gear, 0.6, tooth=25))
+    assert_allclose(around, near, rtol=ROUNDING)
+
+
+def test_teeth_too_far_apart_are_refused():
+    gear = model()
+    with pytest.raises(InputError, match="2 pitches apart, the model has 1"):
+        gear.between(line(gear, 0.3), line(gear, 0.6, tooth=2))
+
+
+def test_places_beyond_the_flank_count_as_its_border():
+    gear = model()
+    one = line(gear, 0.5)
+    beyond = FlankLine(0, one.rho + 100.0, one.z)
+    top = line(gear, 1.0)
+    assert_allclose(gear.between(beyond, beyond), gear.between(top, top), rtol=1e-9)
+
+
+def test_wind_up_is_that_of_a_ring():
+    """All teeth loaded alike: a pure torque, of which two bores take the ring between them differently."""
+    density = MeshDensity(through=2, flank=3, fillet=1, land=1, rim=4, lengthwise=1, neighbours=12)
+    bores = (40.0, 30.0)
+    found = []
+    for bore in bores:
+        gear = model(density, bore_diameter=bore)
+        middle = line(gear, 0.5)
+        found.append(WIDTH * sum(between(gear, middle, line(gear, 0.5, tooth=tooth)) for tooth in range(25)))
+    wound = 25.0 * spur_mesh().pinion.base_radius ** 2 * ring_wind_up(0.5 * bores[1], 0.5 * bores[0])
+    assert_allclose(found[1] - found[0], wound, rtol=RING)
+
+
+def test_space_without_lengthwise_strain_is_the_plane():
+    """One layer whose nodes do not move along the axis, against plane strain elements: an identity."""
+    gear = pinion()
+    density = replace(COARSE, lengthwise=1)
+    nodes = gear.nodes(density)
+    section = nodes.layout.elements
+    space = discretise(nodes.points, np.column_stack([section, np.zeros(len(section), dtype=int)]))
+    plane = discretise(nodes.points[:, :, 0, :2], section)
+    row = nodes.layout.base_row + 2 * (density.fillet + density.flank)
+    corner = 2 * density.land + 2 * density.through
+    found = []
+    for mesh, share in ((space, WIDTH * np.array([1.0, 4.0, 1.0]) / 6.0), (plane, [1.0])):
+        free = np.ones((len(mesh.points), mesh.dimension), dtype=bool)
+        free[:, 2:] = False
+        held = mesh.number[:, 0].ravel()
+        free[held[held >= 0]] = False
+        load = np.zeros((len(mesh.points), mesh.dimension))
+        load[mesh.number[corner, row].ravel(), 1] = share
+        factor = factorise(mesh.stiffness(gear.material), mesh.dofs, mesh.lowest // 2, free.ravel())
+        solution = factor.solve(load.reshape(-1, 1)).reshape(load.shape)
+        found.append(np.mean(solution[mesh.number[corner, row].ravel(), 1]))
+    assert_allclose(found[0], found[1], rtol=1e-7)
+
+
+@pytest.mark.parametrize("height", HEIGHTS)
+def test_deflection_is_that_of_weber_and_banaschek(height):
+    gear, cylinder = model(), spur_mesh().pinion
+    parts = half_tooth(cylinder, 200)
+    outline = np.concatenate([parts["fillet"][:0:-1], parts["flank"][::-1]])
+    steps = np.diff(outline, axis=0)
+    root = int(np.argmax(-steps[:, 1] < steps[:, 0]))  # where the fillet leans by 45 deg
+    place = gear.frame.places(np.array([height]), np.array([0.5]))
+    load_height = float(place.middle[0, 0] - outline[root, 0])
+    load_angle = math.atan2(place.normal[0, 0], place.normal[0, 1])
+    y, s = outline[root:, 0] - outline[root, 0], 2.0 * outline[root:, 1]
+    expected = tooth_deflection(y, s, load_height, load_angle).total
+    expected += cylinder.base_radius**2 * ring_wind_up(0.55 * cylinder.root_radius, cylinder.root_radius)
+    found = below(gear, height)
+    assert_allclose(found, expected, rtol=CLOSED_FORM)
+    assert found > expected

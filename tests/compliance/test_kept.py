@@ -1,0 +1,217 @@
+import os
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+from loaded_tca.compliance import GearTooth, MeshDensity, kept
+from loaded_tca.compliance.body import ToothFrame
+from loaded_tca.compliance.kept import kept_flexibility, key_of
+from loaded_tca.flanks import FlankModifications
+from loaded_tca.gears import CylindricalGear, CylindricalMesh
+from loaded_tca.material import Material
+from loaded_tca.pairs.cylindrical import cylindrical_pair
+from loaded_tca.tooth import tooth_forms
+from tests.samples.bodies import pinion, spur_mesh
+
+DENSITY = MeshDensity(2, 2, 1, 1, 2, 1, 1)
+CHANGES = "side density neighbours bore modulus poisson width thickness tip fillet crowning relief"
+ARRAYS = "heights", "lengths", "displacement", "depth"
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    """An empty folder for models, and nothing in memory."""
+    kept.forget()
+    monkeypatch.setenv(kept.FOLDER, str(tmp_path / "models"))
+    yield tmp_path / "models"
+    kept.forget()
+
+
+@pytest.fixture
+def made(monkeypatch):
+    """Frames for which a model was made."""
+    frames, make = [], kept.tooth_flexibility
+
+    def counted(frame):
+        frames.append(frame)
+        return make(frame)
+
+    monkeypatch.setattr(kept, "tooth_flexibility", counted)
+    return frames
+
+
+def frame_of(gear=None, side=1, density=DENSITY):
+    gear = gear or pinion()
+    return ToothFrame(gear, side, gear.nodes(density))
+
+
+def gear_with(modifications=FlankModifications(), **changes):
+    """Pinion of a spur pair with some of its geometry changed."""
+    mesh = spur_mesh()
+    mesh = replace(mesh, pinion=replace(mesh.pinion, **changes))
+    pair, backs = (
+        cylindrical_pair(mesh, modifications=(modifications, FlankModifications()), sense=sense)
+        for sense in ("positive", "negative")
+    )
+    return GearTooth((pair.pinion, backs.pinion), tooth_forms(mesh)[0])
+
+
+def same(one, other):
+    for name in ARRAYS:
+        assert_array_equal(getattr(one, name), getattr(other, name))
+    assert_array_equal(one.local.height, other.local.height)
+    assert_array_equal(one.local.value, other.local.value)
+
+
+def test_model_is_made_once(made):
+    assert kept_flexibility(frame_of()) is kept_flexibility(frame_of())
+    assert len(made) == 1
+
+
+def test_model_from_disk_is_the_same(made, folder):
+    first = kept_flexibility(frame_of())
+    kept.forget()
+    same(kept_flexibility(frame_of()), first)
+    assert len(made) == 1
+    assert [path.suffix for path in folder.iterdir()] == [".npz"]
+
+
+def test_model_cannot_be_written_to():
+    with pytest.raises(ValueError, match="read-only"):
+        kept_flexibility(frame_of()).displacement[0] = 0.0
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        lambda: frame_of(side=-1),
+        lambda: frame_of(density=replace(DENSITY, rim=3)),
+        lambda: frame_of(density=replace(DENSITY, neighbours=2)),
+        lambda: frame_of(pinion(bore_diameter=36.0)),
+        lambda: frame_of(pinion(material=Material(205000.0, 0.3))),
+        lambda: frame_of(pinion(material=Material(206000.0, 0.29))),
+        lambda: frame_of(pinion(width=20.001)),
+        lambda: frame_of(gear_with(profile_shift=1e-4)),
+        lambda: frame_of(gear_with(tip_diameter=81.001)),
+        lambda: frame_of(gear_with(root_radius_coefficient=0.379)),
+        lambda: frame_of(gear_with(FlankModifications(lead_crowning=1e-4))),
+        lambda: frame_of(gear_with(FlankModifications(tip_relief=1e-4, tip_relief_start=80.0))),
+    ],
+    ids=CHANGES.split(),
+)
+def test_another_gear_is_another_model(other):
+    assert key_of(other()) != key_of(frame_of())
+
+
+def test_equal_gears_are_one_model():
+    mesh = CylindricalMesh(*(CylindricalGear(teeth=30, normal_module=3.0, face_width=20.0) for _ in range(2)))
+    pair, backs = (cylindrical_pair(mesh, sense=sense) for sense in ("positive", "negative"))
+    flanks = (pair.pinion, backs.pinion), (pair.wheel, backs.wheel)
+    gears = [GearTooth(*parts) for parts in zip(flanks, tooth_forms(mesh), strict=True)]
+    keys = [key_of(frame_of(gear, side)) for gear, side in zip(gears, (pair.pinion.side, pair.wheel.side), strict=True)]
+    assert keys[0] == keys[1]
+
+
+def test_a_modification_far_below_rounding_is_the_same_model():
+    """A part of 1e-15 of the size of the gear, in a key that tells 1e-9 apart."""
+    found = [key_of(frame_of(gear_with(FlankModifications(lead_crowning=amount)))) for amount in (1e-4, 1e-4 + 1e-13)]
+    assert found[0] == found[1]
+
+
+def test_another_version_is_another_model(monkeypatch):
+    before = key_of(frame_of())
+    monkeypatch.setattr(kept, "_programme", lambda: "0.0.0")
+    assert key_of(frame_of()) != before
+
+
+@pytest.mark.parametrize("damage", [b"", b"no archive", "cut", "changed", "foreign", "renamed", "not finite"])
+def test_a_damaged_file_is_made_anew(damage, made, folder):
+    first = kept_flexibility(frame_of())
+    (path,) = folder.iterdir()
+    whole = path.read_bytes()
+    arrays = dict(np.load(path))
+    if isinstance(damage, bytes):
+        path.write_bytes(damage)
+    elif damage == "cut":
+        path.write_bytes(whole[: len(whole) // 2])
+    elif damage == "changed":
+        middle = len(whole) // 2
+        path.write_bytes(whole[:middle] + bytes([whole[middle] ^ 255]) + whole[middle + 1 :])
+    elif damage == "foreign":
+        np.savez(path, key=arrays["key"], pressure=np.ones(3))
+    elif damage == "renamed":
+        np.savez(path, **arrays | {"key": "of another gear"})
+    else:
+        np.savez(path, **arrays | {"depth": np.nan * arrays["depth"]})
+    kept.forget()
+    same(kept_flexibility(frame_of()), first)
+    assert len(made) == 2
+    kept.forget()
+    kept_flexibility(frame_of())
+    assert len(made) == 2  # the file was mended
+
+
+def test_a_folder_that_cannot_be_made_is_done_without(made, tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv(kept.FOLDER, str(tmp_path / "file" / "models"))
+    first = kept_flexibility(frame_of())
+    kept.forget()
+    same(kept_flexibility(frame_of()), first)
+    assert len(made) == 2
+
+
+def test_a_folder_that_cannot_be_written_is_done_without(made, folder, monkeypatch):
+    def refuse(*_, **__):
+        raise PermissionError("read-only")
+
+    monkeypatch.setattr(kept.tempfile, "mkstemp", refuse)
+    kept_flexibility(frame_of())
+    assert len(made) == 1
+    assert not list(folder.iterdir())
+
+
+def test_a_full_disk_leaves_no_unfinished_file(folder, monkeypatch):
+    def fill(file, **_):
+        file.write(b"PK")
+        raise OSError("no space left")
+
+    monkeypatch.setattr(kept.np, "savez", fill)
+    kept_flexibility(frame_of())
+    assert not list(folder.iterdir())
+
+
+def test_nothing_is_kept_on_disk_where_it_is_switched_off(made, tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setenv(kept.FOLDER, "off")
+    kept_flexibility(frame_of())
+    kept.forget()
+    kept_flexibility(frame_of())
+    assert len(made) == 2
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(("variable", "inside"), [("XDG_CACHE_HOME", ()), ("HOME", (".cache",))])
+def test_models_lie_in_the_cache_of_the_user(variable, inside, tmp_path, monkeypatch):
+    for name in (kept.FOLDER, "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("HOME", os.devnull)
+    monkeypatch.setenv(variable, str(tmp_path))
+    kept_flexibility(frame_of())
+    assert len(list(tmp_path.joinpath(*inside, "loaded_tca").glob("*.npz"))) == 1
+
+
+def test_the_last_models_stay(made, folder, monkeypatch):
+    monkeypatch.setattr(kept, "MOST_IN_MEMORY", 1)
+    monkeypatch.setattr(kept, "MOST_ON_DISK", 2)
+    for number, bore in enumerate((30.0, 31.0, 32.0)):
+        kept_flexibility(frame_of(pinion(bore)))
+        for path in folder.iterdir():
+            os.utime(path, (number, min(number, path.stat().st_mtime)))
+    assert len(list(folder.iterdir())) == 2
+    for bore in (32.0, 31.0):
+        kept_flexibility(frame_of(pinion(bore)))
+    assert len(made) == 3
+    kept_flexibility(frame_of(pinion(30.0)))
+    assert len(made) == 4

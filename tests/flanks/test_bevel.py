@@ -1,0 +1,175 @@
+"""The spherical involute against the arc that unwinds from its base cone, and against differences."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+from loaded_tca.errors import InputError
+from loaded_tca.flanks import InvoluteFlank, SphericalInvoluteFlank
+from loaded_tca.flanks.base import BORDER_NAMES, outward_normal
+from loaded_tca.flanks.bevel import spherical_involute, unwound_arc
+
+PITCH, PRESSURE, DISTANCES = math.radians(50.0), math.radians(20.0), (60.0, 80.0)
+BASE = math.asin(math.sin(PITCH) * math.cos(PRESSURE))
+CONES = (math.radians(47.0), math.radians(53.0))
+ROUNDING = 1e-13
+STEP = 1e-4  # mm
+DIFFERENCE = 1e-8  # step^2 times a third derivative (Q^-3), and rounding over the step
+
+sides = st.sampled_from([1, -1])
+spirals = st.floats(-0.7, 0.7)
+angles = st.floats(CONES[0], CONES[1])
+distances = st.floats(*DISTANCES)
+
+
+def flank(side=1, spiral=0.0, cones=CONES):
+    return SphericalInvoluteFlank(PITCH, PRESSURE, spiral, side, cones, DISTANCES)
+
+
+def place(angle, distance):
+    return np.array(distance * math.sin(angle)), np.array(distance * math.cos(angle))
+
+
+def differences(function, rho, z):
+    """Gradient and Hessian of a function that returns jets, from its values and slopes beside the point."""
+    ahead, behind = function(rho + STEP, z), function(rho - STEP, z)
+    above, below = function(rho, z + STEP), function(rho, z - STEP)
+    first = [(a.value - b.value) / (2.0 * STEP) for a, b in ((ahead, behind), (above, below))]
+    second = [(a - b) / (2.0 * STEP) for a, b in ((ahead.rho, behind.rho), (above.rho, below.rho), (above.z, below.z))]
+    return [float(value) for value in (*first, *second)]
+
+
+@given(angles, distances, sides, spirals)
+def test_derivatives_of_theta_agree_with_differences(angle, distance, side, spiral):
+    jet = flank(side, spiral).theta(*place(angle, distance))
+    found = [jet.rho, jet.z, jet.rho_rho, jet.rho_z, jet.z_z]
+    assert_allclose(found, differences(flank(side, spiral).theta, *place(angle, distance)), rtol=0, atol=DIFFERENCE)
+
+
+@given(angles, distances, spirals)
+def test_derivatives_of_coordinates_borders_and_gradient_norm_agree_with_differences(angle, distance, spiral):
+    one, where = flank(1, spiral), place(angle, distance)
+    functions = [one.profile_coordinate, one.lengthwise_coordinate, one.gradient_norm]
+    functions += [lambda rho, z, k=k: one.borders(rho, z)[k] for k in range(len(BORDER_NAMES))]
+    for function in functions:
+        jet = function(*where)
+        parts = np.broadcast_arrays(jet.rho, jet.z, jet.rho_rho, jet.rho_z, jet.z_z)
+        if not isinstance(jet.rho, float):
+            assert_allclose(parts, differences(function, *where), rtol=0, atol=1e-7)
+        else:
+            assert_allclose(parts[:2], [math.copysign(abs(jet.rho), jet.rho), jet.z])
+            rho, z = where
+            rise = (function(rho + STEP, z).value - function(rho - STEP, z).value) / (2.0 * STEP)
+            assert_allclose(jet.rho, rise, atol=1e-9)
+
+
+@given(st.floats(0.05, 2.5), distances, sides)
+def test_flank_holds_the_points_of_the_great_circle_that_unwinds(arc, distance, side):
+    """Unwound by the arc w, the tangent point has run along w/sin(delta_b) of the base circle."""
+    run = arc / math.sin(BASE)
+    tangent_point = np.array([math.sin(BASE), 0.0, math.cos(BASE)])
+    along = np.array([0.0, -1.0, 0.0])
+    x, y, z = math.cos(arc) * tangent_point + math.sin(arc) * along
+    angle, turned = math.acos(z), math.atan2(y, x) + run
+    found = spherical_involute(np.array(angle), BASE)
+    assert_allclose(found, turned, rtol=0, atol=1e-12)
+    assert_allclose(unwound_arc(np.array(angle), BASE), arc, rtol=1e-10)
+    theta = flank(side).theta(*place(angle, distance)).value
+    pitch = spherical_involute(np.array(PITCH), BASE)
+    assert_allclose(theta, side * (pitch - turned), rtol=0, atol=1e-12)
+
+
+@given(sides, spirals)
+def test_theta_is_zero_on_the_pitch_cone_at_the_mean_cone_distance(side, spiral):
+    assert_allclose(flank(side, spiral).theta(*place(PITCH, 70.0)).value, 0.0, atol=1e-15)
+
+
+@given(angles, distances, sides, spirals)
+def test_gradient_norm_is_that_of_theta(angle, distance, side, spiral):
+    one, (rho, z) = flank(side, spiral), place(angle, distance)
+    jet = one.theta(rho, z)
+    spherical = math.hypot(1.0 / rho, jet.rho, jet.z)
+    if spiral == 0.0:
+        assert_allclose(one.gradient_norm(rho, z).value, spherical, rtol=1e-10)
+    closed = math.sqrt(1.0 / math.sin(BASE) ** 2 + (math.tan(spiral) / math.sin(PITCH)) ** 2) / distance
+    assert_allclose([spherical, one.gradient_norm(rho, z).value], closed, rtol=1e-10)
+
+
+@given(distances, spirals)
+def test_spiral_crosses_the_generators_of_the_pitch_cone_under_the_spiral_angle(distance, spiral):
+    rho, z = place(PITCH, distance)
+    jet = flank(1, spiral).theta(rho, z)
+    along = jet.rho * math.sin(PITCH) + jet.z * math.cos(PITCH)
+    assert_allclose(rho * along, math.tan(spiral), rtol=0, atol=1e-12)
+
+
+@given(angles, distances, sides, spirals)
+def test_normal_is_unit_and_leaves_the_material_on_the_side_of_the_flank(angle, distance, side, spiral):
+    normal = outward_normal(flank(side, spiral), *place(angle, distance))
+    assert_allclose(np.linalg.norm(normal), 1.0, rtol=ROUNDING)
+    assert side * normal[1] > 0.0
+
+
+def test_flat_cone_tends_to_the_involute_of_the_plane():
+    """Near the axis the sphere is flat: u R is a radius, u_b R the base radius."""
+    small = 1e-3
+    cones = (0.96 * small, 1.1 * small)
+    narrow = SphericalInvoluteFlank(small, PRESSURE, 0.0, 1, cones, (999.0, 1001.0))
+    flat = InvoluteFlank(math.cos(PRESSURE), 0.0, 1, 1.0, (0.96, 1.1), 2.0)
+    rho = np.linspace(0.96, 1.1, 7)
+    z = np.sqrt(1000.0**2 - rho**2)
+    assert_allclose(narrow.theta(rho, z).value, flat.theta(rho, z).value, rtol=0, atol=1e-6)  # u^2
+
+
+def test_profile_stays_smooth_where_the_cone_becomes_a_disc():
+    """A wheel beyond 90 deg (shaft angle 120 deg, ratio 3) has an involute like any other."""
+    pitch = math.radians(100.9)
+    crown = SphericalInvoluteFlank(pitch, PRESSURE, 0.0, 1, (math.radians(88.0), math.radians(104.0)), DISTANCES)
+    angle = np.linspace(math.radians(88.0), math.radians(92.0), 9)
+    theta = crown.theta(70.0 * np.sin(angle), 70.0 * np.cos(angle)).value
+    assert (np.diff(theta) < 0.0).all()
+    assert_allclose(np.diff(theta, 3), 0.0, atol=1e-5)
+
+
+@pytest.mark.parametrize("depth", [0.0, 1e-12, 1e-3])
+def test_theta_is_finite_at_and_below_the_base_cone(depth):
+    jet = flank(cones=(BASE, CONES[1])).theta(*place(BASE - depth, 70.0))
+    assert np.isfinite([jet.value, jet.rho, jet.z, jet.rho_rho, jet.rho_z, jet.z_z]).all()
+
+
+def test_apex_is_no_flank_but_does_no_harm():
+    assert np.isfinite(flank(1, 0.5).theta(np.array(1e-9), np.array(1e-9)).value)
+
+
+def test_grid_covers_the_region_from_border_to_border():
+    one = flank()
+    rho, z = one.grid(9, 5)
+    assert one.inside(rho, z, tolerance=1e-12).all()
+    on_border = [np.abs(border.value).min() for border in one.borders(rho, z)]
+    assert_allclose(on_border, 0.0, atol=1e-12)
+    assert_allclose(np.diff(one.profile_coordinate(rho, z).value, 2, axis=0), 0.0, atol=1e-12)
+    assert_allclose(np.diff(one.lengthwise_coordinate(rho, z).value, 2, axis=1), 0.0, atol=1e-12)
+    assert_allclose(one.extent, (np.ptp(rho), np.ptp(z)))
+
+
+def test_borders_are_distances_in_millimetres():
+    one, (rho, z) = flank(), place(PITCH, 70.0)
+    expected = [70.0 * math.sin(CONES[1] - PITCH), 70.0 * math.sin(PITCH - CONES[0]), 10.0, 10.0]
+    assert_allclose([border.value for border in one.borders(rho, z)], expected, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("cones", "message"), [((0.5, 0.9), r"base .* <= root"), ((0.9, 0.85), "< face"), ((0.9, 3.0), "cone_angles")]
+)
+def test_cones_out_of_order_are_refused(cones, message):
+    with pytest.raises(InputError, match=message):
+        flank(cones=cones)
+
+
+def test_cone_distances_out_of_order_are_refused():
+    with pytest.raises(InputError, match=r"cone_distances: 0 < toe 80.0 < heel 60.0 mm"):
+        SphericalInvoluteFlank(PITCH, PRESSURE, 0.0, 1, CONES, (80.0, 60.0))

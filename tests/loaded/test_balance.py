@@ -1,0 +1,79 @@
+"""Forces of pairs whose approaches are powers of their forces."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+from loaded_tca.errors import ConvergenceError
+from loaded_tca.loaded.balance import EXPONENTS, PowerLaw, balance
+
+LAWS = st.builds(PowerLaw, st.floats(10.0, 1e4), st.floats(1e-4, 1e-2), st.floats(0.5, 1.0))
+
+
+@given(LAWS, st.floats(1e-3, 1e5))
+def test_force_at_an_approach_is_the_inverse_of_the_approach_under_it(law, force):
+    assert_allclose(law.force_at(law.approach_under(force)), force, rtol=1e-9)
+
+
+def test_law_through_a_second_press_has_its_exponent():
+    law = PowerLaw(1000.0, 0.004).through(2000.0, 0.004 * 2.0**0.9)
+    assert_allclose(law.exponent, 0.9, rtol=1e-12)
+    assert_allclose(law.approach_under(1000.0), 0.004, rtol=1e-12)
+
+
+def test_law_keeps_its_exponent_where_the_loads_do_not_tell():
+    assert PowerLaw(1000.0, 0.004, 0.8).through(1000.0, 0.0041) == PowerLaw(1000.0, 0.0041, 0.8)
+
+
+@pytest.mark.parametrize(("approach", "expected"), [(0.0040001, EXPONENTS[0]), (1e6, EXPONENTS[1])])
+def test_exponent_stays_in_its_range(approach, expected):
+    assert PowerLaw(1000.0, 0.004).through(2000.0, approach).exponent == expected
+
+
+def test_no_force_where_nothing_is_closed():
+    assert PowerLaw(1000.0, 0.004).force_at(0.0) == PowerLaw(1000.0, 0.004).force_at(-1.0) == 0.0
+
+
+@given(
+    st.lists(st.tuples(LAWS, st.floats(0.0, 1e-4), st.floats(0.0, 1e-5)), min_size=1, max_size=4),
+    st.floats(1.0, 1e6),
+    st.floats(0.0, 1e-6),
+)
+def test_balance_fulfils_torque_and_compatibility(parts, torque, coupling):
+    """Loaded pairs ask for one rotation, those apart for a larger one."""
+    laws, lags = [part[0] for part in parts], np.array([part[1] for part in parts])
+    levers = np.array([np.linspace(40.0, 60.0, len(laws)), np.linspace(90.0, 80.0, len(laws))])
+    compliance = np.diag([part[2] for part in parts]) + coupling
+    forces = balance(laws, lags, levers, torque, compliance)
+    assert (forces >= 0.0).all()
+    assert_allclose(levers[0] @ forces, torque, rtol=1e-12)
+    approaches = np.array([law.approach_under(force) for law, force in zip(laws, forces, strict=True)])
+    asked = lags + (approaches + compliance @ forces) / levers[1]
+    rotation = asked[forces > 0.0].mean()
+    assert_allclose(asked[forces > 0.0], rotation, rtol=1e-6)
+    assert (asked[forces == 0.0] >= rotation * (1.0 - 1e-6)).all()
+
+
+def test_stiff_neighbour_takes_the_load_of_a_soft_tooth():
+    laws, levers = [PowerLaw(1000.0, 0.004)] * 2, np.full((2, 2), 50.0)
+    forces = balance(laws, np.zeros(2), levers, 1e5, np.diag([0.0, 1.0]))
+    assert_allclose(forces.sum(), 2000.0, rtol=1e-12)
+    assert forces[1] < 0.01 * forces[0]
+
+
+def test_pair_pushed_apart_by_its_neighbour_carries_nothing():
+    laws, levers = [PowerLaw(1000.0, 0.004)] * 2, np.full((2, 2), 50.0)
+    lag = 0.0035 / 50.0
+    alone = balance(laws, np.array([0.0, lag]), levers, 5e4, np.zeros((2, 2)))
+    coupled = balance(laws, np.array([0.0, lag]), levers, 5e4, np.full((2, 2), 2e-6) + 1e-12 * np.eye(2))
+    assert alone[1] > 0.0
+    assert_allclose(coupled.sum(), 1000.0, rtol=1e-12)
+    assert_allclose(coupled, alone, rtol=1e-5)  # what both share moves both alike
+
+
+def test_torque_that_no_rotation_gives_is_told():
+    levers = np.array([[-50.0], [50.0]])
+    with pytest.raises(ConvergenceError, match="no rotation gives a torque of 1000 N mm"):
+        balance([PowerLaw(1000.0, 0.004)], np.zeros(1), levers, 1e3, np.zeros((1, 1)))

@@ -1,0 +1,285 @@
+"""The torque shared over the tooth pairs: balance, compatibility, energy, limits and symmetry."""
+
+import itertools
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca.errors import ConvergenceError, InputError
+from loaded_tca.flanks import FlankModifications
+from loaded_tca.loaded.load_sharing import Laws, Touch, share_load, touches_at
+from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.unloaded import trace_teeth
+from tests.samples.gear_pairs import NONE, gear_pair, seed_002
+
+TORQUE = 130e3
+GRID = GridChoice(cells=(24, 24))
+EQUILIBRIUM = 1e-8
+"""Asked for: the torques of the pairs sum up to that of the pinion."""
+COMPATIBLE = 1e-5
+"""Agreement of the rotations where the cells are given."""
+NEAR_HALF = 0.03
+"""Asked for: how far the sharing of a spur pair without crowning may be from half and half."""
+CENTRE = math.pi / 34
+
+
+@cache
+def shared(pair_of, phi1, torque=TORQUE, compliance=None):
+    pair = pair_of()
+    more = {} if compliance is None else {"compliance": compliance}
+    return share_load(pair, touches_at(trace_teeth(pair, [phi1]), 0), torque, GRID, **more)
+
+
+def spur():
+    return seed_002()
+
+
+def helical():
+    return seed_002(helix_deg=15.0)
+
+
+def uncrowned_spur():
+    return gear_pair(NONE, NONE)
+
+
+def uncrowned_helical():
+    return gear_pair(NONE, NONE, helix_deg=15.0)
+
+
+POSITIONS = (-0.9 * CENTRE, -0.3 * CENTRE, 0.0, 0.5 * CENTRE)
+
+
+@pytest.mark.parametrize("pair_of", [spur, helical])
+@pytest.mark.parametrize("phi1", POSITIONS)
+def test_pressures_balance_the_torque(pair_of, phi1):
+    total = 0.0
+    for share in shared(pair_of, phi1).shares:
+        solution = share.loaded.solution
+        total += solution.pressure.sum() * solution.cell_area * share.touch.contact.pinion_lever
+    assert_allclose(total, TORQUE, rtol=EQUILIBRIUM)
+
+
+@pytest.mark.parametrize("pair_of", [spur, helical])
+@pytest.mark.parametrize("phi1", POSITIONS)
+def test_loaded_pairs_ask_for_one_rotation_and_the_others_are_apart(pair_of, phi1):
+    found, pair = shared(pair_of, phi1), pair_of()
+    assert_allclose([share.rotation for share in found.shares], found.rotation, rtol=COMPATIBLE)
+    assert found.residual <= COMPATIBLE
+    loaded = set(found.laws.contact)
+    for touch in touches_at(trace_teeth(pair, [phi1]), 0):
+        assert (touch.pair in loaded) == (touch.lag < found.rotation)
+
+
+def test_two_pairs_of_a_symmetric_position_carry_one_half_each():
+    pair = gear_pair(FlankModifications(lead_crowning=0.005), NONE, teeth=(30, 30))
+    found = share_load(pair, touches_at(trace_teeth(pair, [0.5 * pair.pitch]), 0), TORQUE, GRID)
+    assert [share.touch.pair for share in found.shares] == [0, 1]
+    assert_allclose([share.torque / TORQUE for share in found.shares], 0.5, atol=1e-6)
+
+
+@pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")
+@pytest.mark.parametrize("phi1", [-0.95 * CENTRE, -0.7 * CENTRE, 0.8 * CENTRE])
+def test_spur_pairs_without_crowning_carry_nearly_one_half_each(phi1):
+    found = shared(uncrowned_spur, phi1)
+    assert len(found.shares) == 2
+    assert_allclose([share.torque / TORQUE for share in found.shares], 0.5, atol=NEAR_HALF)
+
+
+LENGTHS = 0.02
+"""Ends of the lines, oblique at the tips, are a little stiffer than the formula of a long line has them."""
+
+
+@pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")
+@pytest.mark.parametrize("part", [-0.5, 0.8])
+def test_helical_pairs_without_crowning_share_by_the_lengths_of_their_lines(part):
+    """A line of length l and width w yields by F/l (ln(4 l/w) - 1) times the same for all."""
+    found = shared(uncrowned_helical, part * CENTRE)
+    lengths = np.array([np.linalg.norm(np.diff(share.touch.contact.line_ends, axis=0)) for share in found.shares])
+    widths = [share.loaded.extent[0] for share in found.shares]
+    stiffness = lengths / (np.log(4.0 * lengths / widths) - 1.0)
+    assert len(lengths) == 2
+    assert_allclose([share.torque / TORQUE for share in found.shares], stiffness / stiffness.sum(), atol=LENGTHS)
+
+
+def elastic_energy(found):
+    """Half the work of the pressures over the displacements [N mm]."""
+    energy = 0.0
+    for share in found.shares:
+        solution = share.loaded.solution
+        pressed = solution.in_contact
+        displacement = solution.approach + solution.gap[pressed] - share.loaded.separation.gap[pressed]
+        energy += 0.5 * float(solution.pressure[pressed] @ displacement) * solution.cell_area
+    return energy
+
+
+def test_torque_is_the_derivative_of_the_elastic_energy_along_the_rotation():
+    """The wheel turns against a pinion that stands: its torque is that of the pinion over the ratio."""
+    phi1, step = -0.3 * CENTRE, 0.02
+    pair = helical()
+    touches, grid = touches_at(trace_teeth(pair, [phi1]), 0), GridChoice(cells=(48, 48))
+    low, high = (share_load(pair, touches, (1.0 + sign * step) * TORQUE, grid) for sign in (-1, 1))
+    slope = (elastic_energy(high) - elastic_energy(low)) / (high.rotation - low.rotation)
+    assert_allclose(slope, TORQUE / pair.ratio, rtol=5e-3)  # grids of two loads differ by about 1e-3
+
+
+def test_small_torque_tends_to_the_unloaded_contact():
+    pair = helical()
+    touches = touches_at(trace_teeth(pair, [0.2 * CENTRE]), 0)
+    rotations = [share_load(pair, touches, torque, GRID).rotation for torque in (0.0, 1e-2, 1e2)]
+    assert rotations[0] == 0.0
+    assert rotations[0] < rotations[1] < rotations[2]
+    assert rotations[1] * pair.base_radii[1] < 1e-6
+
+
+def test_more_pairs_carry_load_as_it_grows():
+    pair = helical()
+    touches = touches_at(trace_teeth(pair, [0.0]), 0)
+    counts = [len(share_load(pair, touches, torque, GRID).shares) for torque in (1e2, 2e4, 13e4)]
+    assert counts[0] == 1
+    assert counts == sorted(counts)
+    assert counts[-1] == 3
+
+
+def test_tangent_of_the_torque_is_that_of_neighbouring_torques():
+    pair = helical()
+    touches, grid = touches_at(trace_teeth(pair, [-0.6 * CENTRE]), 0), GridChoice(cells=(48, 48))
+    low, here, high = (share_load(pair, touches, factor * TORQUE, grid) for factor in (0.9, 1.0, 1.1))
+    chord = (high.torque - low.torque) / (high.rotation - low.rotation)
+    assert_allclose(here.torque_rate, chord, rtol=2e-2)  # contacts that end at a border grow by whole cells
+
+
+def test_start_from_a_neighbour_gives_the_same_answer():
+    pair, phi1 = helical(), 0.5 * CENTRE
+    found = shared(helical, phi1)
+    again = share_load(
+        pair, touches_at(trace_teeth(pair, [phi1]), 0), TORQUE, GRID, start=shared(helical, -0.3 * CENTRE).laws
+    )
+    assert_allclose(again.rotation, found.rotation, rtol=1e-3)  # the boxes, made for other first guesses, differ
+    for first, second in zip(again.shares, found.shares, strict=True):
+        assert_allclose(first.torque, second.torque, atol=1e-3 * TORQUE)
+
+
+def test_pairs_apart_are_not_closed_by_the_rotation():
+    """What the first balance, without the springs, leaves apart comes under load as these give way."""
+    pair, torque, own = helical(), 300.0, 1e-3
+    touches = touches_at(trace_teeth(pair, [0.0]), 0)
+    assert len(share_load(pair, touches, torque, GRID).shares) == 1
+    found = share_load(pair, touches, torque, GRID, compliance=Springs(own))
+    assert len(found.shares) == 3
+    for touch in touches:
+        assert (touch.lag < found.rotation) == (touch.pair in found.laws.contact)
+
+
+def test_unknown_compliances_are_the_least_known():
+    laws = Laws({}, {(0, 0): 3e-6, (1, 1): 2e-6, (0, 1): 1e-6, (1, 0): 1e-6})
+    assert laws.compliance(0, 0) == 3e-6
+    assert laws.compliance(2, 2) == 2e-6
+    assert laws.compliance(0, 2) == 1e-6
+    assert Laws().compliance(0, 0) == 0.0
+
+
+@pytest.mark.parametrize("torque", [1e-13, 1e-9, 1e-6])
+@pytest.mark.parametrize("springs", [None, (2e-6, 1e-6)])
+def test_next_to_no_torque_is_carried_by_the_leading_pair(torque, springs):
+    pair = helical()
+    touches = touches_at(trace_teeth(pair, [0.2 * CENTRE]), 0)
+    found = share_load(pair, touches, torque, GRID, compliance=None if springs is None else Springs(*springs))
+    assert len(found.shares) == 1
+    assert 0.0 <= found.rotation < 1e-8
+    assert found.torque_rate >= 0.0
+
+
+class Springs:
+    """Every pair yields by some amount more, and a little by the load of the others."""
+
+    def __init__(self, own, coupling=0.0):
+        self.own, self.coupling = own, coupling
+
+    def within(self, number, separation, edges=()):
+        assert isinstance(number, int)
+        assert edges == ()
+        return np.full((len(separation.y),) * 2, self.own)
+
+    def between(self, at, under):
+        assert at[0] != under[0]
+        return np.full((len(at[1].y), len(under[1].y)), self.coupling)
+
+
+def test_soft_teeth_share_by_their_lags_alone():
+    """Springs far softer than the contacts: forces follow from the lags by a linear balance."""
+    pair, phi1, own = helical(), -0.6 * CENTRE, 1e-3
+    touches = touches_at(trace_teeth(pair, [phi1]), 0)
+    found = share_load(pair, touches, TORQUE, GRID, compliance=Springs(own))
+    levers = np.array([(s.touch.contact.pinion_lever, s.touch.contact.wheel_lever) for s in found.shares]).T
+    lags = np.array([s.touch.lag for s in found.shares])
+    rotation = (TORQUE * own + (levers[0] * levers[1] * lags).sum()) / (levers[0] * levers[1]).sum()
+    expected = levers[1] * (rotation - lags) / own
+    assert_allclose([s.force for s in found.shares], expected, rtol=2e-2)  # a contact yields by 2e-6 mm/N
+
+
+def test_deflections_of_the_teeth_are_part_of_the_closing():
+    pair, phi1 = spur(), -0.9 * CENTRE
+    touches = touches_at(trace_teeth(pair, [phi1]), 0)
+    own, coupling = 2e-6, 3e-7
+    found = share_load(pair, touches, TORQUE, GRID, compliance=Springs(own, coupling))
+    forces = np.array([share.force for share in found.shares])
+    assert len(forces) == 2
+    assert_allclose([share.deflection for share in found.shares], own * forces + coupling * forces[::-1], rtol=1e-9)
+    assert_allclose([share.rotation for share in found.shares], found.rotation, rtol=COMPATIBLE)
+    assert found.rotation > shared(spur, phi1).rotation
+    assert found.torque_rate < shared(spur, phi1).torque_rate
+
+
+class Restless:
+    """Teeth that are softer or stiffer every time they are asked."""
+
+    def __init__(self):
+        self.compliances = itertools.cycle([1e-6, 3e-6, 2e-6])
+
+    def within(self, number, separation, edges=()):
+        assert isinstance(number, int)
+        assert edges == ()
+        return np.full((len(separation.y),) * 2, next(self.compliances))
+
+    def between(self, at, under):
+        return np.zeros((len(at[1].y), len(under[1].y)))
+
+
+def test_balance_that_is_never_found_is_told_with_the_last_one(monkeypatch):
+    monkeypatch.setattr("loaded_tca.loaded.load_sharing.SAME_BOX", (2.0, 3.0))  # every force on a grid of its own
+    pair = spur()
+    touches = touches_at(trace_teeth(pair, [-0.9 * CENTRE]), 0)
+    with pytest.raises(ConvergenceError, match=r"load sharing not converged.*after 40 balances") as caught:
+        share_load(pair, touches, TORQUE, GRID, compliance=Restless())
+    assert len(caught.value.last.shares) == 2
+
+
+@pytest.mark.parametrize("driving", ["pinion", "wheel"])
+@pytest.mark.parametrize("sense", ["positive", "negative"])
+def test_sharing_does_not_depend_on_who_drives_or_how(driving, sense):
+    """At the symmetric position of equal gears every drive shares the load alike."""
+    pair = gear_pair(FlankModifications(lead_crowning=0.005), NONE, teeth=(30, 30), driving=driving, sense=sense)
+    found = share_load(pair, touches_at(trace_teeth(pair, [0.5 * pair.pitch]), 0), TORQUE, GRID)
+    assert_allclose([share.torque / TORQUE for share in found.shares], 0.5, atol=1e-6)
+
+
+@pytest.mark.parametrize("torque", [-1.0, math.nan, math.inf])
+def test_torque_that_is_no_number_from_zero_on_is_refused(torque):
+    with pytest.raises(InputError, match="torque"):
+        shared(spur, 0.0, torque)
+
+
+def test_no_tooth_pair_is_refused():
+    with pytest.raises(InputError, match="touches: none given"):
+        share_load(spur(), (), TORQUE, GRID)
+
+
+def test_touches_are_those_within_reach():
+    mesh = trace_teeth(helical(), [-CENTRE, 0.0])
+    for position in (0, 1):
+        found = touches_at(mesh, position)
+        assert all(isinstance(touch, Touch) and touch.lag >= 0.0 and touch.contact.touches for touch in found)
+        assert len(found) == np.isfinite(mesh.lag[:, position]).sum()

@@ -1,0 +1,226 @@
+"""One tooth pair pressed together: force balance, Hertz where he holds, and where he does not."""
+
+import math
+import warnings
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca import AccuracyWarning, InputError, trace_contact
+from loaded_tca.flanks import FlankModifications
+from loaded_tca.loaded.tooth_contact import GridChoice, press
+from loaded_tca.material import Material
+from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
+from loaded_tca.reference import hertz
+from loaded_tca.separation import sample_separation
+from loaded_tca.unloaded import trace_teeth
+from tests.samples.gear_pairs import SEED_002_TORQUE, cylindrical_mesh, gear_pair, seed_002
+
+BALANCE = 1e-10
+HERTZ = 5e-3  # the flanks are no paraboloids over an ellipse as long as the face
+GRID = GridChoice(cells=(32, 32))
+
+
+def pressed(pair, load, turn=0.0, grid=GRID):
+    contact = trace_contact(pair, [turn * pair.pitch])[0]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        return press(pair, contact, load, grid)
+
+
+CASES = {
+    "spur": lambda: seed_002(),
+    "helical": lambda: seed_002(15.0),
+    "line": lambda: gear_pair(),
+    "edge": lambda: seed_002(mounting=Mounting(out_of_plane=0.004)),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("load", [1.0, 2700.0])
+def test_pressure_balances_the_load(name, load):
+    loaded = pressed(CASES[name](), load)
+    dx, dy = loaded.separation.spacing
+    assert_allclose(loaded.solution.pressure.sum() * dx * dy, load, rtol=BALANCE)
+    assert loaded.solution.pressure.min() >= 0.0
+
+
+@pytest.mark.parametrize("helix_deg", [0.0, 15.0])
+@pytest.mark.parametrize("driving", ["pinion", "wheel"])
+def test_peak_pressure_of_the_seed_002_pairs_is_that_of_hertz(helix_deg, driving):
+    load = cylindrical_mesh(helix_deg=helix_deg).normal_force(SEED_002_TORQUE)
+    loaded = pressed(seed_002(helix_deg, driving=driving), load)
+    assert not loaded.at_border, "the ellipse is shorter than the face"
+    assert loaded.hertz is not None
+    assert_allclose(loaded.peak_pressure, loaded.hertz.max_pressure, rtol=HERTZ)
+    assert_allclose(loaded.solution.approach, loaded.hertz.approach, rtol=HERTZ)
+    # cells under pressure, to a cell at either end
+    for extent, axis, spacing in zip(
+        loaded.extent, (loaded.hertz.semi_minor, loaded.hertz.semi_major), loaded.separation.spacing, strict=True
+    ):
+        assert_allclose(extent, 2.0 * axis, atol=2.0 * spacing)
+
+
+def test_stiffness_of_a_point_contact_is_that_of_hertz():
+    loaded = pressed(gear_pair(FlankModifications(lead_crowning=0.05)), 500.0)
+    assert_allclose(loaded.stiffness, loaded.hertz.stiffness, rtol=1e-2)
+
+
+@pytest.mark.parametrize(("helix_deg", "name"), [(0.0, "edge"), (0.0, "tip"), (0.0, "line"), (15.0, "line")])
+def test_hertz_does_not_hold_on_edges_and_lines(helix_deg, name):
+    pair = {
+        "edge": seed_002(helix_deg, mounting=Mounting(out_of_plane=0.004)),
+        "tip": seed_002(helix_deg),
+        "line": gear_pair(helix_deg=helix_deg),
+    }[name]
+    loaded = pressed(pair, 1000.0, turn=0.9 if name == "tip" else 0.0)
+    assert loaded.at_border
+    assert loaded.hertz is None
+    assert loaded.peak_pressure == loaded.solution.pressure.max()
+
+
+def test_contact_that_grows_to_the_end_of_the_face_is_at_a_border():
+    pair = seed_002()
+    assert not pressed(pair, 1500.0).at_border
+    assert pressed(pair, 9000.0).at_border
+
+
+def test_middle_of_an_unmodified_spur_pair_carries_the_line_contact_of_its_section():
+    load, pair = 2712.6, gear_pair()
+    loaded = pressed(pair, load, grid=GridChoice(cells=(64, 64)))
+    section = int(abs(loaded.separation.y).argmin())
+    line_load = loaded.solution.pressure[:, section].sum() * loaded.separation.spacing[0]
+    expected = hertz.line_contact(line_load, loaded.separation.curvatures[0], pair.contact_modulus)
+    assert_allclose(loaded.solution.pressure[:, section].max(), expected.max_pressure, rtol=1e-2)
+    # the ends draw load: 7.6 % less than the mean is left, 7.3 % on this grid
+    assert_allclose(line_load / (load / 25.0), 0.924, atol=5e-3)
+
+
+def test_load_of_zero_leaves_no_pressure_and_no_stiffness():
+    loaded = pressed(seed_002(), 0.0)
+    assert loaded.solution.pressure.max() == 0.0
+    assert loaded.peak_pressure == loaded.stiffness == 0.0
+    assert loaded.extent == (0.0, 0.0)
+    assert loaded.hertz is None
+
+
+@pytest.mark.parametrize("helix_deg", [0.0, 15.0])
+def test_hertz_holds_nothing_on_a_flank_with_end_relief_alone(helix_deg):
+    """The middle of the face is flat: no ellipse lies in it, and the contact point is its middle."""
+    relief = FlankModifications(end_relief=0.02, end_relief_length=8.0)
+    pair = gear_pair(relief, helix_deg=helix_deg)
+    loaded = pressed(pair, 2700.0, turn=0.05)
+    assert loaded.hertz is None
+    assert not loaded.at_border
+    assert_allclose(loaded.contact.pinion_axial, 0.0, atol=0.1)
+
+
+def test_hertz_holds_nothing_where_a_relief_begins_in_the_ellipse():
+    """A parabolic tip relief from the pitch circle on: its curvature is added on one side of the contact point."""
+    relief = FlankModifications(lead_crowning=0.01, tip_relief=0.1, tip_relief_start=102.0)
+    helical = gear_pair(relief, helix_deg=15.0)
+    assert pressed(helical, 2700.0).hertz is None
+    assert pressed(seed_002(15.0), 2700.0).hertz is not None
+
+
+def test_box_of_a_corner_holds_its_contact():
+    """At the corner of a tip and a side nearly all of a long window is void; the first box holds the contact."""
+    pair = gear_pair(helix_deg=20.0, teeth=(22, 41))
+    mesh = trace_teeth(pair, np.linspace(-0.5, 0.5, 17) * pair.pitch)
+    corners = [
+        path[n] for path in mesh.paths for n in range(17) if path[n].touches and path[n].edges.reshape(2, 4).sum() >= 2
+    ]
+    assert corners
+    for contact in corners:
+        for load in (5.0, 150.0):
+            first = sample_separation(pair, contact, cells=(32, 32), load=load)
+            loaded = press(pair, contact, load, GridChoice(cells=(32, 32)))
+            assert np.isfinite(first.gap).any()
+            assert loaded.separation.half_lengths[0] < 3.0 * first.half_lengths[0]
+            assert not loaded.solution.reaches_border
+
+
+def test_grid_that_is_too_large_for_the_memory_is_refused_before_it_is_made():
+    pair = seed_002()
+    contact = trace_contact(pair, [0.0])[0]
+    with pytest.raises(InputError, match=r"cells: \(1000000, 1000000\) cells need .* GiB, the machine has"):
+        press(pair, contact, 100.0, GridChoice(cells=(1_000_000, 1_000_000)))
+
+
+def test_negative_load_is_refused():
+    pair = seed_002()
+    with pytest.raises(InputError, match=r"load: -1.0 N"):
+        press(pair, trace_contact(pair, [0.0])[0], -1.0, GRID)
+
+
+def test_pressure_cap_of_the_pair_holds_and_the_load_is_balanced_again():
+    soft = (Material(max_pressure=600.0), Material(max_pressure=900.0))
+    pair = cylindrical_pair(
+        cylindrical_mesh(),
+        modifications=(FlankModifications(lead_crowning=0.005), FlankModifications()),
+        materials=soft,
+    )
+    loaded = pressed(pair, 2712.6)
+    assert_allclose(loaded.solution.pressure.max(), 600.0, rtol=1e-9)
+    assert_allclose(loaded.solution.pressure.sum() * math.prod(loaded.separation.spacing), 2712.6, rtol=1e-6)
+
+
+@pytest.mark.parametrize("past", [-1e-2, -1e-4, -1e-9, 1e-9, 1e-3])
+def test_corner_contact_does_not_depend_on_which_side_of_the_corner_it_lies(past):
+    """Faces that overlap by 3 mm: the contact runs into a corner with material on neither side along the line."""
+    pair = seed_002(15.0, mounting=Mounting(axial_offset=22.0))
+    corner = 0.5404145177775719
+    loaded = pressed(pair, 2700.0, corner + past, GridChoice(cells=(64, 64)))
+    assert_allclose(loaded.solution.approach, 0.0228, rtol=0.06)  # 0.0217 to 0.0230 in a box of 4 x 6 mm
+
+
+@pytest.mark.parametrize("offset", [23.5, 24.9])
+def test_faces_that_barely_overlap_carry_load(offset):
+    loaded = pressed(seed_002(15.0, mounting=Mounting(axial_offset=offset)), 100.0, 0.5)
+    assert_allclose(loaded.solution.load, 100.0, rtol=BALANCE)
+
+
+def test_box_makes_room_for_a_capped_contact():
+    soft = Material(max_pressure=200.0)
+    mesh = cylindrical_mesh(helix_deg=15.0)
+    pair = cylindrical_pair(
+        mesh, modifications=(FlankModifications(lead_crowning=0.005), FlankModifications()), materials=(soft, soft)
+    )
+    loaded = pressed(pair, mesh.normal_force(SEED_002_TORQUE), grid=GridChoice(cells=(64, 64)))
+    assert loaded.solution.pressure.max() == 200.0
+    assert_allclose(loaded.solution.approach, 0.00737, rtol=5e-2)  # in a box of 2.4 x 27 mm
+
+
+def test_load_beyond_what_the_whole_flank_carries_is_refused():
+    weak = Material(max_pressure=5.0)
+    pair = cylindrical_pair(cylindrical_mesh(), materials=(weak, weak))
+    with pytest.raises(InputError, match="more than the flank carries at max_pressure, 5 MPa"):
+        pressed(pair, 2700.0)
+
+
+def test_load_that_closes_no_gap_is_none():
+    assert pressed(seed_002(), 1e-12).solution.load == 0.0
+
+
+def test_linear_relief_in_the_contact_leaves_no_hertz_and_a_coarse_grid():
+    relief = FlankModifications(lead_crowning=0.005, tip_relief=0.02, tip_relief_start=105.0, tip_relief_form="linear")
+    pair = gear_pair(relief)
+    path = trace_contact(pair)
+    turn = float(path.pinion_angle[abs(2.0 * path.pinion_radius - 105.0).argmin()] / pair.pitch)
+    loaded = pressed(pair, 2700.0, turn, GridChoice(accuracy=1e-4))
+    assert loaded.at_crease
+    assert loaded.hertz is None
+    assert max(loaded.solution.pressure.shape) <= 64
+
+
+def test_central_pressure_is_the_peak_of_a_smooth_contact():
+    loaded = pressed(seed_002(), 2700.0)
+    assert_allclose(loaded.central_pressure, loaded.peak_pressure, rtol=HERTZ)
+    radius, axial = loaded.peak_place
+    assert_allclose([radius, axial], [51.0, 0.0], atol=1.0)
+
+
+def test_edge_contact_has_its_peak_at_the_edge():
+    loaded = pressed(CASES["edge"](), 2700.0)
+    assert_allclose(loaded.peak_place[1], 12.5, atol=2.0 * loaded.separation.spacing[1])

@@ -1,0 +1,173 @@
+import math
+from pathlib import Path
+
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca.errors import GeometryError
+from loaded_tca.output.overview import describe_scene
+from loaded_tca.scene import read_scene
+
+SCENES = Path(__file__).parents[2] / "examples" / "scenes"
+
+
+def described(name="helical", **changes):
+    scene = read_scene(SCENES / f"{name}.toml")
+    return describe_scene(scene.with_changes({key.replace("__", "."): value for key, value in changes.items()}))
+
+
+def cells(text, label):
+    (row,) = (line for line in text.splitlines() if line.startswith(label))
+    return row[44:].split()
+
+
+def notes(text):
+    return [line for line in text.splitlines() if line.startswith("note: ")]
+
+
+def test_single_contact_lies_between_the_points_b_and_d():
+    text = described("spur")
+    mesh = read_scene(SCENES / "spur.toml").mesh()
+    high, low = (
+        [float(cell) for cell in cells(text, f"{which} single tooth contact")] for which in ("highest", "lowest")
+    )
+    base = mesh.pinion.base_radius
+    roll = [(0.25 * diameter**2 - base**2) ** 0.5 for diameter in (high[0], low[0])]
+    points = [mesh.path_of_contact.D, mesh.path_of_contact.B]
+    assert_allclose(roll, points, rtol=1e-4)  # four decimals
+    wheel = [(0.25 * diameter**2 - mesh.wheel.base_radius**2) ** 0.5 for diameter in (low[1], high[1])]
+    assert_allclose(wheel, [mesh.path_of_contact.T2 - point for point in points], rtol=1e-4)
+
+
+def test_no_single_contact_where_two_pairs_touch_always():
+    text = described("spur", pair__pressure_angle_deg=14.0, pinion__tip_diameter_mm=110.0, wheel__tip_diameter_mm=179.0)
+    assert float(cells(text, "transverse contact ratio")[0]) > 2.0
+    assert "single tooth contact" not in text
+
+
+def test_forces_are_those_of_the_torque():
+    text = described("helical", analysis__torques_Nm=(13.0, 130.0))
+    assert cells(text, "pinion torque [N m]") == ["13", "130"]
+    low, high = (float(cell) for cell in cells(text, "base tangential force"))
+    assert_allclose(high, 2.0 * 130e3 / float(cells(text, "base diameter")[0]), rtol=1e-4)
+    assert_allclose(high / low, 10.0, rtol=1e-3)
+
+
+def test_many_torques_are_shown_by_their_ends():
+    text = described(analysis__torques_Nm=tuple(range(1, 8)))
+    assert cells(text, "7 pinion torques from, to [N m]") == ["1", "7"]
+
+
+def test_what_departs_from_nominal_is_shown_by_its_key():
+    text = described("misaligned", pinion__modifications__lead_crowning_form="circular")
+    assert cells(text, "mounting.out_of_plane_deg") == ["0.08"]
+    assert cells(text, "pinion.modifications.lead_crowning_um") == ["5.0"]
+    assert cells(text, "pinion.modifications.lead_crowning_form") == ["circular"]
+    assert cells(text, "wheel.modifications") == ["none"]
+    assert cells(described(), "mounting errors") == ["none"]
+
+
+def test_cap_is_shown_where_there_is_one():
+    assert cells(described(material__max_pressure_MPa=2500.0), "cap on the pressure") == ["2500"]
+    assert "cap on the pressure" not in described()
+
+
+def test_pair_without_backlash_shows_none_and_no_note():
+    assert cells(described(), "backlash") == ["0.0000"]
+    assert notes(described()) == []
+
+
+def test_overlap_is_told_at_both_centre_distances():
+    nominal, mounted = notes(described(pair__centre_distance_mm=141.3, mounting__centre_distance_error_mm=-0.05))
+    assert "teeth overlap by 0.0" in nominal
+    assert "at the centre distance of 141.3000 mm: backlash is not part of the analysis" in nominal
+    assert "at the mounted centre distance of 141.2500 mm" in mounted
+
+
+def test_overlap_that_the_mounting_makes_or_mends_is_told():
+    (only,) = notes(described(mounting__centre_distance_error_mm=-0.05))
+    assert "mounted centre distance" in only
+    assert len(notes(described(pair__centre_distance_mm=141.3, mounting__centre_distance_error_mm=0.1))) == 1
+
+
+def test_mounting_that_parts_the_gears_is_a_note():
+    (only,) = notes(described(mounting__centre_distance_error_mm=30.0))
+    assert "at the mounted centre distance of 171.3" in only
+    assert "no common flank" in only
+
+
+def test_gears_that_cannot_mesh_are_an_error():
+    with pytest.raises(GeometryError, match="no common flank"):
+        described(pair__centre_distance_mm=500.0)
+
+
+def test_bevel_pair_shows_the_printed_cones_of_its_source():
+    """Seed 000, Table 5, two decimals: face angles 52.90/41.64 deg, and the root angles that it calls base angles."""
+    text = described("straight_bevel")
+    assert_allclose([float(cell) for cell in cells(text, "face angle delta_a")], [52.90, 41.64], atol=5e-3)
+    assert_allclose([float(cell) for cell in cells(text, "root angle delta_f")], [47.79, 36.53], atol=5e-3)
+    assert cells(text, "cone distances R_e, R_m, R_i [mm]") == ["63.0600", "56.0600", "49.0600"]
+    assert cells(text, "flank in contact") == ["straight", "straight"]
+    assert cells(text, "normal force F_n [N]") == ["1500.3"]
+
+
+def test_active_profile_of_a_bevel_pair_starts_between_root_and_pitch_cone():
+    text = described("spiral_bevel")
+    labels = ("root angle", "root form cone angle", "start of active profile", "pitch angle", "face angle")
+    angles = [[float(cell) for cell in cells(text, label)] for label in labels]
+    for member in (0, 1):
+        found = [row[member] for row in angles]
+        assert found == sorted(found)
+    assert cells(text, "mate's tip reaches below the form cone") == ["no", "no"]
+
+
+def test_bevel_pair_whose_flank_ends_too_high_says_so():
+    text = described("straight_bevel", pinion__root_angle_deg=50.2)
+    assert cells(text, "mate's tip reaches below the form cone") == ["yes", "no"]
+
+
+def test_spiral_pair_shows_hands_flanks_and_what_departs_from_nominal():
+    text = described("spiral_bevel", mounting__offset_mm=0.02)
+    assert cells(text, "hand of the spiral") == ["left", "right"]
+    assert cells(text, "flank in contact") == ["concave", "convex"]
+    assert cells(text, "mounting.offset_mm") == ["0.02"]
+    assert cells(text, "pinion.modifications.lead_crowning_um") == ["10.0"]
+    normal = float(cells(text, "pressure angles alpha_t, alpha_n [deg]")[1])
+    assert_allclose(math.tan(math.radians(normal)), math.tan(math.radians(20)) * math.cos(math.radians(35)), rtol=1e-5)
+
+
+def test_fitted_flanks_show_how_closely_they_follow_their_points():
+    text = described("bspline_bevel")
+    assert cells(text, "pinion.flank.form") == cells(text, "wheel.flank.form") == ["bspline"]
+    for gear in ("pinion", "wheel"):
+        assert float(cells(text, f"{gear}: fit at points, largest, rms [um]")[0]) < 1e-9
+        largest, rms = (float(cell) for cell in cells(text, f"{gear}: fit between them, largest, rms [um]"))
+        assert 0.0 < rms < largest < 1e-4
+    assert "measured points" not in text
+
+
+def test_measured_flank_shows_its_points_and_deviations():
+    text = described("measured_flank")
+    assert "pinion.flank.form" not in text
+    assert cells(text, "wheel.flank.form") == ["measured"]
+    assert cells(text, "wheel: measured points") == ["9", "x", "15"]
+    low, high = (float(cell) for cell in cells(text, "wheel: deviations from, to [um]"))
+    assert -15.0 < low < -11.0 < 0.0 < high < 1.0  # 8 um and 3 um of crowning with slopes and waves
+    rms = float(cells(text, "wheel: fit at points, largest, rms [um]")[1])
+    assert rms < 0.2  # what smoothing leaves out: noise of 0.15 um
+    assert "between them" not in text
+
+
+def test_analysis_is_shown_as_it_is_asked_for():
+    text = described("mesh_cycle_helical")
+    assert cells(text, "load sharing, free edges, compliance")[0] == "on"
+    assert cells(text, "load sharing, free edges, compliance")[2] == "contact"
+    assert cells(text, "positions, torques") == ["33", "3"]
+    assert "bores" not in text  # nothing is held where the flanks alone yield
+    assert cells(described(), "load sharing, free edges, compliance") == ["off", "off", "contact"]
+
+
+def test_bores_are_shown_where_teeth_bend():
+    given, default = cells(described("mesh_cycle_finite_elements", pinion__bore_diameter_mm=30.0), "bores held rigid")
+    assert given == "30.0000"
+    assert_allclose(float(default), 0.55 * 103.5, rtol=1e-6)  # m (z - 2.5)

@@ -1,0 +1,160 @@
+import struct
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from loaded_tca.errors import InputError
+from loaded_tca.output.surface_files import write_stl, write_teeth, write_vtk
+from loaded_tca.output.teeth_in_space import complete_teeth, teeth_in_space
+from loaded_tca.scene import parse_scene
+from loaded_tca.tooth import Resolution, TriangleMesh
+from tests.samples.results import result
+
+CORNERS = np.array([[0.0, 0.0, 0.1], [3.0, 0.0, 1.0 / 3.0], [0.0, 2.0, 0.0], [0.0, 0.0, 1e-300]])
+FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2]])
+MESH = TriangleMesh(
+    CORNERS,
+    FACES,
+    point_data={"height_mm": np.array([0.1, 1.0 / 3.0, 0.0, 1e-300])},
+    cell_data={"pressure_MPa": np.array([1.5, 2.5, 1e3 / 7.0]), "patch": np.array([-1, 0, 2])},
+)
+
+
+class Reader:
+    """Legacy VTK PolyData, read by the letter of its description."""
+
+    def __init__(self, path):
+        self.rest = path.read_bytes()
+        self.version, self.title, kind, dataset = (self.line() for _ in range(4))
+        self.binary = {"BINARY": True, "ASCII": False}[kind]
+        assert dataset == "DATASET POLYDATA"
+
+    def line(self):
+        line, _, self.rest = self.rest.partition(b"\n")
+        return line.decode("ascii")
+
+    def numbers(self, count, word):
+        if self.binary:
+            kind = np.dtype({"double": ">f8", "int": ">i4"}[word])
+            size = count * kind.itemsize
+            found, self.rest = np.frombuffer(self.rest[:size], kind), self.rest[size:]
+            assert self.rest[:1] == b"\n"
+            self.rest = self.rest[1:]
+            return found
+        found = []
+        while len(found) < count:
+            found += self.line().split()
+        return np.array(found, dtype=float if word == "double" else int)
+
+    def read(self):
+        word, count, kind = self.line().split()
+        assert word == "POINTS"
+        points = self.numbers(3 * int(count), kind).reshape(-1, 3)
+        word, count, size = self.line().split()
+        assert word == "POLYGONS"
+        cells = self.numbers(int(size), "int").reshape(int(count), 4)
+        data, place, length = {"POINT_DATA": {}, "CELL_DATA": {}}, "", 0
+        while self.rest:
+            word, *about = self.line().split()
+            if word == "SCALARS":
+                assert self.line() == "LOOKUP_TABLE default"
+                data[place][about[0]] = self.numbers(length, about[1])
+            else:
+                place, length = word, int(about[0])
+        return points, cells, data
+
+
+@pytest.mark.parametrize("binary", [True, False])
+def test_vtk_gives_every_number_back(tmp_path, binary):
+    path = tmp_path / "surface.vtk"
+    write_vtk(path, MESH, "a title", binary=binary)
+    reader = Reader(path)
+    assert reader.version == "# vtk DataFile Version 3.0"
+    assert reader.title == "loaded_tca surface in mm, 3 triangles: a title"
+    points, cells, data = reader.read()
+    assert_array_equal(points, CORNERS)
+    assert_array_equal(cells, np.insert(FACES, 0, 3, axis=1))
+    assert_array_equal(data["POINT_DATA"]["height_mm"], MESH.point_data["height_mm"])
+    assert list(data["CELL_DATA"]) == ["pressure_MPa", "patch"]
+    for name, values in MESH.cell_data.items():
+        assert_array_equal(data["CELL_DATA"][name], values)
+        assert data["CELL_DATA"][name].dtype.kind == values.dtype.kind
+
+
+def test_vtk_without_data_or_triangles(tmp_path):
+    path = tmp_path / "nothing.vtk"
+    write_vtk(
+        path, TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=int), cell_data={"pressure_MPa": np.zeros(0)})
+    )
+    points, cells, data = Reader(path).read()
+    assert points.shape == (0, 3)
+    assert cells.size == data["CELL_DATA"]["pressure_MPa"].size == 0
+
+
+def test_stl_gives_triangles_and_normals_back_in_single_precision(tmp_path):
+    path = tmp_path / "surface.stl"
+    write_stl(path, MESH, "a title")
+    content = path.read_bytes()
+    assert content[:80].decode("ascii").rstrip() == "loaded_tca surface in mm, 3 triangles: a title"
+    (count,) = struct.unpack("<I", content[80:84])
+    assert count == 3
+    assert len(content) == 84 + 50 * count
+    for number in range(count):
+        *numbers, attribute = struct.unpack("<12fH", content[84 + 50 * number : 134 + 50 * number])
+        normal, *corners = np.reshape(numbers, (4, 3))
+        assert_allclose(corners, CORNERS[FACES[number]], rtol=1e-7, atol=1e-30)
+        assert_allclose(normal, MESH.normals[number] / np.linalg.norm(MESH.normals[number]), atol=1e-7)
+        assert attribute == 0
+
+
+def test_titles_are_one_line_of_ascii_and_not_too_long(tmp_path):
+    title = "Zahnrad größer\nals " + 300 * "x"
+    write_vtk(tmp_path / "a.vtk", MESH, title)
+    line = Reader(tmp_path / "a.vtk").title
+    assert len(line) == 255
+    assert "gr??er als" in line
+    write_stl(tmp_path / "a.stl", MESH, title)
+    assert (tmp_path / "a.stl").read_bytes()[:80].startswith(b"loaded_tca surface in mm, 3 triangles: Zahnrad")
+
+
+def test_stl_of_an_area_of_nothing_has_no_nan(tmp_path):
+    flat = TriangleMesh(np.zeros((3, 3)), np.array([[0, 1, 2]]))
+    write_stl(tmp_path / "flat.stl", flat)
+    assert (tmp_path / "flat.stl").read_bytes()[84:96] == bytes(12)
+
+
+def test_names_of_several_words_are_refused(tmp_path):
+    mesh = TriangleMesh(CORNERS, FACES, cell_data={"contact pressure": np.zeros(3)})
+    with pytest.raises(InputError, match="data 'contact pressure': a name in a VTK file is one word"):
+        write_vtk(tmp_path / "a.vtk", mesh)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("write", [write_vtk, write_stl])
+def test_file_that_cannot_be_written_is_told_and_nothing_is_left(tmp_path, write):
+    with pytest.raises(InputError, match=r"missing.*surface.*: cannot be written"):
+        write(tmp_path / "missing" / "surface", MESH)
+    (tmp_path / "old").write_text("kept", encoding="utf-8")
+    broken = TriangleMesh(CORNERS, FACES)
+    object.__setattr__(broken, "vertices", None)
+    with pytest.raises((TypeError, AttributeError)):
+        write(tmp_path / "old", broken)
+    assert (tmp_path / "old").read_text(encoding="utf-8") == "kept"
+    assert [path.name for path in tmp_path.iterdir()] == ["old"]
+
+
+@pytest.mark.parametrize("whole", [False, True])
+def test_teeth_of_a_result_are_written(tmp_path, whole):
+    cycle = result("straight_bevel", positions=3)
+    teeth = complete_teeth(parse_scene(cycle.scene_toml), Resolution(9, 5, 3, 5))
+    shown = teeth_in_space(cycle, teeth)
+    files = write_teeth(shown, teeth, tmp_path, title=cycle.title, whole_gears=whole)
+    assert {path.name for path in files} == {path.name for path in tmp_path.iterdir()}
+    _, _, data = Reader(tmp_path / "pressure.vtk").read()
+    assert_allclose(data["CELL_DATA"]["pressure_MPa"].max(), cycle.maps[0][shown.position].pressure.max())
+    points, _, data = Reader(tmp_path / "pinion.vtk").read()
+    assert_array_equal(points, shown.pinion.vertices)
+    assert set(data["CELL_DATA"]["patch"]) == set(range(7))
+    (count,) = struct.unpack("<I", (tmp_path / "wheel.stl").read_bytes()[80:84])
+    assert count == len(teeth.wheel.triangles(teeth.wheel.teeth if whole else 1, closed=True).triangles)

@@ -1,0 +1,306 @@
+import os
+import sys
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from numpy.testing import assert_allclose
+
+from loaded_tca.errors import InputError
+from loaded_tca.plots import (
+    plot_all,
+    plot_contact_path,
+    plot_peak_pressure,
+    plot_pressure_map,
+    plot_transmission_error,
+    save_figure,
+)
+from loaded_tca.results.key_figures import ARCSEC
+from loaded_tca.scene import parse_scene
+from tests.samples.results import result, with_a_gap
+
+PLOTS = [plot_contact_path, plot_peak_pressure, plot_pressure_map, plot_transmission_error]
+
+
+def nothing_touches():
+    cycle = result()
+    nothing = {entry.name: np.full(5, np.nan) for entry in fields(cycle) if entry.metadata}
+    return replace(cycle, **nothing, maps=((None,) * 5,))
+
+
+CASES = {
+    "point contact": result,
+    "several torques": lambda: result(torques=(20.0, 50.0, 80.0)),
+    "positions without contact": with_a_gap,
+    "edge contact, no Hertz": lambda: result("misaligned", positions=2),
+    "line contact": lambda: result("fzg_c14", positions=3),
+    "straight bevel pair": lambda: result("straight_bevel", positions=3),
+    "spiral bevel pair": lambda: result("spiral_bevel", positions=3),
+    "no load": lambda: result(torques=(0.0,), positions=2),
+    "one position": lambda: result(positions=1),
+    "title with signs of TeX": lambda: replace(result(), title="$x_1 \\frac{ 100 %, " + 15 * "a long title "),
+}
+
+
+def texts(figure):
+    figure.draw_without_rendering()
+    found = [figure.get_suptitle()]
+    for axes in figure.axes:
+        found += [axes.get_title(), axes.get_xlabel(), axes.get_ylabel()]
+        found += [child.get_ylabel() for child in axes.child_axes]
+    return "\n".join(found)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_every_case_gives_every_picture(case, tmp_path):
+    paths = plot_all(CASES[case](), tmp_path)
+    always = {"contact_path", "transmission_error", "peak_pressure", "pressure_map"}
+    assert {path.stem for path in paths} - {"pressure_map_hertz", "pressure_map_border"} == always
+    assert sorted(os.listdir(tmp_path)) == sorted(path.name for path in paths)
+    assert all(path.read_bytes().startswith(b"\x89PNG") for path in paths)
+
+
+def test_map_with_the_ellipse_is_drawn_too_where_the_highest_pressure_has_none(tmp_path):
+    hertz = result().hertz_pressure.copy()
+    hertz[result().peak_position(0)] = np.nan
+    assert "pressure_map_hertz" in {path.stem for path in plot_all(replace(result(), hertz_pressure=hertz), tmp_path)}
+    assert "pressure_map_hertz" not in {path.stem for path in plot_all(result(positions=1), tmp_path)}
+
+
+def test_pictures_of_an_earlier_result_do_not_stay(tmp_path):
+    for name in ("pressure_map_hertz.png", "pressure_map_border.png", "mine.png"):
+        (tmp_path / name).write_bytes(b"old")
+    paths = plot_all(result(positions=1), tmp_path)
+    assert sorted(os.listdir(tmp_path)) == sorted(["mine.png", *(path.name for path in paths)])
+
+
+def test_peak_at_a_border_has_a_map_of_its_own(tmp_path):
+    cycle = result()
+    crease = np.zeros(5, dtype=bool)
+    crease[4] = True
+    assert cycle.peak_position(0) != 4
+    assert "pressure_map_border" in {path.stem for path in plot_all(replace(cycle, at_crease=crease), tmp_path)}
+
+
+def test_map_and_flanks_of_one_torque_and_position(tmp_path):
+    paths = plot_all(result(torques=(20.0, 80.0)), tmp_path, torque=0, position=3)
+    assert {path.stem for path in paths} == {"contact_path", "transmission_error", "peak_pressure", "pressure_map"}
+
+
+def test_nothing_touching_gives_all_but_the_pressure_map(tmp_path):
+    assert "pressure_map" not in {path.stem for path in plot_all(nothing_touches(), tmp_path)}
+
+
+@pytest.mark.parametrize("plot", PLOTS)
+def test_pictures_tell_load_position_and_units(plot):
+    shown = texts(plot(result()))
+    assert result().title in shown
+    assert "pinion torque 130 N m" in shown
+    assert "pinion angle -5.294" in shown
+    assert "[mm]" in shown or "[deg]" in shown
+
+
+def test_transmission_error_is_drawn_in_arcsec_and_micrometres():
+    figure = plot_transmission_error(result())
+    absolute, _ = figure.axes
+    unloaded, loaded = absolute.get_lines()
+    assert_allclose(loaded.get_xdata(), np.degrees(result().pinion_angle))
+    assert_allclose(loaded.get_ydata(), result().transmission_error * ARCSEC)
+    assert_allclose(unloaded.get_ydata(), result().path.transmission_error * ARCSEC)
+    assert "[arcsec]" in texts(figure)
+    assert "[µm]" in texts(figure)
+
+
+def test_rounding_of_the_transmission_error_is_not_blown_up():
+    for axes in plot_transmission_error(result(torques=(0.0,), positions=2)).axes:
+        assert np.ptp(axes.get_ylim()) >= 0.02 * (1.0 - 1e-9)
+
+
+def test_peak_pressure_is_drawn_beside_hertz():
+    (axes,) = plot_peak_pressure(result(torques=(20.0, 50.0))).axes
+    labels = axes.get_legend_handles_labels()[1]
+    assert labels == ["pinion torque 20 N m", "pinion torque 50 N m", "after Hertz"]
+    peak, hertz = axes.get_lines()[:2]
+    assert_allclose(peak.get_ydata(), result(torques=(20.0, 50.0)).peak_pressure[0])
+    assert_allclose(hertz.get_ydata(), result(torques=(20.0, 50.0)).hertz_pressure[0])
+    assert hertz.get_zorder() < peak.get_zorder()
+    assert hertz.get_color() == peak.get_color()
+
+
+def drawn(axes, marker):
+    """Lines of one marker that have points, not those of the legend."""
+    return [line for line in axes.get_lines() if line.get_marker() == marker and len(line.get_xdata())]
+
+
+def test_marks_at_a_border_have_the_colours_of_their_torques():
+    (axes,) = plot_peak_pressure(result("misaligned", positions=2, torques=(20.0, 80.0))).axes
+    marks = [*drawn(axes, "x"), *drawn(axes, "^")]
+    colours = {line.get_label(): line.get_color() for line in axes.get_lines() if "torque" in line.get_label()}
+    assert {line.get_color() for line in marks} == set(colours.values())
+    assert len(colours) == 2
+
+
+def test_pressure_over_the_positions_begins_at_zero_with_its_markers_whole():
+    (axes,) = plot_peak_pressure(result()).axes
+    low, high = axes.get_ylim()
+    assert low == 0.0
+    assert high > 1.05 * result().peak_pressure.max()
+
+
+def test_edge_contacts_are_marked_and_no_hertz_is_drawn():
+    (axes,) = plot_peak_pressure(result("misaligned", positions=2)).axes
+    labels = [line.get_label() for line in axes.get_lines()]
+    assert "after Hertz" not in labels
+    crosses = [*drawn(axes, "x"), *drawn(axes, "^")]
+    assert sum(len(line.get_xdata()) for line in crosses) == 2
+    assert {line.get_linestyle() for line in crosses} == {"None"}
+    assert any("at a border or crease (grows with the grid)" in label for label in labels)
+    assert np.isnan(axes.get_lines()[0].get_ydata()).all()
+    assert_allclose(axes.get_lines()[1].get_ydata(), result("misaligned", positions=2).central_pressure)
+
+
+def test_high_peaks_at_a_border_do_not_rule_the_axis():
+    cycle = result("fzg_c14", positions=3)
+    (axes,) = plot_peak_pressure(cycle).axes
+    assert axes.get_ylim()[1] < cycle.peak_pressure.max()
+    assert "above" in axes.get_lines()[-1].get_label()
+    (arrows,) = drawn(axes, "^")
+    assert (arrows.get_ydata() < axes.get_ylim()[1]).all()
+
+
+def test_labels_of_many_torques_stay_few():
+    cycle = result(torques=tuple(float(torque) for torque in range(1, 31)), positions=1)
+    labels = plot_peak_pressure(cycle).axes[0].get_legend_handles_labels()[1]
+    assert len(labels) <= 8 + 3
+
+
+def test_pressure_map_draws_the_ellipse_and_tells_its_scale():
+    figure = plot_pressure_map(result(), position=2)
+    axes = figure.axes[0]
+    (ellipse,) = axes.patches
+    assert_allclose(ellipse.width, 2.0 * result().hertz_semi_major[2])
+    assert_allclose(ellipse.height, 2.0 * result().hertz_semi_minor[2])
+    assert f"(drawn {axes.get_aspect():g} times larger)" in axes.get_ylabel()
+    assert "position 3 of 5: pinion angle 0 deg" in texts(figure)
+
+
+def test_pressure_map_leaves_cells_without_material_to_the_grey_ground():
+    cycle = result("misaligned", positions=2)
+    axes = plot_pressure_map(cycle, position=0).axes[0]
+    ground = axes.collections[0].get_array().reshape(cycle.maps[0][0].gap.shape)
+    assert (ground.mask == np.isinf(cycle.maps[0][0].gap)).all()
+
+
+def test_pressure_map_tells_its_directions():
+    cycle = result()
+    one = cycle.maps[0][2]
+    shown = texts(plot_pressure_map(cycle, position=2))
+    assert f"towards z > 0 on the {'right' if one.axes[1, 2] > 0 else 'left'}" in shown
+    radius = np.hypot(*(one.origin + 0.1 * one.axes[0])[:2])
+    assert f"pinion's {'tip' if radius > cycle.path.pinion_radius[2] else 'root'} at the top" in shown
+
+
+def test_pressure_map_where_nothing_touches_is_told():
+    with pytest.raises(IndexError, match="does not touch"):
+        plot_pressure_map(with_a_gap(), position=1)
+
+
+def test_contact_areas_lie_around_the_path_within_the_flank():
+    cycle = result()
+    for axes, radius in zip(
+        plot_contact_path(cycle).axes, (cycle.path.pinion_radius, cycle.path.wheel_radius), strict=False
+    ):
+        assert len(axes.collections) == 5
+        for area, own in zip(axes.collections, radius, strict=True):
+            corners = area.get_coordinates()[:-1, :-1][~np.ma.getmaskarray(area.get_array())]
+            assert corners[:, 0].min() < 0.0 < corners[:, 0].max()
+            assert corners[:, 1].min() < 2.0 * own < corners[:, 1].max()
+            assert abs(corners[:, 0]).max() < 13.5  # half of the face, and a part of a cell
+
+
+@pytest.mark.parametrize("name", ["helical", "straight_bevel", "spiral_bevel"])
+def test_flanks_are_drawn_with_the_part_that_the_mate_reaches(name):
+    """The outline is the border of the flank in its frame; the tip is common, the bottom of the reached part higher."""
+    cycle = result(name)
+    pair = parse_scene(cycle.scene_toml).pair()
+    for axes, flank in zip(plot_contact_path(cycle).axes, (pair.pinion, pair.wheel), strict=False):
+        whole, reached = (patch.get_path() for patch in axes.patches)
+        across, up = flank.frame.to_picture(*flank.grid(33, 9))
+        inner = np.stack([across[1:-1, 1:-1].ravel(), up[1:-1, 1:-1].ravel()], axis=-1)
+        assert whole.contains_points(inner).all()
+        assert_allclose(whole.get_extents().get_points(), [[across.min(), up.min()], [across.max(), up.max()]])
+        assert whole.contains_points(reached.vertices[:-1] * 0.999 + inner.mean(axis=0) * 0.001).all()
+        assert reached.get_extents().y0 > whole.get_extents().y0
+        assert (axes.get_xlabel(), axes.get_ylabel()) == flank.frame.labels
+
+
+@pytest.mark.parametrize("name", ["straight_bevel", "spiral_bevel"])
+def test_pictures_of_bevel_pairs_speak_of_toe_and_heel(name):
+    cycle = result(name, positions=3)
+    shown = texts(plot_pressure_map(cycle, position=0))
+    assert "towards the heel on the right" in shown
+    assert "pitch cone" in shown
+    one, frame = cycle.maps[0][0], parse_scene(cycle.scene_toml).pair().pinion.frame
+    heights = [frame.to_picture(np.hypot(*p[:2]), p[2])[1] for p in (one.origin, one.origin + 0.01 * one.axes[0])]
+    assert f"pinion's {'tip' if heights[1] > heights[0] else 'root'} at the top" in shown
+    flanks = plot_contact_path(cycle)
+    assert "toe left, heel right" in texts(flanks)
+    assert "concave" in flanks.axes[0].get_title() or name == "straight_bevel"
+
+
+def test_colours_of_the_flanks_begin_at_zero():
+    cycle = result()
+    limits = plot_contact_path(cycle).axes[0].collections[0].get_clim()
+    assert limits == (0.0, max(one.pressure.max() for one in cycle.maps[0]))
+
+
+def test_pictures_of_one_torque_say_which_of_several():
+    cycle = result(torques=(20.0, 80.0))
+    for plot in (plot_contact_path, plot_pressure_map):
+        assert "pinion torque 80 N m (the largest of 2)" in texts(plot(cycle))
+        assert "pinion torque 20 N m (number 1 of 2)" in texts(plot(cycle, torque=0))
+
+
+def test_pictures_without_load_say_so():
+    cycle = result(torques=(0.0,), positions=2)
+    figure = plot_pressure_map(cycle)
+    assert "no contact pressure, pinion torque 0 N m" in texts(figure)
+    assert len(figure.axes) == 1  # no colour bar
+    assert "no load, no pressure" in [text.get_text() for text in figure.axes[0].texts]
+    flanks = plot_contact_path(cycle)
+    assert "no load, no pressure on the flanks" in texts(flanks)
+    assert len(flanks.axes) == 2
+    assert flanks.legends[0].get_title().get_text() == "pressure drawn at 0 of 2 positions"
+
+
+def test_pictures_touch_no_global_state():
+    before = sys.modules.get("matplotlib.pyplot")
+    plot_peak_pressure(result())
+    assert sys.modules.get("matplotlib.pyplot") is before
+
+
+def test_picture_that_cannot_be_written_is_told(tmp_path):
+    with pytest.raises(InputError, match="cannot be written"):
+        save_figure(Figure(), tmp_path / "absent" / "a.png")
+
+
+def test_colours_of_a_border_map_do_not_follow_its_spike():
+    cycle = result("fzg_c14", positions=3)
+    at = cycle.border_contact(0)
+    bar = plot_pressure_map(cycle, at[0], 0, at[1]).axes[-1]
+    one = cycle.contacts.maps[0][at[0]][at[1]].pressure
+    assert np.nanmax(cycle.inner_pressure) <= bar.get_ylim()[1] < 0.9 * cycle.peak_pressure.max()
+    assert (one > bar.get_ylim()[1]).sum() <= 0.05 * (one > 0.0).sum() + 1
+    assert f"up to {cycle.peak_pressure.max():.0f}" in bar.get_ylabel()
+
+
+@pytest.mark.parametrize(("part", "told"), [(0.001, False), (0.1, True)])
+def test_legend_of_the_flanks_names_a_grey_area_only_where_it_is_seen(part, told, monkeypatch):
+    scene = parse_scene(result().scene_toml)
+    pair = scene.pair()
+    heights = [flank.profile_coordinate(*flank.grid(129, 33)).value for flank in (pair.pinion, pair.wheel)]
+    starts = tuple(float(height.min() + part * np.ptp(height)) for height in heights)
+    monkeypatch.setattr(type(scene), "active_starts", lambda _: starts)
+    names = [text.get_text() for text in plot_contact_path(result()).legends[0].get_texts()]
+    assert ("flank that the mate does not reach" in names) is told

@@ -1,0 +1,113 @@
+import sys
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from numpy.testing import assert_allclose
+
+from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.plots import save_figure
+from loaded_tca.plots.three_d import plot_teeth, show_teeth
+from tests.samples.results import result, with_a_gap
+
+
+def axes_of(figure):
+    return figure.axes[0]
+
+
+@pytest.mark.parametrize("name", ["helical", "straight_bevel", "spiral_bevel"])
+def test_picture_says_units_load_and_place_and_is_saved(name, tmp_path):
+    figure = plot_teeth(result(name, positions=3))
+    axes = axes_of(figure)
+    assert [axes.get_xlabel(), axes.get_ylabel(), axes.get_zlabel()] == ["x [mm]", "y [mm]", "z [mm]"]
+    assert figure.axes[1].get_ylabel() == "contact pressure [MPa]"
+    title = figure.get_suptitle()
+    assert "pinion torque" in title
+    assert "pinion angle" in title
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels == ["pinion's tooth", "wheel's tooth, see-through", "unloaded contact points of all positions"]
+    save_figure(figure, tmp_path / "teeth.png")
+    assert (tmp_path / "teeth.png").stat().st_size > 10_000
+
+
+def test_scales_of_the_three_axes_are_equal():
+    axes = axes_of(plot_teeth(result("spiral_bevel", positions=3)))
+    spans = np.array([np.ptp(limits) for limits in (axes.get_xlim(), axes.get_ylim(), axes.get_zlim())])
+    scale = axes._box_aspect / spans
+    assert_allclose(scale, scale[0], rtol=1e-9)
+
+
+def test_picture_without_load_has_no_pressure():
+    figure = plot_teeth(result(torques=(0.0,), positions=2))
+    assert len(figure.axes) == 1
+    assert "no load, no pressure" in figure.get_suptitle()
+
+
+def test_title_is_taken_literally():
+    cycle = replace(result(positions=3), title="$x_1 \\frac{ 100 %")
+    assert isinstance(plot_teeth(cycle), Figure)
+
+
+def test_position_without_contact_is_refused():
+    with pytest.raises(GeometryError, match="does not touch"):
+        plot_teeth(with_a_gap(), position=1)
+
+
+def test_missing_pyvista_is_told_with_the_extra_that_brings_it(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pyvista", None)
+    with pytest.raises(InputError, match=r"pyvista is not installed; .* pip install 'loaded_tca\[three-d\]'"):
+        show_teeth(result(positions=3))
+
+
+class Recorder:
+    """Stands for pyvista: keeps what it is asked to show."""
+
+    def __init__(self):
+        self.meshes, self.points, self.view = [], None, None
+
+    def module(self):
+        return SimpleNamespace(PolyData=self.surface, Plotter=self.plotter)
+
+    def plotter(self, off_screen):
+        assert off_screen
+        return self
+
+    @staticmethod
+    def surface(vertices, faces):
+        return SimpleNamespace(vertices=vertices, faces=faces, cell_data={})
+
+    def add_mesh(self, mesh, **style):
+        self.meshes.append((mesh, style))
+
+    def add_points(self, points, **_):
+        self.points = points
+
+    def show_bounds(self, **titles):
+        assert all("[mm]" in titles[name] for name in ("xtitle", "ytitle", "ztitle"))
+
+    def view_vector(self, vector, viewup):
+        self.view = vector, viewup
+
+    def show(self, **_):
+        assert self.meshes
+
+
+@pytest.mark.parametrize(("torques", "meshes"), [(None, 3), ((0.0,), 2)], ids=["pressure", "no load"])
+def test_viewer_gets_both_teeth_the_path_and_the_pressure(monkeypatch, torques, meshes):
+    recorder = Recorder()
+    monkeypatch.setitem(sys.modules, "pyvista", recorder.module())
+    cycle = result(positions=3, torques=torques)
+    assert show_teeth(cycle, off_screen=True) is recorder
+    assert len(recorder.meshes) == meshes
+    assert len(recorder.points) == 3
+    for mesh, _ in recorder.meshes:
+        faces = mesh.faces.reshape(-1, 4)
+        assert (faces[:, 0] == 3).all()
+        assert faces.max() == len(mesh.vertices) - 1
+    if torques is None:
+        mesh, style = recorder.meshes[2]
+        assert style["scalars"] in mesh.cell_data
+        assert style["clim"] == (0.0, mesh.cell_data["pressure_MPa"].max())
+        assert "[MPa]" in style["scalar_bar_args"]["title"]

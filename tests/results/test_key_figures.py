@@ -1,0 +1,58 @@
+"""Figures of a whole cycle: means over a pitch, and which contact a figure is of."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+from loaded_tca.plots import plot_transmission_error
+from loaded_tca.results.key_figures import mean_over_a_pitch
+from tests.samples.results import result
+
+
+@given(st.floats(-1e3, 1e3), st.floats(-1e3, 1e3), st.floats(0.0, 6.3), st.integers(4, 40))
+def test_mean_of_a_harmonic_over_a_pitch_is_its_constant(constant, amplitude, phase, intervals):
+    """Both ends are one place: counted twice, the mean would follow the phase."""
+    wave = constant + amplitude * np.cos(np.linspace(0.0, 2.0 * np.pi, intervals + 1) + phase)
+    assert_allclose(mean_over_a_pitch(wave), constant, atol=1e-9)
+
+
+def test_mean_leaves_positions_without_a_value_out():
+    assert mean_over_a_pitch(np.array([np.nan, 2.0, 2.0, 8.0])) == (2.0 + 2.0 + 4.0) / 2.5
+    assert np.isnan(mean_over_a_pitch(np.full(3, np.nan)))
+    assert mean_over_a_pitch(np.array([7.0])) == 7.0
+
+
+@pytest.mark.parametrize("name", ["mesh_stiffness", "secant_stiffness"])
+def test_mean_stiffness_counts_the_end_of_the_pitch_once(name):
+    cycle = result("mesh_cycle_spur", positions=5, torques=(130.0,))
+    (figures,) = cycle.key_figures()
+    values = getattr(cycle, name)
+    assert_allclose(values[0], values[-1], rtol=2e-3)  # a pitch apart: the same, to the grid
+    assert_allclose(figures[f"{name}_mean_N_per_mm_um"], values[:-1].mean(), rtol=1e-3)
+
+
+def test_mean_transmission_error_is_drawn_as_it_is_told():
+    cycle = result("mesh_cycle_spur", positions=5, torques=(130.0,))
+    (figures,) = cycle.key_figures()
+    about_mean = plot_transmission_error(cycle).axes[1].get_lines()[1].get_ydata()
+    arcsec = np.degrees(cycle.transmission_error) * 3600.0
+    assert_allclose(arcsec - about_mean, figures["transmission_error_mean_arcsec"], rtol=1e-9)
+
+
+def test_line_load_and_its_face_load_factor_are_of_the_most_loaded_pair():
+    cycle = result("mesh_cycle_helical", positions=5, torques=(260.0,))
+    (figures,), contacts = cycle.key_figures(), cycle.contacts
+    at = np.unravel_index(int(np.nanargmax(contacts.normal_force)), contacts.normal_force.shape)
+    assert figures["line_load_at_largest_force_N_per_mm"] == contacts.line_load[at]
+    assert figures["face_load_factor_at_largest_force"] == contacts.face_load_factor[at]
+    assert figures["line_load_max_N_per_mm"] >= contacts.line_load[at]
+
+
+def test_line_load_at_an_end_of_the_face_is_marked():
+    (line,), (point,) = result("fzg_c14", positions=3).key_figures(), result().key_figures()
+    assert (line["largest_force_is_at_border"], point["largest_force_is_at_border"]) == (True, False)
+    told = "line load and face load factor grow with the grid unless the ends yield (analysis.free_edges = true)"
+    assert told in result("fzg_c14", positions=3).summary()
+    assert told not in result().summary()

@@ -1,0 +1,258 @@
+"""Stresses below a pressure map of a result: Hertz, where they are asked for, their files, the command."""
+
+import csv
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca import cli
+from loaded_tca.errors import InputError
+from loaded_tca.output.subsurface_files import STRESSES, subsurface_csv, write_subsurface
+from loaded_tca.plots import plot_stress_below
+from loaded_tca.results.files import read_netcdf
+from loaded_tca.results.stress_below import NAMES, depth_of_largest, stress_below
+from tests.samples.results import result, with_a_gap
+
+COARSE = 0.02  # 20 cells across the box: pressure within 1 %, shear with it
+DEPTH = 0.05  # a flat top on depths 0.1 half widths apart
+
+
+def shared():
+    return result("mesh_cycle_helical", positions=5, torques=(40.0,))
+
+
+@pytest.mark.parametrize("name", ["helical", "straight_bevel"])
+def test_greatest_shear_is_that_of_hertz(name):
+    below = stress_below(result(name, positions=1))
+    shear, depth, pressure = below.hertz_shear
+    found = below.largest("max_shear")
+    assert_allclose(pressure, result(name, positions=1).hertz_pressure[0])
+    assert_allclose(found.value, shear, rtol=COARSE)
+    assert_allclose(found.depth, depth, rtol=DEPTH)
+    assert 0.300 <= shear / pressure <= 0.311
+
+
+def test_slender_ellipse_is_sheared_as_a_line():
+    """0.300 p0 at 0.786 b below a line; the ellipse of this pair is 80 times longer than wide."""
+    below = stress_below(result(positions=1))
+    shear, depth, pressure = below.hertz_shear
+    assert_allclose(shear / pressure, 0.300, rtol=0.02)
+    assert_allclose(depth / below.result.hertz_semi_minor[0], 0.786, rtol=0.02)
+
+
+def test_line_contact_is_compared_with_a_long_line():
+    below = stress_below(result("fzg_c14", positions=1))
+    assert below.result.path.on_line[0]
+    shear, _, pressure = below.hertz_shear
+    assert_allclose(shear / pressure, 0.3003, rtol=1e-3)  # Johnson 1985, section 4.2
+    assert_allclose(below.largest("max_shear").value, shear, rtol=0.1)  # the sides of the teeth end the line
+
+
+def test_contact_at_a_border_has_no_hertz_and_says_so():
+    below = stress_below(result("misaligned", positions=2))
+    assert below.hertz_shear is None
+    assert "after Hertz" not in below.summary()
+    assert "note: the contact reaches a border" in below.summary()
+
+
+def test_place_is_that_of_the_highest_pressure_unless_told_otherwise():
+    cycle = result(torques=(20.0, 80.0))
+    below = stress_below(cycle)
+    assert (below.torque, below.position) == (1, cycle.peak_position(1))
+    assert stress_below(cycle, 0, 3).position == 3
+
+
+def test_pair_is_taken_by_its_number_where_its_pressure_is_highest():
+    cycle = shared()
+    for number in cycle.pairs.tolist():
+        below = stress_below(cycle, pair=number)
+        assert below.pair == number
+        column = cycle.contacts.inner_pressure[0, :, below.column]
+        assert column[below.position] == np.nanmax(column)
+
+
+def test_other_gear_has_its_own_ratio_of_poisson():
+    text = result(positions=1).scene_toml
+    changed = text.replace("poisson_ratio = 0.3", "poisson_ratio = 0.2")
+    assert changed != text
+    assert stress_below(replace(result(positions=1), scene_toml=changed), gear="wheel").stress.poisson_ratio == 0.2
+
+
+def test_summary_tells_depth_place_and_hertz():
+    text = stress_below(result(positions=1)).summary()
+    for words in ("position 1 of 1, tooth pair 0", *NAMES.values(), "stress after Hertz", "mm: 0.30", "at diameter"):
+        assert words in text
+
+
+@pytest.mark.parametrize(
+    ("asked", "told"),
+    [
+        ({"torque": 2}, "torque: 2 is no index from 0 to 1"),
+        ({"torque": -1}, "torque: -1 is no index"),
+        ({"position": 5}, "position: 5 is no index from 0 to 4"),
+        ({"pair": 3}, "pair: 3 carries no load anywhere; the result has 0"),
+        ({"position": 1}, "no stress: tooth pair 0 carries no load at position 2 under 80 N m"),
+        ({"gear": "rack"}, "gear: 'rack' is neither"),
+        ({"depths": 1}, "depths: 1 is not a whole number from 2 on"),
+    ],
+)
+def test_what_is_not_there_is_told(asked, told):
+    with pytest.raises(InputError, match=told):
+        stress_below(with_a_gap(), **asked)
+
+
+def test_all_that_is_wrong_is_told_at_once():
+    with pytest.raises(InputError) as caught:
+        stress_below(with_a_gap(), torque=9, position=9, pair=9)
+    assert len(caught.value.problems) == 3
+
+
+def test_no_load_makes_no_stress():
+    with pytest.raises(InputError, match="carries no load at position"):
+        stress_below(result(torques=(0.0,), positions=2))
+
+
+def test_depth_of_a_parabola_is_exact_whatever_the_order():
+    depths = np.array([0.9, 0.0, 0.1, 0.3, 0.55])
+    assert_allclose(depth_of_largest(depths, 2.0 - (depths - 0.37) ** 2), 0.37, rtol=1e-12)
+
+
+def test_depth_of_what_falls_from_the_surface_is_the_surface():
+    assert depth_of_largest(np.array([0.0, 1.0, 2.0]), np.array([3.0, 2.0, 1.0])) == 0.0
+
+
+# A spike at a border
+
+
+def spike():
+    """A line of contact that ends at the sides of the teeth."""
+    return stress_below(result("fzg_c14", positions=3))
+
+
+def test_stress_beside_a_spike_is_that_across_the_contact_point():
+    below = spike()
+    contacts, at = below.result.contacts, (below.torque, below.position, below.column)
+    assert contacts.peak_at_border[at]
+    row, column = below.highest_pressure
+    assert abs(below.pressure_map.y[column]) <= 0.5 * below.pressure_map.spacing[1] * (1.0 + 1e-9)
+    assert_allclose(below.pressure_map.pressure[row, column], contacts.inner_pressure[at], rtol=COARSE)
+    inner, anywhere = (below.largest("max_shear", anywhere=one) for one in (False, True))
+    assert inner.value < 0.9 * anywhere.value
+    assert_allclose(inner.value, 0.3003 * contacts.inner_pressure[at], rtol=COARSE)  # as below a long line
+
+
+def test_summary_beside_a_spike_tells_the_spike_in_its_note_alone():
+    below = spike()
+    peak, text = f"{below.pressure_map.pressure.max():.4g} MPa", below.summary()
+    assert [peak in line for line in text.splitlines()] == [False] * (text.count("\n")) + [True]
+    assert "not those of the border" in text
+
+
+def test_picture_and_table_show_the_plane_beside_a_spike():
+    below = spike()
+    label = plot_stress_below(below).axes[0].get_legend_handles_labels()[1][0]
+    assert label.startswith(f"{below.largest('max_shear').value:.4g} MPa")
+    first = next(csv.DictReader(subsurface_csv(below).splitlines()))
+    assert float(first["sigma_z_MPa"]) == pytest.approx(-below.pressure_map.pressure[below.highest_pressure], rel=1e-8)
+
+
+def test_contact_without_a_spike_has_no_other_plane():
+    below = stress_below(result(positions=1))
+    assert below.beside_spike is None
+    assert below.largest("von_mises") == below.largest("von_mises", anywhere=True)
+
+
+# Files
+
+
+def test_files_hold_stresses_with_units(tmp_path):
+    below = stress_below(result(positions=1), gear="wheel")
+    fields, table = write_subsurface(below, tmp_path)
+    variables, attributes = read_netcdf(fields)
+    assert attributes["gear"] == "wheel"
+    assert attributes["scene_toml"] == below.result.scene_toml
+    assert all(variable.unit for variable in variables.values())
+    for name in STRESSES:
+        np.testing.assert_array_equal(variables[name].data, getattr(below.stress, name))
+        assert variables[name].dimensions == ("depth", "across", "along")
+    assert table.read_text(encoding="utf-8") == subsurface_csv(below)
+
+
+def test_table_starts_at_the_pressure_and_holds_the_largest():
+    below = stress_below(result(positions=1))
+    rows = list(csv.DictReader(subsurface_csv(below).splitlines()))
+    assert [float(row["depth_mm"]) for row in rows] == pytest.approx(below.stress.depths, rel=1e-8)
+    assert float(rows[0]["sigma_z_MPa"]) == pytest.approx(-below.pressure_map.pressure.max(), rel=1e-8)
+    for name in NAMES:
+        largest = max(float(row[f"largest_{name}_MPa"]) for row in rows)
+        assert largest == pytest.approx(below.largest(name).value, rel=1e-8)
+    assert all(name.endswith(("_MPa", "_mm")) for name in rows[0])
+
+
+@pytest.mark.parametrize("quantity", NAMES)
+def test_picture_names_scene_load_and_place(quantity):
+    below = stress_below(shared(), pair=0)
+    title = plot_stress_below(below, quantity).get_suptitle()
+    for words in (below.result.title, NAMES[quantity], "pinion torque 40 N m", "tooth pair 0", "flank of the pinion"):
+        assert words in title
+
+
+# Command
+
+FILES = {"subsurface.nc", "subsurface.csv", "subsurface_max_shear.png", "subsurface_von_mises.png"}
+
+
+@pytest.fixture
+def run(capsys):
+    """Run the command; returns exit code, stdout and the lines of stderr."""
+
+    def run(*arguments):
+        code = cli.main([str(argument) for argument in arguments])
+        captured = capsys.readouterr()
+        return code, captured.out, captured.err.splitlines()
+
+    return run
+
+
+@pytest.fixture
+def directory(tmp_path):
+    shared().save(tmp_path / "result.nc")
+    return tmp_path
+
+
+def test_command_writes_files_and_tells_the_largest(run, directory):
+    code, out, errors = run("subsurface", directory)
+    assert (code, errors) == (0, [])
+    assert {path.name for path in directory.iterdir()} == {"result.nc", *FILES}
+    assert out.startswith(stress_below(shared()).summary())
+    assert all(name in out for name in FILES)
+
+
+def test_command_takes_the_place_it_is_told(run, directory):
+    elsewhere = directory / "new" / "place"
+    options = ("--torque", 40, "--position", 1, "--pair", -1, "--gear", "wheel", "--out", elsewhere)
+    code, out, _ = run("subsurface", directory / "result.nc", *options)
+    assert code == 0
+    assert "position 1 of 5, tooth pair -1" in out
+    assert "flank of the wheel" in out
+    assert {path.name for path in elsewhere.iterdir()} == FILES
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (("--torque", 30), "--torque 30: the result has 40 N m"),
+        (("--position", 6), "--position 6: the result has the positions 1 to 5"),
+        (("--pair", 7), "pair: 7 carries no load anywhere; the result has -1, 0, 1"),
+        (("--position", 5, "--pair", -1), "no stress: tooth pair -1 carries no load at position 5 under 40 N m"),
+        (("--gear", "rack"), "'rack'"),
+    ],
+)
+def test_what_does_not_fit_is_told_in_one_line(run, directory, options, told):
+    code, _, errors = run("subsurface", directory, *options)
+    assert code == 2
+    assert len(errors) == 1
+    assert told in errors[0]
+    assert {path.name for path in directory.iterdir()} == {"result.nc"}

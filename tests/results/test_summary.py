@@ -1,0 +1,41 @@
+"""The text of the key figures."""
+
+from loaded_tca.results.summary import summary_text
+from tests.samples.results import result
+
+
+def summary(**changes):
+    (figures,) = result(positions=1).key_figures()
+    return summary_text("title", "scope", [{**figures, **changes}])
+
+
+def cells(text, label):
+    return next(row for row in text.splitlines() if row.startswith(label))[len(label) :].split()
+
+
+def test_numbers_are_plain_up_to_any_size():
+    text = summary(peak_pressure_MPa=11783.2, normal_force_at_peak_N=9999.6, line_load_at_largest_force_N_per_mm=9999.4)
+    assert cells(text, "peak pressure [MPa] | pinion angle [deg]")[0] == "11783"
+    assert cells(text, "  normal force of that tooth pair [N]") == ["10000"]
+    assert cells(text, "line load of the most loaded pair [N/mm]") == ["9999"]
+    assert "e+" not in text
+
+
+def test_force_is_told_as_that_of_one_pair_and_not_beside_the_torque():
+    text = summary()
+    assert cells(text, "pinion torque [N m]") == ["130"]
+    assert "normal force of that tooth pair" in text.splitlines()[4]
+
+
+def test_row_after_hertz_is_left_out_where_it_holds_nowhere():
+    assert "Hertz" in summary()
+    nothing = dict.fromkeys(
+        (
+            "peak_pressure_where_hertz_holds_MPa",
+            "hertz_pressure_there_MPa",
+            "hertz_length_there_mm",
+            "hertz_width_there_mm",
+        ),
+        float("nan"),
+    )
+    assert "Hertz" not in summary(**nothing)

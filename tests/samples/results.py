@@ -1,0 +1,74 @@
+"""Small results that the tests of files, tables and pictures share, and what makes two results the same."""
+
+import warnings
+from dataclasses import fields, is_dataclass, replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from numpy.testing import assert_array_equal
+
+from loaded_tca.analysis import analyse
+from loaded_tca.errors import AccuracyWarning
+from loaded_tca.scene import read_scene
+
+SCENES = Path(__file__).parents[2] / "examples" / "scenes"
+
+
+@cache
+def result(name="helical", positions=5, torques=None, title=None):
+    """Analysis of an example scene on a coarse grid."""
+    changes = {
+        "analysis.positions": positions,
+        "analysis.accuracy": None,
+        "analysis.cells": (20, 24),
+        "analysis.torques_Nm": torques,
+    }
+    if title is not None:
+        changes["title"] = title
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # edge contacts are wanted here
+        return analyse(read_scene(SCENES / f"{name}.toml").with_changes(changes))
+
+
+@cache
+def with_a_gap():
+    """A result whose second position does not touch, and whose last map is smaller than the others."""
+    whole = result(torques=(20.0, 80.0))
+    rows = {
+        entry.name: _blanked(whole.by_torque(entry.name), (slice(None), 1)) for entry in fields(whole) if entry.metadata
+    }
+    path = {
+        entry.name: _blanked(getattr(whole.path, entry.name), 1)
+        for entry in fields(whole.path)
+        if entry.name != "pinion_angle"
+    }
+    small = whole.maps[0][-1]
+    small = replace(small, x=small.x[4:-4], pressure=small.pressure[4:-4], gap=small.gap[4:-4])
+    maps = tuple((row[0], None, *row[2:-1], small) for row in whole.maps)
+    return replace(
+        whole, **rows, path=replace(whole.path, **path), maps=maps, load_share=_blanked(whole.load_share, np.s_[:, 1])
+    )
+
+
+def _blanked(values, place):
+    values = values.copy()
+    values[place] = np.nan if values.dtype.kind == "f" else 0
+    return values
+
+
+def assert_same(first, second):
+    """Equal to the last bit, arrays of the same type, NaN where NaN is."""
+    if is_dataclass(first):
+        assert type(first) is type(second)
+        for entry in fields(first):
+            assert_same(getattr(first, entry.name), getattr(second, entry.name))
+    elif isinstance(first, tuple):
+        assert len(first) == len(second)
+        for one, other in zip(first, second, strict=True):
+            assert_same(one, other)
+    elif isinstance(first, np.ndarray):
+        assert first.dtype == second.dtype
+        assert_array_equal(first, second, strict=True)
+    else:
+        assert first == second or (first != first and second != second)  # NaN is the same as NaN

@@ -1,0 +1,39 @@
+"""Graded subdivisions of a line."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from validation.calculix.tooth_form import Array
+
+SAMPLES = 4001
+
+
+def graded(length: float, place: float, core: float, finest: float, growth: float, coarsest: float) -> Array:
+    """Nodes from 0 to ``length``, fine about one place and growing away from it.
+
+    The size is ``finest`` within ``core`` of the place and grows by ``growth`` per length beyond, up to ``coarsest``;
+    the elements share the integral of its inverse evenly.
+
+    Returns
+    -------
+    (2 n + 1,) array [mm]
+        Increasing, from exactly 0 to exactly ``length``: the ends of the n elements and their midpoints.
+    """
+    fine = np.clip(place + core * np.linspace(-2.0, 2.0, SAMPLES), 0.0, length)
+    line = np.unique(np.concatenate([np.linspace(0.0, length, SAMPLES), fine]))
+    size = np.minimum(finest + growth * np.maximum(np.abs(line - place) - core, 0.0), coarsest)
+    density = 1.0 / size
+    count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(line))])
+    elements = max(1, math.ceil(count[-1]))
+    return with_midpoints(np.interp(np.linspace(0.0, count[-1], elements + 1), count, line))
+
+
+def with_midpoints(nodes: Array) -> Array:
+    """The nodes and the middle between any two neighbours."""
+    result = np.empty(2 * nodes.size - 1)
+    result[::2] = nodes
+    result[1::2] = 0.5 * (nodes[1:] + nodes[:-1])
+    return result

@@ -1,0 +1,150 @@
+"""Time against error of the whole line, from a scene to the loaded mesh cycle.
+
+Nine positions of a pitch of each mesh cycle in ``examples/scenes``, one torque, contact alone yields. Errors are those
+against the finest cells: the largest of any position relative in the pressure (``inner_pressure``: peaks at borders
+have no limit) and absolute in the load shares, and relative in the peak to peak of the loaded transmission error.
+Times are medians of whole runs, unloaded contact included. A second table has the time of whole cycles: 32 positions,
+three torques, accuracy 1e-2, with and without teeth that bend, and of making the models of the teeth.
+
+Run from the root of the repository: ``python -m validation.loaded.speed``; prints the table that
+``validation.contact.speed_against_error`` writes.
+"""
+
+import os
+import statistics
+import time
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from loaded_tca import AccuracyWarning, analyse, read_scene
+from loaded_tca.compliance import tooth_compliance
+from loaded_tca.compliance.kept import FOLDER, forget
+from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.scene import Scene
+from loaded_tca.tooth import tooth_forms
+
+SCENES = Path(__file__).parents[2] / "examples" / "scenes"
+NAMES = ("mesh_cycle_spur", "mesh_cycle_helical", "mesh_cycle_bevel")
+POSITIONS, RUNS = 9, 3
+ACCURACIES, CELLS, FINEST = (1e-1, 1e-2, 1e-3, 1e-4), (16, 32, 64, 128), 256
+CYCLE_POSITIONS, CYCLE_LOADS, CYCLE_ACCURACY = 32, (0.3, 1.0, 2.0), 1e-2
+NEIGHBOURS = 2
+"""Pitches between loaded pairs that the timed models of teeth know."""
+
+
+@dataclass(frozen=True)
+class WholeLine:
+    """One setting of one scene; the time in seconds."""
+
+    scene: str
+    setting: str
+    seconds: float
+    pressure: float
+    share: float
+    peak_to_peak: float
+
+
+def measure(names: tuple[str, ...] = NAMES, runs: int = RUNS) -> list[WholeLine]:
+    """Run every setting of the scenes."""
+    return [line for name in names for line in _measured(name, runs)]
+
+
+def table(found: list[WholeLine]) -> str:
+    """Markdown, one line a setting."""
+    columns = ("scene", "setting", "time s", "pressure", "load share", "TE peak to peak")
+    lines = ["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
+    lines += [
+        f"| {m.scene} | {m.setting} | {m.seconds:.2g} | {m.pressure:.1e} | {m.share:.1e} | {m.peak_to_peak:.1e} |"
+        for m in found
+    ]
+    return "\n".join(lines)
+
+
+def cycles(names: tuple[str, ...] = NAMES, runs: int = RUNS) -> str:
+    """Markdown of the time of whole cycles [s], a line for each scene."""
+    lines = [
+        "| scene | contact, first run | again | both tooth models | contact and teeth, models known |",
+        "|---|---|---|---|---|",
+    ]
+    for name in names:
+        scene = read_scene(SCENES / f"{name}.toml")
+        load = 1e-3 * float(np.median(scene.torques))
+        torques = [factor * load for factor in CYCLE_LOADS]
+        changes = {"positions": CYCLE_POSITIONS, "torques_Nm": torques, "compliance": "contact"}
+        scene = scene.with_changes({f"analysis.{key}": value for key, value in changes.items()})
+        first = _timed(scene, "accuracy", CYCLE_ACCURACY, 1)[1]
+        again = _timed(scene, "accuracy", CYCLE_ACCURACY, runs)[1]
+        bending = scene.with_changes({"analysis.compliance": "contact+tooth"})
+        models = _seconds_of_models(bending)
+        known = _timed(bending, "accuracy", CYCLE_ACCURACY, runs)[1]
+        lines.append(f"| {name} | {first:.2f} | {again:.2f} | {models:.2f} | {known:.2f} |")
+    return "\n".join(lines)
+
+
+def _seconds_of_models(scene: Scene) -> float:
+    """Time of making the models of both gears anew."""
+    pair, backs = (scene.pair(sense) for sense in ("positive", "negative"))
+    forms = tooth_forms(scene.mesh())
+    kept = os.environ.get(FOLDER)
+    os.environ[FOLDER] = "off"
+    forget()
+    begin = time.perf_counter()
+    tooth_compliance(forms, pair, backs, neighbours=NEIGHBOURS)
+    seconds = time.perf_counter() - begin
+    os.environ.pop(FOLDER)
+    if kept is not None:
+        os.environ[FOLDER] = kept
+    return seconds
+
+
+def heading() -> str:
+    """What the table shows."""
+    return (
+        f"Whole line, scene to loaded mesh cycle: {POSITIONS} positions, one torque, load shared over the tooth pairs. "
+        f"Errors against {FINEST} x {FINEST} cells for each contact; times: medians of {RUNS} runs."
+    )
+
+
+def _measured(name: str, runs: int) -> list[WholeLine]:
+    scene = read_scene(SCENES / f"{name}.toml")
+    middle = 1e-3 * float(np.median(scene.torques))
+    scene = scene.with_changes({"analysis.positions": POSITIONS, "analysis.torques_Nm": [middle]})
+    finest, _ = _timed(scene, "cells", (FINEST, FINEST), 1)
+    settings: list[tuple[str, str, Any]] = [(f"accuracy {value:.0e}", "accuracy", value) for value in ACCURACIES]
+    settings += [(f"{n} x {n} cells", "cells", (n, n)) for n in CELLS]
+    found = []
+    for words, key, value in settings:
+        cycle, seconds = _timed(scene, key, value, runs)
+        found.append(WholeLine(name, words, seconds, *_errors(cycle, finest)))
+    return found
+
+
+def _timed(scene: Scene, key: str, value: Any, runs: int) -> tuple[MeshCycle, float]:
+    times = []
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        for _ in range(runs):
+            begin = time.perf_counter()
+            cycle = analyse(scene.with_changes({f"analysis.{key}": value}))
+            times.append(time.perf_counter() - begin)
+    return cycle, statistics.median(times)
+
+
+def _errors(cycle: MeshCycle, finest: MeshCycle) -> tuple[float, float, float]:
+    """Of pressure, load share and peak to peak of the transmission error."""
+    pressure = np.nanmax(np.abs(cycle.inner_pressure / finest.inner_pressure - 1.0))
+    shares, exact = ({int(k): one.load_share[:, n] for n, k in enumerate(one.pairs)} for one in (cycle, finest))
+    share = max(np.abs(shares.get(k, 0.0) - exact.get(k, 0.0)).max() for k in shares.keys() | exact.keys())
+    heights = [np.ptp(one.transmission_error) for one in (cycle, finest)]
+    return float(pressure), float(share), abs(float(heights[0] / heights[1]) - 1.0)
+
+
+if __name__ == "__main__":
+    print(heading())
+    print(table(measure()))
+    print()
+    print(cycles())

@@ -1,0 +1,36 @@
+"""Aligned, unmodified involute pairs are conjugate: their transmission error is zero over the whole pitch."""
+
+from math import radians
+
+import numpy as np
+
+from loaded_tca.gears import CylindricalGear, CylindricalMesh
+from loaded_tca.pairs.cylindrical import cylindrical_pair
+from loaded_tca.pairs.gear_pair import Driving
+from loaded_tca.unloaded import trace_contact
+from validation.table import Row
+
+CASE, SOURCE = "conjugate involutes", "ISO 21771; asked for: below 1e-9 rad"
+HELIX_ANGLES = (0.0, 15.0, 30.0)
+PROFILE_SHIFTS = ((0.0, 0.0), (0.3, -0.2), (0.4, 0.3))
+DRIVERS: tuple[Driving, ...] = ("pinion", "wheel")
+
+
+def rows() -> list[Row]:
+    """Largest absolute transmission error of every pair [rad]."""
+    return [
+        Row(CASE, SOURCE, f"max |TE|, beta {beta:g} deg, x {shifts}, {driving} drives [rad]", 0.0, error, 1e-9)
+        for beta in HELIX_ANGLES
+        for shifts in PROFILE_SHIFTS
+        for driving in DRIVERS
+        for error in [_largest_error(beta, shifts, driving)]
+    ]
+
+
+def _largest_error(beta: float, shifts: tuple[float, float], driving: Driving) -> float:
+    gears = [
+        CylindricalGear(teeth, 3.0, 25.0, helix_angle=hand * radians(beta), profile_shift=shift)
+        for teeth, hand, shift in zip((23, 61), (1, -1), shifts, strict=True)
+    ]
+    path = trace_contact(cylindrical_pair(CylindricalMesh(*gears), driving=driving))
+    return float(np.abs(path.transmission_error).max())
