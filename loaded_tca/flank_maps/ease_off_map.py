@@ -5,7 +5,8 @@ r"""The ease-off topography: how much a flank lacks of the conjugate of its mati
 with the largest lead E of :mod:`loaded_tca.flank_maps.conjugate`, E_0 its highest value on the map and \|grad F\| of
 the unmodified flank: material removed along the normal, counted as ``FlankModifications`` count it. Zero where the
 flanks are nearest, and everywhere for conjugate flanks; a modified pinion with an unmodified wheel shows its
-modification, and to first order the modifications of both gears and the mounting errors add up. It does not depend on the position, nor
+modification, and to first order the modifications of both gears and the mounting errors add up. It does not depend on
+the position, nor
 on the number of teeth in contact: it is what the pair is made of.
 
 References
