@@ -1,7 +1,7 @@
 """Transmission error of a crowned helical pair under three torques.
 
-Writes transmission_error.png. The wheel lags by the approach of the flanks, which grows with the load to the power
-2/3 as long as the contact ends on the flank.
+Writes transmission_error.png. The wheel stays behind by the approach of the flanks, which grows with the load to the
+power 2/3 as long as the contact ends on the flank.
 """
 
 import math

@@ -51,14 +51,14 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
     Warns
     -----
     AccuracyWarning
-        If the contact reaches a border of a flank, or the model is at another limit.
+        If the contact reaches an edge of a flank, or the model is at another limit.
     """
     pair = scene.pair()
     angles = _positions(pair, scene.analysis.positions)
     torques, grid = np.asarray(scene.torques), _grid_choice(scene)
     carry = carried_by_all if scene.analysis.load_sharing else carried_by_one
     carried = carry(pair, angles, torques, grid, _compliance(scene, pair), progress)
-    _warn_of_doubts(pair, grid, carried.contacts)
+    _warn_of_accuracy(pair, grid, carried.contacts)
     if scene.analysis.load_sharing:
         _warn_of_reach(pair, carried)
     return _mesh_cycle(scene, pair, carried)
@@ -90,12 +90,12 @@ def _compliance(scene: Scene, pair: GearPair) -> MakeCompliance:
     return make
 
 
-def _warn_of_doubts(pair: GearPair, grid: GridChoice, contacts: Contacts) -> None:
+def _warn_of_accuracy(pair: GearPair, grid: GridChoice, contacts: Contacts) -> None:
     """One AccuracyWarning for each reason to doubt, with the number of maps it concerns."""
     solved = [loaded for rows in contacts for row in rows for loaded in row if loaded is not None]
     reasons: dict[str, int] = {}
     for loaded in solved:
-        for reason in _doubts(pair, grid, loaded):
+        for reason in _accuracy_warnings(pair, grid, loaded):
             reasons[reason] = reasons.get(reason, 0) + 1
     alone = len(contacts) == 1 and all(len(row) == 1 for row in contacts[0])
     what = "positions" if alone else "pressure maps"
@@ -115,17 +115,17 @@ def _warn_of_reach(pair: GearPair, carried: Carried) -> None:
         )
 
 
-def _doubts(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[str]:
+def _accuracy_warnings(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[str]:
     solution = loaded.solution
     found = []
-    if loaded.at_border:
-        border = "the contact reaches a border of a flank: Hertz does not hold, and pressure there grows with the grid"
-        found.append(border + ("" if grid.free_edges else "; ends that yield are left out (analysis.free_edges)"))
+    if loaded.at_edge:
+        edge = "the contact reaches an edge of a flank: Hertz does not hold, and pressure there grows with the grid"
+        found.append(edge + ("" if grid.free_edges else "; ends that yield are left out (analysis.free_edges)"))
         oblique = oblique_ends(pair, loaded.contact, loaded.separation) if grid.free_edges else ()
         found += [f"the {end} is oblique to the contact and taken for that of a half-space" for end in oblique]
-    if loaded.at_crease:
+    if loaded.at_relief_start:
         found.append("the contact lies across the start of a linear relief: its peak pressure grows with the grid")
-    smooth = not (loaded.at_border or loaded.at_crease)
+    smooth = not (loaded.at_edge or loaded.at_relief_start)
     if grid.cells is None and smooth and solution.error_estimate.peak_pressure > grid.accuracy:
         found.append(f"the estimated error stays above the accuracy of {grid.accuracy:g}")
     if solution.reaches_border:
@@ -215,8 +215,8 @@ def _numbers(pair: GearPair, loaded: LoadedContact | None) -> dict[str, float | 
         "line_load": loaded.line_load,
         "face_load_factor": loaded.line_load * longest / solution.load if solution.load > 0.0 else math.nan,
         "approach": loaded.approach,
-        "on_edge": loaded.at_border,
-        "at_crease": loaded.at_crease,
+        "on_edge": loaded.at_edge,
+        "at_relief_start": loaded.at_relief_start,
         "cells_across": solution.pressure.shape[0],
         "cells_along": solution.pressure.shape[1],
         "iterations": solution.iterations,

@@ -38,7 +38,7 @@ FILES = """files in DIR:
   transmission_error.png    over the positions, all torques
   peak_pressure.png         over the positions, all torques
   pressure_map.png          at the position of the peak pressure, under the largest torque
-  pressure_map_border.png   only if a peak lies at a border or crease, at another position
+  pressure_map_edge.png   only if a peak lies at an edge or relief start, at another position
   pressure_map_hertz.png    only if Hertz holds, but not where the peak pressure is
 and where tooth pairs share the load
   load_share.png            of each tooth pair, all torques
@@ -323,7 +323,7 @@ def _chosen_position(result: MeshCycle, wanted: int | None) -> int | None:
         return None
     if not 1 <= wanted <= len(result.path):
         raise InputError(f"--position {wanted}: the result has the positions 1 to {len(result.path)}")
-    if not result.path.touches[wanted - 1]:
+    if not result.path.in_contact[wanted - 1]:
         raise InputError(f"--position {wanted}: the tooth pair does not touch there")
     return wanted - 1
 

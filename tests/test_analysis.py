@@ -177,7 +177,7 @@ def test_small_torque_tends_to_the_unloaded_transmission_error(scene):
 
 def test_edge_contact_warns_and_has_no_hertz_value(scene):
     misaligned = scene.with_changes({"mounting.out_of_plane_deg": 0.3, "analysis.positions": 1})
-    with pytest.warns(AccuracyWarning, match=r"reaches a border of a flank.*1 of 1 positions"):
+    with pytest.warns(AccuracyWarning, match=r"reaches an edge of a flank.*1 of 1 positions"):
         result = analyse(misaligned)
     assert result.on_edge[0] == 1.0
     assert np.isnan(result.hertz_pressure[0])
@@ -186,7 +186,7 @@ def test_edge_contact_warns_and_has_no_hertz_value(scene):
 
 def test_unmodified_pair_carries_line_contact_hertz_in_the_middle(scene):
     line = scene.with_changes({"pinion.modifications": {}, "analysis.positions": 1, "analysis.cells": (48, 48)})
-    with pytest.warns(AccuracyWarning, match="reaches a border"):
+    with pytest.warns(AccuracyWarning, match="reaches an edge"):
         result = analyse(line)
     mapped, pair = result.maps[0][0], line.pair()
     middle = mapped.pressure[:, 23:25].mean(axis=1)
@@ -270,7 +270,7 @@ def test_line_contact_of_a_straight_bevel_pair_is_as_long_as_the_face(teeth):
             "analysis.cells": (16, 24),
         }
     )
-    with pytest.warns(AccuracyWarning, match="reaches a border"):
+    with pytest.warns(AccuracyWarning, match="reaches an edge"):
         result = analyse(scene)
     assert_allclose(result.contact_length, scene.pinion.face_width_mm, rtol=1e-6)
 

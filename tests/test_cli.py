@@ -119,11 +119,11 @@ def test_plot_draws_another_torque_and_position(run):
     changes = {"positions = 21": "positions = 3\ntorques_Nm = [20.0, 40.0]"}
     run("run", scene(**changes), "--out", "out")
     before = Path("out", "pressure_map.png").read_bytes()
-    Path("out", "pressure_map_border.png").write_bytes(b"of the largest torque")
+    Path("out", "pressure_map_edge.png").write_bytes(b"of the largest torque")
     own = {"torque_20_Nm_position_2", "torque_20_Nm", "position_2"}
     for options in (("--torque", 20, "--position", 2), ("--torque", 20), ("--position", 2)):
         assert run("plot", "out", *options)[0] == 0
-    assert set(os.listdir("out")) == REPORT | PICTURES | own | {"pressure_map_border.png"}
+    assert set(os.listdir("out")) == REPORT | PICTURES | own | {"pressure_map_edge.png"}
     assert Path("out", "pressure_map.png").read_bytes() == before
     assert Path("out", "torque_20_Nm_position_2", "pressure_map.png").read_bytes() != before
     for wrong, told in ((("--torque", 30), "the result has 20, 40 N m"), (("--position", 4), "positions 1 to 3")):
@@ -170,8 +170,8 @@ def test_edge_contact_warns_once_and_exits_0(run):
     assert code == 0
     assert len(err) == 1
     assert err[0].startswith("warning: ")
-    assert "border of a flank" in err[0]
-    assert "note: at 3 of 3 positions the contact reaches a border" in out
+    assert "edge of a flank" in err[0]
+    assert "note: at 3 of 3 positions the contact reaches an edge" in out
 
 
 def test_no_load_exits_0(run):

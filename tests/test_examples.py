@@ -105,7 +105,7 @@ def test_published_face_milled_example_scrapes_along_a_tip():
     ],
 )
 def test_matched_face_milled_examples_have_the_transmission_error_they_say(name, top, fall):
-    """References: pair B by the five equations and the ease-off; pair D of Seed 004."""
+    """References: pair B by the five equations and the ease-off; pair D of the duplex paper."""
     pair, _ = traced(name, 0.0)
     path = trace_contact(pair, np.radians(top) + PARTS * pair.pitch)
     error = np.degrees(path.transmission_error) * 3600.0
@@ -119,5 +119,5 @@ def test_duplex_example_first_touches_in_the_corner_of_toe_and_tip():
     first = path[int(np.nanargmax(path.transmission_error))]
     lengthwise, _ = pair.pinion.frame.to_picture(np.array(first.pinion_radius), np.array(first.pinion_axial))
     assert_allclose(lengthwise, -10.0, atol=1e-6)
-    tip = pair.pinion.borders(np.array(first.pinion_radius), np.array(first.pinion_axial))[0]
+    tip = pair.pinion.edges(np.array(first.pinion_radius), np.array(first.pinion_axial))[0]
     assert tip.value < 0.2

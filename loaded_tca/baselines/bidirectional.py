@@ -1,7 +1,7 @@
 r"""The bidirectional start: first values for the five contact equations, from the machine settings of both gears.
 
-For gears whose settings name no reference point (duplex spread blade), Seed 004 guesses where the flanks touch. Both
-cradles stand at the centre of roll, so that each flank is seen along its generating line only, by the azimuth
+For gears whose settings name no reference point (duplex spread blade), the duplex paper guesses where the flanks touch.
+Both cradles stand at the centre of roll, so that each flank is seen along its generating line only, by the azimuth
 :math:`\vartheta` about the cutter; each gear turns by :math:`\varphi'` from where it stood on its machine, right-handed
 about its axis from apex to heel. From one gear:
 
@@ -10,15 +10,15 @@ about its axis from apex to heel. From one gear:
 2. :math:`\varphi'` of this gear from the equation of meshing of the pair,
    :math:`f(\varphi') = n \cdot v_{12} = 0`. With the moment M of the normal about the axes,
    :math:`f = \omega_1 \cdot M_1 - \omega_2 \cdot M_2 = A\cos\varphi' + B\sin\varphi' + C`: solved in closed form.
-3. :math:`\vartheta` and :math:`\varphi'` of the mate from opposite normals: the axial component of the normal tells
-   :math:`\vartheta`, its azimuth :math:`\varphi'`.
+3. :math:`\vartheta` and :math:`\varphi'` of the mating gear from opposite normals: the axial component of the normal
+   tells :math:`\vartheta`, its azimuth :math:`\varphi'`.
 
 Forward: from the wheel. Reverse: from the pinion. The start is their mean. Nothing in it makes the two points one: it
 is a first guess, and whether it is good is up to the settings. The solver of this package needs none of it.
 
 References
 ----------
-Seed 004 (duplex spread blade); Litvin & Fuentes 2004, Gear Geometry and Applied Theory, sections 6.1 and 9.4.
+the duplex paper (duplex spread blade); Litvin & Fuentes 2004, Gear Geometry and Applied Theory, sections 6.1 and 9.4.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ class BidirectionalStart:
 
     References
     ----------
-    Seed 004.
+    the duplex paper.
 
     Examples
     --------
@@ -145,15 +145,15 @@ class BidirectionalStart:
         ------
         GeometryError
             If a generating line does not reach the mean cone distance, the normal does not come into mesh, or the
-            mate's generating line has no such normal; the message says by how much it is missed.
+            mating gear's generating line has no such normal; the message says by how much it is missed.
         """
-        wheel, turn, pinion, mate_turn = self._from(1, wheel_azimuth)
-        return StartValues(wheel, pinion, turn, mate_turn)
+        wheel, turn, pinion, mating_turn = self._from(1, wheel_azimuth)
+        return StartValues(wheel, pinion, turn, mating_turn)
 
     def reverse(self, pinion_azimuth: float | None = None) -> StartValues:
         """From the pinion; parameters and errors as those of :meth:`forward`."""
-        pinion, turn, wheel, mate_turn = self._from(0, pinion_azimuth)
-        return StartValues(wheel, pinion, mate_turn, turn)
+        pinion, turn, wheel, mating_turn = self._from(0, pinion_azimuth)
+        return StartValues(wheel, pinion, mating_turn, turn)
 
     def mean(self) -> StartValues:
         """The start of the source: mean of forward and reverse."""
@@ -174,7 +174,7 @@ class BidirectionalStart:
         return Guess(pinion_angle, np.array([*places, wheel_angle]), float(np.linalg.norm(points[0] - points[1])))
 
     def _from(self, member: int, azimuth: float | None) -> tuple[float, float, float, float]:
-        """Azimuth and turn of one gear, azimuth and turn of its mate."""
+        """Azimuth and turn of one gear, azimuth and turn of its mating gear."""
         azimuth = self._calculation_azimuth(member) if azimuth is None else azimuth
         found = self._lines[member].at(azimuth)
         turn = self._meshing_turn(member, found.normal[0], found.moment[0])
@@ -193,14 +193,14 @@ class BidirectionalStart:
 
     def _meshing_turn(self, member: int, normal: Array, moment: Array) -> float:
         """Turn (step 2) of a gear that brings a normal into mesh: the smallest root of n . v12 = 0."""
-        mate, axes, origins = 1 - member, self._axes, self._origins
+        mating, axes, origins = 1 - member, self._axes, self._origins
         speeds = 1.0, -self._pair.ratio
-        apart = origins[member] - origins[mate]
+        apart = origins[member] - origins[mating]
 
         def sliding(turn: float) -> float:
             direction = _turned(normal, turn) @ axes[member]
-            about_mate = _turned(moment, turn) @ axes[member] + np.cross(apart, direction)
-            return float(speeds[member] * moment[2] - speeds[mate] * (axes[mate][2] @ about_mate))
+            about_mating = _turned(moment, turn) @ axes[member] + np.cross(apart, direction)
+            return float(speeds[member] * moment[2] - speeds[mating] * (axes[mating][2] @ about_mating))
 
         start, side, back = (sliding(turn) for turn in (0.0, 0.5 * math.pi, math.pi))
         middle = 0.5 * (start + back)
@@ -221,7 +221,7 @@ class BidirectionalStart:
         def excess(azimuth: Array) -> Array:
             return line.at(azimuth).normal[:, 2] - normal[2]
 
-        azimuth = self._root(member, excess, "axial part of the normal {:.4g} off that of its mate")
+        azimuth = self._root(member, excess, "axial part of the normal {:.4g} off that of its mating gear")
         own = line.at(azimuth).normal[0]
         return azimuth, _half_turn(math.atan2(normal[1], normal[0]) - math.atan2(own[1], own[0]))
 

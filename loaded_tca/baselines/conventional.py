@@ -17,7 +17,7 @@ all; and how far it converges depends on the start, of phi2 above all.
 
 References
 ----------
-Litvin & Fuentes 2004, Gear Geometry and Applied Theory, section 9.4; Seed 000, eqs. 26-32.
+Litvin & Fuentes 2004, Gear Geometry and Applied Theory, section 9.4; the reduced-TCA dissertation, eqs. 26-32.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ ASTRAY = 1e6
 SAME_NORMAL = 1e-5
 """Difference of the normals in their third component: the root of what the two others leave."""
 ON_FLANK = 1e-9
-"""Distance beyond a border, relative to the flank's height, that still counts as on the flank: rounding."""
+"""Distance beyond an edge, relative to the flank's height, that still counts as on the flank: rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +129,7 @@ def solve_conventional(
 
     References
     ----------
-    Seed 000, eqs. 26-32.
+    the reduced-TCA dissertation, eqs. 26-32.
 
     Examples
     --------

@@ -18,7 +18,7 @@ This is a reference to compare with: it shares the flanks with ``reduced`` and n
 
 References
 ----------
-Seed 001, "Contact point determination via the golden ratio method"; Kiefer 1953, Proc. AMS 4, 502-506.
+the miter-gear paper, "Contact point determination via the golden ratio method"; Kiefer 1953, Proc. AMS 4, 502-506.
 """
 
 from __future__ import annotations
@@ -36,15 +36,15 @@ from loaded_tca.pairs.gear_pair import GearPair
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 SECTIONS = 44
-"""Golden sections of one search: 6e-10 of the flank is left, so that a contact on a border is placed as well. In the
+"""Golden sections of one search: 6e-10 of the flank is left, so that a contact on an edge is placed as well. In the
 interior, where the gap is level, 30 give the same angle."""
 PENALTY = 4.0
-"""Gap [mm] added for each mm beyond a border: the gap itself falls by less than one."""
+"""Gap [mm] added for each mm beyond an edge: the gap itself falls by less than one."""
 MOST_TURNS = 30
 CLOSED = 1e-11
-"""Gap, relative to r_b2, that counts as none: what the sections leave at a border."""
+"""Gap, relative to r_b2, that counts as none: what the sections leave at an edge."""
 COVERED = 1e-9
-"""Distance beyond a border, relative to the flank's height, that counts as rounding."""
+"""Distance beyond an edge, relative to the flank's height, that counts as rounding."""
 
 FULL_TURN = 2.0 * math.pi
 
@@ -65,7 +65,7 @@ class GoldenSectionResult:
         (rho, z) of the point on the pinion flank.
     gap : (n,) array [mm]
         Smallest gap left at the angle found.
-    touches : (n,) bool array
+    in_contact : (n,) bool array
         Whether the flanks cover a common region.
     evaluations : int
         Gaps computed for each position.
@@ -77,12 +77,12 @@ class GoldenSectionResult:
     pinion_radius: Array
     pinion_axial: Array
     gap: Array
-    touches: Bools
+    in_contact: Bools
     evaluations: int
 
     def __repr__(self) -> str:
-        touching = int(self.touches.sum())
-        return f"GoldenSectionResult({len(self.touches)} positions, {touching} touch, {self.evaluations} gaps each)"
+        touching = int(self.in_contact.sum())
+        return f"GoldenSectionResult({len(self.in_contact)} positions, {touching} touch, {self.evaluations} gaps each)"
 
 
 def search_golden_section(pair: GearPair, pinion_angles: ArrayLike, *, sections: int = SECTIONS) -> GoldenSectionResult:
@@ -110,7 +110,7 @@ def search_golden_section(pair: GearPair, pinion_angles: ArrayLike, *, sections:
 
     References
     ----------
-    Seed 001, with the signed gap in place of the distance.
+    the miter-gear paper, with the signed gap in place of the distance.
 
     Examples
     --------
@@ -127,20 +127,20 @@ def search_golden_section(pair: GearPair, pinion_angles: ArrayLike, *, sections:
     if not isinstance(sections, int | np.integer) or sections < 1:
         raise InputError(f"sections: {sections!r} is not a whole number >= 1")
     search = _Search(pair, phi1, sections)
-    touches = search.covered()
-    if not touches.any():
+    in_contact = search.covered()
+    if not in_contact.any():
         raise GeometryError(f"no common flank: at none of the {len(phi1)} pinion angles do the flanks cover a region")
-    rows = np.flatnonzero(touches)
+    rows = np.flatnonzero(in_contact)
     wheel_angle, gap, rho, z = (np.full(len(phi1), np.nan) for _ in range(4))
     wheel_angle[rows], gap[rows] = _close(search, rows)
     rho[rows], z[rows] = search.narrowest(rows, wheel_angle[rows])[1:]
     point = np.full((len(phi1), 3), np.nan)
     point[rows] = search.points(rows, rho[rows], z[rows])
-    return GoldenSectionResult(phi1, wheel_angle, point, rho, z, gap, touches, search.evaluations)
+    return GoldenSectionResult(phi1, wheel_angle, point, rho, z, gap, in_contact, search.evaluations)
 
 
 class _Search:
-    """Gaps and borders of a pair at given pinion angles (n,), and how often they were asked for."""
+    """Gaps and edges of a pair at given pinion angles (n,), and how often they were asked for."""
 
     def __init__(self, pair: GearPair, phi1: Array, sections: int) -> None:
         self.pair, self.phi1, self.sections = pair, phi1, sections
@@ -154,7 +154,7 @@ class _Search:
         return np.stack([rho * np.cos(theta), rho * np.sin(theta), z], axis=-1)
 
     def gap(self, rows: Array, phi2: Array, rho: Array, z: Array) -> Array:
-        """Signed distance of the points from the wheel flank, and the penalty beyond the borders (k,) [mm]."""
+        """Signed distance of the points from the wheel flank, and the penalty beyond the edges (k,) [mm]."""
         self.evaluations += 1
         flank = self.pair.wheel
         radius, azimuth, axial = self.pair.to_wheel(self.points(rows, rho, z))
@@ -180,8 +180,8 @@ class _Search:
         return self._lowest(rows, lambda rho, z: self.gap(rows, phi2, rho, z))
 
     def _beyond(self, rho: Array, z: Array, radius: Array, axial: Array) -> Array:
-        borders = [*self.pair.pinion.borders(rho, z), *self.pair.wheel.borders(radius, axial)]
-        return np.asarray(sum(np.maximum(0.0, -border.value) for border in borders))
+        edges = [*self.pair.pinion.edges(rho, z), *self.pair.wheel.edges(radius, axial)]
+        return np.asarray(sum(np.maximum(0.0, -edge.value) for edge in edges))
 
     def _lowest(self, rows: Array, function: Callable[[Array, Array], Array]) -> tuple[Array, Array, Array]:
         """Minimum over the flank, and rho, z: sections along the profile inside one along the face."""

@@ -43,7 +43,7 @@ class FlankLine:
     tooth : int
         Tooth of the gear, counted in the sense of +theta.
     rho, z : (m,) array [mm]
-        In the gear's own frame; places beyond the flank count as its border.
+        In the gear's own frame; places beyond the flank count as its edge.
     """
 
     tooth: int

@@ -60,7 +60,7 @@ def solve_to_accuracy(
         As in :func:`solve_contact`; the tolerance is tightened to a hundredth of the accuracy. A first grid that
         cannot be the last is solved to that hundredth.
     smooth : bool
-        False where the surfaces have a crease or an end inside the contact: treated as where a border bounds it.
+        False where the surfaces have a relief start or an end inside the contact: treated as where a border bounds it.
     first_cells : (int, int)
         Where to begin. The estimate needs two grids: the answer has at least twice as many.
     initial_pressure : array_like of first_cells, optional [MPa]
@@ -81,7 +81,7 @@ def solve_to_accuracy(
     Warns
     -----
     AccuracyWarning
-        If the finest grid allowed does not reach the accuracy, and for the doubts about the answer.
+        If the finest grid allowed does not reach the accuracy, and for the accuracy_warnings about the answer.
 
     Examples
     --------
@@ -122,8 +122,8 @@ def solve_to_accuracy(
         solution = _compared(solve(cells, prolong(coarse.pressure, cells, (2, 2)), tolerance), coarse)
     if warn:
         late = () if good else (f"estimated error {_error(solution, smooth):.1e} is above the accuracy {accuracy:.1e}",)
-        for doubt in late + solution.doubts:
-            warnings.warn(doubt, AccuracyWarning, stacklevel=2)
+        for sentence in late + solution.accuracy_warnings:
+            warnings.warn(sentence, AccuracyWarning, stacklevel=2)
     return solution
 
 

@@ -177,7 +177,7 @@ class ContactSolution:
         return first, second
 
     @property
-    def doubts(self) -> tuple[str, ...]:
+    def accuracy_warnings(self) -> tuple[str, ...]:
         """Sentences on why the model, not the solver, may be at its limit; empty if there is no reason."""
         found = []
         if self.reaches_border:

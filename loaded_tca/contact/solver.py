@@ -91,7 +91,7 @@ def solve_contact(
     threads : int
         Threads of large transforms; the result does not depend on them. Workers of a pool keep to one.
     warn : bool
-        Whether to give an AccuracyWarning for each of ``solution.doubts``.
+        Whether to give an AccuracyWarning for each of ``solution.accuracy_warnings``.
     free_edges : sequence of FreeEdge
         Where the bodies end beside the contact: nothing is carried beyond, and the images of the pressure in these
         edges make up for what a half-space would be too stiff. Half-spaces if there are none.
@@ -155,8 +155,8 @@ def solve_contact(
     )
     solution = _solve(problem, lowest, tolerance, start)
     if warn:
-        for doubt in solution.doubts:
-            warnings.warn(doubt, AccuracyWarning, stacklevel=2)
+        for sentence in solution.accuracy_warnings:
+            warnings.warn(sentence, AccuracyWarning, stacklevel=2)
     if solution.status is ContactStatus.NOT_CONVERGED and on_failure == "raise":
         raise ConvergenceError(_failure(solution, tolerance), last=solution)
     return solution

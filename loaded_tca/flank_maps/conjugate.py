@@ -1,4 +1,4 @@
-r"""The conjugate of the mating flank: what the mate would sweep out of a gear if both turned at the constant ratio.
+r"""The conjugate of the mating flank: what it sweeps out of the other gear when both turn at the constant ratio.
 
 Let both gears turn at the constant ratio z1/z2 and take a point P of the pinion's flank. At the angle phi1 it asks the
 wheel for a lead e(P; phi1), the field of :mod:`loaded_tca.unloaded.ease_off`; over the whole passage for no more than
@@ -32,41 +32,41 @@ from loaded_tca.unloaded.roots import find_roots
 SAMPLES = 16
 """Angles per pitch at which the lead of a point is sampled."""
 SCANS = 4
-"""Angles per pitch at which the way of the teeth through the mate is looked for."""
+"""Angles per pitch at which the way of the teeth through the mating gear is looked for."""
 SCAN = (5, 9)
 """Points of a flank along the profile and along the face that tell it."""
 SLACK = (0.5, 0.1)
-"""How far [modules] the mate's flank is continued beyond its tip and below its form circle; near the base circle, below
-which there is no flank, not far."""
+"""How far [modules] the mating gear's flank is continued beyond its tip and below its form circle; near the base circle
+(there is no flank below it) not far."""
 SIDE_SLACK = 0.5
 """How far [face widths] it is continued beyond its ends."""
 CLOSE = 1e-10
-"""Accuracy of the angle of contact [rad]: the lead is then right to rounding, on a crease to 1e-12 mm."""
+"""Accuracy of the angle of contact [rad]: the lead is then right to rounding, on a relief start to 1e-12 mm."""
 BLOCK = 4096
 """Points that are looked at together: memory stays small on any grid."""
 
 
 @dataclass(frozen=True, eq=False)
 class ConjugateContact:
-    """Where points of the pinion's flank would touch a mate that turns at the constant ratio.
+    """Where points of the pinion's flank would touch a mating gear that turns at the constant ratio.
 
     Attributes
     ----------
     angle : (...) array [rad]
-        phi1 at which the point asks for the largest lead; NaN where it does so nowhere on the mate or near it.
+        phi1 at which the point asks for the largest lead; NaN where it does so nowhere on the mating gear or near it.
     lead : (...) array [mm]
         E, as a length at r_b2; NaN likewise.
-    mate_radius, mate_axial : (...) array [mm]
+    mating_radius, mating_axial : (...) array [mm]
         The point on the wheel's flank.
     profile_room, lengthwise_room : (...) array [mm]
-        Distance to the nearer one of the wheel's tip and root borders, and of its ends; negative beyond them; NaN
+        Distance to the nearer one of the wheel's tip and root edges, and of its ends; negative beyond them; NaN
         likewise.
     """
 
     angle: Array
     lead: Array
-    mate_radius: Array
-    mate_axial: Array
+    mating_radius: Array
+    mating_axial: Array
     profile_room: Array
     lengthwise_room: Array
 
@@ -107,7 +107,7 @@ def exchanged(pair: GearPair) -> GearPair:
 def conjugate_contact(pair: GearPair, rho: Array, z: Array) -> ConjugateContact:
     """Contact of points of the pinion's flank with a wheel that turns at the constant ratio.
 
-    The wheel's flank is continued beyond its borders a little, where ``profile_room`` or ``lengthwise_room`` is
+    The wheel's flank is continued beyond its edges a little, where ``profile_room`` or ``lengthwise_room`` is
     negative. Of several maxima of the lead (a wavy flank) the highest counts.
 
     Parameters
@@ -131,7 +131,7 @@ def conjugate_contact(pair: GearPair, rho: Array, z: Array) -> ConjugateContact:
     >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
     >>> gears = [CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)]
     >>> contact = conjugate_contact(cylindrical_pair(CylindricalMesh(*gears)), np.array([51.0, 53.0]), np.zeros(2))
-    >>> bool(np.abs(contact.lead).max() < 1e-12), contact.mate_radius.round(3).tolist()
+    >>> bool(np.abs(contact.lead).max() < 1e-12), contact.mating_radius.round(3).tolist()
     (True, [85.5, 83.867])
     """
     field, azimuth = EaseOff(pair), _azimuths(pair)
@@ -147,8 +147,8 @@ def _highest(field: EaseOff, azimuth: Array, rho: Array, z: Array) -> ConjugateC
     """Contact of points (n,), from samples at the azimuths (s,)."""
     pair, step = field.pair, azimuth[1] - azimuth[0]
     sampled = pair.sense * (azimuth[:, None] - pair.pinion.theta(rho, z).value)
-    lead, borders = field.heights(sampled, rho, z)
-    lead = np.where(_near(pair, borders), lead, -np.inf)
+    lead, edges = field.heights(sampled, rho, z)
+    lead = np.where(_near(pair, edges), lead, -np.inf)
     best = (lead.argmax(axis=0), np.arange(len(rho)))
     first = sampled[best]
 
@@ -162,7 +162,7 @@ def _highest(field: EaseOff, azimuth: Array, rho: Array, z: Array) -> ConjugateC
     angle = find_roots(slope, brackets, values, CLOSE)
     found = np.isfinite(lead[best]) & (values[0] >= 0.0) & (values[1] <= 0.0)
     station = field.station(angle, rho, z)
-    distances = _wheel_borders(field.heights(angle, rho, z)[1])
+    distances = _wheel_edges(field.heights(angle, rho, z)[1])
     known = (
         angle,
         field.value(station, angle),
@@ -183,16 +183,16 @@ def _slope(pair: GearPair, station: Station) -> Array:
     return pair.driving * pair.base_radii[1] * (rate - pair.ratio)
 
 
-def _wheel_borders(borders: Array) -> Array:
-    """Distances (..., 4) to the wheel's borders, of those of both flanks."""
-    return borders[..., 4:8]
+def _wheel_edges(edges: Array) -> Array:
+    """Distances (..., 4) to the wheel's edges, of those of both flanks."""
+    return edges[..., 4:8]
 
 
-def _near(pair: GearPair, borders: Array) -> NDArray[np.bool_]:
-    """Whether the wheel has a flank at the points, continued beyond its borders a little."""
+def _near(pair: GearPair, edges: Array) -> NDArray[np.bool_]:
+    """Whether the wheel has a flank at the points, continued beyond its edges a little."""
     side = SIDE_SLACK * pair.face_width
     slack = np.array([SLACK[0] * pair.module, SLACK[1] * pair.module, side, side])
-    return np.asarray((_wheel_borders(borders) >= -slack).all(axis=-1))
+    return np.asarray((_wheel_edges(edges) >= -slack).all(axis=-1))
 
 
 def _azimuths(pair: GearPair) -> Array:

@@ -34,7 +34,7 @@ class Contour:
     z: Array
     x: Array
     y: Array
-    border: NDArray[np.int_]
+    edge: NDArray[np.int_]
 
     def __getitem__(self, rows: Any) -> Contour:
         return Contour(*(getattr(self, field.name)[rows] for field in fields(self)))
@@ -88,7 +88,7 @@ class RaySearch:
             allowed = SECTOR * abs(_sectors(ends[:-1], ends[1:]).sum())
             middle = self._ends(0.5 * (first.turn + last.turn))
             hidden = np.abs(_sectors(first, middle) + _sectors(middle, last) - _sectors(first, last))
-            corner = self._largest_sector(first, last) * (first.border != last.border)
+            corner = self._largest_sector(first, last) * (first.edge != last.edge)
             rows = np.flatnonzero(np.maximum(hidden, corner) > allowed)
             if not rows.size:
                 break
@@ -102,7 +102,7 @@ class RaySearch:
         """More points where a ray runs along the edge that ends its neighbour: the edge may be curved in space."""
         following = ends.rolled()
         longer = np.maximum(ends.share, following.share)
-        jumps = (ends.border != following.border) & (np.abs(ends.share - following.share) > JUMP * longer)
+        jumps = (ends.edge != following.edge) & (np.abs(ends.share - following.share) > JUMP * longer)
         rows = np.repeat(np.flatnonzero(jumps), EDGE_POINTS)
         part = np.tile(np.arange(1, EDGE_POINTS + 1) / (EDGE_POINTS + 1), int(jumps.sum()))
         first, last = ends[rows], following[rows]
@@ -110,8 +110,8 @@ class RaySearch:
             start + part * (end - start)
             for start, end in ((first.share, last.share), (first.rho, last.rho), (first.z, last.z))
         )
-        border = np.maximum(first.border, last.border)
-        return ends.with_inserted(Contour(first.turn, share, rho, z, *self._in_plane(rho, z), border), rows + 1)
+        edge = np.maximum(first.edge, last.edge)
+        return ends.with_inserted(Contour(first.turn, share, rho, z, *self._in_plane(rho, z), edge), rows + 1)
 
     def _largest_sector(self, first: Contour, last: Contour) -> Array:
         """Area (m,) between two rays if both were as long as the longer one [mm^2]."""
@@ -122,7 +122,7 @@ class RaySearch:
         rays = np.stack([np.cos(turn), np.sin(turn)], axis=-1) @ self.drawn
         low, high = self._first_crossings(rays)
         rho, z = self._place(rays, low)
-        return Contour(turn, low, rho, z, *self._in_plane(rho, z), self._border(*self._place(rays, high)))
+        return Contour(turn, low, rho, z, *self._in_plane(rho, z), self._edge(*self._place(rays, high)))
 
     def _in_plane(self, rho: Array, z: Array) -> tuple[Array, Array]:
         """Points (m,) of the pinion flank in the tangent plane, from the contact point [mm]."""
@@ -157,10 +157,10 @@ class RaySearch:
         gap, _, _ = flank_gap(self.pair, "pinion", self.angles, (rho, z))
         return np.asarray(self.pair.pinion.inside(rho, z) & (gap <= self.compound))
 
-    def _border(self, rho: Array, z: Array) -> NDArray[np.int_]:
-        """Which border each point (m,) lies beyond, counted from 1, the pinion's first; 0: none."""
+    def _edge(self, rho: Array, z: Array) -> NDArray[np.int_]:
+        """Which edge each point (m,) lies beyond, counted from 1, the pinion's first; 0: none."""
         _, radius, axial = flank_gap(self.pair, "pinion", self.angles, (rho, z))
-        jets = [*self.pair.pinion.borders(rho, z), *self.pair.wheel.borders(radius, axial)]
+        jets = [*self.pair.pinion.edges(rho, z), *self.pair.wheel.edges(radius, axial)]
         distance = np.stack(np.broadcast_arrays(*(jet.value for jet in jets)))
         return np.where(distance.min(axis=0) < 0.0, 1 + distance.argmin(axis=0), 0)
 
@@ -168,5 +168,5 @@ class RaySearch:
 def _sectors(first: Contour, last: Contour) -> Array:
     """Areas (m,) between neighbouring rays: triangles, and sectors of an ellipse where the compound ends both rays."""
     turn = np.remainder(last.turn - first.turn, 2.0 * math.pi)
-    bow = np.where((first.border == 0) & (last.border == 0), 1.0 / np.sinc(turn / math.pi), 1.0)
+    bow = np.where((first.edge == 0) & (last.edge == 0), 1.0 / np.sinc(turn / math.pi), 1.0)
     return 0.5 * bow * (first.x * last.y - last.x * first.y)

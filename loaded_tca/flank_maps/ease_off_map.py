@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flank_maps.conjugate import conjugate_contact, exchanged
-from loaded_tca.flank_maps.mated_part import ROUNDING, mated_grid
+from loaded_tca.flank_maps.mating_part import ROUNDING, mated_grid
 from loaded_tca.flank_maps.rotary_gap import Gear
 from loaded_tca.flank_maps.second_order import SecondOrder, central, flank_lengths, second_order
 from loaded_tca.flanks.base import Flank
@@ -36,13 +36,13 @@ from loaded_tca.pairs.gear_pair import GearPair
 
 GRID = (31, 41)
 FEWEST = 3
-BORDER = 2.0 * ROUNDING
-"""Distance beyond a border of the mate [modules] that still counts as on it."""
+EDGE = 2.0 * ROUNDING
+"""Distance beyond an edge of the mating gear [modules] that still counts as on it."""
 
 
 @dataclass(frozen=True, eq=False)
 class EaseOffMap:
-    """Ease-off of a flank over the part of it that the mate works with.
+    """Ease-off of a flank over the part of it that the mating gear works with.
 
     Attributes
     ----------
@@ -55,12 +55,12 @@ class EaseOffMap:
         Distance from the middle of the face, and the profile coordinate: roll length, of bevel gears R_m times the arc.
     ease_off : (profile, lengthwise) array [mm]
         Material removed along the normal from the conjugate of the mating flank; zero at its highest point.
-    mate_radius, mate_axial : (profile, lengthwise) array [mm]
-        The point of the mate that each point would touch at the constant ratio.
+    mating_radius, mating_axial : (profile, lengthwise) array [mm]
+        The point of the mating gear that each point would touch at the constant ratio.
     angle : (profile, lengthwise) array [rad]
         phi1 (wheel: phi2) at which it would.
     covered : (profile, lengthwise) bool array
-        Whether the mate's flank reaches so far; where not, beside its slanted borders, it was continued.
+        Whether the mating gear's flank reaches so far; where not, beside its slanted edges, it was continued.
     second_order : SecondOrder
         Angles, crownings and twist, of the flank turned about its axis until nothing is off in the middle of the map:
         what is off a bevel gear's flank when it is turned grows with the cone distance.
@@ -73,8 +73,8 @@ class EaseOffMap:
     lengthwise: Array
     profile: Array
     ease_off: Array
-    mate_radius: Array
-    mate_axial: Array
+    mating_radius: Array
+    mating_axial: Array
     angle: Array
     covered: NDArray[np.bool_]
     second_order: SecondOrder
@@ -92,8 +92,8 @@ class EaseOffMap:
 def ease_off_map(pair: GearPair, gear: Gear = "pinion", grid: tuple[int, int] = GRID) -> EaseOffMap:
     """Ease-off of a flank against the conjugate of its mating flank.
 
-    The map covers the part of the flank that the mate reaches: along the profile from where the mate's tip works to
-    the own tip (or the mate's form circle), lengthwise between the ends of the narrower gear.
+    The map covers the part of the flank that the mating gear reaches: along the profile from where the mating gear's
+    tip works to the own tip (or the mating gear's form circle), lengthwise between the ends of the narrower gear.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def ease_off_map(pair: GearPair, gear: Gear = "pinion", grid: tuple[int, int] = 
     gear : {"pinion", "wheel"}
         Whose flank.
     grid : (int, int)
-        Points along the profile and along the face, borders included; at least 3 each. Odd numbers have a point in the
+        Points along the profile and along the face, edges included; at least 3 each. Odd numbers have a point in the
         middle, where a crowned flank is highest.
 
     Returns
@@ -114,7 +114,8 @@ def ease_off_map(pair: GearPair, gear: Gear = "pinion", grid: tuple[int, int] = 
     InputError
         If an argument is out of range.
     GeometryError
-        If no part of the flank ever meets the mate's, or a part of it meets no flank that could be continued so far.
+        If no part of the flank ever meets the mating gear's, or a part of it meets no flank that could be continued so
+        far.
 
     Examples
     --------
@@ -146,10 +147,10 @@ def ease_off_map(pair: GearPair, gear: Gear = "pinion", grid: tuple[int, int] = 
         z,
         *flank_lengths(flank, rho, z),
         (contact.lead.max() - contact.lead) * per_lead,
-        contact.mate_radius,
-        contact.mate_axial,
+        contact.mating_radius,
+        contact.mating_axial,
         contact.angle,
-        room >= -BORDER * pair.module,
+        room >= -EDGE * pair.module,
         second_order(flank, rho, z, from_middle),
     )
 
@@ -169,5 +170,5 @@ def _require_contact(flank: Flank, rho: Array, z: Array, exists: NDArray[np.bool
     where = flank.frame.place(float(rho[first]), float(z[first]))
     raise GeometryError(
         f"no ease-off: at {int((~exists).sum())} of {exists.size} points, first at {where}, the flank meets no flank "
-        "of the mate at the constant ratio; the mounting errors are too large"
+        "of the mating gear at the constant ratio; the mounting errors are too large"
     )

@@ -1,6 +1,6 @@
 """Contact pattern by the searching method: where the flanks are nearer than the marking compound is thick.
 
-The gap is that of :mod:`loaded_tca.flank_maps.rotary_gap`, without tangent plane or curvature, and the borders of the
+The gap is that of :mod:`loaded_tca.flank_maps.rotary_gap`, without tangent plane or curvature, and the edges of the
 flanks cut the pattern where it ends.
 
 References
@@ -50,7 +50,7 @@ class ContactArea:
         Contour on the pinion flank in the fixed frame.
     pinion_radius, pinion_axial, wheel_radius, wheel_axial : (m,) array [mm]
         The contour on each flank.
-    on_border : (m,) bool array
+    on_edge : (m,) bool array
         Where the contour is the end of a flank instead.
     area : float [mm^2]
         Of the projection into the common tangent plane.
@@ -68,7 +68,7 @@ class ContactArea:
     pinion_axial: Array
     wheel_radius: Array
     wheel_axial: Array
-    on_border: NDArray[np.bool_]
+    on_edge: NDArray[np.bool_]
     area: float
     semi_axes: tuple[float, float]
     ellipse_semi_axes: tuple[float, float]
@@ -82,7 +82,7 @@ class ContactArea:
     @property
     def is_cut(self) -> bool:
         """Whether the area ends with a flank somewhere."""
-        return bool(self.on_border.any())
+        return bool(self.on_edge.any())
 
     def __repr__(self) -> str:
         across, along = self.semi_axes
@@ -100,7 +100,7 @@ class ContactPattern:
     radius, axial, roll_length : (profile, lengthwise) array
         The grid on the flank [mm]; roll length in the unit of the flank's profile coordinate [mm or rad].
     gap : (profile, lengthwise) array [mm]
-        Smallest gap over positions and teeth; +inf where the mate never comes.
+        Smallest gap over positions and teeth; +inf where the mating gear never comes.
     """
 
     gear: Gear
@@ -130,7 +130,7 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
     Rays leave the contact point in all directions of the tangent plane, drawn out like the curvature ellipse; each ends
     where the gap first reaches the compound, or with a flank. Beyond that nothing is seen: of an area in several pieces
     (two basins of a hollow flank) it is the piece of the contact. Between two rays that end unlike, on the compound and
-    on a border or on two borders, others follow until the corner is met: it changes the area by less than 1e-6.
+    on an edge or on two edges, others follow until the corner is met: it changes the area by less than 1e-6.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
         problems.append(f"rays: {rays!r} is not a whole number >= 8")
     if problems:
         raise InputError(problems)
-    if not contact.touches:
+    if not contact.in_contact:
         raise GeometryError(
             f"no common flank: the tooth pair does not touch at pinion angle {contact.pinion_angle} rad"
         )
@@ -195,7 +195,7 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
         pinion_axial=contour.z,
         wheel_radius=wheel_radius,
         wheel_axial=wheel_axial,
-        on_border=contour.border > 0,
+        on_edge=contour.edge > 0,
         area=contour.area,
         semi_axes=(0.5 * float(np.ptp(contour.x)), 0.5 * float(np.ptp(contour.y))),
         ellipse_semi_axes=(semi_axes[0], semi_axes[1]),
@@ -223,7 +223,7 @@ def contact_pattern(
     compound : float [mm]
         Thickness of the marking compound.
     grid : (int, int)
-        Points along the profile and along the face, borders included; at least 2 each.
+        Points along the profile and along the face, edges included; at least 2 each.
 
     Returns
     -------
@@ -250,7 +250,7 @@ def contact_pattern(
     rho, z = flank.grid(*grid)
     smallest = np.full(rho.shape, np.inf)
     for tooth, path in zip(mesh.pairs, mesh.paths, strict=True):
-        near = np.flatnonzero(path.touches)
+        near = np.flatnonzero(path.in_contact)
         angles = (
             path.pinion_angle[near, None, None],
             (mesh.wheel_angle[near] - tooth * pair.ratio * pair.pitch)[:, None, None],

@@ -1,7 +1,8 @@
 r"""The gap between two flanks, to first order, at points of one of them.
 
-Gears that stand at phi1 and phi2 are apart by an angle about one axis at every point of a flank: what the mate would
-have to turn to touch it there. Times the lever of the mate's normal about its axis this is the gap, to first order,
+Gears that stand at phi1 and phi2 are apart by an angle about one axis at every point of a flank: what the mating gear
+would have to turn to touch it there. Times the lever of the mating gear's normal about its axis this is the gap, to
+first order,
 
 .. math:: g = \Delta\varphi\,|n \cdot (w \times r)| = \Delta\varphi/|\nabla F|, \qquad F = \theta - \Theta(\rho, z),
 
@@ -24,7 +25,7 @@ Gear = Literal["pinion", "wheel"]
 def flank_gap(
     pair: GearPair, gear: Gear, angles: tuple[Array, Array], place: tuple[Array, Array]
 ) -> tuple[Array, Array, Array]:
-    """Gap at points of one flank, to first order, and the same points on the mate.
+    """Gap at points of one flank, to first order, and the same points on the mating gear.
 
     Parameters
     ----------
@@ -39,24 +40,24 @@ def flank_gap(
     Returns
     -------
     gap : array [mm]
-        Negative where the flanks penetrate; +inf beyond the borders of the mate.
+        Negative where the flanks penetrate; +inf beyond the edges of the mating gear.
     radius, axial : array [mm]
-        Of the points in the mate's frame.
+        Of the points in the mating gear's frame.
     """
     (phi1, phi2), (rho, z) = angles, place
     if gear == "pinion":
-        point, mate = cartesian(rho, pair.pinion.theta(rho, z).value + pair.sense * phi1, z), pair.wheel
+        point, mating = cartesian(rho, pair.pinion.theta(rho, z).value + pair.sense * phi1, z), pair.wheel
         radius, theta, axial = pair.to_wheel(point)
-        jet = mate.theta(radius, axial)
+        jet = mating.theta(radius, axial)
         lag = pair.driving * (phi2 - pair.sense * (jet.value - theta))
     else:
-        point, mate = cartesian(rho, pair.wheel.theta(rho, z).value - pair.sense * phi2, z), pair.pinion
+        point, mating = cartesian(rho, pair.wheel.theta(rho, z).value - pair.sense * phi2, z), pair.pinion
         x, y, axial = np.moveaxis(point @ pair.wheel_axes + pair.wheel_origin, -1, 0)
         radius, theta = np.hypot(x, y), np.arctan2(y, x)
-        jet = mate.theta(radius, axial)
+        jet = mating.theta(radius, axial)
         lag = pair.driving * (pair.sense * (theta - jet.value) - phi1)
     lever = 1.0 / np.sqrt(jet.rho**2 + 1.0 / radius**2 + jet.z**2)
-    return np.where(mate.inside(radius, axial), lag * lever, np.inf), radius, axial
+    return np.where(mating.inside(radius, axial), lag * lever, np.inf), radius, axial
 
 
 def cartesian(rho: Array, theta: Array, z: Array) -> Array:

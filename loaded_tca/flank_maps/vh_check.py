@@ -51,7 +51,7 @@ class VHCheck:
         Centre of area of each pattern, as the frame shows it: lengthwise, and the height or the diameter. NaN if the
         pattern passes between the points of the grid.
     edge_share : (m, n) array
-        Part of the positions of a pitch at which the leading contact lies on the border of a flank.
+        Part of the positions of a pitch at which the leading contact lies on the edge of a flank.
     """
 
     v: Array

@@ -19,13 +19,13 @@ from loaded_tca.arrays import Array
 from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.flanks.jet import Jet
 
-BORDER_NAMES = ("tip", "root", "lower side", "upper side")
-"""Names of the borders, in the order of ``Flank.borders``; the sides are the ends of the face, lower at
-small z (toe), upper at large z (heel). ``FlankFrame.borders`` has the words of each kind of gear."""
+EDGE_NAMES = ("tip", "root", "lower side", "upper side")
+"""Names of the edges, in the order of ``Flank.edges``; the sides are the ends of the face, lower at
+small z (toe), upper at large z (heel). ``FlankFrame.edges`` has the words of each kind of gear."""
 
 
 class Flank(ABC):
-    """One side of a tooth: theta = Theta(rho, z) on a region of (rho, z) with four borders.
+    """One side of a tooth: theta = Theta(rho, z) on a region of (rho, z) with four edges.
 
     Attributes
     ----------
@@ -52,21 +52,21 @@ class Flank(ABC):
         ----------
         rho, z : (...) array [mm]
             Cylindrical coordinates in the gear's own frame.
-        beyond : (..., creases) bool array, optional
-            The side of each crease whose smooth continuation is wanted; None: the side a point lies on.
+        beyond : (..., relief starts) bool array, optional
+            The side of each relief start whose smooth continuation is wanted; None: the side a point lies on.
         """
 
     @abstractmethod
-    def borders(self, rho: Array, z: Array) -> tuple[Jet, ...]:
-        """Distance to each border [mm], positive inside, in the order of ``BORDER_NAMES``."""
+    def edges(self, rho: Array, z: Array) -> tuple[Jet, ...]:
+        """Distance to each edge [mm], positive inside, in the order of ``EDGE_NAMES``."""
 
-    def creases(self, rho: Array, z: Array) -> tuple[Jet, ...]:  # noqa: ARG002 (most flanks have none)
-        """Signed distance to each crease (a line where the slope jumps) [mm], positive beyond it."""
+    def relief_starts(self, rho: Array, z: Array) -> tuple[Jet, ...]:  # noqa: ARG002 (most flanks have none)
+        """Signed distance to each relief start (a line where the slope jumps) [mm], positive beyond it."""
         return ()
 
     @abstractmethod
     def grid(self, profile: int, lengthwise: int) -> tuple[Array, Array]:
-        """(rho, z) on a grid over the region, borders included, each (profile, lengthwise) [mm]."""
+        """(rho, z) on a grid over the region, edges included, each (profile, lengthwise) [mm]."""
 
     @abstractmethod
     def profile_coordinate(self, rho: Array, z: Array) -> Jet:
@@ -81,11 +81,11 @@ class Flank(ABC):
         """|grad F| of the unmodified flank [1/mm]: what turns a distance along the normal into an angle."""
 
     def room(self, rho: Array, z: Array) -> Any:
-        """Distance to the nearest border [mm], positive inside."""
-        return reduce(np.minimum, [jet.value for jet in self.borders(rho, z)])
+        """Distance to the nearest edge [mm], positive inside."""
+        return reduce(np.minimum, [jet.value for jet in self.edges(rho, z)])
 
     def inside(self, rho: Array, z: Array, tolerance: float = 0.0) -> Any:
-        """Whether (rho, z) lies in the region, borders included, to within ``tolerance`` [mm]."""
+        """Whether (rho, z) lies in the region, edges included, to within ``tolerance`` [mm]."""
         return self.room(rho, z) >= -tolerance
 
 

@@ -115,7 +115,7 @@ class SphericalInvoluteFlank(Flank):
         self.extent = (float(np.ptp(rho)), float(np.ptp(z)))
         self.frame = ConeFrame(pitch_angle, self.mean_cone_distance)
 
-    def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:  # noqa: ARG002 (it has no crease)
+    def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:  # noqa: ARG002 (it has no relief start)
         """Theta of the spherical involute, log spiral included."""
         angle, sine_base = cone_angle(rho, z), math.sin(self.base_angle)
         sine, cosine = _sine_and_cosine(rho, z)
@@ -131,7 +131,7 @@ class SphericalInvoluteFlank(Flank):
         logarithm = distance.compose(np.log(distance.value / self.mean_cone_distance), inverse, -(inverse**2))
         return profile + logarithm * self._spiral
 
-    def borders(self, rho: Array, z: Array) -> tuple[Jet, ...]:
+    def edges(self, rho: Array, z: Array) -> tuple[Jet, ...]:
         """Face cone, root cone (both R sin of the angle to the cone), toe and heel sphere."""
         root, tip = self.cone_angles
         distance = self._cone_distance(rho, z)

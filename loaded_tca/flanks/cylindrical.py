@@ -64,7 +64,7 @@ class InvoluteFlank(Flank):
         roll = math.sqrt(working_radius**2 - base_radius**2) / base_radius
         self._working_involute = roll - math.atan(roll)
 
-    def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:  # noqa: ARG002 (it has no crease)
+    def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:  # noqa: ARG002 (it has no relief start)
         """Theta of the involute helicoid."""
         roll, inward = self._roll_length(rho), -float(self.side) / self.base_radius
         angle, steepness = roll / self.base_radius, roll / rho
@@ -72,7 +72,7 @@ class InvoluteFlank(Flank):
         value = (-float(self.side)) * involute + self._twist * z
         return Jet(value, inward * steepness, self._twist, inward * (1.0 / roll - steepness / rho))
 
-    def borders(self, rho: Array, z: Array) -> tuple[Jet, ...]:
+    def edges(self, rho: Array, z: Array) -> tuple[Jet, ...]:
         """Tip circle, root form circle, the two ends of the face."""
         half = 0.5 * self.face_width
         return (

@@ -12,7 +12,7 @@ from loaded_tca.flanks.jet import Jet
 
 
 class DerivedFlank(Flank):
-    """What a flank takes over from the nominal one: everything but Theta and the creases.
+    """What a flank takes over from the nominal one: everything but Theta and the relief starts.
 
     Parameters
     ----------
@@ -24,9 +24,9 @@ class DerivedFlank(Flank):
         self.side, self.extent, self.frame = nominal.side, nominal.extent, nominal.frame
         self.profile_unit = nominal.profile_unit
 
-    def borders(self, rho: Array, z: Array) -> tuple[Jet, ...]:
-        """Borders of the nominal flank."""
-        return self.nominal.borders(rho, z)
+    def edges(self, rho: Array, z: Array) -> tuple[Jet, ...]:
+        """Edges of the nominal flank."""
+        return self.nominal.edges(rho, z)
 
     def grid(self, profile: int, lengthwise: int) -> tuple[Array, Array]:
         """Grid of the nominal flank."""
@@ -48,7 +48,7 @@ class DerivedFlank(Flank):
 class Region(DerivedFlank):
     """The region of a flank and its coordinates, without its surface: Theta = 0."""
 
-    def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:  # noqa: ARG002 (it has no crease)
+    def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:  # noqa: ARG002 (it has no relief start)
         """Nothing."""
         return Jet(np.zeros(np.broadcast(rho, z).shape))
 

@@ -2,8 +2,8 @@ r"""Generated flanks of face-milled bevel gears: exact by the equations of gener
 
 The flank is turned about the axis of its gear until it holds the pitch point at the mean cone distance (theta = 0).
 Between form line, face cone, toe and heel every point is found from the generating equations
-(:mod:`loaded_tca.flanks.cradle`). Beyond these borders there is no flank, but searches step over them: there Theta goes
-on as the B-spline does, as a parabola from the border.
+(:mod:`loaded_tca.flanks.cradle`). Beyond these edges there is no flank, but searches step over them: there Theta goes
+on as the B-spline does, as a parabola from the edge.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ SPLINE_POINTS = (41, 33)
 """Chebyshev-Lobatto points of the B-spline along the profile and lengthwise: it is within 1e-7 mm of usual flanks. The
 generated surface may turn back just below the form line, which takes more points along the profile."""
 SPLINE_DEGREE = 5
-ON_BORDER = 1e-7
-"""Part of the flank's height and width by which points on its borders may miss them."""
+ON_EDGE = 1e-7
+"""Part of the flank's height and width by which points on its edges may miss them."""
 CHECK_POINTS = (9, 5)
 """Points along the profile and lengthwise that have to be there before a flank is one."""
 EDGE_HEIGHTS = 64
@@ -106,8 +106,8 @@ class GeneratedFlank(ToothRegion):
         """Gear and flank, as messages call them."""
         return f"{self.gear.name}, {self.flank} flank"
 
-    def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:  # noqa: ARG002 (it has no crease)
-        """Theta of the generated flank; beyond its borders that of the B-spline."""
+    def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:  # noqa: ARG002 (it has no relief start)
+        """Theta of the generated flank; beyond its edges that of the B-spline."""
         rho, z = np.broadcast_arrays(np.asarray(rho, dtype=float), np.asarray(z, dtype=float))
         flat = rho.ravel(), z.ravel()
         on = self._on_flank(*flat)
@@ -203,8 +203,8 @@ class GeneratedFlank(ToothRegion):
         return (self._require(rho, z).theta + Jet(-self._zero)) * self._mirror
 
     def _on_flank(self, rho: Array, z: Array) -> Array:
-        """Whether points lie in the region, borders included."""
-        tolerance = ON_BORDER * min(self.extent)
+        """Whether points lie in the region, edges included."""
+        tolerance = ON_EDGE * min(self.extent)
         return self.inside(rho, z, tolerance)
 
     @property

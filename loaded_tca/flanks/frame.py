@@ -27,13 +27,13 @@ class FlankFrame(ABC):
         Of the horizontal axis (lengthwise) and the vertical one (along the profile), with their units.
     heelwards : str
         What lies to the right, where the lengthwise coordinate is large.
-    borders : (str, str, str, str)
-        Names of the borders, in the order of ``Flank.borders``: tip, root, left end, right end.
+    edges : (str, str, str, str)
+        Names of the edges, in the order of ``Flank.edges``: tip, root, left end, right end.
     """
 
     labels: tuple[str, str]
     heelwards: str
-    borders: tuple[str, str, str, str]
+    edges: tuple[str, str, str, str]
 
     @abstractmethod
     def to_picture(self, rho: Array, z: Array) -> tuple[Array, Array]:
@@ -60,7 +60,7 @@ class CylinderFrame(FlankFrame):
 
     labels = ("axial place, from mid-face [mm]", "diameter [mm]")
     heelwards = "z > 0"
-    borders = ("tip circle", "root form circle", "end of the face at z < 0", "end of the face at z > 0")
+    edges = ("tip circle", "root form circle", "end of the face at z < 0", "end of the face at z > 0")
 
     def to_picture(self, rho: Array, z: Array) -> tuple[Array, Array]:
         """Axial coordinate and diameter [mm]."""
@@ -98,7 +98,7 @@ class ConeFrame(FlankFrame):
 
     labels = ("cone distance from mid-face [mm], toe left, heel right", "height above the pitch cone [mm]")
     heelwards = "the heel"
-    borders = ("face cone", "root form cone", "toe", "heel")
+    edges = ("face cone", "root form cone", "toe", "heel")
 
     def to_picture(self, rho: Array, z: Array) -> tuple[Array, Array]:
         """R - R_m and R (u - delta) [mm]."""

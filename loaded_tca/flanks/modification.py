@@ -84,7 +84,7 @@ def logarithmic(t: Any) -> tuple[Any, Any, Any]:
 
 @dataclass(frozen=True)
 class Term:
-    """amount * shape((coordinate - origin)/length); ``shape`` None is the ramp max(t, 0), which has a crease."""
+    """amount * shape((coordinate - origin)/length); ``shape`` None is the ramp max(t, 0), which has a relief start."""
 
     direction: Literal["profile", "lengthwise"]
     amount: float
@@ -124,7 +124,7 @@ class Polynomial:
     origin: float
     unit: float
 
-    def removal(self, flank: Flank, rho: Array, z: Array, beyond: Any) -> Jet:  # noqa: ARG002 (it has no crease)
+    def removal(self, flank: Flank, rho: Array, z: Array, beyond: Any) -> Jet:  # noqa: ARG002 (it has no relief start)
         """Material removed [mm]."""
         constant, along, up, twist, along_along, up_up = self.coefficients
         x = flank.lengthwise_coordinate(rho, z)
@@ -334,7 +334,7 @@ class ModifiedFlank(DerivedFlank):
         turned = self.nominal.gradient_norm(rho, z) * -float(self.side)
         return self.nominal.theta(rho, z) + self.removal(rho, z, beyond).times(turned)
 
-    def creases(self, rho: Array, z: Array) -> tuple[Jet, ...]:
+    def relief_starts(self, rho: Array, z: Array) -> tuple[Jet, ...]:
         """Starts of the linear reliefs, in millimetres of roll length beyond them."""
         return tuple(term.coordinate(self.nominal, rho, z) * abs(term.length) for term in self._ramps)
 

@@ -3,7 +3,7 @@ r"""B-spline flanks: fitted to a grid of points of any flank, or to a measured t
 .. math:: \Theta = \Theta_n(\rho, z) + S\big(p(\rho, z),\, l(\rho, z)\big)
 
 S is a tensor B-spline over the coordinates of a nominal flank, p along the profile (roll length, unwound arc) and l
-lengthwise. In them flanks are smooth even where the profile bends without bound, at the base circle; borders, grid and
+lengthwise. In them flanks are smooth even where the profile bends without bound, at the base circle; edges, grid and
 coordinates stay those of the nominal flank. A flank that is *fitted* has no other surface than its spline
 (Theta_n = 0); one that is *measured* deviates from its nominal surface by the spline, so that a coarse grid of small
 deviations keeps the exact macro geometry.
@@ -81,9 +81,9 @@ class SplineFlank(DerivedFlank):
         deviation = self.spline(profile.value, lengthwise.value).compose(profile, lengthwise)
         return self.nominal.theta(rho, z, beyond) + deviation
 
-    def creases(self, rho: Array, z: Array) -> tuple[Jet, ...]:
-        """Creases of the nominal flank."""
-        return self.nominal.creases(rho, z)
+    def relief_starts(self, rho: Array, z: Array) -> tuple[Jet, ...]:
+        """Relief starts of the nominal flank."""
+        return self.nominal.relief_starts(rho, z)
 
     def distance_to(self, other: Flank, rho: Array, z: Array) -> Array:
         """Distance [mm] along the normal from another flank of the same gear, positive where this one has more."""
@@ -114,7 +114,8 @@ def fitted(flank: Flank, points: tuple[int, int] = DEFAULT_POINTS, degree: int =
     Warns
     -----
     AccuracyWarning
-        If the B-spline misses the flank by more than 0.1 um: a crease (the start of a linear relief) is rounded off.
+        If the B-spline misses the flank by more than 0.1 um: a relief start (the start of a linear relief) is rounded
+        off.
 
     Raises
     ------
@@ -145,7 +146,7 @@ def fitted(flank: Flank, points: tuple[int, int] = DEFAULT_POINTS, degree: int =
     between = (part[1::2, 1::2] for part in flank.grid(2 * points[0] - 1, 2 * points[1] - 1))
     check = FitError.of(bare.distance_to(flank, *between))
     if check.largest > FIT_TOLERANCE:
-        advice = "take more points; the crease where a linear relief starts is rounded off by any number"
+        advice = "take more points; the relief start where a linear relief starts is rounded off by any number"
         message = f"the B-spline through {points[0]} x {points[1]} points misses the flank by {check} between them"
         warnings.warn(f"{message}: {advice}", AccuracyWarning, stacklevel=2)
     return SplineFlank(region, spline, FitError.of(bare.distance_to(flank, rho, z)), check)
@@ -233,7 +234,7 @@ def pitch_point(flank: Flank) -> tuple[Array, Array]:
     Raises
     ------
     GeometryError
-        If the flank, continued beyond its borders, has none.
+        If the flank, continued beyond its edges, has none.
     """
     flank = unmodified(flank)
     middle = np.array([float(part[1, 1]) for part in flank.grid(3, 3)])

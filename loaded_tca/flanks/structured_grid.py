@@ -14,7 +14,7 @@ from loaded_tca.flanks.base import Flank
 FEWEST_POINTS = {3: 4, 5: 6}
 """Degree of a B-spline -> points, or coefficients, that it needs in its direction."""
 OFF_FLANK = 0.05
-"""Part of the flank's height by which points may lie beyond its borders."""
+"""Part of the flank's height by which points may lie beyond its edges."""
 UNCOVERED = 0.15
 """Part of the flank's height or width beyond the outermost points, at one end, from which on a warning is due."""
 LEAST_COVERED = 0.5
@@ -75,9 +75,9 @@ class StructuredGrid:
         """Warn where the fit is continued far beyond the points."""
         for name, ends in zip(DIRECTIONS, self._uncovered(flank), strict=True):
             if max(ends) > UNCOVERED:
-                names = flank.frame.borders[1::-1] if name == DIRECTIONS[0] else flank.frame.borders[2:]
+                names = flank.frame.edges[1::-1] if name == DIRECTIONS[0] else flank.frame.edges[2:]
                 left = " and ".join(
-                    f"{100.0 * max(end, 0.0):.0f} % at the {border}" for end, border in zip(ends, names, strict=True)
+                    f"{100.0 * max(end, 0.0):.0f} % at the {edge}" for end, edge in zip(ends, names, strict=True)
                 )
                 warnings.warn(
                     f"{name}: the points leave {left} of the flank uncovered; there the deviation is a continuation",
@@ -99,10 +99,10 @@ class StructuredGrid:
         return problems
 
     def _off_the_flank(self, flank: Flank) -> list[str]:
-        """Points beyond the borders: of another gear, in another frame or in other units."""
+        """Points beyond the edges: of another gear, in another frame or in other units."""
         problems = []
-        for name, border in zip(flank.frame.borders, flank.borders(self.radius, self.axial), strict=True):
-            beyond = -np.broadcast_to(border.value, self.radius.shape)
+        for name, edge in zip(flank.frame.edges, flank.edges(self.radius, self.axial), strict=True):
+            beyond = -np.broadcast_to(edge.value, self.radius.shape)
             count = int((beyond > OFF_FLANK * min(flank.extent)).sum())
             if count:
                 where = f"up to {beyond.max():.4g} mm beyond the {name}"

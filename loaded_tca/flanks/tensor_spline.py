@@ -4,7 +4,7 @@ r"""Tensor B-splines: fitted to values on a structured grid, evaluated with firs
 
 For evaluation the spline is kept as one polynomial per cell of its breaks, found once; a point then costs one look-up
 and two nested Horner schemes for the value and all five derivatives. Beyond its rectangle a spline goes on as the
-second-order Taylor polynomial of its border in each direction: twice continuously differentiable, and tame.
+second-order Taylor polynomial of its edge in each direction: twice continuously differentiable, and tame.
 
 References
 ----------

@@ -123,7 +123,7 @@ class ToothRegion(Flank):
     def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:
         """Theta [rad] with its derivatives."""
 
-    def borders(self, rho: Array, z: Array) -> tuple[Jet, ...]:
+    def edges(self, rho: Array, z: Array) -> tuple[Jet, ...]:
         """Face cone, form line (R times the angle to it), toe and heel sphere."""
         tip, apex = self.face_cone
         sine, cosine = math.sin(tip), math.cos(tip)

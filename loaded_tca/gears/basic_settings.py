@@ -137,7 +137,7 @@ def cutter_number(blank: BevelBlank) -> float:
 
     Examples
     --------
-    The pair of Seed 004, whose cutter is of group 11:
+    The pair of the duplex paper, whose cutter is of group 11:
 
     >>> from math import radians
     >>> angles = radians(33.690068 - 31.09059), radians(56.309932 - 52.51677)

@@ -316,7 +316,7 @@ class BevelMesh:
     def active_cones(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """(start, tip) cone angles of the active profile of pinion and wheel at nominal mounting [rad].
 
-        It starts where the tip of the mate ends on the flank, or at the form cone if that lies higher.
+        It starts where the tip of the mating gear ends on the flank, or at the form cone if that lies higher.
         """
         pinion, wheel = self.pinion, self.wheel
         return (
@@ -326,7 +326,7 @@ class BevelMesh:
 
     @property
     def _both_ways(self) -> tuple[tuple[BevelGear, BevelGear], tuple[BevelGear, BevelGear]]:
-        """(gear, its mate), from either side."""
+        """(gear, its mating gear), from either side."""
         return (self.pinion, self.wheel), (self.wheel, self.pinion)
 
     @property
@@ -334,19 +334,19 @@ class BevelMesh:
         """Arc of the great circle of contact between the two base cones that it touches [rad]."""
         return sum(gear.unwound_arc(gear.pitch_angle) for gear in (self.pinion, self.wheel))
 
-    def _start_arc(self, gear: BevelGear, mate: BevelGear) -> float:
+    def _start_arc(self, gear: BevelGear, mating: BevelGear) -> float:
         """Unwound arc on a gear where the active profile starts [rad]."""
-        return max(gear.unwound_arc(gear.form_angle), self._arc_at_tip_of(mate))
+        return max(gear.unwound_arc(gear.form_angle), self._arc_at_tip_of(mating))
 
-    def _arc_at_tip_of(self, mate: BevelGear) -> float:
-        """Unwound arc on a gear where the tip of its mate ends; negative beyond the base cone [rad]."""
-        return self._line_of_action - mate.unwound_arc(mate.tip_angle)
+    def _arc_at_tip_of(self, mating: BevelGear) -> float:
+        """Unwound arc on a gear where the tip of its mating gear ends; negative beyond the base cone [rad]."""
+        return self._line_of_action - mating.unwound_arc(mating.tip_angle)
 
     @property
     def fillet_interference(self) -> tuple[bool, bool]:
-        """Whether the mate's tip reaches below the form cone of pinion and wheel, into what is no involute."""
+        """Whether the mating gear's tip reaches below the form cone of pinion and wheel, into what is no involute."""
         pinion, wheel = (
-            self._arc_at_tip_of(mate) < gear.unwound_arc(gear.form_angle) for gear, mate in self._both_ways
+            self._arc_at_tip_of(mating) < gear.unwound_arc(gear.form_angle) for gear, mating in self._both_ways
         )
         return pinion, wheel
 

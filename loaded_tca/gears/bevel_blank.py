@@ -21,7 +21,7 @@ Taper = Literal["standard", "uniform", "duplex", "modified"]
 _MIN_PRESSURE_ANGLE, _MAX_PRESSURE_ANGLE = radians(1), radians(45)
 _MAX_SPIRAL_ANGLE = radians(60)
 _MAX_DEPTH_ANGLE = radians(45)
-# The straight blade of a tool reaches this much deeper than the mate's tip (ISO 23509, clause 8).
+# The straight blade of a tool reaches this much deeper than the mating gear's tip (ISO 23509, clause 8).
 _TOOL_DEPTH = 1.1
 # "modified" taper: the most by which the dedendum angles may exceed the standard ones (ISO 23509, annex C.5).
 _LARGEST_TAPER = 1.3
@@ -69,15 +69,15 @@ def crown_gear_factors(
 class BevelBlank:
     r"""Blanks of two bevel gears on axes that meet.
 
-    The profile shifts are opposite, the wheel's is :math:`-x_{hm}`. Face cones run parallel to the mate's root cones
-    (:math:`\theta_{a1} = \theta_{f2}`, :math:`\theta_{a2} = \theta_{f1}`), so that the clearance is the same along
-    the face. How the depth falls from heel to toe:
+    The profile shifts are opposite, the wheel's is :math:`-x_{hm}`. Face cones run parallel to the mating gear's root
+    cones (:math:`\theta_{a1} = \theta_{f2}`, :math:`\theta_{a2} = \theta_{f1}`), so that the clearance is the same
+    along the face. How the depth falls from heel to toe:
 
     - "standard": :math:`\tan\theta_f = h_{fm}/R_m`, root cones to the pitch apex;
     - "uniform": no taper, all cones parallel;
     - "duplex": constant slot width for a circular cutter,
       :math:`\theta_{f1} + \theta_{f2} = \frac{\pi m_{et}}{2 R_e \tan\alpha_n \cos\beta_m}
-      (1 - R_m \sin\beta_m/r_{c0})`, of which the mean addendum of the mate over the working depth is each one's share;
+      (1 - R_m \sin\beta_m/r_{c0})`, shared out by the mating gear's mean addendum in the working depth;
     - "modified": like duplex, but the sum at most 1.3 times the standard one.
 
     Parameters
@@ -204,7 +204,7 @@ class BevelBlank:
         if self.dedendum_factor < self.addendum_factor:
             problems.append(
                 f"dedendum_factor: {self.dedendum_factor} is below addendum_factor {self.addendum_factor}: tips of the"
-                " mate would cut into the root"
+                " mating gear would cut into the root"
             )
         if self.taper not in get_args(Taper):
             problems.append(f"taper: {self.taper!r} is not one of {', '.join(get_args(Taper))}")
@@ -304,7 +304,7 @@ class BevelBlank:
 
     @property
     def dedendum_angles(self) -> tuple[float, float]:
-        """theta_f1, theta_f2; each is the mate's addendum angle too [rad]."""
+        """theta_f1, theta_f2; each is the mating gear's addendum angle too [rad]."""
         if self.wheel_angles is not None:
             return self.wheel_angles
         if self.taper == "uniform":

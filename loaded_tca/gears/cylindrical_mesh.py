@@ -18,16 +18,16 @@ _NEGLIGIBLE_UNDERCUT = 1e-4
 
 @dataclass(frozen=True)
 class ActiveProfile:
-    """The part of a flank that the mate uses at nominal mounting.
+    """The part of a flank that the mating gear uses at nominal mounting.
 
     Parameters
     ----------
     start_radius, end_radius : float [mm]
-        d_Nf/2, where the mate's tip ends on this flank, or the form circle if larger; d_Na/2, the own tip.
+        d_Nf/2, where the mating gear's tip ends on this flank, or the form circle if larger; d_Na/2, the own tip.
     start_roll_length, end_roll_length : float [mm]
         The same as lengths on the line of action.
     fillet_interference : bool
-        The mate's tip reaches below the form circle.
+        The mating gear's tip reaches below the form circle.
     """
 
     start_radius: float
@@ -95,7 +95,7 @@ class CylindricalMesh:
     InputError
         If the gears do not fit each other.
     GeometryError
-        If the centre distance leaves no common flank, or an undercut takes away flank that the mate uses.
+        If the centre distance leaves no common flank, or an undercut takes away flank that the mating gear uses.
 
     References
     ----------
@@ -119,8 +119,8 @@ class CylindricalMesh:
         if problems:
             raise InputError(problems)
         self._check_centre_distance()
-        for gear, mate in self._both_ways:
-            self._check_undercut(gear, mate)
+        for gear, mating in self._both_ways:
+            self._check_undercut(gear, mating)
         if self.path_of_contact.AE <= 0.0:
             raise GeometryError(
                 f"{self.pinion.name} and {self.wheel.name}: no common flank at centre distance"
@@ -132,7 +132,7 @@ class CylindricalMesh:
     def _both_ways(
         self,
     ) -> tuple[tuple[CylindricalGear, CylindricalGear], tuple[CylindricalGear, CylindricalGear]]:
-        """(gear, its mate), from either side."""
+        """(gear, its mating gear), from either side."""
         return (self.pinion, self.wheel), (self.wheel, self.pinion)
 
     def _input_problems(self) -> list[str]:
@@ -165,20 +165,20 @@ class CylindricalMesh:
                 " the sum of the base radii"
             )
 
-    def _check_undercut(self, gear: CylindricalGear, mate: CylindricalGear) -> None:
-        """Refuse an undercut that takes away flank which the mate uses."""
-        wanted = gear.radius_at_roll_length(max(0.0, self._roll_length_at_tip_of(mate)))
+    def _check_undercut(self, gear: CylindricalGear, mating: CylindricalGear) -> None:
+        """Refuse an undercut that takes away flank which the mating gear uses."""
+        wanted = gear.radius_at_roll_length(max(0.0, self._roll_length_at_tip_of(mating)))
         if gear.is_undercut and gear.form_radius - wanted > _NEGLIGIBLE_UNDERCUT * gear.normal_module:
             enough = ceil(1e4 * gear.smallest_profile_shift) / 1e4
             raise GeometryError(
                 f"{gear.name}: undercut up to diameter {2.0 * gear.form_radius:.4f} mm, where the tip of the"
-                f" {mate.name} needs the flank down to {2.0 * wanted:.4f} mm; a profile_shift of at least"
+                f" {mating.name} needs the flank down to {2.0 * wanted:.4f} mm; a profile_shift of at least"
                 f" {enough:.4f} avoids it"
             )
 
-    def _roll_length_at_tip_of(self, mate: CylindricalGear) -> float:
-        """Roll length on a gear where the tip of its mate touches; negative beyond the base circle [mm]."""
-        return self._line_of_action - mate.roll_length(mate.tip_radius)
+    def _roll_length_at_tip_of(self, mating: CylindricalGear) -> float:
+        """Roll length on a gear where the tip of its mating gear touches; negative beyond the base circle [mm]."""
+        return self._line_of_action - mating.roll_length(mating.tip_radius)
 
     @property
     def _line_of_action(self) -> float:
@@ -248,8 +248,8 @@ class CylindricalMesh:
         """Part of the wheel's flank that the pinion uses."""
         return self._active_profile(self.wheel, self.pinion)
 
-    def _active_profile(self, gear: CylindricalGear, mate: CylindricalGear) -> ActiveProfile:
-        form, wanted = gear.roll_length(gear.form_radius), self._roll_length_at_tip_of(mate)
+    def _active_profile(self, gear: CylindricalGear, mating: CylindricalGear) -> ActiveProfile:
+        form, wanted = gear.roll_length(gear.form_radius), self._roll_length_at_tip_of(mating)
         start = max(form, wanted)
         return ActiveProfile(
             start_radius=gear.radius_at_roll_length(start),

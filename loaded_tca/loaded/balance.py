@@ -75,7 +75,7 @@ class PowerLaw:
         return PowerLaw(load, approach, exponent)
 
 
-def balance(laws: Sequence[PowerLaw], lags: Array, levers: Array, torque: float, compliance: Array) -> Array:
+def balance(laws: Sequence[PowerLaw], separations: Array, levers: Array, torque: float, compliance: Array) -> Array:
     """Forces of tooth pairs whose contact laws are known.
 
     Parameters
@@ -111,10 +111,10 @@ def balance(laws: Sequence[PowerLaw], lags: Array, levers: Array, torque: float,
     if not (levers > 0.0).all():
         raise ConvergenceError(f"load sharing: no rotation gives a torque of {torque:.6g} N mm", last=levers)
     given = np.array([(law.load, law.approach, law.exponent) for law in laws]).T
-    lags = lags - lags.min()
+    separations = separations - separations.min()
     forces, change = np.full(len(laws), torque / float(levers[0].sum())), math.inf
     for _ in range(MOST_STEPS):
-        target = _newton_step(given, lags, levers, torque, compliance, forces)
+        target = _newton_step(given, separations, levers, torque, compliance, forces)
         before, change = change, float(np.abs(target - forces).max() / target.max())
         forces = target
         if change <= STEP_TOLERANCE or before <= change <= ROUNDING:
@@ -122,7 +122,9 @@ def balance(laws: Sequence[PowerLaw], lags: Array, levers: Array, torque: float,
     raise ConvergenceError(f"load sharing: forces of the tooth pairs not found in {MOST_STEPS} steps", last=forces)
 
 
-def _newton_step(given: Array, lags: Array, levers: Array, torque: float, compliance: Array, forces: Array) -> Array:
+def _newton_step(
+    given: Array, separations: Array, levers: Array, torque: float, compliance: Array, forces: Array
+) -> Array:
     """Forces (k,) after one step for the pairs under load, and those that come under load or part.
 
     No force falls below a tenth at once. The approach grows without end over a force that vanishes (or not at all), so
@@ -133,13 +135,13 @@ def _newton_step(given: Array, lags: Array, levers: Array, torque: float, compli
     part = np.ix_(loaded, loaded)
     own = approach[loaded] * (forces[loaded] / load[loaded]) ** exponent[loaded]
     yielding = np.diag(exponent[loaded] * own / forces[loaded]) + compliance[part]
-    missing = -own - compliance[part] @ forces[loaded] - levers[1, loaded] * lags[loaded]
+    missing = -own - compliance[part] @ forces[loaded] - levers[1, loaded] * separations[loaded]
     by_rotation, by_rest = np.linalg.solve(yielding, np.stack([levers[1, loaded], missing], axis=-1)).T
     rotation = (torque - levers[0, loaded] @ (forces[loaded] + by_rest)) / (levers[0, loaded] @ by_rotation)
     target = forces.copy()
     wanted = forces[loaded] + rotation * by_rotation + by_rest
     target[loaded] = np.clip(wanted, LARGEST_FALL * forces[loaded], torque / levers[0, loaded])
-    closing = levers[1] * (rotation - lags) - compliance @ target + np.diag(compliance) * target
+    closing = levers[1] * (rotation - separations) - compliance @ target + np.diag(compliance) * target
     target[(target < LITTLE * target.max()) & (closing <= 0.0)] = 0.0
     comes = ~loaded & (closing > 0.0)
     target[comes] = np.minimum(load * (np.maximum(closing, 0.0) / approach) ** (1.0 / exponent), target.max())[comes]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError
-from loaded_tca.loaded.load_sharing import Laws, SharedLoad, share_load, touches_at
+from loaded_tca.loaded.load_sharing import Laws, SharedLoad, share_load, tooth_pairs_at
 from loaded_tca.loaded.pair_coupling import TeethYield
 from loaded_tca.loaded.tooth_contact import Beneath, GridChoice, LoadedContact, press
 from loaded_tca.pairs.gear_pair import GearPair
@@ -43,7 +43,7 @@ class Carried:
     contacts : nested list of LoadedContact or None
         By torque, position and pair.
     rotation : (m, n) array [rad]
-        By how much load lets the wheel lag; NaN where nothing touches.
+        By how much load lets the wheel stay behind; NaN where nothing touches.
     torque_rate : (m, n) array [N mm/rad]
         Tangent of the torque over the rotation.
     share : (m, n, pairs) array
@@ -92,14 +92,14 @@ def carried_by_one(
     beneath = None if teeth is None else alone(teeth)
     for t, n in _told(shape, progress):
         contact = path[n]
-        if contact.touches:
+        if contact.in_contact:
             with _told_where(torques[t], angles[n]):
                 loaded = press(pair, contact, torques[t] / contact.pinion_lever, grid, beneath)
             contacts[t][n][0] = loaded
             deflection[t, n] = loaded.own_deflection
             rotation[t, n] = loaded.solution.approach / contact.wheel_lever
             rate[t, n] = contact.pinion_lever * contact.wheel_lever * loaded.stiffness
-    share = np.broadcast_to(np.where(path.touches, 1.0, math.nan)[:, None], (*shape, 1)).copy()
+    share = np.broadcast_to(np.where(path.in_contact, 1.0, math.nan)[:, None], (*shape, 1)).copy()
     number = np.zeros(1, dtype=int)
     return Carried(path, torques, number, (path,), contacts, rotation, rate, share, deflection[..., None])
 
@@ -122,14 +122,14 @@ def carried_by_all(
     shape = len(torques), len(mesh)
     teeth = compliance(_farthest_apart(mesh))
     shared: list[list[SharedLoad]] = [[] for _ in torques]
-    touches = [touches_at(mesh, n) for n in range(len(mesh))]
+    tooth_pairs = [tooth_pairs_at(mesh, n) for n in range(len(mesh))]
     laws = Laws()
     for t, n in _told(shape, progress):
         with _told_where(torques[t], angles[n]):
-            found = share_load(pair, touches[n], float(torques[t]), grid, compliance=teeth, start=laws)
+            found = share_load(pair, tooth_pairs[n], float(torques[t]), grid, compliance=teeth, start=laws)
         laws = laws.updated(found.laws)
         shared[t].append(found)
-    carrying = {0} | {share.touch.pair for row in shared for one in row for share in one.shares}
+    carrying = {0} | {share.tooth_pair.pair for row in shared for one in row for share in one.shares}
     columns = [column for column, number in enumerate(mesh.pairs.tolist()) if number in carrying]
     contacts, share, deflection = _by_column(shared, mesh.pairs[columns].tolist())
     return Carried(
@@ -166,7 +166,7 @@ def _told_where(torque: float, angle: float) -> Iterator[None]:
 
 def _farthest_apart(mesh: MeshPath) -> int:
     """How many pitches two pairs that can touch at the same position are apart."""
-    near = np.isfinite(mesh.lag)
+    near = np.isfinite(mesh.initial_separation)
     spans = [int(np.ptp(mesh.pairs[column])) for column in near.T]
     return max(spans, default=0)
 
@@ -179,7 +179,7 @@ def _by_column(shared: list[list[SharedLoad]], pairs: list[int]) -> tuple[Contac
     for t, row in enumerate(shared):
         for n, one in enumerate(row):
             for part in one.shares:
-                place = t, n, pairs.index(part.touch.pair)
+                place = t, n, pairs.index(part.tooth_pair.pair)
                 contacts[t][n][place[2]], deflection[place] = part.loaded, part.deflection
                 share[place] = part.torque / one.torque if one.torque > 0.0 else 1.0
     return contacts, share, deflection

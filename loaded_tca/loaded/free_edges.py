@@ -15,7 +15,7 @@ from loaded_tca.separation import Separation
 from loaded_tca.unloaded import ContactPoint
 
 ENDS = (0, 2, 3)
-"""The borders of a flank where the tooth ends, its tip and its sides; at the root it goes on as the fillet."""
+"""The edges of a flank where the tooth ends, its tip and its sides; at the root it goes on as the fillet."""
 REACH = 2.0
 """Distance of an edge across the contact over the half length of the box up to which it counts in full; at twice that
 it is out of reach."""
@@ -74,10 +74,10 @@ def tooth_edges(pair: GearPair, contact: ContactPoint, separation: Separation) -
     ends = _ends(pair, contact, separation)
     edges = []
     for end in ends:
-        mates = [other for other in ends if _same(pair, end, other)]
-        if end.weight == 0.0 or end.oblique or any(mate.member < end.member for mate in mates):
+        mating = [other for other in ends if _same(pair, end, other)]
+        if end.weight == 0.0 or end.oblique or any(mating.member < end.member for mating in mating):
             continue
-        factor = end.weight * sum(_factor(pair, body) for body in (end, *mates))
+        factor = end.weight * sum(_factor(pair, body) for body in (end, *mating))
         x, y, z = (float(part) for part in separation.axes @ end.normal)
         shape = (separation.gap.shape[0], separation.gap.shape[1])
         edges.append(edge_of_plane((x, y, z), end.distance, separation.spacing, shape, factor, end.straight))
@@ -122,11 +122,11 @@ class _End:
 
 def _ends(pair: GearPair, contact: ContactPoint, separation: Separation) -> list[_End]:
     """Tips and sides of both gears."""
-    return [_end(pair, contact.point, separation, (member, border)) for member in (0, 1) for border in ENDS]
+    return [_end(pair, contact.point, separation, (member, edge)) for member in (0, 1) for edge in ENDS]
 
 
 def _end(pair: GearPair, origin: Array, separation: Separation, place: tuple[int, int]) -> _End:
-    """One border of one gear, as a plane that touches its surface where it crosses the long axis of the contact."""
+    """One edge of one gear, as a plane that touches its surface where it crosses the long axis of the contact."""
     point = origin
     for _ in range(STEPS):
         end = _crossing(pair, separation, _plane(pair, origin, point, place))
@@ -139,22 +139,22 @@ def _end(pair: GearPair, origin: Array, separation: Separation, place: tuple[int
 
 
 def _plane(pair: GearPair, origin: Array, point: Array, place: tuple[int, int]) -> _End:
-    """Plane that touches a border of a gear beside a point."""
-    member, border = place
+    """Plane that touches an edge of a gear beside a point."""
+    member, edge = place
     if member == 0:
         flank, rho, z = pair.pinion, math.hypot(point[0], point[1]), float(point[2])
         basis = cylindrical_basis(np.arctan2(point[1], point[0]))
     else:
         radius, theta, axial = pair.to_wheel(point)
         flank, rho, z, basis = pair.wheel, float(radius), float(axial), pair.wheel_basis(theta)
-    jet = flank.borders(np.asarray(rho), np.asarray(z))[border]
+    jet = flank.edges(np.asarray(rho), np.asarray(z))[edge]
     value, inwards = float(jet.value), np.array([float(jet.rho), 0.0, float(jet.z)])
     steep = float(np.linalg.norm(inwards))
-    at_border = np.array([rho, 0.0, z]) - value / steep**2 * inwards
-    flank_normal = outward_normal(flank, at_border[0], at_border[2])
+    at_edge = np.array([rho, 0.0, z]) - value / steep**2 * inwards
+    flank_normal = outward_normal(flank, at_edge[0], at_edge[2])
     angle = math.acos(float(np.clip(flank_normal @ inwards / steep, -1.0, 1.0)))
     normal = -inwards @ basis / steep
-    name = f"{flank.frame.borders[border]} of the {('pinion', 'wheel')[member]}"
+    name = f"{flank.frame.edges[edge]} of the {('pinion', 'wheel')[member]}"
     return _End(member, name, normal, float(value / steep + normal @ (point - origin)), angle)
 
 

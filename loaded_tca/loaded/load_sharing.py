@@ -1,8 +1,8 @@
 r"""The torque shared over the tooth pairs that can touch at one position: one common rotation, one force for each.
 
-Load lets the wheel lag by a rotation theta against its unloaded place. That closes tooth pair k, whose own flanks
-touch at the lag theta_k, by the lever of its contact about the wheel's axis times what is left of the rotation, and
-the closing is the approach of its contact and the deflection of the teeth:
+Load lets the wheel stay behind by a rotation theta against its unloaded place. That closes tooth pair k, whose own
+flanks touch at the lag theta_k, by the lever of its contact about the wheel's axis times what is left of the rotation,
+and the closing is the approach of its contact and the deflection of the teeth:
 
 .. math:: l_{2k} (\theta - \theta_k) = \delta_k(F_k) + \sum_j C_{kj} F_j \quad\text{where } F_k > 0, \qquad
           \sum_k l_{1k} F_k = T_1 .
@@ -58,7 +58,7 @@ SOFTEST_START = 4.0
 
 
 @dataclass(frozen=True, eq=False)
-class Touch:
+class ToothPair:
     """A tooth pair that may carry load at a position.
 
     Attributes
@@ -67,13 +67,13 @@ class Touch:
         Its number.
     contact : ContactPoint
         Its first touch, unloaded, in the angles of its own tooth.
-    lag : float [rad]
+    initial_separation : float [rad]
         Rotation of the wheel at which it touches; zero for the leading pair.
     """
 
     pair: int
     contact: ContactPoint
-    lag: float
+    initial_separation: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,14 +82,14 @@ class Share:
 
     Attributes
     ----------
-    touch : Touch
+    tooth_pair : ToothPair
     loaded : LoadedContact
         Its contact under its force.
     deflection : float [mm]
         What of its closing bends the teeth, not the contact.
     """
 
-    touch: Touch
+    tooth_pair: ToothPair
     loaded: LoadedContact
     deflection: float
 
@@ -101,7 +101,7 @@ class Share:
     @property
     def torque(self) -> float:
         """Its part of the pinion torque [N mm]."""
-        return float(self.force * self.touch.contact.pinion_lever)
+        return float(self.force * self.tooth_pair.contact.pinion_lever)
 
     @property
     def law(self) -> PowerLaw:
@@ -114,7 +114,7 @@ class Share:
     def rotation(self) -> float:
         """Rotation that its closing asks for [rad]."""
         closing = self.loaded.approach + self.deflection
-        return float(self.touch.lag + closing / self.touch.contact.wheel_lever)
+        return float(self.tooth_pair.initial_separation + closing / self.tooth_pair.contact.wheel_lever)
 
 
 @dataclass(frozen=True)
@@ -151,7 +151,7 @@ class SharedLoad:
     torque : float [N mm]
         Of the pinion.
     rotation : float [rad]
-        By how much the load lets the wheel lag; zero without load.
+        By how much the load lets the wheel stay behind; zero without load.
     shares : tuple of Share
         Of the k pairs that carry load; without load the leading one.
     compliance : (k, k) array [mm/N]
@@ -172,9 +172,9 @@ class SharedLoad:
     @property
     def laws(self) -> Laws:
         """What a neighbouring position or torque may start from."""
-        numbers = [share.touch.pair for share in self.shares]
+        numbers = [share.tooth_pair.pair for share in self.shares]
         bending = dict(zip(product(numbers, numbers), self.compliance.ravel().tolist(), strict=True))
-        return Laws({share.touch.pair: share.law for share in self.shares if share.force > 0.0}, bending)
+        return Laws({share.tooth_pair.pair: share.law for share in self.shares if share.force > 0.0}, bending)
 
     @property
     def torque_rate(self) -> float:
@@ -182,7 +182,7 @@ class SharedLoad:
         stiffness = np.array([share.loaded.stiffness for share in self.shares])
         if not stiffness.all():
             return 0.0
-        contacts = [share.touch.contact for share in self.shares]
+        contacts = [share.tooth_pair.contact for share in self.shares]
         closings = self.compliance.copy()
         np.fill_diagonal(closings, 1.0 / stiffness)
         forces = np.linalg.solve(closings, [contact.wheel_lever for contact in contacts])
@@ -191,7 +191,7 @@ class SharedLoad:
 
 def share_load(
     pair: GearPair,
-    touches: Sequence[Touch],
+    tooth_pairs: Sequence[ToothPair],
     torque: float,
     grid: GridChoice,
     *,
@@ -203,8 +203,8 @@ def share_load(
     Parameters
     ----------
     pair : GearPair
-    touches : sequence of Touch
-        Every pair that may touch, one at least with no lag; see :func:`touches_at`.
+    tooth_pairs : sequence of ToothPair
+        Every pair that may touch, one at least with no lag; see :func:`tooth_pairs_at`.
     torque : float [N mm]
         Of the pinion, >= 0.
     grid : GridChoice
@@ -236,20 +236,20 @@ def share_load(
     >>> gear = CylindricalGear(teeth=30, normal_module=3.0, face_width=25.0)
     >>> crowned = (FlankModifications(lead_crowning=0.005), FlankModifications())
     >>> pair = cylindrical_pair(CylindricalMesh(gear, gear), modifications=crowned)
-    >>> touches = touches_at(trace_teeth(pair, [0.5 * pair.pitch]), 0)
+    >>> touches = tooth_pairs_at(trace_teeth(pair, [0.5 * pair.pitch]), 0)
     >>> shared = share_load(pair, touches, 130e3, GridChoice(accuracy=1e-2))
     >>> [round(share.torque / 130e3, 3) for share in shared.shares]
     [0.5, 0.5]
     """
     if not 0.0 <= torque < math.inf:
         raise InputError(f"torque: {torque!r} N mm is not a finite number >= 0")
-    if not touches:
+    if not tooth_pairs:
         raise InputError("touches: none given; a torque needs one tooth pair at least that can touch")
     if torque == 0.0:
-        leading = min(touches, key=lambda touch: touch.lag)
+        leading = min(tooth_pairs, key=lambda tooth_pair: tooth_pair.initial_separation)
         share = Share(leading, press(pair, leading.contact, 0.0, grid), 0.0)
         return SharedLoad(0.0, 0.0, (share,), np.zeros((1, 1)), 0.0, 0)
-    return _Balance(pair, touches, torque, grid, compliance, start).run()
+    return _Balance(pair, tooth_pairs, torque, grid, compliance, start).run()
 
 
 class _Balance:
@@ -258,34 +258,39 @@ class _Balance:
     def __init__(
         self,
         pair: GearPair,
-        touches: Sequence[Touch],
+        tooth_pairs: Sequence[ToothPair],
         torque: float,
         grid: GridChoice,
         compliance: TeethYield | None,
         start: Laws,
     ) -> None:
-        self.pair, self.touches, self.torque, self.grid = pair, tuple(touches), torque, grid
-        numbers = [touch.pair for touch in touches]
+        self.pair, self.tooth_pairs, self.torque, self.grid = pair, tuple(tooth_pairs), torque, grid
+        numbers = [tooth_pair.pair for tooth_pair in tooth_pairs]
         self.teeth = None if compliance is None else LoadedTeeth(compliance, numbers)
-        self.lags = np.array([touch.lag for touch in touches])
-        self.levers = np.array([(touch.contact.pinion_lever, touch.contact.wheel_lever) for touch in touches]).T
-        self.laws = [start.contact.get(touch.pair) or self._borrowed(start.contact, touch) for touch in touches]
-        self.pressed: list[LoadedContact | None] = [None] * len(touches)
+        self.separations = np.array([tooth_pair.initial_separation for tooth_pair in tooth_pairs])
+        self.levers = np.array(
+            [(tooth_pair.contact.pinion_lever, tooth_pair.contact.wheel_lever) for tooth_pair in tooth_pairs]
+        ).T
+        self.laws = [
+            start.contact.get(tooth_pair.pair) or self._borrowed(start.contact, tooth_pair)
+            for tooth_pair in tooth_pairs
+        ]
+        self.pressed: list[LoadedContact | None] = [None] * len(tooth_pairs)
         self.matrix = np.array([[start.compliance(one, other) for other in numbers] for one in numbers])
         self.agreement = AGREEMENT_ON_CELLS if grid.cells is not None else AGREEMENT * grid.accuracy
 
-    def _borrowed(self, start: Mapping[int, PowerLaw], touch: Touch) -> PowerLaw:
+    def _borrowed(self, start: Mapping[int, PowerLaw], tooth_pair: ToothPair) -> PowerLaw:
         """Law of the nearest pair that has one; else that of a slender contact over the face."""
         if start:
-            return start[min(start, key=lambda other: abs(other - touch.pair))]
-        load = self.torque / touch.contact.pinion_lever
+            return start[min(start, key=lambda other: abs(other - tooth_pair.pair))]
+        load = self.torque / tooth_pair.contact.pinion_lever
         return PowerLaw(load, SOFTEST_START * load / (self.pair.contact_modulus * self.pair.face_width))
 
     def run(self) -> SharedLoad:
         residual, forces = math.inf, np.zeros(len(self.laws))
         for count in range(1, MOST_BALANCES + 1):
             before = forces
-            forces = balance(self.laws, self.lags, self.levers, self.torque, self.matrix)
+            forces = balance(self.laws, self.separations, self.levers, self.torque, self.matrix)
             if count > SWINGING:
                 forces = 0.5 * (before + forces)
             for index in np.flatnonzero(forces):
@@ -316,7 +321,7 @@ class _Balance:
             loaded = self._tell(index, lambda: before.under(force, lift))
         else:
             beneath = None if self.teeth is None else self.teeth.beneath(index, self.pressed, forces)
-            contact = self.touches[index].contact
+            contact = self.tooth_pairs[index].contact
             loaded = self._tell(index, lambda: press(self.pair, contact, force, self.grid, beneath))
         self.pressed[index] = loaded
         approach = loaded.approach
@@ -330,11 +335,11 @@ class _Balance:
         try:
             return solve()
         except ConvergenceError as error:
-            raise ConvergenceError(f"tooth pair {self.touches[index].pair:+d}: {error}", error.last) from error
+            raise ConvergenceError(f"tooth pair {self.tooth_pairs[index].pair:+d}: {error}", error.last) from error
 
     def _stay_apart(self, forces: Array, rotation: float) -> bool:
         """Whether the rotation closes none of the pairs that carry nothing."""
-        closing = self.levers[1] * (rotation - self.lags) - self.matrix @ forces
+        closing = self.levers[1] * (rotation - self.separations) - self.matrix @ forces
         return bool((closing <= self.agreement * rotation * self.levers[1])[forces == 0.0].all())
 
     def _settled(self, forces: Array, rotation: float) -> bool:
@@ -352,7 +357,7 @@ class _Balance:
         for index in carrying:
             loaded = self.pressed[index]
             assert loaded is not None
-            shares.append(Share(self.touches[index], loaded, float(deflections[index])))
+            shares.append(Share(self.tooth_pairs[index], loaded, float(deflections[index])))
         asked = np.array([share.rotation for share in shares])
         rotation = float(asked @ forces[carrying] / forces[carrying].sum())
         residual = float(np.abs(asked - rotation).max()) / rotation
@@ -360,7 +365,7 @@ class _Balance:
         return SharedLoad(self.torque, rotation, tuple(shares), part, residual, count)
 
 
-def touches_at(mesh: MeshPath, position: int) -> tuple[Touch, ...]:
+def tooth_pairs_at(mesh: MeshPath, position: int) -> tuple[ToothPair, ...]:
     """Tooth pairs that can touch at a position, with their lags: those within reach, corner contacts included.
 
     Parameters
@@ -370,6 +375,6 @@ def touches_at(mesh: MeshPath, position: int) -> tuple[Touch, ...]:
     position : int
         Index of the pinion angle.
     """
-    lags = mesh.lag[:, position]
-    found = zip(mesh.pairs.tolist(), mesh.paths, lags.tolist(), strict=True)
-    return tuple(Touch(number, path[position], max(lag, 0.0)) for number, path, lag in found if math.isfinite(lag))
+    separations = mesh.initial_separation[:, position]
+    found = zip(mesh.pairs.tolist(), mesh.paths, separations.tolist(), strict=True)
+    return tuple(ToothPair(number, path[position], max(gap, 0.0)) for number, path, gap in found if math.isfinite(gap))

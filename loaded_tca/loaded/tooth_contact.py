@@ -84,7 +84,7 @@ class LoadedContact:
         The unloaded contact it grows from.
     separation : Separation
     solution : ContactSolution
-    at_crease : bool
+    at_relief_start : bool
         Whether the start of a linear relief lies in the contact.
     tolerance : float
         To which the solver kept the contact conditions.
@@ -95,24 +95,24 @@ class LoadedContact:
     contact: ContactPoint
     separation: Separation
     solution: ContactSolution
-    at_crease: bool
+    at_relief_start: bool
     tolerance: float = 1e-6
     lift: Array | None = None
 
     @property
-    def at_border(self) -> bool:
-        """Whether the contact reaches a border of a flank."""
+    def at_edge(self) -> bool:
+        """Whether the contact reaches an edge of a flank."""
         return bool(self.contact.on_edge) or self.solution.reaches_material_edge
 
     @property
     def peak_pressure(self) -> float:
-        """Peak pressure [MPa]; the largest cell where the contact reaches a border or a crease."""
-        rough = self.at_border or self.at_crease
+        """Peak pressure [MPa]; the largest cell where the contact reaches an edge or a relief start."""
+        rough = self.at_edge or self.at_relief_start
         return float(self.solution.pressure.max()) if rough else self.solution.peak_pressure
 
     @property
     def central_pressure(self) -> float:
-        """Pressure beside the contact point [MPa]: what is left of the peak where that sits at a border."""
+        """Pressure beside the contact point [MPa]: what is left of the peak where that sits at an edge."""
         middle = tuple(slice((n - 1) // 2, n // 2 + 1) for n in self.solution.pressure.shape)
         there = np.isfinite(self.separation.gap[middle])
         return float(self.solution.pressure[middle][there].mean()) if there.any() else 0.0
@@ -136,12 +136,12 @@ class LoadedContact:
     def hertz(self) -> PointContact | None:
         """Hertz's contact of the same curvatures and load; None where it does not hold.
 
-        That is at a border, on a crease or a line, without load, and where the curvature of the contact point is not
-        that of the contact: on a flank with end relief alone the ellipse would be longer than the box, and where a
+        That is at an edge, on a relief start or a line, without load, and where the curvature of the contact point is
+        not that of the contact: on a flank with end relief alone the ellipse would be longer than the box, and where a
         relief begins in the ellipse the gap leaves the paraboloid.
         """
         across, along = self.separation.curvatures
-        smooth = along > 0.0 and not (self.at_border or self.at_crease or self.contact.on_line)
+        smooth = along > 0.0 and not (self.at_edge or self.at_relief_start or self.contact.on_line)
         if not smooth or self.solution.load <= 0.0:
             return None
         ellipse = point_contact(self.solution.load, (across, along), self.solution.contact_modulus)
@@ -162,8 +162,8 @@ class LoadedContact:
 
     @property
     def extent(self) -> tuple[float, float]:
-        """Width across and length along [mm]: of the contact ellipse, at a border of the cells under pressure."""
-        if not self.at_border:
+        """Width across and length along [mm]: of the contact ellipse, at an edge of the cells under pressure."""
+        if not self.at_edge:
             minor, major = self.solution.semi_axes
             return 2.0 * minor, 2.0 * major
         (nx, ny), (dx, dy) = self.solution.cells_across, self.separation.spacing
@@ -335,7 +335,7 @@ def _press_in_box(
             sampler,
             modulus,
             accuracy=grid.accuracy,
-            smooth=not _crosses_crease(pair, contact, first, expected > 0.0),
+            smooth=not _crosses_relief_start(pair, contact, first, expected > 0.0),
             first_cells=FIRST_CELLS,
             initial_pressure=expected,
             column_compliance=columns,
@@ -343,8 +343,8 @@ def _press_in_box(
         )
     pressed = solution.pressure > 0.0
     separation, lift = finest[0]
-    at_crease = _crosses_crease(pair, contact, separation, pressed)
-    return LoadedContact(contact, separation, solution, at_crease, tolerance, lift)
+    at_relief_start = _crosses_relief_start(pair, contact, separation, pressed)
+    return LoadedContact(contact, separation, solution, at_relief_start, tolerance, lift)
 
 
 def _lift(separation: Separation, beneath: Beneath | None) -> Array | None:
@@ -352,14 +352,14 @@ def _lift(separation: Separation, beneath: Beneath | None) -> Array | None:
     return None if beneath is None else beneath.lift(separation)
 
 
-def _crosses_crease(pair: GearPair, contact: ContactPoint, separation: Separation, where: Array) -> bool:
+def _crosses_relief_start(pair: GearPair, contact: ContactPoint, separation: Separation, where: Array) -> bool:
     """Whether the start of a linear relief, of either flank, runs between the cells ``where``."""
-    if contact.on_crease:
+    if contact.on_relief_start:
         return True
     points = separation.points[where]
-    own = pair.pinion.creases(np.hypot(points[:, 0], points[:, 1]), points[:, 2])
+    own = pair.pinion.relief_starts(np.hypot(points[:, 0], points[:, 1]), points[:, 2])
     radius, _, axial = pair.to_wheel(points)
-    values = [jet.value for jet in (*own, *pair.wheel.creases(radius, axial))]
+    values = [jet.value for jet in (*own, *pair.wheel.relief_starts(radius, axial))]
     return any(value.size and value.min() < 0.0 < value.max() for value in values)
 
 

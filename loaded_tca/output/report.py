@@ -20,8 +20,8 @@ from loaded_tca.results.contacts import MAP_PARTS, NUMBERS, PAIRS, PATH_PARTS, c
 from loaded_tca.results.files import FilePath, Part, remove, replacing
 from loaded_tca.results.key_figures import ARCSEC
 from loaded_tca.results.mesh_cycle import MeshCycle, cycle_parts
-from loaded_tca.results.reached_edges import NAMES as BORDERS
-from loaded_tca.results.reached_edges import reached_borders
+from loaded_tca.results.reached_edges import NAMES as EDGES
+from loaded_tca.results.reached_edges import reached_edges
 from loaded_tca.results.summary import without_rounding
 from loaded_tca.scene import parse_scene
 
@@ -129,7 +129,7 @@ def positions_csv(result: MeshCycle) -> str:
 def contacts_csv(result: MeshCycle) -> str:
     """Return one row per torque, position and tooth pair under load, units in the header; an empty cell: not known.
 
-    The pairs of a position stand in the order of the mesh. The last column names the borders that the contact reaches,
+    The pairs of a position stand in the order of the mesh. The last column names the edges that the contact reaches,
     the tip of a gear or a side of its teeth.
     """
     shape = result.contacts.normal_force.shape
@@ -137,9 +137,9 @@ def contacts_csv(result: MeshCycle) -> str:
     rows = (result.contacts.normal_force > 0.0)[..., order]
     every = _contact_columns(result)
     columns = {name: np.broadcast_to(values, shape)[..., order][rows] for name, values in every.items()}
-    reached = reached_borders(result)[:, :, order][rows]
-    words = [" + ".join(name for name, one in zip(BORDERS, row, strict=True) if one) for row in reached]
-    return _table({**columns, "borders": np.array(words, dtype=object)})
+    reached = reached_edges(result)[:, :, order][rows]
+    words = [" + ".join(name for name, one in zip(EDGES, row, strict=True) if one) for row in reached]
+    return _table({**columns, "edges": np.array(words, dtype=object)})
 
 
 def _table(columns: Mapping[str, Array]) -> str:
@@ -171,7 +171,7 @@ def _contact_columns(result: MeshCycle) -> dict[str, Array]:
     for name, (unit, _) in NUMBERS.items():
         column, factor = _column(name, unit)
         columns[column] = getattr(contacts, name) * factor
-    return {**columns, "peak_at_border": contacts.peak_at_border}
+    return {**columns, "peak_at_edge": contacts.peak_at_edge}
 
 
 def _columns(result: MeshCycle) -> dict[str, Array]:
@@ -208,7 +208,7 @@ def _loaded_columns(result: MeshCycle) -> dict[str, Array]:
         if entry.metadata:
             name, factor = _column(entry.name, entry.metadata["unit"])
             columns[name] = result.by_torque(entry.name) * factor
-    columns["peak_at_border"] = result.by_torque("peak_at_border")
+    columns["peak_at_edge"] = result.by_torque("peak_at_edge")
     columns["loaded_pairs"] = result.by_torque("loaded_pairs")
     columns["transmission_error_um"] = result.by_torque("transmission_error") * result.wheel_base_radius * 1e3
     return columns

@@ -77,7 +77,7 @@ def _variables(below: StressBelow) -> dict[str, Variable]:
 def subsurface_csv(below: StressBelow) -> str:
     """Return the stresses at each depth below the highest pressure, and the largest of the whole depth; mm, MPa.
 
-    Where the peak is a spike at a border, the highest pressure is that across the contact point.
+    Where the peak is a spike at an edge, the highest pressure is that across the contact point.
     """
     stress = below.stress
     row, column = below.highest_pressure

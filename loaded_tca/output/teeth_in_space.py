@@ -108,7 +108,7 @@ def teeth_in_space(
     one = None if position is None else result.contacts.maps[torque][position][column]
     if position is None or one is None:
         raise GeometryError("no teeth in contact: the tooth pair does not touch at this position")
-    contact, path = _of_own_teeth(result, teeth.pair, position, column), result.path[result.path.touches]
+    contact, path = _of_own_teeth(result, teeth.pair, position, column), result.path[result.path.in_contact]
     pinion, wheel = teeth.in_mesh(contact.pinion_angle, contact.wheel_angle)
     return TeethInSpace(
         teeth.pair,

@@ -80,7 +80,7 @@ def face_milled_pair(
     >>> face_milled_pair(*spread_blade(blank))
     GearPair(20/30, module 3.59349 mm, face 22 mm)
     """
-    _require_mates(pinion, wheel, pinion_flank)
+    _require_mating_gears(pinion, wheel, pinion_flank)
     drive = signs_of(driving, "positive")[1]
     side = pinion.side(pinion_flank)
     gears = (pinion, wheel)
@@ -111,7 +111,7 @@ def face_milled_pair(
     )
 
 
-def _require_mates(pinion: FaceMilledGear, wheel: FaceMilledGear, pinion_flank: str) -> None:
+def _require_mating_gears(pinion: FaceMilledGear, wheel: FaceMilledGear, pinion_flank: str) -> None:
     """Refuse gears whose pitch cones do not roll on each other."""
     problems = []
     if pinion_flank not in ("concave", "convex"):

@@ -47,7 +47,7 @@ PICTURES = (
     "transmission_error",
     "peak_pressure",
     "pressure_map",
-    "pressure_map_border",
+    "pressure_map_edge",
     "pressure_map_hertz",
     "load_share",
     "harmonics",
@@ -80,9 +80,9 @@ def plot_all(
     -------
     tuple of Path
         ``contact_path.png``, ``transmission_error.png``, ``peak_pressure.png``; if anything touches,
-        ``pressure_map.png`` of the peak pressure; if a higher one lies at a border or a crease in another position,
-        ``pressure_map_border.png``; if Hertz holds in other positions only, ``pressure_map_hertz.png`` of the highest
-        pressure where it holds. Where tooth pairs share the load: ``load_share.png``, ``harmonics.png``,
+        ``pressure_map.png`` of the peak pressure; if a higher one lies at an edge or a relief start in another
+        position, ``pressure_map_edge.png``; if Hertz holds in other positions only, ``pressure_map_hertz.png`` of the
+        highest pressure where it holds. Where tooth pairs share the load: ``load_share.png``, ``harmonics.png``,
         ``mesh_stiffness.png``, ``line_load.png``, ``line_load_distribution.png``, ``pressure_envelope.png``,
         ``path_pressure.png``.
 
@@ -126,12 +126,12 @@ def _map_places(result: MeshCycle, torque: int, position: int | None) -> dict[st
     """Picture -> position and column of the tooth pair of each pressure map to be drawn."""
     if position is not None:
         return {"pressure_map": (position, result.highest_column(torque, position))}
-    peak, border = result.peak_contact(torque), result.border_contact(torque)
+    peak, edge = result.peak_contact(torque), result.edge_contact(torque)
     smooth = result.peak_contact(torque, where_hertz_holds=True)
     hertz_at_peak = peak is not None and result.contacts.hertz_pressure[torque][peak] > 0.0
     wanted = {
         "pressure_map": peak,
-        "pressure_map_border": None if border == peak else border,
+        "pressure_map_edge": None if edge == peak else edge,
         "pressure_map_hertz": None if hertz_at_peak else smooth,
     }
     return {name: place for name, place in wanted.items() if place is not None}

@@ -24,8 +24,8 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 SMALLEST_SPAN_ARCSEC = 0.02
 """Height of a transmission error axis below which a curve would be rounding."""
 BESIDE = "there beside the contact point"
-BORDER_HEADROOM = 1.15
-"""How far above the curves a peak at a border may draw the axis: the grid alone says how high it is."""
+EDGE_HEADROOM = 1.15
+"""How far above the curves a peak at an edge may draw the axis: the grid alone says how high it is."""
 
 
 def plot_transmission_error(result: MeshCycle) -> Figure:
@@ -72,8 +72,8 @@ def plot_peak_pressure(result: MeshCycle) -> Figure:
     """Peak pressure over the positions for each torque, with the pressure beside the contact point and after Hertz.
 
     Where tooth pairs share the load, the peak and that after Hertz are those of the pair with the highest inner
-    pressure. Peaks at a border or a crease, which grow with the grid, are single crosses, and the axis does not follow
-    them far; there the pressure beside the contact point of the most loaded pair is drawn too.
+    pressure. Peaks at an edge or a relief start, which grow with the grid, are single crosses, and the axis does not
+    follow them far; there the pressure beside the contact point of the most loaded pair is drawn too.
 
     Parameters
     ----------
@@ -86,23 +86,23 @@ def plot_peak_pressure(result: MeshCycle) -> Figure:
     figure = Figure(figsize=(8.0, 5.5), layout="constrained")
     axes, contacts = figure.add_subplot(), result.contacts
     angle = np.degrees(result.pinion_angle)
-    peak, at_border = result.by_torque("peak_pressure"), result.by_torque("peak_at_border")
-    central = np.where(at_border, result.by_torque("central_pressure"), np.nan)
+    peak, at_edge = result.by_torque("peak_pressure"), result.by_torque("peak_at_edge")
+    central = np.where(at_edge, result.by_torque("central_pressure"), np.nan)
     hertz = contacts.at_inner(contacts.hertz_pressure)
-    smooth = contacts.at_inner(np.where(contacts.peak_at_border, np.nan, contacts.peak_pressure))
+    smooth = contacts.at_inner(np.where(contacts.peak_at_edge, np.nan, contacts.peak_pressure))
     for torque, label, colour, marker in torque_styles(result):
         axes.plot(angle, smooth[torque], color=colour, marker=marker, markersize=5.0, label=label)
-        if at_border[torque].any():
+        if at_edge[torque].any():
             axes.plot(angle, central[torque], color=colour, marker=".", markersize=3.0, linestyle=":")
         if np.isfinite(hertz[torque]).any():
             axes.plot(angle, hertz[torque], color=colour, **HERTZ)
-    if at_border.any():
+    if at_edge.any():
         axes.plot([], [], color="black", marker=".", markersize=3.0, linestyle=":", label=BESIDE)
     if np.isfinite(hertz).any():
         axes.plot([], [], color="black", label="after Hertz", **HERTZ)
     from_zero(axes)
-    if at_border.any():
-        _draw_border_peaks(axes, result, angle, np.where(at_border, peak, np.nan))
+    if at_edge.any():
+        _draw_edge_peaks(axes, result, angle, np.where(at_edge, peak, np.nan))
     if not (peak > 0.0).any():
         tell_no_load(axes)
     axes.set_xlabel("pinion angle [deg]")
@@ -113,16 +113,16 @@ def plot_peak_pressure(result: MeshCycle) -> Figure:
     return figure
 
 
-def _draw_border_peaks(axes: Axes, result: MeshCycle, angle: Array, peak: Array) -> None:
+def _draw_edge_peaks(axes: Axes, result: MeshCycle, angle: Array, peak: Array) -> None:
     """Crosses, unconnected, for a peak (m, n) that is none elsewhere; arrows at the upper end where they lie beyond."""
     _, high = axes.get_ylim()
-    within, beyond = peak <= BORDER_HEADROOM * high, peak > BORDER_HEADROOM * high
+    within, beyond = peak <= EDGE_HEADROOM * high, peak > EDGE_HEADROOM * high
     high = max(high, (1.0 + HEADROOM) * float(peak[within].max(initial=0.0)))
     edge = 1.06 * high if beyond.any() else high
     for torque, _, colour, _ in torque_styles(result):
         axes.plot(angle[within[torque]], peak[torque][within[torque]], "x", color=colour)
         axes.plot(angle[beyond[torque]], np.full(beyond[torque].sum(), edge), "^", color=colour)
-    label = "at a border or crease (grows with the grid)"
+    label = "at an edge or relief start (grows with the grid)"
     if within.any():
         axes.plot([], [], "x", color="black", label=label)
     if beyond.any():

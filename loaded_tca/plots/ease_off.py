@@ -21,7 +21,7 @@ ARCMIN = math.degrees(60.0)
 
 
 def plot_ease_off(ease_off: EaseOffMap, title: str = "") -> Figure:
-    """Ease-off in um over the flank as its frame shows it, the tip on top; what the mate does not cover is hatched.
+    """Ease-off in um over the flank in its frame, the tip on top; hatched where the mating gear does not reach.
 
     Parameters
     ----------

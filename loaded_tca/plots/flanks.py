@@ -14,7 +14,7 @@ from matplotlib.patches import Patch, Polygon
 from loaded_tca.arrays import Array
 from loaded_tca.flanks.base import Flank
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.plots.style import ACCENT, COLOURS, NO_MATE, highest_torque, load, range_of_positions, set_title
+from loaded_tca.plots.style import ACCENT, COLOURS, NOT_REACHED, highest_torque, load, range_of_positions, set_title
 from loaded_tca.results.contacts import PressureMap
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import parse_scene
@@ -30,7 +30,7 @@ FINENESS = (129, 33)
 def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     """Path of contact on both flanks, each as its frame shows it, with the pressure of some positions.
 
-    White is the part of a flank that the mate reaches at nominal mounting.
+    White is the part of a flank that the mating gear reaches at nominal mounting.
 
     Parameters
     ----------
@@ -99,7 +99,9 @@ def _explain(figure: Figure, drawn: int, positions: int, unreached: bool) -> Non
         Line2D([], [], color=ACCENT, marker=".", linestyle="", label=CONTACT_POINTS),
     ]
     if unreached:
-        handles.append(Patch(facecolor=NO_MATE, edgecolor="black", label="flank that the mate does not reach"))
+        handles.append(
+            Patch(facecolor=NOT_REACHED, edgecolor="black", label="flank that the mating gear does not reach")
+        )
     pressure = f"pressure drawn at {drawn} of {positions} positions"
     figure.legend(
         handles=handles, title=pressure, loc="outside lower center", ncols=2, fontsize="small", title_fontsize="small"
@@ -119,7 +121,7 @@ def _profile_start(flank: Flank) -> float:
 
 def draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:
     """The flank from root to tip, with the part from profile coordinate ``start`` on in white; returns its outline."""
-    outline = _region(flank, _profile_start(flank), NO_MATE)
+    outline = _region(flank, _profile_start(flank), NOT_REACHED)
     for piece in (outline, _region(flank, start, "white")):
         axes.add_patch(piece)
     lower, upper = outline.get_xy().min(axis=0), outline.get_xy().max(axis=0)

@@ -90,9 +90,9 @@ def _on_pinion(frame: FlankFrame, point: Array) -> tuple[Array, Array]:
 
 
 def _end_of_scale(result: MeshCycle, at: tuple[int, int, int], one: PressureMap) -> float:
-    """The peak; of a spike at a border what nearly all cells stay below, or the highest that is no spike [MPa]."""
+    """The peak; of a spike at an edge what nearly all cells stay below, or the highest that is no spike [MPa]."""
     peak = float(one.pressure.max())
-    if not result.contacts.peak_at_border[at]:
+    if not result.contacts.peak_at_edge[at]:
         return peak
     most = float(np.quantile(one.pressure[one.pressure > 0.0], 1.0 - CELLS_OF_A_SPIKE))
     return min(peak, max(most, highest_inner_pressure(result, at[0], [one])))
@@ -100,7 +100,7 @@ def _end_of_scale(result: MeshCycle, at: tuple[int, int, int], one: PressureMap)
 
 def _draw_pressure(figure: Figure, axes: Axes, one: PressureMap, highest: float) -> None:
     """Pressure of each cell, in colours up to the highest; white without pressure, grey without material."""
-    y, x = (borders(centres, step) for centres, step in ((one.y, one.spacing[1]), (one.x, one.spacing[0])))
+    y, x = (cell_limits(centres, step) for centres, step in ((one.y, one.spacing[1]), (one.x, one.spacing[0])))
     void = np.isinf(one.gap)
     axes.set_facecolor(NO_MATERIAL)
     axes.pcolormesh(y, x, np.where(void, np.nan, 0.0), cmap="Greys", vmin=0.0, vmax=1.0)
@@ -114,7 +114,7 @@ def _draw_pressure(figure: Figure, axes: Axes, one: PressureMap, highest: float)
     peak = float(one.pressure.max())
     label = "contact pressure [MPa]"
     if highest < peak:
-        label += f"\n(few cells at the border: up to {peak:.0f})"
+        label += f"\n(few cells at the edge: up to {peak:.0f})"
     figure.colorbar(mesh, ax=axes, label=label, extend="max" if highest < peak else "neither")
 
 
@@ -128,8 +128,8 @@ def _draw_ellipse(axes: Axes, result: MeshCycle, at: tuple[int, int, int]) -> No
         axes.add_patch(ellipse)
 
 
-def borders(centres: Array, step: float) -> Array:
-    """Borders (n + 1,) of cells of one size."""
+def cell_limits(centres: Array, step: float) -> Array:
+    """Edges (n + 1,) of cells of one size."""
     return np.append(centres, centres[-1] + step) - 0.5 * step
 
 

@@ -327,7 +327,7 @@ def _mark_points(axes: Axes, pair: GearPair, reach: float) -> None:
 
 
 def _leaves_flanks(pair: GearPair, farthest: float) -> float:
-    """Angle [rad] between zero and the farthest at which the unloaded contact point of a pair comes to a border.
+    """Angle [rad] between zero and the farthest at which the unloaded contact point of a pair comes to an edge.
 
     NaN if it does not, or lies on one at zero already.
     """
@@ -338,7 +338,7 @@ def _leaves_flanks(pair: GearPair, farthest: float) -> float:
             path = trace_contact(pair, angles, warn=False)
         except GeometryError:  # nothing touches on that side
             return math.nan
-        outside = path.on_edge | ~path.touches
+        outside = path.on_edge | ~path.in_contact
         if not outside.any() or outside[0]:
             return math.nan
         first = int(np.argmax(outside))

@@ -19,7 +19,7 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 
 COLOURS = "viridis"
 """Even in lightness, and told apart by colour-blind readers and in grey."""
-ACCENT, NO_MATERIAL, NO_MATE = "#d55e00", "0.8", "0.9"
+ACCENT, NO_MATERIAL, NOT_REACHED = "#d55e00", "0.8", "0.9"
 MARKERS = "osD^vP*X"
 HERTZ: dict[str, Any] = {"linestyle": "--", "linewidth": 4.0, "alpha": 0.4, "zorder": 1.0}
 """How a curve after Hertz is drawn: broad, below the curve that it is compared with, in the colour of its torque."""

@@ -14,7 +14,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.flank_maps.pattern import ContactPattern
 from loaded_tca.flank_maps.vh_check import BEYOND, VHCheck
 from loaded_tca.flanks.frame import FlankFrame
-from loaded_tca.plots.style import ACCENT, COLOURS, NO_MATE
+from loaded_tca.plots.style import ACCENT, COLOURS, NOT_REACHED
 
 CELL = (2.0, 1.35)
 """Size of a cell [inch]."""
@@ -67,7 +67,7 @@ def _draw_cell(axes: Axes, pattern: ContactPattern, frame: FlankFrame, levels: A
     """The flank, with the gap as far as the compound marks it."""
     x, y = frame.to_picture(pattern.radius, pattern.axial)
     outline = (np.concatenate([part[0], part[:, -1], part[-1, ::-1], part[::-1, 0]]) for part in (x, y))
-    axes.fill(*outline, color=NO_MATE, zorder=0)
+    axes.fill(*outline, color=NOT_REACHED, zorder=0)
     gap = 1e3 * np.clip(pattern.gap, 0.0, BEYOND * pattern.compound)
     return axes.contourf(x, y, gap, levels, cmap=COLOURS)
 

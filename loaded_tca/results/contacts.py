@@ -66,7 +66,7 @@ class ContactNumbers:
 
     normal_force: Array = quantity("N", "normal force on the tooth pair")
     peak_pressure: Array = quantity(
-        "MPa", "peak contact pressure; at a border or crease the largest cell, which grows with the grid"
+        "MPa", "peak contact pressure; at an edge or relief start the largest cell, which grows with the grid"
     )
     central_pressure: Array = quantity("MPa", "contact pressure beside the unloaded contact point")
     peak_radius: Array = quantity("mm", "radius on the pinion of the cell with the largest pressure")
@@ -84,15 +84,15 @@ class ContactNumbers:
     face_load_factor: Array = quantity("1", "largest line load over the force spread evenly along the whole face")
     approach: Array = quantity("mm", "approach of the two flanks along the normal")
     deflection: Array = quantity("mm", "deflection of the teeth along the normal, beside the approach")
-    on_edge: Array = quantity("1", "whether the contact reaches a border of a flank")
-    at_crease: Array = quantity("1", "whether the start of a linear relief lies in the contact")
+    on_edge: Array = quantity("1", "whether the contact reaches an edge of a flank")
+    at_relief_start: Array = quantity("1", "whether the start of a linear relief lies in the contact")
     cells_across: Array = quantity("1", "cells of the grid across the contact")
     cells_along: Array = quantity("1", "cells of the grid along the contact")
     iterations: Array = quantity("1", "iterations of the contact solver")
     residual: Array = quantity("1", "residual of the contact solver")
 
 
-OF_THE_PEAK = frozenset({"peak_pressure", "peak_radius", "peak_axial", "on_edge", "at_crease"}) | frozenset(
+OF_THE_PEAK = frozenset({"peak_pressure", "peak_radius", "peak_axial", "on_edge", "at_relief_start"}) | frozenset(
     {"cells_across", "cells_along", "iterations", "residual"}
 )
 """Numbers of a position that belong to its highest peak pressure."""
@@ -121,23 +121,24 @@ class PairContacts(ContactNumbers):
     maps: tuple[tuple[tuple[PressureMap | None, ...], ...], ...]
 
     @property
-    def peak_at_border(self) -> Array:
-        """Whether the largest cell lies at the end of a flank, or a crease in the contact: bool, (m, n, pairs).
+    def peak_at_edge(self) -> Array:
+        """Whether the largest cell lies at the end of a flank, or a relief start in the contact: bool, (m, n, pairs).
 
         There theory has an infinite pressure, and the peak grows with the grid, up to a cap if there is one.
         """
         at_end = [[[one is not None and _peaks_at_end(one) for one in row] for row in rows] for rows in self.maps]
-        return np.asarray(np.array(at_end).reshape(self.peak_pressure.shape) | (self.at_crease > 0))
+        return np.asarray(np.array(at_end).reshape(self.peak_pressure.shape) | (self.at_relief_start > 0))
 
     @property
     def inner_pressure(self) -> Array:
         """Highest pressure that is no matter of the grid [MPa], (m, n, pairs).
 
         The peak; where that grows with the grid, the pressure beside the contact point; NaN where the contact point
-        itself lies on a border or a crease, or nearer to a border than half the contact is wide: the spike reaches it.
+        itself lies on an edge or a relief start, or nearer to an edge than half the contact is wide: the spike reaches
+        it.
         """
-        held = np.stack([path.on_edge | path.on_crease for path in self.paths], axis=1) | self._within_spike
-        return np.where(self.peak_at_border, np.where(held, math.nan, self.central_pressure), self.peak_pressure)
+        held = np.stack([path.on_edge | path.on_relief_start for path in self.paths], axis=1) | self._within_spike
+        return np.where(self.peak_at_edge, np.where(held, math.nan, self.central_pressure), self.peak_pressure)
 
     @property
     def _within_spike(self) -> Array:
@@ -183,7 +184,7 @@ class PairContacts(ContactNumbers):
 
     def row(self, torque: int, max_pressure: float) -> dict[str, Array]:
         """Every number under one torque, one after the other over positions and pairs, (n pairs,)."""
-        values = {name: getattr(self, name) for name in (*NUMBERS, "inner_pressure", "peak_at_border")}
+        values = {name: getattr(self, name) for name in (*NUMBERS, "inner_pressure", "peak_at_edge")}
         values["capped"] = self.peak_pressure >= CAPPED * max_pressure
         return {name: part[torque].ravel() for name, part in values.items()}
 
@@ -217,16 +218,16 @@ PATH_PARTS = _at_positions(
     ("wheel_axial", (), "mm", "axial coordinate of the contact point on the wheel"),
     ("pinion_lever", (), "mm", "torque of a unit normal force about the axis of the pinion"),
     ("wheel_lever", (), "mm", "torque of a unit normal force about the axis of the wheel"),
-    ("touches", (), "1", "whether the tooth pair touches"),
-    ("on_edge", (), "1", "whether the unloaded contact lies on a border of a flank"),
-    ("on_crease", (), "1", "whether the unloaded contact lies on the start of a linear relief"),
+    ("in_contact", (), "1", "whether the tooth pair touches"),
+    ("on_edge", (), "1", "whether the unloaded contact lies on an edge of a flank"),
+    ("on_relief_start", (), "1", "whether the unloaded contact lies on the start of a linear relief"),
     ("on_line", (), "1", "whether the unloaded contact is a line"),
     ("line_ends", ("end", *VECTOR), "mm", "ends of the line in the fixed frame"),
     (
         "edges",
-        ("border",),
+        ("edge",),
         "1",
-        "borders that hold the point, pinion then wheel: tip, root, lower side (toe), upper side (heel)",
+        "edges that hold the point, pinion then wheel: tip, root, lower side (toe), upper side (heel)",
     ),
     ("iterations", (), "1", "Newton steps of the unloaded contact"),
     ("residual", (), "1", "sine of the angle between the two normals"),
@@ -344,7 +345,7 @@ def unpack_contacts(variables: Mapping[str, Variable], pairs: NDArray[np.int_]) 
 
 
 def _ends_within(one: PressureMap, distance: float) -> bool:
-    """Whether there are cells without material, their borders counted, nearer to the contact point than so many mm."""
+    """Whether there are cells without material, their edges counted, nearer to the contact point than so many mm."""
     x, y = (
         np.maximum(np.abs(centres) - 0.5 * step, 0.0) for centres, step in zip((one.x, one.y), one.spacing, strict=True)
     )

@@ -27,9 +27,9 @@ def highest_peak(row: Row) -> int | None:
     return _highest(row["central_pressure"]) if inner is None else inner
 
 
-def highest_border_peak(row: Row) -> int | None:
-    """Position of the highest of the peaks at a border or crease, which grow with the grid; None if there is none."""
-    return _highest(np.where(row["peak_at_border"], row["peak_pressure"], math.nan))
+def highest_edge_peak(row: Row) -> int | None:
+    """Position of the highest peak at an edge or relief start, which grows with the grid; None if there is none."""
+    return _highest(np.where(row["peak_at_edge"], row["peak_pressure"], math.nan))
 
 
 def highest_where_hertz_holds(row: Row) -> int | None:
@@ -111,7 +111,7 @@ def key_figures(
     length = 1e3 * wheel_base_radius
     return {
         **_peak_figures(path, row, highest_peak(row)),
-        **_border_figures(path, row, highest_border_peak(row)),
+        **_edge_figures(path, row, highest_edge_peak(row)),
         **_hertz_figures(row, highest_where_hertz_holds(row)),
         **_error_figures("transmission_error", cycle["transmission_error"], wheel_base_radius),
         **{
@@ -142,12 +142,12 @@ def _at(values: Array, position: int | None) -> float:
 
 def _peak_figures(path: ContactPath, row: Row, at: int | None) -> dict[str, float]:
     """What holds at the position of the first number; its place is the contact point where it is found beside that."""
-    beside = at is not None and bool(row["peak_at_border"][at])
+    beside = at is not None and bool(row["peak_at_edge"][at])
     radius, axial = (path.pinion_radius, path.pinion_axial) if beside else (row["peak_radius"], row["peak_axial"])
     return {
         "peak_pressure_MPa": _at(row["central_pressure"] if beside else row["peak_pressure"], at),
         "peak_is_beside_contact_point": beside,
-        "contact_point_is_at_border": beside and math.isnan(_at(row["inner_pressure"], at)),
+        "contact_point_is_at_edge": beside and math.isnan(_at(row["inner_pressure"], at)),
         "pinion_angle_at_peak_deg": math.degrees(_at(path.pinion_angle, at)),
         "pinion_diameter_at_peak_mm": 2.0 * _at(radius, at),
         "pinion_axial_at_peak_mm": _at(axial, at),
@@ -161,13 +161,13 @@ def _peak_figures(path: ContactPath, row: Row, at: int | None) -> dict[str, floa
     }
 
 
-def _border_figures(path: ContactPath, row: Row, at: int | None) -> dict[str, float]:
-    """The highest peak at a border or crease, told beside the first number."""
+def _edge_figures(path: ContactPath, row: Row, at: int | None) -> dict[str, float]:
+    """The highest peak at an edge or relief start, told beside the first number."""
     return {
-        "border_pressure_MPa": _at(row["peak_pressure"], at),
-        "pinion_angle_at_border_deg": math.degrees(_at(path.pinion_angle, at)),
-        "pinion_diameter_at_border_mm": 2.0 * _at(row["peak_radius"], at),
-        "pinion_axial_at_border_mm": _at(row["peak_axial"], at),
+        "edge_pressure_MPa": _at(row["peak_pressure"], at),
+        "pinion_angle_at_edge_deg": math.degrees(_at(path.pinion_angle, at)),
+        "pinion_diameter_at_edge_mm": 2.0 * _at(row["peak_radius"], at),
+        "pinion_axial_at_edge_mm": _at(row["peak_axial"], at),
     }
 
 
@@ -185,7 +185,7 @@ def _line_load_figures(row: Row, at: int | None) -> dict[str, float]:
     return {
         "line_load_at_largest_force_N_per_mm": _at(row["line_load"], at),
         "face_load_factor_at_largest_force": _at(row["face_load_factor"], at),
-        "largest_force_is_at_border": at is not None and bool(row["peak_at_border"][at]),
+        "largest_force_is_at_edge": at is not None and bool(row["peak_at_edge"][at]),
     }
 
 
@@ -212,7 +212,7 @@ def _solver_figures(row: Row) -> dict[str, float]:
 
 
 def _counts(path: ContactPath, row: Row, cycle: Row) -> dict[str, float]:
-    positions = len(cycle["touches"])
+    positions = len(cycle["in_contact"])
 
     def count(flags: Array) -> int:
         """Positions at which a pair has the flag."""
@@ -220,11 +220,11 @@ def _counts(path: ContactPath, row: Row, cycle: Row) -> dict[str, float]:
 
     return {
         "positions": positions,
-        "touching_positions": int(cycle["touches"].sum()),
+        "positions_in_contact": int(cycle["in_contact"].sum()),
         "line_positions": count(path.on_line & np.isfinite(row["approach"])),
         "edge_positions": count(row["on_edge"] > 0),
-        "crease_positions": count(row["at_crease"] > 0),
-        "border_peak_positions": count(row["peak_at_border"]),
+        "relief_start_positions": count(row["at_relief_start"] > 0),
+        "edge_peak_positions": count(row["peak_at_edge"]),
         "capped_positions": count(row["capped"]),
     }
 

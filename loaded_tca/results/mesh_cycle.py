@@ -1,4 +1,4 @@
-"""The mesh cycle: what the tooth pairs carry, and how far the wheel lags, over the positions of a pitch."""
+"""The mesh cycle: what the tooth pairs carry, and how far the wheel stays behind, over the positions of a pitch."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from loaded_tca.results.contacts import (
 from loaded_tca.results.files import FilePath, Part, Variable, pack, read_netcdf, unpack, write_netcdf
 from loaded_tca.results.key_figures import (
     harmonic_amplitudes,
-    highest_border_peak,
+    highest_edge_peak,
     highest_peak,
     highest_where_hertz_holds,
     key_figures,
@@ -109,12 +109,12 @@ class MeshCycle(ContactNumbers):
         return PairContacts(**numbers, pairs=self.pairs, paths=(self.path,), maps=maps)
 
     @property
-    def peak_at_border(self) -> Array:
-        """Whether the largest cell lies at the end of a flank, or a crease in the contact: bool, (..., n).
+    def peak_at_edge(self) -> Array:
+        """Whether the largest cell lies at the end of a flank, or a relief start in the contact: bool, (..., n).
 
         There theory has an infinite pressure, and the peak grows with the grid, up to a cap if there is one.
         """
-        return self.contacts.at_highest(self.contacts.peak_at_border).reshape(self.peak_pressure.shape)
+        return self.contacts.at_highest(self.contacts.peak_at_edge).reshape(self.peak_pressure.shape)
 
     @property
     def capped(self) -> Array:
@@ -126,7 +126,7 @@ class MeshCycle(ContactNumbers):
         """Highest pressure that is no matter of the grid [MPa], (..., n).
 
         The peak; where that grows with the grid, the pressure beside the contact point; NaN where the contact point
-        itself lies on a border or a crease, or nearer to a border than half the contact is wide.
+        itself lies on an edge or a relief start, or nearer to an edge than half the contact is wide.
         """
         return np.fmax.reduce(self.contacts.inner_pressure, axis=-1).reshape(self.peak_pressure.shape)
 
@@ -163,7 +163,7 @@ class MeshCycle(ContactNumbers):
     def peak_contact(self, torque: int, *, where_hertz_holds: bool = False) -> tuple[int, int] | None:
         """Return position and column of the pair with the highest pressure, of those asked for; None if there is none.
 
-        By default that of ``inner_pressure``, or of the central pressure where every contact point lies on a border.
+        By default that of ``inner_pressure``, or of the central pressure where every contact point lies on an edge.
         """
         row = self.contacts.row(torque, self.max_pressure)
         return self._place(highest_where_hertz_holds(row) if where_hertz_holds else highest_peak(row))
@@ -173,13 +173,13 @@ class MeshCycle(ContactNumbers):
         place = self.peak_contact(torque, where_hertz_holds=where_hertz_holds)
         return None if place is None else place[0]
 
-    def border_contact(self, torque: int) -> tuple[int, int] | None:
-        """Return position and column of the pair with the highest peak at a border or crease; None if there is none."""
-        return self._place(highest_border_peak(self.contacts.row(torque, self.max_pressure)))
+    def edge_contact(self, torque: int) -> tuple[int, int] | None:
+        """Return position and column of the pair with the highest peak at an edge or relief start, or None."""
+        return self._place(highest_edge_peak(self.contacts.row(torque, self.max_pressure)))
 
-    def border_position(self, torque: int) -> int | None:
-        """Return the index of the position of ``border_contact``; None if there is none."""
-        place = self.border_contact(torque)
+    def edge_position(self, torque: int) -> int | None:
+        """Return the index of the position of ``edge_contact``; None if there is none."""
+        place = self.edge_contact(torque)
         return None if place is None else place[0]
 
     def highest_column(self, torque: int, position: int) -> int:
@@ -193,8 +193,8 @@ class MeshCycle(ContactNumbers):
     def key_figures(self) -> tuple[dict[str, float], ...]:
         """Return the figures of the whole cycle for each torque, by names that end in their unit.
 
-        ``peak_pressure_MPa`` is the highest ``inner_pressure``; "at_peak": at its position; "at_border": at that of
-        the highest peak at a border or crease; "there": at that of the highest pressure where Hertz holds. Means
+        ``peak_pressure_MPa`` is the highest ``inner_pressure``; "at_peak": at its position; "at_edge": at that of
+        the highest peak at an edge or relief start; "there": at that of the highest pressure where Hertz holds. Means
         are over the positions. NaN: not known.
         """
         names = ("transmission_error", "mesh_stiffness", "secant_stiffness")
@@ -213,7 +213,7 @@ class MeshCycle(ContactNumbers):
                     {
                         **{name: self.by_torque(name)[index] for name in names},
                         "unloaded_error": self.path.transmission_error,
-                        "touches": self.path.touches,
+                        "in_contact": self.path.in_contact,
                         "loaded_pairs": pairs[index],
                         "harmonics": harmonics[index],
                     },

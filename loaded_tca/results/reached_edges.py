@@ -1,4 +1,4 @@
-"""Which borders of the two flanks a loaded contact reaches: the tips, the roots, the sides of the teeth."""
+"""Which edges of the two flanks a loaded contact reaches: the tips, the roots, the sides of the teeth."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
 
-from loaded_tca.flanks.base import BORDER_NAMES
+from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.contacts import PressureMap
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import parse_scene
 
-NAMES = tuple(f"{gear} {border}" for gear in ("pinion", "wheel") for border in BORDER_NAMES)
-"""Borders in the order of ``ContactPath.edges``."""
+NAMES = tuple(f"{gear} {edge}" for gear in ("pinion", "wheel") for edge in EDGE_NAMES)
+"""Edges in the order of ``ContactPath.edges``."""
 
 
-def reached_borders(result: MeshCycle) -> NDArray[np.bool_]:
-    """Borders that each contact of a result reaches.
+def reached_edges(result: MeshCycle) -> NDArray[np.bool_]:
+    """Edges that each contact of a result reaches.
 
     Parameters
     ----------
@@ -41,12 +41,12 @@ def reached_borders(result: MeshCycle) -> NDArray[np.bool_]:
 
 
 def _beside_pressure(pair: GearPair, one: PressureMap) -> NDArray[np.bool_]:
-    """Borders (8,) beyond which cells without material lie that touch cells under pressure."""
+    """Edges (8,) beyond which cells without material lie that touch cells under pressure."""
     row, column = np.nonzero(binary_dilation(one.pressure > 0.0) & np.isinf(one.gap))
     points = one.origin + one.x[row, None] * one.axes[0] + one.y[column, None] * one.axes[1]
     radius, _, axial = pair.to_wheel(points)
-    borders = [
-        *pair.pinion.borders(np.hypot(points[:, 0], points[:, 1]), points[:, 2]),
-        *pair.wheel.borders(radius, axial),
+    edges = [
+        *pair.pinion.edges(np.hypot(points[:, 0], points[:, 1]), points[:, 2]),
+        *pair.wheel.edges(radius, axial),
     ]
-    return np.array([bool((np.broadcast_to(border.value, row.shape) < 0.0).any()) for border in borders])
+    return np.array([bool((np.broadcast_to(edge.value, row.shape) < 0.0).any()) for edge in edges])

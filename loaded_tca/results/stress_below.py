@@ -93,13 +93,13 @@ class StressBelow:
 
     @property
     def beside_spike(self) -> int | None:
-        """Column of the map through the contact point where the peak lies at a border and grows with the grid.
+        """Column of the map through the contact point where the peak lies at an edge and grows with the grid.
 
         There the stresses are those below the first number of the summary. None where the peak is no spike, or where
         the contact point itself lies within it.
         """
         contacts, at = self.result.contacts, (self.torque, self.position, self.column)
-        if not contacts.peak_at_border[at] or math.isnan(contacts.inner_pressure[at]):
+        if not contacts.peak_at_edge[at] or math.isnan(contacts.inner_pressure[at]):
             return None
         return int(np.argmin(np.abs(self.pressure_map.y)))
 
@@ -119,7 +119,7 @@ class StressBelow:
         ----------
         quantity : {"max_shear", "von_mises"}
         anywhere : bool
-            Below a spike at a border too, where stresses grow with the grid; default: ``beside_spike``.
+            Below a spike at an edge too, where stresses grow with the grid; default: ``beside_spike``.
 
         Returns
         -------
@@ -150,7 +150,7 @@ class StressBelow:
             # The stresses follow from the pressure and the axes; modulus and approach do not matter for them.
             ellipse = PointContact(float(contacts.normal_force[at]), math.nan, major, minor, pressure, math.nan)
             return *ellipse.subsurface_shear(self.stress.poisson_ratio), pressure
-        if not bool(contacts.paths[self.column].on_line[self.position]) or contacts.at_crease[at]:
+        if not bool(contacts.paths[self.column].on_line[self.position]) or contacts.at_relief_start[at]:
             return None
         one = self.pressure_map
         beside = self.beside_spike
@@ -184,7 +184,7 @@ class StressBelow:
         if (hertz := self.hertz_shear) is not None:
             lines.append(self._row("greatest shear stress after Hertz", *hertz))
         if self.result.contacts.on_edge[self.torque, self.position, self.column]:
-            note = "note: the contact reaches a border, where pressure and stress grow with the grid"
+            note = "note: the contact reaches an edge, where pressure and stress grow with the grid"
             lines.append(note + self._spike)
         return "\n".join(lines)
 
@@ -195,7 +195,7 @@ class StressBelow:
             return ""
         peak, shear = float(self.pressure_map.pressure.max()), self.largest("max_shear", anywhere=True)
         return (
-            f"; the numbers above are those across the contact point, not those of the border: there the cells have up "
+            f"; the numbers above are those across the contact point, not those of the edge: there the cells have up "
             f"to {peak:.4g} MPa and {shear.value:.4g} MPa of shear"
         )
 

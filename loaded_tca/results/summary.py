@@ -22,7 +22,7 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("  normal force of that tooth pair [N]", ("normal_force_at_peak_N",)),
     ("  pinion diameter | axial place [mm]", ("pinion_diameter_at_peak_mm", "pinion_axial_at_peak_mm")),
     ("  contact length | width [mm]", ("contact_length_at_peak_mm", "contact_width_at_peak_mm")),
-    ("at a border or crease [MPa] | angle [deg]", ("border_pressure_MPa", "pinion_angle_at_border_deg")),
+    ("at an edge or relief start [MPa] | angle [deg]", ("edge_pressure_MPa", "pinion_angle_at_edge_deg")),
     ("highest of smooth contacts | Hertz [MPa]", ("peak_pressure_where_hertz_holds_MPa", "hertz_pressure_there_MPa")),
     ("  length | width after Hertz [mm]", ("hertz_length_there_mm", "hertz_width_there_mm")),
     ("transmission error, mean [arcsec | um]", ("transmission_error_mean_arcsec", "transmission_error_mean_um")),
@@ -43,16 +43,16 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
 )
 """Label and key figures of each line of the summary."""
 
-ONLY_IF_KNOWN = ("_at_border_", "border_pressure", "_order_", "loaded_contact_ratio", "_where_hertz_holds_", "_there_")
+ONLY_IF_KNOWN = ("_at_edge_", "edge_pressure", "_order_", "loaded_contact_ratio", "_where_hertz_holds_", "_there_")
 """Figures whose line is left out where no torque has them."""
 
 NOTES = (
     ("line_positions", "the unloaded contact is a line"),
-    ("edge_positions", "the contact reaches a border of a flank: no Hertz there"),
-    ("crease_positions", "the start of a linear relief lies in the contact: no Hertz there"),
+    ("edge_positions", "the contact reaches an edge of a flank: no Hertz there"),
+    ("relief_start_positions", "the start of a linear relief lies in the contact: no Hertz there"),
     (
-        "border_peak_positions",
-        "the largest cell lies at a border or crease, where it grows with the grid: "
+        "edge_peak_positions",
+        "the largest cell lies at an edge or relief start, where it grows with the grid: "
         "what counts there is the pressure beside the contact point",
     ),
 )
@@ -102,17 +102,17 @@ def _shown(value: float, name: str) -> str:
 
 def _notes(figures: Sequence[Figures]) -> Iterator[str]:
     """Sentences on what limits the figures; none for an ordinary point contact."""
-    apart = [entry["positions"] - entry["touching_positions"] for entry in figures]
+    apart = [entry["positions"] - entry["positions_in_contact"] for entry in figures]
     yield from _counted(figures, apart, "the tooth pair does not touch")
     for name, sentence in NOTES:
         yield from _counted(figures, [entry[name] for entry in figures], sentence)
-    at_border = [bool(entry["contact_point_is_at_border"]) for entry in figures]
-    if any(at_border):
-        where = "the contact point itself lies on a border or crease"
-        yield f"{where}{_for_torques(figures, at_border)}: the peak pressure given grows with the grid too"
-    grows = [bool(entry["largest_force_is_at_border"]) for entry in figures]
+    at_edge = [bool(entry["contact_point_is_at_edge"]) for entry in figures]
+    if any(at_edge):
+        where = "the contact point itself lies on an edge or relief start"
+        yield f"{where}{_for_torques(figures, at_edge)}: the peak pressure given grows with the grid too"
+    grows = [bool(entry["largest_force_is_at_edge"]) for entry in figures]
     if any(grows):
-        what = f"the most loaded contact has its peak at a border or crease{_for_torques(figures, grows)}"
+        what = f"the most loaded contact has its peak at an edge or relief start{_for_torques(figures, grows)}"
         yield f"{what}: where that is an end of the face, line load and face load factor grow with the grid {REMEDY}"
     cap = figures[0]["max_pressure_MPa"]
     if math.isfinite(cap):

@@ -71,7 +71,7 @@ def _gear_rows(mesh: BevelMesh) -> list[Row]:
     return [
         *((label, *(f"{degrees(value):.4f}" for value in values)) for label, values in angles),
         *((label, *(f"{value:.4f}" for value in values)) for label, values in lengths),
-        ("mate's tip reaches below the form cone", *("yes" if below else "no" for below in interference)),
+        ("mating tip reaches below the form cone", *("yes" if below else "no" for below in interference)),
     ]
 
 

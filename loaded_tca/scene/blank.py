@@ -45,7 +45,7 @@ class BlankScene(Scene):
     """A scene whose gears have opposite hands."""
 
     pinion: BlankGear = subsection(BlankGear, "the gear that turns about +z")
-    wheel: BlankGear = subsection(BlankGear, "its mate")
+    wheel: BlankGear = subsection(BlankGear, "its mating gear")
 
     rules: ClassVar[tuple[Rule, ...]] = (*Scene.rules, Rule(("wheel.hand", "pinion.hand"), _opposite_hands))
 

@@ -101,7 +101,7 @@ class CylindricalScene(BlankScene):
 
     geometry: Geometry = subsection(Geometry, "what both gears have in common", name="pair")
     pinion: Gear = subsection(Gear, "the gear that turns about +z")
-    wheel: Gear = subsection(Gear, "its mate")
+    wheel: Gear = subsection(Gear, "its mating gear")
     mounting: MountingErrors = subsection(MountingErrors, "mounting errors")
 
     def mesh(self) -> CylindricalMesh:

@@ -79,7 +79,10 @@ def _gear_rows(mesh: CylindricalMesh, hands: tuple[str, str]) -> list[Row]:
         ("teeth z", *(str(gear.teeth) for gear in gears)),
         ("hand of the helix", *(hands if mesh.pinion.helix_angle else ("none", "none"))),
         *((label, *(f"{2.0 * radius:.4f}" for radius in radii)) for label, radii in diameters),
-        ("mate's tip reaches below d_Ff", *("yes" if profile.fillet_interference else "no" for profile in active)),
+        (
+            "mating tip reaches below d_Ff",
+            *("yes" if profile.fillet_interference else "no" for profile in active),
+        ),
     ]
 
 

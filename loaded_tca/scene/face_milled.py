@@ -91,7 +91,7 @@ class FaceMilledScene(Scene):
 
     geometry: Geometry = subsection(Geometry, "what both gears have in common", name="pair")
     pinion: FaceMilled = subsection(FaceMilled, "the gear that turns about +z")
-    wheel: FaceMilled = subsection(FaceMilled, "its mate")
+    wheel: FaceMilled = subsection(FaceMilled, "its mating gear")
     mounting: MountingErrors = subsection(MountingErrors, "mounting errors")
 
     rules: ClassVar[tuple[Rule, ...]] = (

@@ -50,7 +50,7 @@ class Scene(Section, ABC):
     title: str = key(Line(), "stands over reports and plots", "")
     geometry: Pair = subsection(Pair, "what both gears have in common", name="pair")
     pinion: Gear = subsection(Gear, "the gear that turns about +z")
-    wheel: Gear = subsection(Gear, "its mate")
+    wheel: Gear = subsection(Gear, "its mating gear")
     mounting: Section = subsection(Section, "mounting errors")
     material: ElasticMaterial | None = subsection(
         ElasticMaterial, "material of both gears; needed unless each has its own", optional=True

@@ -146,7 +146,7 @@ def _water_level(ordered: Array, sums: Array, total: float) -> float:
 def _material_length(gap: NormalGap, room: Array, x: Array, y: Array, reach: float) -> float:
     """Distance along y to the farthest end of the material within ``reach``, to 1e-6 of it.
 
-    Looked for over the whole width of a probe, whose distances to the borders are ``room`` (x, y): in a corner of a
+    Looked for over the whole width of a probe, whose distances to the edges are ``room`` (x, y): in a corner of a
     flank there is none straight ahead.
     """
     lowest = 4.0 * (y[0] - y[1])
@@ -165,7 +165,7 @@ def _material_length(gap: NormalGap, room: Array, x: Array, y: Array, reach: flo
     def room_at(place: Array, _: NDArray[np.int_] | None = None) -> Array:
         return np.maximum(gap.at(x[:, None], place)[1].max(axis=0), lowest)
 
-    if last + 2 <= middle:  # in a corner the other border rules inside, but seldom outside
+    if last + 2 <= middle:  # in a corner the other edge rules inside, but seldom outside
         steep = room[outer] - room[beyond]
         end = y[outer] + room[outer] / np.where(steep > 0.0, steep, np.inf) * (y[outer] - y[inner])
         around = room_at((end + 0.5 * tolerance * np.array([[-1.0], [1.0]]) * sides).ravel()).reshape(2, -1)

@@ -27,8 +27,8 @@ STEPS_TOGETHER = 4
 they meet the other flank, for as many again, as long as the steps shrink to less than half."""
 FLATTEST = 1e-6
 """Change of theta along the normal, times the sum of the base radii, below which a flank bends away from it."""
-ON_BORDER = 1e-9
-"""Distance from a border, over the module, up to which a flank has not ended."""
+ON_EDGE = 1e-9
+"""Distance from an edge, over the module, up to which a flank has not ended."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +96,7 @@ class NormalGap:
         return np.where(room >= 0.0, gap, np.inf)
 
     def at(self, x: Array, y: Array) -> tuple[Array, Array]:
-        """Gap [mm], and distance to the nearest border of either flank [mm], at points that broadcast.
+        """Gap [mm], and distance to the nearest edge of either flank [mm], at points that broadcast.
 
         The distance is negative where a flank has ended, and -inf where the normal does not meet it.
         """
@@ -106,18 +106,18 @@ class NormalGap:
         if not (met[0].settled & met[1].settled).all():
             for own in (0, 1):
                 self._meet_rest(rays[own], met[own], rooms[own], met[1 - own])
-        return met[1].height - met[0].height, np.minimum(*rooms) + ON_BORDER * self.pair.module
+        return met[1].height - met[0].height, np.minimum(*rooms) + ON_EDGE * self.pair.module
 
     def _rays(self, x: Array, y: Array, flank: Flank, origin: Array, axes: Array, turn: float) -> _Rays:
         across, along, normal = axes.tolist()
         start = tuple(o + (x * a + y * b) for o, a, b in zip(origin.tolist(), across, along, strict=True))
         return _Rays(flank, start, tuple(normal), turn)
 
-    def _meet_rest(self, rays: _Rays, met: _Meeting, room: Array, mate: _Meeting) -> None:
-        """Take further steps as long as they shrink, from where the mate is met; elsewhere ``room`` becomes -inf."""
-        rest = np.nonzero(~met.settled & (mate.settled | (room > -2.0 * met.step)))
+    def _meet_rest(self, rays: _Rays, met: _Meeting, room: Array, mating: _Meeting) -> None:
+        """Take further steps as long as they shrink, where the mating gear is met; elsewhere ``room`` becomes -inf."""
+        rest = np.nonzero(~met.settled & (mating.settled | (room > -2.0 * met.step)))
         room[~met.settled] = -np.inf
-        height, step = np.where(mate.settled, mate.height, met.height)[rest], np.full(rest[0].shape, np.inf)
+        height, step = np.where(mating.settled, mating.height, met.height)[rest], np.full(rest[0].shape, np.inf)
         while step.size:
             late = self._meet(replace(rays, start=tuple(part[rest] for part in rays.start)), height)
             place = rays.flank.room(late.rho, late.z)

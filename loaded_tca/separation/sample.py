@@ -187,7 +187,7 @@ def _check(
         problems.append(f"accuracy: {accuracy} is not between 1e-8 and 1")
     if problems:
         raise InputError(problems)
-    if not contact.touches:
+    if not contact.in_contact:
         raise GeometryError(
             f"no common flank: the tooth pair does not touch at pinion angle {contact.pinion_angle} rad"
         )

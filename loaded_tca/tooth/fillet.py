@@ -1,6 +1,6 @@
 """Fillets between a flank and the root surface, drawn in the images of the sections.
 
-The arc touches the flank and the root circle; where it would touch the flank below its root border, the tangent
+The arc touches the flank and the root circle; where it would touch the flank below its root edge, the tangent
 there leads on to it, straight. The fillet of the basic rack is the curve that its rounded tip cuts.
 """
 
@@ -16,8 +16,8 @@ from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.tooth.profile import Profile, turned
 
-BORDER_MARGIN = 0.01
-"""Part of the profile above its root border where a straight continuation starts at the latest: at the base circle
+EDGE_MARGIN = 0.01
+"""Part of the profile above its root edge where a straight continuation starts at the latest: at the base circle
 itself a modification of the profile, which counts by roll length, has no finite slope."""
 BISECTIONS = 60
 BLEND = 0.2
@@ -84,7 +84,8 @@ class ArcFillet(Fillet):
 
     References
     ----------
-    Seed 001, "Fillet surface model": an arc on the sphere, tangent to the root circle and the spherical involute.
+    the miter-gear paper, "Fillet surface model": an arc on the sphere, tangent to the root circle and the spherical
+    involute.
     """
 
     radius: float
@@ -127,7 +128,7 @@ class ArcFillet(Fillet):
 def _touching_radius(profile: Profile, root: Array, size: Array) -> Array:
     """Radii (m,) of the image at which arcs of the radii ``size`` touch flank and root circle, on the flank."""
     low, high = profile.radius[0], profile.radius[-1]
-    low = low + BORDER_MARGIN * (high - low)
+    low = low + EDGE_MARGIN * (high - low)
     if (_height_over_root(profile, high, root, size) <= 0.0).any():
         raise GeometryError("fillet_radius: the fillet reaches the tip of the tooth; reduce it")
     for _ in range(BISECTIONS):
@@ -168,7 +169,7 @@ def _into_space(tangent: Array) -> Array:
 class RackFillet(Fillet):
     """Trochoid that the rounded tip of the basic rack cuts into a cylindrical gear.
 
-    On a modified flank it turns with the flank's root border, and takes over the flank's slope there over the first
+    On a modified flank it turns with the flank's root edge, and takes over the flank's slope there over the first
     fifth of its length; an undercut leaves a corner.
 
     Parameters

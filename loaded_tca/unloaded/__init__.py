@@ -1,4 +1,4 @@
-"""Unloaded tooth contact analysis: where the flanks touch first, and what the wheel lags behind."""
+"""Unloaded tooth contact analysis: where the flanks touch first, and what the wheel stays behind."""
 
 from loaded_tca.unloaded.curvature import RelativeCurvature, heelwards, relative_curvature
 from loaded_tca.unloaded.path import ContactPath, ContactPoint, trace_contact

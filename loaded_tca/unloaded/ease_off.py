@@ -1,4 +1,4 @@
-r"""The rotary ease-off: the angle at which the mate must stand to pass through a point of the pinion flank.
+r"""The rotary ease-off: the angle at which the mating gear must stand to pass through a point of the pinion flank.
 
 Turn the pinion by phi1 and take the point P = (rho, z) of its flank. The wheel's flank passes through P at
 
@@ -118,42 +118,42 @@ def _dot(parts: Sequence[Any], vectors: Array, out: Array | None = None) -> Arra
 
 
 class EaseOff:
-    """The ease-off field of a pair over its pinion flank, with the borders and creases of both flanks.
+    """The ease-off field of a pair over its pinion flank, with the edges and relief starts of both flanks.
 
     Parameters
     ----------
     pair : GearPair
-    beyond : (..., creases) bool array, optional
-        The side of each crease (the pinion's first, then the wheel's) whose smooth continuation is taken; None: the
-        side on which a point lies. Its shape broadcasts against the points.
+    beyond : (..., relief starts) bool array, optional
+        The side of each relief start (the pinion's first, then the wheel's) whose smooth continuation is taken; None:
+        the side on which a point lies. Its shape broadcasts against the points.
     """
 
     def __init__(self, pair: GearPair, beyond: Array | None = None) -> None:
         self.pair, self.beyond = pair, beyond
 
     @cached_property
-    def _pinion_creases(self) -> int:
-        return len(self.pair.pinion.creases(*self.pair.pinion.grid(2, 2)))
+    def _pinion_relief_starts(self) -> int:
+        return len(self.pair.pinion.relief_starts(*self.pair.pinion.grid(2, 2)))
 
     @cached_property
-    def _wheel_creases(self) -> int:
-        return len(self.pair.wheel.creases(*self.pair.wheel.grid(2, 2)))
+    def _wheel_relief_starts(self) -> int:
+        return len(self.pair.wheel.relief_starts(*self.pair.wheel.grid(2, 2)))
 
     @property
-    def creases(self) -> int:
-        """Number of creases of both flanks."""
-        return self._pinion_creases + self._wheel_creases
+    def relief_starts(self) -> int:
+        """Number of relief starts of both flanks."""
+        return self._pinion_relief_starts + self._wheel_relief_starts
 
     def sides(self, phi1: Array, rho: Array, z: Array) -> Array:
-        """On which side of each crease the points (n,) lie: (n, creases) bool, the pinion's creases first."""
+        """On which side of each relief start the points (n,) lie: (n, relief starts) bool, the pinion's first."""
         station = self.station(phi1, rho, z)
-        own = self.pair.pinion.creases(station.rho, station.z)
-        other = self.pair.wheel.creases(station.wheel_rho, station.wheel_z)
+        own = self.pair.pinion.relief_starts(station.rho, station.z)
+        other = self.pair.wheel.relief_starts(station.wheel_rho, station.wheel_z)
         sides = [np.broadcast_to(jet.value > 0.0, rho.shape) for jet in (*own, *other)]
         return np.stack(sides, axis=-1) if sides else np.zeros((*rho.shape, 0), dtype=bool)
 
     def restricted(self, rows: Any) -> EaseOff:
-        """The same field with the crease sides of some rows only."""
+        """The same field with the relief start sides of some rows only."""
         return self if self.beyond is None else EaseOff(self.pair, self.beyond[rows])
 
     def station(self, phi1: Array, rho: Array, z: Array) -> Station:
@@ -177,12 +177,12 @@ class EaseOff:
         return Station(self.pair, rho, z, point, wheel_rho, wheel_theta, wheel_z, wheel, slopes, bends)
 
     def heights(self, phi1: Array, rho: Array, z: Array) -> tuple[Array, Array]:
-        """Ease-off (...) [mm] and distances to the borders (..., k) [mm], without derivatives."""
+        """Ease-off (...) [mm] and distances to the edges (..., k) [mm], without derivatives."""
         azimuth = self.pair.pinion.theta(rho, z, self._sides(0)).value + self.pair.sense * phi1
         wheel_rho, wheel_theta, wheel_z = self.pair.to_wheel(_on_circle(rho, azimuth, z))
-        mate = self.pair.wheel.theta(wheel_rho, wheel_z, self._sides(1)).value
-        value = self._lead(mate - wheel_theta, phi1)
-        pinion, wheel = self._border_jets(rho, z, wheel_rho, wheel_z)
+        mating = self.pair.wheel.theta(wheel_rho, wheel_z, self._sides(1)).value
+        value = self._lead(mating - wheel_theta, phi1)
+        pinion, wheel = self._edge_jets(rho, z, wheel_rho, wheel_z)
         return value, _last_axis([jet.value for jet in (*pinion, *wheel)], value.shape)
 
     def value(self, station: Station, phi1: Array) -> Array:
@@ -197,13 +197,13 @@ class EaseOff:
         """Second derivatives of e: (..., 2, 2) [1/mm]."""
         return self._scale * station.hessian(station.wheel, -1.0)
 
-    def borders(self, station: Station) -> tuple[Array, Array]:
-        """Distances to the borders and creases [mm], positive inside, (..., k), and their gradients (..., k, 2).
+    def edges(self, station: Station) -> tuple[Array, Array]:
+        """Distances to the edges and relief starts [mm], positive inside, (..., k), and their gradients (..., k, 2).
 
-        Order: the pinion's four borders and its creases, then the wheel's (creases only if the field was given
-        the sides to stay on).
+        Order: the pinion's four edges and its relief starts, then the wheel's (relief starts only if the field was
+        given the sides to stay on).
         """
-        pinion, wheel = self._border_jets(station.rho, station.z, station.wheel_rho, station.wheel_z)
+        pinion, wheel = self._edge_jets(station.rho, station.z, station.wheel_rho, station.wheel_z)
         values = [jet.value for jet in (*pinion, *wheel)]
         slopes = np.empty((2, len(values), *np.shape(station.rho)))
         for k, jet in enumerate(pinion):
@@ -212,19 +212,19 @@ class EaseOff:
             _dot((jet.rho, 0.0, jet.z), station.slopes, out=slopes[:, k])
         return _last_axis(values, np.shape(station.rho)), np.moveaxis(slopes, (0, 1), (-1, -2))
 
-    def border_normal(self, station: Station, border: int) -> Array:
-        """Gradient of one border in space, (..., 3), in the fixed frame: normal to the surface it ends on."""
-        jets = self._border_jets(station.rho, station.z, station.wheel_rho, station.wheel_z)
-        own = int(self.border_owner()[border])
-        jet = [*jets[0], *jets[1]][border]
+    def edge_normal(self, station: Station, edge: int) -> Array:
+        """Gradient of one edge in space, (..., 3), in the fixed frame: normal to the surface it ends on."""
+        jets = self._edge_jets(station.rho, station.z, station.wheel_rho, station.wheel_z)
+        own = int(self.edge_owner()[edge])
+        jet = [*jets[0], *jets[1]][edge]
         parts = np.stack(np.broadcast_arrays(jet.rho, 0.0, jet.z, station.rho)[:3], axis=-1)
         azimuth = np.arctan2(station.point[..., 1], station.point[..., 0])
         basis = station.wheel_basis if own else cylindrical_basis(azimuth)
         return np.einsum("...k,...kj->...j", parts, basis)
 
-    def border_hessian(self, station: Station, weights: Array) -> Array:
-        """Sum of weights[..., k] times the Hessian of border k: (..., 2, 2)."""
-        pinion, wheel = self._border_jets(station.rho, station.z, station.wheel_rho, station.wheel_z)
+    def edge_hessian(self, station: Station, weights: Array) -> Array:
+        """Sum of weights[..., k] times the Hessian of edge k: (..., 2, 2)."""
+        pinion, wheel = self._edge_jets(station.rho, station.z, station.wheel_rho, station.wheel_z)
         own = weighted_sum(pinion, weights)
         total = station.hessian(weighted_sum(wheel, weights[..., len(pinion) :]))
         for part, (i, j) in zip((own.rho_rho, own.rho_z, own.z_z), PARTS, strict=True):
@@ -232,14 +232,14 @@ class EaseOff:
         total[..., 1, 0] = total[..., 0, 1]
         return total
 
-    def border_owner(self) -> Array:
-        """0 for a border of the pinion, 1 for one of the wheel, in the order of ``borders``."""
-        extra = (self._pinion_creases, self._wheel_creases) if self.beyond is not None else (0, 0)
+    def edge_owner(self) -> Array:
+        """0 for an edge of the pinion, 1 for one of the wheel, in the order of ``edges``."""
+        extra = (self._pinion_relief_starts, self._wheel_relief_starts) if self.beyond is not None else (0, 0)
         return np.repeat([0, 1], [4 + extra[0], 4 + extra[1]])
 
-    def border_is_crease(self) -> Array:
-        """Whether each entry of ``borders`` is a crease."""
-        extra = (self._pinion_creases, self._wheel_creases) if self.beyond is not None else (0, 0)
+    def edge_is_relief_start(self) -> Array:
+        """Whether each entry of ``edges`` is a relief start."""
+        extra = (self._pinion_relief_starts, self._wheel_relief_starts) if self.beyond is not None else (0, 0)
         return np.concatenate([np.arange(4 + count) >= 4 for count in extra])
 
     def _lead(self, wheel_angle: Array, phi1: Array) -> Array:
@@ -254,16 +254,20 @@ class EaseOff:
     def _sides(self, member: int) -> Any:
         if self.beyond is None:
             return None
-        return self.beyond[..., : self._pinion_creases] if member == 0 else self.beyond[..., self._pinion_creases :]
+        return (
+            self.beyond[..., : self._pinion_relief_starts]
+            if member == 0
+            else self.beyond[..., self._pinion_relief_starts :]
+        )
 
-    def _border_jets(self, rho: Array, z: Array, wheel_rho: Array, wheel_z: Array) -> tuple[list[Jet], list[Jet]]:
+    def _edge_jets(self, rho: Array, z: Array, wheel_rho: Array, wheel_z: Array) -> tuple[list[Jet], list[Jet]]:
         pair = self.pair
-        pinion = [*pair.pinion.borders(rho, z)]
-        wheel = [*pair.wheel.borders(wheel_rho, wheel_z)]
+        pinion = [*pair.pinion.edges(rho, z)]
+        wheel = [*pair.wheel.edges(wheel_rho, wheel_z)]
         if self.beyond is not None:
             signs = np.where(self.beyond, 1.0, -1.0)
-            own = pair.pinion.creases(rho, z)
-            other = pair.wheel.creases(wheel_rho, wheel_z)
+            own = pair.pinion.relief_starts(rho, z)
+            other = pair.wheel.relief_starts(wheel_rho, wheel_z)
             pinion += [jet * signs[..., k] for k, jet in enumerate(own)]
             wheel += [jet * signs[..., len(own) + k] for k, jet in enumerate(other)]
         return pinion, wheel

@@ -1,9 +1,9 @@
-"""Line contact: where the ridge of the ease-off is flat from border to border, its ends and its middle.
+"""Line contact: where the ridge of the ease-off is flat from edge to edge, its ends and its middle.
 
 The solver knows no lines: on a flat ridge it stops somewhere. Here the ridge (the points where the ease-off is
-stationary across the soft direction, or the edge that the contact rests on) is followed to the borders by a Newton
-iteration on two equations, *on the ridge* and *on border k*; if the ease-off does not fall towards either end, the
-contact is a line. A flat stretch that ends before the borders (end relief alone) is no line, but it is no point
+stationary across the soft direction, or the edge that the contact rests on) is followed to the edges by a Newton
+iteration on two equations, *on the ridge* and *on edge k*; if the ease-off does not fall towards either end, the
+contact is a line. A flat stretch that ends before the edges (end relief alone) is no line, but it is no point
 either: its middle stands for it.
 """
 
@@ -18,7 +18,7 @@ from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import FEASIBLE
 
 FLATNESS = 1e-9
-"""Fall of the ease-off towards the borders, relative to the module, below which a contact is called a line."""
+"""Fall of the ease-off towards the edges, relative to the module, below which a contact is called a line."""
 WORTH_FOLLOWING = 1e-6
 """Predicted fall over the flank, relative to the module, above which the ridge need not be followed."""
 NEARBY = 2e-5
@@ -28,7 +28,7 @@ LONGEST_STRIDE = 0.1
 """Longest step along a ridge, as a fraction of the flank: a longer one leaves a ridge as bent as that of a spiral bevel
 gear, beyond whose flank there may be no involute to come back from."""
 ASTRAY = 0.3
-"""Distance outside the borders, as a fraction of the flank, at which a ridge is followed no further."""
+"""Distance outside the edges, as a fraction of the flank, at which a ridge is followed no further."""
 SETTLED = 1e-11
 """Step, as a fraction of the flank, after which the next would be rounding."""
 ROUNDING = 2e-15
@@ -46,7 +46,7 @@ class Lines:
     rows : (m,) int array
         Positions whose contact is a line.
     flat : (k,) int array
-        Positions whose contact is a line or lies on a flat stretch that ends before the borders (end relief alone).
+        Positions whose contact is a line or lies on a flat stretch that ends before the edges (end relief alone).
     rho, z : (k,) array [mm]
         Middle of each flat stretch on the pinion flank.
     ends : (m, 2, 3) array [mm]
@@ -61,7 +61,7 @@ class Lines:
 
 
 def find_lines(field: EaseOff, phi1: Array, rho: Array, z: Array, multipliers: Array) -> Lines:
-    """Lines among the first touches (n,); ``multipliers`` (n, borders) tell the borders they rest on."""
+    """Lines among the first touches (n,); ``multipliers`` (n, edges) tell the edges they rest on."""
     along, fall = _softest_direction(field, phi1, rho, z, multipliers)
     corner = (multipliers > 0.0).sum(axis=-1) > 1
     rows = np.flatnonzero((fall <= WORTH_FOLLOWING * field.pair.module) & ~corner)
@@ -96,14 +96,14 @@ def _softest_direction(field: EaseOff, phi1: Array, rho: Array, z: Array, multip
 def _soft_direction(field: EaseOff, phi1: Array, rho: Array, z: Array, multipliers: Array) -> tuple[Array, Array]:
     """Direction of least curvature in (rho, z), (n, 2), and the fall [mm] it promises over half the flank."""
     station = field.station(phi1, rho, z)
-    bend = field.hessian(station) + field.border_hessian(station, multipliers)
+    bend = field.hessian(station) + field.edge_hessian(station, multipliers)
     height, width = field.pair.pinion.extent
     scale = np.array([height, width])
     values, vectors = np.linalg.eigh(bend * np.outer(scale, scale))
     rows, soft = np.arange(len(rho)), np.argmin(np.abs(values), axis=-1)
     along = vectors[rows, :, soft] * scale
     held = np.flatnonzero((multipliers > 0.0).any(axis=-1))
-    _, slopes = field.borders(station)
+    _, slopes = field.edges(station)
     edge = slopes[held, multipliers[held].argmax(axis=-1)]
     along[held] = np.stack([-edge[:, 1], edge[:, 0]], axis=-1) * width
     fall = np.abs(np.einsum("ni,nij,nj->n", along, bend, along)) / 8.0
@@ -112,7 +112,7 @@ def _soft_direction(field: EaseOff, phi1: Array, rho: Array, z: Array, multiplie
 
 @dataclass(frozen=True, eq=False)
 class _Ridge:
-    """Ridges (m,) through given points, each with its direction and the border it is bound to, if any."""
+    """Ridges (m,) through given points, each with its direction and the edge it is bound to, if any."""
 
     field: EaseOff
     phi1: Array
@@ -131,10 +131,10 @@ class _Ridge:
 
     def ends(self) -> tuple[Array, Array, Array]:
         """Where the ridge leaves the region on either side, (m, 2) each, and whether both ends were found."""
-        count, borders = len(self.phi1), len(self.field.border_owner())
-        every = self._only(np.repeat(np.arange(count), borders))
-        crossings, met = every._follow(every.start, np.tile(np.arange(borders), count))
-        crossings, met = crossings.reshape(count, borders, 2), met.reshape(count, borders)
+        count, edges = len(self.phi1), len(self.field.edge_owner())
+        every = self._only(np.repeat(np.arange(count), edges))
+        crossings, met = every._follow(every.start, np.tile(np.arange(edges), count))
+        crossings, met = crossings.reshape(count, edges, 2), met.reshape(count, edges)
         travel = ((crossings - self.start[:, None]) * self.along[:, None]).sum(axis=-1)
         rows = np.arange(count)
         first = np.argmin(np.where(met, travel, np.inf), axis=1)
@@ -160,13 +160,13 @@ class _Ridge:
         """Points of the ridge beside the given ones, moved across the ridge only."""
         return self._follow(points, np.full(len(self.phi1), -1))[0]
 
-    def _follow(self, points: Array, border: Array) -> tuple[Array, Array]:
-        """Newton iteration for a point on the ridge and on a border (-1: on the normal through ``points``)."""
+    def _follow(self, points: Array, edge: Array) -> tuple[Array, Array]:
+        """Newton iteration for a point on the ridge and on an edge (-1: on the normal through ``points``)."""
         x, extent = points.copy(), np.asarray(self.field.pair.pinion.extent)
         lowest, highest = self._bounds()
         residual, rows = np.zeros(len(x)), np.arange(len(x))
         for _ in range(RIDGE_STEPS):
-            residual[rows], step, room = self._only(rows)._newton(x[rows], points[rows], border[rows])
+            residual[rows], step, room = self._only(rows)._newton(x[rows], points[rows], edge[rows])
             stride = np.abs(step / extent).max(axis=-1)
             step *= np.minimum(1.0, LONGEST_STRIDE / np.maximum(stride, 1e-300))[:, None]
             x[rows] = np.clip(x[rows] + step, lowest, highest)
@@ -187,20 +187,20 @@ class _Ridge:
         parts = (part[rows] for part in (self.phi1, self.start, self.along, self.multipliers))
         return _Ridge(self.field.restricted(rows), *parts)
 
-    def _newton(self, x: Array, points: Array, border: Array) -> tuple[Array, Array, Array]:
-        """Residual [mm] of the target equation, the step of the two equations together, the room to the borders."""
+    def _newton(self, x: Array, points: Array, edge: Array) -> tuple[Array, Array, Array]:
+        """Residual [mm] of the target equation, the step of the two equations together, the room to the edges."""
         station = self.field.station(self.phi1, *x.T)
-        distances, slopes = self.field.borders(station)
+        distances, slopes = self.field.edges(station)
         across = np.stack([-self.along[:, 1], self.along[:, 0]], axis=-1)
         value = (across * self.field.gradient(station)).sum(axis=-1)
         row = np.einsum("ni,nij->nj", across, self.field.hessian(station))
         held, rows = np.asarray((self.multipliers > 0.0).any(axis=-1)), np.arange(len(x))
-        edge = self.multipliers.argmax(axis=-1) if self.multipliers.size else rows
-        value = np.where(held, distances[rows, edge], value)
-        row = np.where(held[:, None], slopes[rows, edge], row)
-        free = border < 0
-        target = np.where(free, ((x - points) * self.along).sum(axis=-1), distances[rows, border])
-        target_row = np.where(free[:, None], self.along, slopes[rows, border])
+        bound = self.multipliers.argmax(axis=-1) if self.multipliers.size else rows
+        value = np.where(held, distances[rows, bound], value)
+        row = np.where(held[:, None], slopes[rows, bound], row)
+        free = edge < 0
+        target = np.where(free, ((x - points) * self.along).sum(axis=-1), distances[rows, edge])
+        target_row = np.where(free[:, None], self.along, slopes[rows, edge])
         return np.abs(target), -_solve_pair(row, target_row, value, target), distances.min(axis=-1)
 
 

@@ -1,4 +1,4 @@
-"""The contact path: where one tooth pair touches over the rotation, and what the wheel lags behind."""
+"""The contact path: where one tooth pair touches over the rotation, and what the wheel stays behind."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from loaded_tca.arrays import Array, finite_row
 from loaded_tca.errors import AccuracyWarning, GeometryError, InputError
-from loaded_tca.flanks.base import BORDER_NAMES, outward_normal
+from loaded_tca.flanks.base import EDGE_NAMES, outward_normal
 from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
 from loaded_tca.unloaded.ease_off import EaseOff, Station
 from loaded_tca.unloaded.line import find_lines
@@ -22,7 +22,7 @@ from loaded_tca.unloaded.search import FirstTouch, first_touch
 POSITIONS = 21
 """Positions over a pitch if none are asked for."""
 EDGE_SLOPE = 1e-9
-"""Slope of the ease-off against a border above which the contact is held by it: far above rounding (1e-13), far
+"""Slope of the ease-off against an edge above which the contact is held by it: far above rounding (1e-13), far
 below any slope that an engineer's modification or mounting error gives."""
 
 Bools = NDArray[np.bool_]
@@ -43,9 +43,9 @@ class ContactPoint:
     wheel_axial: float
     pinion_lever: float
     wheel_lever: float
-    touches: bool
+    in_contact: bool
     on_edge: bool
-    on_crease: bool
+    on_relief_start: bool
     on_line: bool
     line_ends: Array
     edges: Bools
@@ -64,7 +64,7 @@ class ContactPath:
     pinion_angle, wheel_angle : (n,) array [rad]
         phi1 and phi2, positive in the sense of motion.
     transmission_error : (n,) array [rad]
-        phi2 - (z1/z2) phi1; negative where the wheel lags.
+        phi2 - (z1/z2) phi1; negative where the wheel stays behind.
     point : (n, 3) array [mm]
         In the fixed frame; the middle of the line for a line contact.
     normal : (n, 3) array
@@ -73,13 +73,13 @@ class ContactPath:
         (rho, z) of the point on each flank.
     pinion_lever, wheel_lever : (n,) array [mm]
         Torque of a unit normal force about each axis.
-    touches, on_edge, on_crease, on_line : (n,) bool array
-        Whether the pair touches; whether the point lies on a tip, root or side border; on the start of a linear
+    touches, on_edge, on_relief_start, on_line : (n,) bool array
+        Whether the pair touches; whether the point lies on a tip, root or side edge; on the start of a linear
         relief; whether the contact is a line.
     line_ends : (n, 2, 3) array [mm]
         Ends of the line; NaN for a point contact.
     edges : (n, 8) bool array
-        The borders that hold the point: ``BORDER_NAMES`` of the pinion, then of the wheel.
+        The edges that hold the point: ``EDGE_NAMES`` of the pinion, then of the wheel.
     iterations : (n,) int array
         Newton steps of the ascent that found it.
     residual : (n,) array
@@ -97,9 +97,9 @@ class ContactPath:
     wheel_axial: Array
     pinion_lever: Array
     wheel_lever: Array
-    touches: Bools
+    in_contact: Bools
     on_edge: Bools
-    on_crease: Bools
+    on_relief_start: Bools
     on_line: Bools
     line_ends: Array
     edges: Bools
@@ -133,7 +133,7 @@ class ContactPath:
 
     def __repr__(self) -> str:
         edge = int(self.on_edge.sum())
-        return f"ContactPath({len(self)} positions, {int(self.touches.sum())} touch, {edge} on an edge)"
+        return f"ContactPath({len(self)} positions, {int(self.in_contact.sum())} touch, {edge} on an edge)"
 
 
 def trace_contact(pair: GearPair, pinion_angles: ArrayLike | None = None, *, warn: bool = True) -> ContactPath:
@@ -145,7 +145,7 @@ def trace_contact(pair: GearPair, pinion_angles: ArrayLike | None = None, *, war
     pinion_angles : (n,) array [rad], optional
         phi1; default: 21 positions over one pitch about phi1 = 0, both ends included.
     warn : bool
-        Whether to give an AccuracyWarning where the contact lies on the root border of a flank.
+        Whether to give an AccuracyWarning where the contact lies on the root edge of a flank.
 
     Returns
     -------
@@ -169,7 +169,7 @@ def trace_contact(pair: GearPair, pinion_angles: ArrayLike | None = None, *, war
     """
     phi1 = _checked_angles(pair, pinion_angles)
     touch = first_touch(pair, phi1)
-    if not touch.touches.any():
+    if not touch.in_contact.any():
         raise GeometryError(
             f"no common flank: at none of the {len(phi1)} pinion angles between {phi1.min():.6g} and {phi1.max():.6g} "
             "rad do the two flanks cover a common region; check the tips of the teeth and how the gears are mounted"
@@ -181,13 +181,13 @@ def trace_contact(pair: GearPair, pinion_angles: ArrayLike | None = None, *, war
 
 
 def warn_of_fillets(pair: GearPair, path: ContactPath, what: str) -> None:
-    """Warn, for the caller's caller, where ``what`` lies on the root border of a flank."""
-    root = BORDER_NAMES.index("root")
-    held = (path.edges[:, root], path.edges[:, len(BORDER_NAMES) + root])
+    """Warn, for the caller's caller, where ``what`` lies on the root edge of a flank."""
+    root = EDGE_NAMES.index("root")
+    held = (path.edges[:, root], path.edges[:, len(EDGE_NAMES) + root])
     flanks = [flank for flank, rows in zip((pair.pinion, pair.wheel), held, strict=True) if rows.any()]
     if flanks:
         count = int((held[0] | held[1]).sum())
-        where = " or a ".join(dict.fromkeys(flank.frame.borders[root] for flank in flanks))
+        where = " or a ".join(dict.fromkeys(flank.frame.edges[root] for flank in flanks))
         message = f"fillet interference: at {count} of {len(path)} positions the {what} lies on a {where}"
         warnings.warn(message + ", where the flank ends and the fillet begins", AccuracyWarning, stacklevel=3)
 
@@ -199,7 +199,7 @@ def _checked_angles(pair: GearPair, pinion_angles: ArrayLike | None) -> Array:
 
 
 def _assemble(pair: GearPair, phi1: Array, touch: FirstTouch) -> ContactPath:
-    rows = np.flatnonzero(touch.touches)
+    rows = np.flatnonzero(touch.in_contact)
     angle, rho, z = phi1[rows], touch.rho[rows].copy(), touch.z[rows].copy()
     field = EaseOff(pair, touch.beyond[rows] if touch.beyond.shape[1] else None)
     multipliers = np.where(touch.multipliers[rows] > EDGE_SLOPE, touch.multipliers[rows], 0.0)
@@ -208,7 +208,7 @@ def _assemble(pair: GearPair, phi1: Array, touch: FirstTouch) -> ContactPath:
     line_ends = np.full((len(rows), 2, 3), np.nan)
     line_ends[lines.rows] = lines.ends
     station = field.station(angle, rho, z)
-    crease = field.border_is_crease()
+    relief_start = field.edge_is_relief_start()
     error = pair.driving * field.value(station, angle) / pair.base_radii[1]
     known = _contact(pair, field, station, multipliers > 0.0)
     known |= {
@@ -216,10 +216,10 @@ def _assemble(pair: GearPair, phi1: Array, touch: FirstTouch) -> ContactPath:
         "transmission_error": error,
         "pinion_radius": rho,
         "pinion_axial": z,
-        "on_crease": (multipliers[:, crease] > 0.0).any(axis=-1),
+        "on_relief_start": (multipliers[:, relief_start] > 0.0).any(axis=-1),
         "on_line": np.isin(np.arange(len(rows)), lines.rows),
         "line_ends": line_ends,
-        "touches": np.ones(len(rows), dtype=bool),
+        "in_contact": np.ones(len(rows), dtype=bool),
         "iterations": touch.iterations[rows],
     }
     return ContactPath(pinion_angle=phi1, **{name: _spread(part, rows, len(phi1)) for name, part in known.items()})
@@ -233,11 +233,11 @@ def _spread(part: Array, rows: Array, count: int) -> Array:
 
 
 def _contact(pair: GearPair, field: EaseOff, station: Station, held: Bools) -> dict[str, Any]:
-    """Normals, levers, edges and residual of the points; ``held`` tells the borders and creases they rest on."""
+    """Normals, levers, edges and residual of the points; ``held`` tells the edges and relief starts they rest on."""
     pinion_basis = cylindrical_basis(np.arctan2(station.point[:, 1], station.point[:, 0]))
     out_of_pinion = _in_space(outward_normal(pair.pinion, station.rho, station.z), pinion_basis)
     out_of_wheel = _in_space(outward_normal(pair.wheel, station.wheel_rho, station.wheel_z), station.wheel_basis)
-    edges = held[:, ~field.border_is_crease()]
+    edges = held[:, ~field.edge_is_relief_start()]
     use_wheel = _ends(field, station, held, 0) & ~_ends(field, station, held, 1)
     normal = np.where(use_wheel[:, None], -out_of_wheel, out_of_pinion)
     arm = station.point - pair.wheel_origin
@@ -259,22 +259,22 @@ def _in_space(components: Array, basis: Array) -> Array:
 
 
 def _ends(field: EaseOff, station: Station, held: Bools, member: int) -> Array:
-    """Whether the flank of one gear ends, or has its crease, at the contact."""
-    own, crease = field.border_owner() == member, field.border_is_crease()
-    distances, _ = field.borders(station)
+    """Whether the flank of one gear ends, or has its relief start, at the contact."""
+    own, relief_start = field.edge_owner() == member, field.edge_is_relief_start()
+    distances, _ = field.edges(station)
     near = distances <= FEASIBLE * field.pair.pinion.extent[0]
-    on_border = held[:, ~crease].any(axis=-1) & (near & own & ~crease).any(axis=-1)
-    return on_border | (held & own).any(axis=-1)
+    on_edge = held[:, ~relief_start].any(axis=-1) & (near & own & ~relief_start).any(axis=-1)
+    return on_edge | (held & own).any(axis=-1)
 
 
 def _residual(field: EaseOff, station: Station, normals: tuple[Array, Array], held: Bools) -> Array:
-    """Sine of the angle between the normals; along the edge if one border holds the point; zero in a corner."""
+    """Sine of the angle between the normals; along the edge if one edge holds the point; zero in a corner."""
     residual = np.linalg.norm(np.cross(*normals), axis=-1)
     residual[held.sum(axis=-1) > 1] = 0.0
-    for border, own in enumerate(field.border_owner()):
-        rows = np.flatnonzero((held.sum(axis=-1) == 1) & held[:, border])
+    for edge, own in enumerate(field.edge_owner()):
+        rows = np.flatnonzero((held.sum(axis=-1) == 1) & held[:, edge])
         if rows.size:
-            edge = np.cross(normals[own][rows], field.border_normal(station, border)[rows])
-            edge /= np.linalg.norm(edge, axis=-1, keepdims=True)
-            residual[rows] = np.abs((edge * normals[1 - own][rows]).sum(axis=-1))
+            along = np.cross(normals[own][rows], field.edge_normal(station, edge)[rows])
+            along /= np.linalg.norm(along, axis=-1, keepdims=True)
+            residual[rows] = np.abs((along * normals[1 - own][rows]).sum(axis=-1))
     return residual

@@ -1,6 +1,6 @@
 """The quadratic subproblem of the reduced solver, solved exactly: in two dimensions its candidates can be listed.
 
-Maximise g.s - s.N.s/2 (N positive definite) subject to c + J s >= 0. The maximum is the free one, or lies on one border
+Maximise g.s - s.N.s/2 (N positive definite) subject to c + J s >= 0. The maximum is the free one, or lies on one edge
 with a multiplier >= 0, or in a corner of two; no active set has to be carried along or guessed.
 """
 
@@ -14,18 +14,18 @@ import numpy as np
 from loaded_tca.arrays import Array
 
 PARALLEL = 1e-9
-"""Sine of the angle between two borders below which they have no corner."""
+"""Sine of the angle between two edges below which they have no corner."""
 TINY = 1e-300
 FLAT = 1e-12
-"""Smallest curvature along a border taken for real, relative to the largest there is: below it is rounding."""
+"""Smallest curvature along an edge taken for real, relative to the largest there is: below it is rounding."""
 REACHED = 1e-3
-"""Distance, as a fraction of the flank, within which a border's own curvature counts: a step to one farther away must
+"""Distance, as a fraction of the flank, within which an edge's own curvature counts: a step to one farther away must
 rise by the model as a whole."""
 
 
 @dataclass(frozen=True, eq=False)
 class Quadratic:
-    """Quadratic problems (n,) with their linear borders.
+    """Quadratic problems (n,) with their linear edges.
 
     Attributes
     ----------
@@ -33,29 +33,29 @@ class Quadratic:
         g.
     curvature : (n, 2, 2) array
         N.
-    borders : (n, k) array
+    edges : (n, k) array
         c.
     slopes : (n, k, 2) array
         J.
     bend : (n, 2, 2) array
-        The matrix that was made positive to give N; along a border its own curvature counts, which N overrates where
-        the border does not follow an axis of N.
+        The matrix that was made positive to give N; along an edge its own curvature counts, which N overrates where
+        the edge does not follow an axis of N.
     """
 
     gradient: Array
     curvature: Array
-    borders: Array
+    edges: Array
     slopes: Array
     bend: Array
 
     def only(self, rows: Array) -> Quadratic:
         """Some of the problems."""
-        parts = (self.gradient, self.curvature, self.borders, self.slopes, self.bend)
+        parts = (self.gradient, self.curvature, self.edges, self.slopes, self.bend)
         return Quadratic(*(part[rows] for part in parts))
 
     def room(self, steps: Array) -> Array:
-        """Distance to the nearest border after the steps (n, m, 2): (n, m), negative outside."""
-        return (steps @ np.swapaxes(self.slopes, -1, -2) + self.borders[:, None, :]).min(axis=-1)
+        """Distance to the nearest edge after the steps (n, m, 2): (n, m), negative outside."""
+        return (steps @ np.swapaxes(self.slopes, -1, -2) + self.edges[:, None, :]).min(axis=-1)
 
     def rest(self, steps: Array) -> Array:
         """Gradient of the model after the steps (n, m, 2)."""
@@ -68,11 +68,11 @@ def best_step(problem: Quadratic, tolerance: float) -> tuple[Array, Array]:
     Returns
     -------
     (n, 2) array
-        Step; where no point keeps all borders, the candidate that violates them least.
+        Step; where no point keeps all edges, the candidate that violates them least.
     (n, k) array
         Multipliers >= 0.
     """
-    step, force = _on_one_border(problem)
+    step, force = _on_one_edge(problem)
     optimal = (problem.room(step) >= -tolerance) & (force >= 0.0)
     rows, best = np.arange(len(step)), optimal.argmax(axis=1)
     chosen, multipliers = step[rows, best], np.zeros_like(force)
@@ -83,28 +83,28 @@ def best_step(problem: Quadratic, tolerance: float) -> tuple[Array, Array]:
     return chosen, multipliers
 
 
-def _on_one_border(problem: Quadratic) -> tuple[Array, Array]:
-    """Best step onto each border (n, k, 2), and its multiplier (n, k).
+def _on_one_edge(problem: Quadratic) -> tuple[Array, Array]:
+    """Best step onto each edge (n, k, 2), and its multiplier (n, k).
 
-    From the foot of the border along its tangent: the free step is not used, since on a flat ridge it is so long that
-    nothing would be left of its difference to the border.
+    From the foot of the edge along its tangent: the free step is not used, since on a flat ridge it is so long that
+    nothing would be left of its difference to the edge.
     """
     slopes = problem.slopes
     square = np.maximum((slopes**2).sum(axis=-1), TINY)
-    foot = -slopes * (problem.borders / square)[..., None]
+    foot = -slopes * (problem.edges / square)[..., None]
     tangent = np.stack([-slopes[..., 1], slopes[..., 0]], axis=-1)
     rise = (problem.rest(foot) * tangent).sum(axis=-1)
     modelled, own = (((tangent @ matrix) * tangent).sum(axis=-1) for matrix in (problem.curvature, problem.bend))
     flat = FLAT * square * np.linalg.norm(problem.bend, axis=(-2, -1))[:, None]
-    reached = np.abs(problem.borders) <= REACHED * np.sqrt(square)
+    reached = np.abs(problem.edges) <= REACHED * np.sqrt(square)
     bend = np.maximum(np.where(reached, np.maximum(np.abs(own), flat), modelled), TINY)
     step = foot + tangent * (rise / bend)[..., None]
     return step, -(problem.rest(step) * slopes).sum(axis=-1) / square
 
 
 def _in_a_corner(problem: Quadratic, singles: Array, tolerance: float) -> tuple[Array, Array]:
-    """Best feasible corner; if there is none, the corner or single-border step that violates the borders least."""
-    pairs = np.array(list(combinations(range(problem.borders.shape[-1]), 2)))
+    """Best feasible corner; if there is none, the corner or single-edge step that violates the edges least."""
+    pairs = np.array(list(combinations(range(problem.edges.shape[-1]), 2)))
     corners, parallel = _corners(problem, pairs)
     room = np.where(parallel, -np.inf, problem.room(corners))
     rise = (corners * (problem.gradient[:, None, :] + problem.rest(corners))).sum(axis=-1)
@@ -118,9 +118,9 @@ def _in_a_corner(problem: Quadratic, singles: Array, tolerance: float) -> tuple[
 
 
 def _corners(problem: Quadratic, pairs: Array) -> tuple[Array, Array]:
-    """Steps to the crossings of two borders: (n, pairs, 2), and which pairs are parallel."""
+    """Steps to the crossings of two edges: (n, pairs, 2), and which pairs are parallel."""
     first, second = problem.slopes[:, pairs[:, 0]], problem.slopes[:, pairs[:, 1]]
-    c1, c2 = -problem.borders[:, pairs[:, 0]], -problem.borders[:, pairs[:, 1]]
+    c1, c2 = -problem.edges[:, pairs[:, 0]], -problem.edges[:, pairs[:, 1]]
     cross = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
     parallel = np.abs(cross) <= PARALLEL * np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1)
     cross = np.where(parallel, 1.0, cross)
@@ -130,8 +130,8 @@ def _corners(problem: Quadratic, pairs: Array) -> tuple[Array, Array]:
 
 
 def _corner_forces(problem: Quadratic, step: Array, chosen: Array, feasible: Array) -> Array:
-    """Multipliers >= 0 of the two borders of each corner, from rest + J^T lambda = 0; zero where there is no corner."""
-    multipliers = np.zeros_like(problem.borders)
+    """Multipliers >= 0 of the two edges of each corner, from rest + J^T lambda = 0; zero where there is no corner."""
+    multipliers = np.zeros_like(problem.edges)
     rows = np.flatnonzero(feasible)
     matrix = problem.slopes[rows[:, None], chosen[rows]]
     rest = problem.only(rows).rest(step[rows, None, :])[:, 0]

@@ -1,12 +1,12 @@
 r"""The reduced solver: the maximum of the ease-off over the region that both flanks cover, from any start.
 
-Two unknowns (rho, z) on the pinion flank, a smooth objective e and a handful of smooth borders c_k >= 0: a
+Two unknowns (rho, z) on the pinion flank, a smooth objective e and a handful of smooth edges c_k >= 0: a
 sequential quadratic programme, all starts advanced together. In two dimensions the quadratic subproblem is solved
-exactly by listing its candidates (free, on one border, in one corner), so that no active set is carried along.
+exactly by listing its candidates (free, on one edge, in one corner), so that no active set is carried along.
 
-Safeguards: Newton on the absolute values of the curvatures (always uphill), steps below half the flank, a border
+Safeguards: Newton on the absolute values of the curvatures (always uphill), steps below half the flank, an edge
 or a bent ridge is kept to second order, and a step is accepted only if the merit e - mu * violation does not fall. An
-ascent that creeps outside the region (below a base cone the field has no meaning) first goes back to its borders.
+ascent that creeps outside the region (below a base cone the field has no meaning) first goes back to its edges.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ SHORT_STEP = 1e-9
 """Fraction of the flank below which a Newton step is the last: the next would be its square."""
 FORGOTTEN = 0.1
 """What is left, after a step, of the weight of a violation: beside a base cone slopes of 1e8 are met, which would bar
-the way along any bent border ever after."""
+the way along any bent edge ever after."""
 CREEPING = 2.0**-6
-"""Share of a step; if no more of it is accepted outside the region, the field there is no guide, the borders are."""
+"""Share of a step; if no more of it is accepted outside the region, the field there is no guide, the edges are."""
 INWARDS = 1e6
 """Weight of the violation against the ease-off on the way back into the region."""
 RIDGE_CORRECTIONS = 3
@@ -42,9 +42,9 @@ SMALLEST_GAIN = 1e-18
 """Predicted rise of the ease-off, relative to r_b2, at which an ascent ends: far below rounding of e itself, so that
 the quadratic convergence of the last step has placed the point, too."""
 ROOM = 1e-12
-"""Distance [mm, relative to the flank's height] by which a step may cross a border: rounding."""
+"""Distance [mm, relative to the flank's height] by which a step may cross an edge: rounding."""
 FEASIBLE = 1e-9
-"""Distance [mm, relative to the flank's height] within which a border counts as met."""
+"""Distance [mm, relative to the flank's height] within which an edge counts as met."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,8 +57,8 @@ class Maxima:
         On the pinion flank.
     value : (n,) array [mm]
         Ease-off there.
-    multipliers : (n, borders) array
-        Slope of the ease-off against each border that holds the point back, >= 0.
+    multipliers : (n, edges) array
+        Slope of the ease-off against each edge that holds the point back, >= 0.
     iterations : (n,) int array
     converged : (n,) bool array
         Whether a feasible stationary point was reached.
@@ -82,7 +82,7 @@ class _Local:
 
     station: Station
     gradient: Array
-    borders: Array
+    edges: Array
     slopes: Array
 
 
@@ -101,14 +101,14 @@ def climb(field: EaseOff, phi1: Array, rho: Array, z: Array) -> Maxima:
     """
     scale = np.asarray(field.pair.pinion.extent)
     points = np.stack([rho, z], axis=-1) / scale
-    count, borders = len(phi1), len(field.border_owner())
-    multipliers, penalty = np.zeros((count, borders)), np.ones(count)
+    count, edges = len(phi1), len(field.edge_owner())
+    multipliers, penalty = np.zeros((count, edges)), np.ones(count)
     iterations, converged = np.zeros(count, dtype=int), np.zeros(count, dtype=bool)
     rows, (lost, stuck) = np.arange(count), np.zeros((2, count), dtype=bool)
     for number in range(1, MOST_STEPS + 1):
         part, angle = field.restricted(rows), phi1[rows]
         here = _look(part, angle, points[rows], scale)
-        outside = _violation(here.borders) > FEASIBLE * scale[0]
+        outside = _violation(here.edges) > FEASIBLE * scale[0]
         lost[rows] &= outside
         step, multipliers[rows] = _propose(part, here, multipliers[rows], scale, (lost[rows], stuck[rows]))
         penalty[rows] = np.maximum.reduce(
@@ -136,19 +136,19 @@ def climb(field: EaseOff, phi1: Array, rho: Array, z: Array) -> Maxima:
 
 def _look(field: EaseOff, phi1: Array, points: Array, scale: Array) -> _Local:
     station = field.station(phi1, *(points * scale).T)
-    borders, slopes = field.borders(station)
-    return _Local(station, field.gradient(station) * scale, borders, slopes * scale)
+    edges, slopes = field.edges(station)
+    return _Local(station, field.gradient(station) * scale, edges, slopes * scale)
 
 
-def _violation(borders: Array) -> Array:
-    return np.maximum(0.0, -borders.min(axis=-1))
+def _violation(edges: Array) -> Array:
+    return np.maximum(0.0, -edges.min(axis=-1))
 
 
 def _settled(field: EaseOff, here: _Local, step: Array) -> Array:
-    """Whether the step is the last: no rise left, or too short to matter, and the borders kept."""
+    """Whether the step is the last: no rise left, or too short to matter, and the edges kept."""
     gain = np.abs((here.gradient * step).sum(axis=-1))
     small = (gain <= SMALLEST_GAIN * field.pair.base_radii[1]) | (np.abs(step).max(axis=-1) <= SHORT_STEP)
-    return small & (_violation(here.borders) <= FEASIBLE * field.pair.pinion.extent[0])
+    return small & (_violation(here.edges) <= FEASIBLE * field.pair.pinion.extent[0])
 
 
 def _advance(
@@ -158,19 +158,19 @@ def _advance(
     scale = np.asarray(field.pair.pinion.extent)
 
     def merit(rows: Array, trial: Array) -> tuple[Array, Array]:
-        value, borders = field.restricted(rows).heights(phi1[rows], *(trial * scale).T)
-        return value - penalty[rows] * np.maximum(0.0, -borders).sum(axis=-1), borders
+        value, edges = field.restricted(rows).heights(phi1[rows], *(trial * scale).T)
+        return value - penalty[rows] * np.maximum(0.0, -edges).sum(axis=-1), edges
 
     rows = np.arange(len(points))
-    before = field.value(here.station, phi1) - penalty * np.maximum(0.0, -here.borders).sum(axis=-1)
+    before = field.value(here.station, phi1) - penalty * np.maximum(0.0, -here.edges).sum(axis=-1)
     before -= MERIT_SLACK * sum(field.pair.base_radii)
     share, result = np.zeros(len(points)), points.copy()
     for halving in range(MOST_HALVINGS):
         trial = points[rows] + step[rows] * 0.5**halving
-        after, borders = merit(rows, trial)
+        after, edges = merit(rows, trial)
         bent = np.flatnonzero((after < before[rows]) & ((multipliers[rows] > 0.0).sum(axis=-1) == 1))
         if bent.size:
-            trial[bent] += _back_to_border(here.slopes[rows[bent]], borders[bent], multipliers[rows[bent]])
+            trial[bent] += _back_to_edge(here.slopes[rows[bent]], edges[bent], multipliers[rows[bent]])
             after[bent], _ = merit(rows[bent], trial[bent])
         astray = np.flatnonzero((after < before[rows]) & ((multipliers[rows] > 0.0).sum(axis=-1) <= 1))
         if astray.size:
@@ -186,16 +186,16 @@ def _advance(
     return result, share
 
 
-def _back_to_border(slopes: Array, borders: Array, multipliers: Array) -> Array:
-    """Second-order correction: from a trial point back to the one border it is held by."""
+def _back_to_edge(slopes: Array, edges: Array, multipliers: Array) -> Array:
+    """Second-order correction: from a trial point back to the one edge it is held by."""
     held = multipliers.argmax(axis=-1)
     rows = np.arange(len(held))
     slope = slopes[rows, held]
-    return -slope * (borders[rows, held] / np.maximum((slope**2).sum(axis=-1), 1e-300))[:, None]
+    return -slope * (edges[rows, held] / np.maximum((slope**2).sum(axis=-1), 1e-300))[:, None]
 
 
 def _back_to_ridge(field: EaseOff, phi1: Array, points: Array, multipliers: Array, scale: Array) -> Array:
-    """Trial points moved across the ridge, or along the one border that holds them, to its top.
+    """Trial points moved across the ridge, or along the one edge that holds them, to its top.
 
     A flat ridge (a nearly unmodified helical pair) is bent: a straight step along it falls by more than its end rises.
     """
@@ -205,29 +205,29 @@ def _back_to_ridge(field: EaseOff, phi1: Array, points: Array, multipliers: Arra
         bend = field.hessian(here.station) * np.outer(scale, scale)
         values, vectors = np.linalg.eigh(bend)
         slope = here.slopes[rows, multipliers.argmax(axis=-1)]
-        border = np.stack([-slope[:, 1], slope[:, 0]], axis=-1)
-        across = np.where(held[:, None], border, vectors[rows, :, np.abs(values).argmax(axis=-1)])
+        edge = np.stack([-slope[:, 1], slope[:, 0]], axis=-1)
+        across = np.where(held[:, None], edge, vectors[rows, :, np.abs(values).argmax(axis=-1)])
         curvature = np.abs(np.einsum("ni,nij,nj->n", across, bend, across))
         shift = (across * here.gradient).sum(axis=-1) / np.maximum(curvature, 1e-300)
         length = np.linalg.norm(across, axis=-1)
         points = points + across * np.clip(shift, -LARGEST_STEP / length, LARGEST_STEP / length)[:, None]
-        points[held] += _back_to_border(here.slopes[held], here.borders[held], multipliers[held])
+        points[held] += _back_to_edge(here.slopes[held], here.edges[held], multipliers[held])
     return points
 
 
 def _propose(
     field: EaseOff, here: _Local, multipliers: Array, scale: Array, plain: tuple[Array, Array]
 ) -> tuple[Array, Array]:
-    """Step (n, 2) of the quadratic model within the linearised borders, and its multipliers (n, borders).
+    """Step (n, 2) of the quadratic model within the linearised edges, and its multipliers (n, edges).
 
     Where an ascent is lost (the first of ``plain``, (n,) bool) the model is level, and the step the shortest one into
-    the borders; where it is stuck (the second) the model is equally bent in all directions, so that the step rises.
+    the edges; where it is stuck (the second) the model is equally bent in all directions, so that the step rises.
     """
     lost, stuck = plain
     bend = field.hessian(here.station)
     held = np.asarray((multipliers > 0.0).any(axis=-1))
     if held.any():
-        bend = bend + field.border_hessian(here.station, multipliers)
+        bend = bend + field.edge_hessian(here.station, multipliers)
     bend = -bend * np.outer(scale, scale)
     if (lost | stuck).any():
         size = np.where(lost, 1.0, np.linalg.norm(bend, axis=(-2, -1)))
@@ -237,10 +237,10 @@ def _propose(
     step = inverse[..., 0] * gradient[..., :1] + inverse[..., 1] * gradient[..., 1:]
     found = np.zeros_like(multipliers)
     tolerance = ROOM * scale[0]
-    room = here.borders + here.slopes[..., 0] * step[:, :1] + here.slopes[..., 1] * step[:, 1:]
+    room = here.edges + here.slopes[..., 0] * step[:, :1] + here.slopes[..., 1] * step[:, 1:]
     out = np.flatnonzero(room.min(axis=-1) < -tolerance)
     if out.size:
-        problem = Quadratic(gradient[out], curvature[out], here.borders[out], here.slopes[out], bend[out])
+        problem = Quadratic(gradient[out], curvature[out], here.edges[out], here.slopes[out], bend[out])
         step[out], found[out] = best_step(problem, tolerance)
     length = np.linalg.norm(step, axis=-1, keepdims=True)
     return step * np.minimum(1.0, LARGEST_STEP / np.maximum(length, 1e-300)), found

@@ -1,7 +1,7 @@
 """Points of both flanks that see what an ascent may have missed: where to start, and where to doubt a contact.
 
-The pinion's flank is seen by a grid and by dense points on its borders, which tell heights of the ease-off, and where
-its borders leave the wheel's flank, in the corners of the common region; the wheel's by its own grid and borders, which
+The pinion's flank is seen by a grid and by dense points on its edges, which tell heights of the ease-off, and where
+its edges leave the wheel's flank, in the corners of the common region; the wheel's by its own grid and edges, which
 must not lie inside the pinion once the wheel stands where the contact found puts it.
 """
 
@@ -21,16 +21,16 @@ from loaded_tca.unloaded.reduced import ROOM
 
 GRID = (17, 17)
 """Points of the scan along the profile and along the face."""
-BORDER = 33
-"""Points along each border of the pinion's flank."""
-WHEEL_GRID, WHEEL_BORDER = (9, 17), 65
-"""The same of the wheel's flank, whose borders the pinion's grid does not see: a contact on them may be short."""
-WHEEL_BORDERS = slice(4, 8)
-"""Columns of the borders of the wheel's flank."""
+EDGE = 33
+"""Points along each edge of the pinion's flank."""
+WHEEL_GRID, WHEEL_EDGE = (9, 17), 65
+"""The same of the wheel's flank, whose edges the pinion's grid does not see: a contact on them may be short."""
+WHEEL_EDGES = slice(4, 8)
+"""Columns of the edges of the wheel's flank."""
 AT_ONCE = 16
 """Positions looked at together."""
 CORNER_STEPS = 4
-"""Steps of false position from a spacing of border points to a corner: its square, three times over."""
+"""Steps of false position from a spacing of edge points to a corner: its square, three times over."""
 LEVEL = 1e-11
 """Difference of heights [mm] that is rounding: on a level ridge one start is enough."""
 BETWEEN = 2.0
@@ -42,7 +42,7 @@ Starts = tuple[NDArray[np.int_], Array, Array]
 
 @dataclass(frozen=True, eq=False)
 class Scan:
-    """The ease-off at points of the pinion flank, the grid first, then the borders.
+    """The ease-off at points of the pinion flank, the grid first, then the edges.
 
     Attributes
     ----------
@@ -80,7 +80,7 @@ class Scan:
 
 @dataclass(frozen=True, eq=False)
 class Corners:
-    """Where the pinion's borders cross those of the wheel, m corners of the common regions of all positions.
+    """Where the pinion's edges cross those of the wheel, m corners of the common regions of all positions.
 
     Attributes
     ----------
@@ -105,17 +105,17 @@ class Corners:
 
 
 def region_corners(pair: GearPair, phi1: Array, scan: Scan) -> Corners:
-    """Corners between neighbouring points of a border of which one lies in the common region, the other does not."""
-    field, chains = EaseOff(pair), _border_chains()
+    """Corners between neighbouring points of an edge of which one lies in the common region, the other does not."""
+    field, chains = EaseOff(pair), _edge_chains()
     inside = np.isfinite(scan.height)[:, chains]
-    owner, border, place = np.nonzero(inside[..., 1:] != inside[..., :-1])
-    first, last = chains[border, place], chains[border, place + 1]
+    owner, edge, place = np.nonzero(inside[..., 1:] != inside[..., :-1])
+    first, last = chains[edge, place], chains[edge, place + 1]
     angle = phi1[owner]
 
     def look(share: Array) -> tuple[Array, Array, Array, Array]:
         rho, z = (part[first] + share * (part[last] - part[first]) for part in (scan.rho, scan.z))
-        value, borders = field.heights(angle, rho, z)
-        return rho, z, value, borders[:, WHEEL_BORDERS].min(axis=-1)
+        value, edges = field.heights(angle, rho, z)
+        return rho, z, value, edges[:, WHEEL_EDGES].min(axis=-1)
 
     ends = np.stack([np.zeros(len(owner)), np.ones(len(owner))])
     room = np.stack([look(end)[3] for end in ends])
@@ -128,24 +128,24 @@ def region_corners(pair: GearPair, phi1: Array, scan: Scan) -> Corners:
     return Corners(owner, rho, z, value)
 
 
-def _border_chains() -> NDArray[np.int_]:
-    """Numbers of the points of a scan along the borders of the pinion's flank: (4, BORDER)."""
+def _edge_chains() -> NDArray[np.int_]:
+    """Numbers of the points of a scan along the edges of the pinion's flank: (4, EDGE)."""
     count = GRID[0] * GRID[1]
-    along_profile = np.arange(2 * BORDER).reshape(BORDER, 2).T
-    along_face = 2 * BORDER + np.arange(2 * BORDER).reshape(2, BORDER)
+    along_profile = np.arange(2 * EDGE).reshape(EDGE, 2).T
+    along_face = 2 * EDGE + np.arange(2 * EDGE).reshape(2, EDGE)
     return count + np.concatenate([along_profile, along_face])
 
 
 def scan_pinion(pair: GearPair, phi1: Array) -> Scan:
     """Scan of the pinion flank at each pinion angle (n,) [rad]."""
-    rho, z = _points(pair.pinion, GRID, BORDER)
+    rho, z = _points(pair.pinion, GRID, EDGE)
     field, count, allowed = EaseOff(pair), GRID[0] * GRID[1], ROOM * pair.pinion.extent[0]
 
     def look(block: Array) -> tuple[Array, Array, Array]:
         full = [np.broadcast_to(part, (len(block), len(rho))) for part in (rho, z)]
-        value, borders = field.heights(np.broadcast_to(block[:, None], full[0].shape), *full)
-        lack = np.maximum(0.0, -borders).sum(axis=-1)
-        return value, lack, borders[:, :count].min(axis=-1).max(axis=1)
+        value, edges = field.heights(np.broadcast_to(block[:, None], full[0].shape), *full)
+        lack = np.maximum(0.0, -edges).sum(axis=-1)
+        return value, lack, edges[:, :count].min(axis=-1).max(axis=1)
 
     value, lack, room = _in_blocks(look, phi1)
     height = np.where(lack <= allowed, value, -np.inf)
@@ -164,7 +164,7 @@ def inside_pinion(pair: GearPair, phi1: Array, value: Array, depth: float) -> St
         Pinion angles, and the ease-off that tells where the wheel stands.
     depth : float [mm]
     """
-    rho, z = _points(pair.wheel, WHEEL_GRID, WHEEL_BORDER)
+    rho, z = _points(pair.wheel, WHEEL_GRID, WHEEL_EDGE)
     own_theta = pair.wheel.theta(rho, z).value
     wheel_angle = pair.driving * value / pair.base_radii[1] + pair.ratio * phi1
 
@@ -210,9 +210,9 @@ def _summits(score: Array, inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return summits
 
 
-def _points(flank: Flank, shape: tuple[int, int], border: int) -> tuple[Array, Array]:
-    """(rho, z) of a grid over the flank and of dense points on its four borders [mm]."""
-    profile, lengthwise = flank.grid(border, 2), flank.grid(2, border)
+def _points(flank: Flank, shape: tuple[int, int], edge: int) -> tuple[Array, Array]:
+    """(rho, z) of a grid over the flank and of dense points on its four edges [mm]."""
+    profile, lengthwise = flank.grid(edge, 2), flank.grid(2, edge)
     grid = flank.grid(*shape)
     parts = ([grid[k].ravel(), profile[k].ravel(), lengthwise[k].ravel()] for k in (0, 1))
     rho, z = (np.concatenate(part) for part in parts)
@@ -220,6 +220,6 @@ def _points(flank: Flank, shape: tuple[int, int], border: int) -> tuple[Array, A
 
 
 def _spacing(flank: Flank) -> float:
-    """Spacing of the scan [mm]; distances to the borders change by about a millimetre per millimetre."""
+    """Spacing of the scan [mm]; distances to the edges change by about a millimetre per millimetre."""
     height, width = flank.extent
     return float(np.hypot(height / (GRID[0] - 1), width / (GRID[1] - 1)))

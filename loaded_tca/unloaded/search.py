@@ -1,8 +1,8 @@
 """Where the flanks touch first: a coarse scan names the basins, the reduced solver climbs each, the best one wins.
 
-A crease (the start of a linear relief) splits a flank into smooth pieces. An ascent stays on its piece, with the smooth
-continuation of that piece; if it is held by a crease, the piece beyond is climbed from there, and so on from piece to
-piece. A contact that rests on a crease is thus found like one that rests on a border.
+A relief start (the start of a linear relief) splits a flank into smooth pieces. An ascent stays on its piece, with the
+smooth continuation of that piece; if it is held by a relief start, the piece beyond is climbed from there, and so on
+from piece to piece. A contact that rests on a relief start is thus found like one that rests on an edge.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ PIERCED = 1e-9
 NUDGE = 0.05
 """Step away from a saddle, as a fraction of the flank."""
 CLOSE = (1e-4, 1e-3, 1e-2)
-"""Steps away from a corner along its borders, as a fraction of the flank."""
-OFF_BORDER = 0.01
-"""Distance by which such a step may leave the region, relative to it, since borders are bent."""
+"""Steps away from a corner along its edges, as a fraction of the flank."""
+OFF_EDGE = 0.01
+"""Distance by which such a step may leave the region, relative to it, since edges are bent."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,13 +45,13 @@ class FirstTouch:
         On the pinion flank; arbitrary where nothing touches.
     value : (n,) array [mm]
         Ease-off.
-    multipliers : (n, borders) array
-        Slope against each border or crease that holds the point.
-    beyond : (n, creases) bool array
+    multipliers : (n, edges) array
+        Slope against each edge or relief start that holds the point.
+    beyond : (n, relief starts) bool array
         The smooth piece it belongs to.
     iterations : (n,) int array
         Steps of the winning ascent.
-    touches : (n,) bool array
+    in_contact : (n,) bool array
         False where the two flanks share no region at all.
     """
 
@@ -61,7 +61,7 @@ class FirstTouch:
     multipliers: Array
     beyond: Array
     iterations: Array
-    touches: Array
+    in_contact: Array
 
 
 def first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
@@ -93,7 +93,7 @@ def _first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
         result = _best(phi1, found)
     corners = region_corners(pair, phi1, scan)
     for _ in range(ROUNDS):
-        owner, rho, z = _doubts(pair, phi1, (scan, corners), result, rows)
+        owner, rho, z = _accuracy_warnings(pair, phi1, (scan, corners), result, rows)
         if not owner.size:
             return result
         found = found.joined(_ascend(pair, phi1, owner, rho, z))
@@ -102,14 +102,14 @@ def _first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
     return result
 
 
-def _doubts(
+def _accuracy_warnings(
     pair: GearPair, phi1: Array, seen: tuple[Scan, Corners], touch: FirstTouch, rows: NDArray[np.int_]
 ) -> Starts:
     """Points from which some positions are to be searched again."""
     scan, corners = seen
     missed = scan.higher(rows, touch.value[rows] + CERTIFICATE * pair.base_radii[1])
     cut = corners.higher(rows, touch.value[rows] + PIERCED * pair.module)
-    rows = rows[touch.touches[rows]]
+    rows = rows[touch.in_contact[rows]]
     pierced, *place = inside_pinion(pair, phi1[rows], touch.value[rows], PIERCED * pair.module)
     parts = (missed, cut, (rows[pierced], *place), _beside_saddles(pair, phi1, touch, rows))
     owner, rho, z = (np.concatenate(part) for part in zip(*parts, strict=True))
@@ -121,9 +121,9 @@ def _beside_saddles(pair: GearPair, phi1: Array, touch: FirstTouch, rows: NDArra
     field = EaseOff(pair, touch.beyond[rows] if touch.beyond.shape[1] else None)
     held, scale = touch.multipliers[rows], np.asarray(pair.pinion.extent)
     station = field.station(phi1[rows], touch.rho[rows], touch.z[rows])
-    bend = (field.hessian(station) + field.border_hessian(station, held)) * np.outer(scale, scale)
+    bend = (field.hessian(station) + field.edge_hessian(station, held)) * np.outer(scale, scale)
     values, vectors = np.linalg.eigh(bend)
-    _, slopes = field.borders(station)
+    _, slopes = field.edges(station)
     edge = slopes[np.arange(len(rows)), held.argmax(axis=1)] * scale
     along = np.stack([-edge[:, 1], edge[:, 0]], axis=-1)
     along /= np.maximum(np.linalg.norm(along, axis=-1, keepdims=True), 1e-300)
@@ -137,24 +137,24 @@ def _beside_saddles(pair: GearPair, phi1: Array, touch: FirstTouch, rows: NDArra
 
 
 def _beside_corners(pair: GearPair, phi1: Array, touch: FirstTouch) -> Starts:
-    """Points on the two borders that meet in a contact, close to it, that are higher.
+    """Points on the two edges that meet in a contact, close to it, that are higher.
 
     Towards a base cone a modification falls like the root of the distance, so that the corner itself may be a maximum.
     """
-    rows = np.flatnonzero(touch.touches & ((touch.multipliers > 0.0).sum(axis=1) > 1))
+    rows = np.flatnonzero(touch.in_contact & ((touch.multipliers > 0.0).sum(axis=1) > 1))
     field = EaseOff(pair, touch.beyond[rows] if touch.beyond.shape[1] else None)
     scale = np.asarray(pair.pinion.extent)
     station = field.station(phi1[rows], touch.rho[rows], touch.z[rows])
     two = np.argsort(touch.multipliers[rows], axis=1)[:, -2:]
-    edges = np.take_along_axis(field.borders(station)[1] * scale, two[..., None], axis=1)
-    along = np.stack([-edges[..., 1], edges[..., 0]], axis=-1)
+    slopes = np.take_along_axis(field.edges(station)[1] * scale, two[..., None], axis=1)
+    along = np.stack([-slopes[..., 1], slopes[..., 0]], axis=-1)
     along /= np.maximum(np.linalg.norm(along, axis=-1, keepdims=True), 1e-300)
-    along *= np.sign((along * edges[:, ::-1]).sum(axis=-1, keepdims=True))
+    along *= np.sign((along * slopes[:, ::-1]).sum(axis=-1, keepdims=True))
     step = (along[:, :, None, :] * np.array(CLOSE)[:, None] * scale).reshape(-1, 2)
     row = np.repeat(np.arange(len(rows)), 2 * len(CLOSE))
     rho, z = touch.rho[rows[row]] + step[:, 0], touch.z[rows[row]] + step[:, 1]
-    value, borders = field.restricted(row).heights(phi1[rows[row]], rho, z)
-    inside = borders.min(axis=-1) >= -OFF_BORDER * np.linalg.norm(step, axis=-1)
+    value, edges = field.restricted(row).heights(phi1[rows[row]], rho, z)
+    inside = edges.min(axis=-1) >= -OFF_EDGE * np.linalg.norm(step, axis=-1)
     higher = inside & (value > touch.value[rows[row]] + PIERCED * pair.module)
     return rows[row[higher]], rho[higher], z[higher]
 
@@ -162,7 +162,7 @@ def _beside_corners(pair: GearPair, phi1: Array, touch: FirstTouch) -> Starts:
 def _certify(pair: GearPair, phi1: Array, scan: Scan, touch: FirstTouch, rows: NDArray[np.int_]) -> None:
     """Raise unless no scanned point is higher and none of the wheel's lies inside the pinion."""
     short, *_ = scan.higher(rows, touch.value[rows] + CERTIFICATE * pair.base_radii[1])
-    rows = rows[touch.touches[rows]]
+    rows = rows[touch.in_contact[rows]]
     pierced, *_ = inside_pinion(pair, phi1[rows], touch.value[rows], PIERCED * pair.module)
     doubtful = np.union1d(short, rows[pierced])
     if doubtful.size:
@@ -186,10 +186,10 @@ class _Ascents:
 
 
 def _ascend(pair: GearPair, phi1: Array, owner: Array, rho: Array, z: Array) -> _Ascents:
-    """Climb from the starts, and on across every crease that holds an ascent."""
+    """Climb from the starts, and on across every relief start that holds an ascent."""
     beyond = EaseOff(pair).sides(phi1[owner], rho, z)
     found = latest = _Ascents(owner, beyond, _climb(pair, phi1[owner], rho, z, beyond))
-    columns, last = _crease_columns(pair), np.full(len(owner), -1)
+    columns, last = _relief_start_columns(pair), np.full(len(owner), -1)
     for _ in columns:
         row, last = _crossings(latest.peaks.multipliers[:, columns], last)
         across = latest.beyond[row]
@@ -205,16 +205,16 @@ def _climb(pair: GearPair, phi1: Array, rho: Array, z: Array, beyond: Array) -> 
 
 
 def _crossings(multipliers: Array, last: Array) -> tuple[Array, Array]:
-    """Rows of ascents that are held by a crease other than the last one they crossed, and that crease."""
+    """Rows of ascents that are held by a relief start other than the last one they crossed, and that relief start."""
     held = (multipliers > 0.0) & (np.arange(multipliers.shape[1]) != last[:, None])
-    row, crease = np.nonzero(held)
-    return row, crease
+    row, relief_start = np.nonzero(held)
+    return row, relief_start
 
 
-def _crease_columns(pair: GearPair) -> Array:
-    """Columns of the multipliers that belong to creases, the pinion's first."""
+def _relief_start_columns(pair: GearPair) -> Array:
+    """Columns of the multipliers that belong to relief starts, the pinion's first."""
     field = EaseOff(pair)
-    return np.flatnonzero(EaseOff(pair, np.zeros((1, field.creases), dtype=bool)).border_is_crease())
+    return np.flatnonzero(EaseOff(pair, np.zeros((1, field.relief_starts), dtype=bool)).edge_is_relief_start())
 
 
 def _best(phi1: Array, found: _Ascents) -> FirstTouch:
@@ -239,5 +239,5 @@ def _best(phi1: Array, found: _Ascents) -> FirstTouch:
         multipliers=spread(peaks.multipliers),
         beyond=spread(beyond),
         iterations=spread(peaks.iterations),
-        touches=np.isfinite(best),
+        in_contact=np.isfinite(best),
     )

@@ -6,9 +6,9 @@ the one that comes into mesh after it, pair -1 the one that came before it:
 .. math:: \mathrm{TE}_k(\varphi_1) = \mathrm{TE}_0(\varphi_1 - k\,2\pi/z_1), \qquad
           \varphi_{2,k}(\varphi_1) = \varphi_{2,0}(\varphi_1 - k\,2\pi/z_1) + k\,2\pi/z_2 .
 
-No tooth may pass through its mate, so the wheel stands where the first pair touches: the transmission error is the
-envelope of these curves, the upper one if the pinion drives, the lower one if the wheel does. Where a contact has run
-onto the tip of a tooth, the curve goes on, steeply: the corner contact belongs to it, and the envelope itself never
+No tooth may pass through its mating gear, so the wheel stands where the first pair touches: the transmission error is
+the envelope of these curves, the upper one if the pinion drives, the lower one if the wheel does. Where a contact has
+run onto the tip of a tooth, the curve goes on, steeply: the corner contact belongs to it, and the envelope itself never
 jumps. What the literature calls a discontinuous transmission function is a transfer at which the curves of surface
 contact do not cross inside both their ranges, so that a tooth edge bridges the step.
 """
@@ -91,7 +91,7 @@ class MeshPath:
         return self.transmission_error + self.pair.ratio * self.pinion_angle
 
     @property
-    def lag(self) -> Array:
+    def initial_separation(self) -> Array:
         """How far each pair is from touching: (m, n) [rad], zero for the leading one, NaN where apart."""
         own = np.stack([path.transmission_error for path in self.paths])
         return self.pair.driving * (self.transmission_error - own)
@@ -122,7 +122,7 @@ class MeshPath:
 
     @property
     def area(self) -> float:
-        """Area S between the transmission error and zero over one pitch of phi1, signed [rad^2] (Seed 000, 4.2)."""
+        """Signed area S under the transmission error over a pitch of phi1 [rad^2] (reduced-TCA dissertation, 4.2)."""
         return self.mean * self.pair.pitch
 
     def harmonics(self, count: int) -> Harmonics:
@@ -162,7 +162,7 @@ class MeshPath:
         most = REACH * self.pair.module
         if not isinstance(tolerance, Real) or not 0.0 <= tolerance <= most:
             raise InputError(f"tolerance: {tolerance!r} mm is not a length from 0 to {most:.6g} mm, {REACH} modules")
-        return max(1.0, self._cycle.touching_share(tolerance + COINCIDE * self.pair.base_radii[1]))
+        return max(1.0, self._cycle.share_in_contact(tolerance + COINCIDE * self.pair.base_radii[1]))
 
     @cached_property
     def transfers(self) -> tuple[Transfer, ...]:
@@ -236,7 +236,7 @@ def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: I
     Warns
     -----
     AccuracyWarning
-        If the leading contact rests on the root border of a flank, below which the tooth goes on as its fillet.
+        If the leading contact rests on the root edge of a flank, below which the tooth goes on as its fillet.
 
     Examples
     --------
@@ -257,7 +257,7 @@ def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: I
         raise GeometryError(f"no common flank: none of the tooth pairs {pairs.tolist()} comes into reach")
     path = trace_contact(pair, own.ravel()[rows], warn=False)
     heights = np.full(own.size, -np.inf)
-    heights[rows] = np.where(path.touches, pair.driving * path.transmission_error * pair.base_radii[1], -np.inf)
+    heights[rows] = np.where(path.in_contact, pair.driving * path.transmission_error * pair.base_radii[1], -np.inf)
     column = leading(pair, heights.reshape(own.shape), phi1, pairs)
     top = heights.reshape(own.shape)[column, np.arange(len(phi1))]
     if (apart := np.isinf(top)).any():

@@ -42,11 +42,11 @@ LEVEL = 1e-11
 """Change of the transmission error between two samples [rad] that is rounding of the slope, no summit."""
 CLOSE = 1e-11
 """Accuracy of a transfer point [rad]."""
-BORDER = 1e-8
+EDGE = 1e-8
 """Accuracy of the angle at which a tooth pair begins or ceases to touch [rad]."""
 SUMMIT = 1e-6
 """Accuracy of the angle of a summit [rad]: a round one is then right to rounding, a crest to 1e-5 of its
-height. Closer to a crest where two borders meet the ascents may fail."""
+height. Closer to a crest where two edges meet the ascents may fail."""
 NEARER = 1e-6
 """Part of a pitch by which the later pair counts as farther, so that no two are equally far from their pitch points."""
 
@@ -117,7 +117,7 @@ class ToothCycle:
         top = self.heights(angle[(angle > low) & (angle < high)], teeth).max(axis=0)
         return top[np.isfinite(top)]
 
-    def touching_share(self, lag: float) -> float:
+    def share_in_contact(self, lag: float) -> float:
         """Pitches over which a tooth pair lags behind the best of the others by no more than a length [mm]."""
         count, most = len(self.height) // SAMPLES + 1, 2.0 * REACH * self.pair.module
         others = np.concatenate([np.arange(-count, 0), np.arange(1, count + 1)])
@@ -135,7 +135,7 @@ class ToothCycle:
         sample = excess(self.sampled(index, np.array([0]))[0], self.sampled(index, others))
         rows = np.flatnonzero(np.diff(sample <= 0.0))
         rows = np.stack([rows, rows + 1])
-        found = find_roots(excess_at, self.step * index[rows], sample[rows], BORDER)
+        found = find_roots(excess_at, self.step * index[rows], sample[rows], EDGE)
         return float((found[1::2] - found[::2]).sum()) / self.pair.pitch
 
     def changes(self, low: float, high: float, teeth: Integers) -> tuple[Array, Integers]:
@@ -216,10 +216,10 @@ def _scan(pair: GearPair, own: Array) -> tuple[Array, Array]:
     """Highest point of a coarse grid (n,) [mm], -inf if none is common; whether one is within a spacing of it."""
     rho, z = pair.pinion.grid(*SCAN)
     shape = (len(own), *SCAN)
-    value, borders = EaseOff(pair).heights(
+    value, edges = EaseOff(pair).heights(
         np.broadcast_to(own[:, None, None], shape), np.broadcast_to(rho, shape), np.broadcast_to(z, shape)
     )
-    inside = borders.min(axis=-1)
+    inside = edges.min(axis=-1)
     height_step, width_step = (length / (count - 1) for length, count in zip(pair.pinion.extent, SCAN, strict=True))
     height = np.where(inside >= 0.0, value, -np.inf).max(axis=(1, 2))
     return height, inside.max(axis=(1, 2)) >= -2.0 * math.hypot(height_step, width_step)
@@ -242,14 +242,14 @@ def height_and_slope(pair: GearPair, own: Array) -> tuple[Array, Array]:
     r"""Height h (n,) [mm] of the first touch and dh/d own [mm/rad]; -inf and zero without a common region.
 
     The point of contact moves, but to first order only what changes at a fixed point counts: with the multipliers
-    :math:`\lambda_b` of the borders c_b that hold it, :math:`h' = \partial e/\partial\varphi_1 + \sum_b \lambda_b\,
+    :math:`\lambda_b` of the edges c_b that hold it, :math:`h' = \partial e/\partial\varphi_1 + \sum_b \lambda_b\,
     \partial c_b/\partial\varphi_1`.
     """
     height, slope = np.full(len(own), -np.inf), np.zeros(len(own))
     if not len(own):
         return height, slope
     touch = first_touch(pair, own)
-    rows = np.flatnonzero(touch.touches)
+    rows = np.flatnonzero(touch.in_contact)
     height[rows] = touch.value[rows]
     if rows.size:
         field = EaseOff(pair, touch.beyond[rows] if touch.beyond.shape[1] else None)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from loaded_tca.flanks.base import BORDER_NAMES
+from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.path import ContactPoint, trace_contact
 from loaded_tca.unloaded.tooth_cycle import ToothCycle
@@ -16,7 +16,7 @@ from loaded_tca.unloaded.tooth_cycle import ToothCycle
 SECTIONS, SECTION_PASSES = 16, 4
 """The end of a surface contact is found by cutting a pitch into 16 parts, four times over."""
 ENDS = 4
-"""The tips and roots of both gears come first in the order of ``_borders_held``, before the sides."""
+"""The tips and roots of both gears come first in the order of ``_edges_held``, before the sides."""
 
 Bools = NDArray[np.bool_]
 
@@ -48,14 +48,14 @@ class Transfer:
         along their sides all the way (misaligned, without lead crowning) have curves of their own, which may cross; a
         side that only one of the two contacts rests on is an end like a tip.
         """
-        first, second = (_borders_held(contact.edges) for contact in self.contacts)
+        first, second = (_edges_held(contact.edges) for contact in self.contacts)
         return not first[:ENDS].any() and bool((first == second).all())
 
     def jump(self, pair: GearPair) -> float:
         """Change of the transmission error over the edge contact [rad]; NaN if none but that within a pitch."""
         if self.is_continuous:
             return 0.0
-        first, second = (_borders_held(contact.edges) for contact in self.contacts)
+        first, second = (_edges_held(contact.edges) for contact in self.contacts)
         common = first & second
         common[:ENDS] = False
         before, after = (_end_of(pair, one, common, way) for one, way in zip(self.contacts, (-1.0, 1.0), strict=True))
@@ -76,18 +76,18 @@ def find_transfers(cycle: ToothCycle, low: float, high: float, teeth: NDArray[np
     )
 
 
-def _borders_held(edges: Bools) -> Bools:
+def _edges_held(edges: Bools) -> Bools:
     """Tips and roots of both gears, then the sides of either: where two faces end together, their edges alternate."""
-    pinion, wheel = edges[..., : len(BORDER_NAMES)], edges[..., len(BORDER_NAMES) :]
+    pinion, wheel = edges[..., : len(EDGE_NAMES)], edges[..., len(EDGE_NAMES) :]
     return np.concatenate([pinion[..., :2], wheel[..., :2], pinion[..., 2:] | wheel[..., 2:]], axis=-1)
 
 
-def _end_of(pair: GearPair, contact: ContactPoint, borders: Bools, way: float) -> float:
-    """Transmission error where a contact rests on ``borders`` alone again, going one way; NaN if not within a pitch."""
+def _end_of(pair: GearPair, contact: ContactPoint, edges: Bools, way: float) -> float:
+    """Transmission error where a contact rests on ``edges`` alone again, going one way; NaN if not within a pitch."""
     start, length = contact.pinion_angle, way * pair.pitch
     for _ in range(SECTION_PASSES):
         path = trace_contact(pair, start + length * np.linspace(0.0, 1.0, SECTIONS + 1), warn=False)
-        free = path.touches & (_borders_held(path.edges) == borders).all(axis=-1)
+        free = path.in_contact & (_edges_held(path.edges) == edges).all(axis=-1)
         if not free.any():
             return math.nan
         first = int(free.argmax())

@@ -11,16 +11,16 @@ from loaded_tca import InputError, trace_contact
 from loaded_tca.baselines.conventional import UNKNOWNS, contact_equations, solve_conventional, solve_with_scipy_root
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.pairs.cylindrical import Mounting
-from tests.samples.gear_pairs import gear_pair, pairs, seed_002
+from tests.samples.gear_pairs import gear_pair, pairs, sam_paper
 
 SAME_ANGLE = 1e-12  # rad; asked for: 1e-10
 SAME_POINT = 1e-6  # mm; along a ridge of radius 15 m, a residual of 1e-12 leaves 2e-8 mm
 NEAR = np.array([0.1, 0.5, -0.1, -0.5, 0.01])  # mm, mm, mm, mm, rad: off the answer
 
 PAIRS = {
-    "crowned spur": seed_002(),
-    "crowned helical": seed_002(15.0),
-    "misaligned": seed_002(15.0, mounting=Mounting(1e-4, 2e-4, 0.05, 0.1)),
+    "crowned spur": sam_paper(),
+    "crowned helical": sam_paper(15.0),
+    "misaligned": sam_paper(15.0, mounting=Mounting(1e-4, 2e-4, 0.05, 0.1)),
     "profile crowned, wheel driving, turning back": gear_pair(
         FlankModifications(lead_crowning=0.01, profile_crowning=0.008),
         FlankModifications(profile_crowning=0.005),
@@ -58,7 +58,7 @@ def test_equations_have_the_contact_of_the_reduced_solver_as_their_solution(pair
 def test_equations_hold_at_every_smooth_interior_contact(pair):
     """Values of the equations at the contacts of the reduced solver, whatever the pair."""
     path = trace_contact(pair, np.linspace(-0.4, 0.4, 3) * pair.pitch)
-    smooth = path.touches & ~path.on_edge & ~path.on_crease & ~path.on_line
+    smooth = path.in_contact & ~path.on_edge & ~path.on_relief_start & ~path.on_line
     values, _ = contact_equations(pair, path.pinion_angle[smooth], answer(path)[smooth])
     assert_allclose(values, 0.0, atol=1e-9)  # the residual that the reduced solver leaves in the normals
 
@@ -78,7 +78,7 @@ def test_jacobian_is_the_slope_of_the_equations(pair, normal_components, rng):
 
 
 def test_newton_converges_quadratically_near_the_contact():
-    pair = seed_002(15.0)
+    pair = sam_paper(15.0)
     path = trace_contact(pair, [0.01])
     residuals = []
     unknowns = answer(path) + 0.3 * NEAR
@@ -93,7 +93,7 @@ def test_newton_converges_quadratically_near_the_contact():
 @solvers
 def test_contact_on_an_edge_is_beyond_the_equations(solve):
     """The normals differ there: what the equations have for a solution lies off the flanks, 50 mm beyond the face."""
-    pair = seed_002(mounting=Mounting(out_of_plane=0.01))
+    pair = sam_paper(mounting=Mounting(out_of_plane=0.01))
     path = trace_contact(pair, [-0.02, 0.0, 0.02])
     found = solve(pair, path.pinion_angle, answer(path))
     assert path.on_edge.all()
@@ -105,7 +105,7 @@ def test_contact_on_an_edge_is_beyond_the_equations(solve):
 
 
 def test_share_of_random_starts_that_converge_falls_with_the_spread_of_the_wheel_angle(rng):
-    """Seed 000 prints 27.32 % of 5000 for its spur pair, without saying how far phi2 was spread."""
+    """The reduced-TCA dissertation prints 27.32 % of 5000 for its spur pair, without saying how far phi2 was spread."""
     pair = gear_pair(FlankModifications(lead_crowning=0.0931), teeth=(52, 72), module=1.0, width=11.42)
     starts = np.stack([rng.uniform(*ends, 600) for ends in random_ranges(pair)], axis=-1)
     near, wide = (starts * [1.0, 1.0, 1.0, 1.0, spread] for spread in (0.2, 0.5 * math.pi))
@@ -123,7 +123,7 @@ def random_ranges(pair):
 
 
 def test_starts_that_diverge_are_marked_and_stay_finite(rng):
-    pair = seed_002(15.0)
+    pair = sam_paper(15.0)
     start = np.stack([rng.uniform(*ends, 200) for ends in random_ranges(pair)], axis=-1)
     start[:, 4] *= 50.0
     found = solve_conventional(pair, 0.0, start)
@@ -156,7 +156,7 @@ def test_unmodified_spur_pair_has_a_singular_jacobian_and_no_start_converges():
 
 
 def test_wheel_angle_does_not_count_whole_turns():
-    pair = seed_002()
+    pair = sam_paper()
     path = trace_contact(pair, [0.02])
     start = answer(path)
     start[:, 4] += 4.0 * math.pi
@@ -188,9 +188,9 @@ GOOD = [51.0, 0.0, 85.5, 0.0, 0.0]
 )
 def test_inputs_that_cannot_be_used_are_refused(solve, phi1, start, components, message):
     with pytest.raises(InputError, match=message):
-        solve(seed_002(), phi1, start, components)
+        solve(sam_paper(), phi1, start, components)
 
 
 def test_result_tells_how_many_starts_reached_a_contact():
-    found = solve_conventional(seed_002(), 0.0, [GOOD, [51.2, 1.0, 85.2, -1.0, 1.5]])
+    found = solve_conventional(sam_paper(), 0.0, [GOOD, [51.2, 1.0, 85.2, -1.0, 1.5]])
     assert repr(found) == "ConventionalResult(2 starts, 1 converged, 1 of them to a contact)"

@@ -12,16 +12,16 @@ from loaded_tca.baselines.conventional import solve_conventional
 from loaded_tca.baselines.golden_section import search_golden_section
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.pairs.cylindrical import Mounting
-from tests.samples.gear_pairs import gear_pair, highest_on_grid, seed_002, wheel_lag
+from tests.samples.gear_pairs import gear_pair, highest_on_grid, sam_paper, transmission_error_at
 
 SAME_ANGLE = 1e-12  # rad; asked for: 1e-10
 INTERIOR = 30  # sections: 5e-7 of the flank, the square of which is the error of a level gap
 CLOSED = 1e-11  # of r_b2: the gap at which the search stops
 
 PAIRS = {
-    "crowned spur": seed_002(),
-    "crowned helical": seed_002(15.0),
-    "misaligned": seed_002(15.0, mounting=Mounting(1e-4, 2e-4, 0.05, 0.1)),
+    "crowned spur": sam_paper(),
+    "crowned helical": sam_paper(15.0),
+    "misaligned": sam_paper(15.0, mounting=Mounting(1e-4, 2e-4, 0.05, 0.1)),
     "profile crowned, wheel driving, turning back": gear_pair(
         FlankModifications(lead_crowning=0.01, profile_crowning=0.008),
         FlankModifications(profile_crowning=0.005),
@@ -53,8 +53,8 @@ def test_interior_contacts_of_three_methods_agree(pair):
 
 
 EDGES = {
-    "end of the face": (seed_002(mounting=Mounting(out_of_plane=0.01)), [0.0, 0.03]),
-    "corner region of a helical pair": (seed_002(15.0, mounting=Mounting(0.02, 0.01)), [-0.05, 0.02]),
+    "end of the face": (sam_paper(mounting=Mounting(out_of_plane=0.01)), [0.0, 0.03]),
+    "corner region of a helical pair": (sam_paper(15.0, mounting=Mounting(0.02, 0.01)), [-0.05, 0.02]),
     "tip beyond the nominal path": (gear_pair(FlankModifications(lead_crowning=0.002)), [-0.166, 0.166]),
 }
 
@@ -70,7 +70,7 @@ def test_edge_contacts_are_found_where_the_conventional_equations_have_none(pair
 
 def test_no_point_of_the_flanks_touches_before_the_angle_found():
     """Against a dense grid that knows neither gaps nor sections."""
-    pair = seed_002(15.0, mounting=Mounting(2e-4, 1e-4))
+    pair = sam_paper(15.0, mounting=Mounting(2e-4, 1e-4))
     found = search_golden_section(pair, [-0.03, 0.04], sections=INTERIOR)
     for angle, wheel_angle in zip(found.pinion_angle, found.wheel_angle, strict=True):
         lag = wheel_angle - pair.ratio * angle
@@ -80,7 +80,7 @@ def test_no_point_of_the_flanks_touches_before_the_angle_found():
 def test_wheel_flank_passes_through_the_point_found():
     pair = PAIRS["misaligned"]
     found = search_golden_section(pair, [-0.02, 0.02], sections=INTERIOR)
-    lag, there = wheel_lag(pair, found.pinion_angle, found.pinion_radius, found.pinion_axial)
+    lag, there = transmission_error_at(pair, found.pinion_angle, found.pinion_radius, found.pinion_axial)
     assert there.all()
     assert_allclose(lag, found.wheel_angle - pair.ratio * found.pinion_angle, rtol=0, atol=2.0 * CLOSED)
     assert (np.abs(found.gap) <= CLOSED * pair.base_radii[1]).all()
@@ -88,7 +88,7 @@ def test_wheel_flank_passes_through_the_point_found():
 
 def test_smallest_gap_grows_with_the_wheel_angle_where_the_distance_without_sign_is_zero_all_along():
     """Why the gap needs its sign: interpenetrating flanks cross, at every angle, at a distance of nothing."""
-    pair = seed_002()
+    pair = sam_paper()
     search = golden_section._Search(pair, np.zeros(5), 20)
     angles = np.array([-2e-3, -1e-3, -5e-4, 0.0, 1e-3])
     rows = np.arange(5)
@@ -103,8 +103,8 @@ def test_smallest_gap_grows_with_the_wheel_angle_where_the_distance_without_sign
 @pytest.mark.parametrize("turns", [1, -2, 57])
 def test_contact_whole_turns_away_is_that_of_the_same_tooth(turns):
     angle = [0.01 + 2.0 * np.pi * turns]
-    found = search_golden_section(seed_002(), angle, sections=INTERIOR)
-    expected = trace_contact(seed_002(), angle).wheel_angle
+    found = search_golden_section(sam_paper(), angle, sections=INTERIOR)
+    expected = trace_contact(sam_paper(), angle).wheel_angle
     rounding = 1e-12  # of angles of hundreds of radians
     assert_allclose(found.wheel_angle, expected, rtol=0, atol=rounding)
 
@@ -115,8 +115,8 @@ def test_line_contact_of_an_unmodified_pair_is_found():
 
 
 def test_positions_without_a_common_region_are_not_a_number():
-    found = search_golden_section(seed_002(), [1.5, 0.0], sections=INTERIOR)
-    assert found.touches.tolist() == [False, True]
+    found = search_golden_section(sam_paper(), [1.5, 0.0], sections=INTERIOR)
+    assert found.in_contact.tolist() == [False, True]
     for name in ("wheel_angle", "point", "pinion_radius", "pinion_axial", "gap"):
         assert np.isnan(getattr(found, name)[0]).all()
         assert np.isfinite(getattr(found, name)[1]).all()
@@ -125,7 +125,7 @@ def test_positions_without_a_common_region_are_not_a_number():
 
 def test_every_gap_is_counted():
     """A search of m sections along both directions takes (m + 2)^2 gaps, and m + 2 for the place of the last."""
-    found = search_golden_section(seed_002(), [0.0], sections=20)
+    found = search_golden_section(sam_paper(), [0.0], sections=20)
     assert found.evaluations % (22 * 23) == 0
     assert 4 <= found.evaluations / (22 * 23) <= 8
 
@@ -144,7 +144,7 @@ def test_every_gap_is_counted():
 )
 def test_inputs_that_cannot_be_used_are_refused(angles, sections, message):
     with pytest.raises(InputError, match=message):
-        search_golden_section(seed_002(), angles, sections=sections)
+        search_golden_section(sam_paper(), angles, sections=sections)
 
 
 def test_pair_that_never_touches_is_refused():

@@ -137,7 +137,7 @@ def test_teeth_too_far_apart_are_refused():
         gear.between(line(gear, 0.3), line(gear, 0.6, tooth=2))
 
 
-def test_places_beyond_the_flank_count_as_its_border():
+def test_places_beyond_the_flank_count_as_its_edge():
     gear = model()
     one = line(gear, 0.5)
     beyond = FlankLine(0, one.rho + 100.0, one.z)

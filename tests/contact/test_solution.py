@@ -47,7 +47,7 @@ def test_border_and_material_edge_are_told_apart():
     punch = solve_contact(gap, (0.1, 0.1), E_STAR, load=10.0)
     assert punch.reaches_material_edge
     assert not punch.reaches_border
-    assert punch.doubts == ()
+    assert punch.accuracy_warnings == ()
 
 
 def test_peak_of_a_capped_contact_is_the_cap():
@@ -56,9 +56,9 @@ def test_peak_of_a_capped_contact_is_the_cap():
 
 def test_doubts_name_both_reasons():
     narrow = solve_contact(np.zeros((3, 30)), (0.1, 0.1), E_STAR, load=1.0, warn=False)
-    assert len(narrow.doubts) == 2
-    assert "reaches the box" in narrow.doubts[0]
-    assert "3 cells across" in narrow.doubts[1]
+    assert len(narrow.accuracy_warnings) == 2
+    assert "reaches the box" in narrow.accuracy_warnings[0]
+    assert "3 cells across" in narrow.accuracy_warnings[1]
 
 
 def test_estimate_grows_to_first_order_at_a_border():

@@ -328,7 +328,7 @@ def test_warnings_can_be_left_to_the_caller():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         solution = solve_contact(gap, spacing, E_STAR, load=1e-3 * LOAD, warn=False)
-    assert len(solution.doubts) == 1
+    assert len(solution.accuracy_warnings) == 1
 
 
 def test_solution_is_frozen_short_in_print_and_picklable():

@@ -12,7 +12,7 @@ from loaded_tca.gears import bevel_mesh
 from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.unloaded import trace_contact
-from tests.samples.gear_pairs import cylindrical_mesh, gear_pair, wheel_lag
+from tests.samples.gear_pairs import cylindrical_mesh, gear_pair, transmission_error_at
 
 ROUNDING = 1e-12
 """mm: the lead is a difference of angles of order one, times a base radius below 100 mm."""
@@ -42,7 +42,7 @@ def test_lead_of_an_unmodified_pair_is_zero_everywhere(make, driving, sense):
     for seen in (pair, exchanged(pair)):
         contact = conjugate_contact(seen, *seen.pinion.grid(15, 9))
         on = contact.exists & (contact.profile_room >= 0.0)
-        assert on[-1].all()  # the own tip always finds the mate's flank
+        assert on[-1].all()  # the own tip always finds the mating gear's flank
         assert_allclose(contact.lead[on], 0.0, atol=ROUNDING)
 
 
@@ -51,7 +51,7 @@ def test_contact_of_involutes_lies_on_the_line_of_action():
     pair = gear_pair()
     contact = conjugate_contact(pair, *pair.pinion.grid(15, 3))
     rho, _ = pair.pinion.grid(15, 3)
-    roll = np.sqrt(rho**2 - pair.base_radii[0] ** 2) + np.sqrt(contact.mate_radius**2 - pair.base_radii[1] ** 2)
+    roll = np.sqrt(rho**2 - pair.base_radii[0] ** 2) + np.sqrt(contact.mating_radius**2 - pair.base_radii[1] ** 2)
     length = math.sqrt(mesh.working_centre_distance**2 - sum(pair.base_radii) ** 2)
     assert_allclose(roll, length, rtol=1e-9)
 
@@ -64,11 +64,11 @@ def test_lead_is_the_highest_of_the_whole_passage(driving):
     contact = conjugate_contact(pair, rho, z)
     on = contact.exists & (contact.profile_room > 0.0)
     steps = np.linspace(-1e-3, 1e-3, 201)
-    lags = [wheel_lag(pair, contact.angle[on] + step, rho[on], z[on])[0] for step in steps]
+    lags = [transmission_error_at(pair, contact.angle[on] + step, rho[on], z[on])[0] for step in steps]
     highest = pair.base_radii[1] * np.max(pair.driving * np.array(lags), axis=0)
     assert on.sum() > 40
     assert (highest <= contact.lead[on] + ROUNDING).all()
-    assert_allclose(highest, contact.lead[on], atol=1e-7)  # half a step of 1e-5 rad on a crease of 1e-2 mm/rad
+    assert_allclose(highest, contact.lead[on], atol=1e-7)  # half a step of 1e-5 rad on a relief start of 1e-2 mm/rad
 
 
 def test_whole_passage_has_no_higher_lead_elsewhere():
@@ -76,7 +76,7 @@ def test_whole_passage_has_no_higher_lead_elsewhere():
     rho, z = (part.ravel() for part in pair.pinion.grid(9, 7))
     contact = conjugate_contact(pair, rho, z)
     for angle in np.linspace(-2.0, 2.0, 400) * pair.pitch:
-        lag, inside = wheel_lag(pair, angle, rho, z)
+        lag, inside = transmission_error_at(pair, angle, rho, z)
         on = inside & contact.exists
         assert (pair.base_radii[1] * lag[on] <= contact.lead[on] + ROUNDING).all()
 

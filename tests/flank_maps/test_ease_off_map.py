@@ -62,7 +62,7 @@ def test_ease_off_of_conjugate_flanks_is_zero(make, gear, driving, sense):
 @pytest.mark.parametrize("gear", BOTH)
 @pytest.mark.parametrize("make", CYLINDRICAL)
 def test_ease_off_is_the_modification_against_an_unmodified_mate(make, gear, driving):
-    """Exactly, not to first order: reliefs with a crease, twist and polynomial too."""
+    """Exactly, not to first order: reliefs with a relief start, twist and polynomial too."""
     changes = MANY if gear == "pinion" else FlankModifications(lead_crowning=0.02, profile_slope=0.005, twist=-0.01)
     pair = make(**{gear: changes, "driving": driving})
     found = ease_off_map(pair, gear, (11, 9))
@@ -102,10 +102,10 @@ def test_second_order_of_a_polynomial_is_its_coefficients(make):
 def fit_of_sum(size, gear="pinion"):
     """How far the ease-off of two modified gears is from the sum of their modifications, amounts times ``size``."""
     own = FlankModifications(lead_crowning=0.02 * size, profile_crowning=0.01 * size)
-    mates = FlankModifications(lead_crowning=0.01 * size, profile_crowning=0.02 * size, twist=0.02 * size)
-    pair = gear_pair(own, mates, helix_deg=15.0)
+    mating = FlankModifications(lead_crowning=0.01 * size, profile_crowning=0.02 * size, twist=0.02 * size)
+    pair = gear_pair(own, mating, helix_deg=15.0)
     found = ease_off_map(pair, gear, (11, 11))
-    here = (found.radius, found.axial), (found.mate_radius, found.mate_axial)
+    here = (found.radius, found.axial), (found.mating_radius, found.mating_axial)
     places = here if gear == "pinion" else here[::-1]
     total = pair.pinion.removal(*places[0]).value + pair.wheel.removal(*places[1]).value
     difference = found.ease_off - total
@@ -158,7 +158,7 @@ def test_offset_of_a_spiral_pair_tilts_the_map_with_the_error():
     assert abs(angles[1]) > 1e-5
 
 
-def test_slivers_beside_slanted_borders_are_marked():
+def test_slivers_beside_slanted_edges_are_marked():
     found = ease_off_map(gear_pair(mounting=Mounting(out_of_plane=2e-3)))
     assert 0.95 < found.covered.mean() < 1.0
     assert found.covered[1:-1, 1:-1].all()
@@ -177,7 +177,7 @@ def test_points_of_the_map_and_of_the_mate_are_on_their_flanks():
     pair = gear_pair(MANY, helix_deg=15.0)
     found = ease_off_map(pair)
     assert pair.pinion.inside(found.radius, found.axial, 1e-6).all()
-    assert pair.wheel.inside(found.mate_radius, found.mate_axial, 1e-4).all()
+    assert pair.wheel.inside(found.mating_radius, found.mating_axial, 1e-4).all()
     # the modified foot is a little beyond the nominal one
     active = cylindrical_mesh(helix_deg=15.0).pinion_active_profile
     assert_allclose(found.profile[[0, -1], 0], (active.start_roll_length, active.end_roll_length), atol=0.1)

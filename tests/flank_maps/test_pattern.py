@@ -11,7 +11,7 @@ from loaded_tca.flank_maps.pattern import COMPOUND, contact_area, contact_patter
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.unloaded.teeth import trace_teeth
-from tests.samples.gear_pairs import gear_pair, wheel_lag
+from tests.samples.gear_pairs import gear_pair, transmission_error_at
 
 CROWNED = FlankModifications(lead_crowning=0.05, profile_crowning=0.01)
 TILTED = Mounting(out_of_plane=1e-3)
@@ -39,10 +39,10 @@ def test_gap_is_zero_at_the_contact_and_nowhere_negative(helix_deg, driving):
     for gear, flank in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         place = np.array([getattr(here, f"{gear}_radius")]), np.array([getattr(here, f"{gear}_axial")])
         gap, radius, axial = flank_gap(pair, gear, (here.pinion_angle, here.wheel_angle), place)
-        mate = "wheel" if gear == "pinion" else "pinion"
+        mating = "wheel" if gear == "pinion" else "pinion"
         assert_allclose(
             [gap[0], radius[0], axial[0]],
-            [0.0, *(getattr(here, f"{mate}_{x}") for x in ("radius", "axial"))],
+            [0.0, *(getattr(here, f"{mating}_{x}") for x in ("radius", "axial"))],
             atol=1e-12,
         )
         gap, _, _ = flank_gap(pair, gear, (here.pinion_angle, here.wheel_angle), flank.grid(40, 40))
@@ -55,7 +55,7 @@ def test_gap_is_the_lag_times_the_lever(driving):
     pair = crowned(helix_deg=15.0, driving=driving)
     here = contact(pair)
     rho, z = pair.pinion.grid(20, 20)
-    lag, there = wheel_lag(pair, here.pinion_angle, rho, z)
+    lag, there = transmission_error_at(pair, here.pinion_angle, rho, z)
     gap, _, _ = flank_gap(pair, "pinion", (here.pinion_angle, here.wheel_angle), (rho, z))
     lever = pair.base_radii[1] * math.cos(
         math.atan(pair.base_radii[0] * math.tan(math.radians(14.0761)) / pair.base_radii[0])
@@ -184,16 +184,18 @@ CUT_AREAS = {
 
 
 @pytest.mark.parametrize("case", CUT_AREAS)
-def test_area_cut_by_borders_is_that_of_a_dense_grid(case):
+def test_area_cut_by_edges_is_that_of_a_dense_grid(case):
     arguments, angle = CUT_AREAS[case]
     pair = gear_pair(**arguments)
     here = contact(pair, angle)
     area = contact_area(pair, here)
     assert area.is_cut
-    assert_allclose(area.area, integrated_area(pair, here), rtol=5e-4)  # 700 cells across; curved tip of the mate
+    assert_allclose(
+        area.area, integrated_area(pair, here), rtol=5e-4
+    )  # 700 cells across; curved tip of the mating gear
 
 
-def test_area_cut_by_borders_does_not_depend_on_the_rays():
+def test_area_cut_by_edges_does_not_depend_on_the_rays():
     pair = gear_pair(LIGHT, helix_deg=15.0, mounting=Mounting(out_of_plane=4e-3))
     few, many = (contact_area(pair, contact(pair, 0.17), rays=rays) for rays in (16, 720))
     assert_allclose(few.area, many.area, rtol=1e-4)
@@ -204,7 +206,7 @@ def test_contour_of_a_cut_area_has_its_corners():
     """A line contact ends with the face: the width of the contour is that of the line up to the very end."""
     pair = gear_pair()
     area = contact_area(pair, contact(pair), rays=36)
-    side = area.on_border & (area.pinion_axial > 0.0)
+    side = area.on_edge & (area.pinion_axial > 0.0)
     assert len(area.point) > 36
     span = np.ptp(area.point[side] @ np.cross(contact(pair).normal, [0.0, 0.0, 1.0]))
     assert_allclose(span, 2.0 * area.semi_axes[0], rtol=1e-4)
@@ -329,6 +331,6 @@ def test_pattern_of_the_mesh_of_another_pair_is_refused():
 def test_area_without_contact_is_refused():
     pair = crowned()
     path = trace_contact(pair, [0.0, 3.0 * pair.pitch])
-    assert not path.touches[1]
+    assert not path.in_contact[1]
     with pytest.raises(GeometryError, match="no common flank: the tooth pair does not touch"):
         contact_area(pair, path[1])

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.errors import InputError
 from loaded_tca.flanks import InvoluteFlank, SphericalInvoluteFlank
-from loaded_tca.flanks.base import BORDER_NAMES, outward_normal
+from loaded_tca.flanks.base import EDGE_NAMES, outward_normal
 from loaded_tca.flanks.bevel import spherical_involute, unwound_arc
 
 PITCH, PRESSURE, DISTANCES = math.radians(50.0), math.radians(20.0), (60.0, 80.0)
@@ -51,10 +51,10 @@ def test_derivatives_of_theta_agree_with_differences(angle, distance, side, spir
 
 
 @given(angles, distances, spirals)
-def test_derivatives_of_coordinates_borders_and_gradient_norm_agree_with_differences(angle, distance, spiral):
+def test_derivatives_of_coordinates_edges_and_gradient_norm_agree_with_differences(angle, distance, spiral):
     one, where = flank(1, spiral), place(angle, distance)
     functions = [one.profile_coordinate, one.lengthwise_coordinate, one.gradient_norm]
-    functions += [lambda rho, z, k=k: one.borders(rho, z)[k] for k in range(len(BORDER_NAMES))]
+    functions += [lambda rho, z, k=k: one.edges(rho, z)[k] for k in range(len(EDGE_NAMES))]
     for function in functions:
         jet = function(*where)
         parts = np.broadcast_arrays(jet.rho, jet.z, jet.rho_rho, jet.rho_z, jet.z_z)
@@ -145,21 +145,21 @@ def test_apex_is_no_flank_but_does_no_harm():
     assert np.isfinite(flank(1, 0.5).theta(np.array(1e-9), np.array(1e-9)).value)
 
 
-def test_grid_covers_the_region_from_border_to_border():
+def test_grid_covers_the_region_from_edge_to_edge():
     one = flank()
     rho, z = one.grid(9, 5)
     assert one.inside(rho, z, tolerance=1e-12).all()
-    on_border = [np.abs(border.value).min() for border in one.borders(rho, z)]
-    assert_allclose(on_border, 0.0, atol=1e-12)
+    on_edge = [np.abs(edge.value).min() for edge in one.edges(rho, z)]
+    assert_allclose(on_edge, 0.0, atol=1e-12)
     assert_allclose(np.diff(one.profile_coordinate(rho, z).value, 2, axis=0), 0.0, atol=1e-12)
     assert_allclose(np.diff(one.lengthwise_coordinate(rho, z).value, 2, axis=1), 0.0, atol=1e-12)
     assert_allclose(one.extent, (np.ptp(rho), np.ptp(z)))
 
 
-def test_borders_are_distances_in_millimetres():
+def test_edges_are_distances_in_millimetres():
     one, (rho, z) = flank(), place(PITCH, 70.0)
     expected = [70.0 * math.sin(CONES[1] - PITCH), 70.0 * math.sin(PITCH - CONES[0]), 10.0, 10.0]
-    assert_allclose([border.value for border in one.borders(rho, z)], expected, rtol=1e-12)
+    assert_allclose([edge.value for edge in one.edges(rho, z)], expected, rtol=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.errors import InputError
 from loaded_tca.flanks import InvoluteFlank
-from loaded_tca.flanks.base import BORDER_NAMES, outward_normal
+from loaded_tca.flanks.base import EDGE_NAMES, outward_normal
 
 BASE, WORKING, RADII, WIDTH = 47.9, 51.0, (48.5, 54.0), 25.0
 ROUNDING = 1e-12
@@ -105,44 +105,42 @@ def test_roll_length_and_its_derivatives_agree_with_pythagoras(rho, z):
     assert_allclose(jet.value * jet.rho_rho + jet.rho**2, 1.0, rtol=1e-9)  # (a^2)'' = 2
 
 
-def test_borders_vanish_where_the_flank_ends_and_are_positive_inside():
+def test_edges_vanish_where_the_flank_ends_and_are_positive_inside():
     one = flank()
     inner, half = np.array(51.0), 0.5 * WIDTH
-    on_border = {
+    on_edge = {
         "tip": (RADII[1], 0.0),
         "root": (RADII[0], 0.0),
         "lower side": (inner, -half),
         "upper side": (inner, half),
     }
-    for k, name in enumerate(BORDER_NAMES):
-        values = [float(jet.value) for jet in one.borders(*map(np.array, on_border[name]))]
+    for k, name in enumerate(EDGE_NAMES):
+        values = [float(jet.value) for jet in one.edges(*map(np.array, on_edge[name]))]
         assert values[k] == 0.0
         assert all(value > 0.0 for j, value in enumerate(values) if j != k)
 
 
-def test_border_derivatives_agree_with_differences():
+def test_edge_derivatives_agree_with_differences():
     one, step = flank(), 1e-3
-    here, up, along = (
-        one.borders(np.array(50.0 + dr), np.array(3.0 + dz)) for dr, dz in ((0, 0), (step, 0), (0, step))
-    )
+    here, up, along = (one.edges(np.array(50.0 + dr), np.array(3.0 + dz)) for dr, dz in ((0, 0), (step, 0), (0, step)))
     for middle, higher, further in zip(here, up, along, strict=True):
         differences = [(higher.value - middle.value) / step, (further.value - middle.value) / step]
         assert_allclose([middle.rho, middle.z], differences, atol=1e-11)
 
 
-def test_grid_spans_the_region_borders_included():
+def test_grid_spans_the_region_edges_included():
     rho, z = flank().grid(5, 7)
     assert rho.shape == z.shape == (5, 7)
     assert_allclose([rho.min(), rho.max(), z.min(), z.max()], [*RADII, -0.5 * WIDTH, 0.5 * WIDTH])
     assert flank().inside(rho, z).all()
 
 
-def test_room_is_the_distance_to_the_nearest_border():
+def test_room_is_the_distance_to_the_nearest_edge():
     rho, z = np.array([50.0, 53.0, 49.0, 51.0, 56.0]), np.array([0.0, 0.0, 2.0, -12.0, 13.0])
     assert_allclose(flank().room(rho, z), [1.5, 1.0, 0.5, 0.5, -2.0], rtol=ROUNDING)
 
 
-def test_inside_counts_the_borders_and_a_tolerance():
+def test_inside_counts_the_edges_and_a_tolerance():
     one = flank()
     rho = np.array([RADII[1], RADII[1] + 1e-6, RADII[1] + 1e-6])
     z = np.zeros(3)

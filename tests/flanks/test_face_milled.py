@@ -48,8 +48,8 @@ def test_normal_points_out_of_the_tooth_and_follows_the_mean_spiral_angle(name, 
 def test_pressure_angles_of_the_published_pair_miss_each_other():
     """20/20 deg blades do not make up for the tilt of the roots: 1.66 deg on the drive, 2.58 deg on the coast side."""
     missed = [
-        math.degrees(flank_of("pinion", flank).angles.pressure - flank_of("wheel", mate).angles.pressure)
-        for flank, mate in (("concave", "convex"), ("convex", "concave"))
+        math.degrees(flank_of("pinion", flank).angles.pressure - flank_of("wheel", mating).angles.pressure)
+        for flank, mating in (("concave", "convex"), ("convex", "concave"))
     ]
     assert_allclose(missed, [1.66, -2.58], atol=0.01)
 
@@ -104,7 +104,7 @@ def test_left_hand_gear_is_the_mirror_image_of_the_right_hand_one(flank):
     assert_allclose(first.theta(*place).value, -second.theta(*place).value, atol=ROUNDING)
 
 
-def test_theta_goes_on_smoothly_beyond_the_borders():
+def test_theta_goes_on_smoothly_beyond_the_edges():
     generated = flank_of("pinion", "concave")
     rho, z = generated.grid(5, 5)
     for (i, j), outwards in (

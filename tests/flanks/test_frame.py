@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.flanks import ConeFrame, CylinderFrame, FlankModifications
-from loaded_tca.flanks.base import BORDER_NAMES, lengthwise_direction
+from loaded_tca.flanks.base import EDGE_NAMES, lengthwise_direction
 from loaded_tca.gears import bevel_mesh
 from loaded_tca.pairs.bevel import bevel_pair
 from tests.samples.gear_pairs import gear_pair
@@ -70,13 +70,13 @@ def test_height_on_a_cone_is_zero_on_the_pitch_cone_and_grows_with_the_cone_dist
         assert_allclose(frame.to_picture(rho, z)[1], height * rise, atol=1e-12)
 
 
-def test_borders_have_a_name_each_in_the_order_of_the_flank():
+def test_edges_have_a_name_each_in_the_order_of_the_flank():
     for frame, words in (
         (CylinderFrame(), ("tip", "root", "z < 0", "z > 0")),
         (ConeFrame(0.5, 100.0), ("face", "root", "toe", "heel")),
     ):
-        assert len(frame.borders) == len(BORDER_NAMES)
-        assert all(word in name for word, name in zip(words, frame.borders, strict=True))
+        assert len(frame.edges) == len(EDGE_NAMES)
+        assert all(word in name for word, name in zip(words, frame.edges, strict=True))
         assert frame.heelwards in ("z > 0", "the heel")
 
 

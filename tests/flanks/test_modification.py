@@ -243,7 +243,7 @@ def test_derivatives_of_every_modified_flank_agree_with_differences(data, height
     rho, z = low + height * (high - low), place * mesh.wheel.face_width
     step = 1e-4  # mm; the parabolas that start at a line and the ramps switch within it at worst
     points = np.array([(rho + i * step, z + j * step) for i in (-1, 0, 1) for j in (-1, 0, 1)])
-    beyond = [jet.value > 0.0 for jet in flank.creases(np.array(rho), np.array(z))]
+    beyond = [jet.value > 0.0 for jet in flank.relief_starts(np.array(rho), np.array(z))]
     jet = flank.theta(points[:, 0], points[:, 1], np.array([beyond]).reshape(1, -1))
     slopes = [np.broadcast_to(part, 9).reshape(3, 3) for part in (jet.rho, jet.z)]
     value = jet.value.reshape(3, 3)
@@ -293,10 +293,10 @@ def test_shapes_of_two_pieces_join_with_equal_value_and_slope(shape, joint):
     assert_allclose(before, after, atol=1e-9)  # slopes of up to 43 with bends of 4000 over 2e-12
 
 
-# Creases
+# Relief starts
 
 
-def test_creases_are_the_starts_of_the_linear_reliefs_only():
+def test_relief_starts_are_the_starts_of_the_linear_reliefs_only():
     both = modified(
         tip_relief=AMOUNT,
         tip_relief_start=2.0 * radius_at(0.7),
@@ -306,16 +306,17 @@ def test_creases_are_the_starts_of_the_linear_reliefs_only():
         root_relief_form="linear",
     )
     for share, expected in ((0.8, (True, False)), (0.5, (False, False)), (0.2, (False, True))):
-        distances = both.creases(np.array(radius_at(share)), np.array(0.0))
+        distances = both.relief_starts(np.array(radius_at(share)), np.array(0.0))
         assert tuple(bool(jet.value > 0.0) for jet in distances) == expected
         length = ACTIVE.end_roll_length - ACTIVE.start_roll_length
         assert_allclose([jet.value for jet in distances], [length * (share - 0.7), length * (0.3 - share)], atol=1e-12)
     assert (
-        modified(tip_relief=AMOUNT, tip_relief_start=2.0 * radius_at(0.7)).creases(np.array(52.0), np.array(0.0)) == ()
+        modified(tip_relief=AMOUNT, tip_relief_start=2.0 * radius_at(0.7)).relief_starts(np.array(52.0), np.array(0.0))
+        == ()
     )
 
 
-def test_flank_continues_smoothly_beyond_a_crease_if_told_so():
+def test_flank_continues_smoothly_beyond_a_relief_start_if_told_so():
     flank = modified(tip_relief=AMOUNT, tip_relief_start=2.0 * radius_at(0.7), tip_relief_form="linear")
     rho, z = np.array([radius_at(0.6), radius_at(0.9)]), np.zeros(2)
     ramp, none = (flank.removal(rho, z, np.full((2, 1), side)).value for side in (True, False))

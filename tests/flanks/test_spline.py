@@ -101,7 +101,7 @@ def test_derivatives_of_fitted_flanks_agree_with_differences(kind, height, place
 FITTED = {kind: fitted(pair_of(kind).pinion, (17, 17)) for kind in KINDS}
 
 
-def test_fitted_flank_goes_on_smoothly_beyond_its_borders():
+def test_fitted_flank_goes_on_smoothly_beyond_its_edges():
     flank = pair_of("helical").wheel
     spline = fitted(flank)
     away = 0.02 * np.array(flank.extent)
@@ -133,13 +133,13 @@ def test_fit_error_is_the_distance_along_the_normal_at_and_between_the_points():
     assert 0.0 < spline.check_error.rms < spline.check_error.largest < 1e-4
 
 
-def test_fit_error_of_a_crease_warns():
+def test_fit_error_of_a_relief_start_warns():
     low, high = (2.0 * radius for radius in pair_of("spur").pinion.nominal.radii)
     relief = FlankModifications(tip_relief=0.05, tip_relief_form="linear", tip_relief_start=0.4 * low + 0.6 * high)
     flank = pair_of("spur", relief).pinion
-    with pytest.warns(AccuracyWarning, match=r"misses the flank by .* um at most.*between them.*crease"):
+    with pytest.warns(AccuracyWarning, match=r"misses the flank by .* um at most.*between them.*relief start"):
         spline = fitted(flank)
-    assert spline.creases(*flank.grid(2, 2)) == ()
+    assert spline.relief_starts(*flank.grid(2, 2)) == ()
     assert 1e-4 < spline.check_error.largest < 0.005
 
 

@@ -117,7 +117,7 @@ def test_fewer_coefficients_smooth_noise(rng, places):
 @pytest.mark.parametrize(
     ("u", "v", "out"), [(0.0, 0.7, (-1, 0)), (1.0, 0.7, (1, 0)), (0.4, 0.0, (0, -1)), (0.4, 2.0, (0, 1))]
 )
-def test_spline_goes_on_as_a_parabola_with_equal_curvature_at_its_border(u, v, out):
+def test_spline_goes_on_as_a_parabola_with_equal_curvature_at_its_edge(u, v, out):
     grid = lines(9, 9)
     spline = fit(*grid, wave(*grid).value, QUINTIC)
     distances = np.array([-1e-9, 1e-9, 0.25, 0.5, 0.75, 1.0])
@@ -170,7 +170,7 @@ def test_spline_survives_pickling(places):
     assert_allclose(pickle.loads(pickle.dumps(spline))(*places), spline(*places), rtol=0)
 
 
-def test_chebyshev_lobatto_nodes_fit_a_function_that_is_steep_at_its_border_better_than_even_ones(places):
+def test_chebyshev_lobatto_nodes_fit_a_function_that_is_steep_at_its_edge_better_than_even_ones(places):
     def steep(u, v):
         return np.sqrt(u + 0.02) * np.cos(v)
 

@@ -1,4 +1,4 @@
-"""Region between form line and face cone: borders, coordinates and curves over the cone distance."""
+"""Region between form line and face cone: edges, coordinates and curves over the cone distance."""
 
 import math
 
@@ -19,7 +19,7 @@ ROUNDING = 1e-11
 class Bare(ToothRegion):
     """A region without a surface."""
 
-    def theta(self, rho, z, beyond=None):  # noqa: ARG002 (it has no crease)
+    def theta(self, rho, z, beyond=None):  # noqa: ARG002 (it has no relief start)
         return Jet(0.0 * rho * z)
 
     def gradient_norm(self, rho, z):
@@ -64,12 +64,12 @@ def test_face_cone_stands_off_by_its_apex():
     assert_allclose(face_cone_angles(FACE_CONE, np.hypot(rho, z)), np.arctan2(rho, z), rtol=1e-14)
 
 
-def test_grid_ends_on_the_borders():
+def test_grid_ends_on_the_edges():
     flank = region()
-    tip, root, toe, heel = (border.value for border in flank.borders(*flank.grid(7, 9)))
+    tip, root, toe, heel = (edge.value for edge in flank.edges(*flank.grid(7, 9)))
     for ends in (tip[-1], root[0], toe[:, 0], heel[:, -1]):
         assert_allclose(ends, 0.0, atol=ROUNDING * DISTANCES[1])
-    assert all((border[1:-1, 1:-1] > 0.1).all() for border in (tip, root, toe, heel))
+    assert all((edge[1:-1, 1:-1] > 0.1).all() for edge in (tip, root, toe, heel))
 
 
 def test_profile_coordinate_runs_from_the_form_line_to_the_tip():
@@ -81,14 +81,14 @@ def test_profile_coordinate_runs_from_the_form_line_to_the_tip():
 
 
 @given(st.floats(0.25, 0.36), st.floats(90.0, 140.0))
-def test_derivatives_of_coordinates_and_borders_are_those_of_their_values(angle, distance):
+def test_derivatives_of_coordinates_and_edges_are_those_of_their_values(angle, distance):
     flank, rho, z = region(), np.array(distance * math.sin(angle)), np.array(distance * math.cos(angle))
 
     def jets(at_rho, at_z):
         return [
             flank.profile_coordinate(at_rho, at_z),
             flank.lengthwise_coordinate(at_rho, at_z),
-            *flank.borders(at_rho, at_z),
+            *flank.edges(at_rho, at_z),
         ]
 
     here = jets(rho, z)

@@ -127,15 +127,15 @@ def test_deviations_from_a_modified_flank_add_to_its_modifications():
     assert_allclose(found.transmission_error, exact.transmission_error, rtol=0, atol=SAME)
 
 
-def test_creases_of_the_nominal_flank_stay():
+def test_relief_starts_of_the_nominal_flank_stay():
     relief = FlankModifications(lead_crowning=0.01, tip_relief=0.02, tip_relief_form="linear", tip_relief_start=102.0)
     pair = pair_of("spur", relief)
     rho, z = pair.pinion.grid(7, 7)
     flank = measured(pair.pinion, MeasuredDeviations(rho, z, np.zeros((7, 7))))
     exact, found = paths(pair, replace(pair, pinion=flank))
-    assert len(flank.creases(rho, z)) == 1
-    assert exact.on_crease.any()
-    assert (found.on_crease == exact.on_crease).all()
+    assert len(flank.relief_starts(rho, z)) == 1
+    assert exact.on_relief_start.any()
+    assert (found.on_relief_start == exact.on_relief_start).all()
     assert_allclose(found.transmission_error, exact.transmission_error, rtol=0, atol=SAME)
 
 
@@ -174,7 +174,7 @@ def test_degree_follows_the_number_of_points():
 # Coverage
 
 
-def test_points_that_stop_short_of_the_borders_are_continued_and_a_wide_margin_warns():
+def test_points_that_stop_short_of_the_edges_are_continued_and_a_wide_margin_warns():
     pair = pair_of("helical")
     nominal = unmodified(pair.pinion)
     whole = measure(pair.pinion, nominal, (21, 21))
@@ -258,7 +258,7 @@ def test_grid_with_its_axes_exchanged_is_refused():
     assert "points are out of order" in refusal(nominal, rho.T, z.T)[0]
 
 
-def test_points_off_the_flank_are_refused_with_the_border_they_pass():
+def test_points_off_the_flank_are_refused_with_the_edge_they_pass():
     nominal = unmodified(pair_of("spur").pinion)
     rho, z = grid_of(nominal)
     problems = refusal(nominal, rho + 2.0, z + 12.5)

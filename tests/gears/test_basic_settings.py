@@ -109,7 +109,7 @@ def test_untapered_tooth_needs_no_blade_group_and_rolls_by_its_pitch_angle():
     assert_allclose(*(settings.machine.radial for settings in spread_blade(pair)), rtol=ROUNDING)
 
 
-def test_cutter_number_of_seed_004_is_its_blade_group():
+def test_cutter_number_of_duplex_paper_is_its_blade_group():
     """Its printed root angles and the spiral angle 35 deg that they belong to give the printed group 11."""
     pitch = math.degrees(math.atan2(20, 30)), math.degrees(math.atan2(30, 20))
     angles = math.radians(pitch[0] - 31.09059), math.radians(pitch[1] - 52.51677)

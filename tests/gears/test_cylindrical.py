@@ -169,8 +169,8 @@ def test_fillet_is_the_envelope_of_the_rolling_rack(teeth, helix_angle):
     half_angle = pi / teeth - (np.arctan2(x + r * turn, y) - turn)
     fillet_radius, fillet_angle = any_gear.root_fillet(2000)
     gap = half_angle - np.interp(radius, fillet_radius[::-1], fillet_angle[::-1])
-    borders = np.linspace(any_gear.root_radius + 0.01, any_gear.form_radius, 11)
-    for below, above in pairwise(borders):
+    edges = np.linspace(any_gear.root_radius + 0.01, any_gear.form_radius, 11)
+    for below, above in pairwise(edges):
         inside = (below < radius) & (radius < above)
         # rad; the rolled points miss the envelope by the square of their step, 5e-4 rad
         assert_allclose(gap[inside].min(), 0.0, atol=3e-6)

@@ -43,14 +43,14 @@ def test_no_force_where_nothing_is_closed():
 )
 def test_balance_fulfils_torque_and_compatibility(parts, torque, coupling):
     """Loaded pairs ask for one rotation, those apart for a larger one."""
-    laws, lags = [part[0] for part in parts], np.array([part[1] for part in parts])
+    laws, separations = [part[0] for part in parts], np.array([part[1] for part in parts])
     levers = np.array([np.linspace(40.0, 60.0, len(laws)), np.linspace(90.0, 80.0, len(laws))])
     compliance = np.diag([part[2] for part in parts]) + coupling
-    forces = balance(laws, lags, levers, torque, compliance)
+    forces = balance(laws, separations, levers, torque, compliance)
     assert (forces >= 0.0).all()
     assert_allclose(levers[0] @ forces, torque, rtol=1e-12)
     approaches = np.array([law.approach_under(force) for law, force in zip(laws, forces, strict=True)])
-    asked = lags + (approaches + compliance @ forces) / levers[1]
+    asked = separations + (approaches + compliance @ forces) / levers[1]
     rotation = asked[forces > 0.0].mean()
     assert_allclose(asked[forces > 0.0], rotation, rtol=1e-6)
     assert (asked[forces == 0.0] >= rotation * (1.0 - 1e-6)).all()
@@ -65,9 +65,9 @@ def test_stiff_neighbour_takes_the_load_of_a_soft_tooth():
 
 def test_pair_pushed_apart_by_its_neighbour_carries_nothing():
     laws, levers = [PowerLaw(1000.0, 0.004)] * 2, np.full((2, 2), 50.0)
-    lag = 0.0035 / 50.0
-    alone = balance(laws, np.array([0.0, lag]), levers, 5e4, np.zeros((2, 2)))
-    coupled = balance(laws, np.array([0.0, lag]), levers, 5e4, np.full((2, 2), 2e-6) + 1e-12 * np.eye(2))
+    separation = 0.0035 / 50.0
+    alone = balance(laws, np.array([0.0, separation]), levers, 5e4, np.zeros((2, 2)))
+    coupled = balance(laws, np.array([0.0, separation]), levers, 5e4, np.full((2, 2), 2e-6) + 1e-12 * np.eye(2))
     assert alone[1] > 0.0
     assert_allclose(coupled.sum(), 1000.0, rtol=1e-12)
     assert_allclose(coupled, alone, rtol=1e-5)  # what both share moves both alike

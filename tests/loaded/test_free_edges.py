@@ -255,7 +255,7 @@ def test_end_that_no_edge_stands_for_is_told(monkeypatch):
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         analyse(scene)
-    assert any("the toe of the pinion is oblique to the contact" in str(doubt.message) for doubt in caught)
+    assert any("the toe of the pinion is oblique to the contact" in str(sentence.message) for sentence in caught)
 
 
 def test_ends_turned_between_the_axes_are_left_out_and_named():

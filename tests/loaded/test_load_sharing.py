@@ -10,10 +10,10 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.errors import ConvergenceError, InputError
 from loaded_tca.flanks import FlankModifications
-from loaded_tca.loaded.load_sharing import Laws, Touch, share_load, touches_at
+from loaded_tca.loaded.load_sharing import Laws, ToothPair, share_load, tooth_pairs_at
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.unloaded import trace_teeth
-from tests.samples.gear_pairs import NONE, gear_pair, seed_002
+from tests.samples.gear_pairs import NONE, gear_pair, sam_paper
 
 TORQUE = 130e3
 GRID = GridChoice(cells=(24, 24))
@@ -30,15 +30,15 @@ CENTRE = math.pi / 34
 def shared(pair_of, phi1, torque=TORQUE, compliance=None):
     pair = pair_of()
     more = {} if compliance is None else {"compliance": compliance}
-    return share_load(pair, touches_at(trace_teeth(pair, [phi1]), 0), torque, GRID, **more)
+    return share_load(pair, tooth_pairs_at(trace_teeth(pair, [phi1]), 0), torque, GRID, **more)
 
 
 def spur():
-    return seed_002()
+    return sam_paper()
 
 
 def helical():
-    return seed_002(helix_deg=15.0)
+    return sam_paper(helix_deg=15.0)
 
 
 def uncrowned_spur():
@@ -58,7 +58,7 @@ def test_pressures_balance_the_torque(pair_of, phi1):
     total = 0.0
     for share in shared(pair_of, phi1).shares:
         solution = share.loaded.solution
-        total += solution.pressure.sum() * solution.cell_area * share.touch.contact.pinion_lever
+        total += solution.pressure.sum() * solution.cell_area * share.tooth_pair.contact.pinion_lever
     assert_allclose(total, TORQUE, rtol=EQUILIBRIUM)
 
 
@@ -69,14 +69,14 @@ def test_loaded_pairs_ask_for_one_rotation_and_the_others_are_apart(pair_of, phi
     assert_allclose([share.rotation for share in found.shares], found.rotation, rtol=COMPATIBLE)
     assert found.residual <= COMPATIBLE
     loaded = set(found.laws.contact)
-    for touch in touches_at(trace_teeth(pair, [phi1]), 0):
-        assert (touch.pair in loaded) == (touch.lag < found.rotation)
+    for tooth_pair in tooth_pairs_at(trace_teeth(pair, [phi1]), 0):
+        assert (tooth_pair.pair in loaded) == (tooth_pair.initial_separation < found.rotation)
 
 
 def test_two_pairs_of_a_symmetric_position_carry_one_half_each():
     pair = gear_pair(FlankModifications(lead_crowning=0.005), NONE, teeth=(30, 30))
-    found = share_load(pair, touches_at(trace_teeth(pair, [0.5 * pair.pitch]), 0), TORQUE, GRID)
-    assert [share.touch.pair for share in found.shares] == [0, 1]
+    found = share_load(pair, tooth_pairs_at(trace_teeth(pair, [0.5 * pair.pitch]), 0), TORQUE, GRID)
+    assert [share.tooth_pair.pair for share in found.shares] == [0, 1]
     assert_allclose([share.torque / TORQUE for share in found.shares], 0.5, atol=1e-6)
 
 
@@ -97,7 +97,7 @@ LENGTHS = 0.02
 def test_helical_pairs_without_crowning_share_by_the_lengths_of_their_lines(part):
     """A line of length l and width w yields by F/l (ln(4 l/w) - 1) times the same for all."""
     found = shared(uncrowned_helical, part * CENTRE)
-    lengths = np.array([np.linalg.norm(np.diff(share.touch.contact.line_ends, axis=0)) for share in found.shares])
+    lengths = np.array([np.linalg.norm(np.diff(share.tooth_pair.contact.line_ends, axis=0)) for share in found.shares])
     widths = [share.loaded.extent[0] for share in found.shares]
     stiffness = lengths / (np.log(4.0 * lengths / widths) - 1.0)
     assert len(lengths) == 2
@@ -119,16 +119,16 @@ def test_torque_is_the_derivative_of_the_elastic_energy_along_the_rotation():
     """The wheel turns against a pinion that stands: its torque is that of the pinion over the ratio."""
     phi1, step = -0.3 * CENTRE, 0.02
     pair = helical()
-    touches, grid = touches_at(trace_teeth(pair, [phi1]), 0), GridChoice(cells=(48, 48))
-    low, high = (share_load(pair, touches, (1.0 + sign * step) * TORQUE, grid) for sign in (-1, 1))
+    tooth_pairs, grid = tooth_pairs_at(trace_teeth(pair, [phi1]), 0), GridChoice(cells=(48, 48))
+    low, high = (share_load(pair, tooth_pairs, (1.0 + sign * step) * TORQUE, grid) for sign in (-1, 1))
     slope = (elastic_energy(high) - elastic_energy(low)) / (high.rotation - low.rotation)
     assert_allclose(slope, TORQUE / pair.ratio, rtol=5e-3)  # grids of two loads differ by about 1e-3
 
 
 def test_small_torque_tends_to_the_unloaded_contact():
     pair = helical()
-    touches = touches_at(trace_teeth(pair, [0.2 * CENTRE]), 0)
-    rotations = [share_load(pair, touches, torque, GRID).rotation for torque in (0.0, 1e-2, 1e2)]
+    tooth_pairs = tooth_pairs_at(trace_teeth(pair, [0.2 * CENTRE]), 0)
+    rotations = [share_load(pair, tooth_pairs, torque, GRID).rotation for torque in (0.0, 1e-2, 1e2)]
     assert rotations[0] == 0.0
     assert rotations[0] < rotations[1] < rotations[2]
     assert rotations[1] * pair.base_radii[1] < 1e-6
@@ -136,8 +136,8 @@ def test_small_torque_tends_to_the_unloaded_contact():
 
 def test_more_pairs_carry_load_as_it_grows():
     pair = helical()
-    touches = touches_at(trace_teeth(pair, [0.0]), 0)
-    counts = [len(share_load(pair, touches, torque, GRID).shares) for torque in (1e2, 2e4, 13e4)]
+    tooth_pairs = tooth_pairs_at(trace_teeth(pair, [0.0]), 0)
+    counts = [len(share_load(pair, tooth_pairs, torque, GRID).shares) for torque in (1e2, 2e4, 13e4)]
     assert counts[0] == 1
     assert counts == sorted(counts)
     assert counts[-1] == 3
@@ -145,17 +145,17 @@ def test_more_pairs_carry_load_as_it_grows():
 
 def test_tangent_of_the_torque_is_that_of_neighbouring_torques():
     pair = helical()
-    touches, grid = touches_at(trace_teeth(pair, [-0.6 * CENTRE]), 0), GridChoice(cells=(48, 48))
-    low, here, high = (share_load(pair, touches, factor * TORQUE, grid) for factor in (0.9, 1.0, 1.1))
+    tooth_pairs, grid = tooth_pairs_at(trace_teeth(pair, [-0.6 * CENTRE]), 0), GridChoice(cells=(48, 48))
+    low, here, high = (share_load(pair, tooth_pairs, factor * TORQUE, grid) for factor in (0.9, 1.0, 1.1))
     chord = (high.torque - low.torque) / (high.rotation - low.rotation)
-    assert_allclose(here.torque_rate, chord, rtol=2e-2)  # contacts that end at a border grow by whole cells
+    assert_allclose(here.torque_rate, chord, rtol=2e-2)  # contacts that end at an edge grow by whole cells
 
 
 def test_start_from_a_neighbour_gives_the_same_answer():
     pair, phi1 = helical(), 0.5 * CENTRE
     found = shared(helical, phi1)
     again = share_load(
-        pair, touches_at(trace_teeth(pair, [phi1]), 0), TORQUE, GRID, start=shared(helical, -0.3 * CENTRE).laws
+        pair, tooth_pairs_at(trace_teeth(pair, [phi1]), 0), TORQUE, GRID, start=shared(helical, -0.3 * CENTRE).laws
     )
     assert_allclose(again.rotation, found.rotation, rtol=1e-3)  # the boxes, made for other first guesses, differ
     for first, second in zip(again.shares, found.shares, strict=True):
@@ -165,12 +165,12 @@ def test_start_from_a_neighbour_gives_the_same_answer():
 def test_pairs_apart_are_not_closed_by_the_rotation():
     """What the first balance, without the springs, leaves apart comes under load as these give way."""
     pair, torque, own = helical(), 300.0, 1e-3
-    touches = touches_at(trace_teeth(pair, [0.0]), 0)
-    assert len(share_load(pair, touches, torque, GRID).shares) == 1
-    found = share_load(pair, touches, torque, GRID, compliance=Springs(own))
+    tooth_pairs = tooth_pairs_at(trace_teeth(pair, [0.0]), 0)
+    assert len(share_load(pair, tooth_pairs, torque, GRID).shares) == 1
+    found = share_load(pair, tooth_pairs, torque, GRID, compliance=Springs(own))
     assert len(found.shares) == 3
-    for touch in touches:
-        assert (touch.lag < found.rotation) == (touch.pair in found.laws.contact)
+    for tooth_pair in tooth_pairs:
+        assert (tooth_pair.initial_separation < found.rotation) == (tooth_pair.pair in found.laws.contact)
 
 
 def test_unknown_compliances_are_the_least_known():
@@ -185,8 +185,8 @@ def test_unknown_compliances_are_the_least_known():
 @pytest.mark.parametrize("springs", [None, (2e-6, 1e-6)])
 def test_next_to_no_torque_is_carried_by_the_leading_pair(torque, springs):
     pair = helical()
-    touches = touches_at(trace_teeth(pair, [0.2 * CENTRE]), 0)
-    found = share_load(pair, touches, torque, GRID, compliance=None if springs is None else Springs(*springs))
+    tooth_pairs = tooth_pairs_at(trace_teeth(pair, [0.2 * CENTRE]), 0)
+    found = share_load(pair, tooth_pairs, torque, GRID, compliance=None if springs is None else Springs(*springs))
     assert len(found.shares) == 1
     assert 0.0 <= found.rotation < 1e-8
     assert found.torque_rate >= 0.0
@@ -211,20 +211,20 @@ class Springs:
 def test_soft_teeth_share_by_their_lags_alone():
     """Springs far softer than the contacts: forces follow from the lags by a linear balance."""
     pair, phi1, own = helical(), -0.6 * CENTRE, 1e-3
-    touches = touches_at(trace_teeth(pair, [phi1]), 0)
-    found = share_load(pair, touches, TORQUE, GRID, compliance=Springs(own))
-    levers = np.array([(s.touch.contact.pinion_lever, s.touch.contact.wheel_lever) for s in found.shares]).T
-    lags = np.array([s.touch.lag for s in found.shares])
-    rotation = (TORQUE * own + (levers[0] * levers[1] * lags).sum()) / (levers[0] * levers[1]).sum()
-    expected = levers[1] * (rotation - lags) / own
+    tooth_pairs = tooth_pairs_at(trace_teeth(pair, [phi1]), 0)
+    found = share_load(pair, tooth_pairs, TORQUE, GRID, compliance=Springs(own))
+    levers = np.array([(s.tooth_pair.contact.pinion_lever, s.tooth_pair.contact.wheel_lever) for s in found.shares]).T
+    separations = np.array([s.tooth_pair.initial_separation for s in found.shares])
+    rotation = (TORQUE * own + (levers[0] * levers[1] * separations).sum()) / (levers[0] * levers[1]).sum()
+    expected = levers[1] * (rotation - separations) / own
     assert_allclose([s.force for s in found.shares], expected, rtol=2e-2)  # a contact yields by 2e-6 mm/N
 
 
 def test_deflections_of_the_teeth_are_part_of_the_closing():
     pair, phi1 = spur(), -0.9 * CENTRE
-    touches = touches_at(trace_teeth(pair, [phi1]), 0)
+    tooth_pairs = tooth_pairs_at(trace_teeth(pair, [phi1]), 0)
     own, coupling = 2e-6, 3e-7
-    found = share_load(pair, touches, TORQUE, GRID, compliance=Springs(own, coupling))
+    found = share_load(pair, tooth_pairs, TORQUE, GRID, compliance=Springs(own, coupling))
     forces = np.array([share.force for share in found.shares])
     assert len(forces) == 2
     assert_allclose([share.deflection for share in found.shares], own * forces + coupling * forces[::-1], rtol=1e-9)
@@ -251,9 +251,9 @@ class Restless:
 def test_balance_that_is_never_found_is_told_with_the_last_one(monkeypatch):
     monkeypatch.setattr("loaded_tca.loaded.load_sharing.SAME_BOX", (2.0, 3.0))  # every force on a grid of its own
     pair = spur()
-    touches = touches_at(trace_teeth(pair, [-0.9 * CENTRE]), 0)
+    tooth_pairs = tooth_pairs_at(trace_teeth(pair, [-0.9 * CENTRE]), 0)
     with pytest.raises(ConvergenceError, match=r"load sharing not converged.*after 40 balances") as caught:
-        share_load(pair, touches, TORQUE, GRID, compliance=Restless())
+        share_load(pair, tooth_pairs, TORQUE, GRID, compliance=Restless())
     assert len(caught.value.last.shares) == 2
 
 
@@ -262,7 +262,7 @@ def test_balance_that_is_never_found_is_told_with_the_last_one(monkeypatch):
 def test_sharing_does_not_depend_on_who_drives_or_how(driving, sense):
     """At the symmetric position of equal gears every drive shares the load alike."""
     pair = gear_pair(FlankModifications(lead_crowning=0.005), NONE, teeth=(30, 30), driving=driving, sense=sense)
-    found = share_load(pair, touches_at(trace_teeth(pair, [0.5 * pair.pitch]), 0), TORQUE, GRID)
+    found = share_load(pair, tooth_pairs_at(trace_teeth(pair, [0.5 * pair.pitch]), 0), TORQUE, GRID)
     assert_allclose([share.torque / TORQUE for share in found.shares], 0.5, atol=1e-6)
 
 
@@ -280,6 +280,9 @@ def test_no_tooth_pair_is_refused():
 def test_touches_are_those_within_reach():
     mesh = trace_teeth(helical(), [-CENTRE, 0.0])
     for position in (0, 1):
-        found = touches_at(mesh, position)
-        assert all(isinstance(touch, Touch) and touch.lag >= 0.0 and touch.contact.touches for touch in found)
-        assert len(found) == np.isfinite(mesh.lag[:, position]).sum()
+        found = tooth_pairs_at(mesh, position)
+        assert all(
+            isinstance(tooth_pair, ToothPair) and tooth_pair.initial_separation >= 0.0 and tooth_pair.contact.in_contact
+            for tooth_pair in found
+        )
+        assert len(found) == np.isfinite(mesh.initial_separation[:, position]).sum()

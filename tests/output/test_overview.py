@@ -102,7 +102,7 @@ def test_gears_that_cannot_mesh_are_an_error():
 
 
 def test_bevel_pair_shows_the_printed_cones_of_its_source():
-    """Seed 000, Table 5, two decimals: face angles 52.90/41.64 deg, and the root angles that it calls base angles."""
+    """Reduced-TCA dissertation, Table 5: face angles 52.90/41.64 deg, and root angles, which it calls base angles."""
     text = described("straight_bevel")
     assert_allclose([float(cell) for cell in cells(text, "face angle delta_a")], [52.90, 41.64], atol=5e-3)
     assert_allclose([float(cell) for cell in cells(text, "root angle delta_f")], [47.79, 36.53], atol=5e-3)
@@ -118,12 +118,12 @@ def test_active_profile_of_a_bevel_pair_starts_between_root_and_pitch_cone():
     for member in (0, 1):
         found = [row[member] for row in angles]
         assert found == sorted(found)
-    assert cells(text, "mate's tip reaches below the form cone") == ["no", "no"]
+    assert cells(text, "mating tip reaches below the form cone") == ["no", "no"]
 
 
 def test_bevel_pair_whose_flank_ends_too_high_says_so():
     text = described("straight_bevel", pinion__root_angle_deg=50.2)
-    assert cells(text, "mate's tip reaches below the form cone") == ["yes", "no"]
+    assert cells(text, "mating tip reaches below the form cone") == ["yes", "no"]
 
 
 def test_spiral_pair_shows_hands_flanks_and_what_departs_from_nominal():

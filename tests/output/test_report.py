@@ -72,7 +72,7 @@ def test_contacts_are_those_of_the_pairs_under_load():
         assert_allclose(float(row["contact_width_mm"]), contacts.contact_width[at], **near)
         assert_allclose(float(row["approach_um"]), 1e3 * contacts.approach[at], **near)
         assert_allclose(float(row["contact_point_wheel_diameter_mm"]), 2.0 * contacts.paths[at[2]][at[1]].wheel_radius)
-        assert bool(row["borders"]) == (row["on_edge"] == "1") == bool(contacts.on_edge[at])
+        assert bool(row["edges"]) == (row["on_edge"] == "1") == bool(contacts.on_edge[at])
 
 
 def test_tooth_pairs_stand_in_the_order_of_the_mesh():
@@ -86,14 +86,14 @@ def test_tooth_pairs_stand_in_the_order_of_the_mesh():
 
 
 def test_contacts_name_the_tip_that_comes_first_into_mesh():
-    early = [row for row in contact_rows(shared()) if row["tooth_pair"] == "1" and "tip" in row["borders"]]
+    early = [row for row in contact_rows(shared()) if row["tooth_pair"] == "1" and "tip" in row["edges"]]
     assert early
-    assert {"wheel tip"} == {word for row in early for word in row["borders"].split(" + ") if "tip" in word}
+    assert {"wheel tip"} == {word for row in early for word in row["edges"].split(" + ") if "tip" in word}
 
 
 def test_every_column_of_the_contacts_is_in_the_reference_or_tells_its_unit():
     described = describe_results().partition("### `result.contacts`")[2]
-    known = {"position", "tooth_pair", "load_share", "peak_at_border", "borders"}
+    known = {"position", "tooth_pair", "load_share", "peak_at_edge", "edges"}
     units = ("_mm", "_deg", "_Nm")
     for name in contact_rows(shared())[0]:
         assert f"`{name}`" in described or name in known or name.endswith(units)
@@ -147,7 +147,7 @@ def test_table_agrees_with_the_result():
 
 def test_every_column_with_a_unit_tells_it():
     pure = {"position", "iterations", "residual", "load_share_pair_0", "cells_across", "cells_along"}
-    pure |= {"on_edge", "at_crease", "peak_at_border", "face_load_factor", "loaded_pairs"}
+    pure |= {"on_edge", "at_relief_start", "peak_at_edge", "face_load_factor", "loaded_pairs"}
     units = ("_mm", "_MPa", "_N", "_N_per_mm", "_Nm", "_deg", "_arcsec", "_um", "_N_per_mm_um")
     assert all(name.endswith(units) or name in pure for name in table(result())[0])
 
@@ -176,9 +176,9 @@ def test_line_contact_is_no_longer_than_the_face():
     assert float(row["contact_length_mm"]) <= 14.0
 
 
-def test_peaks_at_a_border_are_marked_in_the_table():
-    assert {row["peak_at_border"] for row in table(result("misaligned", positions=2))} == {"1"}
-    assert {row["peak_at_border"] for row in table(result(positions=1))} == {"0"}
+def test_peaks_at_a_edge_are_marked_in_the_table():
+    assert {row["peak_at_edge"] for row in table(result("misaligned", positions=2))} == {"1"}
+    assert {row["peak_at_edge"] for row in table(result(positions=1))} == {"0"}
 
 
 def test_table_and_summary_agree():
@@ -263,7 +263,7 @@ def test_every_column_is_in_the_reference():
     described = describe_results()
     own = [name for name in table(result())[0] if "contact_point" not in name and "load_share" not in name]
     derived = {"position", "pinion_angle_deg", "unloaded_transmission_error_arcsec", "unloaded_transmission_error_um"}
-    derived |= {"transmission_error_um", "peak_at_border", "loaded_pairs"}
+    derived |= {"transmission_error_um", "peak_at_edge", "loaded_pairs"}
     assert [name for name in own if f"`{name}`" not in described and name not in derived] == []
 
 

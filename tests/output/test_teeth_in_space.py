@@ -65,7 +65,7 @@ def test_position_without_contact_is_refused():
 
 def test_positions_without_contact_have_no_place_on_the_path():
     cycle = with_a_gap()
-    assert len(placed(cycle, position=0).path) == cycle.path.touches.sum()
+    assert len(placed(cycle, position=0).path) == cycle.path.in_contact.sum()
 
 
 def test_fillet_that_does_not_fit_is_refused():

@@ -246,7 +246,7 @@ def test_relief_off_the_active_profile_is_refused_by_the_name_of_the_gear():
 
 
 def test_contact_on_the_root_of_a_bevel_flank_is_called_so():
-    """A root cone just below the pitch cone leaves no flank for the tip of the mate."""
+    """A root cone just below the pitch cone leaves no flank for the tip of the mating gear."""
     mesh = mesh_of((39, 32), root_angles=(math.radians(50.2), None))
     pair = bevel_pair(mesh)
     with pytest.warns(AccuracyWarning, match="fillet interference: at 1 of 1 positions .* on a root form cone, where"):

@@ -14,7 +14,7 @@ from loaded_tca.flanks import FlankModifications
 from loaded_tca.pairs.bevel import BevelMounting
 from loaded_tca.pairs.face_milled import face_milled_pair
 from loaded_tca.reference import hertz
-from tests.samples.face_milled import matched_pinion, on_machine, published_pinion, published_wheel, seed_004_gears
+from tests.samples.face_milled import duplex_paper_gears, matched_pinion, on_machine, published_pinion, published_wheel
 from tests.samples.gear_pairs import highest_on_grid
 
 ARCSEC = math.degrees(1.0) * 3600.0
@@ -73,7 +73,7 @@ def test_published_pair_touches_on_the_tip_of_the_wheel():
     path, error = from_top(pair, [-0.5, -0.25, 0.0, 0.25, 0.5])
     assert_allclose(error[[0, -1]], [-44.2, -45.1], atol=0.05)
     assert path.on_edge[:-1].all()
-    tip = pair.wheel.borders(path.wheel_radius, path.wheel_axial)[0].value
+    tip = pair.wheel.edges(path.wheel_radius, path.wheel_axial)[0].value
     assert_allclose(tip[:-1], 0.0, atol=1e-8)
 
 
@@ -81,11 +81,11 @@ def test_published_pair_touches_on_the_tip_of_the_pinion_on_its_coast_side():
     pair = face_milled_pair(published_pinion(), published_wheel(), pinion_flank="convex")
     path, _ = from_top(pair, [-0.25, 0.0, 0.25])
     assert path.on_edge.all()
-    assert_allclose(pair.pinion.borders(path.pinion_radius, path.pinion_axial)[0].value, 0.0, atol=1e-8)
+    assert_allclose(pair.pinion.edges(path.pinion_radius, path.pinion_axial)[0].value, 0.0, atol=1e-8)
 
 
-def test_pair_d_of_seed_004_has_a_centred_path():
-    gears = seed_004_gears()
+def test_pair_d_of_duplex_paper_has_a_centred_path():
+    gears = duplex_paper_gears()
     pair = face_milled_pair(*gears)
     path, error = from_top(pair, [-0.5, 0.0, 0.5])
     assert_allclose(error, [-12.29, 0.0, -12.50], atol=0.006)
@@ -93,8 +93,8 @@ def test_pair_d_of_seed_004_has_a_centred_path():
     assert_allclose(math.hypot(path.pinion_radius[1], path.pinion_axial[1]), 70.6, atol=2.0)  # of 60.6 to 80.6
 
 
-def test_seed_004_as_printed_touches_at_the_toe():
-    pair = face_milled_pair(*seed_004_gears(pinion_radial=58.38392))
+def test_duplex_paper_as_printed_touches_at_the_toe():
+    pair = face_milled_pair(*duplex_paper_gears(pinion_radial=58.38392))
     path = trace_contact(pair, np.linspace(-0.5, 0.5, 5) * pair.pitch)
     assert path.on_edge.all()
 

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca import trace_contact
 from loaded_tca.flanks import FlankModifications
-from loaded_tca.flanks.base import BORDER_NAMES
+from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from tests.samples.gear_pairs import NONE, cylindrical_mesh
@@ -68,8 +68,8 @@ CASES = {"tip corners": tip_corners, "base circle": base_circle, "undercut pinio
 cases = pytest.mark.parametrize("case", CASES)
 
 
-def borders_met(path):
-    return {BORDER_NAMES[k % 4] for k in np.flatnonzero(path.edges.any(axis=0))}
+def edges_met(path):
+    return {EDGE_NAMES[k % 4] for k in np.flatnonzero(path.edges.any(axis=0))}
 
 
 # Near the base circle
@@ -84,7 +84,7 @@ def test_pair_touches_properly_down_to_a_form_circle_on_the_base_circle(helix_de
     rolls = np.array([1e-4, 1e-3, 0.01, 0.1, 1.0])
     pair = cylindrical_pair(mesh, modifications=(CROWNED, NONE), driving=driving, sense=sense)
     path = trace_contact(pair, angle_at(mesh, rolls, driving))
-    assert path.touches.all()
+    assert path.in_contact.all()
     assert not path.on_edge.any()
     assert_allclose(path.transmission_error, 0.0, atol=SAME_ANGLE)
     assert_allclose(path.pinion_radius, np.hypot(mesh.pinion.base_radius, rolls), atol=NEAR_BASE)
@@ -101,7 +101,7 @@ def test_wheel_tip_takes_over_before_the_base_circle(driving, sense):
     mesh = mesh_reaching_down_to(0.05, 0.0, (17, 40))
     pair = cylindrical_pair(mesh, modifications=(CROWNED, NONE), driving=driving, sense=sense)
     path = trace_contact(pair, angle_at(mesh, [-0.05, -0.2], driving))
-    assert path.edges[:, 4 + BORDER_NAMES.index("tip")].all()
+    assert path.edges[:, 4 + EDGE_NAMES.index("tip")].all()
     assert (pair.driving * path.transmission_error < 0.0).all()
     assert (path.pinion_radius >= mesh.pinion.base_radius).all()
 
@@ -114,7 +114,7 @@ def test_wheel_tip_takes_over_before_the_base_circle(driving, sense):
 @drives
 def test_negative_sense_is_the_mirror_image_at_the_ends_of_the_flanks(case, helix_deg, driving):
     """In the x, z plane: hands, out-of-plane error and y change their signs, all else stays."""
-    mesh, angles, borders = CASES[case](helix_deg)
+    mesh, angles, edges = CASES[case](helix_deg)
     angles = angles if driving == "pinion" else -angles
     hands = CylindricalMesh(
         *(replace(gear, helix_angle=-gear.helix_angle) for gear in (mesh.pinion, mesh.wheel)), mesh.centre_distance
@@ -125,7 +125,7 @@ def test_negative_sense_is_the_mirror_image_at_the_ends_of_the_flanks(case, heli
         hands, modifications=mods, mounting=Mounting(TILT, -TILT), driving=driving, sense="negative"
     )
     first, second = trace_contact(one, angles), trace_contact(other, angles)
-    assert set(borders) <= borders_met(first)
+    assert set(edges) <= edges_met(first)
     assert_allclose(second.transmission_error, first.transmission_error, atol=SAME_ANGLE)
     assert_allclose(second.point, first.point * [1.0, -1.0, 1.0], atol=SAME_PLACE)
     assert_allclose(second.normal, first.normal * [1.0, -1.0, 1.0], atol=SAME_PLACE)

@@ -56,7 +56,7 @@ def texts(figure):
 def test_every_case_gives_every_picture(case, tmp_path):
     paths = plot_all(CASES[case](), tmp_path)
     always = {"contact_path", "transmission_error", "peak_pressure", "pressure_map"}
-    assert {path.stem for path in paths} - {"pressure_map_hertz", "pressure_map_border"} == always
+    assert {path.stem for path in paths} - {"pressure_map_hertz", "pressure_map_edge"} == always
     assert sorted(os.listdir(tmp_path)) == sorted(path.name for path in paths)
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in paths)
 
@@ -69,18 +69,20 @@ def test_map_with_the_ellipse_is_drawn_too_where_the_highest_pressure_has_none(t
 
 
 def test_pictures_of_an_earlier_result_do_not_stay(tmp_path):
-    for name in ("pressure_map_hertz.png", "pressure_map_border.png", "mine.png"):
+    for name in ("pressure_map_hertz.png", "pressure_map_edge.png", "mine.png"):
         (tmp_path / name).write_bytes(b"old")
     paths = plot_all(result(positions=1), tmp_path)
     assert sorted(os.listdir(tmp_path)) == sorted(["mine.png", *(path.name for path in paths)])
 
 
-def test_peak_at_a_border_has_a_map_of_its_own(tmp_path):
+def test_peak_at_a_edge_has_a_map_of_its_own(tmp_path):
     cycle = result()
-    crease = np.zeros(5, dtype=bool)
-    crease[4] = True
+    relief_start = np.zeros(5, dtype=bool)
+    relief_start[4] = True
     assert cycle.peak_position(0) != 4
-    assert "pressure_map_border" in {path.stem for path in plot_all(replace(cycle, at_crease=crease), tmp_path)}
+    assert "pressure_map_edge" in {
+        path.stem for path in plot_all(replace(cycle, at_relief_start=relief_start), tmp_path)
+    }
 
 
 def test_map_and_flanks_of_one_torque_and_position(tmp_path):
@@ -133,7 +135,7 @@ def drawn(axes, marker):
     return [line for line in axes.get_lines() if line.get_marker() == marker and len(line.get_xdata())]
 
 
-def test_marks_at_a_border_have_the_colours_of_their_torques():
+def test_marks_at_a_edge_have_the_colours_of_their_torques():
     (axes,) = plot_peak_pressure(result("misaligned", positions=2, torques=(20.0, 80.0))).axes
     marks = [*drawn(axes, "x"), *drawn(axes, "^")]
     colours = {line.get_label(): line.get_color() for line in axes.get_lines() if "torque" in line.get_label()}
@@ -155,12 +157,12 @@ def test_edge_contacts_are_marked_and_no_hertz_is_drawn():
     crosses = [*drawn(axes, "x"), *drawn(axes, "^")]
     assert sum(len(line.get_xdata()) for line in crosses) == 2
     assert {line.get_linestyle() for line in crosses} == {"None"}
-    assert any("at a border or crease (grows with the grid)" in label for label in labels)
+    assert any("at an edge or relief start (grows with the grid)" in label for label in labels)
     assert np.isnan(axes.get_lines()[0].get_ydata()).all()
     assert_allclose(axes.get_lines()[1].get_ydata(), result("misaligned", positions=2).central_pressure)
 
 
-def test_high_peaks_at_a_border_do_not_rule_the_axis():
+def test_high_peaks_at_a_edge_do_not_rule_the_axis():
     cycle = result("fzg_c14", positions=3)
     (axes,) = plot_peak_pressure(cycle).axes
     assert axes.get_ylim()[1] < cycle.peak_pressure.max()
@@ -221,7 +223,7 @@ def test_contact_areas_lie_around_the_path_within_the_flank():
 
 @pytest.mark.parametrize("name", ["helical", "straight_bevel", "spiral_bevel"])
 def test_flanks_are_drawn_with_the_part_that_the_mate_reaches(name):
-    """The outline is the border of the flank in its frame; the tip is common, the bottom of the reached part higher."""
+    """The outline is the edge of the flank in its frame; the tip is common, the bottom of the reached part higher."""
     cycle = result(name)
     pair = parse_scene(cycle.scene_toml).pair()
     for axes, flank in zip(plot_contact_path(cycle).axes, (pair.pinion, pair.wheel), strict=False):
@@ -285,9 +287,9 @@ def test_picture_that_cannot_be_written_is_told(tmp_path):
         save_figure(Figure(), tmp_path / "absent" / "a.png")
 
 
-def test_colours_of_a_border_map_do_not_follow_its_spike():
+def test_colours_of_a_edge_map_do_not_follow_its_spike():
     cycle = result("fzg_c14", positions=3)
-    at = cycle.border_contact(0)
+    at = cycle.edge_contact(0)
     bar = plot_pressure_map(cycle, at[0], 0, at[1]).axes[-1]
     one = cycle.contacts.maps[0][at[0]][at[1]].pressure
     assert np.nanmax(cycle.inner_pressure) <= bar.get_ylim()[1] < 0.9 * cycle.peak_pressure.max()
@@ -303,4 +305,4 @@ def test_legend_of_the_flanks_names_a_grey_area_only_where_it_is_seen(part, told
     starts = tuple(float(height.min() + part * np.ptp(height)) for height in heights)
     monkeypatch.setattr(type(scene), "active_starts", lambda _: starts)
     names = [text.get_text() for text in plot_contact_path(result()).legends[0].get_texts()]
-    assert ("flank that the mate does not reach" in names) is told
+    assert ("flank that the mating gear does not reach" in names) is told

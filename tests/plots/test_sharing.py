@@ -77,7 +77,7 @@ def test_pair_at_the_pitch_point_has_no_sign():
 
 def test_colours_of_the_flanks_do_not_follow_the_spikes_of_edges():
     cycle = shared()
-    assert cycle.contacts.peak_at_border.any()
+    assert cycle.contacts.peak_at_edge.any()
     bar = plot_contact_path(cycle).axes[-1]
     assert_allclose(bar.get_ylim()[1], np.nanmax(cycle.contacts.inner_pressure), rtol=1e-12)
 

@@ -137,7 +137,7 @@ def test_forces_of_the_cycle_are_those_of_the_pair_that_carries_most():
         assert result.approach[torque, position] == contacts.approach[torque, position, column]
 
 
-def test_peak_at_the_end_of_a_grid_is_one_at_a_border():
+def test_peak_at_the_end_of_a_grid_is_one_at_a_edge():
     one = next(one for row in cycle().contacts.maps[0] for one in row if one is not None)
     pressure = np.zeros_like(one.pressure)
     assert not _peaks_at_end(replace(one, pressure=one.pressure, gap=np.zeros_like(one.gap)))
@@ -212,7 +212,7 @@ def test_figures_tell_the_pairs():
     (figures,) = helical().key_figures()
     assert 1.0 < figures["loaded_contact_ratio"] < 3.0
     assert figures["transmission_error_order_1_um"] > figures["transmission_error_order_3_um"] > 0.0
-    assert figures["positions"] == figures["touching_positions"] == 9
+    assert figures["positions"] == figures["positions_in_contact"] == 9
     assert figures["edge_positions"] <= 9
     assert figures["line_load_max_N_per_mm"] == np.nanmax(helical().contacts.line_load)
     assert figures["unloaded_error_span_um"] > 0.0
@@ -253,7 +253,7 @@ def test_numbers_of_a_contact_have_unit_and_text():
 @pytest.mark.parametrize("make", [cycle, helical])
 def test_every_picture_of_a_shared_load_is_drawn(make, tmp_path):
     drawn = {path.stem for path in plot_all(make(), tmp_path)}
-    assert drawn >= set(PICTURES) - {"pressure_map_border", "pressure_map_hertz"}
+    assert drawn >= set(PICTURES) - {"pressure_map_edge", "pressure_map_hertz"}
 
 
 def test_pictures_of_a_shared_load_go_where_one_pair_carries_all(tmp_path):
@@ -318,10 +318,10 @@ def test_pressure_beside_a_tip_is_none_of_the_flank():
     """The pair that leaves the mesh: its contact point comes to the tip, and the spike there to its pressure."""
     result = cycle_at_the_tip()
     contacts, column = result.contacts, result.pairs.tolist().index(-1)
-    near = contacts.peak_at_border[0, :, column] & ~contacts.paths[column].on_edge
+    near = contacts.peak_at_edge[0, :, column] & ~contacts.paths[column].on_edge
     central = np.where(near, contacts.central_pressure[0, :, column], 0.0)
     spiked = int(central.argmax())
-    smooth = np.fmax.reduce(np.where(contacts.peak_at_border, np.nan, contacts.peak_pressure), axis=None)
+    smooth = np.fmax.reduce(np.where(contacts.peak_at_edge, np.nan, contacts.peak_pressure), axis=None)
     assert central[spiked] > smooth
     assert np.isnan(contacts.inner_pressure[0, spiked, column])
     (figures,) = result.key_figures()

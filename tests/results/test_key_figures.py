@@ -52,7 +52,7 @@ def test_line_load_and_its_face_load_factor_are_of_the_most_loaded_pair():
 
 def test_line_load_at_an_end_of_the_face_is_marked():
     (line,), (point,) = result("fzg_c14", positions=3).key_figures(), result().key_figures()
-    assert (line["largest_force_is_at_border"], point["largest_force_is_at_border"]) == (True, False)
+    assert (line["largest_force_is_at_edge"], point["largest_force_is_at_edge"]) == (True, False)
     told = "line load and face load factor grow with the grid unless the ends yield (analysis.free_edges = true)"
     assert told in result("fzg_c14", positions=3).summary()
     assert told not in result().summary()

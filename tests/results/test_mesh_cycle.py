@@ -94,7 +94,7 @@ def test_figures_agree_with_the_fields():
     cycle = result(torques=(20.0, 80.0))
     low, high = cycle.key_figures()
     assert (low["pinion_torque_Nm"], high["pinion_torque_Nm"]) == (20.0, 80.0)
-    assert high["peak_pressure_MPa"] == cycle.peak_pressure[1].max()  # clear of borders
+    assert high["peak_pressure_MPa"] == cycle.peak_pressure[1].max()  # clear of edges
     assert_allclose(high["pinion_diameter_at_peak_mm"], 2.0 * cycle.peak_radius[1, cycle.peak_position(1)])
     assert_allclose(high["pinion_angle_at_peak_deg"], np.degrees(cycle.pinion_angle[cycle.peak_position(1)]))
     span = np.ptp(cycle.transmission_error[1])
@@ -104,11 +104,11 @@ def test_figures_agree_with_the_fields():
 
 def test_figures_skip_positions_that_do_not_touch():
     for figures in with_a_gap().key_figures():
-        assert figures["touching_positions"] == 4
+        assert figures["positions_in_contact"] == 4
         unknown = {name for name, value in figures.items() if np.isnan(value)}
         known_if_shared = {"loaded_contact_ratio", "fewest_loaded_pairs", "most_loaded_pairs"}
         known_if_shared |= {f"transmission_error_order_{order}_um" for order in (1, 2, 3)}
-        assert all("border" in name or name == "max_pressure_MPa" for name in unknown - known_if_shared)
+        assert all("edge" in name or name == "max_pressure_MPa" for name in unknown - known_if_shared)
 
 
 def test_nothing_touching_leaves_figures_unknown():
@@ -142,7 +142,7 @@ def test_summary_shows_the_pitch_point_in_engineers_units():
     assert 14 <= len(text.splitlines()) <= 16
 
 
-def test_peak_where_hertz_holds_leaves_borders_out():
+def test_peak_where_hertz_holds_leaves_edges_out():
     hertz = result().hertz_pressure.copy()
     highest = result().peak_position(0)
     hertz[highest] = np.nan
@@ -162,13 +162,13 @@ def test_summary_has_a_column_per_torque():
 
 def test_summary_tells_what_limits_it():
     text = edge_contact().summary()
-    assert "note: at 2 of 2 positions the contact reaches a border of a flank" in text
-    assert "note: the contact point itself lies on a border or crease: the peak pressure given grows" in text
+    assert "note: at 2 of 2 positions the contact reaches an edge of a flank" in text
+    assert "note: the contact point itself lies on an edge or relief start: the peak pressure given grows" in text
     assert "note: at 1 of 5 positions (all torques) the tooth pair does not touch" in with_a_gap().summary()
     assert "note" not in result(positions=1).summary()
 
 
-def with_a_border_peak(at, torques=None):
+def with_a_edge_peak(at, torques=None):
     """A contact whose largest cell lies beside cells without material at one position, as of the last torque."""
     cycle = result(torques=torques)
     one = cycle.maps[-1][at]
@@ -184,48 +184,48 @@ def with_a_border_peak(at, torques=None):
     return replace(cycle, maps=tuple(map(tuple, maps)), peak_pressure=peak, on_edge=edge)
 
 
-def test_first_number_is_no_peak_at_a_border():
-    cycle, whole = with_a_border_peak(4), result()
+def test_first_number_is_no_peak_at_a_edge():
+    cycle, whole = with_a_edge_peak(4), result()
     (figures,), (before,) = cycle.key_figures(), whole.key_figures()
-    assert cycle.peak_at_border.tolist() == [False] * 4 + [True]
+    assert cycle.peak_at_edge.tolist() == [False] * 4 + [True]
     assert figures["peak_pressure_MPa"] == before["peak_pressure_MPa"]
-    assert figures["border_pressure_MPa"] == cycle.peak_pressure[4]
-    assert_allclose(figures["pinion_angle_at_border_deg"], np.degrees(cycle.pinion_angle[4]))
+    assert figures["edge_pressure_MPa"] == cycle.peak_pressure[4]
+    assert_allclose(figures["pinion_angle_at_edge_deg"], np.degrees(cycle.pinion_angle[4]))
     assert_allclose(cycle.inner_pressure[4], whole.central_pressure[4])
-    assert "note: at 1 of 5 positions the largest cell lies at a border" in cycle.summary()
-    assert float(line(cycle.summary(), "at a border or crease").split()[-3]) > figures["peak_pressure_MPa"]
+    assert "note: at 1 of 5 positions the largest cell lies at an edge" in cycle.summary()
+    assert float(line(cycle.summary(), "at an edge or relief start").split()[-3]) > figures["peak_pressure_MPa"]
 
 
-def test_contact_that_reaches_a_border_with_its_peak_mid_flank_keeps_it():
+def test_contact_that_reaches_a_edge_with_its_peak_mid_flank_keeps_it():
     cycle = replace(result(), on_edge=np.ones(5, dtype=bool))
-    assert not cycle.peak_at_border.any()
+    assert not cycle.peak_at_edge.any()
     assert_allclose(cycle.inner_pressure, cycle.peak_pressure)
     assert "grows" not in cycle.summary()
-    assert "at a border or crease" not in cycle.summary()
+    assert "at an edge or relief start" not in cycle.summary()
 
 
-def test_peaks_at_every_border_leave_the_highest_central_pressure():
+def test_peaks_at_every_edge_leave_the_highest_central_pressure():
     cycle = result("fzg_c14", positions=3)
     (figures,) = cycle.key_figures()
     assert figures["peak_pressure_MPa"] == cycle.central_pressure.max()
     assert figures["peak_is_beside_contact_point"]
-    assert not figures["contact_point_is_at_border"]
+    assert not figures["contact_point_is_at_edge"]
     assert figures["pinion_axial_at_peak_mm"] == pytest.approx(0.0, abs=1e-9)
-    assert figures["border_pressure_MPa"] == cycle.peak_pressure.max()
-    assert abs(figures["pinion_axial_at_border_mm"]) > 6.0  # at an end of the face
+    assert figures["edge_pressure_MPa"] == cycle.peak_pressure.max()
+    assert abs(figures["pinion_axial_at_edge_mm"]) > 6.0  # at an end of the face
 
 
-def test_contact_points_on_a_border_are_told():
+def test_contact_points_on_a_edge_are_told():
     (figures,) = edge_contact().key_figures()
     assert np.isnan(edge_contact().inner_pressure).all()
-    assert figures["contact_point_is_at_border"]
+    assert figures["contact_point_is_at_edge"]
     assert figures["peak_pressure_MPa"] == edge_contact().central_pressure.max()
 
 
-def test_crease_in_the_contact_makes_a_peak_doubtful():
-    crease = np.array([True, False, False, False, False])
-    cycle = replace(result(), at_crease=crease)
-    assert (cycle.peak_at_border == crease).all()
+def test_relief_start_in_the_contact_makes_a_peak_doubtful():
+    relief_start = np.array([True, False, False, False, False])
+    cycle = replace(result(), at_relief_start=relief_start)
+    assert (cycle.peak_at_edge == relief_start).all()
     assert "note: at 1 of 5 positions the start of a linear relief lies in the contact" in cycle.summary()
 
 
@@ -240,11 +240,11 @@ def test_pressure_cap_is_told():
     assert not result().capped.any()
 
 
-def test_peak_that_reaches_the_cap_at_a_border_is_not_the_first_number():
-    cycle = with_a_border_peak(4)
+def test_peak_that_reaches_the_cap_at_a_edge_is_not_the_first_number():
+    cycle = with_a_edge_peak(4)
     (figures,) = replace(cycle, max_pressure=float(cycle.peak_pressure[4])).key_figures()
     assert figures["capped_positions"] == 1
-    assert figures["peak_pressure_MPa"] == result().peak_pressure.max() < figures["border_pressure_MPa"]
+    assert figures["peak_pressure_MPa"] == result().peak_pressure.max() < figures["edge_pressure_MPa"]
 
 
 def test_cap_of_a_scene_reaches_the_result():
@@ -257,8 +257,8 @@ def test_cap_of_a_scene_reaches_the_result():
 
 
 def test_notes_say_for_which_torques():
-    text = with_a_border_peak(4, torques=(20.0, 80.0)).summary()
-    assert "note: at 1 of 5 positions (80 N m) the largest cell lies at a border" in text
+    text = with_a_edge_peak(4, torques=(20.0, 80.0)).summary()
+    assert "note: at 1 of 5 positions (80 N m) the largest cell lies at an edge" in text
 
 
 def test_contact_is_no_longer_than_the_face():

@@ -1,14 +1,14 @@
-"""Borders that loaded contacts reach: told by name, and there wherever a contact is said to reach one."""
+"""Edges that loaded contacts reach: told by name, and there wherever a contact is said to reach one."""
 
 import numpy as np
 import pytest
 
-from loaded_tca.results.reached_edges import NAMES, reached_borders
+from loaded_tca.results.reached_edges import NAMES, reached_edges
 from tests.samples.results import result, with_a_gap
 
 
 def names(cycle):
-    return {name for name, one in zip(NAMES, reached_borders(cycle).any(axis=(0, 1, 2)), strict=True) if one}
+    return {name for name, one in zip(NAMES, reached_edges(cycle).any(axis=(0, 1, 2)), strict=True) if one}
 
 
 def test_point_contact_in_the_middle_reaches_none():
@@ -33,7 +33,7 @@ def test_misaligned_contact_reaches_one_side():
 
 def test_contact_that_comes_into_mesh_early_reaches_the_tip_of_the_wheel():
     cycle = result("mesh_cycle_helical", positions=5, torques=(260.0,))
-    reached = reached_borders(cycle)[0]
+    reached = reached_edges(cycle)[0]
     column = {int(pair): k for k, pair in enumerate(cycle.pairs)}
     tips = [NAMES.index("wheel tip"), NAMES.index("pinion tip")]
     assert reached[:, column[1], tips[0]].any()
@@ -51,6 +51,6 @@ def test_contact_that_comes_into_mesh_early_reaches_the_tip_of_the_wheel():
         with_a_gap,
     ],
 )
-def test_border_is_named_where_and_only_where_a_contact_reaches_one(make):
+def test_edge_is_named_where_and_only_where_a_contact_reaches_one(make):
     cycle = make()
-    np.testing.assert_array_equal(reached_borders(cycle).any(axis=-1), cycle.contacts.on_edge > 0)
+    np.testing.assert_array_equal(reached_edges(cycle).any(axis=-1), cycle.contacts.on_edge > 0)

@@ -50,11 +50,11 @@ def test_line_contact_is_compared_with_a_long_line():
     assert_allclose(below.largest("max_shear").value, shear, rtol=0.1)  # the sides of the teeth end the line
 
 
-def test_contact_at_a_border_has_no_hertz_and_says_so():
+def test_contact_at_a_edge_has_no_hertz_and_says_so():
     below = stress_below(result("misaligned", positions=2))
     assert below.hertz_shear is None
     assert "after Hertz" not in below.summary()
-    assert "note: the contact reaches a border" in below.summary()
+    assert "note: the contact reaches an edge" in below.summary()
 
 
 def test_place_is_that_of_the_highest_pressure_unless_told_otherwise():
@@ -123,7 +123,7 @@ def test_depth_of_what_falls_from_the_surface_is_the_surface():
     assert depth_of_largest(np.array([0.0, 1.0, 2.0]), np.array([3.0, 2.0, 1.0])) == 0.0
 
 
-# A spike at a border
+# A spike at an edge
 
 
 def spike():
@@ -134,7 +134,7 @@ def spike():
 def test_stress_beside_a_spike_is_that_across_the_contact_point():
     below = spike()
     contacts, at = below.result.contacts, (below.torque, below.position, below.column)
-    assert contacts.peak_at_border[at]
+    assert contacts.peak_at_edge[at]
     row, column = below.highest_pressure
     assert abs(below.pressure_map.y[column]) <= 0.5 * below.pressure_map.spacing[1] * (1.0 + 1e-9)
     assert_allclose(below.pressure_map.pressure[row, column], contacts.inner_pressure[at], rtol=COARSE)
@@ -147,7 +147,7 @@ def test_summary_beside_a_spike_tells_the_spike_in_its_note_alone():
     below = spike()
     peak, text = f"{below.pressure_map.pressure.max():.4g} MPa", below.summary()
     assert [peak in line for line in text.splitlines()] == [False] * (text.count("\n")) + [True]
-    assert "not those of the border" in text
+    assert "not those of the edge" in text
 
 
 def test_picture_and_table_show_the_plane_beside_a_spike():

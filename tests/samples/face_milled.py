@@ -1,4 +1,4 @@
-"""Face-milled gears that the tests share: the published 19 x 62 pair, its matched variant B, and pair D of Seed 004."""
+"""Face-milled gears that tests share: the published 19 x 62 pair, its matched variant B, the duplex paper's pair D."""
 
 import math
 from dataclasses import replace
@@ -7,7 +7,8 @@ from loaded_tca.gears import Blade, Cutter, FaceMilledBlank, FaceMilledGear, Mac
 
 EDGE = 0.20845
 OUTER, WIDTH = 132.33333847, 36.83
-# tips stand off from the mate's root by 0.25 mean normal modules, so that the face cones have apexes of their own
+# tips stand off from the mating gear's root by 0.25 mean normal modules, so that the face cones have apexes of their
+# own
 CLEARANCE = 0.25 * 2.9402
 
 
@@ -57,7 +58,7 @@ def matched_pinion():
     return replace(pinion, cutter=Cutter(blade), machine=replace(pinion.machine, radial=96.8771))
 
 
-def seed_004_gears(pinion_radial=57.1394):
+def duplex_paper_gears(pinion_radial=57.1394):
     """Pair D: pinion radial setting, face width and addenda are constructed."""
     distance, width, clearance = 70.6007, 20.0, 0.564
     pitches = math.atan(20.0 / 30.0), math.atan(30.0 / 20.0)

@@ -16,7 +16,7 @@ NONE = FlankModifications()
 
 
 def cylindrical_mesh(teeth=(34, 57), module=3.0, width=25.0, helix_deg=0.0, shifts=(0.0, 0.0), distance=None, **gear):
-    """Pinion of the helix angle given, right-handed if positive, and its mate."""
+    """Pinion of the helix angle given, right-handed if positive, and its mating gear."""
     gears = [
         CylindricalGear(
             z, module, width, helix_angle=math.radians(sign * helix_deg), profile_shift=x, name=name, **gear
@@ -36,12 +36,12 @@ def gear_pair(pinion=NONE, wheel=NONE, mounting=None, driving="pinion", sense="p
     )
 
 
-def seed_002(helix_deg=0.0, **changes):
+def sam_paper(helix_deg=0.0, **changes):
     """The crowned pair of seed 002: its Hertz ellipse is a little shorter than the face."""
     return gear_pair(FlankModifications(lead_crowning=0.005), helix_deg=helix_deg, **changes)
 
 
-SEED_002_TORQUE = 130e3  # N mm; inferred, the paper prints no load
+SAM_PAPER_TORQUE = 130e3  # N mm; inferred, the paper prints no load
 
 
 def amounts(largest):
@@ -75,7 +75,7 @@ def modifications(draw, gear, active):
 
 @st.composite
 def polynomials(draw, width, profile):
-    """Coefficients a1 to a6 of amounts up to 10 um at the borders of the flank, hollow ones too."""
+    """Coefficients a1 to a6 of amounts up to 10 um at the edges of the flank, hollow ones too."""
     x, y = 0.5 * width, 0.5 * profile
     powers = (1.0, x, y, x * y, x**2, y**2)
     return tuple(draw(st.floats(-0.01, 0.01)) / power for power in powers)
@@ -131,7 +131,7 @@ def pairs(draw):
     )
 
 
-def wheel_lag(pair, phi1, rho, z):
+def transmission_error_at(pair, phi1, rho, z):
     """Transmission error [rad] that lets the flanks meet at points of the pinion, and whether the wheel is there.
 
     Written from the definitions of the frames, without the ease-off field of the package.
@@ -147,7 +147,7 @@ def wheel_lag(pair, phi1, rho, z):
 def highest_on_grid(pair, phi1, counts=(60, 60)):
     """First touch on a dense grid: the transmission error of the point that touches first; -inf if none can [rad]."""
     rho, z = pair.pinion.grid(*counts)
-    lag, there = wheel_lag(pair, phi1, rho, z)
+    lag, there = transmission_error_at(pair, phi1, rho, z)
     return pair.driving * np.where(there, pair.driving * lag, -np.inf).max()
 
 
@@ -168,7 +168,7 @@ def assert_certified_or_refused(draw_pair, turns):
         return
     for row, angle in enumerate(angles):
         highest = highest_on_grid(pair, angle, (40, 40))
-        if path.touches[row]:
+        if path.in_contact[row]:
             found = path.transmission_error[row]
             assert pair.driving * (highest - found) <= ROUNDING, "no point of the flanks penetrates"
         else:

@@ -358,14 +358,14 @@ def test_transmission_error_is_that_of_the_matched_pair(pair):
     assert_allclose([path.pinion_radius[4], path.pinion_axial[4]], [34.094573, 108.697640], atol=2e-3)
 
 
-@pytest.mark.parametrize(("flank", "border"), [("concave", "wheel"), ("convex", "pinion")])
-def test_contact_of_the_published_pair_runs_on_a_tip_on_both_sides(flank, border):
+@pytest.mark.parametrize(("flank", "edge"), [("concave", "wheel"), ("convex", "pinion")])
+def test_contact_of_the_published_pair_runs_on_a_tip_on_both_sides(flank, edge):
     """Blades of 20 deg do not make up for the tilt of the root planes."""
     pair = read_scene(SCENES / "face_milled_19x62.toml").with_changes({"pair.pinion_flank": flank}).pair()
     path = trace_contact(pair, np.radians([-5.0 if flank == "concave" else 5.0]), warn=False)
     assert path.on_edge.all()
-    member = getattr(pair, border)
-    tip = member.borders(getattr(path, f"{border}_radius"), getattr(path, f"{border}_axial"))[0]
+    member = getattr(pair, edge)
+    tip = member.edges(getattr(path, f"{edge}_radius"), getattr(path, f"{edge}_axial"))[0]
     assert_allclose(tip.value, 0.0, atol=1e-6)
 
 

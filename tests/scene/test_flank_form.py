@@ -17,7 +17,7 @@ SCENES = Path(__file__).parents[2] / "examples" / "scenes"
 FITTED = 1e-10  # rad; a B-spline through 33 x 33 points is within 1e-6 um of the flank
 DIGITS = 1e-9  # mm; a scene keeps 12 digits of a coordinate of about 100 mm
 GRID = [[20.0 + line] * 4 for line in range(4)]
-BORDERS = dict.fromkeys(("axial_mm", "radius_mm", "deviation_um"), GRID)
+EDGES = dict.fromkeys(("axial_mm", "radius_mm", "deviation_um"), GRID)
 
 
 def in_contact(scene):
@@ -80,7 +80,7 @@ def test_fitted_flanks_are_both_sides_of_the_tooth(scene):
     assert all(isinstance(fitted.pair(sense).wheel, SplineFlank) for sense in ("positive", "negative"))
 
 
-def test_crease_that_a_fit_rounds_off_is_a_warning(scene):
+def test_relief_start_that_a_fit_rounds_off_is_a_warning(scene):
     relief = {"tip_relief_um": 20.0, "tip_relief_start_mm": 109.0, "tip_relief_form": "linear"}
     fitted = scene.with_changes({"pinion.modifications": relief, "pinion.flank.form": "bspline"})
     with pytest.warns(AccuracyWarning, match="33 x 33 points misses the flank"):
@@ -198,7 +198,7 @@ def test_result_of_a_measured_flank_opens_without_the_file(small, scene, tmp_pat
 
 def test_largest_measurement_survives_its_own_text(scene, rng):
     """Two gears with 100 x 100 points of all digits: within the limits of a scene file."""
-    grids = {name: rng.uniform(1.0, 9e4, (100, 100)).tolist() for name in BORDERS}
+    grids = {name: rng.uniform(1.0, 9e4, (100, 100)).tolist() for name in EDGES}
     form = {"form": "measured", "measurement": grids}
     full = scene.with_changes({"pinion.flank": form, "wheel.flank": form})
     assert parse_scene(full.to_toml()) == full
@@ -281,7 +281,7 @@ ONE_PROBLEM = [
         {"form": "bspline", "coefficients": [9, 9]},
         f'{FLANK}.coefficients: does not apply to form = "bspline"; allowed with "measured"',
     ),
-    ({"measurement": BORDERS}, f'{FLANK}.measurement: does not apply to form = "analytic"; allowed with "measured"'),
+    ({"measurement": EDGES}, f'{FLANK}.measurement: does not apply to form = "analytic"; allowed with "measured"'),
     ({"form": "bspline", "degree": 4}, f"{FLANK}.degree: found 4; allowed 3 or 5"),
     ({"form": "bspline", "points": [5, 33]}, f"{FLANK}.points: found [5, 33]; allowed from 6 on, for degree = 5"),
     (
@@ -294,7 +294,7 @@ ONE_PROBLEM = [
         f'{FLANK}.file: missing; form = "measured" needs a file of points, or a section measurement',
     ),
     (
-        {"form": "measured", "file": "x.csv", "measurement": BORDERS},
+        {"form": "measured", "file": "x.csv", "measurement": EDGES},
         f'{FLANK}.file: found "x.csv" beside a section measurement; give one of the two',
     ),
     (
@@ -310,7 +310,7 @@ ONE_PROBLEM = [
         f"{POINTS}.radius_mm: given are no points; allowed radius_mm, axial_mm, deviation_um or x_mm, y_mm, z_mm",
     ),
     (
-        {"form": "measured", "measurement": {**BORDERS, "axial_mm": [*GRID, [1.0] * 4]}},
+        {"form": "measured", "measurement": {**EDGES, "axial_mm": [*GRID, [1.0] * 4]}},
         f"{POINTS}.radius_mm: found 4 x 4 and 5 x 4 points in one measurement",
     ),
 ]

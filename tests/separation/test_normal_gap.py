@@ -1,4 +1,4 @@
-"""The gap along the normal and the room to the nearest border, on places that take Newton's method far."""
+"""The gap along the normal and the room to the nearest edge, on places that take Newton's method far."""
 
 from dataclasses import replace
 
@@ -9,9 +9,9 @@ from numpy.testing import assert_allclose
 from loaded_tca import read_scene, sample_separation, trace_contact
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.pairs.cylindrical import Mounting
-from loaded_tca.separation.normal_gap import ON_BORDER, ROUNDING, NormalGap
+from loaded_tca.separation.normal_gap import ON_EDGE, ROUNDING, NormalGap
 from loaded_tca.unloaded import relative_curvature
-from tests.samples.gear_pairs import gear_pair, seed_002
+from tests.samples.gear_pairs import gear_pair, sam_paper
 from tests.samples.results import SCENES
 from tests.separation.test_separation import brute_force_gap
 
@@ -24,20 +24,20 @@ def gap_of(pair, turn=0.0):
 
 
 def test_gap_on_a_grid_is_the_gap_at_each_of_its_points():
-    gap = gap_of(seed_002(15.0), 0.1)
+    gap = gap_of(sam_paper(15.0), 0.1)
     x, y = np.linspace(-0.3, 0.3, 4), np.linspace(-14.0, 14.0, 7)
     one_by_one = [[gap(x[i : i + 1], y[j : j + 1])[0, 0] for j in range(len(y))] for i in range(len(x))]
     assert_allclose(gap(x, y), one_by_one, rtol=0, atol=GAP)
 
 
 def test_room_of_a_spur_pair_along_the_face_is_the_distance_to_its_side():
-    gap, y = gap_of(seed_002()), np.array([-13.0, -12.0, 11.0, 12.4, 12.5, 12.6])
+    gap, y = gap_of(sam_paper()), np.array([-13.0, -12.0, 11.0, 12.4, 12.5, 12.6])
     room = gap.at(np.zeros(1), y)[1]
-    assert_allclose(room, 12.5 - np.abs(y) + ON_BORDER * 3.0, rtol=0, atol=GAP)
+    assert_allclose(room, 12.5 - np.abs(y) + ON_EDGE * 3.0, rtol=0, atol=GAP)
 
 
 def test_room_across_the_profile_ends_at_the_tips():
-    pair = seed_002()
+    pair = sam_paper()
     gap = gap_of(pair)
     _, room = gap.at(np.array([-6.0, 0.0, 6.0]), np.zeros(1))
     assert room[1] > 0.0
@@ -46,7 +46,7 @@ def test_room_across_the_profile_ends_at_the_tips():
 
 CASES = {
     "spiral bevel": (lambda: read_scene(SCENES / "spiral_bevel.toml").pair(), 0.0, (0.4, 4.5)),
-    "misaligned": (lambda: seed_002(mounting=Mounting(out_of_plane=0.005)), 0.1, (1.5, 9.0)),
+    "misaligned": (lambda: sam_paper(mounting=Mounting(out_of_plane=0.005)), 0.1, (1.5, 9.0)),
     "down to the base circle": (lambda: gear_pair(teeth=(20, 57)), -0.6, (2.5, 14.0)),
     "linear relief": (
         lambda: gear_pair(
@@ -71,7 +71,7 @@ def test_gap_far_from_the_contact_equals_the_distance_found_by_bracketing(name):
 
 
 def test_normals_that_meet_no_flank_have_no_room():
-    pair = seed_002()
+    pair = sam_paper()
     contact = trace_contact(pair, [0.0])[0]
     away = replace(contact, point=contact.point + 1000.0 * contact.normal)
     _, room = NormalGap(pair, away, relative_curvature(pair, contact).axes).at(

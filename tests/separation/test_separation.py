@@ -26,7 +26,7 @@ from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.reference import hertz
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.separation.sample import cells_for_accuracy
-from tests.samples.gear_pairs import SEED_002_TORQUE, cylindrical_mesh, gear_pair, pairs, seed_002
+from tests.samples.gear_pairs import SAM_PAPER_TORQUE, cylindrical_mesh, gear_pair, pairs, sam_paper
 
 GAP = 1e-11  # mm: rounding of coordinates of 100 mm, thrown together over some operations
 
@@ -92,7 +92,7 @@ def test_gap_is_nothing_at_the_contact_point_and_nowhere_negative(pair, turn):
 
 
 def test_contact_point_lies_between_the_middle_cells_of_an_even_grid():
-    _, separation = separation_of(seed_002(), cells=(8, 6))
+    _, separation = separation_of(sam_paper(), cells=(8, 6))
     assert_allclose(separation.x[3:5], [-0.5 * separation.spacing[0], 0.5 * separation.spacing[0]])
     assert_allclose(separation.y[2:4], [-0.5 * separation.spacing[1], 0.5 * separation.spacing[1]])
     assert_allclose(np.diff(separation.x), separation.spacing[0])
@@ -117,7 +117,7 @@ def test_second_differences_of_the_gap_are_the_principal_curvatures(helix_deg, t
 
 
 def test_gap_of_a_crowned_spur_pair_is_symmetric_along_the_face():
-    _, separation = separation_of(seed_002(), turn=0.1)
+    _, separation = separation_of(sam_paper(), turn=0.1)
     assert_allclose(separation.gap, separation.gap[:, ::-1], atol=GAP)
 
 
@@ -130,9 +130,9 @@ def test_gap_of_equal_gears_at_the_pitch_point_is_symmetric_under_half_a_turn(he
 
 
 @pytest.mark.parametrize(("helix_deg", "pressure", "semi_major"), [(0.0, 748.54, 11.977), (15.0, 706.85, 12.206)])
-def test_hertz_of_the_seed_002_pairs_has_the_reference_pressure(helix_deg, pressure, semi_major):
-    pair, mesh = seed_002(helix_deg), cylindrical_mesh(helix_deg=helix_deg)
-    load = mesh.normal_force(SEED_002_TORQUE)
+def test_hertz_of_the_sam_paper_pairs_has_the_reference_pressure(helix_deg, pressure, semi_major):
+    pair, mesh = sam_paper(helix_deg), cylindrical_mesh(helix_deg=helix_deg)
+    load = mesh.normal_force(SAM_PAPER_TORQUE)
     _, separation = separation_of(pair, load=load)
     found = hertz.point_contact(load, separation.curvatures, pair.contact_modulus)
     assert_allclose(found.max_pressure, pressure, atol=0.01)
@@ -143,14 +143,14 @@ def test_hertz_of_the_seed_002_pairs_has_the_reference_pressure(helix_deg, press
 
 
 def test_gap_is_infinite_beyond_the_sides_of_the_face():
-    _, separation = separation_of(seed_002(), box=(0.2, 20.0), load=None, cells=(5, 81))
+    _, separation = separation_of(sam_paper(), box=(0.2, 20.0), load=None, cells=(5, 81))
     beyond = np.abs(separation.y) > 12.5 + 1e-6
     assert np.isinf(separation.gap[:, beyond]).all()
     assert np.isfinite(separation.gap[:, ~beyond]).all()
 
 
 def test_gap_is_infinite_beyond_the_tip_of_either_gear_and_below_the_form_circle():
-    pair, mesh = seed_002(), cylindrical_mesh()
+    pair, mesh = sam_paper(), cylindrical_mesh()
     contact, separation = separation_of(pair, box=(6.0, 1.0), load=None, cells=(121, 3))
     points = separation.origin + separation.x[:, None] * separation.axes[0]
     finite = np.isfinite(separation.gap[:, 1])
@@ -171,12 +171,12 @@ def test_gap_is_infinite_beyond_the_tip_of_either_gear_and_below_the_form_circle
 
 ROUNDED = FlankModifications(profile_crowning=0.013)
 CONTACTS = {
-    "point": (lambda: seed_002(15.0), 0.0),
+    "point": (lambda: sam_paper(15.0), 0.0),
     "circle": (lambda: gear_pair(FlankModifications(lead_crowning=2.0)), 0.1),
     "line": (lambda: gear_pair(), 0.0),
     "helical line": (lambda: gear_pair(helix_deg=15.0), 0.1),
-    "misaligned edge": (lambda: seed_002(mounting=Mounting(out_of_plane=0.005)), 0.0),
-    "tip edge": (lambda: seed_002(), 0.9),
+    "misaligned edge": (lambda: sam_paper(mounting=Mounting(out_of_plane=0.005)), 0.0),
+    "tip edge": (lambda: sam_paper(), 0.9),
     "tip line": (lambda: gear_pair(), -0.9),
     "helical corner": (lambda: gear_pair(ROUNDED, ROUNDED, helix_deg=28.0, teeth=(31, 57)), -0.026),
     "bevel line": (lambda: bevel_pair(bevel_mesh((20, 30), 3.0, 18.0)), 0.1),
@@ -240,14 +240,14 @@ def test_cells_for_accuracy_are_even_and_grow_with_the_root_of_the_accuracy():
 
 
 def test_given_box_and_cells_are_kept():
-    _, separation = separation_of(seed_002(), box=(0.4, 8.0), load=None, cells=(10, 20))
+    _, separation = separation_of(sam_paper(), box=(0.4, 8.0), load=None, cells=(10, 20))
     assert separation.gap.shape == (10, 20)
     assert_allclose(separation.spacing, (0.08, 0.8))
     assert repr(separation) == "Separation(10 x 20 cells of 0.08 x 0.8 mm)"
 
 
 def test_load_of_zero_gets_a_box_so_small_that_its_smallest_gap_is_rounding():
-    _, separation = separation_of(seed_002(), load=0.0)
+    _, separation = separation_of(sam_paper(), load=0.0)
     assert separation.gap.min() < 1e-9
 
 
@@ -271,21 +271,21 @@ def test_load_of_zero_gets_a_box_so_small_that_its_smallest_gap_is_rounding():
     ],
 )
 def test_argument_out_of_its_range_is_refused(options, problem):
-    pair = seed_002()
+    pair = sam_paper()
     with pytest.raises(InputError) as caught:
         sample_separation(pair, at_pitch_point(pair), **options)
     assert caught.value.problems == (problem,)
 
 
 def test_position_that_does_not_touch_is_refused():
-    pair = seed_002()
+    pair = sam_paper()
     contact = trace_contact(pair, [0.0, 1.5])[1]
     with pytest.raises(GeometryError, match=r"no common flank: the tooth pair does not touch at pinion angle 1.5 rad"):
         sample_separation(pair, contact, load=1.0)
 
 
 def test_contact_point_off_the_flanks_is_refused():
-    pair = seed_002()
+    pair = sam_paper()
     contact = at_pitch_point(pair)
     away = replace(contact, point=contact.point + [0.0, 0.0, 100.0])  # noqa: RUF005 (a sum)
     with pytest.raises(GeometryError, match="no flank around the contact point at pinion angle 0 rad"):

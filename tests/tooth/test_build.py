@@ -138,8 +138,8 @@ def test_bevel_tooth_of_small_pitch_angle_is_the_cylindrical_one():
     """A wheel of 1200 teeth is all but a rack: the pinion's cone is all but a cylinder."""
     radius, bevel = 0.6, bevel_mesh((24, 1200), 3.0, 1.0)
     spur = CylindricalGear(teeth=24, normal_module=3.0, face_width=1.0)
-    borders, half = (spur.base_radius, spur.tip_radius), 0.5 * spur.tooth_thickness / spur.reference_radius
-    plus, minus = (InvoluteFlank(spur.base_radius, 0.0, side, spur.reference_radius, borders, 1.0) for side in (1, -1))
+    edges, half = (spur.base_radius, spur.tip_radius), 0.5 * spur.tooth_thickness / spur.reference_radius
+    plus, minus = (InvoluteFlank(spur.base_radius, 0.0, side, spur.reference_radius, edges, 1.0) for side in (1, -1))
     form = ToothForm(24, half, TransversePlanes(), RootCylinder(spur.root_radius), ArcFillet(radius))
     flat = image(build_tooth((plus, minus), form, COARSE).outline, form.sections)
     cone = image(tooth_of(bevel, 0, fillet_radius=radius).outline, tooth_forms(bevel)[0].sections)

@@ -110,7 +110,7 @@ def test_rack_fillet_touches_the_rolling_rack():
         assert_allclose(distance.min(), gear.rack_tip_radius, atol=1e-9)  # parabola between two angles
 
 
-def test_fillet_of_a_modified_flank_turns_with_its_root_border():
+def test_fillet_of_a_modified_flank_turns_with_its_root_edge():
     """Lead crowning moves the whole section: the fillet of the rack keeps its form."""
     _, _, plain = drawn("spur")
     _, _, crowned = drawn("spur", type(CROWNED)(lead_crowning=0.05))

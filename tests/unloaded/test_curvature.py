@@ -15,7 +15,7 @@ from loaded_tca.gears import bevel_mesh
 from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.gear_pair import cylindrical_basis
 from loaded_tca.unloaded import heelwards, relative_curvature, trace_contact
-from tests.samples.gear_pairs import cylindrical_mesh, gear_pair, pairs, seed_002
+from tests.samples.gear_pairs import cylindrical_mesh, gear_pair, pairs, sam_paper
 
 RELATIVE = 1e-9  # two chains of some hundred operations each, cancelling by a factor of up to 1e4
 CLOSED_FORM = 1e-9
@@ -54,7 +54,7 @@ def tensor_of_both_flanks(pair, contact, axes):
 def test_relative_curvature_is_the_sum_of_the_curvatures_of_both_flanks(pair, turn):
     path = trace_contact(pair, [turn * pair.pitch])
     contact = path[0]
-    assume(not (contact.on_edge or contact.on_crease))  # there the normals differ
+    assume(not (contact.on_edge or contact.on_relief_start))  # there the normals differ
     found = relative_curvature(pair, contact)
     tensor = tensor_of_both_flanks(pair, contact, found.axes)
     scale = abs(tensor).max()
@@ -73,8 +73,8 @@ def test_curvature_across_a_line_contact_is_that_of_two_involutes(helix_deg):
 
 
 @pytest.mark.parametrize(("helix_deg", "radius"), [(0.0, 10.9259), (15.0, 12.0224)])
-def test_equivalent_radius_of_the_seed_002_pairs_is_the_published_one(helix_deg, radius):
-    pair = seed_002(helix_deg)
+def test_equivalent_radius_of_the_sam_paper_pairs_is_the_published_one(helix_deg, radius):
+    pair = sam_paper(helix_deg)
     found = relative_curvature(pair, trace_contact(pair, [0.0])[0])
     # the crowning turns the axes by 1e-3; printed to 4 decimals
     assert_allclose(1.0 / found.across, radius, atol=6e-5 + (2e-4 if helix_deg else 0.0))
@@ -111,12 +111,12 @@ def test_second_axis_of_a_bevel_contact_leads_to_the_heel_also_on_a_flat_gear(te
 
 
 def test_heelwards_is_the_axis_of_a_cylindrical_pinion():
-    pair = seed_002(15.0)
+    pair = sam_paper(15.0)
     assert_allclose(heelwards(pair, trace_contact(pair, [0.1])[0]), [0.0, 0.0, 1.0], atol=0)
 
 
 def test_curvature_is_kept_for_as_long_as_its_contact_point():
-    pair, other = seed_002(), seed_002(15.0)
+    pair, other = sam_paper(), sam_paper(15.0)
     contact = trace_contact(pair, [0.1])[0]
     found = relative_curvature(pair, contact)
     assert relative_curvature(pair, contact) is found
@@ -129,6 +129,6 @@ def test_curvature_is_kept_for_as_long_as_its_contact_point():
 
 
 def test_axes_of_the_curvature_cannot_be_changed():
-    pair = seed_002()
+    pair = sam_paper()
     with pytest.raises(ValueError, match="read-only"):
         relative_curvature(pair, trace_contact(pair, [0.1])[0]).axes[0] = 0.0

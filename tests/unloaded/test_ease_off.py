@@ -12,7 +12,7 @@ from loaded_tca.flanks.modification import Term, logarithmic
 from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.pairs.gear_pair import cylindrical_basis
 from loaded_tca.unloaded.ease_off import EaseOff
-from tests.samples.gear_pairs import gear_pair, pairs, wheel_lag
+from tests.samples.gear_pairs import gear_pair, pairs, transmission_error_at
 
 STEP = 1e-4  # mm
 FIRST = 2e-8  # rounding 1e-14 * 100 mm over the step, and step^2 times the third derivative
@@ -71,7 +71,7 @@ def test_gradient_and_hessian_agree_with_differences(pair, share, turn):
 def test_value_is_the_scaled_transmission_error_of_the_definition(pair, share, turn):
     rho, z = place(pair, share)
     phi1 = np.array([turn * pair.pitch])
-    lag, _ = wheel_lag(pair, phi1, rho, z)
+    lag, _ = transmission_error_at(pair, phi1, rho, z)
     value = pair.driving * lag * pair.base_radii[1]
     field = EaseOff(pair)
     station = field.station(phi1, rho, z)
@@ -109,10 +109,10 @@ def test_tangents_and_second_derivatives_of_the_point_agree_with_differences(pai
 
 @given(pairs(), shares, turns)
 @settings(max_examples=25)
-def test_border_gradients_agree_with_differences(pair, share, turn):
+def test_edge_gradients_agree_with_differences(pair, share, turn):
     rho, z = stencil(*place(pair, share))
     phi1, field = np.full(5, turn * pair.pitch), EaseOff(pair)
-    values, slopes = field.borders(field.station(phi1, rho, z))
+    values, slopes = field.edges(field.station(phi1, rho, z))
     differences = (values[[1, 3]] - values[[2, 4]]) / (2.0 * STEP)
     assert_allclose(slopes[0], differences.T, atol=1e-7)
     assert_allclose(values, field.heights(phi1, rho, z)[1], atol=1e-12)
@@ -120,27 +120,27 @@ def test_border_gradients_agree_with_differences(pair, share, turn):
 
 @given(pairs(), shares, turns, st.integers(0, 7))
 @settings(max_examples=25)
-def test_border_normal_is_the_gradient_of_the_border_in_space(pair, share, turn, border):
+def test_edge_normal_is_the_gradient_of_the_edge_in_space(pair, share, turn, edge):
     rho, z = place(pair, share)
     field = EaseOff(pair)
     station = field.station(np.array([turn * pair.pitch]), rho, z)
-    normal = field.border_normal(station, border)[0]
-    assert_allclose(station.tangents[0] @ normal, field.borders(station)[1][0, border], atol=1e-12)
+    normal = field.edge_normal(station, edge)[0]
+    assert_allclose(station.tangents[0] @ normal, field.edges(station)[1][0, edge], atol=1e-12)
 
 
-def test_border_hessian_agrees_with_differences_of_the_border_gradients():
+def test_edge_hessian_agrees_with_differences_of_the_edge_gradients():
     pair = gear_pair(helix_deg=15.0, mounting=Mounting(0.01, -0.02))
     rho, z = stencil(*place(pair, (0.6, 0.3)))
     phi1, field = np.full(5, 0.02), EaseOff(pair)
     station = field.station(phi1, rho, z)
-    _, slopes = field.borders(station)
+    _, slopes = field.edges(station)
     weights = np.tile(np.linspace(-1.0, 2.0, 8), (5, 1))
     total = np.einsum("nk,nkj->nj", weights, slopes)
     bend = np.stack([(total[k] - total[k + 1]) / (2.0 * STEP) for k in (1, 3)])
-    assert_allclose(field.border_hessian(station, weights)[0], bend, atol=SECOND)
+    assert_allclose(field.edge_hessian(station, weights)[0], bend, atol=SECOND)
 
 
-def test_creases_come_after_the_borders_of_their_gear_and_point_to_the_side_asked_for():
+def test_relief_starts_come_after_the_edges_of_their_gear_and_point_to_the_side_asked_for():
     relief = FlankModifications(tip_relief=0.02, tip_relief_start=105.0, tip_relief_form="linear")
     pair = gear_pair(
         pinion=relief, wheel=FlankModifications(tip_relief=0.02, tip_relief_start=174.0, tip_relief_form="linear")
@@ -151,9 +151,9 @@ def test_creases_come_after_the_borders_of_their_gear_and_point_to_the_side_aske
     assert sides[0, 0]
     for beyond in ([[True, True]], [[False, False]]):
         field = EaseOff(pair, np.array(beyond))
-        assert field.border_owner().tolist() == [0] * 5 + [1] * 5
-        assert np.flatnonzero(field.border_is_crease()).tolist() == [4, 9]
-        distances, _ = field.borders(field.station(phi1, rho, z))
+        assert field.edge_owner().tolist() == [0] * 5 + [1] * 5
+        assert np.flatnonzero(field.edge_is_relief_start()).tolist() == [4, 9]
+        distances, _ = field.edges(field.station(phi1, rho, z))
         assert (distances[0, [4, 9]] > 0.0).tolist() == [
             side == own for side, own in zip(beyond[0], sides[0], strict=True)
         ]

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca import AccuracyWarning, GeometryError, InputError, trace_contact
 from loaded_tca.flanks import FlankModifications
-from loaded_tca.flanks.base import BORDER_NAMES
+from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.gears import CylindricalMesh
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.unloaded import ContactPath, ContactPoint
@@ -22,8 +22,8 @@ from tests.samples.gear_pairs import (
     meshes,
     modifications,
     pairs,
-    seed_002,
-    wheel_lag,
+    sam_paper,
+    transmission_error_at,
 )
 
 ARCSEC = math.degrees(1.0) * 3600.0
@@ -58,7 +58,7 @@ def test_transmission_error_of_an_aligned_unmodified_pair_is_nothing_over_the_pi
     path = trace_contact(pair)
     assert len(path) == 21
     assert_allclose(path.pinion_angle[[0, -1]], [-0.5 * pair.pitch, 0.5 * pair.pitch])
-    share = path.touches & ~path.on_edge
+    share = path.in_contact & ~path.on_edge
     assert share.sum() > 10, "about the pitch point both flanks go on"
     assert_allclose(path.transmission_error[share], 0.0, atol=CONJUGATE)
     assert_allclose(path.wheel_angle, path.transmission_error + pair.ratio * path.pinion_angle, atol=CONJUGATE)
@@ -92,7 +92,7 @@ def test_contact_runs_along_the_line_of_action_at_base_speed(helix_deg):
 
 def test_levers_are_those_of_the_normal_force():
     """r_b cos(beta_b) on either gear."""
-    pair, mesh = seed_002(15.0), cylindrical_mesh(helix_deg=15.0)
+    pair, mesh = sam_paper(15.0), cylindrical_mesh(helix_deg=15.0)
     contact = trace_contact(pair, [0.0])[0]
     expected = [radius * math.cos(mesh.pinion.base_helix_angle) for radius in pair.base_radii]
     assert_allclose([contact.pinion_lever, contact.wheel_lever], expected, rtol=1e-9)
@@ -124,7 +124,7 @@ TABLE_3_AND_4 = [  # seed 000; in-plane and out-of-plane error [deg], slope [arc
 
 @pytest.mark.parametrize(("in_plane", "out_of_plane", "slope"), TABLE_3_AND_4)
 @pytest.mark.parametrize("crowning", [2.27, 1.0])
-def test_slope_of_the_transmission_error_is_that_of_seed_000_whatever_the_crowning(
+def test_slope_of_the_transmission_error_is_that_of_reduced_tca_whatever_the_crowning(
     in_plane, out_of_plane, slope, crowning
 ):
     pair = gear_pair(
@@ -156,7 +156,7 @@ def test_contact_of_a_crowned_spur_pair_shifts_by_the_misalignment_in_the_plane_
 
 
 def test_out_of_plane_error_brings_the_contact_to_positive_z():
-    path = trace_contact(seed_002(mounting=Mounting(out_of_plane=1e-4)))
+    path = trace_contact(sam_paper(mounting=Mounting(out_of_plane=1e-4)))
     assert (path.pinion_axial > 0.0).all()
 
 
@@ -255,7 +255,7 @@ def test_exchanging_the_gears_exchanges_the_angles(helix_deg, driving):
 
 
 def test_error_does_not_depend_on_the_other_positions_of_the_path():
-    pair = seed_002(15.0, mounting=Mounting(1e-4, 2e-4))
+    pair = sam_paper(15.0, mounting=Mounting(1e-4, 2e-4))
     angles = np.linspace(-0.08, 0.08, 7)
     whole = trace_contact(pair, angles)
     single = [trace_contact(pair, [angle]).transmission_error[0] for angle in angles]
@@ -265,10 +265,10 @@ def test_error_does_not_depend_on_the_other_positions_of_the_path():
 # Edges
 
 
-def borders(pair, path):
-    """Distances to the eight borders (n, 8) [mm]."""
-    own = pair.pinion.borders(path.pinion_radius, path.pinion_axial)
-    other = pair.wheel.borders(path.wheel_radius, path.wheel_axial)
+def edges(pair, path):
+    """Distances to the eight edges (n, 8) [mm]."""
+    own = pair.pinion.edges(path.pinion_radius, path.pinion_axial)
+    other = pair.wheel.edges(path.wheel_radius, path.wheel_axial)
     return np.stack([jet.value for jet in (*own, *other)], axis=-1)
 
 
@@ -277,7 +277,7 @@ def test_edge_contact_of_a_growing_misalignment_is_found_and_continuous(helix_de
     tilts = np.radians(np.linspace(0.0, 1.0, 101))
     contacts = []
     for tilt in tilts:
-        pair = seed_002(helix_deg, mounting=Mounting(0.3 * tilt, tilt), driving=driving)
+        pair = sam_paper(helix_deg, mounting=Mounting(0.3 * tilt, tilt), driving=driving)
         contacts.append(trace_contact(pair, [0.01])[0])
     edge = np.array([contact.on_edge for contact in contacts])
     assert not edge[0]
@@ -294,11 +294,11 @@ def test_edge_contact_of_a_growing_misalignment_is_found_and_continuous(helix_de
     assert np.abs(np.diff(error, 2)).max() < 0.2 * longest_arm * step, "the slope has no jump either"
 
 
-def test_edge_contact_lies_on_the_borders_it_names_and_nowhere_beyond():
+def test_edge_contact_lies_on_the_edges_it_names_and_nowhere_beyond():
     for mounting in (Mounting(out_of_plane=0.01), Mounting(out_of_plane=-0.01), Mounting(in_plane=0.02)):
-        for pair in (seed_002(15.0, mounting=mounting), seed_002(mounting=mounting, driving="wheel")):
+        for pair in (sam_paper(15.0, mounting=mounting), sam_paper(mounting=mounting, driving="wheel")):
             path = trace_contact(pair)
-            distances = borders(pair, path)
+            distances = edges(pair, path)
             assert path.on_edge.all()
             assert distances.min() > -1e-7
             assert np.abs(distances[path.edges]).max() < 1e-7
@@ -312,18 +312,18 @@ def test_normal_on_an_edge_is_that_of_the_flank_that_goes_on():
         pair = cylindrical_pair(mesh, mounting=Mounting(out_of_plane=0.01))
         contact = trace_contact(pair, [0.0])[0]
         ends = contact.edges[:4] if narrow == "pinion" else contact.edges[4:]
-        assert ends[BORDER_NAMES.index("upper side")]
+        assert ends[EDGE_NAMES.index("upper side")]
         axis = np.array([0.0, 0.0, 1.0]) if wide == "pinion" else pair.wheel_axes[2]
         assert_allclose(contact.normal @ axis, 0.0, atol=1e-12)  # a spur flank's normal has no part along its axis
         assert abs(contact.normal @ (pair.wheel_axes[2] if wide == "pinion" else [0.0, 0.0, 1.0])) > 1e-3
 
 
-@pytest.mark.parametrize(("turn", "border", "gear"), [(0.9, "tip", 0), (-0.9, "tip", 1)])
-def test_contact_beyond_the_nominal_path_runs_on_a_tip_edge(turn, border, gear):
+@pytest.mark.parametrize(("turn", "edge", "gear"), [(0.9, "tip", 0), (-0.9, "tip", 1)])
+def test_contact_beyond_the_nominal_path_runs_on_a_tip_edge(turn, edge, gear):
     pair = gear_pair(FlankModifications(lead_crowning=0.002))
     path = trace_contact(pair, [turn * pair.pitch, 1.1 * turn * pair.pitch])
     assert path.on_edge.all()
-    assert path.edges[:, 4 * gear + BORDER_NAMES.index(border)].all()
+    assert path.edges[:, 4 * gear + EDGE_NAMES.index(edge)].all()
     assert path.transmission_error[1] < path.transmission_error[0] < -1e-6
     tip = (path.pinion_radius, path.wheel_radius)[gear]
     assert_allclose(tip, (cylindrical_mesh().pinion, cylindrical_mesh().wheel)[gear].tip_radius, atol=1e-8)
@@ -333,7 +333,7 @@ def test_error_of_tip_corner_contact_is_that_of_the_tip_circle_alone():
     pair = gear_pair(FlankModifications(lead_crowning=0.002))
     path = trace_contact(pair, np.array([0.9, 1.0]) * pair.pitch)
     tip = cylindrical_mesh().pinion.tip_radius
-    lag, _ = wheel_lag(pair, path.pinion_angle, np.full(2, tip), np.zeros(2))
+    lag, _ = transmission_error_at(pair, path.pinion_angle, np.full(2, tip), np.zeros(2))
     assert_allclose(path.transmission_error, lag, atol=SAME_ANGLE)
 
 
@@ -347,16 +347,16 @@ def test_contact_on_a_root_form_circle_is_called_a_fillet_interference():
     ):
         path = trace_contact(pair, [-0.8 * pair.pitch])
     assert path.on_edge.all()
-    assert np.flatnonzero(path.edges[0]).tolist() == [BORDER_NAMES.index("root")]
+    assert np.flatnonzero(path.edges[0]).tolist() == [EDGE_NAMES.index("root")]
 
 
 # Rows that cannot touch, and refusals
 
 
 def test_positions_without_a_common_region_are_not_a_number():
-    pair = seed_002()
+    pair = sam_paper()
     path = trace_contact(pair, [0.0, 1.5, -1.5])
-    assert path.touches.tolist() == [True, False, False]
+    assert path.in_contact.tolist() == [True, False, False]
     for name in ("transmission_error", "wheel_angle", "pinion_radius", "wheel_axial", "residual", "wheel_lever"):
         assert np.isnan(getattr(path, name)[1:]).all(), name
         assert np.isfinite(getattr(path, name)[0]), name
@@ -377,20 +377,20 @@ def test_pair_that_never_touches_is_refused():
 @pytest.mark.parametrize("angles", [[], [[0.0]], [math.nan], [0.0, math.inf], 0.0])
 def test_angles_that_are_no_finite_row_are_refused(angles):
     with pytest.raises(InputError, match=r"pinion_angles: shape .* with finite numbers only in one dimension"):
-        trace_contact(seed_002(), angles)
+        trace_contact(sam_paper(), angles)
 
 
 @pytest.mark.parametrize("angles", ["x", [None, "a"]])
 def test_angles_that_are_no_numbers_are_refused(angles):
     with pytest.raises(InputError, match="pinion_angles: an array of finite numbers is asked for"):
-        trace_contact(seed_002(), angles)
+        trace_contact(sam_paper(), angles)
 
 
 @pytest.mark.parametrize(
     "part", [slice(1, None), [1, 2], np.array([2, 0]), np.array([True, False, True]), [False] * 3, [True] * 3, []]
 )
 def test_part_of_a_path_is_a_path(part):
-    path = trace_contact(seed_002(), [0.0, 0.01, 0.02])
+    path = trace_contact(sam_paper(), [0.0, 0.01, 0.02])
     found = path[part]
     assert isinstance(found, ContactPath)
     for entry in fields(ContactPath):
@@ -400,7 +400,7 @@ def test_part_of_a_path_is_a_path(part):
 
 @pytest.mark.parametrize("position", [1, -2, np.int64(1), np.array(1)])
 def test_number_of_a_position_gives_its_contact(position):
-    path = trace_contact(seed_002(), [0.0, 0.01, 0.02])
+    path = trace_contact(sam_paper(), [0.0, 0.01, 0.02])
     assert isinstance(path[position], ContactPoint)
     assert path[position].pinion_angle == 0.01
     assert [contact.pinion_angle for contact in path] == [0.0, 0.01, 0.02]
@@ -421,11 +421,11 @@ def test_number_of_a_position_gives_its_contact(position):
 )
 def test_index_that_is_no_part_of_a_path_is_refused(position, error):
     with pytest.raises(error):
-        trace_contact(seed_002(), [0.0, 0.01, 0.02])[position]
+        trace_contact(sam_paper(), [0.0, 0.01, 0.02])[position]
 
 
 def test_one_position_has_the_fields_of_the_path_without_their_first_axis():
-    path = trace_contact(seed_002(), [0.0, 0.01])
+    path = trace_contact(sam_paper(), [0.0, 0.01])
     contact = path[1]
     assert contact.transmission_error == path.transmission_error[1]
     assert contact.point.shape == (3,)

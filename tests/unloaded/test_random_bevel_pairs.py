@@ -74,7 +74,7 @@ def test_every_position_of_a_random_bevel_pair_is_certified_or_refused_with_a_re
 
 CROWNED = FlankModifications(lead_crowning=0.02, profile_crowning=0.01)
 FEW_STEPS = 10.0
-"""Mean Newton steps of an ascent; long borders and bent ridges take a few more than the usual 7."""
+"""Mean Newton steps of an ascent; long edges and bent ridges take a few more than the usual 7."""
 
 
 def from_everywhere(teeth, module, face_width, spiral_deg, shaft_deg, mounting):
@@ -111,8 +111,8 @@ def test_start_below_the_base_cone_of_the_wheel_goes_back_to_the_flank():
     """The field means nothing there: an ascent that trusted it would creep on for hundreds of steps."""
     pair, found = from_everywhere((30, 8), 5.0, 20.0, 0.0, 120.0, BevelMounting())
     rho, z = (part.ravel() for part in np.broadcast_arrays(*pair.pinion.grid(25, STARTS // 25)))
-    _, borders = EaseOff(pair).heights(np.zeros(STARTS), rho, z)
-    below = borders[:, 5] < -0.1 * pair.wheel.extent[0]
+    _, edges = EaseOff(pair).heights(np.zeros(STARTS), rho, z)
+    below = edges[:, 5] < -0.1 * pair.wheel.extent[0]
     assert below.sum() > 100
     assert found.converged[below].all()
     assert found.iterations[below].max() < 20

@@ -57,7 +57,7 @@ def test_shared_region_of_a_hair_is_found():
     gears = [CylindricalGear(z, 3.0, 25.0, name=name) for z, name in ((34, "pinion"), (57, "wheel"))]
     pair = cylindrical_pair(CylindricalMesh(*gears), mounting=Mounting(axial_offset=24.99))
     path = trace_contact(pair, [0.0])
-    assert path.touches.all()
+    assert path.in_contact.all()
     assert path.pinion_axial[0] == pytest.approx(12.5, abs=0.011)
 
 
@@ -66,5 +66,5 @@ def test_narrow_wheel_between_the_points_of_the_scan_is_found():
     for offset in np.linspace(0.0, 3.0, 7):
         pair = cylindrical_pair(CylindricalMesh(pinion, wheel), mounting=Mounting(axial_offset=float(offset)))
         path = trace_contact(pair, [0.0])
-        assert path.touches.all()
+        assert path.in_contact.all()
         assert path.pinion_axial[0] == pytest.approx(offset, abs=0.15)

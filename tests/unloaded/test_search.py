@@ -1,4 +1,4 @@
-"""The maximum of the ease-off: certified against dense grids, on borders and creases, from 1 pm to 1 mm of crowning."""
+"""The maximum of the ease-off: certified against dense grids, on edges and relief starts, crowning 1 pm to 1 mm."""
 
 import math
 
@@ -15,7 +15,7 @@ from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.unloaded import search
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import climb
-from tests.samples.gear_pairs import cylindrical_mesh, gear_pair, highest_on_grid, pairs, wheel_lag
+from tests.samples.gear_pairs import cylindrical_mesh, gear_pair, highest_on_grid, pairs, transmission_error_at
 
 ROUNDING = 1e-14  # rad, angles of order 0.1
 STATIONARY = 1e-9  # residual at which rounding ends a Newton iteration on a ridge of ratio 1e6
@@ -33,7 +33,7 @@ def test_no_point_of_both_flanks_touches_before_the_contact_point(pair, turn):
     path = trace_contact(pair, np.array([turn, turn - 0.2]) * pair.pitch, warn=False)
     for row in range(2):
         assert lead_over_grid(pair, path, row) >= -ROUNDING
-        if not path.on_crease[row]:
+        if not path.on_relief_start[row]:
             assert path.residual[row] < STATIONARY
 
 
@@ -44,7 +44,7 @@ def test_contact_point_lies_on_both_flanks(pair, turn):
     rho, z = path.pinion_radius, path.pinion_axial
     theta = pair.pinion.theta(rho, z).value + pair.sense * path.pinion_angle
     assert_allclose(path.point[0], [*(rho * np.cos(theta)), *(rho * np.sin(theta)), *z], atol=1e-10)
-    lag, _ = wheel_lag(pair, path.pinion_angle, rho, z)
+    lag, _ = transmission_error_at(pair, path.pinion_angle, rho, z)
     assert_allclose(path.transmission_error, lag, atol=ROUNDING)
     assert pair.pinion.inside(rho, z, tolerance=1e-7).all()
     assert pair.wheel.inside(path.wheel_radius, path.wheel_axial, tolerance=1e-7).all()
@@ -58,7 +58,7 @@ def test_contact_is_found_from_a_picometre_to_a_millimetre_of_crowning(helix_deg
         FlankModifications(lead_crowning=crowning), mounting=Mounting(out_of_plane=tilt), helix_deg=helix_deg
     )
     path = trace_contact(pair, [-0.06, 0.0, 0.045])
-    assert path.touches.all()
+    assert path.in_contact.all()
     assert min(lead_over_grid(pair, path, row) for row in range(3)) >= -ROUNDING
     assert path.residual.max() < 2e-9  # the tilt itself where it is too small to be called an edge contact
 
@@ -110,7 +110,7 @@ def test_every_random_start_climbs_to_the_same_maximum(seed):
     assert found.iterations.mean() < 12
 
 
-# Creases
+# Relief starts
 
 
 def linear_relief(amount=0.2, start=106.0):
@@ -120,20 +120,20 @@ def linear_relief(amount=0.2, start=106.0):
 def test_contact_rests_on_the_start_of_a_linear_relief():
     pair = gear_pair(linear_relief())
     path = trace_contact(pair, np.linspace(0.3, 0.9, 61) * pair.pitch)
-    assert path.on_crease.sum() > 5
-    assert not (path.on_crease & path.on_edge).any()
-    assert_allclose(path.pinion_radius[path.on_crease], 53.0, atol=1e-8)
-    assert_allclose(path.pinion_axial[path.on_crease], 0.0, atol=1e-6)
+    assert path.on_relief_start.sum() > 5
+    assert not (path.on_relief_start & path.on_edge).any()
+    assert_allclose(path.pinion_radius[path.on_relief_start], 53.0, atol=1e-8)
+    assert_allclose(path.pinion_axial[path.on_relief_start], 0.0, atol=1e-6)
     for row in range(len(path)):
         assert lead_over_grid(pair, path, row) >= -ROUNDING
 
 
-def test_error_is_continuous_where_the_contact_reaches_and_leaves_a_crease():
+def test_error_is_continuous_where_the_contact_reaches_and_leaves_a_relief_start():
     pair = gear_pair(linear_relief(), helix_deg=10.0)
     angles = np.linspace(0.2, 1.0, 401) * pair.pitch
     path = trace_contact(pair, angles)
-    assert path.on_crease.any()
-    assert np.ptp(np.flatnonzero(path.on_crease)) + 1 == path.on_crease.sum(), "one stretch"
+    assert path.on_relief_start.any()
+    assert np.ptp(np.flatnonzero(path.on_relief_start)) + 1 == path.on_relief_start.sum(), "one stretch"
     step = angles[1] - angles[0]
     slopes = np.diff(path.transmission_error) / step
     # the relief of 0.2 mm over 1 mm of radius, 2.4 mm of roll length: a slope of 0.083 at most
@@ -142,22 +142,22 @@ def test_error_is_continuous_where_the_contact_reaches_and_leaves_a_crease():
 
 
 @pytest.mark.parametrize("driving", ["pinion", "wheel"])
-def test_contact_on_a_crease_is_the_maximum_of_a_grid_that_holds_the_crease(driving):
+def test_contact_on_a_relief_start_is_the_maximum_of_a_grid_that_holds_the_relief_start(driving):
     pair = gear_pair(wheel=linear_relief(start=175.0), driving=driving)
     path = trace_contact(pair, -pair.driving * np.linspace(0.4, 0.8, 41) * pair.pitch)
-    rows = np.flatnonzero(path.on_crease)
+    rows = np.flatnonzero(path.on_relief_start)
     assert rows.size > 2
     assert_allclose(path.wheel_radius[rows], 87.5, atol=1e-8)
     rho, z = pair.pinion.grid(4001, 3)
     for row in rows:
-        lag, there = wheel_lag(pair, path.pinion_angle[row], rho, z)
+        lag, there = transmission_error_at(pair, path.pinion_angle[row], rho, z)
         best = np.where(there, pair.driving * lag, -np.inf).max()
         # a grid of 1.7 um misses the top of slopes of up to 0.2 by 3e-4 mm over r_b2 at most, a ridge of them by less
         assert 0.0 <= pair.driving * path.transmission_error[row] - best + ROUNDING < 4e-6
 
 
-def test_contact_is_found_across_creases_in_whatever_order_they_lie():
-    """Linear tip and root relief that overlap, and the mate's: the way up may cross the later crease first."""
+def test_contact_is_found_across_relief_starts_in_whatever_order_they_lie():
+    """Linear tip and root relief that overlap, and the mating gear's: the way up may cross the later start first."""
     mesh = cylindrical_mesh((19, 58), width=8.87, shifts=(0.3, 0.3))
     active = mesh.pinion_active_profile
     low, high = 2.0 * active.start_radius, 2.0 * active.end_radius
@@ -175,25 +175,25 @@ def test_contact_is_found_across_creases_in_whatever_order_they_lie():
     )
     wheel = mesh.wheel_active_profile
     start = wheel.start_radius + wheel.end_radius
-    mate = FlankModifications(lead_crowning=0.015, tip_relief=0.024, tip_relief_start=start, tip_relief_form="linear")
+    mating = FlankModifications(lead_crowning=0.015, tip_relief=0.024, tip_relief_start=start, tip_relief_form="linear")
     for driving in ("pinion", "wheel"):
         for sense in ("positive", "negative"):
-            pair = cylindrical_pair(mesh, modifications=(both, mate), driving=driving, sense=sense)
+            pair = cylindrical_pair(mesh, modifications=(both, mating), driving=driving, sense=sense)
             path = trace_contact(pair, np.linspace(-1.2, 1.2, 25) * pair.pitch)
-            for row in np.flatnonzero(path.touches):
+            for row in np.flatnonzero(path.in_contact):
                 assert lead_over_grid(pair, path, row) >= -ROUNDING
 
 
 def test_crossings_go_on_from_piece_to_piece_but_never_straight_back():
     multipliers = np.array([[0.0, 0.3], [0.2, 0.1], [0.0, 0.0], [0.5, 0.0]])
-    row, crease = search._crossings(multipliers, np.array([-1, -1, -1, 0]))
-    assert list(zip(row.tolist(), crease.tolist(), strict=True)) == [(0, 1), (1, 0), (1, 1)]
+    row, relief_start = search._crossings(multipliers, np.array([-1, -1, -1, 0]))
+    assert list(zip(row.tolist(), relief_start.tolist(), strict=True)) == [(0, 1), (1, 0), (1, 1)]
 
 
 def test_radius_of_contact_never_leaves_the_flanks_of_a_pair_turned_far():
     pair = gear_pair(FlankModifications(lead_crowning=0.01), mounting=Mounting(math.radians(1.0), math.radians(-1.0)))
     path = trace_contact(pair, np.linspace(-1.3, 1.3, 53) * pair.pitch)
-    inside = path.touches
+    inside = path.in_contact
     assert pair.pinion.inside(path.pinion_radius[inside], path.pinion_axial[inside], tolerance=1e-7).all()
     assert pair.wheel.inside(path.wheel_radius[inside], path.wheel_axial[inside], tolerance=1e-7).all()
 
@@ -232,7 +232,7 @@ def hidden_basins():
 
 
 @pytest.mark.parametrize(("pair", "share"), list(hidden_basins()))
-def test_basin_on_a_border_of_the_wheel_is_found(pair, share):
+def test_basin_on_a_edge_of_the_wheel_is_found(pair, share):
     path = trace_contact(pair, [share * pair.pitch], warn=False)
     assert path.on_edge.all()
     assert lead_over_grid(pair, path, 0) >= -ROUNDING
@@ -248,7 +248,7 @@ def test_long_bent_ridge_is_climbed_to_its_end(monkeypatch):
     mounting = Mounting(1.0475209411321293e-06, -4.0585536516680183e-07, 0.00042831598104167625, 0.0)
     pair = cylindrical_pair(CylindricalMesh(*gears), mounting=mounting, driving="wheel")
     path = trace_contact(pair, np.linspace(-0.5, 0.5, 15), warn=False)
-    assert path.touches.all()
+    assert path.in_contact.all()
     assert min(lead_over_grid(pair, path, row) for row in range(15)) >= -ROUNDING
 
 

@@ -71,7 +71,7 @@ def test_pair_plus_one_comes_into_mesh_after_pair_zero():
     assert mesh.pairs[:3].tolist() == [0, 1, -1]
     assert mesh.leading_pair[[0, -1]].tolist() == [0, 1]
     assert_allclose(mesh.paths[1].pinion_angle, mesh.pinion_angle - pair.pitch, rtol=1e-15)
-    first = mesh.paths[1].pinion_radius[np.flatnonzero(mesh.paths[1].touches & ~mesh.paths[1].on_edge)]
+    first = mesh.paths[1].pinion_radius[np.flatnonzero(mesh.paths[1].in_contact & ~mesh.paths[1].on_edge)]
     assert (np.diff(first) > 0.0).all(), "it starts at the root of the driving pinion"
 
 
@@ -97,9 +97,9 @@ def test_wheel_angle_follows_the_envelope():
 def test_lag_is_zero_for_the_leading_pair_and_positive_or_nan_for_the_others():
     mesh = trace_teeth(gear_pair(BOTH, mounting=TILTED, helix_deg=15.0))
     column = (mesh.pairs[:, None] == mesh.leading_pair).argmax(axis=0)
-    assert_allclose(mesh.lag[column, np.arange(len(mesh))], 0.0, atol=ROUNDING)
-    assert np.nanmin(mesh.lag) >= -ROUNDING
-    far = np.nanmax(mesh.lag) * mesh.pair.base_radii[1]
+    assert_allclose(mesh.initial_separation[column, np.arange(len(mesh))], 0.0, atol=ROUNDING)
+    assert np.nanmin(mesh.initial_separation) >= -ROUNDING
+    far = np.nanmax(mesh.initial_separation) * mesh.pair.base_radii[1]
     assert 0.5 * REACH * mesh.pair.module < far <= REACH * mesh.pair.module
 
 
@@ -109,7 +109,7 @@ def test_pairs_are_nan_exactly_where_they_lag_beyond_the_reach():
     for path in mesh.paths:
         own = trace_contact(pair, path.pinion_angle).transmission_error
         near = (mesh.transmission_error - own) * pair.base_radii[1] <= REACH * pair.module
-        assert_allclose(path.touches, near)
+        assert_allclose(path.in_contact, near)
         assert_allclose(path.transmission_error[near], own[near], atol=ROUNDING)
 
 
@@ -130,7 +130,7 @@ def test_leading_contact_is_that_of_the_leading_pair():
     lead = mesh.leading_contact
     assert_allclose(lead.pinion_angle, mesh.pinion_angle - mesh.leading_pair * pair.pitch, atol=1e-15)
     assert_allclose(lead.transmission_error, mesh.transmission_error, atol=ROUNDING)
-    assert lead.touches.all()
+    assert lead.in_contact.all()
 
 
 # Conjugate gears
@@ -398,7 +398,7 @@ def test_harmonics_beyond_the_positions_are_refused(count):
 
 
 @pytest.mark.parametrize("angles", [[], [[0.0, 0.1]], [0.0, math.nan], [0.1, 0.0], [0.0, 0.0], 0.0, "ab", [1j]])
-def test_angles_that_do_not_increase_are_refused(angles):
+def test_angles_that_do_not_inrelief_start_are_refused(angles):
     with pytest.raises(InputError, match="finite, increasing numbers"):
         trace_teeth(gear_pair(), angles)
 

@@ -27,7 +27,7 @@ kinds = pytest.mark.parametrize("pair", KINDS)
 
 @kinds
 def test_slope_is_that_of_the_heights(pair):
-    """In surface, tip, side and crease contact alike, although the point of contact moves."""
+    """In surface, tip, side and relief start contact alike, although the point of contact moves."""
     own, nudge = np.linspace(*reach(pair), 60), 1e-5
     _, slope = height_and_slope(pair, own)
     before, after = (height_and_slope(pair, own + way * nudge)[0] for way in (-1.0, 1.0))
@@ -39,7 +39,7 @@ def test_slope_of_surface_contact_is_the_ratio_of_the_levers_less_that_of_the_ge
     path = trace_contact(pair, np.linspace(-0.4, 0.4, 9) * pair.pitch)
     _, slope = height_and_slope(pair, path.pinion_angle)
     levers = pair.driving * pair.base_radii[1] * (path.pinion_lever / path.wheel_lever - pair.ratio)
-    free = ~path.on_edge & ~path.on_crease
+    free = ~path.on_edge & ~path.on_relief_start
     assert_allclose(slope[free], levers[free], atol=1e-7)
 
 

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import trace_contact
 from loaded_tca.flanks import FlankModifications
-from loaded_tca.flanks.base import BORDER_NAMES
+from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.unloaded.teeth import trace_teeth
 from tests.samples.gear_pairs import gear_pair
@@ -19,8 +19,8 @@ TILTED = Mounting(out_of_plane=1e-3)
 
 
 def held(*names):
-    """Borders that hold a contact, "pinion tip" for example."""
-    every = [f"{gear} {border}" for gear in ("pinion", "wheel") for border in BORDER_NAMES]
+    """Edges that hold a contact, "pinion tip" for example."""
+    every = [f"{gear} {edge}" for gear in ("pinion", "wheel") for edge in EDGE_NAMES]
     return np.array([name in names for name in every])
 
 
@@ -47,7 +47,7 @@ def smooth():
         (("pinion upper side", "pinion tip"), ("pinion upper side",), False),
     ],
 )
-def test_transfer_is_continuous_by_the_borders_that_hold_its_contacts(smooth, before, after, continuous):
+def test_transfer_is_continuous_by_the_edges_that_hold_its_contacts(smooth, before, after, continuous):
     contacts = [replace(c, edges=held(*names)) for c, names in zip(smooth.contacts, (before, after), strict=True)]
     assert replace(smooth, contacts=tuple(contacts)).is_continuous is continuous
 

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from loaded_tca import trace_contact
 from loaded_tca.pairs.bevel import BevelMounting
 from validation.bevel.convergence import cases
-from validation.bevel.effects import effect, first_order_lag, spiral_curve, spiral_effect, spiral_mounting
+from validation.bevel.effects import effect, first_order_error, spiral_curve, spiral_effect, spiral_mounting
 from validation.bevel.pairs import SPIRAL, STRAIGHT, TABLE_6, spiral_modifications, straight_modifications
 from validation.bevel.pictures import draw_error_map
 from validation.bevel.spiral_trends import error_map
@@ -98,13 +98,13 @@ def test_relief_of_the_spiral_pair_removes_at_its_ends_what_the_source_says():
 def test_lag_of_a_small_error_is_the_gap_along_the_normal_at_the_pitch_point(gears, pinion, name):
     mounting = BevelMounting(**{name: 1e-5})
     found = trace_contact(gears.pair(mounting, pinion), [0.0]).transmission_error[0]
-    assert_allclose(found, first_order_lag(gears, mounting), rtol=NOT_STEEPER)
+    assert_allclose(found, first_order_error(gears, mounting), rtol=NOT_STEEPER)
 
 
 def test_shaft_angle_leaves_the_motion_of_the_spiral_pair_even():
     one = spiral_effect(0.002, 0.0, gamma_deg=0.2)
     assert one.peak_to_peak < 1e-8
-    expected = first_order_lag(SPIRAL, spiral_mounting(gamma_deg=0.2)) * ARCSEC
+    expected = first_order_error(SPIRAL, spiral_mounting(gamma_deg=0.2)) * ARCSEC
     assert_allclose(one.mean, expected, rtol=0.01)  # the second order of 0.2 deg
     assert one.pressure.max() / one.pressure.min() < 1.1
 

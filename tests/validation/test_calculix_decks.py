@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from loaded_tca.gears.cylindrical import CylindricalGear
-from validation.calculix.campaign import first_lag
+from validation.calculix.campaign import first_setback
 from validation.calculix.case import CENTRE_DISTANCE, VARIANTS, line_load, pinion_angle, position
 from validation.calculix.crowned import crowned_deck
 from validation.calculix.crowned_run import peak_of_layers
@@ -14,7 +14,7 @@ from validation.calculix.deck import THICKNESS
 from validation.calculix.evaluate import evaluate, fit_half_ellipse
 from validation.calculix.grading import graded
 from validation.calculix.mesh_position import Position
-from validation.calculix.model import Meshing, plane_deck, touching_pairs, unloaded_lag
+from validation.calculix.model import Meshing, plane_deck, touching_pairs, unloaded_setback
 from validation.calculix.run import ContactForce, Run, UnsettledError, _check_corrections, _pressures, _printed
 from validation.calculix.tables import read_table, write_table
 from validation.calculix.tooth_form import ToothForm
@@ -70,7 +70,7 @@ def test_grading_is_finest_at_its_place_and_never_coarser_than_allowed():
 @pytest.mark.parametrize("index", [0, 7, 12, 20])
 def test_unmodified_pairs_touch_without_lag_and_conjugate(index):
     place = position("unmodified", index, 0.0)
-    assert abs(unloaded_lag(place)) < SEARCH
+    assert abs(unloaded_setback(place)) < SEARCH
     touch = place.touch(0)
     roll = math.sqrt(touch.pinion_radius**2 - place.pinion.base_radius**2)
     nominal = place.pinion.base_radius * (math.tan(place.pinion.pressure_angle) + place.pinion_angle)
@@ -131,7 +131,7 @@ def test_two_pairs_touch_at_the_end_of_the_pitch_and_one_at_the_pitch_point(deck
     _, built = deck
     assert sorted(built.flanks) == [-1, 0]
     assert sorted(touching_pairs(position("unmodified", 12, 0.010))) == [0]
-    assert first_lag("tip_relief", 20.0, 0) > first_lag("unmodified", 20.0, 0) + 0.002
+    assert first_setback("tip_relief", 20.0, 0) > first_setback("unmodified", 20.0, 0) + 0.002
 
 
 def test_deck_turns_all_bore_nodes_of_the_pinion_with_one(deck):

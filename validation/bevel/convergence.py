@@ -1,4 +1,4 @@
-"""Bevel pairs from 1000 random starts: two equations beside five, in one run (Tables 11 and 12 of Seed 000).
+"""Bevel pairs from 1000 random starts: two equations beside five, in one run (reduced-TCA dissertation, Tables 11, 12).
 
 Starts are drawn over the flanks between their corners, in cone distance and along the profile; the rest is as for
 cylindrical gears, see :mod:`validation.unloaded.convergence_from_random_starts`.
@@ -58,7 +58,9 @@ def rows() -> list[Row]:
     label = f"reduced solver, {STARTS} random starts"
     for case in chosen:
         share = reduced(case).percentage
-        found.append(Row(case.name, "Seed 000, 6.3 and 6.4", f"{label}: converged [%]", 100.0, share, 1e-9))
+        found.append(
+            Row(case.name, "reduced-TCA dissertation, 6.3 and 6.4", f"{label}: converged [%]", 100.0, share, 1e-9)
+        )
     for case, (source, _, steps) in zip(chosen, PRINTED, strict=False):
         printed = f"as printed, {source}"
         found.append(Row(case.name, printed, f"{label}: mean steps", steps, reduced(case).steps, None, case.assumed))

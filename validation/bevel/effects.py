@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Effect:
-    """The leading contact over one pitch: where it runs, how the wheel lags, what the pressure is.
+    """The leading contact over one pitch: where it runs, how the wheel stays behind, what the pressure is.
 
     Attributes
     ----------
@@ -31,7 +31,7 @@ class Effect:
     pressure : (n,) array [MPa]
         After Hertz, under the load of the pair; NaN on an edge.
     on_edge, on_side : (n,) bool array
-        Whether the contact lies on any border; on toe or heel.
+        Whether the contact lies on any edge; on toe or heel.
     peak_to_peak : float [arcsec]
         Of the gears: the envelope of all teeth over one pitch.
     continuous : bool
@@ -82,7 +82,7 @@ def effect(gears: BevelGears, pair: GearPair) -> Effect:
     )
 
 
-def first_order_lag(gears: BevelGears, mounting: BevelMounting) -> float:
+def first_order_error(gears: BevelGears, mounting: BevelMounting) -> float:
     """Transmission error at the pitch point [rad] of small displacements d of the wheel: it follows the flank.
 
     The normal out of the pinion is n = e_y + tan(alpha) e_u - tan(beta) e_R, the lever of its y component the pitch
@@ -125,6 +125,6 @@ def spiral_curve(c1: float, ct: float, e: float = 0.0, h: float = 0.0, positions
     """Curve of one tooth pair of the spiral pair, over two pitches at most."""
     pair = SPIRAL.pair(spiral_mounting(e, h), spiral_modifications(c1, ct))
     path = trace_contact(pair, np.linspace(-1.2, 1.2, positions) * pair.pitch, warn=False)
-    curve = path.transmission_error[path.touches & ~path.on_edge] * ARCSEC
+    curve = path.transmission_error[path.in_contact & ~path.on_edge] * ARCSEC
     top = curve.max()
     return SingleCurve(float(top - curve[0]), float(top - curve[-1]))

@@ -1,4 +1,4 @@
-"""Page and picture of the straight bevel pair of Seed 001.
+"""Page and picture of the straight bevel pair of the miter-gear paper.
 
 Run from the root of the repository: ``python -m validation.bevel.miter_gear_document --out docs`` (a minute).
 """
@@ -49,7 +49,7 @@ WIDE = np.linspace(-1.5, 1.5, 241)
 """Positions of the curves of transmission error, in pitches."""
 DOTS_PER_INCH = 90
 
-TEXT = """# The straight bevel pair of Seed 001: three methods, its contact pattern, its edges
+TEXT = """# The straight bevel pair of the miter-gear paper: three methods, its contact pattern, its edges
 
 Written by `python -m validation.bevel.miter_gear_document`. Machine: {machine}.
 
@@ -57,7 +57,7 @@ Written by `python -m validation.bevel.miter_gear_document`. Machine: {machine}.
 the source does not print it: face width 20 mm, crowning 10 um lengthwise and {profile:g} um along the profile, marking
 compound 6.35 um.
 
-![Path, transmission error, contact pattern, and the same on the heel](seed_001.png)
+![Path, transmission error, contact pattern, and the same on the heel](miter_gear.png)
 
 ## Largest transmission error
 
@@ -147,7 +147,7 @@ def picture() -> Figure:
     _draw_areas(pattern)
     _draw_motion(edge, EDGE, f"E {EDGE.offset:g} mm: on the heel at every position")
     crowned = f"pinion crowned 10 µm lengthwise, {1e3 * PROFILE:g} µm along the profile"
-    figure.suptitle(f"Straight bevel pair 20/40 (Seed 001), m_et 3 mm, b 20 mm, {crowned}")
+    figure.suptitle(f"Straight bevel pair 20/40 (the miter-gear paper), m_et 3 mm, b 20 mm, {crowned}")
     return figure
 
 
@@ -227,8 +227,8 @@ def main() -> None:
     directory = parser.parse_args().out
     text = document()
     print(text)
-    (directory / "seed_001.md").write_text(text)
-    picture().savefig(directory / "seed_001.png", dpi=DOTS_PER_INCH)
+    (directory / "miter_gear.md").write_text(text)
+    picture().savefig(directory / "miter_gear.png", dpi=DOTS_PER_INCH)
 
 
 if __name__ == "__main__":

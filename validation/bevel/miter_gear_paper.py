@@ -1,4 +1,4 @@
-"""The straight bevel pair 20/40 of Seed 001: three methods, its contact pattern, edge contact, and B-spline flanks.
+"""The straight bevel pair 20/40 of the miter-gear paper: three methods, contact pattern, edge contact, B-splines.
 
 m_et 3 mm, shaft angle 90 deg, alpha 20 deg, profile shifts +0.416/-0.416, spherical involutes, crowned pinion. The
 source compares the conventional equations ("Litvin") with its golden-section search and prints a largest transmission
@@ -35,7 +35,7 @@ from validation.bevel.pairs import BevelGears
 from validation.table import Row
 
 Array = NDArray[np.float64]
-CASE = "Seed 001 straight bevel 20/40"
+CASE = "miter-gear paper straight bevel 20/40"
 ASSUMED = "b 20 mm, crowning of the pinion 10 um lengthwise, 5 um profile, compound 6.35 um"
 ARCSEC = degrees(3600.0)
 GEARS = BevelGears(
@@ -141,13 +141,13 @@ def crowning_in_closed_form(error: float) -> float:
     """The same [mm] of an aligned pair, slightly crowned.
 
     The contact runs through the unwound arc w at the rate sin(delta_b) in phi1. Half a pitch to either side of the
-    top, with w_a - w_m half the active arc, the wheel lags by
+    top, with w_a - w_m half the active arc, the wheel stays behind by
     z1/z2 C/(R_m sin delta_b) (pi sin(delta_b)/(z1 (w_a - w_m)))^2.
     """
-    gear, mate = GEARS.mesh.pinion, GEARS.mesh.wheel
+    gear, mating = GEARS.mesh.pinion, GEARS.mesh.wheel
     start, tip = (gear.unwound_arc(cone) for cone in GEARS.mesh.active_cones[0])
     share = pi * sin(gear.base_angle) / (gear.teeth * 0.5 * (tip - start))
-    return -error / ARCSEC * mate.teeth / gear.teeth * gear.mean_base_radius / share**2
+    return -error / ARCSEC * mating.teeth / gear.teeth * gear.mean_base_radius / share**2
 
 
 def fitted_pair() -> GearPair:

@@ -1,4 +1,4 @@
-"""Mounting errors of straight and spiral bevel gears (Seed 000, Figures 33 to 53): verdicts, tables, pictures.
+"""Mounting errors of bevel gears (reduced-TCA dissertation, Figures 33 to 53): verdicts, tables, pictures.
 
 Run from the root of the repository: ``python -m validation.bevel.mounting_errors --out docs``.
 """
@@ -10,7 +10,7 @@ from pathlib import Path
 
 from loaded_tca.pairs.bevel import BevelMounting
 from loaded_tca.unloaded import trace_contact
-from validation.bevel.effects import Effect, first_order_lag, spiral_effect
+from validation.bevel.effects import Effect, first_order_error, spiral_effect
 from validation.bevel.pairs import SPIRAL, STRAIGHT, BevelGears, spiral_modifications, straight_modifications
 from validation.bevel.pictures import draw_error_map, draw_spiral, draw_straight, draw_straight_crowning
 from validation.bevel.spiral_trends import FULL, SIGNS, STEPS, ErrorMap, error_map
@@ -21,7 +21,7 @@ from validation.table import Row
 from validation.unloaded.mounting_error_pairs import ARCSEC, FORMS
 from validation.unloaded.mounting_error_trends import Trend
 
-CASE = "Seed 000 bevel mounting errors"
+CASE = "reduced-TCA dissertation bevel mounting errors"
 SMALL = 1e-4
 """Displacement [mm] at the pitch point of the first-order law: the second order is a thousandth of it."""
 ERRORS = ("aligned", "ΔE", "ΔA", "ΔG", "Δγ")
@@ -38,7 +38,7 @@ def rows() -> list[Row]:
             mounting = BevelMounting(**{name: amount})
             contact = trace_contact(gears.pair(mounting, pinion), [0.0])[0]
             label = f"{gears.name}, {name} {amount:.3g}: transmission error [arcsec]"
-            expected = first_order_lag(gears, mounting) * ARCSEC
+            expected = first_order_error(gears, mounting) * ARCSEC
             found.append(Row(CASE, "first order", label, expected, contact.transmission_error * ARCSEC, 1e-3))
     label = f"{SPIRAL.name}, shaft angle 0.2 deg off: peak to peak [arcsec]"
     angular = spiral_effect(0.002, 0.0, gamma_deg=0.2).peak_to_peak

@@ -1,4 +1,4 @@
-"""The two bevel pairs of chapter 5 of the dissertation (Seed 000), its mounting errors, and what is computed of a pair.
+"""The two bevel pairs of chapter 5 of the reduced-TCA dissertation, its mounting errors, what is computed of a pair.
 
 The source prints no crowning and no relief of the straight pair, and neither hands, signs nor the start of the relief
 of the spiral pair. Taken here: everything on the pinion unless said otherwise; right-hand pinion, which drives with

@@ -52,7 +52,7 @@ def _draw_path(
 ) -> None:
     """Path of one tooth pair, and the major axes of some of its Hertz ellipses; crosses for edges if asked for."""
     path = trace_contact(pair, np.linspace(-0.9, 0.9, 43) * pair.pitch, warn=False)
-    rows = np.flatnonzero(path.touches & ~path.on_edge)
+    rows = np.flatnonzero(path.in_contact & ~path.on_edge)
     axes.plot(*gears.path_on_pinion(path[rows]), **(style | {"markersize": 2.5}))
     if edges:
         axes.plot(*gears.path_on_pinion(path[path.on_edge]), "x", color=style["color"], markersize=4.0)

@@ -1,10 +1,10 @@
-"""Pressure maps of the bevel pairs of Seed 000 over the rotation: Hertz where it holds, and what edges make of it.
+"""Pressure maps of the reduced-TCA dissertation's bevel pairs over the rotation, beside Hertz, and at edges.
 
 One tooth pair carries the whole load: the straight pair 39/32 under 1.5 kN, the spiral pair 17/17 under
 55.5e-6 E m b = 55.9 N. The source prints no crownings for these; assumed are those below, on the pinion. Beyond half a
 pitch from the pitch point, where the neighbouring pairs carry too, the contact nears the tips of both gears; there, and
 where an offset E takes it to the heel, the box holds cells without material: the half-space gives a spike along the
-border which no grid resolves, so only its load is checked.
+edge which no grid resolves, so only its load is checked.
 
 Run from the root of the repository: ``python -m validation.bevel.pressure --out docs``.
 """
@@ -28,7 +28,7 @@ from loaded_tca.flanks import FlankModifications
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, press
 from loaded_tca.pairs.bevel import BevelMounting
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.plots.pressure_map import borders
+from loaded_tca.plots.pressure_map import cell_limits
 from loaded_tca.reference.hertz import PointContact, point_contact
 from loaded_tca.unloaded import trace_contact
 from validation.bevel.pairs import SPIRAL, STRAIGHT, BevelGears
@@ -140,14 +140,14 @@ def _rows_of(case: Case, one: Pressed) -> list[Row]:
 
 TEXT = """# Pressure of bevel pairs over the rotation
 
-Written by `python -m validation.bevel.pressure`. The pairs are those of Seed 000, one tooth pair carries the whole
-load: {loads}.
+Written by `python -m validation.bevel.pressure`. The pairs are those of the reduced-TCA dissertation, one tooth pair
+carries the whole load: {loads}.
 Assumed: {assumed}.
 
 Positions are counted in pitches from the pitch point; R - R_m is positive towards the heel, the height is above the
 pitch cone of the pinion. Where the contact lies within both flanks the map is Hertz's to {worst:.2g} %. Where a flank
 ends within the contact, Hertz does not hold: less material carries the load, and the half-space, which knows no free
-side, gives a spike along the border that grows with the grid; the largest cell is told, not a peak.
+side, gives a spike along the edge that grows with the grid; the largest cell is told, not a peak.
 
 ![Pressure maps on the pinion, and pressure over the rotation](bevel_pressure.png)
 
@@ -216,7 +216,9 @@ def _draw_maps(figure: Figure, axes: Axes, case: Case) -> None:
 def _corners(case: Case, one: Pressed) -> tuple[Array, Array]:
     """Corners of the cells on the pinion."""
     separation = one.loaded.separation
-    x, y = (borders(part, step) for part, step in zip((separation.x, separation.y), separation.spacing, strict=True))
+    x, y = (
+        cell_limits(part, step) for part, step in zip((separation.x, separation.y), separation.spacing, strict=True)
+    )
     return _on_pinion(case, one, x[:, None], y)
 
 

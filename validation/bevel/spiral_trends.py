@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.unloaded import trace_contact
-from validation.bevel.effects import Effect, first_order_lag, spiral_curve, spiral_effect, spiral_mounting
+from validation.bevel.effects import Effect, first_order_error, spiral_curve, spiral_effect, spiral_mounting
 from validation.bevel.pairs import SPIRAL, spiral_modifications
 from validation.unloaded.mounting_error_pairs import ARCSEC
 from validation.unloaded.mounting_error_trends import Trend
@@ -87,7 +87,7 @@ def _angular() -> list[Trend]:
     up = tilted[0.2].place[1] - aligned.place[1]
     along = tilted[0.2].place[0] - aligned.place[0]
     worst = max(spiral_effect(c1, 0.0, gamma_deg=0.2).peak_to_peak for c1 in (0.002, 0.02))
-    constant = first_order_lag(SPIRAL, spiral_mounting(gamma_deg=0.2)) * ARCSEC
+    constant = first_order_error(SPIRAL, spiral_mounting(gamma_deg=0.2)) * ARCSEC
     pressure = tilted[0.2].pressure
     change = float(pressure.max() / pressure.min() - 1.0)
     return [
@@ -153,7 +153,7 @@ def _amplitudes() -> list[Trend]:
         effects = [spiral_effect(*FULL, **one) for one in signed]
         heights[name] = [one.peak_to_peak for one in effects]
         falls[name] = [spiral_curve(*FULL, **one).fall for one in signed]
-        constant = abs(first_order_lag(SPIRAL, spiral_mounting(**error))) * ARCSEC
+        constant = abs(first_order_error(SPIRAL, spiral_mounting(**error))) * ARCSEC
         found.append(
             f"{name} (printed {printed[name]}): +{heights[name][0]:.0f}/-{heights[name][1]:.0f} peak to peak, "
             f"+{falls[name][0]:.0f}/-{falls[name][1]:.0f} one curve, {constant:.0f} constant"

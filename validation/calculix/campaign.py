@@ -12,15 +12,15 @@ from validation.calculix.case import POSITIONS, TORQUES, VARIANTS, line_load, po
 from validation.calculix.deck import LOAD_STEPS, PlaneDeck
 from validation.calculix.evaluate import evaluate, truncated
 from validation.calculix.mesh_position import Position
-from validation.calculix.model import Meshing, plane_deck, unloaded_lag
+from validation.calculix.model import Meshing, plane_deck, unloaded_setback
 from validation.calculix.run import Run, UnsettledError, run
 from validation.calculix.steel import PENALTY
 
 FIRST_STIFFNESS = 14.0
 """Guess of the secant stiffness that places the wheel of the first run [N/(mm um)]."""
-LAG_ERROR = 0.2
+SETBACK_ERROR = 0.2
 """The wheel is placed anew if the lag was expected wrong by more than this part ..."""
-LAG_ERROR_LENGTH = 1.5e-3
+SETBACK_ERROR_LENGTH = 1.5e-3
 """... and more than this [mm]: phi1 then differs from the wanted one by less than 5e-5 rad."""
 ATTEMPTS = 4
 
@@ -31,7 +31,7 @@ def run_position(
     variant: str,
     torque: float,
     index: int,
-    lag: float,
+    setback: float,
     work: Path,
     meshing: Meshing = Meshing(),
     penalty: float = PENALTY,
@@ -45,7 +45,7 @@ def run_position(
     torque : float [N m]
     index : int
         Of the position.
-    lag : float [mm]
+    setback : float [mm]
         Expected lag.
     work : Path
         Directory for the files.
@@ -60,14 +60,14 @@ def run_position(
         return json.loads(kept.read_text())
     seconds = 0.0
     for _ in range(ATTEMPTS):
-        place = position(variant, index, lag)
+        place = position(variant, index, setback)
         deck, done = _run_settled(place, torque, meshing, penalty, stem)
         result, seconds = evaluate(place, deck, done), seconds + done.seconds
-        expected, lag = lag, -1e-3 * result.transmission_error
-        if abs(lag - expected) < max(LAG_ERROR * lag, LAG_ERROR_LENGTH):
+        expected, setback = setback, -1e-3 * result.transmission_error
+        if abs(setback - expected) < max(SETBACK_ERROR * setback, SETBACK_ERROR_LENGTH):
             break
     else:
-        raise RuntimeError(f"{stem.name}: the lag {lag} mm does not settle")
+        raise RuntimeError(f"{stem.name}: the setback {setback} mm does not settle")
     record = {
         "variant": variant,
         "torque": torque,
@@ -113,16 +113,16 @@ def run_all(work: Path, every: int = 1) -> list[Record]:
         for variant, torque in product(VARIANTS, TORQUES):
             for index in indices:
                 before = records.get((variant, torque, index - 1)) or records.get((variant, torque, index - 2))
-                lag = -1e-3 * before["transmission_error"] if before else first_lag(variant, torque, index)
-                record = run_position(variant, torque, index, lag, work)
+                setback = -1e-3 * before["transmission_error"] if before else first_setback(variant, torque, index)
+                record = run_position(variant, torque, index, setback, work)
                 records[variant, torque, index] = record
                 print(_line(record), flush=True)
     return [records[key] for key in sorted(records, key=lambda key: (list(VARIANTS).index(key[0]), *key[1:]))]
 
 
-def first_lag(variant: str, torque: float, index: int) -> float:
+def first_setback(variant: str, torque: float, index: int) -> float:
     """Lag of the first touch and a guess of what the load adds [mm]."""
-    return unloaded_lag(position(variant, index, 0.0)) + 1e-3 * line_load(torque) / FIRST_STIFFNESS
+    return unloaded_setback(position(variant, index, 0.0)) + 1e-3 * line_load(torque) / FIRST_STIFFNESS
 
 
 def _line(record: Record) -> str:

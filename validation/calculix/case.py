@@ -33,6 +33,6 @@ def line_load(torque: float) -> float:
     return 1e3 * torque / (VARIANTS["unmodified"][0].base_radius * FACE_WIDTH)
 
 
-def position(variant: str, index: int, lag: float) -> Position:
+def position(variant: str, index: int, setback: float) -> Position:
     """Gears of a variant at a position, the wheel behind by a lag [mm]."""
-    return Position(*VARIANTS[variant], CENTRE_DISTANCE, pinion_angle(index), lag)
+    return Position(*VARIANTS[variant], CENTRE_DISTANCE, pinion_angle(index), setback)

@@ -202,12 +202,12 @@ class Model:
     def _position(self, pair: GearPair, carried: Carried, n: int, seconds: float) -> Position:
         """Position of the last torque; stiffness from the last two, as in the reference."""
         first, second = pair.base_radii
-        lag = carried.path.transmission_error[n] - pair.driving * carried.rotation[-1, n]
+        setback = carried.path.transmission_error[n] - pair.driving * carried.rotation[-1, n]
         rate = np.diff(carried.torque) / np.diff(carried.rotation[:, n])
         shares = zip(carried.pairs.tolist(), carried.contacts[-1][n], carried.share[-1, n], strict=True)
         return Position(
             pinion_angle=float(carried.path.pinion_angle[n]),
-            transmission_error=1e3 * second * float(lag),
+            transmission_error=1e3 * second * float(setback),
             mesh_stiffness=float(rate[-1]) / (1e3 * first * second * self.face_width),
             pairs={number: self._pair(loaded, float(share)) for number, loaded, share in shares if loaded},
             seconds=seconds,

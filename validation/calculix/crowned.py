@@ -170,13 +170,13 @@ class SpatialDeck:
 
 
 def crowned_deck(
-    lag: float, meshing: Meshing = SPATIAL_MESHING, layers: int = LAYERS, crowning: float = CROWNING
+    setback: float, meshing: Meshing = SPATIAL_MESHING, layers: int = LAYERS, crowning: float = CROWNING
 ) -> tuple[Position, SpatialDeck]:
     """Deck of the crowned pair, or one without crowning, at the pitch point.
 
     Parameters
     ----------
-    lag : float [mm]
+    setback : float [mm]
         Expected at mid-face.
     meshing : Meshing
     layers : int
@@ -184,18 +184,18 @@ def crowned_deck(
         Of the pinion's lead, parabolic, at the ends of the face.
     """
     pinion, wheel = VARIANTS["unmodified"]
-    position = Position(pinion, wheel, CENTRE_DISTANCE, 0.0, lag)
+    position = Position(pinion, wheel, CENTRE_DISTANCE, 0.0, setback)
     crowned = replace(position, pinion=replace(pinion, thinning=crowning))
     touches = touching_pairs(position)
     load = line_load(TORQUE)
-    bottom, mate = sections(position, touches, load, meshing)
+    bottom, mating = sections(position, touches, load, meshing)
     top, _ = sections(crowned, touches, load, meshing)
     first = Spatial(bottom, top, layers, 0.5 * FACE_WIDTH, 1, 1)
-    second = Spatial(mate, mate, layers, 0.5 * FACE_WIDTH, first.last_node + 1, first.last_element + 1)
+    second = Spatial(mating, mating, layers, 0.5 * FACE_WIDTH, first.last_node + 1, first.last_element + 1)
     reach = surface_reach(position, touches[0], load)
     flanks = (
         flank_within_reach(bottom, 0, 0.0, touches[0].pinion_radius, reach),
-        flank_within_reach(mate, 0, CENTRE_DISTANCE, touches[0].wheel_radius, reach),
+        flank_within_reach(mating, 0, CENTRE_DISTANCE, touches[0].wheel_radius, reach),
     )
     force = 0.5 * FACE_WIDTH * load * pinion.base_radius / pinion.bore_radius
     return position, SpatialDeck(first, second, flanks, force)

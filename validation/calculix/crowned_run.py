@@ -86,7 +86,7 @@ def run_crowned(
     closing = float(done.hub_displacement[-1]) / position.pinion.bore_radius * position.pinion.base_radius
     pressure, half_width = _at_mid_face(done, position.pinion.base_radius)
     result = CrownedResult(
-        transmission_error=-1e3 * (position.lag + closing),
+        transmission_error=-1e3 * (position.setback + closing),
         height=(step * (np.arange(layers) + 0.5)).tolist(),
         line_load=(force / step).tolist(),
         covered_width=[done.forces[-1][layer].area / step for layer in range(layers)],

@@ -81,7 +81,7 @@ def evaluate(position: Position, deck: PlaneDeck, run: Run) -> PositionResult:
     torque = deck.hub_force * position.pinion.bore_radius
     return PositionResult(
         pinion_angle=position.pinion_angle + float(turned[-1]),
-        transmission_error=-1e3 * (position.lag + float(closing[-1])),
+        transmission_error=-1e3 * (position.setback + float(closing[-1])),
         mesh_stiffness=_stiffness(deck, position, closing),
         pairs=tuple(
             _pair(position, pair, run, torque)

@@ -23,7 +23,7 @@ from validation.calculix.tables import (
 
 SIGNS = (
     "phi1 = 0: tooth pair 0 touches at the pitch point; pair +1 comes into mesh after it. transmission_error_um is",
-    "r_b2 (phi2 - z1/z2 phi1) against the unmodified pair, negative where the wheel lags; position i stands at",
+    "r_b2 (phi2 - z1/z2 phi1) against the unmodified pair, negative where the wheel stays behind; position i stands at",
     "phi1 = (2 i/24 - 1) pi/25, pinion_angle_rad is where the load left it.",
 )
 PLANE = (

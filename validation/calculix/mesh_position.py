@@ -14,7 +14,7 @@ SAMPLES = 20001
 
 
 @dataclass(frozen=True)
-class Touch:
+class ToothPair:
     """Where one tooth pair touches first when the pinion alone is turned.
 
     Attributes
@@ -42,7 +42,7 @@ class Position:
     pinion, wheel : ToothForm
     centre_distance : float [mm]
     pinion_angle : float [rad]
-    lag : float [mm]
+    setback : float [mm]
         Angle by which the wheel is behind z1/z2 of the pinion's, times its base radius.
     """
 
@@ -50,12 +50,12 @@ class Position:
     wheel: ToothForm
     centre_distance: float
     pinion_angle: float
-    lag: float
+    setback: float
 
     @property
     def wheel_angle(self) -> float:
         """phi2 [rad]."""
-        return self.pinion.teeth / self.wheel.teeth * self.pinion_angle - self.lag / self.wheel.base_radius
+        return self.pinion.teeth / self.wheel.teeth * self.pinion_angle - self.setback / self.wheel.base_radius
 
     def pinion_tooth(self, pair: int = 0) -> float:
         """Polar angle of the middle of the pinion's tooth about its axis [rad]."""
@@ -65,7 +65,7 @@ class Position:
         """Polar angle of the middle of the wheel's tooth about its axis [rad]."""
         return math.pi - _half_at_pitch(self.wheel) - self.wheel_angle + pair * self.wheel.pitch
 
-    def touch(self, pair: int) -> Touch | None:
+    def touch(self, pair: int) -> ToothPair | None:
         """First touch of a tooth pair; None where no circle of the pinion's flank meets the wheel's."""
         radius = np.linspace(self.wheel.tip_radius, self.wheel.root_radius, SAMPLES)
         angle = self.wheel_tooth(pair) + self.wheel.half_angle(radius)
@@ -77,7 +77,7 @@ class Position:
         flank = self.pinion_tooth(pair) + self.pinion.half_angle(reach[meets])
         gap = _wrapped(np.arctan2(y, x)[meets] - flank) * self.pinion.base_radius
         first = int(np.argmin(gap))
-        return Touch(float(gap[first]), float(reach[meets][first]), float(radius[meets][first]))
+        return ToothPair(float(gap[first]), float(reach[meets][first]), float(radius[meets][first]))
 
 
 def _half_at_pitch(form: ToothForm) -> float:

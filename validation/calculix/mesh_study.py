@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from validation.calculix.campaign import Record, first_lag, run_position
+from validation.calculix.campaign import Record, first_setback, run_position
 from validation.calculix.crowned import SPATIAL_MESHING
 from validation.calculix.model import Meshing
 from validation.calculix.steel import PENALTY
@@ -26,8 +26,8 @@ def run_study(work: Path) -> Iterator[dict[str, object]]:
     """Rows of the study: way, size of the mesh, and the results that matter."""
     for variant, torque, index in CASES:
         for way, (meshing, penalty) in WAYS.items():
-            lag = first_lag(variant, torque, index)
-            yield _row(way, meshing, run_position(variant, torque, index, lag, work, meshing, penalty, f"_{way}"))
+            setback = first_setback(variant, torque, index)
+            yield _row(way, meshing, run_position(variant, torque, index, setback, work, meshing, penalty, f"_{way}"))
 
 
 def _row(way: str, meshing: Meshing, record: Record) -> dict[str, object]:

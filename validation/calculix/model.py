@@ -9,7 +9,7 @@ import numpy as np
 
 from validation.calculix.deck import LOAD_STEPS, THICKNESS, PlaneDeck
 from validation.calculix.grading import graded
-from validation.calculix.mesh_position import Position, Touch
+from validation.calculix.mesh_position import Position, ToothPair
 from validation.calculix.section import Fineness, Ints, Section, gear_section
 from validation.calculix.steel import PENALTY, half_width
 from validation.calculix.tooth_form import ToothForm
@@ -62,16 +62,16 @@ class Meshing:
         )
 
 
-def touching_pairs(position: Position) -> dict[int, Touch]:
+def touching_pairs(position: Position) -> dict[int, ToothPair]:
     """Tooth pairs that overlap at a position, or nearly so."""
     touches = {pair: position.touch(pair) for pair in PAIRS}
-    return {pair: touch for pair, touch in touches.items() if touch and touch.gap < REACH * position.lag}
+    return {pair: touch for pair, touch in touches.items() if touch and touch.gap < REACH * position.setback}
 
 
-def unloaded_lag(position: Position) -> float:
+def unloaded_setback(position: Position) -> float:
     """Lag at which the first tooth pair touches; the lag of the position itself does not matter [mm]."""
     gaps = [touch.gap for touch in map(position.touch, PAIRS) if touch]
-    return position.lag + min(gaps)
+    return position.setback + min(gaps)
 
 
 def plane_deck(
@@ -108,7 +108,7 @@ def plane_deck(
 
 
 def sections(
-    position: Position, touches: dict[int, Touch], line_load: float, meshing: Meshing
+    position: Position, touches: dict[int, ToothPair], line_load: float, meshing: Meshing
 ) -> tuple[Section, Section]:
     """Plane meshes of pinion and wheel, fine where their teeth touch."""
     widths = expected_half_widths(position, touches, line_load)
@@ -121,7 +121,7 @@ def sections(
     )
 
 
-def expected_half_widths(position: Position, touches: dict[int, Touch], line_load: float) -> dict[int, float]:
+def expected_half_widths(position: Position, touches: dict[int, ToothPair], line_load: float) -> dict[int, float]:
     """Hertz half width of each pair [mm], the load shared as the overlaps."""
     overlap = {pair: max(-touch.gap, 0.0) for pair, touch in touches.items()}
     total = sum(overlap.values())
@@ -131,12 +131,12 @@ def expected_half_widths(position: Position, touches: dict[int, Touch], line_loa
     }
 
 
-def surface_reach(position: Position, touch: Touch, line_load: float) -> float:
+def surface_reach(position: Position, touch: ToothPair, line_load: float) -> float:
     """Half length of the contact surfaces of a tooth pair [mm]."""
     return SURFACE_REACH * half_width(line_load, relative_radius(position, touch)) + SURFACE_MARGIN
 
 
-def relative_radius(position: Position, touch: Touch) -> float:
+def relative_radius(position: Position, touch: ToothPair) -> float:
     """Radius of relative curvature rho1 rho2/(rho1 + rho2) of the involutes at a touch [mm]."""
     first = math.sqrt(touch.pinion_radius**2 - position.pinion.base_radius**2)
     second = math.sqrt(touch.wheel_radius**2 - position.wheel.base_radius**2)

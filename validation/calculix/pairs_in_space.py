@@ -122,7 +122,7 @@ def rows_of_crowned(case: str, kept: InSpace, ours: InSpace) -> list[Row]:
     return [
         Row(case, SOURCE, "peak line load [N/mm]", kept.peak_line_load, ours.peak_line_load, LINE_LOAD),
         Row(case, SOURCE, "peak pressure [MPa]", kept.pressure, ours.pressure, PRESSURE),
-        _row_of_lag(case, kept, ours),
+        _row_of_transmission_error(case, kept, ours),
     ]
 
 
@@ -139,10 +139,10 @@ def rows_of_flat(case: str, kept: InSpace, ours: InSpace) -> list[Row]:
         Row(case, SOURCE, f"line load {where} [N/mm]", kept.line_load[n], ours.line_load[n], LINE_LOAD)
         for where, n in places.items()
     ]
-    return [*loads, _row_of_lag(case, kept, ours)]
+    return [*loads, _row_of_transmission_error(case, kept, ours)]
 
 
-def _row_of_lag(case: str, kept: InSpace, ours: InSpace) -> Row:
+def _row_of_transmission_error(case: str, kept: InSpace, ours: InSpace) -> Row:
     """Transmission error in space."""
     errors = kept.transmission_error, ours.transmission_error
     return Row(case, SOURCE, "transmission error [um]", *errors, ERROR)

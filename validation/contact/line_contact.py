@@ -21,7 +21,7 @@ CELLS = (64, 64)
 
 
 def rows() -> list[Row]:
-    """Both pairs of Seed 002 without their crowning, and FZG C14, all at the pitch point."""
+    """Both pairs of the SAM paper without their crowning, and FZG C14, all at the pitch point."""
     return [
         *_middle("spur 34/57, unmodified", _pair((34, 57), 3.0, 25.0), 130e3),
         *_middle("helical 34/57, unmodified", _pair((34, 57), 3.0, 25.0, helix_angle=15.0), 130e3),

@@ -30,7 +30,7 @@ from validation.face_milled.duplex_paper import (
     starts,
     studies,
 )
-from validation.face_milled.pairs import MENDED_RADIAL, SEED_ASSUMED, error_from_top, seed_004_gears
+from validation.face_milled.pairs import MENDED_RADIAL, SEED_ASSUMED, duplex_paper_gears, error_from_top
 
 PAGE, PICTURE = "bidirectional_start.md", "bidirectional_start.png"
 COLOURS = {"forward": "#0072b2", "reverse": "#d55e00", "mean": "#009e73"}
@@ -42,7 +42,7 @@ TEXT = """\
 # The bidirectional start of duplex spread blade pairs
 
 Written by `python -m validation.face_milled.duplex_document`.
-Source: Seed 004, a duplex spread blade pair 20 x 30. Its settings
+Source: the duplex paper, a duplex spread blade pair 20 x 30. Its settings
 name no reference point, so that the seed constructs a start for the five contact equations: *forward* from the gear,
 *reverse* from the pinion, and the mean of both. `loaded_tca.baselines.bidirectional` does what it describes;
 `loaded_tca.gears.basic_settings` has the settings that follow from a blank.
@@ -51,7 +51,7 @@ name no reference point, so that the seed constructs a start for the five contac
    calculation point (X_L, R_L) on the pitch cone at mid-face. The seed asks for two coordinates with one unknown; here
    the line is met in cone distance.
 2. The turn phi' of that gear from the equation of meshing n . v12 = 0, in closed form.
-3. theta and phi' of the mate from opposite normals.
+3. theta and phi' of the mating gear from opposite normals.
 
 ## The seed's numbers
 
@@ -85,7 +85,7 @@ the equations are solved where there is no tooth.
 
 {solvers}
 
-- The start does its work: wherever flanks touch inside their borders, the five equations get home from all three of its
+- The start does its work: wherever flanks touch inside their edges, the five equations get home from all three of its
   versions, in {five} steps. The mean is no better than its two parts.
 - It is a start for the normals, not for the points: they lie some millimetres apart, since nothing in the construction
   brings them together (each gear stands with a slot where its machine cut one), and the wheel angle is degrees off.
@@ -114,7 +114,7 @@ WIDTH = 118
 
 def document() -> str:
     """The whole page."""
-    gears = seed_004_gears()
+    gears = duplex_paper_gears()
     wrong = BidirectionalStart(gears, Study("", gears).pair()).forward(MISPRINTS["forward theta_g"][0])
     solvers, five, reduced = _solvers()
     duplex = [_misses(study) for study in studies() if study.name.startswith("duplex")]
@@ -146,13 +146,13 @@ def _values() -> str:
 
 
 def _printed_pair() -> str:
-    study = Study("", seed_004_gears())
+    study = Study("", duplex_paper_gears())
     misses = (_misses(Study("", study.gears, flank))[0] for flank in ("concave", "convex"))
     return fill(PRINTED_PAIR.format(drive=next(misses), coast=next(misses), place=_top_of(study)[0]), WIDTH)
 
 
 def _mended_pair() -> str:
-    place, fall = _top_of(Study("", seed_004_gears(MENDED_RADIAL)))
+    place, fall = _top_of(Study("", duplex_paper_gears(MENDED_RADIAL)))
     return fill(MENDED_PAIR.format(radial=MENDED_RADIAL, place=place, before=-fall[0], after=-fall[1]), WIDTH)
 
 
@@ -205,11 +205,11 @@ def picture() -> Figure:
     for column, (title, radial) in enumerate(
         (("settings of the seed", 58.38392), (f"mended pair D: pinion radial {MENDED_RADIAL} mm", MENDED_RADIAL))
     ):
-        study = Study(title, seed_004_gears(radial))
+        study = Study(title, duplex_paper_gears(radial))
         pair = study.pair()
         _draw_flank(figure.add_subplot(2, 2, 1 + column), study, pair)
         _draw_error(figure.add_subplot(2, 2, 3 + column), pair)
-    figure.suptitle("Seed 004, 20 x 30, drive side: bidirectional start, contact of one tooth pair, unloaded")
+    figure.suptitle("duplex paper, 20 x 30, drive side: bidirectional start, contact of one tooth pair, unloaded")
     return figure
 
 

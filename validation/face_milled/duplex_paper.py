@@ -1,4 +1,4 @@
-"""Seed 004: the bidirectional start of a duplex spread blade pair, what its settings give, and who needs a start.
+"""The duplex paper: the bidirectional start of a duplex spread blade pair, what its settings give, who needs a start.
 
 The start values depend neither on the calculation point nor on what the seed leaves out (face width, cradle angle), so
 that they are compared from an azimuth of the gear each calculation begins with: reverse from the printed theta_p,
@@ -31,15 +31,15 @@ from validation.face_milled.pairs import (
     SEED_ASSUMED,
     Gears,
     duplex_gears,
+    duplex_paper_gears,
     error_from_top,
     matched_spygo_gears,
-    seed_004_gears,
     spygo_gears,
 )
 from validation.table import Row
 
-CASE, SOURCE, COMPUTED = "Seed 004 20 x 30", "Seed 004", "REFERENCES, computed"
-MENDED = "Seed 004, mended pair D"
+CASE, SOURCE, COMPUTED = "duplex paper 20 x 30", "duplex paper", "REFERENCES, computed"
+MENDED = "duplex paper, mended pair D"
 FORWARD_PINION_AZIMUTH, REVERSE_AZIMUTH = 0.896671, 0.979223
 MISPRINTS = {"forward theta_g": (5.349393, 5.346931), "mean theta_g": (5.310104, 5.309104)}
 """Printed and mended."""
@@ -121,9 +121,9 @@ class Outcome:
 def studies() -> tuple[Study, ...]:
     """Pairs from which starts are tried."""
     return (
-        Study("seed's settings, drive", seed_004_gears()),
-        Study("seed's settings, coast", seed_004_gears(), "convex"),
-        Study("mended pair D, drive", seed_004_gears(MENDED_RADIAL)),
+        Study("seed's settings, drive", duplex_paper_gears()),
+        Study("seed's settings, coast", duplex_paper_gears(), "convex"),
+        Study("mended pair D, drive", duplex_paper_gears(MENDED_RADIAL)),
         Study("duplex blank, drive", duplex_gears()),
         Study("duplex blank, coast", duplex_gears(), "convex"),
         Study("19 x 62 matched B, drive", matched_spygo_gears()),
@@ -190,7 +190,7 @@ def _start_rows() -> list[Row]:
 
 def start_values() -> dict[str, float]:
     """The seed's three columns."""
-    gears = seed_004_gears()
+    gears = duplex_paper_gears()
     start = BidirectionalStart(gears, Study(CASE, gears).pair())
     wheel_azimuth = brentq(lambda angle: start.forward(angle).pinion_azimuth - FORWARD_PINION_AZIMUTH, 5.3, 5.4)
     forward, reverse = start.forward(wheel_azimuth), start.reverse(REVERSE_AZIMUTH)
@@ -209,9 +209,9 @@ def _named(values: StartValues) -> dict[str, float]:
 
 def _pair_rows() -> list[Row]:
     lines = []
-    gears = seed_004_gears()
-    for name, flank, mate, printed in (("drive", "concave", "convex", -1.59), ("coast", "convex", "concave", 1.68)):
-        miss = abs(GeneratedFlank(gears[0], flank).angles.spiral) - abs(GeneratedFlank(gears[1], mate).angles.spiral)
+    gears = duplex_paper_gears()
+    for name, flank, mating, printed in (("drive", "concave", "convex", -1.59), ("coast", "convex", "concave", 1.68)):
+        miss = abs(GeneratedFlank(gears[0], flank).angles.spiral) - abs(GeneratedFlank(gears[1], mating).angles.spiral)
         lines.append(
             Row(CASE, COMPUTED, f"{name}: spiral angles miss [deg]", printed, degrees(miss), 5e-3, SEED_ASSUMED)
         )
@@ -219,7 +219,7 @@ def _pair_rows() -> list[Row]:
     top = error_from_top(pair, ())[2]
     lengthwise, _ = pair.pinion.frame.to_picture(top.pinion_radius, top.pinion_axial)
     lines.append(Row(CASE, COMPUTED, "drive: R - R_m at the top [mm], toe -10", -10.0, float(lengthwise[0]), 1e-9))
-    mended = Study(MENDED, seed_004_gears(MENDED_RADIAL)).pair()
+    mended = Study(MENDED, duplex_paper_gears(MENDED_RADIAL)).pair()
     _, fall, _ = error_from_top(mended, (-0.5, 0.5))
     for part, printed, value in zip(("before", "after"), (-12.29, -12.50), fall, strict=True):
         quantity = f"TE half a pitch {part} the top [arcsec]"

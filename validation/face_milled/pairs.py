@@ -1,4 +1,4 @@
-"""Face-milled pairs of the comparisons: SpyGO's 19 x 62 and Seed 004's 20 x 30, as printed and mended, and others.
+"""Face-milled pairs of the comparisons: SpyGO's 19 x 62, the duplex paper's 20 x 30 as printed and mended, others.
 
 The others have settings that follow from their blanks alone.
 """
@@ -31,11 +31,11 @@ MENDED_RADIAL = 57.1394
 MEAN_CONE_DISTANCE, FACE_WIDTH, CLEARANCE = 70.6007, 20.0, 0.564
 CUTTER_RADIUS = 60.0
 ARCSEC = np.degrees(3600.0)
-SEED_ASSUMED = "R_m 70.6007, b 20, point width 0, face cones parallel to the mate's root cones at 0.564 mm"
+SEED_ASSUMED = "R_m 70.6007, b 20, point width 0, face cones parallel to the mating gear's root cones at 0.564 mm"
 
 
-def seed_004_gears(pinion_radial: float = SEED_RADIAL) -> Gears:
-    """Pair of Seed 004; with the radial setting 57.1394 of the pinion it becomes the mended pair D."""
+def duplex_paper_gears(pinion_radial: float = SEED_RADIAL) -> Gears:
+    """Pair of the duplex paper; with the radial setting 57.1394 of the pinion it becomes the mended pair D."""
     radials = pinion_radial, SEED_RADIAL
     pinion, wheel = (_seed_gear(member, radials[member]) for member in (0, 1))
     return pinion, wheel
@@ -91,8 +91,8 @@ def matched_spygo_gears() -> Gears:
     return replace(pinion, cutter=Cutter(concave=blade), machine=machine), wheel
 
 
-def seed_004_blank() -> BevelBlank:
-    """Blank with the dedendum angles of Seed 004, and the spiral angle that they belong to."""
+def duplex_paper_blank() -> BevelBlank:
+    """Blank with the dedendum angles of the duplex paper, and the spiral angle that they belong to."""
     angles = tuple(_seed_pitch(member) - radians(SEED_ROOT[member]) for member in (0, 1))
     return replace(duplex_blank("standard", 80.0), wheel_angles=angles)
 

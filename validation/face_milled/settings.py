@@ -23,9 +23,9 @@ from validation.bevel.iso_23509_sample import SPYGO, spygo
 from validation.face_milled.pairs import (
     duplex_blank,
     duplex_gears,
+    duplex_paper_blank,
     error_from_top,
     matched_spygo_gears,
-    seed_004_blank,
     spygo_gears,
 )
 from validation.table import Row
@@ -63,7 +63,15 @@ def _settings() -> Iterable[Row]:
 
 def _blade_groups() -> Iterable[Row]:
     assumed = "spiral angle 35 deg, to which its root angles belong"
-    yield Row("Seed 004 20 x 30", "Seed 004", "cutter number", 11.0, cutter_number(seed_004_blank()), 1e-3, assumed)
+    yield Row(
+        "duplex paper 20 x 30",
+        "duplex paper",
+        "cutter number",
+        11.0,
+        cutter_number(duplex_paper_blank()),
+        1e-3,
+        assumed,
+    )
 
 
 def _published_pair() -> Iterable[Row]:

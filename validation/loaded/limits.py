@@ -1,8 +1,8 @@
 """Limits of the loaded mesh cycle: balance, energy, no load, conjugate teeth, published stiffnesses, bevel pairs.
 
-Crowned pair: the helical pair of Seed 002 under 130 N m. Without crowning, and where contact alone yields, a line of
-length l and width w yields by F/l (ln(4 l/w) - 1) times the same for all, so that lines share the load nearly by their
-lengths; two pairs at a symmetric position carry one half each.
+Crowned pair: the helical pair of the SAM paper under 130 N m. Without crowning, and where contact alone yields, a line
+of length l and width w yields by F/l (ln(4 l/w) - 1) times the same for all, so that lines share the load nearly by
+their lengths; two pairs at a symmetric position carry one half each.
 
 Stiffnesses are means over a pitch of the tangent of the whole mesh, unmodified teeth and bodies included. ISO 6336-1
 gives its values, from measurements, an error of 10 to 20 %. ROSS is a slice model and names no force: an order of
@@ -21,7 +21,7 @@ from loaded_tca import AccuracyWarning, analyse, read_scene
 from loaded_tca.compliance import MeshDensity, tooth_compliance
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.loaded.load_sharing import Laws, SharedLoad, share_load, touches_at
+from loaded_tca.loaded.load_sharing import Laws, SharedLoad, share_load, tooth_pairs_at
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair
@@ -64,7 +64,7 @@ def _row(source: str, quantity: str, expected: float, obtained: float, tolerance
 
 @cache
 def _pair(modifications: FlankModifications, teeth: tuple[int, int] = (34, 57), helix_deg: float = 15.0) -> GearPair:
-    """Module and face of Seed 002, the pinion modified."""
+    """Module and face of the SAM paper, the pinion modified."""
     gears = [
         CylindricalGear(z, 3.0, 25.0, helix_angle=hand * math.radians(helix_deg))
         for z, hand in zip(teeth, (1, -1), strict=True)
@@ -74,7 +74,7 @@ def _pair(modifications: FlankModifications, teeth: tuple[int, int] = (34, 57), 
 
 def _shared(pair: GearPair, part: float, torque: float = TORQUE, grid: GridChoice = GRID) -> SharedLoad:
     """Share a torque at a part of a pitch from phi1 = 0; contact alone yields."""
-    return share_load(pair, touches_at(trace_teeth(pair, [part * pair.pitch]), 0), torque, grid)
+    return share_load(pair, tooth_pairs_at(trace_teeth(pair, [part * pair.pitch]), 0), torque, grid)
 
 
 def _balance() -> list[Row]:
@@ -82,7 +82,7 @@ def _balance() -> list[Row]:
     found = []
     for part in (-0.45, 0.1):
         shared = _shared(_pair(CROWNED), part)
-        solutions = [(share.loaded.solution, share.touch.contact.pinion_lever) for share in shared.shares]
+        solutions = [(share.loaded.solution, share.tooth_pair.contact.pinion_lever) for share in shared.shares]
         torque = sum(float(one.pressure.sum()) * one.cell_area * lever for one, lever in solutions)
         quantity = f"torque of the pressures, {len(solutions)} tooth pairs [N mm]"
         found.append(_row(LIMIT, quantity, TORQUE, torque, BALANCE))
@@ -112,7 +112,7 @@ def _no_load() -> list[Row]:
     """Lag of the wheel under nearly no torque: one ellipse, whose approach is a power of the force."""
     small, larger = (_shared(_pair(CROWNED), 0.1, torque) for torque in SMALL)
     (share,) = larger.shares
-    lag = share.loaded.hertz.approach / share.touch.contact.wheel_lever
+    lag = share.loaded.hertz.approach / share.tooth_pair.contact.wheel_lever
     exponent = math.log(larger.rotation / small.rotation) / math.log(SMALL[1] / SMALL[0])
     return [
         _row(HERTZ, "T1 to 0: lag goes with the torque to the power", 2.0 / 3.0, exponent, POWER),
@@ -125,7 +125,7 @@ def _lines() -> list[Row]:
     found = []
     for part in (-0.25, 0.1):
         shares = _shared(_pair(NONE), part).shares
-        lengths = np.array([np.linalg.norm(np.diff(share.touch.contact.line_ends, axis=0)) for share in shares])
+        lengths = np.array([np.linalg.norm(np.diff(share.tooth_pair.contact.line_ends, axis=0)) for share in shares])
         widths = np.array([share.loaded.extent[0] for share in shares])
         stiffness = lengths / (np.log(4.0 * lengths / widths) - 1.0)
         longest = int(lengths.argmax())
@@ -155,7 +155,7 @@ def _mean_stiffness(
     cycle = trace_teeth(pair, pair.pitch * np.linspace(-0.5, 0.5, STIFFNESS_POSITIONS, endpoint=False))
     rates, laws = [], Laws()
     for position in range(STIFFNESS_POSITIONS):
-        found = share_load(pair, touches_at(cycle, position), torque, GRID, compliance=teeth, start=laws)
+        found = share_load(pair, tooth_pairs_at(cycle, position), torque, GRID, compliance=teeth, start=laws)
         laws = found.laws
         rates.append(found.torque_rate)
     return float(np.mean(rates) / (1e3 * pair.base_radii[0] * pair.base_radii[1] * pair.face_width))

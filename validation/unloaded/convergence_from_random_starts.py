@@ -1,6 +1,6 @@
 """How many random starts converge: two equations (the ease-off) beside five (the conventional method), in one run.
 
-The pairs of chapter 6 of the dissertation (Seed 000): spur 52/72, spur 25/25 aligned and at 0.1 deg, helical 25/77
+The pairs of chapter 6 of the reduced-TCA dissertation: spur 52/72, spur 25/25 aligned and at 0.1 deg, helical 25/77
 aligned and at -3 arcmin. Starts are drawn evenly over the flank: (rho1, z1) for the reduced solver; (rho1, z1, rho2,
 z2) for the conventional one, and phi2 about the answer, within 0.2 rad or within pi/2. The source does not say how it
 drew phi2, on which everything depends, nor which two components of the normals it used: both draws and two choices are
@@ -83,11 +83,15 @@ def rows() -> list[Row]:
     for case in (spur, *cases(1000)[1:]):
         label = f"reduced solver, {case.starts} random starts: converged [%]"
         obtained = reduced(case).percentage
-        found.append(Row(case.name, "Seed 000, chapter 6", label, 100.0, obtained, 1e-9, case.assumed))
+        found.append(Row(case.name, "reduced-TCA dissertation, chapter 6", label, 100.0, obtained, 1e-9, case.assumed))
     near, wide = (conventional(spur, spread, "y, z") for spread in SPREADS)
     assumed = f"{spur.assumed}; normals equal in y and z"
     sampled = f"{assumed}; phi2 within pi/2; allowed: 3 sigma of two samples of 5000"
-    computed, printed, label = "computed independently", "Seed 000, Table 10", "five equations, 5000 starts"
+    computed, printed, label = (
+        "computed independently",
+        "reduced-TCA dissertation, Table 10",
+        "five equations, 5000 starts",
+    )
     return [
         *found,
         Row(spur.name, computed, f"{label}, phi2 within 0.2 rad: converged [%]", 100.0, near.percentage, 1e-3, assumed),

@@ -111,8 +111,8 @@ def _climbed(field: EaseOff, start: FirstTouch, phi1: Array) -> Array:
     cases = len(phi1) // POSITIONS
     peaks = climb(field, phi1, np.tile(start.rho, cases), np.tile(start.z, cases))
     rho, z = (np.broadcast_to(part, (len(phi1), *part.shape)) for part in field.pair.pinion.grid(9, 9))
-    heights, borders = field.heights(phi1[:, None, None], rho, z)
-    scanned = np.where(borders.min(axis=-1) >= 0.0, heights, -np.inf).max(axis=(1, 2))
+    heights, edges = field.heights(phi1[:, None, None], rho, z)
+    scanned = np.where(edges.min(axis=-1) >= 0.0, heights, -np.inf).max(axis=(1, 2))
     certified = peaks.converged & (peaks.value >= scanned - ROUNDING)
     return np.where(certified, np.stack([peaks.rho, peaks.z, peaks.value]), np.nan)
 
@@ -133,8 +133,8 @@ def _peak_pressures(field: EaseOff, rho: Array, z: Array) -> Array:
     metric = station.tangents @ np.swapaxes(station.tangents, -1, -2)
     bend = -field.hessian(station) * (lever / pair.base_radii[1])[:, None, None]
     curvatures = np.linalg.eigvals(np.linalg.solve(metric, bend))
-    _, borders = field.heights(np.zeros(len(rho)), rho, z)
-    inside = borders.min(axis=-1) > ROUNDING
+    _, edges = field.heights(np.zeros(len(rho)), rho, z)
+    inside = edges.min(axis=-1) > ROUNDING
     modulus = pair.contact_modulus
     return np.array(
         [

@@ -15,7 +15,7 @@ from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.unloaded import trace_contact
 from validation.table import Row
 
-CASE = "Seed 000 helical 40/37"
+CASE = "reduced-TCA dissertation helical 40/37"
 ARCSEC = np.degrees(1.0) * 3600.0
 FACE_WIDTH = 20.0
 C1 = 0.0227

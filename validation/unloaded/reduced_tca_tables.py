@@ -1,7 +1,7 @@
 """Tables 3 and 4 of the dissertation complete: the circular and the logarithmic column beside the parabolic one.
 
-The helical pair 40/37 of ``seed_000_misalignment``, which judges the parabolic column and the slopes. The forms are
-Seed 000, eqs. 10 to 12, with y = v - v0 from the middle of the face and b = 20 mm:
+The helical pair 40/37 of ``reduced_tca_misalignment``, which judges the parabolic column and the slopes. The forms are
+the reduced-TCA dissertation, eqs. 10 to 12, with y = v - v0 from the middle of the face and b = 20 mm:
 
 - parabolic c1 y^2;
 - circular R - sqrt(R^2 - y^2), R = (4 C_c^2 + b^2)/(8 C_c): C_c is the drop at the ends of the face;
@@ -34,11 +34,11 @@ from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.unloaded import ContactPath, trace_contact
 from validation.table import Row
 
-CASE = "Seed 000 helical 40/37"
+CASE = "reduced-TCA dissertation helical 40/37"
 ARCSEC = np.degrees(1.0) * 3600.0
 FACE_WIDTH, MODULE = 20.0, 1.0
 TURN = 0.01
-"""Pinion angle [rad] to which the printed maxima belong: inferred, see ``seed_000_misalignment``."""
+"""Pinion angle [rad] to which the printed maxima belong: inferred, see ``reduced_tca_misalignment``."""
 PRINTED = 0.045
 """The source's own scatter: its maxima belong to 0.0096 to 0.0101 rad."""
 SAME_CURVATURE = 0.03

@@ -6,14 +6,14 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError
 from loaded_tca.flank_maps.conjugate import exchanged
-from loaded_tca.flank_maps.mated_part import mated_grid
+from loaded_tca.flank_maps.mating_part import mated_grid
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, bevel_mesh
 from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from tests.samples.gear_pairs import cylindrical_mesh, gear_pair
 
 FOUND = 1e-6
-"""mm: borders are found to 1e-9 of the flank, where they are not its own."""
+"""mm: edges are found to 1e-9 of the flank, where they are not its own."""
 
 
 def roll_lengths(pair, rho):

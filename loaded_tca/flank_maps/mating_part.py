@@ -1,4 +1,4 @@
-"""The part of a flank that its mate works with at the constant ratio, and a grid over it."""
+"""The part of a flank that its mating gear works with at the constant ratio, and a grid over it."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ FINENESS = (129, 65)
 """Points along the profile and lengthwise between which places are interpolated; what is computed there is computed at
 the very place that is returned."""
 SCAN = (33, 33)
-"""Shares along the profile and lengthwise at which the mate is looked for."""
+"""Shares along the profile and lengthwise at which the mating gear is looked for."""
 CLOSE = 1e-9
-"""Accuracy of a border, as a share of the flank."""
+"""Accuracy of an edge, as a share of the flank."""
 ROUNDING = 1e-5
-"""Distance beyond a border [modules] that still counts as on the flank: places are interpolated so closely."""
+"""Distance beyond an edge [modules] that still counts as on the flank: places are interpolated so closely."""
 NOWHERE = -1.0
-"""Room [modules] where there is no contact at all: beyond any border."""
+"""Room [modules] where there is no contact at all: beyond any edge."""
 
-Border = Callable[[Array, NDArray[np.int_]], Array]
+Edge = Callable[[Array, NDArray[np.int_]], Array]
 """Room [modules] at shares along a line, of the lines named by the second argument."""
 
 
@@ -35,7 +35,7 @@ def mated_grid(pair: GearPair, profile: int, lengthwise: int) -> tuple[Array, Ar
     """Even grid over the part of the pinion's flank that the wheel reaches at the constant ratio.
 
     Lengthwise it ends with the narrower gear, as found in the middle of the reached profile; along the profile each
-    line ends where the mate's tip or form circle does, or the own ones.
+    line ends where the mating gear's tip or form circle does, or the own ones.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def mated_grid(pair: GearPair, profile: int, lengthwise: int) -> tuple[Array, Ar
     Raises
     ------
     GeometryError
-        If the mate reaches no part of the flank.
+        If the mating gear reaches no part of the flank.
     """
     u, v = (np.linspace(0.0, 1.0, count) for count in SCAN)
     _, room = _rooms(pair, *np.meshgrid(u, v, indexing="ij"))
@@ -64,7 +64,7 @@ def mated_grid(pair: GearPair, profile: int, lengthwise: int) -> tuple[Array, Ar
 
 
 def _rooms(pair: GearPair, u: Array, v: Array) -> tuple[Array, Array]:
-    """Room [modules] along the profile, and to the nearest border of all, at shares (...) of the pinion's flank."""
+    """Room [modules] along the profile, and to the nearest edge of all, at shares (...) of the pinion's flank."""
     contact = conjugate_contact(pair, *_places(pair.pinion, u, v))
     along = np.where(contact.exists, contact.profile_room / pair.module, NOWHERE)
     side = np.where(contact.exists, contact.lengthwise_room / pair.module, NOWHERE)
@@ -78,13 +78,13 @@ def _places(flank: Flank, u: Array, v: Array) -> tuple[Array, Array]:
     return rho, z
 
 
-def _ends(shares: Array, room: Array, border: Border) -> tuple[Array, Array]:
+def _ends(shares: Array, room: Array, edge: Edge) -> tuple[Array, Array]:
     """First and last share (m,) of each line at which there is room, from samples (shares, m)."""
     on = room >= -ROUNDING
     if not on.any(axis=0).all():
         raise GeometryError(
-            "no common flank: at the constant ratio the mate does not reach the whole length of the flank, or none of "
-            "it; check the tips of the teeth and how the gears are mounted"
+            "no common flank: at the constant ratio the mating gear does not reach the whole length of the flank, "
+            "or none of it; check the tips of the teeth and how the gears are mounted"
         )
     lines, count = np.arange(room.shape[1]), len(shares)
     first, last = on.argmax(axis=0), count - 1 - on[::-1].argmax(axis=0)
@@ -92,5 +92,5 @@ def _ends(shares: Array, room: Array, border: Border) -> tuple[Array, Array]:
     for inside, outside in ((first, np.maximum(first - 1, 0)), (last, np.minimum(last + 1, count - 1))):
         brackets = np.stack([shares[outside], shares[inside]])
         values = np.stack([room[outside, lines], room[inside, lines]])
-        found.append(find_roots(border, brackets, values, CLOSE))
+        found.append(find_roots(edge, brackets, values, CLOSE))
     return found[0], found[1]
