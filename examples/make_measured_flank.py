@@ -32,7 +32,7 @@ def deviation(profile, lengthwise):
 
 def main() -> str:
     """Return the text of the file."""
-    wheel = read_scene(SCENES / "helical.toml").pair().wheel
+    wheel = read_scene(SCENES / "helical.toml").pair().wheel.flank
     # every second line of a grid twice as fine: the outermost points keep off the edges, as a stylus does
     radius, axial = (part[1::2, 1::2] for part in wheel.grid(*(2 * count + 1 for count in POINTS)))
     profile, lengthwise = (np.linspace(-1.0, 1.0, 2 * count + 1)[1::2] for count in POINTS)

@@ -31,8 +31,8 @@ def main() -> float:
     peak = solution.pressure.max()
     print(f"map {peak:.1f} MPa, Hertz {point.max_pressure:.1f} MPa, approach {1e3 * solution.approach:.2f} um")
 
-    frame = pair.pinion.frame  # how a point (rho, z) of the gear appears on the flank
-    rho, z = pair.pinion.grid(17, 17)
+    frame = pair.pinion.flank.frame  # how a point (rho, z) of the gear appears on the flank
+    rho, z = pair.pinion.flank.grid(17, 17)
     cells = separation.points
     turn = np.linspace(0.0, 2.0 * math.pi, 181)
     ellipse = np.outer(point.semi_minor * np.cos(turn), separation.axes[0])

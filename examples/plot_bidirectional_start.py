@@ -33,8 +33,8 @@ def main() -> float:
 
     figure = Figure(figsize=(8.0, 4.5), layout="constrained")
     axes = figure.subplots()
-    frame = pair.pinion.frame
-    outline = np.stack(frame.to_picture(*pair.pinion.grid(2, 17)), axis=-1)
+    frame = pair.pinion.flank.frame
+    outline = np.stack(frame.to_picture(*pair.pinion.flank.grid(2, 17)), axis=-1)
     axes.fill(*np.concatenate([outline[0], outline[1][::-1]]).T, color="0.93")
     path = trace_contact(pair, np.linspace(-1.0, 1.0, 41) * pair.pitch)
     axes.plot(*frame.to_picture(path.pinion_radius, path.pinion_axial), "k.", label="contact of one tooth pair")

@@ -24,7 +24,7 @@ def main() -> float:
     pair = read_scene(SCENE).pair()
     contact = trace_contact(pair, [0.0])[0]
     rng = np.random.default_rng(0)
-    corners = [part for flank in (pair.pinion, pair.wheel) for part in flank.grid(2, 2)]
+    corners = [part for flank in (pair.pinion.flank, pair.wheel.flank) for part in flank.grid(2, 2)]
     points = np.stack([rng.uniform(part.min(), part.max(), STARTS) for part in corners], axis=-1)  # mm
     offset = rng.uniform(-0.5 * np.pi, 0.5 * np.pi, STARTS)  # rad
 

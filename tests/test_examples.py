@@ -117,7 +117,7 @@ def test_duplex_example_first_touches_in_the_corner_of_toe_and_tip():
     """The largest transmission error of one tooth pair: the first touch of all."""
     pair, path = traced("duplex_30x20", np.radians(np.linspace(0.0, 30.0, 31)))
     first = path[int(np.nanargmax(path.transmission_error))]
-    lengthwise, _ = pair.pinion.frame.to_picture(np.array(first.pinion_radius), np.array(first.pinion_axial))
+    lengthwise, _ = pair.pinion.flank.frame.to_picture(np.array(first.pinion_radius), np.array(first.pinion_axial))
     assert_allclose(lengthwise, -10.0, atol=1e-6)
-    tip = pair.pinion.edges(np.array(first.pinion_radius), np.array(first.pinion_axial))[0]
+    tip = pair.pinion.flank.edges(np.array(first.pinion_radius), np.array(first.pinion_axial))[0]
     assert tip.value < 0.2

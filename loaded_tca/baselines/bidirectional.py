@@ -126,7 +126,7 @@ class BidirectionalStart:
     """
 
     def __init__(self, gears: tuple[FaceMilledGear, FaceMilledGear], pair: GearPair) -> None:
-        self._pair, self._gears, self._flanks = pair, gears, (pair.pinion, pair.wheel)
+        self._pair, self._gears, self._flanks = pair, gears, (pair.pinion.flank, pair.wheel.flank)
         self._lines = [
             GeneratingLine(gear, gear.flank_name(flank.side)) for gear, flank in zip(gears, self._flanks, strict=True)
         ]

@@ -225,8 +225,8 @@ def _chosen(normal_components: tuple[int, int]) -> list[int]:
 def _six_equations(pair: GearPair, phi1: Array, unknowns: Array) -> tuple[Array, Array]:
     """(P1 - P2)/r_b2 and all components of n1 + n2 (n, 6), and their Jacobian (n, 6, 5)."""
     pinion_radius, pinion_axial, wheel_radius, wheel_axial, phi2 = unknowns.T
-    one = _surface(pair.pinion, pinion_radius, pinion_axial, pair.sense * phi1)
-    other = _surface(pair.wheel, wheel_radius, wheel_axial, -pair.sense * phi2)
+    one = _surface(pair.pinion.flank, pinion_radius, pinion_axial, pair.sense * phi1)
+    other = _surface(pair.wheel.flank, wheel_radius, wheel_axial, -pair.sense * phi2)
     axes, length = pair.wheel_axes, pair.base_radii[1]
     gap = one.point - other.point @ axes - pair.wheel_origin
     mismatch = one.normal + other.normal @ axes
@@ -292,7 +292,7 @@ def _result(
         residual = misfit[:, _chosen(normal_components)].max(axis=-1)
         tangent = np.asarray(misfit[:, 3:].max(axis=-1) <= SAME_NORMAL)
         inside = np.ones(len(unknowns), dtype=bool)
-        for flank, first in ((pair.pinion, 0), (pair.wheel, 2)):
+        for flank, first in ((pair.pinion.flank, 0), (pair.wheel.flank, 2)):
             tolerance = ON_FLANK * flank.extent[0]
             inside &= flank.inside(unknowns[:, first], unknowns[:, first + 1], tolerance)
     residual[np.isnan(residual)] = np.inf

@@ -145,18 +145,18 @@ class _Search:
     def __init__(self, pair: GearPair, phi1: Array, sections: int) -> None:
         self.pair, self.phi1, self.sections = pair, phi1, sections
         self.evaluations = 0
-        corners = pair.pinion.grid(2, 2)
+        corners = pair.pinion.flank.grid(2, 2)
         self._box = [(float(part.min()), float(part.max())) for part in corners]
 
     def points(self, rows: Array, rho: Array, z: Array) -> Array:
         """Points of the pinion flank in the fixed frame (k, 3) [mm]."""
-        theta = self.pair.pinion.theta(rho, z).value + self.pair.sense * self.phi1[rows]
+        theta = self.pair.pinion.flank.theta(rho, z).value + self.pair.sense * self.phi1[rows]
         return np.stack([rho * np.cos(theta), rho * np.sin(theta), z], axis=-1)
 
     def gap(self, rows: Array, phi2: Array, rho: Array, z: Array) -> Array:
         """Signed distance of the points from the wheel flank, and the penalty beyond the edges (k,) [mm]."""
         self.evaluations += 1
-        flank = self.pair.wheel
+        flank = self.pair.wheel.flank
         radius, azimuth, axial = self.pair.to_wheel(self.points(rows, rho, z))
         jet = flank.theta(radius, axial)
         behind = azimuth - jet.value + self.pair.sense * phi2
@@ -173,14 +173,14 @@ class _Search:
             radius, _, axial = self.pair.to_wheel(self.points(rows, rho, z))
             return self._beyond(rho, z, radius, axial)
 
-        return self._lowest(rows, beyond)[0] <= COVERED * self.pair.pinion.extent[0]
+        return self._lowest(rows, beyond)[0] <= COVERED * self.pair.pinion.flank.extent[0]
 
     def narrowest(self, rows: Array, phi2: Array) -> tuple[Array, Array, Array]:
         """Smallest gap at the wheel angles (k,) [mm], and where on the pinion flank: rho, z (k,) [mm]."""
         return self._lowest(rows, lambda rho, z: self.gap(rows, phi2, rho, z))
 
     def _beyond(self, rho: Array, z: Array, radius: Array, axial: Array) -> Array:
-        edges = [*self.pair.pinion.edges(rho, z), *self.pair.wheel.edges(radius, axial)]
+        edges = [*self.pair.pinion.flank.edges(rho, z), *self.pair.wheel.flank.edges(radius, axial)]
         return np.asarray(sum(np.maximum(0.0, -edge.value) for edge in edges))
 
     def _lowest(self, rows: Array, function: Callable[[Array, Array], Array]) -> tuple[Array, Array, Array]:

@@ -176,12 +176,15 @@ def tooth_compliance(
     >>> float(compliance.within(0, separation).mean().round(8))  # of an even force
     4.23e-06
     """
-    if pair.pinion.side == backs.pinion.side:
+    if pair.pinion.flank.side == backs.pinion.flank.side:
         raise InputError("backs: this pair touches with the same flanks; the one in the other sense is needed")
-    both = sorted((pair, backs), key=lambda one: -one.pinion.side)
-    flanks = (both[0].pinion, both[1].pinion), (both[0].wheel, both[1].wheel)
-    gears = [GearTooth(*parts) for parts in zip(flanks, forms, pair.materials, bore_diameters, strict=True)]
-    touching = (pair.pinion.side, pair.wheel.side)
+    both = sorted((pair, backs), key=lambda one: -one.pinion.flank.side)
+    flanks = (both[0].pinion.flank, both[1].pinion.flank), (both[0].wheel.flank, both[1].wheel.flank)
+    gears = [
+        GearTooth(*parts)
+        for parts in zip(flanks, forms, (pair.pinion.material, pair.wheel.material), bore_diameters, strict=True)
+    ]
+    touching = (pair.pinion.flank.side, pair.wheel.flank.side)
     found = []
     for name, gear, side in zip(NAMES, gears, touching, strict=True):
         try:
@@ -249,13 +252,15 @@ def rigid_bores(scene: Scene) -> tuple[float, float] | None:
     if scene.analysis.compliance == "contact":
         return None
     pair = scene.pair()
-    both = sorted((pair, scene.pair("negative" if pair.sense > 0 else "positive")), key=lambda one: -one.pinion.side)
+    both = sorted(
+        (pair, scene.pair("negative" if pair.sense > 0 else "positive")), key=lambda one: -one.pinion.flank.side
+    )
     forms, problems, bores = tooth_forms(scene.mesh()), [], []
     for member, name in enumerate(GEARS):
         given: float | None = getattr(getattr(scene, name), BORE)
-        flanks = getattr(both[0], name), getattr(both[1], name)
+        flanks = getattr(both[0], name).flank, getattr(both[1], name).flank
         try:
-            tooth = GearTooth(flanks, forms[member], pair.materials[member], given)
+            tooth = GearTooth(flanks, forms[member], getattr(pair, name).material, given)
             bores.append(tooth.nodes(MeshDensity()).bore_diameter)
         except InputError as error:
             problems += [f"{name}: {problem}" for problem in error.problems]

@@ -99,7 +99,6 @@ def exchanged(pair: GearPair) -> GearPair:
         wheel_axes=pair.wheel_axes.T,
         sense=-pair.sense,
         driving=-pair.driving,
-        materials=pair.materials[::-1],
         base_radii=pair.base_radii[::-1],
     )
 
@@ -146,7 +145,7 @@ def conjugate_contact(pair: GearPair, rho: Array, z: Array) -> ConjugateContact:
 def _highest(field: EaseOff, azimuth: Array, rho: Array, z: Array) -> ConjugateContact:
     """Contact of points (n,), from samples at the azimuths (s,)."""
     pair, step = field.pair, azimuth[1] - azimuth[0]
-    sampled = pair.sense * (azimuth[:, None] - pair.pinion.theta(rho, z).value)
+    sampled = pair.sense * (azimuth[:, None] - pair.pinion.flank.theta(rho, z).value)
     lead, edges = field.heights(sampled, rho, z)
     lead = np.where(_near(pair, edges), lead, -np.inf)
     best = (lead.argmax(axis=0), np.arange(len(rho)))
@@ -199,8 +198,8 @@ def _azimuths(pair: GearPair) -> Array:
     """Even azimuths of the pinion (s,) [rad] between which its points pass through the wheel's teeth."""
     half = math.ceil(0.5 * math.pi / pair.pitch * SCANS)
     coarse = np.arange(-half, half + 1) * (pair.pitch / SCANS)
-    rho, z = (part.ravel() for part in pair.pinion.grid(*SCAN))
-    angle = pair.sense * (coarse[:, None] - pair.pinion.theta(rho, z).value)
+    rho, z = (part.ravel() for part in pair.pinion.flank.grid(*SCAN))
+    angle = pair.sense * (coarse[:, None] - pair.pinion.flank.theta(rho, z).value)
     rows = np.flatnonzero(_near(pair, EaseOff(pair).heights(angle, rho, z)[1]).any(axis=-1))
     if not rows.size:
         raise GeometryError(

@@ -76,7 +76,7 @@ class RaySearch:
 
     def in_space(self, rho: Array, z: Array) -> Array:
         """Points (m, 3) of the pinion flank in the fixed frame."""
-        azimuth = self.pair.pinion.theta(rho, z).value + self.pair.sense * self.contact.pinion_angle
+        azimuth = self.pair.pinion.flank.theta(rho, z).value + self.pair.sense * self.contact.pinion_angle
         return cartesian(rho, azimuth, z)
 
     def contour(self, rays: int) -> Contour:
@@ -155,12 +155,12 @@ class RaySearch:
         """Whether both flanks are there and the gap is below the compound."""
         rho, z = self._place(rays, share)
         gap, _, _ = flank_gap(self.pair, "pinion", self.angles, (rho, z))
-        return np.asarray(self.pair.pinion.inside(rho, z) & (gap <= self.compound))
+        return np.asarray(self.pair.pinion.flank.inside(rho, z) & (gap <= self.compound))
 
     def _edge(self, rho: Array, z: Array) -> NDArray[np.int_]:
         """Which edge each point (m,) lies beyond, counted from 1, the pinion's first; 0: none."""
         _, radius, axial = flank_gap(self.pair, "pinion", self.angles, (rho, z))
-        jets = [*self.pair.pinion.edges(rho, z), *self.pair.wheel.edges(radius, axial)]
+        jets = [*self.pair.pinion.flank.edges(rho, z), *self.pair.wheel.flank.edges(radius, axial)]
         distance = np.stack(np.broadcast_arrays(*(jet.value for jet in jets)))
         return np.where(distance.min(axis=0) < 0.0, 1 + distance.argmin(axis=0), 0)
 

@@ -134,7 +134,7 @@ def ease_off_map(pair: GearPair, gear: Gear = "pinion", grid: tuple[int, int] = 
     if problems:
         raise InputError(problems)
     seen = pair if gear == "pinion" else exchanged(pair)
-    flank, (rho, z) = seen.pinion, mated_grid(seen, *grid)
+    flank, (rho, z) = seen.pinion.flank, mated_grid(seen, *grid)
     contact = conjugate_contact(seen, rho, z)
     _require_contact(flank, rho, z, contact.exists)
     per_lead = 1.0 / (seen.base_radii[1] * seen.ratio * flank.gradient_norm(rho, z).value)

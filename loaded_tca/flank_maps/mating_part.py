@@ -60,12 +60,12 @@ def mated_grid(pair: GearPair, profile: int, lengthwise: int) -> tuple[Array, Ar
     room, _ = _rooms(pair, *np.meshgrid(u, v, indexing="ij"))
     low, high = _ends(u, room, lambda at, lines: _rooms(pair, at, v[lines])[0])
     share = np.linspace(0.0, 1.0, profile)[:, None]
-    return _places(pair.pinion, low + share * (high - low), v)
+    return _places(pair.pinion.flank, low + share * (high - low), v)
 
 
 def _rooms(pair: GearPair, u: Array, v: Array) -> tuple[Array, Array]:
     """Room [modules] along the profile, and to the nearest edge of all, at shares (...) of the pinion's flank."""
-    contact = conjugate_contact(pair, *_places(pair.pinion, u, v))
+    contact = conjugate_contact(pair, *_places(pair.pinion.flank, u, v))
     along = np.where(contact.exists, contact.profile_room / pair.module, NOWHERE)
     side = np.where(contact.exists, contact.lengthwise_room / pair.module, NOWHERE)
     return along, np.minimum(along, side)

@@ -180,7 +180,7 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
     curvature = relative_curvature(pair, contact)
     bends = (curvature.across, 0.0 if contact.on_line else curvature.along)
     semi_axes = [math.sqrt(2.0 * compound / k) if k > 0.0 else math.inf for k in bends]
-    longest = math.hypot(*pair.pinion.extent)
+    longest = math.hypot(*pair.pinion.flank.extent)
     drawn = [min(LONGEST * axis, longest) for axis in semi_axes]
     plane = curvature.axes[:2]
     search = RaySearch(
@@ -246,7 +246,7 @@ def contact_pattern(
         raise InputError(problems)
     if mesh is None:
         mesh = trace_teeth(pair, np.linspace(-0.5 * pair.pitch, 0.5 * pair.pitch, POSITIONS))
-    flank = pair.pinion if gear == "pinion" else pair.wheel
+    flank = pair.pinion.flank if gear == "pinion" else pair.wheel.flank
     rho, z = flank.grid(*grid)
     smallest = np.full(rho.shape, np.inf)
     for tooth, path in zip(mesh.pairs, mesh.paths, strict=True):

@@ -46,12 +46,12 @@ def flank_gap(
     """
     (phi1, phi2), (rho, z) = angles, place
     if gear == "pinion":
-        point, mating = cartesian(rho, pair.pinion.theta(rho, z).value + pair.sense * phi1, z), pair.wheel
+        point, mating = cartesian(rho, pair.pinion.flank.theta(rho, z).value + pair.sense * phi1, z), pair.wheel.flank
         radius, theta, axial = pair.to_wheel(point)
         jet = mating.theta(radius, axial)
         lag = pair.driving * (phi2 - pair.sense * (jet.value - theta))
     else:
-        point, mating = cartesian(rho, pair.wheel.theta(rho, z).value - pair.sense * phi2, z), pair.pinion
+        point, mating = cartesian(rho, pair.wheel.flank.theta(rho, z).value - pair.sense * phi2, z), pair.pinion.flank
         x, y, axial = np.moveaxis(point @ pair.wheel_axes + pair.wheel_origin, -1, 0)
         radius, theta = np.hypot(x, y), np.arctan2(y, x)
         jet = mating.theta(radius, axial)

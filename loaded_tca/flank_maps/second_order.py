@@ -110,7 +110,7 @@ def second_order(flank: Flank, rho: Array, z: Array, removed: Array) -> SecondOr
     >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
     >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
     >>> gears = [CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)]
-    >>> flank = cylindrical_pair(CylindricalMesh(*gears)).pinion
+    >>> flank = cylindrical_pair(CylindricalMesh(*gears)).pinion.flank
     >>> rho, z = flank.grid(9, 9)
     >>> second_order(flank, rho, z, 0.010 * (z / 12.5) ** 2)
     SecondOrder(spiral angle 0 arcmin, pressure angle 0 arcmin, crownings 10 um and 0 um, twist 0 um)

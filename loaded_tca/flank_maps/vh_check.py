@@ -164,7 +164,7 @@ def _cell(build: Build, v: float, h: float, positions: int, asked: dict[str, Any
         pattern = contact_pattern(pair, mesh, **asked)
     except GeometryError as error:
         raise GeometryError(f"v = {v:.6g}, h = {h:.6g}: {error}") from error
-    frame = (pair.pinion if pattern.gear == "pinion" else pair.wheel).frame
+    frame = (pair.pinion.flank if pattern.gear == "pinion" else pair.wheel.flank).frame
     return _Cell(pattern, frame, float(mesh.leading_contact.on_edge.mean()))
 
 

@@ -131,7 +131,7 @@ def fitted(flank: Flank, points: tuple[int, int] = DEFAULT_POINTS, degree: int =
     >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
     >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
     >>> gears = [CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)]
-    >>> wheel = fitted(cylindrical_pair(CylindricalMesh(*gears)).wheel)
+    >>> wheel = fitted(cylindrical_pair(CylindricalMesh(*gears)).wheel.flank)
     >>> wheel.check_error.largest < 1e-9
     True
     """
@@ -163,7 +163,7 @@ def measured(
     """Flank of a measured topography: the nominal one, deviating as measured.
 
     Beyond the outermost points the deviation goes on as a parabola. Put it into a pair by
-    ``dataclasses.replace(pair, wheel=measured(pair.wheel, topography))``.
+    ``pair.with_flanks(wheel=measured(pair.wheel.flank, topography))``.
 
     Parameters
     ----------
@@ -202,7 +202,7 @@ def measured(
     >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
     >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
     >>> gears = [CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)]
-    >>> nominal = cylindrical_pair(CylindricalMesh(*gears)).wheel
+    >>> nominal = cylindrical_pair(CylindricalMesh(*gears)).wheel.flank
     >>> radius, axial = nominal.grid(5, 9)
     >>> hollow = measured(nominal, MeasuredDeviations(radius, axial, 0.01 * (axial / 12.5) ** 2))
     >>> round(float(hollow.distance_to(nominal, radius, axial)[2, 8]), 9)

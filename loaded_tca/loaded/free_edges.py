@@ -142,11 +142,11 @@ def _plane(pair: GearPair, origin: Array, point: Array, place: tuple[int, int]) 
     """Plane that touches an edge of a gear beside a point."""
     member, edge = place
     if member == 0:
-        flank, rho, z = pair.pinion, math.hypot(point[0], point[1]), float(point[2])
+        flank, rho, z = pair.pinion.flank, math.hypot(point[0], point[1]), float(point[2])
         basis = cylindrical_basis(np.arctan2(point[1], point[0]))
     else:
         radius, theta, axial = pair.to_wheel(point)
-        flank, rho, z, basis = pair.wheel, float(radius), float(axial), pair.wheel_basis(theta)
+        flank, rho, z, basis = pair.wheel.flank, float(radius), float(axial), pair.wheel_basis(theta)
     jet = flank.edges(np.asarray(rho), np.asarray(z))[edge]
     value, inwards = float(jet.value), np.array([float(jet.rho), 0.0, float(jet.z)])
     steep = float(np.linalg.norm(inwards))
@@ -189,6 +189,6 @@ def _faded(distance: float, reach: float) -> float:
 
 def _factor(pair: GearPair, end: _End) -> float:
     """Factor of the mirrored pressure for the body that ends."""
-    material = pair.materials[end.member]
+    material = (pair.pinion, pair.wheel)[end.member].material
     share = pair.contact_modulus * (1.0 - material.poisson_ratio**2) / material.youngs_modulus
     return wedge_factor(end.angle, material.poisson_ratio, min(share, 1.0))

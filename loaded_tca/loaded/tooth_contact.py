@@ -357,9 +357,9 @@ def _crosses_relief_start(pair: GearPair, contact: ContactPoint, separation: Sep
     if contact.on_relief_start:
         return True
     points = separation.points[where]
-    own = pair.pinion.relief_starts(np.hypot(points[:, 0], points[:, 1]), points[:, 2])
+    own = pair.pinion.flank.relief_starts(np.hypot(points[:, 0], points[:, 1]), points[:, 2])
     radius, _, axial = pair.to_wheel(points)
-    values = [jet.value for jet in (*own, *pair.wheel.relief_starts(radius, axial))]
+    values = [jet.value for jet in (*own, *pair.wheel.flank.relief_starts(radius, axial))]
     return any(value.size and value.min() < 0.0 < value.max() for value in values)
 
 

@@ -60,7 +60,7 @@ def _departures(scene: Scene) -> Iterator[Row]:
 
 def _spline_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     """Forms of flanks that are not analytic, and how closely their B-splines follow their points."""
-    for name, gear, flank in (("pinion", scene.pinion, pair.pinion), ("wheel", scene.wheel, pair.wheel)):
+    for name, gear, flank in (("pinion", scene.pinion, pair.pinion.flank), ("wheel", scene.wheel, pair.wheel.flank)):
         if not isinstance(flank, SplineFlank):
             continue
         yield f"{name}.flank.form", gear.flank.form

@@ -26,6 +26,7 @@ from loaded_tca.flanks.bevel import SphericalInvoluteFlank
 from loaded_tca.flanks.modification import FlankModifications, modified
 from loaded_tca.gears.bevel import BevelGear, BevelMesh
 from loaded_tca.material import Material
+from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense, require_finite, signs_of
 
 
@@ -110,14 +111,13 @@ def bevel_pair(
     side = turning * drive
     origin, axes = mounting.place(mesh.shaft_angle)
     return GearPair(
-        pinion=_flank(mesh.pinion, mesh.active_cones[0], side, modifications[0]),
-        wheel=_flank(mesh.wheel, mesh.active_cones[1], side, modifications[1]),
+        pinion=Gear(_flank(mesh.pinion, mesh.active_cones[0], side, modifications[0]), materials[0]),
+        wheel=Gear(_flank(mesh.wheel, mesh.active_cones[1], side, modifications[1]), materials[1]),
         teeth=(mesh.pinion.teeth, mesh.wheel.teeth),
         wheel_origin=origin,
         wheel_axes=axes,
         sense=turning,
         driving=drive,
-        materials=materials,
         module=mesh.pinion.mean_normal_module,
         base_radii=(mesh.pinion.mean_base_radius, mesh.wheel.mean_base_radius),
         face_width=mesh.pinion.face_width,

@@ -14,6 +14,7 @@ from loaded_tca.flanks.cylindrical import InvoluteFlank
 from loaded_tca.flanks.modification import FlankModifications, modified
 from loaded_tca.gears import CylindricalMesh
 from loaded_tca.material import Material
+from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense, require_finite, signs_of
 
 LARGEST_ANGLE = math.radians(45.0)
@@ -122,14 +123,13 @@ def cylindrical_pair(
     flanks = [_involute_flank(mesh, member, side, modifications[member]) for member in (0, 1)]
     origin, axes = mounting.place_parallel(mesh.working_centre_distance)
     return GearPair(
-        pinion=flanks[0],
-        wheel=flanks[1],
+        pinion=Gear(flanks[0], materials[0]),
+        wheel=Gear(flanks[1], materials[1]),
         teeth=(mesh.pinion.teeth, mesh.wheel.teeth),
         wheel_origin=origin,
         wheel_axes=axes,
         sense=turning,
         driving=drive,
-        materials=materials,
         module=mesh.pinion.normal_module,
         base_radii=(mesh.pinion.base_radius, mesh.wheel.base_radius),
         face_width=min(mesh.pinion.face_width, mesh.wheel.face_width),

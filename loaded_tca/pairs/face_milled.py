@@ -19,6 +19,7 @@ from loaded_tca.gears.cutter import FlankName
 from loaded_tca.gears.face_milled import FaceMilledGear
 from loaded_tca.material import Material
 from loaded_tca.pairs.bevel import BevelMounting
+from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, signs_of
 
 _EQUAL = 1e-6
@@ -94,14 +95,13 @@ def face_milled_pair(
     origin, axes = mounting.place(sigma)
     flanks = [_modified(flank, changes, exact) for flank, changes in zip(nominal, modifications, strict=True)]
     return GearPair(
-        pinion=flanks[0],
-        wheel=flanks[1],
+        pinion=Gear(flanks[0], materials[0]),
+        wheel=Gear(flanks[1], materials[1]),
         teeth=(pinion.teeth, wheel.teeth),
         wheel_origin=origin,
         wheel_axes=axes,
         sense=side * drive,
         driving=drive,
-        materials=materials,
         module=2.0 * radii[0] * math.cos(angles.spiral) / pinion.teeth,
         base_radii=(
             radii[0] * math.cos(angles.transverse_pressure),

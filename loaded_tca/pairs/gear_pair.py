@@ -18,7 +18,7 @@ point of the mid-face section. Mounting errors are counted in the fixed frame, w
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -26,7 +26,8 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import Flank
-from loaded_tca.material import Material, contact_modulus
+from loaded_tca.material import contact_modulus
+from loaded_tca.pairs.gear import Gear
 
 Driving = Literal["pinion", "wheel"]
 Sense = Literal["positive", "negative"]
@@ -48,12 +49,12 @@ def _is_finite(value: Any) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class GearPair:
-    """Two flanks that may touch, and where their gears stand.
+    """Two gears whose flanks may touch, and where they stand.
 
     Attributes
     ----------
-    pinion, wheel : Flank
-        The flanks in contact, each in its gear's own frame.
+    pinion, wheel : Gear
+        ``pinion.flank`` and ``wheel.flank`` are in contact, each in its gear's own frame.
     teeth : (int, int)
         Numbers of teeth of pinion and wheel.
     wheel_origin : (3,) array [mm]
@@ -64,7 +65,6 @@ class GearPair:
         +1: the pinion turns about +z; -1: about -z, pushing with its other flank.
     driving : int
         +1: the pinion drives; -1: the wheel does.
-    materials : (Material, Material)
     module : float [mm]
         Normal module: the length that small distances are compared with.
     base_radii : (float, float) [mm]
@@ -73,14 +73,13 @@ class GearPair:
         Common face width.
     """
 
-    pinion: Flank
-    wheel: Flank
+    pinion: Gear
+    wheel: Gear
     teeth: tuple[int, int]
     wheel_origin: Array
     wheel_axes: Array
     sense: int
     driving: int
-    materials: tuple[Material, Material]
     module: float
     base_radii: tuple[float, float]
     face_width: float
@@ -98,13 +97,21 @@ class GearPair:
     @property
     def contact_modulus(self) -> float:
         """E* of the two materials [MPa]."""
-        return contact_modulus(*self.materials)
+        return contact_modulus(self.pinion.material, self.wheel.material)
 
     @property
     def max_pressure(self) -> float | None:
         """Pressure cap of the softer material [MPa]; None if both are elastic."""
-        caps = [material.max_pressure for material in self.materials if material.max_pressure is not None]
-        return min(caps) if caps else None
+        caps = (self.pinion.material.max_pressure, self.wheel.material.max_pressure)
+        return min((cap for cap in caps if cap is not None), default=None)
+
+    def with_flanks(self, pinion: Flank | None = None, wheel: Flank | None = None) -> GearPair:
+        """The pair with other flanks in contact, fitted or measured ones; None: the flank that is there."""
+        return replace(
+            self,
+            pinion=replace(self.pinion, flank=pinion or self.pinion.flank),
+            wheel=replace(self.wheel, flank=wheel or self.wheel.flank),
+        )
 
     def to_wheel(self, point: Array) -> tuple[Array, Array, Array]:
         """Cylindrical coordinates (rho, theta, z) of points (..., 3) in the wheel frame."""

@@ -46,11 +46,11 @@ class MatingTeeth:
 
     def _to_flank(self, tooth: ToothSurface) -> ToothSurface:
         """The tooth turned until its flank in contact is that of the pair."""
-        return tooth.turned(-self.pair.pinion.side * tooth.half_thickness_angle)
+        return tooth.turned(-self.pair.pinion.flank.side * tooth.half_thickness_angle)
 
     def on_pinion(self, rho: Array, z: Array, pinion_angle: float) -> Array:
         """Points (..., 3) of the pinion's flank in the fixed frame [mm], at its places (rho, z)."""
-        theta = self.pair.pinion.theta(rho, z).value + self.pair.sense * pinion_angle
+        theta = self.pair.pinion.flank.theta(rho, z).value + self.pair.sense * pinion_angle
         return np.stack(np.broadcast_arrays(rho * np.cos(theta), rho * np.sin(theta), z), axis=-1)
 
     def pressure_on_pinion(self, corners: Array, pressure: Array, pinion_angle: float) -> TriangleMesh:
@@ -120,11 +120,11 @@ def mating_teeth(
     >>> teeth.in_mesh(0.0, 0.0)[0]
     TriangleMesh(3498 vertices, 6720 triangles)
     """
-    if pair.pinion.side == backs.pinion.side:
+    if pair.pinion.flank.side == backs.pinion.flank.side:
         raise InputError("backs: this pair touches with the same flanks; the one in the other sense is needed")
-    both = sorted((pair, backs), key=lambda one: -one.pinion.side)
-    pinion = _named("pinion", (both[0].pinion, both[1].pinion), forms[0], resolution)
-    wheel = _named("wheel", (both[0].wheel, both[1].wheel), forms[1], resolution)
+    both = sorted((pair, backs), key=lambda one: -one.pinion.flank.side)
+    pinion = _named("pinion", (both[0].pinion.flank, both[1].pinion.flank), forms[0], resolution)
+    wheel = _named("wheel", (both[0].wheel.flank, both[1].wheel.flank), forms[1], resolution)
     return MatingTeeth(pair, pinion, wheel)
 
 

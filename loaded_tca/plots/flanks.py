@@ -48,8 +48,8 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     scene = parse_scene(result.scene_toml)
     starts, pair, paths = scene.active_starts(), scene.pair(), result.contacts.paths
     sides = (
-        (pair.pinion, starts[0], [(path.pinion_radius, path.pinion_axial) for path in paths]),
-        (pair.wheel, starts[1], [(path.wheel_radius, path.wheel_axial) for path in paths]),
+        (pair.pinion.flank, starts[0], [(path.pinion_radius, path.pinion_axial) for path in paths]),
+        (pair.wheel.flank, starts[1], [(path.wheel_radius, path.wheel_axial) for path in paths]),
     )
     drawn = _drawn_maps(result, torque)
     maps = [one for row in drawn for one in row]
@@ -168,7 +168,7 @@ def _draw_area(axes: Axes, outline: Patch, one: PressureMap, corners: tuple[Arra
 
 def on_gear(pair: GearPair, flank: Flank, point: Array) -> tuple[Array, Array]:
     """Radius and axial coordinate (...) of points (..., 3) on the gear of a flank."""
-    if flank is pair.pinion:
+    if flank is pair.pinion.flank:
         return np.hypot(point[..., 0], point[..., 1]), point[..., 2]
     radius, _, axial = pair.to_wheel(point)
     return radius, axial

@@ -64,7 +64,7 @@ def plot_pressure_map(
     axes.plot(0.0, 0.0, "+", color=ACCENT, label="unloaded contact point")
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
     axes.set_aspect(scale)
-    frame = parse_scene(result.scene_toml).pair().pinion.frame
+    frame = parse_scene(result.scene_toml).pair().pinion.flank.frame
     _label_axes(axes, one, scale, frame)
     what = "contact pressure" if one.pressure.any() else "no contact pressure"
     set_title(figure, result, f"{what}, {load(result, torque)}", *place(result, position, frame, column))

@@ -256,7 +256,7 @@ def _both_flanks(
     figure = Figure(figsize=(11.0, 5.5), layout="constrained")
     scene = parse_scene(result.scene_toml)
     pair, panels = scene.pair(), list(figure.subplots(1, 2))
-    sides = zip(panels, scene.flank_names, (pair.pinion, pair.wheel), scene.active_starts(), strict=True)
+    sides = zip(panels, scene.flank_names, (pair.pinion.flank, pair.wheel.flank), scene.active_starts(), strict=True)
     for axes, name, flank, start in sides:
         outline = draw_flank(axes, name, flank, start)
         drawn = draw(axes, pair, flank)

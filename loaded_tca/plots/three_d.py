@@ -78,7 +78,7 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
     figure = Figure(figsize=(9.0, 7.5), layout="constrained")
     axes = figure.add_subplot(projection="3d", computed_zorder=False)
     _view(axes, shown)
-    side = shown.pair.pinion.side
+    side = shown.pair.pinion.flank.side
     axes.add_collection3d(_solid(shown.pinion, PINION, 1.0, shown.eye))
     axes.add_collection3d(_lines(shown.pinion, side))
     if shown.highest_pressure > 0.0:
@@ -90,7 +90,7 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
     axes.add_collection3d(_lines(shown.wheel, side))
     _explain(figure)
     what = "teeth in contact" if shown.highest_pressure > 0.0 else "teeth, no load, no pressure"
-    where = place(result, shown.position, shown.pair.pinion.frame)
+    where = place(result, shown.position, shown.pair.pinion.flank.frame)
     set_title(figure, result, f"{what}, {load(result, shown.torque)}", *where)
     return figure
 

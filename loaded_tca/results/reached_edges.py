@@ -46,7 +46,7 @@ def _beside_pressure(pair: GearPair, one: PressureMap) -> NDArray[np.bool_]:
     points = one.origin + one.x[row, None] * one.axes[0] + one.y[column, None] * one.axes[1]
     radius, _, axial = pair.to_wheel(points)
     edges = [
-        *pair.pinion.edges(np.hypot(points[:, 0], points[:, 1]), points[:, 2]),
-        *pair.wheel.edges(radius, axial),
+        *pair.pinion.flank.edges(np.hypot(points[:, 0], points[:, 1]), points[:, 2]),
+        *pair.wheel.flank.edges(radius, axial),
     ]
     return np.array([bool((np.broadcast_to(edge.value, row.shape) < 0.0).any()) for edge in edges])

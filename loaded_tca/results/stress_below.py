@@ -174,7 +174,7 @@ class StressBelow:
 
     def summary(self) -> str:
         """Return what is largest, how deep and where, beside what Hertz says, in a few lines."""
-        frame = parse_scene(self.result.scene_toml).pair().pinion.frame
+        frame = parse_scene(self.result.scene_toml).pair().pinion.flank.frame
         peak = float(self.pressure_map.pressure[self.highest_pressure])
         lines = [self.result.title or "Stresses below the surface", *self.where]
         for quantity, name in NAMES.items():

@@ -213,7 +213,7 @@ class BevelScene(BlankScene):
         points = [
             bevel_rows.pitch_point(gear.mean_cone_distance, gear.pitch_angle) for gear in (mesh.pinion, mesh.wheel)
         ]
-        return bevel_rows.force_rows((bare.pinion, bare.wheel), (points[0], points[1]), torques)
+        return bevel_rows.force_rows((bare.pinion.flank, bare.wheel.flank), (points[0], points[1]), torques)
 
 
 def _bore_problem(gear: BevelGear, bore: float | None) -> str:

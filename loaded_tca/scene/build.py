@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -77,9 +76,9 @@ def build_flanks(pair: GearPair, forms: tuple[FlankForm, FlankForm], in_contact:
     """
     pinion, wheel = (
         _build_flank(flank, form, name, in_contact)
-        for name, flank, form in zip(("pinion", "wheel"), (pair.pinion, pair.wheel), forms, strict=True)
+        for name, flank, form in zip(("pinion", "wheel"), (pair.pinion.flank, pair.wheel.flank), forms, strict=True)
     )
-    return replace(pair, pinion=pinion, wheel=wheel)
+    return pair.with_flanks(pinion, wheel)
 
 
 def _build_flank(flank: Flank, form: FlankForm, owner: str, in_contact: bool) -> Flank:

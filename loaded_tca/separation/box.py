@@ -55,7 +55,7 @@ def _estimate_box(
     """
     pair = gap.pair
     modulus = pair.contact_modulus
-    longest = math.hypot(pair.face_width, *(flank.extent[0] for flank in (pair.pinion, pair.wheel)))
+    longest = math.hypot(pair.face_width, *(flank.extent[0] for flank in (pair.pinion.flank, pair.wheel.flank)))
     window = _window_in(guess) if guess is not None and contact.on_edge else _first_window(curvature, load, pair)
     window = (window[0], min(window[1], longest))
     for _ in range(MOST_PROBES):

@@ -79,9 +79,9 @@ class NormalGap:
         self.pair = pair
         in_wheel = pair.wheel_axes.T
         self._views = (
-            (pair.pinion, contact.point, axes, pair.sense * contact.pinion_angle),
+            (pair.pinion.flank, contact.point, axes, pair.sense * contact.pinion_angle),
             (
-                pair.wheel,
+                pair.wheel.flank,
                 (contact.point - pair.wheel_origin) @ in_wheel,
                 axes @ in_wheel,
                 -pair.sense * contact.wheel_angle,

@@ -80,7 +80,7 @@ def build_tooth(flanks: tuple[Flank, Flank], form: ToothForm, resolution: Resolu
     >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
     >>> from loaded_tca.tooth import tooth_forms
     >>> mesh = CylindricalMesh(*(CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)))
-    >>> plus, minus = (cylindrical_pair(mesh, sense=sense).pinion for sense in ("positive", "negative"))
+    >>> plus, minus = (cylindrical_pair(mesh, sense=sense).pinion.flank for sense in ("positive", "negative"))
     >>> build_tooth((plus, minus), tooth_forms(mesh)[0])
     ToothSurface(106 x 33 points, one of 34 teeth)
     """

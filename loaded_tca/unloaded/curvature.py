@@ -68,7 +68,7 @@ def heelwards(pair: GearPair, contact: ContactPoint) -> Array:
     """Direction (3,) in the fixed frame in which the pinion's lengthwise coordinate grows by one mm per mm."""
     basis = cylindrical_basis(np.arctan2(contact.point[1], contact.point[0]))
     rho, z = np.array(contact.pinion_radius), np.array(contact.pinion_axial)
-    return lengthwise_direction(pair.pinion, rho, z) @ basis
+    return lengthwise_direction(pair.pinion.flank, rho, z) @ basis
 
 
 def _tangent_plane(normal: Array, lengthwise: Array) -> Array:

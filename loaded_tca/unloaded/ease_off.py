@@ -133,11 +133,11 @@ class EaseOff:
 
     @cached_property
     def _pinion_relief_starts(self) -> int:
-        return len(self.pair.pinion.relief_starts(*self.pair.pinion.grid(2, 2)))
+        return len(self.pair.pinion.flank.relief_starts(*self.pair.pinion.flank.grid(2, 2)))
 
     @cached_property
     def _wheel_relief_starts(self) -> int:
-        return len(self.pair.wheel.relief_starts(*self.pair.wheel.grid(2, 2)))
+        return len(self.pair.wheel.flank.relief_starts(*self.pair.wheel.flank.grid(2, 2)))
 
     @property
     def relief_starts(self) -> int:
@@ -147,8 +147,8 @@ class EaseOff:
     def sides(self, phi1: Array, rho: Array, z: Array) -> Array:
         """On which side of each relief start the points (n,) lie: (n, relief starts) bool, the pinion's first."""
         station = self.station(phi1, rho, z)
-        own = self.pair.pinion.relief_starts(station.rho, station.z)
-        other = self.pair.wheel.relief_starts(station.wheel_rho, station.wheel_z)
+        own = self.pair.pinion.flank.relief_starts(station.rho, station.z)
+        other = self.pair.wheel.flank.relief_starts(station.wheel_rho, station.wheel_z)
         sides = [np.broadcast_to(jet.value > 0.0, rho.shape) for jet in (*own, *other)]
         return np.stack(sides, axis=-1) if sides else np.zeros((*rho.shape, 0), dtype=bool)
 
@@ -158,11 +158,11 @@ class EaseOff:
 
     def station(self, phi1: Array, rho: Array, z: Array) -> Station:
         """Points (rho, z) of the pinion flank at the pinion angle phi1 [rad], arrays of one shape."""
-        jet = self.pair.pinion.theta(rho, z, self._sides(0))
+        jet = self.pair.pinion.flank.theta(rho, z, self._sides(0))
         azimuth = jet.value + self.pair.sense * phi1
         point = _on_circle(rho, azimuth, z)
         wheel_rho, wheel_theta, wheel_z = self.pair.to_wheel(point)
-        wheel = self.pair.wheel.theta(wheel_rho, wheel_z, self._sides(1))
+        wheel = self.pair.wheel.flank.theta(wheel_rho, wheel_z, self._sides(1))
         radial, around, axial = _pinion_basis(self.pair.wheel_axes, azimuth, wheel_theta)
         along, across = rho * jet.rho, rho * jet.z
         slopes = np.stack([radial + along * around, axial + across * around], axis=1)
@@ -178,9 +178,9 @@ class EaseOff:
 
     def heights(self, phi1: Array, rho: Array, z: Array) -> tuple[Array, Array]:
         """Ease-off (...) [mm] and distances to the edges (..., k) [mm], without derivatives."""
-        azimuth = self.pair.pinion.theta(rho, z, self._sides(0)).value + self.pair.sense * phi1
+        azimuth = self.pair.pinion.flank.theta(rho, z, self._sides(0)).value + self.pair.sense * phi1
         wheel_rho, wheel_theta, wheel_z = self.pair.to_wheel(_on_circle(rho, azimuth, z))
-        mating = self.pair.wheel.theta(wheel_rho, wheel_z, self._sides(1)).value
+        mating = self.pair.wheel.flank.theta(wheel_rho, wheel_z, self._sides(1)).value
         value = self._lead(mating - wheel_theta, phi1)
         pinion, wheel = self._edge_jets(rho, z, wheel_rho, wheel_z)
         return value, _last_axis([jet.value for jet in (*pinion, *wheel)], value.shape)
@@ -262,12 +262,12 @@ class EaseOff:
 
     def _edge_jets(self, rho: Array, z: Array, wheel_rho: Array, wheel_z: Array) -> tuple[list[Jet], list[Jet]]:
         pair = self.pair
-        pinion = [*pair.pinion.edges(rho, z)]
-        wheel = [*pair.wheel.edges(wheel_rho, wheel_z)]
+        pinion = [*pair.pinion.flank.edges(rho, z)]
+        wheel = [*pair.wheel.flank.edges(wheel_rho, wheel_z)]
         if self.beyond is not None:
             signs = np.where(self.beyond, 1.0, -1.0)
-            own = pair.pinion.relief_starts(rho, z)
-            other = pair.wheel.relief_starts(wheel_rho, wheel_z)
+            own = pair.pinion.flank.relief_starts(rho, z)
+            other = pair.wheel.flank.relief_starts(wheel_rho, wheel_z)
             pinion += [jet * signs[..., k] for k, jet in enumerate(own)]
             wheel += [jet * signs[..., len(own) + k] for k, jet in enumerate(other)]
         return pinion, wheel

@@ -85,7 +85,7 @@ def find_lines(field: EaseOff, phi1: Array, rho: Array, z: Array, multipliers: A
 def _softest_direction(field: EaseOff, phi1: Array, rho: Array, z: Array, multipliers: Array) -> tuple[Array, Array]:
     """Soft direction at the points or just beside them: at the start of an end relief the curvature jumps."""
     along, fall = _soft_direction(field, phi1, rho, z, multipliers)
-    step = NEARBY * field.pair.pinion.extent[1] * along
+    step = NEARBY * field.pair.pinion.flank.extent[1] * along
     for sign in (1.0, -1.0):
         other, lower = _soft_direction(field, phi1, rho + sign * step[:, 0], z + sign * step[:, 1], multipliers)
         flat = (lower < fall) & (lower <= WORTH_FOLLOWING * field.pair.module)
@@ -97,7 +97,7 @@ def _soft_direction(field: EaseOff, phi1: Array, rho: Array, z: Array, multiplie
     """Direction of least curvature in (rho, z), (n, 2), and the fall [mm] it promises over half the flank."""
     station = field.station(phi1, rho, z)
     bend = field.hessian(station) + field.edge_hessian(station, multipliers)
-    height, width = field.pair.pinion.extent
+    height, width = field.pair.pinion.flank.extent
     scale = np.array([height, width])
     values, vectors = np.linalg.eigh(bend * np.outer(scale, scale))
     rows, soft = np.arange(len(rho)), np.argmin(np.abs(values), axis=-1)
@@ -140,7 +140,7 @@ class _Ridge:
         first = np.argmin(np.where(met, travel, np.inf), axis=1)
         second = np.argmax(np.where(met, travel, -np.inf), axis=1)
         length = travel[rows, second] - travel[rows, first]
-        found = (met.sum(axis=1) > 1) & (length > FEASIBLE * self.field.pair.pinion.extent[1])
+        found = (met.sum(axis=1) > 1) & (length > FEASIBLE * self.field.pair.pinion.flank.extent[1])
         return crossings[rows, first], crossings[rows, second], found
 
     def flat_part(self, end: Array) -> Array:
@@ -162,7 +162,7 @@ class _Ridge:
 
     def _follow(self, points: Array, edge: Array) -> tuple[Array, Array]:
         """Newton iteration for a point on the ridge and on an edge (-1: on the normal through ``points``)."""
-        x, extent = points.copy(), np.asarray(self.field.pair.pinion.extent)
+        x, extent = points.copy(), np.asarray(self.field.pair.pinion.flank.extent)
         lowest, highest = self._bounds()
         residual, rows = np.zeros(len(x)), np.arange(len(x))
         for _ in range(RIDGE_STEPS):
@@ -178,8 +178,8 @@ class _Ridge:
         return x, inside & (residual <= FEASIBLE * extent[1])
 
     def _bounds(self) -> tuple[Array, Array]:
-        rho, z = self.field.pair.pinion.grid(2, 2)
-        margin = 0.5 * np.asarray(self.field.pair.pinion.extent)
+        rho, z = self.field.pair.pinion.flank.grid(2, 2)
+        margin = 0.5 * np.asarray(self.field.pair.pinion.flank.extent)
         return np.array([rho.min(), z.min()]) - margin * [0.2, 1.0], np.array([rho.max(), z.max()]) + margin
 
     def _only(self, rows: Array) -> _Ridge:

@@ -184,7 +184,7 @@ def warn_of_fillets(pair: GearPair, path: ContactPath, what: str) -> None:
     """Warn, for the caller's caller, where ``what`` lies on the root edge of a flank."""
     root = EDGE_NAMES.index("root")
     held = (path.edges[:, root], path.edges[:, len(EDGE_NAMES) + root])
-    flanks = [flank for flank, rows in zip((pair.pinion, pair.wheel), held, strict=True) if rows.any()]
+    flanks = [flank for flank, rows in zip((pair.pinion.flank, pair.wheel.flank), held, strict=True) if rows.any()]
     if flanks:
         count = int((held[0] | held[1]).sum())
         where = " or a ".join(dict.fromkeys(flank.frame.edges[root] for flank in flanks))
@@ -235,8 +235,8 @@ def _spread(part: Array, rows: Array, count: int) -> Array:
 def _contact(pair: GearPair, field: EaseOff, station: Station, held: Bools) -> dict[str, Any]:
     """Normals, levers, edges and residual of the points; ``held`` tells the edges and relief starts they rest on."""
     pinion_basis = cylindrical_basis(np.arctan2(station.point[:, 1], station.point[:, 0]))
-    out_of_pinion = _in_space(outward_normal(pair.pinion, station.rho, station.z), pinion_basis)
-    out_of_wheel = _in_space(outward_normal(pair.wheel, station.wheel_rho, station.wheel_z), station.wheel_basis)
+    out_of_pinion = _in_space(outward_normal(pair.pinion.flank, station.rho, station.z), pinion_basis)
+    out_of_wheel = _in_space(outward_normal(pair.wheel.flank, station.wheel_rho, station.wheel_z), station.wheel_basis)
     edges = held[:, ~field.edge_is_relief_start()]
     use_wheel = _ends(field, station, held, 0) & ~_ends(field, station, held, 1)
     normal = np.where(use_wheel[:, None], -out_of_wheel, out_of_pinion)
@@ -262,7 +262,7 @@ def _ends(field: EaseOff, station: Station, held: Bools, member: int) -> Array:
     """Whether the flank of one gear ends, or has its relief start, at the contact."""
     own, relief_start = field.edge_owner() == member, field.edge_is_relief_start()
     distances, _ = field.edges(station)
-    near = distances <= FEASIBLE * field.pair.pinion.extent[0]
+    near = distances <= FEASIBLE * field.pair.pinion.flank.extent[0]
     on_edge = held[:, ~relief_start].any(axis=-1) & (near & own & ~relief_start).any(axis=-1)
     return on_edge | (held & own).any(axis=-1)
 

@@ -99,7 +99,7 @@ def climb(field: EaseOff, phi1: Array, rho: Array, z: Array) -> Maxima:
     -------
     Maxima
     """
-    scale = np.asarray(field.pair.pinion.extent)
+    scale = np.asarray(field.pair.pinion.flank.extent)
     points = np.stack([rho, z], axis=-1) / scale
     count, edges = len(phi1), len(field.edge_owner())
     multipliers, penalty = np.zeros((count, edges)), np.ones(count)
@@ -148,14 +148,14 @@ def _settled(field: EaseOff, here: _Local, step: Array) -> Array:
     """Whether the step is the last: no rise left, or too short to matter, and the edges kept."""
     gain = np.abs((here.gradient * step).sum(axis=-1))
     small = (gain <= SMALLEST_GAIN * field.pair.base_radii[1]) | (np.abs(step).max(axis=-1) <= SHORT_STEP)
-    return small & (_violation(here.edges) <= FEASIBLE * field.pair.pinion.extent[0])
+    return small & (_violation(here.edges) <= FEASIBLE * field.pair.pinion.flank.extent[0])
 
 
 def _advance(
     field: EaseOff, phi1: Array, points: Array, step: Array, here: _Local, multipliers: Array, penalty: Array
 ) -> tuple[Array, Array]:
     """Points after the longest step, halved as often as needed, that does not lower the merit; the share accepted."""
-    scale = np.asarray(field.pair.pinion.extent)
+    scale = np.asarray(field.pair.pinion.flank.extent)
 
     def merit(rows: Array, trial: Array) -> tuple[Array, Array]:
         value, edges = field.restricted(rows).heights(phi1[rows], *(trial * scale).T)

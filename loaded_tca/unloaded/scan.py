@@ -138,8 +138,8 @@ def _edge_chains() -> NDArray[np.int_]:
 
 def scan_pinion(pair: GearPair, phi1: Array) -> Scan:
     """Scan of the pinion flank at each pinion angle (n,) [rad]."""
-    rho, z = _points(pair.pinion, GRID, EDGE)
-    field, count, allowed = EaseOff(pair), GRID[0] * GRID[1], ROOM * pair.pinion.extent[0]
+    rho, z = _points(pair.pinion.flank, GRID, EDGE)
+    field, count, allowed = EaseOff(pair), GRID[0] * GRID[1], ROOM * pair.pinion.flank.extent[0]
 
     def look(block: Array) -> tuple[Array, Array, Array]:
         full = [np.broadcast_to(part, (len(block), len(rho))) for part in (rho, z)]
@@ -151,7 +151,7 @@ def scan_pinion(pair: GearPair, phi1: Array) -> Scan:
     height = np.where(lack <= allowed, value, -np.inf)
     outside = min(float(value.min(initial=0.0)) - 1.0, -1.0) * (1.0 + lack[:, :count])
     score = np.where(lack[:, :count] <= allowed, value[:, :count], outside)
-    return Scan(rho, z, height, score.reshape(len(phi1), *GRID), room >= -BETWEEN * _spacing(pair.pinion))
+    return Scan(rho, z, height, score.reshape(len(phi1), *GRID), room >= -BETWEEN * _spacing(pair.pinion.flank))
 
 
 def inside_pinion(pair: GearPair, phi1: Array, value: Array, depth: float) -> Starts:
@@ -164,8 +164,8 @@ def inside_pinion(pair: GearPair, phi1: Array, value: Array, depth: float) -> St
         Pinion angles, and the ease-off that tells where the wheel stands.
     depth : float [mm]
     """
-    rho, z = _points(pair.wheel, WHEEL_GRID, WHEEL_EDGE)
-    own_theta = pair.wheel.theta(rho, z).value
+    rho, z = _points(pair.wheel.flank, WHEEL_GRID, WHEEL_EDGE)
+    own_theta = pair.wheel.flank.theta(rho, z).value
     wheel_angle = pair.driving * value / pair.base_radii[1] + pair.ratio * phi1
 
     def look(angle: Array, wheel_angle: Array) -> tuple[Array, Array, Array]:
@@ -173,9 +173,9 @@ def inside_pinion(pair: GearPair, phi1: Array, value: Array, depth: float) -> St
         own = np.stack([rho * np.cos(theta), rho * np.sin(theta), np.broadcast_to(z, theta.shape)])
         x, y, axial = np.tensordot(pair.wheel_axes.T, own, axes=1) + pair.wheel_origin[:, None, None]
         radius = np.hypot(x, y)
-        ahead = angle[:, None] - pair.sense * (np.arctan2(y, x) - pair.pinion.theta(radius, axial).value)
+        ahead = angle[:, None] - pair.sense * (np.arctan2(y, x) - pair.pinion.flank.theta(radius, axial).value)
         found = pair.driving * pair.base_radii[0] * (np.remainder(ahead + np.pi, 2.0 * np.pi) - np.pi)
-        found = np.where(pair.pinion.inside(radius, axial), found, -np.inf)
+        found = np.where(pair.pinion.flank.inside(radius, axial), found, -np.inf)
         rows, deepest = np.arange(len(angle)), found.argmax(axis=1)
         return found[rows, deepest], radius[rows, deepest], axial[rows, deepest]
 

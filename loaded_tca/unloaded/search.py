@@ -119,7 +119,7 @@ def _accuracy_warnings(
 def _beside_saddles(pair: GearPair, phi1: Array, touch: FirstTouch, rows: NDArray[np.int_]) -> Starts:
     """Starts on either side of contacts from which the ease-off rises both ways by its second derivatives."""
     field = EaseOff(pair, touch.beyond[rows] if touch.beyond.shape[1] else None)
-    held, scale = touch.multipliers[rows], np.asarray(pair.pinion.extent)
+    held, scale = touch.multipliers[rows], np.asarray(pair.pinion.flank.extent)
     station = field.station(phi1[rows], touch.rho[rows], touch.z[rows])
     bend = (field.hessian(station) + field.edge_hessian(station, held)) * np.outer(scale, scale)
     values, vectors = np.linalg.eigh(bend)
@@ -143,7 +143,7 @@ def _beside_corners(pair: GearPair, phi1: Array, touch: FirstTouch) -> Starts:
     """
     rows = np.flatnonzero(touch.in_contact & ((touch.multipliers > 0.0).sum(axis=1) > 1))
     field = EaseOff(pair, touch.beyond[rows] if touch.beyond.shape[1] else None)
-    scale = np.asarray(pair.pinion.extent)
+    scale = np.asarray(pair.pinion.flank.extent)
     station = field.station(phi1[rows], touch.rho[rows], touch.z[rows])
     two = np.argsort(touch.multipliers[rows], axis=1)[:, -2:]
     slopes = np.take_along_axis(field.edges(station)[1] * scale, two[..., None], axis=1)

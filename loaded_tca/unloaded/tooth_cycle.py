@@ -214,13 +214,15 @@ def reach(pair: GearPair) -> tuple[float, float]:
 
 def _scan(pair: GearPair, own: Array) -> tuple[Array, Array]:
     """Highest point of a coarse grid (n,) [mm], -inf if none is common; whether one is within a spacing of it."""
-    rho, z = pair.pinion.grid(*SCAN)
+    rho, z = pair.pinion.flank.grid(*SCAN)
     shape = (len(own), *SCAN)
     value, edges = EaseOff(pair).heights(
         np.broadcast_to(own[:, None, None], shape), np.broadcast_to(rho, shape), np.broadcast_to(z, shape)
     )
     inside = edges.min(axis=-1)
-    height_step, width_step = (length / (count - 1) for length, count in zip(pair.pinion.extent, SCAN, strict=True))
+    height_step, width_step = (
+        length / (count - 1) for length, count in zip(pair.pinion.flank.extent, SCAN, strict=True)
+    )
     height = np.where(inside >= 0.0, value, -np.inf).max(axis=(1, 2))
     return height, inside.max(axis=(1, 2)) >= -2.0 * math.hypot(height_step, width_step)
 

@@ -96,7 +96,7 @@ def test_steps_after_the_first_depend_on_neither_radial_setting_nor_cutter_radiu
 
 def standing(pair, values, member, gears):
     """Point and normal of one gear in the fixed frame at a start."""
-    flank = (pair.pinion, pair.wheel)[member]
+    flank = (pair.pinion.flank, pair.wheel.flank)[member]
     line = GeneratingLine(gears[member], gears[member].flank_name(flank.side))
     azimuth, turn = (
         (values.pinion_azimuth, values.pinion_turn),

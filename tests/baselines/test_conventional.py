@@ -118,7 +118,7 @@ def test_share_of_random_starts_that_converge_falls_with_the_spread_of_the_wheel
 
 def random_ranges(pair):
     """Ends of both flanks, and -1 to 1 for the wheel angle."""
-    corners = [part for flank in (pair.pinion, pair.wheel) for part in flank.grid(2, 2)]
+    corners = [part for flank in (pair.pinion.flank, pair.wheel.flank) for part in flank.grid(2, 2)]
     return [(part.min(), part.max()) for part in corners] + [(-1.0, 1.0)]
 
 

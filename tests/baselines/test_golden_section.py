@@ -94,7 +94,7 @@ def test_smallest_gap_grows_with_the_wheel_angle_where_the_distance_without_sign
     rows = np.arange(5)
     smallest = search.narrowest(rows, angles)[0]
     assert (np.diff(smallest) > 0.0).all()
-    rho, z = (part.ravel() for part in pair.pinion.grid(40, 40))
+    rho, z = (part.ravel() for part in pair.pinion.flank.grid(40, 40))
     for row in rows[:3]:
         gaps = search.gap(np.full(rho.size, row), np.full(rho.size, angles[row]), rho, z)
         assert gaps.min() < 0.0 < gaps.max()

@@ -30,8 +30,8 @@ def gears():
     bevel = [bevel_pair(mesh, sense=sense) for sense in ("positive", "negative")]
     return {
         "spur": pinion(),
-        "helical": GearTooth((helical[0].pinion, helical[1].pinion), tooth_forms(spur_mesh())[0]),
-        "bevel": GearTooth((bevel[0].pinion, bevel[1].pinion), tooth_forms(mesh)[0]),
+        "helical": GearTooth((helical[0].pinion.flank, helical[1].pinion.flank), tooth_forms(spur_mesh())[0]),
+        "bevel": GearTooth((bevel[0].pinion.flank, bevel[1].pinion.flank), tooth_forms(mesh)[0]),
     }
 
 
@@ -89,7 +89,11 @@ def test_a_sharp_fillet_does_not_fold_the_body():
     """Edges of elements that turned by 66 deg at the foot of this pinion folded over."""
     scene = read_scene(SCENES / "face_milled_19x62_matched.toml")
     pair, backs = scene.pair(), scene.pair("positive")
-    flanks = (backs.pinion, pair.pinion) if pair.pinion.side < 0 else (pair.pinion, backs.pinion)
+    flanks = (
+        (backs.pinion.flank, pair.pinion.flank)
+        if pair.pinion.flank.side < 0
+        else (pair.pinion.flank, backs.pinion.flank)
+    )
     gear = GearTooth(flanks, tooth_forms(scene.mesh())[0])
     body = gear_body(gear.nodes(DENSITY), gear.material)
     assert len(body.mesh.elements) > 100

@@ -55,7 +55,7 @@ def gear_with(modifications=FlankModifications(), **changes):
         cylindrical_pair(mesh, modifications=(modifications, FlankModifications()), sense=sense)
         for sense in ("positive", "negative")
     )
-    return GearTooth((pair.pinion, backs.pinion), tooth_forms(mesh)[0])
+    return GearTooth((pair.pinion.flank, backs.pinion.flank), tooth_forms(mesh)[0])
 
 
 def same(one, other):
@@ -108,9 +108,12 @@ def test_another_gear_is_another_model(other):
 def test_equal_gears_are_one_model():
     mesh = CylindricalMesh(*(CylindricalGear(teeth=30, normal_module=3.0, face_width=20.0) for _ in range(2)))
     pair, backs = (cylindrical_pair(mesh, sense=sense) for sense in ("positive", "negative"))
-    flanks = (pair.pinion, backs.pinion), (pair.wheel, backs.wheel)
+    flanks = (pair.pinion.flank, backs.pinion.flank), (pair.wheel.flank, backs.wheel.flank)
     gears = [GearTooth(*parts) for parts in zip(flanks, tooth_forms(mesh), strict=True)]
-    keys = [key_of(frame_of(gear, side)) for gear, side in zip(gears, (pair.pinion.side, pair.wheel.side), strict=True)]
+    keys = [
+        key_of(frame_of(gear, side))
+        for gear, side in zip(gears, (pair.pinion.flank.side, pair.wheel.flank.side), strict=True)
+    ]
     assert keys[0] == keys[1]
 
 

@@ -40,7 +40,7 @@ def bevel(spiral_deg, **changes):
 def test_lead_of_an_unmodified_pair_is_zero_everywhere(make, driving, sense):
     pair = make(driving=driving, sense=sense)
     for seen in (pair, exchanged(pair)):
-        contact = conjugate_contact(seen, *seen.pinion.grid(15, 9))
+        contact = conjugate_contact(seen, *seen.pinion.flank.grid(15, 9))
         on = contact.exists & (contact.profile_room >= 0.0)
         assert on[-1].all()  # the own tip always finds the mating gear's flank
         assert_allclose(contact.lead[on], 0.0, atol=ROUNDING)
@@ -49,8 +49,8 @@ def test_lead_of_an_unmodified_pair_is_zero_everywhere(make, driving, sense):
 def test_contact_of_involutes_lies_on_the_line_of_action():
     mesh = cylindrical_mesh()
     pair = gear_pair()
-    contact = conjugate_contact(pair, *pair.pinion.grid(15, 3))
-    rho, _ = pair.pinion.grid(15, 3)
+    contact = conjugate_contact(pair, *pair.pinion.flank.grid(15, 3))
+    rho, _ = pair.pinion.flank.grid(15, 3)
     roll = np.sqrt(rho**2 - pair.base_radii[0] ** 2) + np.sqrt(contact.mating_radius**2 - pair.base_radii[1] ** 2)
     length = math.sqrt(mesh.working_centre_distance**2 - sum(pair.base_radii) ** 2)
     assert_allclose(roll, length, rtol=1e-9)
@@ -60,7 +60,7 @@ def test_contact_of_involutes_lies_on_the_line_of_action():
 def test_lead_is_the_highest_of_the_whole_passage(driving):
     """Dense angles, written from the definitions of the frames: never above, and below by a parabola's step at most."""
     pair = crowned(driving=driving)
-    rho, z = (part.ravel() for part in pair.pinion.grid(9, 7))
+    rho, z = (part.ravel() for part in pair.pinion.flank.grid(9, 7))
     contact = conjugate_contact(pair, rho, z)
     on = contact.exists & (contact.profile_room > 0.0)
     steps = np.linspace(-1e-3, 1e-3, 201)
@@ -73,7 +73,7 @@ def test_lead_is_the_highest_of_the_whole_passage(driving):
 
 def test_whole_passage_has_no_higher_lead_elsewhere():
     pair = crowned()
-    rho, z = (part.ravel() for part in pair.pinion.grid(9, 7))
+    rho, z = (part.ravel() for part in pair.pinion.flank.grid(9, 7))
     contact = conjugate_contact(pair, rho, z)
     for angle in np.linspace(-2.0, 2.0, 400) * pair.pitch:
         lag, inside = transmission_error_at(pair, angle, rho, z)
@@ -91,13 +91,13 @@ def test_highest_lead_is_that_of_the_highest_transmission_error(driving):
     assert not path.on_edge[first]
     leads = conjugate_contact(pair, path.pinion_radius, path.pinion_axial).lead
     assert_allclose(leads.max(), error[first], atol=2e-7)  # the summit lies between two positions
-    dense = conjugate_contact(pair, *pair.pinion.grid(81, 81))
+    dense = conjugate_contact(pair, *pair.pinion.flank.grid(81, 81))
     assert np.nanmax(np.where(dense.profile_room > 0.0, dense.lead, -np.inf)) <= leads.max() + 2e-7
 
 
 def test_several_blocks_of_points_are_one_after_the_other():
     pair = crowned()
-    rho, z = pair.pinion.grid(3, BLOCK // 2)
+    rho, z = pair.pinion.flank.grid(3, BLOCK // 2)
     whole, part = conjugate_contact(pair, rho, z), conjugate_contact(pair, rho[2, -5:], z[2, -5:])
     assert whole.lead.shape == rho.shape
     assert_allclose(whole.lead[2, -5:], part.lead, rtol=0, atol=ROUNDING)
@@ -105,7 +105,7 @@ def test_several_blocks_of_points_are_one_after_the_other():
 
 def test_points_that_never_meet_the_mate_have_no_contact():
     pair = gear_pair(mounting=Mounting(centre_distance_error=4.0))
-    contact = conjugate_contact(pair, *pair.pinion.grid(9, 2))
+    contact = conjugate_contact(pair, *pair.pinion.flank.grid(9, 2))
     assert contact.exists[-1].all()
     assert not contact.exists[0].any()
     assert np.isnan(contact.angle[0]).all()

@@ -43,7 +43,7 @@ def bevel(spiral_deg, pinion=NONE, wheel=NONE, mounting=None, **changes):
 
 def own_removal(pair, gear, found):
     """Modification of a flank at the points of its map, zero at its highest point [mm]."""
-    flank = pair.pinion if gear == "pinion" else pair.wheel
+    flank = pair.pinion.flank if gear == "pinion" else pair.wheel.flank
     off = flank.removal(found.radius, found.axial).value
     return off - off.min()
 
@@ -107,7 +107,7 @@ def fit_of_sum(size, gear="pinion"):
     found = ease_off_map(pair, gear, (11, 11))
     here = (found.radius, found.axial), (found.mating_radius, found.mating_axial)
     places = here if gear == "pinion" else here[::-1]
-    total = pair.pinion.removal(*places[0]).value + pair.wheel.removal(*places[1]).value
+    total = pair.pinion.flank.removal(*places[0]).value + pair.wheel.flank.removal(*places[1]).value
     difference = found.ease_off - total
     return float(np.ptp(difference))
 
@@ -167,8 +167,8 @@ def test_slivers_beside_slanted_edges_are_marked():
 
 def test_fitted_flank_has_the_ease_off_of_its_equations():
     pair = gear_pair(FlankModifications(lead_crowning=0.010, profile_crowning=0.005))
-    spline = fitted(pair.pinion)
-    other = gear_pair().__class__(**{**pair.__dict__, "pinion": spline})
+    spline = fitted(pair.pinion.flank)
+    other = pair.with_flanks(pinion=spline)
     exact, found = (ease_off_map(one, grid=(9, 9)).ease_off for one in (pair, other))
     assert_allclose(found, exact, atol=4.0 * spline.check_error.largest + ROUNDING)
 
@@ -176,8 +176,8 @@ def test_fitted_flank_has_the_ease_off_of_its_equations():
 def test_points_of_the_map_and_of_the_mate_are_on_their_flanks():
     pair = gear_pair(MANY, helix_deg=15.0)
     found = ease_off_map(pair)
-    assert pair.pinion.inside(found.radius, found.axial, 1e-6).all()
-    assert pair.wheel.inside(found.mating_radius, found.mating_axial, 1e-4).all()
+    assert pair.pinion.flank.inside(found.radius, found.axial, 1e-6).all()
+    assert pair.wheel.flank.inside(found.mating_radius, found.mating_axial, 1e-4).all()
     # the modified foot is a little beyond the nominal one
     active = cylindrical_mesh(helix_deg=15.0).pinion_active_profile
     assert_allclose(found.profile[[0, -1], 0], (active.start_roll_length, active.end_roll_length), atol=0.1)

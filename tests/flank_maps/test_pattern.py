@@ -36,7 +36,7 @@ def contact(pair, angle=0.01):
 def test_gap_is_zero_at_the_contact_and_nowhere_negative(helix_deg, driving):
     pair = crowned(helix_deg=helix_deg, driving=driving)
     here = contact(pair)
-    for gear, flank in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+    for gear, flank in (("pinion", pair.pinion.flank), ("wheel", pair.wheel.flank)):
         place = np.array([getattr(here, f"{gear}_radius")]), np.array([getattr(here, f"{gear}_axial")])
         gap, radius, axial = flank_gap(pair, gear, (here.pinion_angle, here.wheel_angle), place)
         mating = "wheel" if gear == "pinion" else "pinion"
@@ -54,7 +54,7 @@ def test_gap_is_the_lag_times_the_lever(driving):
     """Independently of the package's field: the wheel's lag from the definitions of the frames."""
     pair = crowned(helix_deg=15.0, driving=driving)
     here = contact(pair)
-    rho, z = pair.pinion.grid(20, 20)
+    rho, z = pair.pinion.flank.grid(20, 20)
     lag, there = transmission_error_at(pair, here.pinion_angle, rho, z)
     gap, _, _ = flank_gap(pair, "pinion", (here.pinion_angle, here.wheel_angle), (rho, z))
     lever = pair.base_radii[1] * math.cos(
@@ -149,11 +149,11 @@ def test_area_at_an_edge_ends_there():
 def integrated_area(pair, here, compound=COMPOUND, count=700):
     """Area of the projection into the tangent plane, from a dense grid over the part of the flank that it takes."""
     area = contact_area(pair, here, compound)
-    ends = zip(pair.pinion.grid(2, 2), (area.pinion_radius, area.pinion_axial), strict=True)
+    ends = zip(pair.pinion.flank.grid(2, 2), (area.pinion_radius, area.pinion_axial), strict=True)
     spans = [(max(part.min(), own.min() - 1e-3), min(part.max(), own.max() + 1e-3)) for part, own in ends]
     rho, z = np.meshgrid(*(low + (high - low) * (np.arange(count) + 0.5) / count for low, high in spans), indexing="ij")
     gap, _, _ = flank_gap(pair, "pinion", (here.pinion_angle, here.wheel_angle), (rho, z))
-    jet = pair.pinion.theta(rho, z)
+    jet = pair.pinion.flank.theta(rho, z)
     theta = jet.value + pair.sense * here.pinion_angle
     radial, zero = np.stack([np.cos(theta), np.sin(theta), 0.0 * theta], axis=-1), 0.0 * theta
     around = np.stack([-rho * np.sin(theta), rho * np.cos(theta), zero], axis=-1)

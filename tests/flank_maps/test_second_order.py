@@ -20,7 +20,7 @@ def bevel():
     return bevel_pair(bevel_mesh((20, 31), outer_module=4.0, face_width=22.0, spiral_angle=math.radians(30.0)))
 
 
-@given(st.lists(coefficient, min_size=6, max_size=6), st.sampled_from([gear_pair().pinion, bevel().wheel]))
+@given(st.lists(coefficient, min_size=6, max_size=6), st.sampled_from([gear_pair().pinion.flank, bevel().wheel.flank]))
 def test_polynomial_is_its_own_second_order(amounts, flank):
     rho, z = flank.grid(7, 9)
     x, y = flank_lengths(flank, rho, z)
@@ -32,7 +32,7 @@ def test_polynomial_is_its_own_second_order(amounts, flank):
 
 
 def test_amounts_are_those_at_the_ends():
-    flank = gear_pair().pinion
+    flank = gear_pair().pinion.flank
     rho, z = flank.grid(9, 9)
     x, y = flank_lengths(flank, rho, z)
     t, u = x / 12.5, (2.0 * y - y.max() - y.min()) / np.ptp(y)
@@ -47,7 +47,7 @@ def test_amounts_are_those_at_the_ends():
 
 
 def test_what_is_left_over_is_the_residual():
-    flank = gear_pair().pinion
+    flank = gear_pair().pinion.flank
     rho, z = flank.grid(5, 41)
     assert_allclose(second_order(flank, rho, z, np.abs(z / 12.5)).residual, math.sqrt(1.0 / 192.0), rtol=0.05)
     # |t| less its parabola 3/16 + 15/16 t^2, mean square over the face: 1/192
@@ -63,7 +63,7 @@ def removed_from(flank, other, rho, z):
 @pytest.mark.parametrize("error", [1e-4, -1e-4])
 def test_pressure_angle_is_that_of_another_base_circle(error, count):
     """On a spur gear: cos alpha = r_b/r, so a larger angle is a smaller base circle."""
-    flank = gear_pair().pinion
+    flank = gear_pair().pinion.flank
     angle, pitch = math.radians(20.0), 51.0
     base = pitch * math.cos(angle + error)
     other = InvoluteFlank(base, 0.0, flank.side, pitch, flank.radii, flank.face_width)
@@ -76,7 +76,7 @@ def test_pressure_angle_is_that_of_another_base_circle(error, count):
 
 def test_spiral_angle_is_that_of_another_lead():
     """The normal of a helical flank turns by d beta cos(alpha_n) lengthwise."""
-    flank = gear_pair(helix_deg=15.0).pinion
+    flank = gear_pair(helix_deg=15.0).pinion.flank
     beta, error, normal_angle = math.radians(15.0), 1e-4, math.radians(20.0)
     transverse = math.atan(math.tan(normal_angle) / math.cos(beta))
     base_angle = math.atan(math.tan(beta + error) * math.cos(transverse))
@@ -89,7 +89,7 @@ def test_spiral_angle_is_that_of_another_lead():
 
 
 def test_shown_by_its_numbers():
-    flank = gear_pair().pinion
+    flank = gear_pair().pinion.flank
     rho, z = flank.grid(5, 5)
     shown = repr(second_order(flank, rho, z, 0.01 * (z / 12.5) ** 2 + 1e-3 * z))
     assert shown == (

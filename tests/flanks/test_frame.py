@@ -34,7 +34,7 @@ flanks = pytest.mark.parametrize(
 
 @flanks
 def test_picture_has_the_tip_on_top_and_the_heel_on_the_right(kind, member):
-    flank = getattr(PAIRS[kind](), member)
+    flank = getattr(PAIRS[kind](), member).flank
     across, up = flank.frame.to_picture(*flank.grid(9, 7))
     assert (np.diff(up, axis=0) > 0.0).all()
     assert (np.diff(across, axis=1) > 0.0).all()
@@ -43,7 +43,7 @@ def test_picture_has_the_tip_on_top_and_the_heel_on_the_right(kind, member):
 
 @flanks
 def test_lengthwise_place_is_the_coordinate_of_lengthwise_modifications(kind, member):
-    flank = getattr(PAIRS[kind](), member)
+    flank = getattr(PAIRS[kind](), member).flank
     rho, z = flank.grid(5, 4)
     expected = np.broadcast_to(flank.lengthwise_coordinate(rho, z).value, rho.shape)
     assert_allclose(flank.frame.to_picture(rho, z)[0], expected, atol=1e-12)
@@ -51,7 +51,7 @@ def test_lengthwise_place_is_the_coordinate_of_lengthwise_modifications(kind, me
 
 @flanks
 def test_lengthwise_direction_is_the_one_in_which_the_place_moves_to_the_right(kind, member):
-    flank, step = getattr(PAIRS[kind](), member), 1e-6
+    flank, step = getattr(PAIRS[kind](), member).flank, 1e-6
     rho, z = flank.grid(5, 4)
     radial, around, axial = np.moveaxis(lengthwise_direction(flank, rho, z), -1, 0)
     assert_allclose(around, 0.0, atol=0)
@@ -102,4 +102,4 @@ def test_span_of_a_profile_does_not_depend_on_the_place_lengthwise():
 
 
 def test_modified_flank_keeps_the_frame_of_the_nominal_one():
-    assert bevel(CROWNED).wheel.frame == bevel().wheel.frame
+    assert bevel(CROWNED).wheel.flank.frame == bevel().wheel.flank.frame

@@ -38,7 +38,7 @@ WORKING, TIP = MESH.pinion_working_radius, ACTIVE.end_radius
 def modified(side_of="pinion", **amounts):
     """Pinion flank with modifications; the wheel drives to get the other side."""
     pair = cylindrical_pair(MESH, modifications=(FlankModifications(**amounts), FlankModifications()), driving=side_of)
-    return pair.pinion
+    return pair.pinion.flank
 
 
 def removed(flank, radius, z):
@@ -125,7 +125,7 @@ def test_end_relief_is_a_parabola_over_its_length_at_both_ends(length):
 def bevel_modified(**amounts):
     """Pinion flank of a spiral bevel pair with modifications."""
     mesh = bevel_mesh((20, 40), 4.0, 20.0, spiral_angle=math.radians(35.0))
-    return bevel_pair(mesh, modifications=(FlankModifications(**amounts), FlankModifications())).pinion
+    return bevel_pair(mesh, modifications=(FlankModifications(**amounts), FlankModifications())).pinion.flank
 
 
 @pytest.mark.parametrize("build", [modified, bevel_modified])
@@ -193,8 +193,8 @@ def test_modifications_add_up(data, mesh):
 
     def field(choice):
         pair = cylindrical_pair(mesh, modifications=(choice, FlankModifications()))
-        rho, z = pair.pinion.grid(7, 7)
-        return pair.pinion.removal(rho, z).value if isinstance(pair.pinion, ModifiedFlank) else 0.0 * rho
+        rho, z = pair.pinion.flank.grid(7, 7)
+        return pair.pinion.flank.removal(rho, z).value if isinstance(pair.pinion.flank, ModifiedFlank) else 0.0 * rho
 
     assert_allclose(field(whole), sum(field(one) for one in single), rtol=0, atol=1e-15)
 
@@ -238,7 +238,7 @@ def test_derivatives_of_every_modified_flank_agree_with_differences(data, height
     mesh = data.draw(meshes())
     choice = data.draw(modifications(mesh.wheel, mesh.wheel_active_profile))
     driver = data.draw(st.sampled_from(["pinion", "wheel"]))
-    flank = cylindrical_pair(mesh, modifications=(FlankModifications(), choice), driving=driver).wheel
+    flank = cylindrical_pair(mesh, modifications=(FlankModifications(), choice), driving=driver).wheel.flank
     low, high = (mesh.wheel.form_radius, mesh.wheel.tip_radius)
     rho, z = low + height * (high - low), place * mesh.wheel.face_width
     step = 1e-4  # mm; the parabolas that start at a line and the ramps switch within it at worst
@@ -342,8 +342,8 @@ def test_modified_flank_of_the_other_side_is_the_mirror_image_of_the_other_hand(
     one, other = (cylindrical_mesh(helix_deg=sign * helix) for sign in (1.0, -1.0))
     choice = data.draw(modifications(one.pinion, one.pinion_active_profile))
     both = (choice, FlankModifications())
-    first = cylindrical_pair(one, modifications=both).pinion
-    second = cylindrical_pair(other, modifications=both, driving="wheel").pinion
+    first = cylindrical_pair(one, modifications=both).pinion.flank
+    second = cylindrical_pair(other, modifications=both, driving="wheel").pinion.flank
     rho = np.array(GEAR.form_radius + height * (TIP - GEAR.form_radius))
     z = np.array(place * GEAR.face_width)
     assert_allclose(first.theta(rho, z).value, -second.theta(rho, z).value, rtol=0, atol=1e-16)
@@ -398,5 +398,5 @@ def test_circular_crowning_of_more_than_half_the_face_is_refused():
 
 def test_gear_pair_of_the_helpers_has_the_modified_flank_on_the_gear_asked_for():
     pair = gear_pair(wheel=FlankModifications(lead_crowning=AMOUNT))
-    assert isinstance(pair.pinion, InvoluteFlank)
-    assert isinstance(pair.wheel, ModifiedFlank)
+    assert isinstance(pair.pinion.flank, InvoluteFlank)
+    assert isinstance(pair.wheel.flank, ModifiedFlank)

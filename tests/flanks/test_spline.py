@@ -35,7 +35,7 @@ def pair_of(kind, pinion=CROWNED, wheel=FlankModifications(), **choices):
 
 
 def with_splines(pair, points=(33, 33)):
-    return replace(pair, pinion=fitted(pair.pinion, points), wheel=fitted(pair.wheel, points))
+    return pair.with_flanks(pinion=fitted(pair.pinion.flank, points), wheel=fitted(pair.wheel.flank, points))
 
 
 def angles(pair):
@@ -79,7 +79,7 @@ def test_fitted_flank_keeps_the_place_of_a_flank_whose_modification_reaches_the_
 @given(height=st.floats(0.05, 0.95), place=st.floats(0.02, 0.98))
 @settings(max_examples=25)
 def test_derivatives_of_fitted_flanks_agree_with_differences(kind, height, place):
-    flank = pair_of(kind).pinion
+    flank = pair_of(kind).pinion.flank
     corners = np.stack(flank.grid(2, 2))
     weights = np.outer([1.0 - height, height], [1.0 - place, place])
     rho, z = (corners * weights).sum(axis=(1, 2))
@@ -98,11 +98,11 @@ def test_derivatives_of_fitted_flanks_agree_with_differences(kind, height, place
     assert_allclose(here, second, rtol=1e-5, atol=1e-7)
 
 
-FITTED = {kind: fitted(pair_of(kind).pinion, (17, 17)) for kind in KINDS}
+FITTED = {kind: fitted(pair_of(kind).pinion.flank, (17, 17)) for kind in KINDS}
 
 
 def test_fitted_flank_goes_on_smoothly_beyond_its_edges():
-    flank = pair_of("helical").wheel
+    flank = pair_of("helical").wheel.flank
     spline = fitted(flank)
     away = 0.02 * np.array(flank.extent)
     rho, z = flank.grid(3, 3)
@@ -117,13 +117,13 @@ def test_fitted_flank_goes_on_smoothly_beyond_its_edges():
 
 @pytest.mark.parametrize("kind", ["helical", "spiral_bevel"])
 def test_fit_error_falls_with_the_sixth_power_of_the_spacing(kind):
-    errors = [fitted(pair_of(kind).pinion, (count, count)).check_error.largest for count in (9, 17, 33)]
+    errors = [fitted(pair_of(kind).pinion.flank, (count, count)).check_error.largest for count in (9, 17, 33)]
     orders = np.log2(np.divide(errors[:-1], errors[1:]))
     assert (orders > 5.5).all()
 
 
 def test_fit_error_is_the_distance_along_the_normal_at_and_between_the_points():
-    flank = pair_of("straight_bevel").pinion
+    flank = pair_of("straight_bevel").pinion.flank
     spline = fitted(flank, (9, 9))
     assert spline.fit_error.largest < 1e-12
     rho, z = flank.grid(17, 17)
@@ -134,9 +134,9 @@ def test_fit_error_is_the_distance_along_the_normal_at_and_between_the_points():
 
 
 def test_fit_error_of_a_relief_start_warns():
-    low, high = (2.0 * radius for radius in pair_of("spur").pinion.nominal.radii)
+    low, high = (2.0 * radius for radius in pair_of("spur").pinion.flank.nominal.radii)
     relief = FlankModifications(tip_relief=0.05, tip_relief_form="linear", tip_relief_start=0.4 * low + 0.6 * high)
-    flank = pair_of("spur", relief).pinion
+    flank = pair_of("spur", relief).pinion.flank
     with pytest.warns(AccuracyWarning, match=r"misses the flank by .* um at most.*between them.*relief start"):
         spline = fitted(flank)
     assert spline.relief_starts(*flank.grid(2, 2)) == ()
@@ -144,7 +144,7 @@ def test_fit_error_of_a_relief_start_warns():
 
 
 def test_fitted_flank_of_a_fitted_flank_is_the_same():
-    once = fitted(pair_of("helical").pinion, (17, 17))
+    once = fitted(pair_of("helical").pinion.flank, (17, 17))
     rho, z = once.grid(17, 17)
     assert_allclose(fitted(once, (17, 17)).theta(rho, z).value, once.theta(rho, z).value, rtol=0, atol=1e-14)
 
@@ -153,7 +153,7 @@ def test_fitted_flank_of_a_fitted_flank_is_the_same():
 
 
 def test_fitted_flank_has_the_region_of_the_flank():
-    flank = pair_of("spiral_bevel").wheel
+    flank = pair_of("spiral_bevel").wheel.flank
     spline = fitted(flank, (9, 9))
     rho, z = flank.grid(4, 5)
     assert (spline.side, spline.extent, spline.frame) == (flank.side, flank.extent, flank.frame)
@@ -163,18 +163,18 @@ def test_fitted_flank_has_the_region_of_the_flank():
 
 
 def test_region_has_no_surface():
-    flank = pair_of("helical").pinion
+    flank = pair_of("helical").pinion.flank
     rho, z = flank.grid(3, 3)
     assert_allclose(Region(flank).theta(rho, z).value, np.zeros((3, 3)), rtol=0)
 
 
 def test_unmodified_flank_is_the_bottom_of_all_derived_ones():
-    flank = pair_of("helical").pinion
+    flank = pair_of("helical").pinion.flank
     assert isinstance(unmodified(fitted(flank, (9, 9))), InvoluteFlank)
 
 
 def test_spline_flank_survives_pickling_and_says_how_well_it_fits():
-    flank = fitted(pair_of("spur").pinion, (9, 9))
+    flank = fitted(pair_of("spur").pinion.flank, (9, 9))
     again = pickle.loads(pickle.dumps(flank))
     rho, z = flank.grid(5, 5)
     assert_allclose(again.theta(rho, z).value, flank.theta(rho, z).value, rtol=0)
@@ -189,10 +189,10 @@ def test_pitch_point_is_where_the_unmodified_pair_touches_at_the_zero_of_the_ang
     pair = pair_of(kind, sense="negative")
     # lead crowning leaves the middle of the face where it is
     path = trace_contact(pair_of(kind, FlankModifications(lead_crowning=0.01), sense="negative"), [0.0])
-    rho, z = pitch_point(pair.pinion)
+    rho, z = pitch_point(pair.pinion.flank)
     assert_allclose([rho, z], [path.pinion_radius[0], path.pinion_axial[0]], rtol=0, atol=1e-8)
-    assert_allclose(unmodified(pair.pinion).theta(rho, z).value, 0.0, atol=1e-14)
-    assert_allclose(pair.pinion.lengthwise_coordinate(rho, z).value, 0.0, atol=1e-10)
+    assert_allclose(unmodified(pair.pinion.flank).theta(rho, z).value, 0.0, atol=1e-14)
+    assert_allclose(pair.pinion.flank.lengthwise_coordinate(rho, z).value, 0.0, atol=1e-10)
 
 
 def test_flank_without_a_pitch_point_is_told():
@@ -212,7 +212,7 @@ def test_flank_without_a_pitch_point_is_told():
 
 
 def test_too_few_points_or_another_degree_are_refused():
-    flank = pair_of("spur").pinion
+    flank = pair_of("spur").pinion.flank
     with pytest.raises(InputError, match="points: 5 x 9 are too coarse for degree 5; at least 6 each"):
         fitted(flank, (5, 9))
     with pytest.raises(InputError, match="degree: 4; allowed 3 or 5"):

@@ -1,7 +1,6 @@
 """Measured flanks: what a measurement of a known flank gives back, and every grid of points that is refused."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -58,9 +57,9 @@ def paths(*pairs):
 @pytest.mark.parametrize("wobble", [0.0, 0.3])
 def test_contact_of_measured_deviations_is_that_of_the_modifications(kind, wobble):
     pair = pair_of(kind)
-    nominal = unmodified(pair.pinion)
-    flank = measured(nominal, measure(pair.pinion, nominal, wobble=wobble), turned=False)
-    exact, found = paths(pair, replace(pair, pinion=flank))
+    nominal = unmodified(pair.pinion.flank)
+    flank = measured(nominal, measure(pair.pinion.flank, nominal, wobble=wobble), turned=False)
+    exact, found = paths(pair, pair.with_flanks(pinion=flank))
     # bevel: |grad F| falls with 1/R, which no polynomial is
     point, error = (POINT, SAME) if kind in ("spur", "helical") else (1e-4, 1e-10)
     assert_allclose(found.point, exact.point, rtol=0, atol=point)
@@ -71,17 +70,17 @@ def test_contact_of_measured_deviations_is_that_of_the_modifications(kind, wobbl
 @pytest.mark.parametrize("choices", [{"driving": "wheel"}, {"sense": "negative"}])
 def test_measured_deviations_count_along_the_normal_on_both_sides_of_the_tooth(choices):
     pair = pair_of("helical", NONE, CROWNED, **choices)
-    nominal = unmodified(pair.wheel)
-    flank = measured(nominal, measure(pair.wheel, nominal), turned=False)
-    exact, found = paths(pair, replace(pair, wheel=flank))
+    nominal = unmodified(pair.wheel.flank)
+    flank = measured(nominal, measure(pair.wheel.flank, nominal), turned=False)
+    exact, found = paths(pair, pair.with_flanks(wheel=flank))
     assert_allclose(found.transmission_error, exact.transmission_error, rtol=0, atol=SAME)
 
 
 def test_excess_material_makes_the_wheel_lead():
     pair = pair_of("spur", FlankModifications(lead_crowning=0.01))
-    rho, z = pair.pinion.grid(6, 6)
-    thick = measured(pair.pinion, MeasuredDeviations(rho, z, np.full(rho.shape, 0.002)), turned=False)
-    exact, found = paths(pair, replace(pair, pinion=thick))
+    rho, z = pair.pinion.flank.grid(6, 6)
+    thick = measured(pair.pinion.flank, MeasuredDeviations(rho, z, np.full(rho.shape, 0.002)), turned=False)
+    exact, found = paths(pair, pair.with_flanks(pinion=thick))
     lead = (found.transmission_error - exact.transmission_error) * pair.base_radii[1]
     assert_allclose(lead, 0.002, rtol=1e-9)
 
@@ -90,9 +89,9 @@ def test_excess_material_makes_the_wheel_lead():
 @pytest.mark.parametrize("azimuth", [0.0, 2.9, -1.3])
 def test_contact_of_measured_points_does_not_depend_on_where_the_tooth_stood(kind, azimuth):
     pair = pair_of(kind, CENTRED)
-    nominal = unmodified(pair.pinion)
-    flank = measured(nominal, MeasuredPoints(points_of(pair.pinion, azimuth)))
-    exact, found = paths(pair, replace(pair, pinion=flank))
+    nominal = unmodified(pair.pinion.flank)
+    flank = measured(nominal, MeasuredPoints(points_of(pair.pinion.flank, azimuth)))
+    exact, found = paths(pair, pair.with_flanks(pinion=flank))
     point, error = (POINT, SAME) if kind in ("spur", "helical") else (1e-4, 1e-10)
     assert_allclose(found.point, exact.point, rtol=0, atol=point)
     assert_allclose(found.transmission_error, exact.transmission_error, rtol=0, atol=error)
@@ -101,9 +100,9 @@ def test_contact_of_measured_points_does_not_depend_on_where_the_tooth_stood(kin
 @pytest.mark.parametrize("kind", KINDS)
 def test_measured_flank_is_turned_until_it_holds_the_pitch_point(kind):
     pair = pair_of(kind)
-    nominal = unmodified(pair.pinion)
+    nominal = unmodified(pair.pinion.flank)
     place = pitch_point(nominal)
-    data = measure(pair.pinion, nominal)
+    data = measure(pair.pinion.flank, nominal)
     kept, turned = (measured(nominal, data, turned=choice) for choice in (False, True))
     assert abs(float(kept.theta(*place).value)) > 1e-8, "profile crowning removes material at the pitch point"
     assert_allclose(turned.theta(*place).value, 0.0, atol=1e-15)
@@ -113,26 +112,26 @@ def test_measured_flank_is_turned_until_it_holds_the_pitch_point(kind):
 
 def test_measured_points_that_are_not_turned_keep_their_zero():
     pair = pair_of("helical")
-    nominal = unmodified(pair.pinion)
-    flank = measured(nominal, MeasuredPoints(points_of(pair.pinion)), turned=False)
-    exact, found = paths(pair, replace(pair, pinion=flank))
+    nominal = unmodified(pair.pinion.flank)
+    flank = measured(nominal, MeasuredPoints(points_of(pair.pinion.flank)), turned=False)
+    exact, found = paths(pair, pair.with_flanks(pinion=flank))
     assert_allclose(found.transmission_error, exact.transmission_error, rtol=0, atol=SAME)
 
 
 def test_deviations_from_a_modified_flank_add_to_its_modifications():
     pair = pair_of("helical", FlankModifications(lead_crowning=0.01), driving="wheel")
     extra = pair_of("helical", FlankModifications(lead_crowning=0.013), driving="wheel")
-    flank = measured(pair.pinion, measure(extra.pinion, pair.pinion))
-    exact, found = paths(extra, replace(pair, pinion=flank))
+    flank = measured(pair.pinion.flank, measure(extra.pinion.flank, pair.pinion.flank))
+    exact, found = paths(extra, pair.with_flanks(pinion=flank))
     assert_allclose(found.transmission_error, exact.transmission_error, rtol=0, atol=SAME)
 
 
 def test_relief_starts_of_the_nominal_flank_stay():
     relief = FlankModifications(lead_crowning=0.01, tip_relief=0.02, tip_relief_form="linear", tip_relief_start=102.0)
     pair = pair_of("spur", relief)
-    rho, z = pair.pinion.grid(7, 7)
-    flank = measured(pair.pinion, MeasuredDeviations(rho, z, np.zeros((7, 7))))
-    exact, found = paths(pair, replace(pair, pinion=flank))
+    rho, z = pair.pinion.flank.grid(7, 7)
+    flank = measured(pair.pinion.flank, MeasuredDeviations(rho, z, np.zeros((7, 7))))
+    exact, found = paths(pair, pair.with_flanks(pinion=flank))
     assert len(flank.relief_starts(rho, z)) == 1
     assert exact.on_relief_start.any()
     assert (found.on_relief_start == exact.on_relief_start).all()
@@ -142,22 +141,22 @@ def test_relief_starts_of_the_nominal_flank_stay():
 @pytest.mark.parametrize("back", [(0,), (1,), (0, 1)])
 def test_order_in_which_the_lines_were_measured_does_not_matter(back):
     pair = pair_of("spiral_bevel")
-    data = measure(pair.pinion, unmodified(pair.pinion), wobble=0.2)
+    data = measure(pair.pinion.flank, unmodified(pair.pinion.flank), wobble=0.2)
     other = MeasuredDeviations(*(np.flip(part, back) for part in (data.radius, data.axial, data.excess)))
-    rho, z = pair.pinion.grid(13, 13)
-    values = [measured(unmodified(pair.pinion), one).theta(rho, z).value for one in (data, other)]
+    rho, z = pair.pinion.flank.grid(13, 13)
+    values = [measured(unmodified(pair.pinion.flank), one).theta(rho, z).value for one in (data, other)]
     assert_allclose(values[1], values[0], rtol=0, atol=1e-14)
 
 
 def test_fewer_coefficients_smooth_the_noise_and_the_fit_error_tells_it(rng):
     pair = pair_of("helical")
-    nominal = unmodified(pair.pinion)
-    data = measure(pair.pinion, nominal, (25, 35))
+    nominal = unmodified(pair.pinion.flank)
+    data = measure(pair.pinion.flank, nominal, (25, 35))
     noise = 1e-3 * rng.normal(size=data.radius.shape)
     noisy = MeasuredDeviations(data.radius, data.axial, np.asarray(data.excess) + noise)
     rough, smooth = (measured(nominal, noisy, coefficients=counts, turned=False) for counts in (None, (6, 6)))
     rho, z = nominal.grid(20, 20)
-    away = [flank.distance_to(pair.pinion, rho, z).std() for flank in (rough, smooth)]
+    away = [flank.distance_to(pair.pinion.flank, rho, z).std() for flank in (rough, smooth)]
     assert rough.fit_error.largest < 1e-12
     # 36 of 875 degrees of freedom fitted: sqrt(36/875) = 0.2 of the noise is left, and its rms is the fit error
     assert away[1] < 0.35 * away[0]
@@ -165,7 +164,7 @@ def test_fewer_coefficients_smooth_the_noise_and_the_fit_error_tells_it(rng):
 
 
 def test_degree_follows_the_number_of_points():
-    nominal = unmodified(pair_of("spur").pinion)
+    nominal = unmodified(pair_of("spur").pinion.flank)
     rho, z = nominal.grid(5, 9)
     assert measured(nominal, MeasuredDeviations(rho, z, 0.0 * rho)).spline.degrees == (3, 5)
     assert measured(nominal, MeasuredDeviations(rho, z, 0.0 * rho), degree=3).spline.degrees == (3, 3)
@@ -176,8 +175,8 @@ def test_degree_follows_the_number_of_points():
 
 def test_points_that_stop_short_of_the_edges_are_continued_and_a_wide_margin_warns():
     pair = pair_of("helical")
-    nominal = unmodified(pair.pinion)
-    whole = measure(pair.pinion, nominal, (21, 21))
+    nominal = unmodified(pair.pinion.flank)
+    whole = measure(pair.pinion.flank, nominal, (21, 21))
 
     def inner(first, last):
         return MeasuredDeviations(*(part[first:last, first:last] for part in (whole.radius, whole.axial, whole.excess)))
@@ -185,7 +184,7 @@ def test_points_that_stop_short_of_the_edges_are_continued_and_a_wide_margin_war
     near = measured(nominal, inner(2, 19), turned=False)
     rho, z = nominal.grid(9, 9)
     # crowning and twist are parabolas, and so is the continuation
-    assert_allclose(near.theta(rho, z).value, pair.pinion.theta(rho, z).value, rtol=0, atol=1e-12)
+    assert_allclose(near.theta(rho, z).value, pair.pinion.flank.theta(rho, z).value, rtol=0, atol=1e-12)
     with pytest.warns(AccuracyWarning, match=r"leave 20 % at the .* and 20 % at the .* of the flank uncovered"):
         measured(nominal, inner(4, 17))
     with pytest.raises(InputError, match="lengthwise: the points cover 40 % of the flank; at least 50 % is needed"):
@@ -208,7 +207,7 @@ def refusal(nominal, rho, z, excess=0.0, **choices):
 
 @pytest.mark.parametrize("kind", ["helical", "spiral_bevel"])
 def test_grid_that_is_too_coarse_is_refused(kind):
-    nominal = unmodified(pair_of(kind).pinion)
+    nominal = unmodified(pair_of(kind).pinion.flank)
     assert refusal(nominal, *grid_of(nominal, (3, 2))) == (
         "profile: 3 points are too coarse; a B-spline of degree 3 needs 4",
         "lengthwise: 2 points are too coarse; a B-spline of degree 3 needs 4",
@@ -225,7 +224,7 @@ def test_grid_that_is_too_coarse_is_refused(kind):
 
 @pytest.mark.parametrize("kind", ["helical", "spiral_bevel"])
 def test_folded_grid_is_refused_and_told_where(kind):
-    nominal = unmodified(pair_of(kind).pinion)
+    nominal = unmodified(pair_of(kind).pinion.flank)
     rho, z = grid_of(nominal)
     for part in (rho, z):
         part[3, 4], part[4, 4] = part[4, 4], part[3, 4]
@@ -234,7 +233,7 @@ def test_folded_grid_is_refused_and_told_where(kind):
 
 
 def test_points_that_lie_on_each_other_are_refused():
-    nominal = unmodified(pair_of("spur").pinion)
+    nominal = unmodified(pair_of("spur").pinion.flank)
     rho, z = grid_of(nominal)
     rho[2, 3], z[2, 3] = rho[2, 2], z[2, 2]
     assert "points are folded, or lie on each other: " in refusal(nominal, rho, z)[0]
@@ -242,7 +241,7 @@ def test_points_that_lie_on_each_other_are_refused():
 
 @pytest.mark.parametrize("kind", ["helical", "spiral_bevel"])
 def test_unordered_grid_is_refused_and_told_which_lines(kind):
-    nominal = unmodified(pair_of(kind).pinion)
+    nominal = unmodified(pair_of(kind).pinion.flank)
     rho, z = grid_of(nominal)
     order = [0, 1, 3, 2, 4, 5, 6]
     (problem,) = refusal(nominal, rho[order], z[order])
@@ -253,37 +252,37 @@ def test_unordered_grid_is_refused_and_told_which_lines(kind):
 
 
 def test_grid_with_its_axes_exchanged_is_refused():
-    nominal = unmodified(pair_of("spur").pinion)
+    nominal = unmodified(pair_of("spur").pinion.flank)
     rho, z = grid_of(nominal, (8, 8))
     assert "points are out of order" in refusal(nominal, rho.T, z.T)[0]
 
 
 def test_points_off_the_flank_are_refused_with_the_edge_they_pass():
-    nominal = unmodified(pair_of("spur").pinion)
+    nominal = unmodified(pair_of("spur").pinion.flank)
     rho, z = grid_of(nominal)
     problems = refusal(nominal, rho + 2.0, z + 12.5)
     assert problems[0].startswith("18 of 63 points lie off the flank, up to 2 mm beyond the tip circle: wrong gear")
     assert "up to 12.5 mm beyond the end of the face at z > 0" in problems[1]
-    bevel = unmodified(pair_of("spiral_bevel").pinion)
+    bevel = unmodified(pair_of("spiral_bevel").pinion.flank)
     assert any("beyond the heel" in problem for problem in refusal(bevel, *(1.2 * part for part in grid_of(bevel))))
 
 
 def test_deviations_larger_than_any_are_refused():
-    nominal = unmodified(pair_of("spur").pinion)
+    nominal = unmodified(pair_of("spur").pinion.flank)
     (problem,) = refusal(nominal, *grid_of(nominal), excess=5.0)
     assert problem.startswith("the points lie up to 5 mm off the nominal flank along its normal, more than the 0.")
 
 
 def test_points_of_the_other_side_of_the_tooth_are_refused():
-    nominal = unmodified(pair_of("spiral_bevel").pinion)
-    other = unmodified(pair_of("spiral_bevel", driving="wheel").pinion)
+    nominal = unmodified(pair_of("spiral_bevel").pinion.flank)
+    other = unmodified(pair_of("spiral_bevel", driving="wheel").pinion.flank)
     with pytest.raises(InputError, match=r"off the nominal flank along its normal.*side of the tooth"):
         measured(nominal, MeasuredPoints(points_of(other)))
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf])
 def test_values_that_are_not_finite_are_refused_and_told_where(value):
-    rho, z = grid_of(unmodified(pair_of("spur").pinion))
+    rho, z = grid_of(unmodified(pair_of("spur").pinion.flank))
     rho[2, 5] = value
     match = "radius: 1 values are not finite, the first at profile line 3, lengthwise line 6"
     with pytest.raises(InputError, match=match):

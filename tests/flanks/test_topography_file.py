@@ -27,7 +27,7 @@ def rows_of(*columns, separator=","):
 
 @pytest.fixture
 def flank():
-    return gear_pair(FlankModifications(lead_crowning=0.01, twist=0.005), helix_deg=15.0).pinion
+    return gear_pair(FlankModifications(lead_crowning=0.01, twist=0.005), helix_deg=15.0).pinion.flank
 
 
 @pytest.fixture
@@ -209,5 +209,5 @@ def test_radius_of_points_on_the_axis_is_zero_and_not_a_failure():
     found = MeasuredPoints(np.zeros((4, 4, 3)))
     assert found.radius.max() == 0.0
     with pytest.raises(InputError, match="points lie off the flank"):
-        measured(gear_pair().pinion, found)
+        measured(gear_pair().pinion.flank, found)
     assert math.isclose(found.axial.max(), 0.0)

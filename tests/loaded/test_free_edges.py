@@ -96,7 +96,7 @@ def test_sides_of_helical_teeth_count_with_their_sharp_and_blunt_angles():
     """One gear ends there at a right angle plus, the other at one minus the base helix angle."""
     pair = gear_pair(width=8.0, helix_deg=15.0)
     edges, _ = edges_of(pair)
-    turn = abs(pair.pinion.base_helix_angle)
+    turn = abs(pair.pinion.flank.base_helix_angle)
     both = sum(0.5 * wedge_factor(0.5 * math.pi + sign * turn, 0.3) for sign in (1.0, -1.0))
     assert_allclose([edge.factor for edge in edges], both)
     assert both > quarter_space_factor(0.3)
@@ -114,7 +114,7 @@ def tips_of(pair, pitches, **options):
 
 def tip_factor(pair, member):
     """Half the compliance, at a right angle and the pressure angle at the tip."""
-    flank = (pair.pinion, pair.wheel)[member]
+    flank = (pair.pinion.flank, pair.wheel.flank)[member]
     return 0.5 * wedge_factor(0.5 * math.pi + math.acos(flank.base_radius / flank.radii[1]), 0.3)
 
 
@@ -171,7 +171,7 @@ def test_roots_are_no_edges():
     """Where the pinion touches with its root there is the wheel's tip alone: the fillet goes on."""
     pair = gear_pair()
     contact = trace_contact(pair, [-0.85 * pair.pitch])[0]
-    assert contact.pinion_radius - pair.pinion.radii[0] < 0.2 * pair.module
+    assert contact.pinion_radius - pair.pinion.flank.radii[0] < 0.2 * pair.module
     tips, _ = tips_of(pair, -0.85)
     assert_allclose([edge.factor for edge in tips], tip_factor(pair, 1), rtol=1e-9)
 
@@ -202,7 +202,7 @@ def test_face_cone_of_a_straight_bevel_gear_is_an_edge():
 def test_tip_of_a_helical_gear_crosses_the_contact_where_its_material_ends(pitches, member, helix_deg):
     pair = gear_pair(helix_deg=helix_deg)
     (edge,), separation = tips_of(pair, pitches, cells=(64, 48))
-    flank, spacing = (pair.pinion, pair.wheel)[member], separation.spacing
+    flank, spacing = (pair.pinion.flank, pair.wheel.flank)[member], separation.spacing
     # normal of the helicoid and of the tip cylinder: cos(beta_b) sin(transverse pressure angle at the tip)
     leaning = math.cos(flank.base_helix_angle) * math.sin(math.acos(flank.base_radius / flank.radii[1]))
     assert_allclose(edge.factor, 0.5 * wedge_factor(math.acos(-leaning), 0.3), rtol=1e-9)
@@ -230,7 +230,7 @@ def test_tip_is_in_reach_where_the_end_of_a_long_contact_reaches_it():
     """The middle of the line is far below the tip, beyond the reach of an edge along it."""
     pair = gear_pair(helix_deg=20.0, width=60.0)
     contact = trace_contact(pair, [0.3 * pair.pitch])[0]
-    assert pair.pinion.radii[1] - contact.pinion_radius > 0.5 * pair.module
+    assert pair.pinion.flank.radii[1] - contact.pinion_radius > 0.5 * pair.module
     (edge, *_), separation = tips_of(pair, 0.3, cells=(16, 64))
     assert np.isinf(separation.gap).any()
     assert edge.slope != 0.0

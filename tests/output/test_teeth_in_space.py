@@ -39,7 +39,7 @@ def test_path_runs_through_the_contact_point_of_the_position(name):
 def test_any_sense_and_drive_brings_the_right_flanks_together(changes):
     scene = parse_scene(result("straight_bevel", positions=3).scene_toml).with_changes(changes)
     teeth = complete_teeth(scene, COARSE)
-    assert teeth.pair.pinion.side == teeth.pair.sense * teeth.pair.driving
+    assert teeth.pair.pinion.flank.side == teeth.pair.sense * teeth.pair.driving
     turned = complete_teeth(scene.with_changes({"pair.sense": None}), COARSE)
     assert_allclose(turned.pinion.outline, teeth.pinion.outline)  # the teeth themselves are the same
 

@@ -122,7 +122,7 @@ def test_pitch_point_lies_on_both_flanks_at_angle_zero(spiral, driving, sense):
     pair = bevel_pair(mesh, driving=driving, sense=sense)
     distance, delta = mesh.pinion.mean_cone_distance, mesh.pinion.pitch_angle
     rho, azimuth, z = pair.to_wheel(distance * np.array([math.sin(delta), 0.0, math.cos(delta)]))
-    found = pair.wheel.theta(rho, z).value - azimuth
+    found = pair.wheel.flank.theta(rho, z).value - azimuth
     assert_allclose(found, 0.0, atol=1e-14)
 
 
@@ -173,7 +173,7 @@ def test_relief_starts_at_a_diameter_of_the_mean_section():
     mesh = mesh_of()
     start = 2.0 * mesh.pinion.mean_cone_distance * math.sin(mesh.pinion.pitch_angle + 0.01)
     relieved = FlankModifications(tip_relief=0.03, tip_relief_start=start)
-    flank = bevel_pair(mesh, modifications=(relieved, NONE)).pinion
+    flank = bevel_pair(mesh, modifications=(relieved, NONE)).pinion.flank
     angle = mesh.pinion.pitch_angle + np.array([0.0, 0.0099, 0.02])
     removed = flank.removal(70.0 * np.sin(angle), 70.0 * np.cos(angle)).value
     assert_allclose(removed[:2], 0.0)

@@ -73,7 +73,7 @@ def test_published_pair_touches_on_the_tip_of_the_wheel():
     path, error = from_top(pair, [-0.5, -0.25, 0.0, 0.25, 0.5])
     assert_allclose(error[[0, -1]], [-44.2, -45.1], atol=0.05)
     assert path.on_edge[:-1].all()
-    tip = pair.wheel.edges(path.wheel_radius, path.wheel_axial)[0].value
+    tip = pair.wheel.flank.edges(path.wheel_radius, path.wheel_axial)[0].value
     assert_allclose(tip[:-1], 0.0, atol=1e-8)
 
 
@@ -81,7 +81,7 @@ def test_published_pair_touches_on_the_tip_of_the_pinion_on_its_coast_side():
     pair = face_milled_pair(published_pinion(), published_wheel(), pinion_flank="convex")
     path, _ = from_top(pair, [-0.25, 0.0, 0.25])
     assert path.on_edge.all()
-    assert_allclose(pair.pinion.edges(path.pinion_radius, path.pinion_axial)[0].value, 0.0, atol=1e-8)
+    assert_allclose(pair.pinion.flank.edges(path.pinion_radius, path.pinion_axial)[0].value, 0.0, atol=1e-8)
 
 
 def test_pair_d_of_duplex_paper_has_a_centred_path():
@@ -119,7 +119,7 @@ def test_pair_knows_its_sizes():
 def test_sense_of_rotation_follows_from_flank_hand_and_driving_gear(flank, driving):
     gears = published_pinion(), published_wheel()
     pair = face_milled_pair(*gears, pinion_flank=flank, driving=driving)
-    assert pair.pinion.side == pair.wheel.side == pair.sense * pair.driving
+    assert pair.pinion.flank.side == pair.wheel.flank.side == pair.sense * pair.driving
     hands = [with_hand(gear, hand) for gear, hand in zip(gears, ("right", "left"), strict=True)]
     assert face_milled_pair(*hands, pinion_flank=flank, driving=driving).sense == -pair.sense
 
@@ -144,8 +144,8 @@ def test_modifications_take_material_off_at_the_ends_of_the_flank():
     crowned = matched(
         modifications=(FlankModifications(lead_crowning=0.01, profile_crowning=0.02, tip_relief=0.0), NONE)
     )
-    rho, z = plain.pinion.grid(3, 3)
-    removed = crowned.pinion.removal(rho, z).value
+    rho, z = plain.pinion.flank.grid(3, 3)
+    removed = crowned.pinion.flank.removal(rho, z).value
     assert_allclose(removed, [[0.03, 0.02, 0.03], [0.01, 0.0, 0.01], [0.03, 0.02, 0.03]], atol=1e-12)
     path = trace_contact(crowned, [0.0, 0.16])
     assert path.transmission_error[1] < trace_contact(plain, [0.16]).transmission_error[0]
@@ -155,7 +155,7 @@ def test_relief_starts_at_a_diameter_of_the_mean_section():
     pinion = matched_pinion()
     middle = pinion.blank.mean_cone_distance
     start = 2.0 * middle * math.sin(pinion.blank.pitch_angle)
-    relieved = matched(modifications=(FlankModifications(tip_relief=0.02, tip_relief_start=start), NONE)).pinion
+    relieved = matched(modifications=(FlankModifications(tip_relief=0.02, tip_relief_start=start), NONE)).pinion.flank
     angle = pinion.blank.pitch_angle + np.array([-1e-3, 0.0, 1e-3])
     removed = relieved.removal(middle * np.sin(angle), middle * np.cos(angle)).value
     assert_allclose(removed[:2], 0.0, atol=1e-12)

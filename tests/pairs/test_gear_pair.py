@@ -109,7 +109,7 @@ def test_cylindrical_basis_is_orthonormal_for_any_shape_of_angles():
 )
 def test_touching_flanks_are_those_that_push(driving, sense, side):
     pair = gear_pair(driving=driving, sense=sense)
-    assert pair.pinion.side == pair.wheel.side == side
+    assert pair.pinion.flank.side == pair.wheel.flank.side == side
 
 
 def test_pair_knows_its_ratio_pitch_and_sizes():

@@ -29,12 +29,12 @@ def test_teeth_touch_at_the_contact_point_without_passing_through_each_other(nam
     pair = teeth.pair
     contact = trace_contact(pair, [0.2 * pair.pitch])[0]
     _, wheel = teeth.in_mesh(contact.pinion_angle, contact.wheel_angle)
-    flank = PATCHES.index("flank +" if pair.wheel.side > 0 else "flank -")
+    flank = PATCHES.index("flank +" if pair.wheel.flank.side > 0 else "flank -")
     points = wheel.vertices[np.unique(wheel.triangles[wheel.cell_data["patch"] == flank])]
     rho, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
-    there = pair.pinion.inside(rho, z)
+    there = pair.pinion.flank.inside(rho, z)
     theta = np.arctan2(points[there, 1], points[there, 0]) - pair.sense * contact.pinion_angle
-    apart = pair.pinion.side * (theta - pair.pinion.theta(rho[there], z[there]).value)
+    apart = pair.pinion.flank.side * (theta - pair.pinion.flank.theta(rho[there], z[there]).value)
     assert there.any()
     assert apart.min() > -1e-12
     assert_allclose(
@@ -54,7 +54,7 @@ def test_tooth_in_mesh_holds_the_flank_of_the_pair(name):
     assert_allclose(teeth.on_pinion(rho, z, 0.1), points, atol=1e-11)
     points = wheel.vertices[np.unique(wheel.triangles[wheel.cell_data["patch"] == patch])]
     radius, theta, axial = pair.to_wheel(points)
-    turned = np.remainder(theta + 0.07 - pair.wheel.theta(radius, axial).value + math.pi, 2.0 * math.pi) - math.pi
+    turned = np.remainder(theta + 0.07 - pair.wheel.flank.theta(radius, axial).value + math.pi, 2.0 * math.pi) - math.pi
     assert np.abs(turned).max() < 1e-12
 
 

@@ -226,7 +226,7 @@ def test_flanks_are_drawn_with_the_part_that_the_mate_reaches(name):
     """The outline is the edge of the flank in its frame; the tip is common, the bottom of the reached part higher."""
     cycle = result(name)
     pair = parse_scene(cycle.scene_toml).pair()
-    for axes, flank in zip(plot_contact_path(cycle).axes, (pair.pinion, pair.wheel), strict=False):
+    for axes, flank in zip(plot_contact_path(cycle).axes, (pair.pinion.flank, pair.wheel.flank), strict=False):
         whole, reached = (patch.get_path() for patch in axes.patches)
         across, up = flank.frame.to_picture(*flank.grid(33, 9))
         inner = np.stack([across[1:-1, 1:-1].ravel(), up[1:-1, 1:-1].ravel()], axis=-1)
@@ -243,7 +243,7 @@ def test_pictures_of_bevel_pairs_speak_of_toe_and_heel(name):
     shown = texts(plot_pressure_map(cycle, position=0))
     assert "towards the heel on the right" in shown
     assert "pitch cone" in shown
-    one, frame = cycle.maps[0][0], parse_scene(cycle.scene_toml).pair().pinion.frame
+    one, frame = cycle.maps[0][0], parse_scene(cycle.scene_toml).pair().pinion.flank.frame
     heights = [frame.to_picture(np.hypot(*p[:2]), p[2])[1] for p in (one.origin, one.origin + 0.01 * one.axes[0])]
     assert f"pinion's {'tip' if heights[1] > heights[0] else 'root'} at the top" in shown
     flanks = plot_contact_path(cycle)
@@ -301,7 +301,7 @@ def test_colours_of_a_edge_map_do_not_follow_its_spike():
 def test_legend_of_the_flanks_names_a_grey_area_only_where_it_is_seen(part, told, monkeypatch):
     scene = parse_scene(result().scene_toml)
     pair = scene.pair()
-    heights = [flank.profile_coordinate(*flank.grid(129, 33)).value for flank in (pair.pinion, pair.wheel)]
+    heights = [flank.profile_coordinate(*flank.grid(129, 33)).value for flank in (pair.pinion.flank, pair.wheel.flank)]
     starts = tuple(float(height.min() + part * np.ptp(height)) for height in heights)
     monkeypatch.setattr(type(scene), "active_starts", lambda _: starts)
     names = [text.get_text() for text in plot_contact_path(result()).legends[0].get_texts()]

@@ -29,7 +29,9 @@ def both_senses(mesh: CylindricalMesh) -> tuple[GearPair, GearPair]:
 def pinion(bore_diameter=None, width=WIDTH, **material) -> GearTooth:
     mesh = spur_mesh(width)
     pair, backs = both_senses(mesh)
-    return GearTooth((pair.pinion, backs.pinion), tooth_forms(mesh)[0], bore_diameter=bore_diameter, **material)
+    return GearTooth(
+        (pair.pinion.flank, backs.pinion.flank), tooth_forms(mesh)[0], bore_diameter=bore_diameter, **material
+    )
 
 
 @cache

@@ -136,17 +136,17 @@ def transmission_error_at(pair, phi1, rho, z):
 
     Written from the definitions of the frames, without the ease-off field of the package.
     """
-    theta = pair.pinion.theta(rho, z).value + pair.sense * phi1
+    theta = pair.pinion.flank.theta(rho, z).value + pair.sense * phi1
     offset = np.stack([rho * np.cos(theta), rho * np.sin(theta), z + 0.0 * rho], axis=-1) - pair.wheel_origin
     x, y, along = (offset @ axis for axis in pair.wheel_axes)
     radius = np.hypot(x, y)
-    lag = pair.sense * (pair.wheel.theta(radius, along).value - np.arctan2(y, x)) - pair.ratio * phi1
-    return np.remainder(lag + np.pi, 2.0 * np.pi) - np.pi, pair.wheel.inside(radius, along)
+    lag = pair.sense * (pair.wheel.flank.theta(radius, along).value - np.arctan2(y, x)) - pair.ratio * phi1
+    return np.remainder(lag + np.pi, 2.0 * np.pi) - np.pi, pair.wheel.flank.inside(radius, along)
 
 
 def highest_on_grid(pair, phi1, counts=(60, 60)):
     """First touch on a dense grid: the transmission error of the point that touches first; -inf if none can [rad]."""
-    rho, z = pair.pinion.grid(*counts)
+    rho, z = pair.pinion.flank.grid(*counts)
     lag, there = transmission_error_at(pair, phi1, rho, z)
     return pair.driving * np.where(there, pair.driving * lag, -np.inf).max()
 

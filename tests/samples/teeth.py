@@ -35,7 +35,7 @@ def pair_of(mesh, sense="positive", modifications=NONE, **changes):
 def flanks_of(mesh, member=0, modifications=NONE):
     """Both flanks of a gear, s = +1 first."""
     pairs = [pair_of(mesh, sense, modifications) for sense in ("positive", "negative")]
-    return tuple((pair.pinion, pair.wheel)[member] for pair in pairs)
+    return tuple((pair.pinion.flank, pair.wheel.flank)[member] for pair in pairs)
 
 
 def tooth_of(mesh, member=0, modifications=NONE, resolution=COARSE, fillet_radius=None):

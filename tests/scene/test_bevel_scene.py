@@ -217,9 +217,9 @@ def test_pair_is_the_one_made_by_hand(spiral):
     assert (found.teeth, found.driving, found.sense) == ((20, 40), -1, -1)
     assert_allclose(found.wheel_origin, expected.wheel_origin, atol=ROUNDING)
     assert_allclose(found.wheel_axes, expected.wheel_axes, atol=ROUNDING)
-    assert [material.youngs_modulus for material in found.materials] == [206000.0, 1e5]
+    assert [gear.material.youngs_modulus for gear in (found.pinion, found.wheel)] == [206000.0, 1e5]
     for member in ("pinion", "wheel"):
-        mine, other = getattr(found, member), getattr(expected, member)
+        mine, other = getattr(found, member).flank, getattr(expected, member).flank
         rho, z = other.grid(5, 4)
         assert_allclose(mine.grid(5, 4)[0], rho, rtol=ROUNDING)
         assert_allclose(mine.theta(rho, z).value, other.theta(rho, z).value, atol=ROUNDING)
@@ -246,7 +246,7 @@ def test_pinion_flank_is_the_one_that_touches(spiral, side, hand, driving):
     """A concave flank is hollow from toe to heel: its middle lies behind the chord."""
     wanted = {"pair.pinion_flank": side, "pinion.hand": hand, "pair.driving": driving}
     scene = spiral.with_changes(wanted)
-    bow = lengthwise_bow(scene.pair().pinion, scene.mesh())
+    bow = lengthwise_bow(scene.pair().pinion.flank, scene.mesh())
     assert (bow < 0.0) == (side == "concave")
     assert scene.contact_sides[0] == side
     assert scene.contact_sides[1] != side
@@ -265,7 +265,7 @@ def test_hand_turns_the_spiral(spiral, hand):
 def test_active_starts_are_where_the_tip_of_the_mate_ends(spiral):
     mesh, pair = spiral.mesh(), spiral.pair()
     for start, flank, (cone, _) in zip(
-        spiral.active_starts(), (pair.pinion, pair.wheel), mesh.active_cones, strict=True
+        spiral.active_starts(), (pair.pinion.flank, pair.wheel.flank), mesh.active_cones, strict=True
     ):
         coordinate = flank.profile_coordinate(np.array(50.0 * np.sin(cone)), np.array(50.0 * np.cos(cone))).value
         assert_allclose(coordinate, start, rtol=1e-9)  # the cone angle has lost digits near the base cone

@@ -337,12 +337,12 @@ def test_pair_is_the_one_made_by_hand(scene):
         mounting=BevelMounting(offset=0.1, shaft_angle_error=np.radians(0.05)),
     )
     assert (found.teeth, found.driving, found.sense) == ((19, 62), 1, -1)
-    assert [material.youngs_modulus for material in found.materials] == [206000.0, 1e5]
+    assert [gear.material.youngs_modulus for gear in (found.pinion, found.wheel)] == [206000.0, 1e5]
     assert_allclose(found.wheel_origin, expected.wheel_origin, atol=1e-12)
     assert_allclose(found.wheel_axes, expected.wheel_axes, atol=PRINTED)
     assert_allclose(found.base_radii, expected.base_radii, rtol=PRINTED)
     for member in ("pinion", "wheel"):
-        mine, other = getattr(found, member), getattr(expected, member)
+        mine, other = getattr(found, member).flank, getattr(expected, member).flank
         rho, z = other.grid(7, 5)
         inner = slice(1, -1)  # the tips differ by what the apex of the face cone is rounded by
         rho, z = rho[inner], z[inner]
@@ -364,8 +364,8 @@ def test_contact_of_the_published_pair_runs_on_a_tip_on_both_sides(flank, edge):
     pair = read_scene(SCENES / "face_milled_19x62.toml").with_changes({"pair.pinion_flank": flank}).pair()
     path = trace_contact(pair, np.radians([-5.0 if flank == "concave" else 5.0]), warn=False)
     assert path.on_edge.all()
-    member = getattr(pair, edge)
-    tip = member.edges(getattr(path, f"{edge}_radius"), getattr(path, f"{edge}_axial"))[0]
+    flank = getattr(pair, edge).flank
+    tip = flank.edges(getattr(path, f"{edge}_radius"), getattr(path, f"{edge}_axial"))[0]
     assert_allclose(tip.value, 0.0, atol=1e-6)
 
 
@@ -391,13 +391,13 @@ OTHER_HANDS = {"pinion.blank.hand": "right", "wheel.blank.hand": "left"}
 def test_pinion_flank_is_the_one_that_touches(scene, side, hands, driving):
     wanted = scene.with_changes({"pair.pinion_flank": side, "pair.driving": driving, **hands})
     pair = wanted.pair()
-    assert (lengthwise_bow(pair.pinion, wanted) < 0.0) == (side == "concave")
+    assert (lengthwise_bow(pair.pinion.flank, wanted) < 0.0) == (side == "concave")
     assert wanted.contact_sides[0] == side != wanted.contact_sides[1]
     assert wanted.flank_names[0] == f"{side} flank of the pinion"
     by_sense = wanted.with_changes({"pair.pinion_flank": None, "pair.sense": wanted.sense})
     assert by_sense.contact_sides == wanted.contact_sides
     assert by_sense.pair().sense == pair.sense
-    assert pair.pinion.side == pair.sense * pair.driving
+    assert pair.pinion.flank.side == pair.sense * pair.driving
 
 
 def test_gears_of_the_other_hands_are_the_mirror_image(scene, pair):
@@ -425,8 +425,11 @@ def test_uniform_teeth_may_have_rounded_cones(table):
 def test_formate_wheel_needs_no_ratio_of_roll(scene):
     formate = scene.with_changes({"wheel.machine.generation": "formate", "wheel.machine.ratio_of_roll": None})
     assert not formate.mesh().wheel.machine.rolls
-    rho, z = formate.pair().wheel.grid(3, 3)
-    assert np.abs(formate.pair().wheel.theta(rho, z).value - scene.pair().wheel.theta(rho, z).value).max() > 1e-3
+    rho, z = formate.pair().wheel.flank.grid(3, 3)
+    assert (
+        np.abs(formate.pair().wheel.flank.theta(rho, z).value - scene.pair().wheel.flank.theta(rho, z).value).max()
+        > 1e-3
+    )
 
 
 def test_lead_crowning_leaves_the_pitch_point_and_lowers_the_ends(scene, pair):
@@ -447,7 +450,7 @@ def test_bspline_is_the_pair_of_its_equations(scene, pair):
 
 def test_profiles_start_at_the_form_line(scene, pair):
     starts = scene.active_starts()
-    for start, flank in zip(starts, (pair.pinion, pair.wheel), strict=True):
+    for start, flank in zip(starts, (pair.pinion.flank, pair.wheel.flank), strict=True):
         rho, z = flank.grid(3, 3)
         assert_allclose(flank.profile_coordinate(rho[0], z[0]).value, start, atol=1e-9)
 

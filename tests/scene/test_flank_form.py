@@ -43,7 +43,7 @@ def csv_of(topography, columns=("radius_mm", "axial_mm", "deviation_um"), text="
 
 def deviations(scene, member="wheel", points=(7, 9)):
     """Radius, axial place [mm] and crowning [um] at points of a flank."""
-    flank = getattr(scene.pair(), member)
+    flank = getattr(scene.pair(), member).flank
     rho, z = flank.grid(*points)
     along = flank.lengthwise_coordinate(rho, z).value
     return np.stack([rho, z, -8.0 * (along / np.ptp(along) * 2.0) ** 2], axis=-1)
@@ -64,20 +64,20 @@ def test_fitted_pair_touches_where_the_analytic_one_does(family, request):
     """Points of the modified flank, moved along the normal, then a B-spline through them."""
     analytic = crowned(request.getfixturevalue(family))
     fitted = analytic.with_changes({"pinion.flank.form": "bspline", "wheel.flank.form": "bspline"})
-    assert isinstance(fitted.pair().pinion, SplineFlank)
+    assert isinstance(fitted.pair().pinion.flank, SplineFlank)
     assert_allclose(in_contact(fitted).transmission_error, in_contact(analytic).transmission_error, rtol=0, atol=FITTED)
 
 
 def test_fitted_flank_has_the_points_and_degree_of_the_scene(scene):
     pair = scene.with_changes({"wheel.flank": {"form": "bspline", "points": [9, 12], "degree": 3}}).pair()
-    assert pair.wheel.spline.coefficients.shape == (9, 12)
-    assert pair.wheel.spline.degrees == (3, 3)
-    assert not isinstance(pair.pinion, SplineFlank)
+    assert pair.wheel.flank.spline.coefficients.shape == (9, 12)
+    assert pair.wheel.flank.spline.degrees == (3, 3)
+    assert not isinstance(pair.pinion.flank, SplineFlank)
 
 
 def test_fitted_flanks_are_both_sides_of_the_tooth(scene):
     fitted = scene.with_changes({"wheel.flank.form": "bspline"})
-    assert all(isinstance(fitted.pair(sense).wheel, SplineFlank) for sense in ("positive", "negative"))
+    assert all(isinstance(fitted.pair(sense).wheel.flank, SplineFlank) for sense in ("positive", "negative"))
 
 
 def test_relief_start_that_a_fit_rounds_off_is_a_warning(scene):
@@ -92,9 +92,9 @@ def test_relief_start_that_a_fit_rounds_off_is_a_warning(scene):
 
 def test_measured_pair_is_the_one_made_by_hand(scene, measured_file):
     found = scene.with_changes({"wheel.flank": {"form": "measured", "file": str(measured_file)}}).pair()
-    by_hand = measured(scene.pair().wheel, read_topography(measured_file))
+    by_hand = measured(scene.pair().wheel.flank, read_topography(measured_file))
     rho, z = by_hand.grid(6, 6)
-    assert_allclose(rho * (found.wheel.theta(rho, z).value - by_hand.theta(rho, z).value), 0.0, atol=DIGITS)
+    assert_allclose(rho * (found.wheel.flank.theta(rho, z).value - by_hand.theta(rho, z).value), 0.0, atol=DIGITS)
 
 
 def test_measured_crowning_does_what_crowning_does(scene, measured_file):
@@ -117,7 +117,7 @@ def test_points_in_space_and_deviations_are_the_same_flank(family, request, tmp_
     """Points of a crowned flank, its tooth standing anywhere, against the crowning itself."""
     plain = request.getfixturevalue(family)
     exact = plain.with_changes({"wheel.modifications.lead_crowning_um": 8.0})
-    flank = exact.pair().wheel
+    flank = exact.pair().wheel.flank
     rho, z = flank.grid(9, 11)
     angle = flank.theta(rho, z).value + 2.0
     path = tmp_path / "points.csv"
@@ -136,7 +136,7 @@ def test_fewer_coefficients_smooth_the_noise(scene, tmp_path, rng):
     path = tmp_path / "noisy.csv"
     path.write_text(csv_of(points), encoding="utf-8")
     wanted = {"form": "measured", "file": str(path), "coefficients": [6, 7], "degree": 3}
-    wheel = scene.with_changes({"wheel.flank": wanted}).pair().wheel
+    wheel = scene.with_changes({"wheel.flank": wanted}).pair().wheel.flank
     assert wheel.spline.degrees == (3, 3)
     # 42 coefficients of 180 points leave sqrt(1 - 42/180) of the noise, here to 20 %
     assert_allclose(wheel.fit_error.rms, 2e-4 * np.sqrt(1.0 - 42 / 180), rtol=0.2)
@@ -144,8 +144,8 @@ def test_fewer_coefficients_smooth_the_noise(scene, tmp_path, rng):
 
 def test_other_flank_of_a_measured_tooth_follows_from_the_equations(scene, measured_file):
     found = scene.with_changes({"wheel.flank": {"form": "measured", "file": str(measured_file)}})
-    assert isinstance(found.pair("positive").wheel, SplineFlank)
-    assert not isinstance(found.pair("negative").wheel, SplineFlank)
+    assert isinstance(found.pair("positive").wheel.flank, SplineFlank)
+    assert not isinstance(found.pair("negative").wheel.flank, SplineFlank)
 
 
 # Files
@@ -184,8 +184,8 @@ def test_scene_needs_the_file_no_more_once_it_is_read(small, scene, tmp_path):
     assert again == first
     assert again.wheel.flank.measurement.source == "wheel.csv"
     assert again.wheel.flank.file is None
-    rho, z = first.pair().wheel.grid(5, 5)
-    assert_array_equal(again.pair().wheel.theta(rho, z).value, first.pair().wheel.theta(rho, z).value)
+    rho, z = first.pair().wheel.flank.grid(5, 5)
+    assert_array_equal(again.pair().wheel.flank.theta(rho, z).value, first.pair().wheel.flank.theta(rho, z).value)
 
 
 def test_result_of_a_measured_flank_opens_without_the_file(small, scene, tmp_path):

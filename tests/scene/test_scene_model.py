@@ -246,7 +246,7 @@ def test_pair_stands_where_the_scene_puts_it(scene):
     assert (pair.driving, pair.sense) == (-1, -1)
     centre_distance = scene.mesh().working_centre_distance
     assert_allclose(pair.wheel_origin, [centre_distance + 0.5, 0.0, 0.25], rtol=ROUNDING)
-    assert [material.youngs_modulus for material in pair.materials] == [206000.0, 1e5]
+    assert [gear.material.youngs_modulus for gear in (pair.pinion, pair.wheel)] == [206000.0, 1e5]
     assert pair.max_pressure == 900.0
 
 
@@ -265,12 +265,12 @@ def test_pair_has_the_modifications_of_each_gear(scene, member, other):
     nominal, crowned = scene.pair(), scene.with_changes({f"{member}.modifications.lead_crowning_um": 5.0}).pair()
     rho, z = np.array([scene.mesh().pinion_working_radius, scene.mesh().wheel_working_radius]), 10.0
     radius = rho[0] if member == "pinion" else rho[1]
-    flank = getattr(crowned, member)
-    removed = getattr(nominal, member).theta(radius, z).value - flank.theta(radius, z).value
+    flank = getattr(crowned, member).flank
+    removed = getattr(nominal, member).flank.theta(radius, z).value - flank.theta(radius, z).value
     width = {"pinion": 25.0, "wheel": 20.0}[member]
     expected = 5e-3 * (2 * z / width) ** 2 * flank.gradient_norm(radius, z).value
     assert_allclose(np.abs(removed), expected, rtol=1e-9)
-    assert getattr(crowned, other).theta(radius, z).value == getattr(nominal, other).theta(radius, z).value
+    assert getattr(crowned, other).flank.theta(radius, z).value == getattr(nominal, other).flank.theta(radius, z).value
 
 
 def test_geometry_that_cannot_be_is_told_by_the_gears(scene):

@@ -62,9 +62,9 @@ def brute_force_gap(pair, contact, separation, i, j):
     def wheel_frame(point):
         return pair.wheel_axes @ (point - pair.wheel_origin)
 
-    low, own = height_of(pair.pinion, pair.sense * contact.pinion_angle, lambda p: p, start, normal)
-    high, other = height_of(pair.wheel, -pair.sense * contact.wheel_angle, wheel_frame, start, normal)
-    there = pair.pinion.inside(*own) and pair.wheel.inside(*other)
+    low, own = height_of(pair.pinion.flank, pair.sense * contact.pinion_angle, lambda p: p, start, normal)
+    high, other = height_of(pair.wheel.flank, -pair.sense * contact.wheel_angle, wheel_frame, start, normal)
+    there = pair.pinion.flank.inside(*own) and pair.wheel.flank.inside(*other)
     return high - low if there else math.inf
 
 

@@ -23,7 +23,7 @@ def mesh(pinion=None, wheel=None):
 def flanks(gears, member):
     """Flanks of the sides s = +1 and s = -1 of the pinion or the wheel."""
     pairs = [face_milled_pair(*gears.gears, pinion_flank=flank) for flank in ("concave", "convex")]
-    both = sorted((getattr(pair, member) for pair in pairs), key=lambda flank: -flank.side)
+    both = sorted((getattr(pair, member).flank for pair in pairs), key=lambda flank: -flank.side)
     return both[0], both[1]
 
 

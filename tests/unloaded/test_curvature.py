@@ -41,11 +41,11 @@ def shape_operator(flank, rho, z, turn, axes):
 
 def tensor_of_both_flanks(pair, contact, axes):
     pinion_azimuth = math.atan2(contact.point[1], contact.point[0])
-    pinion = shape_operator(pair.pinion, contact.pinion_radius, contact.pinion_axial, pinion_azimuth, axes)
+    pinion = shape_operator(pair.pinion.flank, contact.pinion_radius, contact.pinion_axial, pinion_azimuth, axes)
     _, wheel_azimuth, _ = pair.to_wheel(contact.point)
     in_wheel = axes @ pair.wheel_axes.T
     in_wheel[2] *= -1.0  # the outward normal of the wheel
-    wheel = shape_operator(pair.wheel, contact.wheel_radius, contact.wheel_axial, float(wheel_azimuth), in_wheel)
+    wheel = shape_operator(pair.wheel.flank, contact.wheel_radius, contact.wheel_axial, float(wheel_azimuth), in_wheel)
     return pinion + wheel
 
 

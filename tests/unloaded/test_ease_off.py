@@ -23,7 +23,7 @@ turns = st.floats(-0.5, 0.5)
 
 
 def place(pair, share):
-    rho, z = pair.pinion.grid(2, 2)
+    rho, z = pair.pinion.flank.grid(2, 2)
     return np.array(
         [
             [low + part * (high - low)]
@@ -43,7 +43,7 @@ def smooth_there(pair, field, phi1, rho, z):
     Second derivatives jump at the first; the third of the other is so large that differences are off by 1e-6.
     """
     station = field.station(phi1, rho, z)
-    for flank, r, x in ((pair.pinion, rho, z), (pair.wheel, station.wheel_rho, station.wheel_z)):
+    for flank, r, x in ((pair.pinion.flank, rho, z), (pair.wheel.flank, station.wheel_rho, station.wheel_z)):
         for term in (term for term in getattr(flank, "terms", ()) if isinstance(term, Term)):
             t = term.coordinate(flank.nominal, r, x).value * abs(term.length)
             steep = term.shape is logarithmic and (np.abs(t) > 0.8 * abs(term.length)).any()
@@ -87,7 +87,7 @@ def test_slope_of_the_field_is_the_tilt_of_the_normals_over_the_lever(pair, shar
     phi1, field = np.array([turn * pair.pitch]), EaseOff(pair)
     station = field.station(phi1, rho, z)
     assume((station.wheel_rho > pair.base_radii[1] + 1.0).all())
-    normal = outward_normal(pair.wheel, station.wheel_rho, station.wheel_z)[0] @ station.wheel_basis[0]
+    normal = outward_normal(pair.wheel.flank, station.wheel_rho, station.wheel_z)[0] @ station.wheel_basis[0]
     turning = np.cross(-pair.wheel_axes[2], station.point[0] - pair.wheel_origin)
     expected = (station.tangents[0] @ normal) / (normal @ turning) * pair.sense
     found = field.gradient(station)[0] / (pair.driving * pair.base_radii[1])

@@ -23,7 +23,7 @@ def edge_distances(pair, point):
     """Smallest distance of a point in space to the edges of either flank [mm]."""
     rho, z = np.array(math.hypot(point[0], point[1])), np.array(point[2])
     wheel_rho, _, wheel_z = pair.to_wheel(point)
-    jets = (*pair.pinion.edges(rho, z), *pair.wheel.edges(wheel_rho, wheel_z))
+    jets = (*pair.pinion.flank.edges(rho, z), *pair.wheel.flank.edges(wheel_rho, wheel_z))
     return np.array([float(jet.value) for jet in jets])
 
 

@@ -267,8 +267,8 @@ def test_error_does_not_depend_on_the_other_positions_of_the_path():
 
 def edges(pair, path):
     """Distances to the eight edges (n, 8) [mm]."""
-    own = pair.pinion.edges(path.pinion_radius, path.pinion_axial)
-    other = pair.wheel.edges(path.wheel_radius, path.wheel_axial)
+    own = pair.pinion.flank.edges(path.pinion_radius, path.pinion_axial)
+    other = pair.wheel.flank.edges(path.wheel_radius, path.wheel_axial)
     return np.stack([jet.value for jet in (*own, *other)], axis=-1)
 
 

@@ -83,7 +83,7 @@ def from_everywhere(teeth, module, face_width, spiral_deg, shaft_deg, mounting):
         teeth, module, face_width, shaft_angle=math.radians(shaft_deg), spiral_angle=math.radians(spiral_deg)
     )
     pair = bevel_pair(mesh, modifications=(CROWNED, FlankModifications()), mounting=mounting)
-    rho, z = (part.ravel() for part in np.broadcast_arrays(*pair.pinion.grid(25, STARTS // 25)))
+    rho, z = (part.ravel() for part in np.broadcast_arrays(*pair.pinion.flank.grid(25, STARTS // 25)))
     return pair, climb(EaseOff(pair), np.zeros(STARTS), rho, z)
 
 
@@ -110,9 +110,9 @@ def test_every_start_on_the_pinion_climbs_to_the_contact(teeth, module, face_wid
 def test_start_below_the_base_cone_of_the_wheel_goes_back_to_the_flank():
     """The field means nothing there: an ascent that trusted it would creep on for hundreds of steps."""
     pair, found = from_everywhere((30, 8), 5.0, 20.0, 0.0, 120.0, BevelMounting())
-    rho, z = (part.ravel() for part in np.broadcast_arrays(*pair.pinion.grid(25, STARTS // 25)))
+    rho, z = (part.ravel() for part in np.broadcast_arrays(*pair.pinion.flank.grid(25, STARTS // 25)))
     _, edges = EaseOff(pair).heights(np.zeros(STARTS), rho, z)
-    below = edges[:, 5] < -0.1 * pair.wheel.extent[0]
+    below = edges[:, 5] < -0.1 * pair.wheel.flank.extent[0]
     assert below.sum() > 100
     assert found.converged[below].all()
     assert found.iterations[below].max() < 20

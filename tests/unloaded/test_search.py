@@ -42,12 +42,12 @@ def test_no_point_of_both_flanks_touches_before_the_contact_point(pair, turn):
 def test_contact_point_lies_on_both_flanks(pair, turn):
     path = trace_contact(pair, [turn * pair.pitch], warn=False)
     rho, z = path.pinion_radius, path.pinion_axial
-    theta = pair.pinion.theta(rho, z).value + pair.sense * path.pinion_angle
+    theta = pair.pinion.flank.theta(rho, z).value + pair.sense * path.pinion_angle
     assert_allclose(path.point[0], [*(rho * np.cos(theta)), *(rho * np.sin(theta)), *z], atol=1e-10)
     lag, _ = transmission_error_at(pair, path.pinion_angle, rho, z)
     assert_allclose(path.transmission_error, lag, atol=ROUNDING)
-    assert pair.pinion.inside(rho, z, tolerance=1e-7).all()
-    assert pair.wheel.inside(path.wheel_radius, path.wheel_axial, tolerance=1e-7).all()
+    assert pair.pinion.flank.inside(rho, z, tolerance=1e-7).all()
+    assert pair.wheel.flank.inside(path.wheel_radius, path.wheel_axial, tolerance=1e-7).all()
 
 
 @pytest.mark.parametrize("helix_deg", [0.0, 15.0])
@@ -102,7 +102,7 @@ def test_higher_of_two_hills_is_found_with_hollow_crowning():
 def test_every_random_start_climbs_to_the_same_maximum(seed):
     rng = np.random.default_rng(seed)
     pair = gear_pair(FlankModifications(lead_crowning=0.01, profile_crowning=0.01), helix_deg=15.0)
-    rho, z = pair.pinion.grid(2, 2)
+    rho, z = pair.pinion.flank.grid(2, 2)
     starts = [rng.uniform(part.min(), part.max(), 300) for part in (rho, z)]
     found = climb(EaseOff(pair), np.full(300, 0.02), *starts)
     assert found.converged.all()
@@ -148,7 +148,7 @@ def test_contact_on_a_relief_start_is_the_maximum_of_a_grid_that_holds_the_relie
     rows = np.flatnonzero(path.on_relief_start)
     assert rows.size > 2
     assert_allclose(path.wheel_radius[rows], 87.5, atol=1e-8)
-    rho, z = pair.pinion.grid(4001, 3)
+    rho, z = pair.pinion.flank.grid(4001, 3)
     for row in rows:
         lag, there = transmission_error_at(pair, path.pinion_angle[row], rho, z)
         best = np.where(there, pair.driving * lag, -np.inf).max()
@@ -194,8 +194,8 @@ def test_radius_of_contact_never_leaves_the_flanks_of_a_pair_turned_far():
     pair = gear_pair(FlankModifications(lead_crowning=0.01), mounting=Mounting(math.radians(1.0), math.radians(-1.0)))
     path = trace_contact(pair, np.linspace(-1.3, 1.3, 53) * pair.pitch)
     inside = path.in_contact
-    assert pair.pinion.inside(path.pinion_radius[inside], path.pinion_axial[inside], tolerance=1e-7).all()
-    assert pair.wheel.inside(path.wheel_radius[inside], path.wheel_axial[inside], tolerance=1e-7).all()
+    assert pair.pinion.flank.inside(path.pinion_radius[inside], path.pinion_axial[inside], tolerance=1e-7).all()
+    assert pair.wheel.flank.inside(path.wheel_radius[inside], path.wheel_axial[inside], tolerance=1e-7).all()
 
 
 def test_raised_side_of_a_narrow_wheel_is_found_between_the_points_of_the_scan():

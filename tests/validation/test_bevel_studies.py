@@ -58,13 +58,13 @@ def test_weaker_crowning_costs_steps(bevel_cases):
 def test_random_starts_lie_on_both_flanks(bevel_cases):
     for case in (*bevel_cases, *cylindrical_cases(300)[::3]):
         pinion_radius, pinion_axial, wheel_radius, wheel_axial, angle = case.unit_starts.T
-        assert case.pair.pinion.inside(pinion_radius, pinion_axial, SAGITTA).all()
-        assert case.pair.wheel.inside(wheel_radius, wheel_axial, SAGITTA).all()
+        assert case.pair.pinion.flank.inside(pinion_radius, pinion_axial, SAGITTA).all()
+        assert case.pair.wheel.flank.inside(wheel_radius, wheel_axial, SAGITTA).all()
         assert np.abs(angle).max() <= 1.0
 
 
 def test_starts_reach_the_corners_of_the_flank():
-    flank = SPIRAL.pair().pinion
+    flank = SPIRAL.pair().pinion.flank
     rho, z = flank.grid(2, 2)
     found = points_of(flank, np.array([0.0, 0.0, 1.0, 1.0]), np.array([0.0, 1.0, 0.0, 1.0]))
     assert_allclose(found, [rho.ravel(), z.ravel()])
@@ -82,7 +82,7 @@ def test_pitch_point_is_the_origin_of_the_frame(gears):
 
 
 def test_relief_of_the_spiral_pair_removes_at_its_ends_what_the_source_says():
-    pinion, pitch = SPIRAL.pair(pinion=spiral_modifications(0.0, 0.08)).pinion, SPIRAL.mesh.pinion.pitch_angle
+    pinion, pitch = SPIRAL.pair(pinion=spiral_modifications(0.0, 0.08)).pinion.flank, SPIRAL.mesh.pinion.pitch_angle
     angle, distance = np.array([*SPIRAL.mesh.active_cones[0], pitch]), SPIRAL.mesh.pinion.mean_cone_distance
     removed = pinion.removal(distance * np.sin(angle), distance * np.cos(angle)).value
     assert_allclose(removed, 0.08 * ((angle - pitch) / 0.16) ** 2, atol=1e-12)

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from math import degrees, nan, pi, sin
 
@@ -153,7 +153,7 @@ def crowning_in_closed_form(error: float) -> float:
 def fitted_pair() -> GearPair:
     """The pair with both flanks replaced by quintic B-splines through 33 x 33 of their points."""
     exact = pair()
-    return replace(exact, pinion=fitted(exact.pinion), wheel=fitted(exact.wheel))
+    return exact.with_flanks(fitted(exact.pinion.flank), fitted(exact.wheel.flank))
 
 
 def rows() -> list[Row]:

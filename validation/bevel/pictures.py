@@ -40,7 +40,7 @@ def _style(number: int, label: str) -> dict[str, str | float]:
 
 def draw_flank(axes: Axes, gears: BevelGears) -> None:
     """Outline of the pinion flank, between its four corners."""
-    corners = np.stack(gears.place(*gears.pair().pinion.grid(2, 2)), axis=-1)
+    corners = np.stack(gears.place(*gears.pair().pinion.flank.grid(2, 2)), axis=-1)
     axes.add_patch(Polygon(corners[[0, 0, 1, 1], [0, 1, 1, 0]], facecolor="0.95", edgecolor="0.5"))
     axes.set(xlabel=f"{LENGTHWISE} [mm]", ylabel=f"{HEIGHT} [mm]")
     axes.margins(0.04)

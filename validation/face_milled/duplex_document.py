@@ -160,7 +160,7 @@ def _top_of(study: Study) -> tuple[str, NDArray[np.float64]]:
     """Where the top of the transmission error lies on the pinion, and the fall half a pitch before and after it."""
     pair = study.pair()
     _, fall, top = error_from_top(pair, (-0.5, 0.5))
-    return pair.pinion.frame.place(float(top.pinion_radius[0]), float(top.pinion_axial[0])), fall
+    return pair.pinion.flank.frame.place(float(top.pinion_radius[0]), float(top.pinion_axial[0])), fall
 
 
 def _misses(study: Study) -> tuple[float, float]:
@@ -215,8 +215,8 @@ def picture() -> Figure:
 
 def _draw_flank(axes: Axes, study: Study, pair: GearPair) -> None:
     """Pinion flank with the pattern, the path of contact and the starts."""
-    frame = pair.pinion.frame
-    corners = np.stack(frame.to_picture(*pair.pinion.grid(2, 17)), axis=-1)
+    frame = pair.pinion.flank.frame
+    corners = np.stack(frame.to_picture(*pair.pinion.flank.grid(2, 17)), axis=-1)
     axes.add_patch(Polygon(np.concatenate([corners[0], corners[1][::-1]]), facecolor="0.95", edgecolor="0.5"))
     pattern = contact_pattern(pair)
     axes.contourf(*frame.to_picture(pattern.radius, pattern.axial), pattern.touched, [0.5, 1.5], colors=["#cfe3f2"])
@@ -232,7 +232,7 @@ def _draw_flank(axes: Axes, study: Study, pair: GearPair) -> None:
 
 
 def _place(pair: GearPair, guess: Guess) -> Sequence[NDArray[np.float64]]:
-    return pair.pinion.frame.to_picture(guess.unknowns[:1], guess.unknowns[1:2])
+    return pair.pinion.flank.frame.to_picture(guess.unknowns[:1], guess.unknowns[1:2])
 
 
 def _draw_error(axes: Axes, pair: GearPair) -> None:

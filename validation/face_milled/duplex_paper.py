@@ -217,7 +217,7 @@ def _pair_rows() -> list[Row]:
         )
     pair = Study(CASE, gears).pair()
     top = error_from_top(pair, ())[2]
-    lengthwise, _ = pair.pinion.frame.to_picture(top.pinion_radius, top.pinion_axial)
+    lengthwise, _ = pair.pinion.flank.frame.to_picture(top.pinion_radius, top.pinion_axial)
     lines.append(Row(CASE, COMPUTED, "drive: R - R_m at the top [mm], toe -10", -10.0, float(lengthwise[0]), 1e-9))
     mended = Study(MENDED, duplex_paper_gears(MENDED_RADIAL)).pair()
     _, fall, _ = error_from_top(mended, (-0.5, 0.5))

@@ -110,7 +110,7 @@ def _climbed(field: EaseOff, start: FirstTouch, phi1: Array) -> Array:
     """First touches, rows rho, z and height [mm], climbed from those of the aligned pair; NaN where not certified."""
     cases = len(phi1) // POSITIONS
     peaks = climb(field, phi1, np.tile(start.rho, cases), np.tile(start.z, cases))
-    rho, z = (np.broadcast_to(part, (len(phi1), *part.shape)) for part in field.pair.pinion.grid(9, 9))
+    rho, z = (np.broadcast_to(part, (len(phi1), *part.shape)) for part in field.pair.pinion.flank.grid(9, 9))
     heights, edges = field.heights(phi1[:, None, None], rho, z)
     scanned = np.where(edges.min(axis=-1) >= 0.0, heights, -np.inf).max(axis=(1, 2))
     certified = peaks.converged & (peaks.value >= scanned - ROUNDING)
@@ -128,7 +128,7 @@ def _peak_pressures(field: EaseOff, rho: Array, z: Array) -> Array:
     """Hertz pressure at phi1 = 0 from the Hessian of the ease-off; NaN on a side of the tooth."""
     pair = field.pair
     station = field.station(np.zeros(len(rho)), rho, z)
-    jet = pair.wheel.theta(station.wheel_rho, station.wheel_z)
+    jet = pair.wheel.flank.theta(station.wheel_rho, station.wheel_z)
     lever = 1.0 / np.sqrt(jet.rho**2 + 1.0 / station.wheel_rho**2 + jet.z**2)
     metric = station.tangents @ np.swapaxes(station.tangents, -1, -2)
     bend = -field.hessian(station) * (lever / pair.base_radii[1])[:, None, None]

@@ -76,7 +76,7 @@ class Case:
         rng = np.random.default_rng(20240607)
         shares = rng.uniform(size=(4, self.starts))
         angle = rng.uniform(-1.0, 1.0, self.starts)
-        flanks = (self.pair.pinion, shares[:2]), (self.pair.wheel, shares[2:])
+        flanks = (self.pair.pinion.flank, shares[:2]), (self.pair.wheel.flank, shares[2:])
         return np.stack([*(part for flank, share in flanks for part in points_of(flank, *share)), angle], axis=-1)
 
     def draw(self, spread: float) -> Array:
@@ -193,7 +193,7 @@ def draw(case: Case, outcomes: list[Outcome], path: Path) -> None:
     chosen = [one for one in outcomes if one.method in ("reduced", f"five, normals {case.normals}")]
     figure, panels = plt.subplots(2, len(chosen), figsize=(11.5, 6.6), layout="constrained", squeeze=False)
     along, across = case.view.names
-    height, width = case.pair.pinion.extent
+    height, width = case.pair.pinion.flank.extent
     for (domain, ends), one in zip(panels.T, chosen, strict=True):
         spread = "" if one.spread == "-" else f", phi2 {one.spread}"
         domain.set_title(f"{one.method}{spread}\n{one.percentage:.1f} % of {len(one.good)} starts", fontsize=10)
