@@ -1,6 +1,6 @@
 """Mounting errors of bevel gears (reduced-TCA dissertation, Figures 33 to 53): verdicts, tables, pictures.
 
-Run from the root of the repository: ``python -m validation.bevel.mounting_errors --out docs``.
+Run from the root of the repository: ``python -m validation.bevel.mounting_errors``.
 """
 
 import argparse
@@ -183,7 +183,7 @@ def document(errors: ErrorMap) -> str:
 def main() -> int:
     """Print and write the page, save the pictures; 0 in any case: a trend that does not hold is a finding."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs"), help="directory of the page and the pictures")
+    parser.add_argument("--out", type=Path, default=Path("docs/studies"), help="directory of the page and the pictures")
     directory = parser.parse_args().out
     errors = error_map()
     text = document(errors)

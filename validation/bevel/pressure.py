@@ -6,7 +6,7 @@ pitch from the pitch point, where the neighbouring pairs carry too, the contact 
 where an offset E takes it to the heel, the box holds cells without material: the half-space gives a spike along the
 edge which no grid resolves, so only its load is checked.
 
-Run from the root of the repository: ``python -m validation.bevel.pressure --out docs``.
+Run from the root of the repository: ``python -m validation.bevel.pressure``.
 """
 
 from __future__ import annotations
@@ -259,7 +259,7 @@ def _holds(one: Pressed) -> bool:
 def main() -> None:
     """Print and write the page, save the picture."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs"), help="directory of the page and the picture")
+    parser.add_argument("--out", type=Path, default=Path("docs/studies"), help="directory of the page and the picture")
     directory = parser.parse_args().out
     text = document()
     print(text)

@@ -3,7 +3,7 @@
 Source: the kept runs of ``validation.calculix``, in plane strain; how both are made alike is told in
 ``validation.calculix.comparison``. Runs that are not kept give no rows.
 
-Page and picture: ``python -m validation.calculix.mesh_cycle --out docs`` from the root of the repository
+Page and picture: ``python -m validation.calculix.mesh_cycle`` from the root of the repository
 (a minute or two).
 """
 
@@ -369,7 +369,7 @@ def write(out: Path, kept: Cycles) -> None:
 def main() -> None:
     """Write the page and the picture, if there is anything to compare."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs"))
+    parser.add_argument("--out", type=Path, default=Path("docs/studies"))
     arguments = parser.parse_args()
     kept = read_cycles()
     if not kept:
