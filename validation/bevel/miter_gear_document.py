@@ -147,7 +147,7 @@ def picture() -> Figure:
     _draw_areas(pattern)
     _draw_motion(edge, EDGE, f"E {EDGE.offset:g} mm: on the heel at every position")
     crowned = f"pinion crowned 10 µm lengthwise, {1e3 * PROFILE:g} µm along the profile"
-    figure.suptitle(f"Straight bevel pair 20/40 (the miter-gear paper), m_et 3 mm, b 20 mm, {crowned}")
+    figure.suptitle(f"Straight bevel pair 20/40 of the miter-gear paper, m_et 3 mm, b 20 mm, {crowned}")
     return figure
 
 

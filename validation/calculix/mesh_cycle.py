@@ -156,7 +156,7 @@ it comes apart somewhere in between: such positions are left out of the column.
 
 ## Plane strain against a face with ends
 
-The finite elements are in plane strain. On a real face (and here) the teeth end freely and yield more there. The
+The finite elements are in plane strain. On a real face (and here) the teeth end freely and deflect more there. The
 rows of `python -m validation` take a face of {wide:g} mm under the same line load; the table also has one of
 {narrow:g} mm. The load is not the same all along a face: the half-space makes the ends of a line carry more than its
 middle, the bending of teeth that end there less. Pressure *mean load* is that of mid-face times the root of mean over

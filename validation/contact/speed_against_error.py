@@ -332,6 +332,9 @@ def main() -> None:
     print("\n".join(notes))
     whole = speed_of_mesh_cycle.table(speed_of_mesh_cycle.measure())
     page = [
+        "# Time against error\n",
+        "Written by `python -m validation.contact.speed_against_error`; [the contact solver](../contact_solver.md)",
+        "says what is compared and how.\n",
         *notes,
         "",
         table(found),

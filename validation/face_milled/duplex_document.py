@@ -76,7 +76,7 @@ From the printed theta_g 5.349393, theta_p would be {wrong_azimuth:.6f} and phi1
 
 ![Pinion flanks, starts, contact paths and transmission errors]({picture})
 
-## Who gets home from it
+## Which method converges from it
 
 At the pinion angle of each start: plain Newton on the five equations (with two of the three components of the normals),
 the reduced solver from the pinion's point, and the first touch that the scan of the ease-off finds without any start.
@@ -85,13 +85,13 @@ the equations are solved where there is no tooth.
 
 {solvers}
 
-- The start does its work: wherever flanks touch inside their edges, the five equations get home from all three of its
+- The start does its work: wherever flanks touch inside their edges, the five equations converge from all three of its
   versions, in {five} steps. The mean is no better than its two parts.
 - It is a start for the normals, not for the points: they lie some millimetres apart, since nothing in the construction
   brings them together (each gear stands with a slot where its machine cut one), and the wheel angle is degrees off.
 - Where flanks touch on an edge there is no common normal, so that no start helps: the five equations diverge or end off
   the flanks with a residual of zero. The printed settings themselves are such a pair.
-- The reduced solver gets home from the same points in {reduced} steps, edges included, and the scan of the ease-off
+- The reduced solver converges from the same points in {reduced} steps, also on edges, and the scan of the ease-off
   makes the start unnecessary: it needs neither the settings nor a reference point, only the flanks.
 - The pair from the duplex blank touches in the middle of the flank on both sides: its settings are closed forms, its
   spiral angles differ by {spiral:.3f} deg at most and its pressure angles by {pressure:.3f} deg (the number of the
@@ -171,7 +171,7 @@ def _misses(study: Study) -> tuple[float, float]:
 
 
 def _solvers() -> tuple[str, list[int], list[int]]:
-    """Table of both solvers from each start, and the steps of those that got home: five equations, reduced."""
+    """Table of both solvers from each start, and the steps of those that converged: five equations, reduced."""
     heads = " | ".join(f"five, {name}" for name in COMPONENTS)
     lines = [
         f"| pair | start | gap [mm] | off [deg] | {heads} | reduced | the contact |",
@@ -209,7 +209,7 @@ def picture() -> Figure:
         pair = study.pair()
         _draw_flank(figure.add_subplot(2, 2, 1 + column), study, pair)
         _draw_error(figure.add_subplot(2, 2, 3 + column), pair)
-    figure.suptitle("duplex paper, 20 x 30, drive side: bidirectional start, contact of one tooth pair, unloaded")
+    figure.suptitle("Duplex paper, 20 x 30, drive side: bidirectional start, contact of one tooth pair, unloaded")
     return figure
 
 

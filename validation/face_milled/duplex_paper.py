@@ -38,7 +38,7 @@ from validation.face_milled.pairs import (
 )
 from validation.table import Row
 
-CASE, SOURCE, COMPUTED = "duplex paper 20 x 30", "duplex paper", "REFERENCES, computed"
+CASE, SOURCE, COMPUTED = "duplex paper, 20 x 30", "duplex paper", "REFERENCES, computed"
 MENDED = "duplex paper, mended pair D"
 FORWARD_PINION_AZIMUTH, REVERSE_AZIMUTH = 0.896671, 0.979223
 MISPRINTS = {"forward theta_g": (5.349393, 5.346931), "mean theta_g": (5.310104, 5.309104)}

@@ -107,8 +107,9 @@ Written by `python -m validation.unloaded.convergence_from_random_starts`. Machi
 
 The contact of two flanks at a given pinion angle, from 5000 random starts on the flanks, by two methods in one run:
 
-- **reduced**: `unloaded/reduced.py`, two unknowns (rho1, z1), the maximum of the ease-off; safeguarded.
-- **five**: `unloaded/conventional.py`, five equations in (rho1, z1, rho2, z2, phi2); plain Newton, as in the source.
+- **reduced**: `loaded_tca.unloaded.climb`, two unknowns (rho1, z1), the maximum of the ease-off; safeguarded.
+- **five**: `loaded_tca.baselines.solve_conventional`, five equations in (rho1, z1, rho2, z2, phi2); plain Newton, as in
+  the source, the reduced-TCA dissertation.
 - **SciPy root**: the same five equations and Jacobian, Powell's hybrid method, {scipy} starts one after the other (not
   vectorised: compare its percentages, not its times; its steps are evaluations).
 

@@ -1,4 +1,4 @@
-"""Two mounting errors together, as Figure 53 of the dissertation: transmission error, contact shift, Hertz pressure.
+"""Two mounting errors together, as Figure 53 of the reduced-TCA dissertation.
 
 In-plane and out-of-plane errors of the helical pair 40/37, 21 x 21 of them at 21 positions each.
 
