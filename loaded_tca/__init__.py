@@ -5,23 +5,6 @@ from typing import TYPE_CHECKING
 from loaded_tca.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from loaded_tca import (
-        baselines,
-        compliance,
-        contact,
-        flank_maps,
-        flanks,
-        gears,
-        output,
-        pairs,
-        plots,
-        reference,
-        results,
-        scene,
-        separation,
-        tooth,
-        unloaded,
-    )
     from loaded_tca.analysis import analyse
     from loaded_tca.contact import solve_contact
     from loaded_tca.errors import AccuracyWarning, ConvergenceError, GeometryError, InputError, LoadedTCAError
@@ -41,25 +24,10 @@ __all__ = [
     "MeshCycle",
     "Scene",
     "analyse",
-    "baselines",
-    "compliance",
-    "contact",
-    "flank_maps",
-    "flanks",
-    "gears",
     "load_result",
-    "output",
-    "pairs",
     "parse_scene",
-    "plots",
     "read_scene",
-    "reference",
-    "results",
     "sample_separation",
-    "scene",
-    "separation",
     "solve_contact",
-    "tooth",
     "trace_contact",
-    "unloaded",
 ]

@@ -5,22 +5,11 @@ from typing import TYPE_CHECKING
 from loaded_tca.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from loaded_tca.baselines.bidirectional import BidirectionalStart, Guess, StartValues
-    from loaded_tca.baselines.conventional import ConventionalResult, solve_conventional, solve_with_scipy_root
-    from loaded_tca.baselines.generating_line import GeneratingLine, LinePoints
-    from loaded_tca.baselines.golden_section import GoldenSectionResult, search_golden_section
+    from loaded_tca.baselines.bidirectional import BidirectionalStart
+    from loaded_tca.baselines.conventional import solve_conventional
+    from loaded_tca.baselines.generating_line import GeneratingLine
+    from loaded_tca.baselines.golden_section import search_golden_section
 else:
     __getattr__, __dir__ = lazy_names(__name__)
 
-__all__ = [
-    "BidirectionalStart",
-    "ConventionalResult",
-    "GeneratingLine",
-    "GoldenSectionResult",
-    "Guess",
-    "LinePoints",
-    "StartValues",
-    "search_golden_section",
-    "solve_conventional",
-    "solve_with_scipy_root",
-]
+__all__ = ["BidirectionalStart", "GeneratingLine", "search_golden_section", "solve_conventional"]
