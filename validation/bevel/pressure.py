@@ -146,8 +146,8 @@ Assumed: {assumed}.
 
 Positions are counted in pitches from the pitch point; R - R_m is positive towards the heel, the height is above the
 pitch cone of the pinion. Where the contact lies within both flanks the map is Hertz's to {worst:.2g} %. Where a flank
-ends within the contact, Hertz does not hold: less material carries the load, and the half-space, which knows no free
-side, gives a spike along the edge that grows with the grid; the largest cell is told, not a peak.
+ends within the contact, Hertz does not hold: less material carries the load, and the half-space, which has no free
+side, gives a spike along the edge, which is mesh-dependent: the table has the largest cell there.
 
 ![Pressure maps on the pinion, and pressure over the rotation](bevel_pressure.png)
 

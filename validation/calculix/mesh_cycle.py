@@ -187,7 +187,7 @@ Processor time [s] of both on this machine, of one position and of all {count} k
 {times}
 
 {factor}
-the SAM paper speaks of two orders of magnitude against finite elements; this is what was measured against elements in
+The SAM paper speaks of two orders of magnitude against finite elements; this is what was measured against elements in
 plane strain, which know one section of the face where the pair here has the whole of it.
 
 ## Rows
