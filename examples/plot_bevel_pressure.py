@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from loaded_tca import sample_separation, solve_contact, trace_contact
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import bevel_mesh
-from loaded_tca.pairs.bevel import bevel_pair
+from loaded_tca.pairs import bevel_pair
 from loaded_tca.reference import hertz
 
 LOAD = 3000.0  # N, normal force of one tooth pair

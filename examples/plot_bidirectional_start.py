@@ -8,11 +8,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from loaded_tca import trace_contact
-from loaded_tca.baselines.bidirectional import BidirectionalStart
-from loaded_tca.baselines.conventional import solve_conventional
-from loaded_tca.gears import BevelBlank
-from loaded_tca.gears.basic_settings import duplex_spread_blade
-from loaded_tca.pairs.face_milled import face_milled_pair
+from loaded_tca.baselines import BidirectionalStart, solve_conventional
+from loaded_tca.gears import BevelBlank, duplex_spread_blade
+from loaded_tca.pairs import face_milled_pair
 from loaded_tca.plots import save_figure
 
 

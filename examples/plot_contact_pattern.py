@@ -10,9 +10,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from loaded_tca import read_scene
-from loaded_tca.flank_maps.pattern import contact_area, contact_pattern
+from loaded_tca.flank_maps import contact_area, contact_pattern
 from loaded_tca.plots import save_figure
-from loaded_tca.unloaded.teeth import trace_teeth
+from loaded_tca.unloaded import trace_teeth
 
 SCENE = Path(__file__).parent / "scenes" / "helical.toml"
 CHANGES = {

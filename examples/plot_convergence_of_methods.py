@@ -10,10 +10,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from loaded_tca import read_scene, trace_contact
-from loaded_tca.baselines.conventional import solve_conventional
+from loaded_tca.baselines import solve_conventional
 from loaded_tca.plots import save_figure
-from loaded_tca.unloaded.ease_off import EaseOff
-from loaded_tca.unloaded.reduced import climb
+from loaded_tca.unloaded import EaseOff, climb
 
 SCENE = Path(__file__).parent / "scenes" / "spur_52_72.toml"
 STARTS = 4000

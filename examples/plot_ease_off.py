@@ -10,9 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from loaded_tca import read_scene
-from loaded_tca.flank_maps.ease_off_map import ease_off_map
-from loaded_tca.plots import save_figure
-from loaded_tca.plots.ease_off import plot_ease_off
+from loaded_tca.flank_maps import ease_off_map
+from loaded_tca.plots import plot_ease_off, save_figure
 
 SCENE = Path(__file__).parent / "scenes" / "helical.toml"
 CHANGES = {

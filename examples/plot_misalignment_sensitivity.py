@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from loaded_tca import read_scene
 from loaded_tca.plots import save_figure
-from loaded_tca.unloaded.teeth import trace_teeth
+from loaded_tca.unloaded import trace_teeth
 
 SCENE = Path(__file__).parent / "scenes" / "helical.toml"
 CROWNING = {"pinion.modifications.lead_crowning_um": 20.0, "pinion.modifications.profile_crowning_um": 5.0}

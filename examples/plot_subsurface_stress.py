@@ -7,7 +7,7 @@ from pathlib import Path
 
 from loaded_tca import analyse, read_scene
 from loaded_tca.plots import plot_stress_below, save_figure
-from loaded_tca.results.stress_below import stress_below
+from loaded_tca.results import stress_below
 
 SCENE = Path(__file__).parent / "scenes" / "helical.toml"
 

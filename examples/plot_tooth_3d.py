@@ -8,9 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from loaded_tca import analyse, read_scene
-from loaded_tca.output.teeth_in_space import complete_teeth, teeth_in_space
-from loaded_tca.plots import save_figure
-from loaded_tca.plots.three_d import draw_teeth
+from loaded_tca.output import complete_teeth, teeth_in_space
+from loaded_tca.plots import draw_teeth, save_figure
 from loaded_tca.tooth import Resolution
 
 SCENE = Path(__file__).parent / "scenes" / "spiral_bevel.toml"

@@ -1,7 +1,7 @@
 """Transmission error of a crowned helical pair under three torques.
 
-Writes transmission_error.png. The wheel stays behind by the approach of the flanks, which grows with the load to the
-power 2/3 as long as the contact ends on the flank.
+Writes transmission_error.png. The transmission error is the contact deformation of the flanks, which grows with the
+load to the power 2/3 as long as the contact reaches no edge.
 """
 
 import math
@@ -22,8 +22,8 @@ def main() -> float:
     save_figure(plot_transmission_error(result), "transmission_error.png")
 
     pitch_point = len(result.path) // 2
-    lag = -result.transmission_error[:, pitch_point]  # rad
-    return math.log(lag[-1] / lag[0]) / math.log(TORQUES[-1] / TORQUES[0])
+    error = -result.transmission_error[:, pitch_point]  # rad
+    return math.log(error[-1] / error[0]) / math.log(TORQUES[-1] / TORQUES[0])
 
 
 if __name__ == "__main__":

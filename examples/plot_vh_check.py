@@ -9,10 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from loaded_tca import read_scene
-from loaded_tca.flank_maps.vh_check import vh_check
-from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.plots import save_figure
-from loaded_tca.plots.vh_check import plot_vh_check
+from loaded_tca.flank_maps import vh_check
+from loaded_tca.pairs import GearPair
+from loaded_tca.plots import plot_vh_check, save_figure
 
 SCENE = read_scene(Path(__file__).parent / "scenes" / "spiral_bevel.toml")
 OFFSETS = (-0.02, 0.0, 0.02)  # mm

@@ -1,14 +1,19 @@
 """Semi-analytical loaded tooth contact analysis of gears."""
 
-from loaded_tca.analysis import analyse
-from loaded_tca.contact import solve_contact
-from loaded_tca.errors import AccuracyWarning, ConvergenceError, GeometryError, InputError, LoadedTCAError
-from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.scene import Scene, read_scene
-from loaded_tca.separation import sample_separation
-from loaded_tca.unloaded import trace_contact
+from typing import TYPE_CHECKING
 
-load_result = MeshCycle.load
+from loaded_tca.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from loaded_tca.analysis import analyse
+    from loaded_tca.contact import solve_contact
+    from loaded_tca.errors import AccuracyWarning, ConvergenceError, GeometryError, InputError, LoadedTCAError
+    from loaded_tca.results import MeshCycle, load_result
+    from loaded_tca.scene import Scene, parse_scene, read_scene
+    from loaded_tca.separation import sample_separation
+    from loaded_tca.unloaded import trace_contact
+else:
+    __getattr__, __dir__ = lazy_names(__name__)
 
 __all__ = [
     "AccuracyWarning",
@@ -20,6 +25,7 @@ __all__ = [
     "Scene",
     "analyse",
     "load_result",
+    "parse_scene",
     "read_scene",
     "sample_separation",
     "solve_contact",

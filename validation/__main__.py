@@ -7,7 +7,7 @@ from validation.table import Row, render
 
 CASES = (
     "contact.sphere",
-    "contact.sam_paper",
+    "cylindrical.sam_paper",
     "unloaded.reduced_tca_misalignment",
     "unloaded.reduced_tca_tables",
     "unloaded.convergence_from_random_starts",
@@ -18,7 +18,7 @@ CASES = (
     "bevel.miter_gear_paper",
     "bevel.pressure",
     "unloaded.involute_pairs",
-    "contact.line_contact",
+    "cylindrical.line_contact",
     "cylindrical.fzg_c14_geometry",
     "bevel.iso_23509_sample",
     "face_milled.settings",

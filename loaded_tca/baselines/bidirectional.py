@@ -18,7 +18,7 @@ is a first guess, and whether it is good is up to the settings. The solver of th
 
 References
 ----------
-the duplex paper (duplex spread blade); Litvin & Fuentes 2004, Gear Geometry and Applied Theory, sections 6.1 and 9.4.
+The duplex paper (docs/sources.md); Litvin & Fuentes 2004, Gear Geometry and Applied Theory, sections 6.1 and 9.4.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ class BidirectionalStart:
 
     References
     ----------
-    the duplex paper.
+    The duplex paper (docs/sources.md).
 
     Examples
     --------

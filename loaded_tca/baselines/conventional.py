@@ -129,7 +129,7 @@ def solve_conventional(
 
     References
     ----------
-    the reduced-TCA dissertation, eqs. 26-32.
+    The reduced-TCA dissertation (docs/sources.md), eqs. 26-32.
 
     Examples
     --------

@@ -18,7 +18,8 @@ This is a reference to compare with: it shares the flanks with ``reduced`` and n
 
 References
 ----------
-the miter-gear paper, "Contact point determination via the golden ratio method"; Kiefer 1953, Proc. AMS 4, 502-506.
+The miter-gear paper (docs/sources.md), "Contact point determination via the golden ratio method"; Kiefer 1953, Proc.
+AMS 4, 502-506.
 """
 
 from __future__ import annotations
@@ -110,7 +111,7 @@ def search_golden_section(pair: GearPair, pinion_angles: ArrayLike, *, sections:
 
     References
     ----------
-    the miter-gear paper, with the signed gap in place of the distance.
+    The miter-gear paper, with the signed gap in place of the distance.
 
     Examples
     --------

@@ -1,9 +1,16 @@
 """Tooth compliance by finite elements: bending, shear, foundation, coupling of neighbouring teeth."""
 
-from loaded_tca.compliance.body import DEFAULT_BORE, GearTooth
-from loaded_tca.compliance.compliance import ToothCompliance, default_density, tooth_compliance
-from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_compliance
-from loaded_tca.compliance.layout import MeshDensity
+from typing import TYPE_CHECKING
+
+from loaded_tca.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from loaded_tca.compliance.body import DEFAULT_BORE, GearTooth
+    from loaded_tca.compliance.compliance import ToothCompliance, default_density, tooth_compliance
+    from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_compliance
+    from loaded_tca.compliance.layout import MeshDensity
+else:
+    __getattr__, __dir__ = lazy_names(__name__)
 
 __all__ = [
     "DEFAULT_BORE",

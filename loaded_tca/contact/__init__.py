@@ -1,10 +1,17 @@
 """Contact of two elastic half-spaces over a gap given on a grid."""
 
-from loaded_tca.contact.adaptive import solve_to_accuracy
-from loaded_tca.contact.edges import FreeEdge, edge_of_plane, quarter_space_factor, wedge_factor
-from loaded_tca.contact.solution import ContactSolution, ContactStatus, ErrorEstimate
-from loaded_tca.contact.solver import contact_stiffness, solve_contact
-from loaded_tca.contact.subsurface import SubsurfaceStress, depths_below, subsurface_stress
+from typing import TYPE_CHECKING
+
+from loaded_tca.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from loaded_tca.contact.adaptive import solve_to_accuracy
+    from loaded_tca.contact.edges import FreeEdge, edge_of_plane, quarter_space_factor, wedge_factor
+    from loaded_tca.contact.solution import ContactSolution, ContactStatus, ErrorEstimate
+    from loaded_tca.contact.solver import contact_stiffness, solve_contact
+    from loaded_tca.contact.subsurface import SubsurfaceStress, depths_below, subsurface_stress
+else:
+    __getattr__, __dir__ = lazy_names(__name__)
 
 __all__ = [
     "ContactSolution",

@@ -1,5 +1,6 @@
 """Macro geometry of gears, and the cutters and machine settings that cut them."""
 
+from loaded_tca.gears.basic_settings import duplex_spread_blade, spread_blade
 from loaded_tca.gears.bevel import BevelGear, BevelMesh, bevel_mesh
 from loaded_tca.gears.bevel_blank import BevelBlank
 from loaded_tca.gears.blank_gear import BlankGear
@@ -8,6 +9,7 @@ from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.gears.cylindrical_mesh import CylindricalMesh
 from loaded_tca.gears.face_milled import FaceMilledGear, FaceMilledMesh
 from loaded_tca.gears.machine_settings import FaceMilledBlank, MachineSettings
+from loaded_tca.gears.transverse_profile import transverse_profile
 
 __all__ = [
     "BevelBlank",
@@ -23,4 +25,7 @@ __all__ = [
     "FaceMilledMesh",
     "MachineSettings",
     "bevel_mesh",
+    "duplex_spread_blade",
+    "spread_blade",
+    "transverse_profile",
 ]

@@ -7,6 +7,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
+from loaded_tca.plots.ease_off import plot_ease_off
 from loaded_tca.plots.flanks import plot_contact_path
 from loaded_tca.plots.pressure_map import plot_pressure_map
 from loaded_tca.plots.sharing import (
@@ -20,13 +21,17 @@ from loaded_tca.plots.sharing import (
 )
 from loaded_tca.plots.style import highest_torque, save_figure
 from loaded_tca.plots.subsurface import plot_stress_below, plot_subsurface
+from loaded_tca.plots.three_d import draw_teeth, plot_teeth, show_teeth
+from loaded_tca.plots.vh_check import plot_vh_check
 from loaded_tca.results.files import FilePath, remove
 from loaded_tca.results.mesh_cycle import MeshCycle
 
 __all__ = [
     "PICTURES",
+    "draw_teeth",
     "plot_all",
     "plot_contact_path",
+    "plot_ease_off",
     "plot_harmonics",
     "plot_line_load",
     "plot_line_load_distribution",
@@ -38,8 +43,11 @@ __all__ = [
     "plot_pressure_map",
     "plot_stress_below",
     "plot_subsurface",
+    "plot_teeth",
     "plot_transmission_error",
+    "plot_vh_check",
     "save_figure",
+    "show_teeth",
 ]
 
 PICTURES = (

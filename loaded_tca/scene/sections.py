@@ -147,7 +147,7 @@ class Analysis(Section):
     tolerance: float = key(Number(1e-14, 0.1), "relative tolerance of the contact solver", 1e-6)
     free_edges: bool = key(
         Choice((False, True)),
-        "whether the tips and sides of the teeth yield more than a half-space, by mirrored pressure: "
+        "whether the tips and face ends of the teeth deflect more than a half-space, by mirrored pressure: "
         "what a mesh cycle without crowning or end relief wants",
         False,
     )
@@ -158,7 +158,7 @@ class Analysis(Section):
     )
     compliance: str = key(
         Choice(("contact", "contact+tooth")),
-        "what yields under load: the flanks, or the teeth and bodies too",
+        "what deforms under load: the flanks, or the teeth and bodies, too",
         "contact",
     )
     torques_Nm: tuple[float, ...] | None = key(

@@ -12,7 +12,7 @@ driving), so the field used throughout is the **ease-off**
 
 whose maximum over the region that both flanks cover is the contact point, and whose drop below the maximum is, to
 first order and along the line of action in the transverse section, the gap. It needs no common apex, no arccosine
-and no parameter of the second flank. (Seed of the idea: the elimination of three of the five contact equations;
+and no parameter of the second flank. (The idea comes from the elimination of three of the five contact equations;
 here the remaining two are the gradient of one scalar.)
 """
 

@@ -1,4 +1,4 @@
-"""The bidirectional start: the seed's digits, what each step must fulfil, conjugate gears, and where it ends."""
+"""The bidirectional start: the paper's digits, what each step must fulfil, conjugate gears, and where it ends."""
 
 from dataclasses import replace
 from functools import cache
@@ -25,11 +25,11 @@ from validation.face_milled.pairs import (
     spygo_gears,
 )
 
-HALF_DIGIT = 0.5e-6  # rad, of the seed's azimuths
+HALF_DIGIT = 0.5e-6  # rad, of the paper's azimuths
 ROUNDING = 1e-12
 SAME_CONTACT = 1e-9  # rad; y and z of the normals leave their root nearly double, the equations are solved to 1e-12
 PAIRS = {
-    "seed": (duplex_paper_gears(), "concave"),
+    "duplex paper": (duplex_paper_gears(), "concave"),
     "mended": (duplex_paper_gears(MENDED_RADIAL), "concave"),
     "published, coast": (spygo_gears(), "convex"),
     "duplex, coast": (duplex_gears(), "convex"),
@@ -45,35 +45,35 @@ def start_of(gears, flank="concave", mounting=BevelMounting()):
 
 
 @pytest.fixture(scope="module")
-def seed_start():
+def paper_start():
     return start_of(duplex_paper_gears())[0]
 
 
-def test_reverse_start_has_the_digits_of_the_seed(seed_start):
-    values = seed_start.reverse(0.979223)
+def test_reverse_start_has_the_digits_of_the_paper(paper_start):
+    values = paper_start.reverse(0.979223)
     assert_allclose(values.wheel_azimuth, 5.271278, rtol=0, atol=HALF_DIGIT)
     assert_allclose(values.pinion_turn, 2.8177e-3, rtol=0, atol=0.5e-7)
     assert_allclose(values.wheel_turn, -2.721e-3, rtol=0, atol=0.5e-6)
 
 
-def test_forward_start_has_the_digits_of_the_seed_from_the_mended_azimuth(seed_start):
-    values = seed_start.forward(5.346931)
+def test_forward_start_has_the_digits_of_the_paper_from_the_mended_azimuth(paper_start):
+    values = paper_start.forward(5.346931)
     assert_allclose(values.pinion_azimuth, 0.896671, rtol=0, atol=HALF_DIGIT)
     assert_allclose(values.wheel_turn, 7.9436e-3, rtol=0, atol=0.5e-7)
     assert_allclose(values.pinion_turn, -6.30e-4, rtol=0, atol=0.5e-6)
 
 
-def test_mean_start_has_the_digits_of_the_seed_but_for_the_misprinted_azimuth(seed_start):
-    values = seed_start.forward(5.346931).mean(seed_start.reverse(0.979223))
+def test_mean_start_has_the_digits_of_the_paper_but_for_the_misprinted_azimuth(paper_start):
+    values = paper_start.forward(5.346931).mean(paper_start.reverse(0.979223))
     assert_allclose(values.wheel_azimuth, 5.309104, rtol=0, atol=HALF_DIGIT)
     assert_allclose(values.pinion_azimuth, 0.937947, rtol=0, atol=HALF_DIGIT)
     assert_allclose(values.wheel_turn, 2.611e-3, rtol=0, atol=1e-6)  # digits cut off, not rounded
     assert_allclose(values.pinion_turn, 1.090e-3, rtol=0, atol=1e-5)
 
 
-def test_printed_forward_azimuth_is_a_misprint(seed_start):
+def test_printed_forward_azimuth_is_a_misprint(paper_start):
     """The rest of its column lies 1000 times farther off than its digits allow."""
-    values = seed_start.forward(5.349393)
+    values = paper_start.forward(5.349393)
     assert abs(values.pinion_azimuth - 0.896671) > 1000 * 1e-6
     assert abs(values.pinion_turn + 6.30e-4) > 100 * 1e-6
 
@@ -180,10 +180,10 @@ def test_five_equations_get_home_where_the_flanks_touch_inside(gears, flank, com
     assert_allclose(found.wheel_angle, touch.wheel_angle, rtol=0, atol=SAME_CONTACT)
 
 
-def test_five_equations_find_no_contact_with_the_settings_of_the_seed(seed_start):
+def test_five_equations_find_no_contact_with_the_printed_settings(paper_start):
     pair = face_milled_pair(*duplex_paper_gears())
-    for values in (seed_start.forward(), seed_start.reverse(), seed_start.mean()):
-        guess = seed_start.guess(values)
+    for values in (paper_start.forward(), paper_start.reverse(), paper_start.mean()):
+        guess = paper_start.guess(values)
         for components in ((1, 2), (0, 2)):
             found = solve_conventional(pair, [guess.pinion_angle], guess.unknowns[None], components)
             assert not found.is_contact.any()
@@ -198,11 +198,11 @@ def test_generating_line_off_the_mean_cone_distance_is_told():
         start.forward()
 
 
-def test_normal_that_the_mate_does_not_have_is_told(seed_start):
+def test_normal_that_the_mate_does_not_have_is_told(paper_start):
     with pytest.raises(
         GeometryError, match=r"wheel: no start .* axial part of the normal .* off that of its mating gear"
     ):
-        seed_start.reverse(2.2)
+        paper_start.reverse(2.2)
 
 
 def test_normal_that_never_meshes_is_told():

@@ -22,7 +22,7 @@ def mated(name, sense="positive", modifications=CROWNED, resolution=COARSE, **ch
 
 @pytest.mark.parametrize("driving", ["pinion", "wheel"])
 @pytest.mark.parametrize("sense", OTHER)
-@pytest.mark.parametrize("name", ["helical", "seed 001", "spiral bevel"])
+@pytest.mark.parametrize("name", ["helical", "miter gear", "spiral bevel"])
 def test_teeth_touch_at_the_contact_point_without_passing_through_each_other(name, sense, driving):
     """The wheel's flank, looked at from the pinion: nowhere behind its surface, and on it at the contact point."""
     teeth = mated(name, sense, driving=driving)

@@ -37,7 +37,7 @@ def gear_pair(pinion=NONE, wheel=NONE, mounting=None, driving="pinion", sense="p
 
 
 def sam_paper(helix_deg=0.0, **changes):
-    """The crowned pair of seed 002: its Hertz ellipse is a little shorter than the face."""
+    """The crowned pair of the SAM paper: its Hertz ellipse is a little shorter than the face."""
     return gear_pair(FlankModifications(lead_crowning=0.005), helix_deg=helix_deg, **changes)
 
 

@@ -21,7 +21,7 @@ MESHES = {
     "undercut": CylindricalMesh(CylindricalGear(14, 3.0, 25.0), CylindricalGear(40, 3.0, 25.0, tip_diameter=124.0)),
     "full rounding": cylindrical_mesh((20, 40), root_radius_coefficient=9.0),
     "straight bevel": bevel_mesh((39, 32), 2.5, 14.0),
-    "seed 001": bevel_mesh((20, 40), 3.0, 20.0, profile_shifts=(0.416, -0.416)),
+    "miter gear": bevel_mesh((20, 40), 3.0, 20.0, profile_shifts=(0.416, -0.416)),
     "spiral bevel": bevel_mesh((17, 17), 1.0, 4.8, spiral_angle=math.radians(35.0)),
     "crown bevel": bevel_mesh((15, 40), 3.0, 15.0, shaft_angle=math.radians(120.0)),
 }

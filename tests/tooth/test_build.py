@@ -52,7 +52,7 @@ def test_tip_land_is_as_wide_as_the_tooth_at_its_tip(name):
     assert_allclose(np.remainder(width, 2 * math.pi) * gear.tip_radius, gear.tooth_thickness_at(gear.tip_radius))
 
 
-@pytest.mark.parametrize("name", ["straight bevel", "seed 001"])
+@pytest.mark.parametrize("name", ["straight bevel", "miter gear"])
 def test_tip_land_of_a_bevel_gear_lies_on_the_face_cone(name):
     gear = MESHES[name].pinion
     land = tooth_of(MESHES[name]).patch("tip land")
@@ -149,7 +149,7 @@ def test_bevel_tooth_of_small_pitch_angle_is_the_cylindrical_one():
 
 def test_root_cone_off_the_apex_is_met_by_every_sphere():
     cone, distance = RootCone(math.radians(30.0), apex=2.0), np.array([40.0, 50.0, 60.0])
-    rho, z = tooth_forms(MESHES["seed 001"])[0].sections.point(cone(distance), distance)
+    rho, z = tooth_forms(MESHES["miter gear"])[0].sections.point(cone(distance), distance)
     assert_allclose(rho, (z - 2.0) * math.tan(math.radians(30.0)), rtol=ROUNDING)
     assert_allclose(np.hypot(rho, z), distance, rtol=ROUNDING)
 

@@ -110,7 +110,7 @@ def test_removed_material_lets_the_driven_gear_lag(driving):
 # Misalignment
 
 
-TABLE_3_AND_4 = [  # seed 000; in-plane and out-of-plane error [deg], slope [arcsec per rad of the pinion]
+TABLE_3_AND_4 = [  # dissertation; in-plane and out-of-plane error [deg], slope [arcsec per rad of the pinion]
     (0.05, 0.0, -15.965),
     (-0.05, 0.0, 15.944),
     (0.1, 0.0, -31.951),

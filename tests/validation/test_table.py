@@ -1,7 +1,11 @@
 """The validation table holds, row by row."""
 
+import importlib
+import pkgutil
+
 import pytest
 
+import validation
 from validation.__main__ import collect
 from validation.table import Row, render
 
@@ -32,3 +36,11 @@ def test_validation_table_has_a_line_for_every_row(rows):
 )
 def test_row_holds_within_its_tolerance(expected, obtained, tolerance, holds):
     assert Row("case", "source", "quantity", expected, obtained, tolerance).holds is holds
+
+
+@pytest.mark.parametrize("folder", [info.name for info in pkgutil.iter_modules(validation.__path__) if info.ispkg])
+def test_folder_lists_what_stands_in_it(folder):
+    assert f"| `{folder}` |" in validation.__doc__
+    package = importlib.import_module(f"validation.{folder}")
+    for info in pkgutil.iter_modules(package.__path__):
+        assert f"``{info.name}``" in package.__doc__ or info.name == "__main__"

@@ -3,7 +3,7 @@
 Starts are drawn over the flanks between their corners, in cone distance and along the profile; the rest is as for
 cylindrical gears, see :mod:`validation.unloaded.convergence_from_random_starts`.
 
-Run from the root of the repository: ``python -m validation.bevel.convergence --out docs``.
+Run from the root of the repository: ``python -m validation.bevel.convergence``.
 """
 
 import argparse
@@ -133,7 +133,7 @@ the pinion. The axes of the range are linear up to the size of the flank and log
 def main() -> None:
     """Run the study, print the table, write it and the pictures."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs"))
+    parser.add_argument("--out", type=Path, default=Path("docs/studies"))
     parser.add_argument("--starts", type=int, default=STARTS)
     arguments = parser.parse_args()
     tables, pictures, assumed = [], [], []

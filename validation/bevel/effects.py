@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Effect:
-    """The leading contact over one pitch: where it runs, how the wheel stays behind, what the pressure is.
+    """The leading contact over one pitch: where it runs, its transmission error, what the pressure is.
 
     Attributes
     ----------

@@ -1,6 +1,6 @@
 """Page and picture of the straight bevel pair of the miter-gear paper.
 
-Run from the root of the repository: ``python -m validation.bevel.miter_gear_document --out docs`` (a minute).
+Run from the root of the repository: ``python -m validation.bevel.miter_gear_document`` (a minute).
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ Written by `python -m validation.bevel.miter_gear_document`. Machine: {machine}.
 the source does not print it: face width 20 mm, crowning 10 um lengthwise and {profile:g} um along the profile, marking
 compound 6.35 um.
 
-![Path, transmission error, contact pattern, and the same on the heel](miter_gear.png)
+![Path, transmission error, contact pattern, and the same on the heel](miter_gear_paper.png)
 
 ## Largest transmission error
 
@@ -147,7 +147,7 @@ def picture() -> Figure:
     _draw_areas(pattern)
     _draw_motion(edge, EDGE, f"E {EDGE.offset:g} mm: on the heel at every position")
     crowned = f"pinion crowned 10 µm lengthwise, {1e3 * PROFILE:g} µm along the profile"
-    figure.suptitle(f"Straight bevel pair 20/40 (the miter-gear paper), m_et 3 mm, b 20 mm, {crowned}")
+    figure.suptitle(f"Straight bevel pair 20/40 of the miter-gear paper, m_et 3 mm, b 20 mm, {crowned}")
     return figure
 
 
@@ -223,12 +223,12 @@ def _draw_area(axes: Axes, area: ContactArea, colour: str, label: str | None) ->
 def main() -> None:
     """Print and write the page, save the picture."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs"), help="directory of the page and the picture")
+    parser.add_argument("--out", type=Path, default=Path("docs/studies"), help="directory of the page and the picture")
     directory = parser.parse_args().out
     text = document()
     print(text)
-    (directory / "miter_gear.md").write_text(text)
-    picture().savefig(directory / "miter_gear.png", dpi=DOTS_PER_INCH)
+    (directory / "miter_gear_paper.md").write_text(text)
+    picture().savefig(directory / "miter_gear_paper.png", dpi=DOTS_PER_INCH)
 
 
 if __name__ == "__main__":

@@ -35,7 +35,7 @@ from validation.bevel.pairs import BevelGears
 from validation.table import Row
 
 Array = NDArray[np.float64]
-CASE = "miter-gear paper straight bevel 20/40"
+CASE = "miter-gear paper, straight bevel 20/40"
 ASSUMED = "b 20 mm, crowning of the pinion 10 um lengthwise, 5 um profile, compound 6.35 um"
 ARCSEC = degrees(3600.0)
 GEARS = BevelGears(

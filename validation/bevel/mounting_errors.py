@@ -1,6 +1,6 @@
 """Mounting errors of bevel gears (reduced-TCA dissertation, Figures 33 to 53): verdicts, tables, pictures.
 
-Run from the root of the repository: ``python -m validation.bevel.mounting_errors --out docs``.
+Run from the root of the repository: ``python -m validation.bevel.mounting_errors``.
 """
 
 import argparse
@@ -21,7 +21,7 @@ from validation.table import Row
 from validation.unloaded.mounting_error_pairs import ARCSEC, FORMS
 from validation.unloaded.mounting_error_trends import Trend
 
-CASE = "reduced-TCA dissertation bevel mounting errors"
+CASE = "reduced-TCA dissertation, bevel mounting errors"
 SMALL = 1e-4
 """Displacement [mm] at the pitch point of the first-order law: the second order is a thousandth of it."""
 ERRORS = ("aligned", "ΔE", "ΔA", "ΔG", "Δγ")
@@ -109,13 +109,14 @@ COLUMNS = (
 TEXT = """# Bevel pairs under mounting errors
 
 Written by `python -m validation.bevel.mounting_errors`. Unloaded contact of all teeth over one pitch; pressures after
-Hertz, one tooth pair carrying the whole load. The dissertation's Figures 33 to 53 show pictures, most of them without
-inputs: each statement of its text is judged here by a number. How many random starts converge is on
+Hertz, one tooth pair carrying the whole load. Figures 33 to 53 of the reduced-TCA dissertation show pictures, most of
+them without inputs: each statement of its text is judged here by a number. How many random starts converge is on
 [a page of its own](bevel_convergence.md).
 
 Read the frame like a drawing of the tooth: R - R_m to the right (toe to heel), height above the pitch cone upwards
-(root to tip), both on the pinion, in mm. The mean transmission error is a constant lag, which no gear notices; what is
-heard is peak to peak. "Continuous": the teeth take over from each other without a tooth edge.
+(root to tip), both on the pinion, in mm. The mean of the transmission error is a constant angle without consequence;
+the peak to peak value is what excites vibration. "Continuous": one tooth pair takes over from the
+other without edge contact.
 
 Assumed, where the source says nothing: {assumed}
 
@@ -183,7 +184,7 @@ def document(errors: ErrorMap) -> str:
 def main() -> int:
     """Print and write the page, save the pictures; 0 in any case: a trend that does not hold is a finding."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs"), help="directory of the page and the pictures")
+    parser.add_argument("--out", type=Path, default=Path("docs/studies"), help="directory of the page and the pictures")
     directory = parser.parse_args().out
     errors = error_map()
     text = document(errors)

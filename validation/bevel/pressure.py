@@ -6,7 +6,7 @@ pitch from the pitch point, where the neighbouring pairs carry too, the contact 
 where an offset E takes it to the heel, the box holds cells without material: the half-space gives a spike along the
 edge which no grid resolves, so only its load is checked.
 
-Run from the root of the repository: ``python -m validation.bevel.pressure --out docs``.
+Run from the root of the repository: ``python -m validation.bevel.pressure``.
 """
 
 from __future__ import annotations
@@ -146,8 +146,8 @@ Assumed: {assumed}.
 
 Positions are counted in pitches from the pitch point; R - R_m is positive towards the heel, the height is above the
 pitch cone of the pinion. Where the contact lies within both flanks the map is Hertz's to {worst:.2g} %. Where a flank
-ends within the contact, Hertz does not hold: less material carries the load, and the half-space, which knows no free
-side, gives a spike along the edge that grows with the grid; the largest cell is told, not a peak.
+ends within the contact, Hertz does not hold: less material carries the load, and the half-space, which has no free
+side, gives a spike along the edge, which is mesh-dependent: the table has the largest cell there.
 
 ![Pressure maps on the pinion, and pressure over the rotation](bevel_pressure.png)
 
@@ -259,7 +259,7 @@ def _holds(one: Pressed) -> bool:
 def main() -> None:
     """Print and write the page, save the picture."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs"), help="directory of the page and the picture")
+    parser.add_argument("--out", type=Path, default=Path("docs/studies"), help="directory of the page and the picture")
     directory = parser.parse_args().out
     text = document()
     print(text)

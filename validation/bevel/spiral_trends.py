@@ -1,4 +1,4 @@
-"""What the dissertation says of Figures 42 to 53, the spiral bevel pair, and whether a computation agrees.
+"""What the reduced-TCA dissertation says of Figures 42 to 53, the spiral bevel pair, and whether a computation agrees.
 
 Delta E and Delta H have no sign in the source: both are computed, and a statement holds if it does for one of them; the
 numbers say which.

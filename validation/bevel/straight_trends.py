@@ -1,4 +1,4 @@
-"""What the dissertation says of Figures 33 to 39, the straight bevel pair under the errors of its Table 6."""
+"""What the reduced-TCA dissertation says of the straight bevel pair under mounting errors, its Figures 33 to 39."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ from validation.calculix.steel import PENALTY
 FIRST_STIFFNESS = 14.0
 """Guess of the secant stiffness that places the wheel of the first run [N/(mm um)]."""
 SETBACK_ERROR = 0.2
-"""The wheel is placed anew if the lag was expected wrong by more than this part ..."""
+"""The wheel is placed anew if the expected setback was wrong by more than this part ..."""
 SETBACK_ERROR_LENGTH = 1.5e-3
 """... and more than this [mm]: phi1 then differs from the wanted one by less than 5e-5 rad."""
 ATTEMPTS = 4
@@ -46,7 +46,7 @@ def run_position(
     index : int
         Of the position.
     setback : float [mm]
-        Expected lag.
+        Expected setback of the wheel under load.
     work : Path
         Directory for the files.
     meshing : Meshing
@@ -121,7 +121,7 @@ def run_all(work: Path, every: int = 1) -> list[Record]:
 
 
 def first_setback(variant: str, torque: float, index: int) -> float:
-    """Lag of the first touch and a guess of what the load adds [mm]."""
+    """Setback of the first contact and a guess of what the load adds [mm]."""
     return unloaded_setback(position(variant, index, 0.0)) + 1e-3 * line_load(torque) / FIRST_STIFFNESS
 
 

@@ -34,5 +34,5 @@ def line_load(torque: float) -> float:
 
 
 def position(variant: str, index: int, setback: float) -> Position:
-    """Gears of a variant at a position, the wheel behind by a lag [mm]."""
+    """Gears of a variant at a position, the wheel behind by a setback [mm]."""
     return Position(*VARIANTS[variant], CENTRE_DISTANCE, pinion_angle(index), setback)

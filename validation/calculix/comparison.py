@@ -1,7 +1,7 @@
 """Positions of a loaded spur pair, kept from finite elements and computed here, in the same few numbers.
 
-The finite elements are in plane strain. A face of the package has free ends, where the teeth yield more. So it is made
-wide, under the same line load, and pressures are read at mid-face.
+The finite elements are in plane strain. A face of the package has free ends, where the teeth deflect more. So it is
+made wide, under the same line load, and pressures are read at mid-face.
 """
 
 from __future__ import annotations

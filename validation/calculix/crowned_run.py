@@ -17,7 +17,7 @@ from validation.calculix.run import Run, run
 from validation.calculix.tooth_form import Array
 
 FIRST_LAG = {"crowned": 0.01345, "flat": 0.0102}
-"""Guesses of the lag that places the wheel [mm]; the results do not depend on them."""
+"""Guesses of the setback that places the wheel [mm]; the results do not depend on them."""
 AMOUNT = {"crowned": CROWNING, "flat": 0.0}
 """Lead crowning of the pinion [mm]."""
 PEAK_LAYERS = 6
@@ -83,10 +83,10 @@ def run_crowned(
     done = run(deck.text(), kept.with_suffix(""), list(range(layers)), len(deck.load_steps))
     step = 0.5 * FACE_WIDTH / layers
     force = np.array([done.forces[-1][layer].normal_force for layer in range(layers)])
-    closing = float(done.hub_displacement[-1]) / position.pinion.bore_radius * position.pinion.base_radius
+    deflection = float(done.hub_displacement[-1]) / position.pinion.bore_radius * position.pinion.base_radius
     pressure, half_width = _at_mid_face(done, position.pinion.base_radius)
     result = CrownedResult(
-        transmission_error=-1e3 * (position.setback + closing),
+        transmission_error=-1e3 * (position.setback + deflection),
         height=(step * (np.arange(layers) + 0.5)).tolist(),
         line_load=(force / step).tolist(),
         covered_width=[done.forces[-1][layer].area / step for layer in range(layers)],

@@ -77,12 +77,12 @@ class PositionResult:
 def evaluate(position: Position, deck: PlaneDeck, run: Run) -> PositionResult:
     """Results of a run in the units in which they are kept."""
     turned = run.hub_displacement / position.pinion.bore_radius
-    closing = turned * position.pinion.base_radius
+    deflection = turned * position.pinion.base_radius
     torque = deck.hub_force * position.pinion.bore_radius
     return PositionResult(
         pinion_angle=position.pinion_angle + float(turned[-1]),
-        transmission_error=-1e3 * (position.setback + float(closing[-1])),
-        mesh_stiffness=_stiffness(deck, position, closing),
+        transmission_error=-1e3 * (position.setback + float(deflection[-1])),
+        mesh_stiffness=_stiffness(deck, position, deflection),
         pairs=tuple(
             _pair(position, pair, run, torque)
             for pair in deck.flanks
@@ -111,12 +111,12 @@ def fit_half_ellipse(place: Array, pressure: Array) -> tuple[float, float, float
     return middle + centre, math.sqrt(-highest / square), math.sqrt(highest)
 
 
-def _stiffness(deck: PlaneDeck, position: Position, closing: Array) -> float:
-    """Line load over closing between the last two steps [N/(mm um)]; NaN with one step alone."""
+def _stiffness(deck: PlaneDeck, position: Position, deflection: Array) -> float:
+    """Line load over deflection between the last two steps [N/(mm um)]; NaN with one step alone."""
     if len(deck.load_steps) < 2:
         return math.nan
     force = deck.hub_force * position.pinion.bore_radius / position.pinion.base_radius / THICKNESS
-    return force * (deck.load_steps[-1] - deck.load_steps[-2]) / (1e3 * float(closing[-1] - closing[-2]))
+    return force * (deck.load_steps[-1] - deck.load_steps[-2]) / (1e3 * float(deflection[-1] - deflection[-2]))
 
 
 def _pair(position: Position, pair: int, run: Run, torque: float) -> PairResult:

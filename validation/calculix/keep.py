@@ -44,7 +44,7 @@ def keep_cycles(program: str, records: list[Record]) -> None:
     """
     plane = [line.format(per_half_width=Meshing().per_half_width) for line in PLANE]
     head = provenance(
-        program, [*plane, *SIGNS, "mesh_stiffness: change of line load over closing, 96 to 100 % torque."]
+        program, [*plane, *SIGNS, "mesh_stiffness: change of line load over deflection, 96 to 100 % torque."]
     )
     write_table(POSITIONS_FILE, head, map(_position_row, records))
     notes = (

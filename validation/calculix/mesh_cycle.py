@@ -3,7 +3,7 @@
 Source: the kept runs of ``validation.calculix``, in plane strain; how both are made alike is told in
 ``validation.calculix.comparison``. Runs that are not kept give no rows.
 
-Page and picture: ``python -m validation.calculix.mesh_cycle --out docs`` from the root of the repository
+Page and picture: ``python -m validation.calculix.mesh_cycle`` from the root of the repository
 (a minute or two).
 """
 
@@ -156,7 +156,7 @@ it comes apart somewhere in between: such positions are left out of the column.
 
 ## Plane strain against a face with ends
 
-The finite elements are in plane strain. On a real face (and here) the teeth end freely and yield more there. The
+The finite elements are in plane strain. On a real face (and here) the teeth end freely and deflect more there. The
 rows of `python -m validation` take a face of {wide:g} mm under the same line load; the table also has one of
 {narrow:g} mm. The load is not the same all along a face: the half-space makes the ends of a line carry more than its
 middle, the bending of teeth that end there less. Pressure *mean load* is that of mid-face times the root of mean over
@@ -187,7 +187,7 @@ Processor time [s] of both on this machine, of one position and of all {count} k
 {times}
 
 {factor}
-the SAM paper speaks of two orders of magnitude against finite elements; this is what was measured against elements in
+The SAM paper speaks of two orders of magnitude against finite elements; this is what was measured against elements in
 plane strain, which know one section of the face where the pair here has the whole of it.
 
 ## Rows
@@ -369,7 +369,7 @@ def write(out: Path, kept: Cycles) -> None:
 def main() -> None:
     """Write the page and the picture, if there is anything to compare."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs"))
+    parser.add_argument("--out", type=Path, default=Path("docs/studies"))
     arguments = parser.parse_args()
     kept = read_cycles()
     if not kept:

@@ -10,12 +10,12 @@ import numpy as np
 from validation.calculix.tooth_form import Array, ToothForm
 
 SAMPLES = 20001
-"""Points of the wheel's flank among which the one that touches first is sought."""
+"""Points of the wheel's flank among which the one that is in contact first is sought."""
 
 
 @dataclass(frozen=True)
 class ToothPair:
-    """Where one tooth pair touches first when the pinion alone is turned.
+    """Where one tooth pair comes into contact when the pinion alone is turned.
 
     Attributes
     ----------
@@ -31,7 +31,7 @@ class ToothPair:
 
 @dataclass(frozen=True)
 class Position:
-    """A pair of parallel axes at one pinion angle, its wheel behind by a lag.
+    """A pair of parallel axes at one pinion angle, its wheel behind by a setback.
 
     The pinion's axis is the z axis and turns towards +y beside the wheel, whose axis is at x = ``centre_distance``;
     both angles are positive in the sense of motion. Tooth pair 0 touches at the pitch point where both are zero, pair

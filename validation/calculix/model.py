@@ -16,7 +16,7 @@ from validation.calculix.tooth_form import ToothForm
 
 PAIRS = (-2, -1, 0, 1, 2)
 REACH = 0.3
-"""Pairs whose gap is below this part of the lag may close by the bending of the others."""
+"""Pairs whose gap is below this part of the setback may come into contact as the others deflect."""
 FAINTEST = 0.1
 """Share of the load for which the mesh of the least loaded pair is still fine enough."""
 SURFACE_REACH = 1.5
@@ -69,7 +69,7 @@ def touching_pairs(position: Position) -> dict[int, ToothPair]:
 
 
 def unloaded_setback(position: Position) -> float:
-    """Lag at which the first tooth pair touches; the lag of the position itself does not matter [mm]."""
+    """Setback at which the first tooth pair is in contact, whatever that of the position is [mm]."""
     gaps = [touch.gap for touch in map(position.touch, PAIRS) if touch]
     return position.setback + min(gaps)
 
@@ -86,7 +86,7 @@ def plane_deck(
     Parameters
     ----------
     position : Position
-        Its lag is the one expected under load, so that the pinion hardly turns.
+        Its setback is the one expected under load, so that the pinion hardly turns.
     line_load : float [N/mm]
         Torque over pinion base radius and face width.
     meshing : Meshing

@@ -32,7 +32,7 @@ ONE_POSITION: dict[str, object] = {
 }
 CROWNING: dict[str, object] = {"pinion.modifications.lead_crowning_um": 10.0}
 FLAT: dict[str, object] = {"analysis.free_edges": True, "analysis.cells": [32, 96]}
-"""A load up to the ends of the face, which yield; the grid ends with the face."""
+"""A load up to the free ends of the face; the grid ends with the face."""
 
 
 @dataclass(frozen=True)

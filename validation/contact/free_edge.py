@@ -50,10 +50,10 @@ class QuarterSpace:
 
 def quarter_space(poisson_ratio: float) -> QuarterSpace:
     """Coefficients for cells that are even beside the edge and grow away from it."""
-    borders = [STEP * k for k in range(EVEN_CELLS + 1)]
-    while borders[-1] < FARTHEST:
-        borders.append(borders[-1] + GROWTH * (borders[-1] - borders[-2]))
-    edges = np.array(borders)
+    bounds = [STEP * k for k in range(EVEN_CELLS + 1)]
+    while bounds[-1] < FARTHEST:
+        bounds.append(bounds[-1] + GROWTH * (bounds[-1] - bounds[-2]))
+    edges = np.array(bounds)
     y = 0.5 * (edges[1:] + edges[:-1])
     k = np.arange(CELLS_ALONG)
     distance = np.minimum(k, CELLS_ALONG - k) * STEP

@@ -22,11 +22,11 @@ STEP, EVEN_TO, GROWTH, FARTHEST = 0.15, 1.2, 1.3, 20.0
 
 
 def graded() -> Array:
-    """Borders of the elements from zero outwards."""
-    borders = list(np.arange(0.0, EVEN_TO + 0.5 * STEP, STEP))
-    while borders[-1] < FARTHEST:
-        borders.append(borders[-1] + GROWTH * (borders[-1] - borders[-2]))
-    return np.array(borders)
+    """Bounds of the elements from zero outwards."""
+    bounds = list(np.arange(0.0, EVEN_TO + 0.5 * STEP, STEP))
+    while bounds[-1] < FARTHEST:
+        bounds.append(bounds[-1] + GROWTH * (bounds[-1] - bounds[-2]))
+    return np.array(bounds)
 
 
 def displacement(across: Array, poisson_ratio: float) -> tuple[float, float]:

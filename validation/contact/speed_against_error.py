@@ -6,7 +6,7 @@ here for every code from its pressure alone, with the contact conditions on the 
 Hertz. The other codes come with ``pip install 'loaded_tca[peers]'``; what is not installed is left out. Below them the
 page has the table of ``validation.loaded.speed``.
 
-Run from the root of the repository: ``python -m validation.contact.speed_against_error --out docs``.
+Run from the root of the repository: ``python -m validation.contact.speed_against_error``.
 """
 
 import argparse
@@ -309,7 +309,7 @@ def draw(found: list[Measurement], path: Path) -> None:
 def main() -> None:
     """Measure, print the table, write it and the picture."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs"))
+    parser.add_argument("--out", type=Path, default=Path("docs/studies"))
     parser.add_argument("--largest", type=int, default=2048)
     parser.add_argument("--largest-of-peers", type=int, default=512)
     parser.add_argument("--budget", type=float, default=2.0, help="seconds of warm solves per measurement")
@@ -332,6 +332,9 @@ def main() -> None:
     print("\n".join(notes))
     whole = speed_of_mesh_cycle.table(speed_of_mesh_cycle.measure())
     page = [
+        "# Time against error\n",
+        "Written by `python -m validation.contact.speed_against_error`; [the contact solver](../contact_solver.md)",
+        "says what is compared and how.\n",
         *notes,
         "",
         table(found),

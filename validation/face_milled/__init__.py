@@ -1,1 +1,6 @@
-"""Comparisons of the subject face milled."""
+"""Face-milled pairs.
+
+- ``settings``: basic machine settings and the contact of the 19 x 62 pair of SpyGO;
+- ``duplex_paper``: the bidirectional start of the duplex paper; ``duplex_document`` writes the page;
+- ``pairs``: the pairs that both share.
+"""

@@ -1,4 +1,4 @@
-"""Page and picture of the bidirectional start: ``python -m validation.face_milled.duplex_document --out docs``."""
+"""Page and picture of the bidirectional start: ``python -m validation.face_milled.duplex_document``."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from validation.face_milled.duplex_paper import (
     starts,
     studies,
 )
-from validation.face_milled.pairs import MENDED_RADIAL, SEED_ASSUMED, duplex_paper_gears, error_from_top
+from validation.face_milled.pairs import DUPLEX_ASSUMED, MENDED_RADIAL, duplex_paper_gears, error_from_top
 
 PAGE, PICTURE = "bidirectional_start.md", "bidirectional_start.png"
 COLOURS = {"forward": "#0072b2", "reverse": "#d55e00", "mean": "#009e73"}
@@ -41,22 +41,22 @@ PARTS = tuple(np.linspace(-0.5, 0.5, 41))
 TEXT = """\
 # The bidirectional start of duplex spread blade pairs
 
-Written by `python -m validation.face_milled.duplex_document`.
-Source: the duplex paper, a duplex spread blade pair 20 x 30. Its settings
-name no reference point, so that the seed constructs a start for the five contact equations: *forward* from the gear,
-*reverse* from the pinion, and the mean of both. `loaded_tca.baselines.bidirectional` does what it describes;
-`loaded_tca.gears.basic_settings` has the settings that follow from a blank.
+Written by `python -m validation.face_milled.duplex_document`. Source: the duplex paper and its duplex spread blade pair
+20 x 30. Its machine settings name no reference point, so that the paper constructs a start for the five contact
+equations: *forward* from the gear, *reverse* from the pinion, and the mean of both.
+`loaded_tca.baselines.BidirectionalStart` does what it describes; `loaded_tca.gears.duplex_spread_blade` gives the
+settings that follow from a blank.
 
 1. Cradles at the centre of roll: each flank is seen along one line, by the azimuth theta about its cutter. theta of a
-   calculation point (X_L, R_L) on the pitch cone at mid-face. The seed asks for two coordinates with one unknown; here
+   calculation point (X_L, R_L) on the pitch cone at mid-face. The paper asks for two coordinates with one unknown; here
    the line is met in cone distance.
 2. The turn phi' of that gear from the equation of meshing n . v12 = 0, in closed form.
 3. theta and phi' of the mating gear from opposite normals.
 
-## The seed's numbers
+## The paper's numbers
 
 Steps 2 and 3 depend on machine root angles, ratios of roll and blade angles only (blade group 11: 18 deg 10' outside,
-21 deg 50' inside), so that they can be checked although the seed leaves out face width and cradle angle. Azimuths on
+21 deg 50' inside), so that they can be checked although the paper leaves out face width and cradle angle. Azimuths on
 each gear's own hand, turns right-handed about each axis from apex to heel; reverse from the printed theta_p, forward
 from the theta_g to which the printed theta_p belongs. **Every printed digit is met once two misprints are mended**
 (turns are cut off, not rounded):
@@ -76,7 +76,7 @@ From the printed theta_g 5.349393, theta_p would be {wrong_azimuth:.6f} and phi1
 
 ![Pinion flanks, starts, contact paths and transmission errors]({picture})
 
-## Who gets home from it
+## Which method converges from it
 
 At the pinion angle of each start: plain Newton on the five equations (with two of the three components of the normals),
 the reduced solver from the pinion's point, and the first touch that the scan of the ease-off finds without any start.
@@ -85,29 +85,29 @@ the equations are solved where there is no tooth.
 
 {solvers}
 
-- The start does its work: wherever flanks touch inside their edges, the five equations get home from all three of its
+- The start does its work: wherever flanks touch inside their edges, the five equations converge from all three of its
   versions, in {five} steps. The mean is no better than its two parts.
 - It is a start for the normals, not for the points: they lie some millimetres apart, since nothing in the construction
   brings them together (each gear stands with a slot where its machine cut one), and the wheel angle is degrees off.
 - Where flanks touch on an edge there is no common normal, so that no start helps: the five equations diverge or end off
-  the flanks with a residual of zero. The seed's own settings are such a pair.
-- The reduced solver gets home from the same points in {reduced} steps, edges included, and the scan of the ease-off
+  the flanks with a residual of zero. The printed settings themselves are such a pair.
+- The reduced solver converges from the same points in {reduced} steps, also on edges, and the scan of the ease-off
   makes the start unnecessary: it needs neither the settings nor a reference point, only the flanks.
 - The pair from the duplex blank touches in the middle of the flank on both sides: its settings are closed forms, its
   spiral angles differ by {spiral:.3f} deg at most and its pressure angles by {pressure:.3f} deg (the number of the
   blade group is rounded to a half).
 """
 PRINTED_PAIR = (
-    "**The pair of the seed does not mesh sensibly.** Its root angles belong to a spiral angle of 35 deg, and its one "
+    "**The pair of the paper does not mesh sensibly.** Its root angles belong to a spiral angle of 35 deg, and its one "
     "radial setting to another taper, so that the two spiral angles miss each other by {drive:+.2f} deg on the drive "
     "and {coast:+.2f} deg on the coast side. The transmission error of a tooth pair has its top where the toe ends: "
     '{place}, in the corner of the face cone. A "well-centred path" with a "low-amplitude, parabolic-like" '
-    "transmission error does not follow from the settings that the seed prints."
+    "transmission error does not follow from the settings that the paper prints."
 )
 MENDED_PAIR = (
     "**Mended pair D**: the pinion's radial setting {radial} mm instead of 58.38392, all else as printed. The top lies "
     "{place}, and half a pitch before and after it the transmission error has fallen by {before:.2f} and {after:.2f} "
-    "arcsec: this is what the seed describes."
+    "arcsec: this is what the paper describes."
 )
 WIDTH = 118
 
@@ -122,7 +122,7 @@ def document() -> str:
         values=_values(),
         wrong_azimuth=wrong.pinion_azimuth,
         wrong_turn=wrong.pinion_turn,
-        assumed=fill(f"Assumed, where the seed says nothing: {SEED_ASSUMED}.", WIDTH),
+        assumed=fill(f"Assumed, where the paper says nothing: {DUPLEX_ASSUMED}.", WIDTH),
         printed=_printed_pair(),
         mended=_mended_pair(),
         picture=PICTURE,
@@ -171,7 +171,7 @@ def _misses(study: Study) -> tuple[float, float]:
 
 
 def _solvers() -> tuple[str, list[int], list[int]]:
-    """Table of both solvers from each start, and the steps of those that got home: five equations, reduced."""
+    """Table of both solvers from each start, and the steps of those that converged: five equations, reduced."""
     heads = " | ".join(f"five, {name}" for name in COMPONENTS)
     lines = [
         f"| pair | start | gap [mm] | off [deg] | {heads} | reduced | the contact |",
@@ -200,16 +200,16 @@ def _range(steps: list[int]) -> str:
 
 
 def picture() -> Figure:
-    """Flanks with starts and paths, and the transmission errors, of the seed's pair and of the mended one."""
+    """Flanks with starts and paths, and the transmission errors, of the paper's pair and of the mended one."""
     figure = Figure(figsize=(11.0, 8.0), layout="constrained")
     for column, (title, radial) in enumerate(
-        (("settings of the seed", 58.38392), (f"mended pair D: pinion radial {MENDED_RADIAL} mm", MENDED_RADIAL))
+        (("printed settings", 58.38392), (f"mended pair D: pinion radial {MENDED_RADIAL} mm", MENDED_RADIAL))
     ):
         study = Study(title, duplex_paper_gears(radial))
         pair = study.pair()
         _draw_flank(figure.add_subplot(2, 2, 1 + column), study, pair)
         _draw_error(figure.add_subplot(2, 2, 3 + column), pair)
-    figure.suptitle("duplex paper, 20 x 30, drive side: bidirectional start, contact of one tooth pair, unloaded")
+    figure.suptitle("Duplex paper, 20 x 30, drive side: bidirectional start, contact of one tooth pair, unloaded")
     return figure
 
 
@@ -250,7 +250,7 @@ def _draw_error(axes: Axes, pair: GearPair) -> None:
 def main() -> None:
     """Write the page and the picture."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path("docs"), help="directory of the page and the picture")
+    parser.add_argument("--out", type=Path, default=Path("docs/studies"), help="directory of the page and the picture")
     directory = parser.parse_args().out
     directory.mkdir(parents=True, exist_ok=True)
     (directory / PAGE).write_text(document(), encoding="utf-8")

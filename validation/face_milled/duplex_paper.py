@@ -1,6 +1,6 @@
 """The duplex paper: the bidirectional start of a duplex spread blade pair, what its settings give, who needs a start.
 
-The start values depend neither on the calculation point nor on what the seed leaves out (face width, cradle angle), so
+The start values depend neither on the calculation point nor on what the paper leaves out (face width, cradle angle), so
 that they are compared from an azimuth of the gear each calculation begins with: reverse from the printed theta_p,
 forward from the theta_g to which the printed theta_p belongs. Two numbers are misprinted: the forward theta_g, 5.349393
 for 5.346931, and the mean, 5.310104 for 5.309104; from the printed theta_g nothing else in its column follows.
@@ -27,8 +27,8 @@ from loaded_tca.unloaded import trace_contact
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import climb
 from validation.face_milled.pairs import (
+    DUPLEX_ASSUMED,
     MENDED_RADIAL,
-    SEED_ASSUMED,
     Gears,
     duplex_gears,
     duplex_paper_gears,
@@ -38,7 +38,7 @@ from validation.face_milled.pairs import (
 )
 from validation.table import Row
 
-CASE, SOURCE, COMPUTED = "duplex paper 20 x 30", "duplex paper", "REFERENCES, computed"
+CASE, SOURCE, COMPUTED = "duplex paper, 20 x 30", "duplex paper", "REFERENCES, computed"
 MENDED = "duplex paper, mended pair D"
 FORWARD_PINION_AZIMUTH, REVERSE_AZIMUTH = 0.896671, 0.979223
 MISPRINTS = {"forward theta_g": (5.349393, 5.346931), "mean theta_g": (5.310104, 5.309104)}
@@ -59,7 +59,7 @@ PRINTED = {
 }
 AZIMUTH_DIGIT = 1e-6
 TURN_DIGITS = {"forward phi2'": 1e-6, "reverse phi1'": 1e-5, "reverse phi2'": 1e-5, "mean phi1'": 1e-5}
-"""Unit of the last printed digit of the turns, where it is not 1e-6; the seed cuts digits off instead of rounding."""
+"""Unit of the last printed digit of the turns, where it is not 1e-6; the paper cuts digits off instead of rounding."""
 COMPONENTS = {"y, z": (1, 2), "x, z": (0, 2)}
 """Pairs of components of the normals in the five equations."""
 SAME_CONTACT = 1e-9
@@ -121,8 +121,8 @@ class Outcome:
 def studies() -> tuple[Study, ...]:
     """Pairs from which starts are tried."""
     return (
-        Study("seed's settings, drive", duplex_paper_gears()),
-        Study("seed's settings, coast", duplex_paper_gears(), "convex"),
+        Study("printed settings, drive", duplex_paper_gears()),
+        Study("printed settings, coast", duplex_paper_gears(), "convex"),
         Study("mended pair D, drive", duplex_paper_gears(MENDED_RADIAL)),
         Study("duplex blank, drive", duplex_gears()),
         Study("duplex blank, coast", duplex_gears(), "convex"),
@@ -189,7 +189,7 @@ def _start_rows() -> list[Row]:
 
 
 def start_values() -> dict[str, float]:
-    """The seed's three columns."""
+    """The paper's three columns."""
     gears = duplex_paper_gears()
     start = BidirectionalStart(gears, Study(CASE, gears).pair())
     wheel_azimuth = brentq(lambda angle: start.forward(angle).pinion_azimuth - FORWARD_PINION_AZIMUTH, 5.3, 5.4)
@@ -213,7 +213,7 @@ def _pair_rows() -> list[Row]:
     for name, flank, mating, printed in (("drive", "concave", "convex", -1.59), ("coast", "convex", "concave", 1.68)):
         miss = abs(GeneratedFlank(gears[0], flank).angles.spiral) - abs(GeneratedFlank(gears[1], mating).angles.spiral)
         lines.append(
-            Row(CASE, COMPUTED, f"{name}: spiral angles miss [deg]", printed, degrees(miss), 5e-3, SEED_ASSUMED)
+            Row(CASE, COMPUTED, f"{name}: spiral angles miss [deg]", printed, degrees(miss), 5e-3, DUPLEX_ASSUMED)
         )
     pair = Study(CASE, gears).pair()
     top = error_from_top(pair, ())[2]
@@ -223,7 +223,7 @@ def _pair_rows() -> list[Row]:
     _, fall, _ = error_from_top(mended, (-0.5, 0.5))
     for part, printed, value in zip(("before", "after"), (-12.29, -12.50), fall, strict=True):
         quantity = f"TE half a pitch {part} the top [arcsec]"
-        lines.append(Row(MENDED, COMPUTED, quantity, printed, float(value), 5e-4, SEED_ASSUMED))
+        lines.append(Row(MENDED, COMPUTED, quantity, printed, float(value), 5e-4, DUPLEX_ASSUMED))
     return lines
 
 

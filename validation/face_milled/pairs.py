@@ -24,29 +24,29 @@ from validation.bevel.iso_23509_sample import spygo
 
 Gears = tuple[FaceMilledGear, FaceMilledGear]
 
-SEED_TEETH, SEED_SPIRAL = (20, 30), 35.0
-SEED_ROOT, SEED_ROLL = (31.09059, 52.51677), (1.802776, 1.20185)
-SEED_RADIAL, SEED_CUTTER_RADIUS, SEED_NUMBER = 58.38392, 44.45, 11
+DUPLEX_TEETH, DUPLEX_SPIRAL = (20, 30), 35.0
+DUPLEX_ROOT, DUPLEX_ROLL = (31.09059, 52.51677), (1.802776, 1.20185)
+DUPLEX_RADIAL, DUPLEX_CUTTER_RADIUS, DUPLEX_NUMBER = 58.38392, 44.45, 11
 MENDED_RADIAL = 57.1394
 MEAN_CONE_DISTANCE, FACE_WIDTH, CLEARANCE = 70.6007, 20.0, 0.564
 CUTTER_RADIUS = 60.0
 ARCSEC = np.degrees(3600.0)
-SEED_ASSUMED = "R_m 70.6007, b 20, point width 0, face cones parallel to the mating gear's root cones at 0.564 mm"
+DUPLEX_ASSUMED = "R_m 70.6007, b 20, point width 0, face cones parallel to the mating gear's root cones at 0.564 mm"
 
 
-def duplex_paper_gears(pinion_radial: float = SEED_RADIAL) -> Gears:
+def duplex_paper_gears(pinion_radial: float = DUPLEX_RADIAL) -> Gears:
     """Pair of the duplex paper; with the radial setting 57.1394 of the pinion it becomes the mended pair D."""
-    radials = pinion_radial, SEED_RADIAL
-    pinion, wheel = (_seed_gear(member, radials[member]) for member in (0, 1))
+    radials = pinion_radial, DUPLEX_RADIAL
+    pinion, wheel = (_duplex_gear(member, radials[member]) for member in (0, 1))
     return pinion, wheel
 
 
-def _seed_gear(member: int, radial: float) -> FaceMilledGear:
-    teeth, pitch, root = SEED_TEETH[member], _seed_pitch(member), radians(SEED_ROOT[member])
-    face = pitch + _seed_pitch(1 - member) - radians(SEED_ROOT[1 - member])
+def _duplex_gear(member: int, radial: float) -> FaceMilledGear:
+    teeth, pitch, root = DUPLEX_TEETH[member], _duplex_pitch(member), radians(DUPLEX_ROOT[member])
+    face = pitch + _duplex_pitch(1 - member) - radians(DUPLEX_ROOT[1 - member])
     along = MEAN_CONE_DISTANCE * cos(pitch - root)
-    cradle = acos((radial**2 + along**2 - SEED_CUTTER_RADIUS**2) / (2.0 * radial * along))
-    blade = Blade(SEED_CUTTER_RADIUS, radians(20.0))
+    cradle = acos((radial**2 + along**2 - DUPLEX_CUTTER_RADIUS**2) / (2.0 * radial * along))
+    blade = Blade(DUPLEX_CUTTER_RADIUS, radians(20.0))
     return FaceMilledGear(
         teeth,
         FaceMilledBlank(
@@ -58,14 +58,14 @@ def _seed_gear(member: int, radial: float) -> FaceMilledGear:
             hand=("left", "right")[member],  # type: ignore[arg-type]
             face_apex=-CLEARANCE / sin(face),
         ),
-        Cutter(blade, blade, SEED_NUMBER),
-        MachineSettings(radial, cradle, root, SEED_ROLL[member]),
+        Cutter(blade, blade, DUPLEX_NUMBER),
+        MachineSettings(radial, cradle, root, DUPLEX_ROLL[member]),
         name=("pinion", "wheel")[member],
     )
 
 
-def _seed_pitch(member: int) -> float:
-    return atan2(SEED_TEETH[member], SEED_TEETH[1 - member])
+def _duplex_pitch(member: int) -> float:
+    return atan2(DUPLEX_TEETH[member], DUPLEX_TEETH[1 - member])
 
 
 def spygo_gears() -> Gears:
@@ -93,17 +93,17 @@ def matched_spygo_gears() -> Gears:
 
 def duplex_paper_blank() -> BevelBlank:
     """Blank with the dedendum angles of the duplex paper, and the spiral angle that they belong to."""
-    angles = tuple(_seed_pitch(member) - radians(SEED_ROOT[member]) for member in (0, 1))
+    angles = tuple(_duplex_pitch(member) - radians(DUPLEX_ROOT[member]) for member in (0, 1))
     return replace(duplex_blank("standard", 80.0), wheel_angles=angles)
 
 
 def duplex_blank(taper: str = "duplex", cutter_radius: float = CUTTER_RADIUS) -> BevelBlank:
-    """Blank 20 x 30 of the seed's size, with the taper that the duplex method is meant for."""
+    """Blank 20 x 30 of the size of the duplex paper's pair, with the taper that the duplex method is meant for."""
     return BevelBlank(
-        SEED_TEETH,
+        DUPLEX_TEETH,
         5.0,
         FACE_WIDTH,
-        spiral_angle=radians(SEED_SPIRAL),
+        spiral_angle=radians(DUPLEX_SPIRAL),
         cutter_radius=cutter_radius,
         taper=taper,  # type: ignore[arg-type]
         allow_undercut=True,

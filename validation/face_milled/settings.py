@@ -64,7 +64,7 @@ def _settings() -> Iterable[Row]:
 def _blade_groups() -> Iterable[Row]:
     assumed = "spiral angle 35 deg, to which its root angles belong"
     yield Row(
-        "duplex paper 20 x 30",
+        "duplex paper, 20 x 30",
         "duplex paper",
         "cutter number",
         11.0,

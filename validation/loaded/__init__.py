@@ -1,1 +1,5 @@
-"""Comparisons of the subject loaded."""
+"""The loaded mesh cycle by itself; ``validation.calculix`` has it beside finite elements.
+
+- ``limits``: balance, energy, no load, conjugate teeth, published stiffnesses;
+- ``speed``: time against error of whole analyses.
+"""

@@ -1,8 +1,8 @@
 """Limits of the loaded mesh cycle: balance, energy, no load, conjugate teeth, published stiffnesses, bevel pairs.
 
-Crowned pair: the helical pair of the SAM paper under 130 N m. Without crowning, and where contact alone yields, a line
-of length l and width w yields by F/l (ln(4 l/w) - 1) times the same for all, so that lines share the load nearly by
-their lengths; two pairs at a symmetric position carry one half each.
+Crowned pair: the helical pair of the SAM paper under 130 N m. Without crowning, and where the teeth do not bend,
+the contact deformation of a line of length l and width w is F/l (ln(4 l/w) - 1) times a constant, so that lines share
+the load nearly by their lengths; two pairs at a symmetric position carry one half each.
 
 Stiffnesses are means over a pitch of the tangent of the whole mesh, unmodified teeth and bodies included. ISO 6336-1
 gives its values, from measurements, an error of 10 to 20 %. ROSS is a slice model and names no force: an order of
@@ -48,7 +48,7 @@ ROSS_TORQUE = 124e3  # 100 N/mm at the reference circle
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
 BEVELS = {"straight bevel": "straight_bevel.toml", "face-milled": "face_milled_19x62_matched.toml"}
 LOADS = (1e-6, 0.25, 1.0, 2.0)  # over the torque of the scene
-VANISHING = 1e-7  # rad: about (1e-6)^(2/3) of the lag under the whole torque, 2e-4 rad
+VANISHING = 1e-7  # rad: about (1e-6)^(2/3) of the rotation under the whole torque, 2e-4 rad
 PITCH_FURTHER = 1e-3  # boxes of the same contact, made for other first guesses, differ
 
 
@@ -73,7 +73,7 @@ def _pair(modifications: FlankModifications, teeth: tuple[int, int] = (34, 57), 
 
 
 def _shared(pair: GearPair, part: float, torque: float = TORQUE, grid: GridChoice = GRID) -> SharedLoad:
-    """Share a torque at a part of a pitch from phi1 = 0; contact alone yields."""
+    """Share a torque at a part of a pitch from phi1 = 0; the teeth do not bend."""
     return share_load(pair, tooth_pairs_at(trace_teeth(pair, [part * pair.pitch]), 0), torque, grid)
 
 
@@ -109,14 +109,14 @@ def _elastic_energy(shared: SharedLoad) -> float:
 
 
 def _no_load() -> list[Row]:
-    """Lag of the wheel under nearly no torque: one ellipse, whose approach is a power of the force."""
+    """Rotation of the wheel under nearly no torque: one ellipse, whose approach is a power of the force."""
     small, larger = (_shared(_pair(CROWNED), 0.1, torque) for torque in SMALL)
     (share,) = larger.shares
-    lag = share.loaded.hertz.approach / share.tooth_pair.contact.wheel_lever
+    expected = share.loaded.hertz.approach / share.tooth_pair.contact.wheel_lever
     exponent = math.log(larger.rotation / small.rotation) / math.log(SMALL[1] / SMALL[0])
     return [
-        _row(HERTZ, "T1 to 0: lag goes with the torque to the power", 2.0 / 3.0, exponent, POWER),
-        _row(HERTZ, f"lag under {SMALL[1]:g} N mm [rad]", lag, larger.rotation, CELLS),
+        _row(HERTZ, "T1 to 0: rotation goes with the torque to the power", 2.0 / 3.0, exponent, POWER),
+        _row(HERTZ, f"rotation under {SMALL[1]:g} N mm [rad]", expected, larger.rotation, CELLS),
     ]
 
 

@@ -1,7 +1,7 @@
 """Time against error of the whole line, from a scene to the loaded mesh cycle.
 
-Nine positions of a pitch of each mesh cycle in ``examples/scenes``, one torque, contact alone yields. Errors are those
-against the finest cells: the largest of any position relative in the pressure (``inner_pressure``: peaks at edges
+Nine positions of a pitch of each mesh cycle in ``examples/scenes``, one torque, teeth that do not bend. Errors are
+those against the finest cells: the largest of any position relative in the pressure (``inner_pressure``: peaks at edges
 have no limit) and absolute in the load shares, and relative in the peak to peak of the loaded transmission error.
 Times are medians of whole runs, unloaded contact included. A second table has the time of whole cycles: 32 positions,
 three torques, accuracy 1e-2, with and without teeth that bend, and of making the models of the teeth.

@@ -6,7 +6,7 @@ z2) for the conventional one, and phi2 about the answer, within 0.2 rad or withi
 drew phi2, on which everything depends, nor which two components of the normals it used: both draws and two choices are
 shown. A start counts if it ends at the contact that ``trace_contact`` gives: "converged" elsewhere does not.
 
-Run from the root of the repository: ``python -m validation.unloaded.convergence_from_random_starts --out docs``.
+Run from the root of the repository: ``python -m validation.unloaded.convergence_from_random_starts``.
 """
 
 import argparse
@@ -107,8 +107,9 @@ Written by `python -m validation.unloaded.convergence_from_random_starts`. Machi
 
 The contact of two flanks at a given pinion angle, from 5000 random starts on the flanks, by two methods in one run:
 
-- **reduced**: `unloaded/reduced.py`, two unknowns (rho1, z1), the maximum of the ease-off; safeguarded.
-- **five**: `unloaded/conventional.py`, five equations in (rho1, z1, rho2, z2, phi2); plain Newton, as in the source.
+- **reduced**: `loaded_tca.unloaded.climb`, two unknowns (rho1, z1), the maximum of the ease-off; safeguarded.
+- **five**: `loaded_tca.baselines.solve_conventional`, five equations in (rho1, z1, rho2, z2, phi2); plain Newton, as in
+  the source, the reduced-TCA dissertation.
 - **SciPy root**: the same five equations and Jacobian, Powell's hybrid method, {scipy} starts one after the other (not
   vectorised: compare its percentages, not its times; its steps are evaluations).
 
@@ -126,7 +127,7 @@ the two: what the reduction buys is certainty, not speed. A good guess of phi2 i
 |---|---|---|---|---|---|---|---|
 """
 
-SEED_NUMBERS = """
+DISSERTATION_NUMBERS = """
 ## What the source prints
 
 | pair | conventional | new model | how phi2 was drawn |
@@ -161,7 +162,7 @@ linear up to the size of the flank and logarithmic beyond; what ends farther tha
 def main() -> None:
     """Run the study, print the table, write it and the pictures."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs"))
+    parser.add_argument("--out", type=Path, default=Path("docs/studies"))
     parser.add_argument("--starts", type=int, default=5000)
     arguments = parser.parse_args()
     tables, pictures, assumed = [], [], []
@@ -174,7 +175,7 @@ def main() -> None:
         pictures.append(f"![{case.name}: domain and range]({picture})\n")
         assumed.append(f"- {case.name}: {case.assumed}.")
     text = INTRODUCTION.format(machine=machine(), scipy=SCIPY_STARTS, runs=RUNS) + "\n".join(tables) + "\n"
-    text += SEED_NUMBERS.format(assumed="\n".join(assumed)) + "\n".join(pictures)
+    text += DISSERTATION_NUMBERS.format(assumed="\n".join(assumed)) + "\n".join(pictures)
     (arguments.out / "unloaded_convergence.md").write_text(text)
 
 

@@ -1,8 +1,8 @@
-"""Two mounting errors together, as Figure 53 of the dissertation: transmission error, contact shift, Hertz pressure.
+"""Two mounting errors together, as Figure 53 of the reduced-TCA dissertation.
 
 In-plane and out-of-plane errors of the helical pair 40/37, 21 x 21 of them at 21 positions each.
 
-Run from the root of the repository: ``python -m validation.unloaded.mounting_error_map --out docs``.
+Run from the root of the repository: ``python -m validation.unloaded.mounting_error_map``.
 """
 
 import argparse
@@ -196,11 +196,12 @@ def draw_map(errors: ErrorMap) -> Figure:
 def main() -> int:
     """Print the time of the map and save its picture."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path(), help="directory of the picture")
+    parser.add_argument("--out", type=Path, default=Path("docs/studies"), help="directory of the picture")
+    directory = parser.parse_args().out
     errors = error_map()
     print(f"{errors.shift.size} pairs of errors x {POSITIONS} positions: {errors.seconds:.2f} s")
     print(f"{errors.searched} of them searched anew")
-    draw_map(errors).savefig(parser.parse_args().out / "mounting_error_map.png", dpi=90)
+    draw_map(errors).savefig(directory / "mounting_error_map.png", dpi=90)
     return 0
 
 

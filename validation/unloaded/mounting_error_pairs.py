@@ -15,7 +15,7 @@ from loaded_tca.reference.hertz import point_contact
 from loaded_tca.unloaded import ContactPoint, relative_curvature, trace_contact
 
 Array = NDArray[np.float64]
-CASE = "reduced-TCA dissertation mounting errors"
+CASE = "reduced-TCA dissertation, mounting errors"
 ARCSEC = degrees(3600.0)
 FORMS = ("parabolic", "circular", "logarithmic")
 ERRORS = ("in_plane", "out_of_plane", "centre_distance_error", "axial_offset")

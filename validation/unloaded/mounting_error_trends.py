@@ -1,4 +1,4 @@
-"""What the dissertation says of its Figures 17 to 30, and whether a computation agrees: one verdict a statement."""
+"""What the reduced-TCA dissertation says of its Figures 17 to 30, and whether a computation agrees."""
 
 from dataclasses import dataclass
 from math import degrees, radians

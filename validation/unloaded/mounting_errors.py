@@ -1,10 +1,10 @@
 """What each mounting error does to contact path, transmission error and Hertz pressure.
 
-The trends of the dissertation (Figures 17 to 30) for its spur pair 25/25 and its helical pair 40/37 with three forms of
-lead crowning, each with a verdict, and a table of every error. The
-dissertation compares forms of crowning of unlike amounts; here all forms remove the same at the ends of the face.
+The trends of the reduced-TCA dissertation (Figures 17 to 30) for its spur pair 25/25 and its helical pair 40/37 with
+three forms of lead crowning, each with a verdict, and a table of every error. The dissertation compares forms of
+crowning of unlike amounts; here all forms remove the same at the ends of the face.
 
-Run from the root of the repository: ``python -m validation.unloaded.mounting_errors --out docs``.
+Run from the root of the repository: ``python -m validation.unloaded.mounting_errors``.
 """
 
 import argparse

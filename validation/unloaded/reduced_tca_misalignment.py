@@ -1,4 +1,4 @@
-"""Tables 3 and 4 of the dissertation: transmission error of a crowned helical pair under axis errors.
+"""Tables 3 and 4 of the reduced-TCA dissertation: transmission error of a crowned helical pair under axis errors.
 
 z 40/37, m_n 1 mm, alpha_n 20 deg, beta 14 deg, b 20 mm, pinion right-hand with the lead parabola c1 (z - z0)^2. Lead
 crowning alone leaves a straight line: its slope, independent of c1, was computed twice independently; the printed
@@ -15,7 +15,7 @@ from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.unloaded import trace_contact
 from validation.table import Row
 
-CASE = "reduced-TCA dissertation helical 40/37"
+CASE = "reduced-TCA dissertation, helical 40/37"
 ARCSEC = np.degrees(1.0) * 3600.0
 FACE_WIDTH = 20.0
 C1 = 0.0227

@@ -1,4 +1,4 @@
-"""Tables 3 and 4 of the dissertation complete: the circular and the logarithmic column beside the parabolic one.
+"""Tables 3 and 4 of the reduced-TCA dissertation complete: the circular and logarithmic columns, too.
 
 The helical pair 40/37 of ``reduced_tca_misalignment``, which judges the parabolic column and the slopes. The forms are
 the reduced-TCA dissertation, eqs. 10 to 12, with y = v - v0 from the middle of the face and b = 20 mm:
@@ -34,7 +34,7 @@ from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.unloaded import ContactPath, trace_contact
 from validation.table import Row
 
-CASE = "reduced-TCA dissertation helical 40/37"
+CASE = "reduced-TCA dissertation, helical 40/37"
 ARCSEC = np.degrees(1.0) * 3600.0
 FACE_WIDTH, MODULE = 20.0, 1.0
 TURN = 0.01

@@ -35,7 +35,7 @@ def _pair(name: str) -> list[Row]:
     separation = sample_separation(pair, contact, cells=CELLS, load=load)
     hertz = point_contact(load, separation.curvatures, pair.contact_modulus)
     solution = solve_contact(separation.gap, separation.spacing, pair.contact_modulus, load=load)
-    case = f"SAM paper {name}"
+    case = f"SAM paper, {name}"
     pressure, major, minor = EXPECTED[name]
     found = [
         Row(case, COMPUTED, "Hertz p0 [MPa]", pressure, hertz.max_pressure, 1e-3, ASSUMED),

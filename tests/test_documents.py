@@ -1,0 +1,59 @@
+"""Links, pictures, files and commands that documents and docstrings name are there."""
+
+import importlib.util
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")] + sorted(ROOT.glob("docs/**/*.md"))
+SOURCES = sorted(
+    path
+    for folder in ("loaded_tca", "validation", "examples", "tests", "docs")
+    for ending in ("py", "toml")
+    for path in (ROOT / folder).rglob(f"*.{ending}")
+)
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+NAMED_FILE = re.compile(r"\b((?:docs|examples|validation|tests|loaded_tca)/[\w/.-]*\w\.(?:md|py|toml|csv|json|png))\b")
+COMMAND = re.compile(r"python -m ((?:validation|loaded_tca)[\w.]*\w)")
+FENCE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
+
+
+def anchors(page):
+    """Anchors of the headings of a page, as GitHub makes them."""
+    text = FENCE.sub("", page.read_text(encoding="utf-8"))
+    headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda path: path.name)
+def test_links_and_pictures_of_a_page_exist(page):
+    for link in LINK.findall(page.read_text(encoding="utf-8")):
+        if "://" in link:
+            continue
+        file, _, anchor = link.partition("#")
+        target = (page.parent / file).resolve() if file else page
+        assert target.exists(), link
+        assert not anchor or anchor in anchors(target), link
+
+
+@pytest.mark.parametrize("page", [*PAGES, *SOURCES], ids=lambda path: str(path.relative_to(ROOT)))
+def test_files_and_commands_that_are_named_exist(page):
+    text = page.read_text(encoding="utf-8")
+    for file in NAMED_FILE.findall(text):
+        assert (ROOT / file).exists(), file
+    for module in COMMAND.findall(text):
+        assert importlib.util.find_spec(module) is not None, module
+
+
+def test_every_page_and_picture_is_linked():
+    linked = {
+        (page.parent / link.partition("#")[0]).resolve()
+        for page in PAGES
+        for link in LINK.findall(page.read_text(encoding="utf-8"))
+    }
+    listed = subprocess.run(["git", "ls-files", "docs"], cwd=ROOT, capture_output=True, text=True, check=False).stdout
+    files = [ROOT / line for line in listed.splitlines() if line.endswith((".md", ".png"))]
+    assert [str(path) for path in files if path.resolve() not in linked] == []

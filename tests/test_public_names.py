@@ -1,0 +1,125 @@
+"""What users import: public names are loaded when first used, and documents and examples need nothing deeper."""
+
+import ast
+import importlib
+import json
+import pkgutil
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import loaded_tca
+
+ROOT = Path(__file__).parents[1]
+FOLDERS = sorted(info.name for info in pkgutil.iter_modules(loaded_tca.__path__) if info.ispkg)
+PACKAGES = [
+    package
+    for package in ("loaded_tca", *(f"loaded_tca.{folder}" for folder in FOLDERS))
+    if hasattr(importlib.import_module(package), "__all__")  # else it is there for other folders only
+]
+LAZY = [package for package in PACKAGES if hasattr(importlib.import_module(package), "__getattr__")]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+SCRIPTS = [*sorted((ROOT / "examples").glob("*.py")), *sorted((ROOT / "docs").rglob("*.py"))]
+IMPORT = re.compile(r"^[ >]*from (loaded_tca[\w.]*) import (\([^)]*\)|[^\n(]*)", re.MULTILINE)
+MENTION = re.compile(r"\bloaded_tca\.(\w+)\.(\w+)")
+
+
+def modules_after(statement):
+    """Names of all modules that a fresh interpreter holds after a statement."""
+    script = f"import json, sys\n{statement}\nprint(json.dumps(sorted(sys.modules)))"
+    output = subprocess.run([sys.executable, "-c", script], cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    return set(json.loads(output))
+
+
+def own(modules):
+    return {name for name in modules if name.split(".")[0] == "loaded_tca"}
+
+
+def test_importing_the_package_loads_nothing():
+    loaded = modules_after("import loaded_tca")
+    assert own(loaded) == {"loaded_tca", "loaded_tca.lazy"}
+    assert "numpy" not in loaded
+
+
+@pytest.mark.parametrize("package", ["loaded_tca", "loaded_tca.contact"])
+def test_contact_solver_loads_no_gears(package):
+    loaded = modules_after(f"from {package} import solve_contact")
+    assert own(loaded) <= {"loaded_tca", "loaded_tca.lazy", "loaded_tca.arrays", "loaded_tca.errors"} | {
+        name for name in loaded if name.startswith("loaded_tca.contact")
+    }
+    assert not {"loaded_tca.contact.subsurface", "loaded_tca.contact.adaptive"} & loaded
+    assert not {"scipy.optimize", "scipy.sparse", "matplotlib", "xarray", "skfem"} & loaded
+
+
+def test_reading_a_scene_loads_no_analysis():
+    loaded = modules_after("from loaded_tca import read_scene; read_scene('examples/scenes/helical.toml')")
+    folders = {name.split(".")[1] for name in own(loaded) if "." in name}
+    assert not {"analysis", "compliance", "contact", "loaded", "plots", "results", "separation"} & folders
+    assert not {"matplotlib", "pyfftw", "xarray", "skfem"} & loaded
+
+
+def test_folders_are_attributes_of_the_package():
+    modules_after("import loaded_tca; loaded_tca.unloaded.trace_teeth; loaded_tca.reference.hertz.point_contact")
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_public_names_exist_and_are_listed(package):
+    module = importlib.import_module(package)
+    for name in module.__all__:
+        assert getattr(module, name) is not None
+    assert set(module.__all__) <= set(dir(module))
+
+
+@pytest.mark.parametrize("package", LAZY)
+def test_name_that_is_loaded_later_is_that_of_no_module_beside_it(package):
+    """Else the name would be the module once that has been imported, by whomever."""
+    module = importlib.import_module(package)
+    beside = {info.name for info in pkgutil.iter_modules(module.__path__)}
+    assert all(sys.modules.get(f"{package}.{name}") is getattr(module, name) for name in beside & set(module.__all__))
+
+
+def test_unknown_name_is_told():
+    with pytest.raises(AttributeError, match=r"module 'loaded_tca.contact' has no attribute 'solve_nothing'"):
+        _ = importlib.import_module("loaded_tca.contact").solve_nothing
+
+
+def test_no_module_imports_from_the_package_itself():
+    """Its names are loaded late, so that the import contracts would not see what is behind them."""
+    found = []
+    for path in sorted((ROOT / "loaded_tca").rglob("*.py")):
+        if path == ROOT / "loaded_tca" / "__init__.py":
+            continue
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.module == "loaded_tca":
+                found.append(path)
+    assert found == []
+
+
+def assert_public(module, name):
+    assert module in PACKAGES, f"from {module} import {name}: deeper than a folder"
+    assert name in importlib.import_module(module).__all__, f"{name} is not in __all__ of {module}"
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.name)
+def test_examples_import_public_names_only(script):
+    for node in ast.walk(ast.parse(script.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and str(node.module).startswith("loaded_tca"):
+            for alias in node.names:
+                assert_public(node.module, alias.name)
+        elif isinstance(node, ast.Import):
+            for alias in node.names:
+                assert not alias.name.startswith("loaded_tca.") or alias.name in PACKAGES
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda path: path.name)
+def test_documents_import_and_mention_public_names_only(page):
+    text = page.read_text(encoding="utf-8")
+    for module, names in IMPORT.findall(text):
+        for name in names.split("#")[0].strip("() \n").split(","):
+            if name.strip():
+                assert_public(module, name.strip())
+    for folder, name in MENTION.findall(IMPORT.sub("", text)):
+        assert folder not in FOLDERS or name in importlib.import_module(f"loaded_tca.{folder}").__all__, name
