@@ -12,16 +12,16 @@ from loaded_tca.arrays import Array
 from loaded_tca.compliance import tooth_compliance
 from loaded_tca.compliance.compliance import BORE
 from loaded_tca.errors import AccuracyWarning
-from loaded_tca.loaded.cycle import Carried, Contacts, MakeCompliance, Progress, carried_by_all, carried_by_one
+from loaded_tca.loaded.cycle import Carried, Contacts, Progress, carried_by_all, carried_by_one, farthest_apart
 from loaded_tca.loaded.free_edges import oblique_ends
-from loaded_tca.loaded.pair_coupling import TeethYield
+from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.contacts import NUMBERS, PairContacts, PressureMap
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
 from loaded_tca.tooth import tooth_forms
-from loaded_tca.unloaded import heelwards
+from loaded_tca.unloaded import heelwards, trace_contact, trace_teeth
 from loaded_tca.unloaded.tooth_cycle import REACH
 
 THICKEST_CONTACT = 0.25
@@ -56,8 +56,12 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
     pair = scene.pair()
     angles = _positions(pair, scene.analysis.positions)
     torques, grid = np.asarray(scene.torques), _grid_choice(scene)
-    carry = carried_by_all if scene.analysis.load_sharing else carried_by_one
-    carried = carry(pair, angles, torques, grid, _compliance(scene, pair), progress)
+    if scene.analysis.load_sharing:
+        mesh = trace_teeth(pair, angles)
+        carried = carried_by_all(pair, mesh, torques, grid, _bending(scene, pair, farthest_apart(mesh)), progress)
+    else:
+        path = trace_contact(pair, angles)
+        carried = carried_by_one(pair, path, torques, grid, _bending(scene, pair), progress)
     _warn_of_accuracy(pair, grid, carried.contacts)
     if scene.analysis.load_sharing:
         _warn_of_reach(pair, carried)
@@ -76,18 +80,14 @@ def _grid_choice(scene: Scene) -> GridChoice:
     return GridChoice(accuracy=wanted.accuracy, tolerance=wanted.tolerance, free_edges=wanted.free_edges)
 
 
-def _compliance(scene: Scene, pair: GearPair) -> MakeCompliance:
-    """What yields beside the contacts, once it is known how far apart the loaded teeth of a position may be."""
+def _bending(scene: Scene, pair: GearPair, neighbours: int = 0) -> BendingModel | None:
+    """Bending of the teeth, where loaded ones are up to so many pitches apart; None if the scene asks for none."""
     if scene.analysis.compliance == "contact":
-        return lambda _: None
-
-    def make(neighbours: int) -> TeethYield:
-        backs = scene.pair("negative" if pair.sense > 0 else "positive")
-        bores = getattr(scene.pinion, BORE), getattr(scene.wheel, BORE)
-        forms = tooth_forms(scene.mesh())
-        return tooth_compliance(forms, pair, backs, bore_diameters=bores, neighbours=max(neighbours, 1))
-
-    return make
+        return None
+    backs = scene.pair("negative" if pair.sense > 0 else "positive")
+    bores = getattr(scene.pinion, BORE), getattr(scene.wheel, BORE)
+    forms = tooth_forms(scene.mesh())
+    return tooth_compliance(forms, pair, backs, bore_diameters=bores, neighbours=max(neighbours, 1))
 
 
 def _warn_of_accuracy(pair: GearPair, grid: GridChoice, contacts: Contacts) -> None:
@@ -180,7 +180,7 @@ def _pair_contacts(pair: GearPair, carried: Carried) -> PairContacts:
 
     tables = {name: table(name) for name in names}
     apart = np.isnan(tables["approach"])
-    tables["deflection"] = np.where(apart, math.nan, carried.deflection)
+    tables["deflection"] = np.where(apart, math.nan, carried.tooth_deflection)
     tables["normal_force"] = np.where(apart & ~np.isnan(carried.share), 0.0, tables["normal_force"])
     maps = tuple(tuple(tuple(_pressure_map(one) for one in row) for row in rows) for rows in carried.contacts)
     return PairContacts(**tables, pairs=carried.pairs, paths=carried.paths, maps=maps)
@@ -214,7 +214,7 @@ def _numbers(pair: GearPair, loaded: LoadedContact | None) -> dict[str, float | 
         "contact_length": min(length, longest),
         "line_load": loaded.line_load,
         "face_load_factor": loaded.line_load * longest / solution.load if solution.load > 0.0 else math.nan,
-        "approach": loaded.approach,
+        "approach": loaded.contact_deformation,
         "on_edge": loaded.at_edge,
         "at_relief_start": loaded.at_relief_start,
         "cells_across": solution.pressure.shape[0],

@@ -7,13 +7,15 @@ from loaded_tca.lazy import lazy_names
 if TYPE_CHECKING:
     from loaded_tca.contact.adaptive import solve_to_accuracy
     from loaded_tca.contact.edges import FreeEdge, edge_of_plane, quarter_space_factor, wedge_factor
+    from loaded_tca.contact.problem import ContactProblem
     from loaded_tca.contact.solution import ContactSolution, ContactStatus, ErrorEstimate
-    from loaded_tca.contact.solver import contact_stiffness, solve_contact
+    from loaded_tca.contact.solver import contact_stiffness, solve_contact, solve_problem
     from loaded_tca.contact.subsurface import SubsurfaceStress, depths_below, subsurface_stress
 else:
     __getattr__, __dir__ = lazy_names(__name__)
 
 __all__ = [
+    "ContactProblem",
     "ContactSolution",
     "ContactStatus",
     "ErrorEstimate",
@@ -24,6 +26,7 @@ __all__ = [
     "edge_of_plane",
     "quarter_space_factor",
     "solve_contact",
+    "solve_problem",
     "solve_to_accuracy",
     "subsurface_stress",
     "wedge_factor",

@@ -2,20 +2,18 @@
 
 import math
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 
 from numpy.typing import ArrayLike
 
-from loaded_tca.contact.edges import FreeEdge
 from loaded_tca.contact.levels import prolong
-from loaded_tca.contact.problem import Spacing
+from loaded_tca.contact.problem import ContactProblem
 from loaded_tca.contact.solution import CoarserGrid, ContactSolution
-from loaded_tca.contact.solver import solve_contact
+from loaded_tca.contact.solver import solve_problem
 from loaded_tca.errors import AccuracyWarning, InputError
 
 Cells = tuple[int, int]
-Sampler = Callable[[Cells], tuple[ArrayLike, Spacing]]
 
 # The residual of the iteration is kept this far below the accuracy, so that the grid alone limits it.
 TOLERANCE_SHARE = 1e-2
@@ -25,21 +23,15 @@ MOST_CELLS_AT_A_BORDER = 64
 
 
 def solve_to_accuracy(
-    sampler: Sampler,
-    contact_modulus: float,
+    problem: Callable[[Cells], ContactProblem],
     *,
     accuracy: float,
-    load: float | None = None,
-    approach: float | None = None,
-    max_pressure: float | None = None,
     tolerance: float = 1e-6,
     smooth: bool = True,
     first_cells: Cells = (16, 16),
     initial_pressure: ArrayLike | None = None,
     threads: int = 2,
     warn: bool = True,
-    free_edges: Sequence[FreeEdge] = (),
-    column_compliance: Callable[[Cells], ArrayLike | None] | None = None,
 ) -> ContactSolution:
     """Refine the grid until the estimated error is below the accuracy.
 
@@ -49,14 +41,12 @@ def solve_to_accuracy(
 
     Parameters
     ----------
-    sampler : callable
-        ``sampler((nx, ny))`` gives the gap [mm] on a grid of so many cells, and the spacing [mm] of it; the same
-        surface and the same box for every number of cells.
-    contact_modulus : float [MPa]
-        E*.
+    problem : callable
+        ``problem((nx, ny))`` gives the contact problem on a grid of so many cells; the same surfaces, box and load
+        for every number of cells.
     accuracy : float
         Wanted relative error, between 0 and 1.
-    load, approach, max_pressure, tolerance, threads, warn, free_edges
+    tolerance, threads, warn
         As in :func:`solve_contact`; the tolerance is tightened to a hundredth of the accuracy. A first grid that
         cannot be the last is solved to that hundredth.
     smooth : bool
@@ -65,8 +55,6 @@ def solve_to_accuracy(
         Where to begin. The estimate needs two grids: the answer has at least twice as many.
     initial_pressure : array_like of first_cells, optional [MPa]
         A guess on the first grid, in any unit if the load is given.
-    column_compliance : callable, optional
-        What :func:`solve_contact` takes by this name, for the grid that the sampler gave last.
 
     Returns
     -------
@@ -88,58 +76,32 @@ def solve_to_accuracy(
     >>> import numpy as np
     >>> def sphere(cells):
     ...     x, y = ((np.arange(n) + 0.5) * 0.6 / n - 0.3 for n in cells)
-    ...     return (x[:, None] ** 2 + y**2) / 20.0, (0.6 / cells[0], 0.6 / cells[1])
-    >>> solution = solve_to_accuracy(sphere, 115e3, load=112.0, accuracy=1e-3)
+    ...     gap, spacing = (x[:, None] ** 2 + y**2) / 20.0, (0.6 / cells[0], 0.6 / cells[1])
+    ...     return ContactProblem(gap, spacing, 115e3, load=112.0)
+    >>> solution = solve_to_accuracy(sphere, accuracy=1e-3)
     >>> solution.pressure.shape, bool(abs(solution.peak_pressure / 1420.7 - 1.0) < 1e-3)
     ((64, 64), True)
     """
     if not 0.0 < accuracy < 1.0:
         raise InputError(f"accuracy: {accuracy} is not between 0 and 1")
-
-    closely = TOLERANCE_SHARE * accuracy
-
-    def solve(cells: Cells, start: ArrayLike | None, tolerance: float) -> ContactSolution:
-        gap, spacing = sampler(cells)
-        return solve_contact(
-            gap,
-            spacing,
-            contact_modulus,
-            load=load,
-            approach=approach,
-            max_pressure=max_pressure,
-            tolerance=tolerance,
-            initial_pressure=start,
-            threads=threads,
-            warn=False,
-            free_edges=free_edges,
-            column_compliance=None if column_compliance is None else column_compliance(cells),
-        )
-
-    tolerance, refined = min(closely, tolerance), max(first_cells) < MOST_CELLS_AT_A_BORDER
-    cells, solution = first_cells, solve(first_cells, initial_pressure, closely if refined else tolerance)
-    while not (good := _error(solution, smooth) <= accuracy) and max(cells) < _most_cells(solution, smooth):
+    closely, refined = TOLERANCE_SHARE * accuracy, max(first_cells) < MOST_CELLS_AT_A_BORDER
+    tolerance, first = min(closely, tolerance), closely if refined else min(closely, tolerance)
+    cells = first_cells
+    solution = solve_problem(problem(cells), tolerance=first, initial_pressure=initial_pressure, threads=threads)
+    while True:
+        # What ends a contact inside the box makes the peak grow with the grid without end.
+        peaked, estimate = smooth and not solution.bounded, solution.error_estimate
+        error = estimate.peak_pressure if peaked else estimate.approach
+        if error <= accuracy or max(cells) >= (MOST_CELLS if peaked else MOST_CELLS_AT_A_BORDER):
+            break
         coarse, cells = solution, (2 * cells[0], 2 * cells[1])
-        solution = _compared(solve(cells, prolong(coarse.pressure, cells, (2, 2)), tolerance), coarse)
+        start = prolong(coarse.pressure, cells, (2, 2))
+        solution = solve_problem(problem(cells), tolerance=tolerance, initial_pressure=start, threads=threads)
+        if coarse.pressure.any():
+            solution = replace(solution, coarser=CoarserGrid(float(coarse.pressure.max()), coarse.approach))
     if warn:
-        late = () if good else (f"estimated error {_error(solution, smooth):.1e} is above the accuracy {accuracy:.1e}",)
+        error = math.inf if math.isnan(error) else error
+        late = () if error <= accuracy else (f"estimated error {error:.1e} is above the accuracy {accuracy:.1e}",)
         for sentence in late + solution.accuracy_warnings:
             warnings.warn(sentence, AccuracyWarning, stacklevel=2)
     return solution
-
-
-def _error(solution: ContactSolution, smooth: bool) -> float:
-    """Estimated error of what the accuracy is asked for; infinite where there is no estimate yet."""
-    estimate = solution.error_estimate
-    error = estimate.peak_pressure if smooth and not solution.bounded else estimate.approach
-    return math.inf if math.isnan(error) else error
-
-
-def _most_cells(solution: ContactSolution, smooth: bool) -> int:
-    return MOST_CELLS if smooth and not solution.bounded else MOST_CELLS_AT_A_BORDER
-
-
-def _compared(fine: ContactSolution, coarse: ContactSolution) -> ContactSolution:
-    """The finer solution with the error that the step from the coarser one shows."""
-    if not coarse.pressure.any():
-        return fine
-    return replace(fine, coarser=CoarserGrid(float(coarse.pressure.max()), coarse.approach))

@@ -4,6 +4,7 @@ import math
 import os
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
@@ -57,9 +58,9 @@ def check_demand(load: float | None, approach: float | None, max_pressure: float
     return problems
 
 
-def check_run(tolerance: float, on_failure: str, start: Array | None, shape: tuple[int, ...]) -> list[str]:
+def check_run(tolerance: float, on_failure: str, initial: ArrayLike | None, shape: tuple[int, ...]) -> list[str]:
     """Problems of the options of the iteration."""
-    problems = []
+    problems, start = [], None if initial is None else np.asarray(initial, dtype=np.float64)
     if not 0.0 < tolerance < 1.0:
         problems.append(f"tolerance: {tolerance} is not between 0 and 1")
     if on_failure not in ("raise", "return"):

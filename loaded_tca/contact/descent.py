@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array, Mask
-from loaded_tca.contact.columns import YieldingColumns, yielding
-from loaded_tca.contact.convolution import Convolution, Preconditioner, Window
-from loaded_tca.contact.edges import AnyMirror, MirroredConvolution, displacement_operator
+from loaded_tca.contact.convolution import Preconditioner
+from loaded_tca.contact.grid import Grid
 
 Single = NDArray[np.float32]
 
@@ -19,15 +18,9 @@ REFRESH = 25
 # A search along a projected step shorter than this part of it is worth doing, a longer one is not: taking the
 # whole step sets the cells that reach a bound exactly on it.
 WHOLE_STEP = 0.5
-MOST_PROJECTIONS = 100
 # Pressures below this part of the largest one move nothing by more than single precision resolves.
 DUST = 1e-8
-# Relative error of the sum of some thousand pressures.
-ROUNDING = 1e-15
-AT_BOUND = 1e-12
 TINY = float(np.finfo(np.float64).tiny)
-
-
 # BLAS starts threads for products of vectors from this length.
 THREADED_BLAS = 10_000
 
@@ -37,85 +30,6 @@ def dot(one: NDArray[Any], other: NDArray[Any]) -> float:
     if one.size < THREADED_BLAS:
         return float(np.vdot(one, other))
     return float(np.einsum("ij,ij->", one, other))
-
-
-@dataclass(frozen=True)
-class Grid:
-    """A contact problem on one grid: minimise p.Kp/2 + h.p over 0 <= p <= cap.
-
-    Pressures are p dx/E* here, a length, so that K depends on the shape of a cell only.
-
-    Parameters
-    ----------
-    gap : (nx, ny) array [mm]
-        Gap h before loading, its smallest value near 0; any value that cannot close where there is no material.
-    aspect : float
-        dy/dx.
-    total : float or None [mm]
-        Sum of the pressures; None if the approach is prescribed.
-    approach : float [mm]
-        Prescribed approach, counted as ``gap`` is; of no meaning if the total is given.
-    cap : float [mm]
-        Largest pressure, infinity if there is none.
-    edges : tuple of Mirror or ObliqueMirror
-        Free edges, whose images of the pressure K holds too.
-    columns : (ny, ny) array, optional
-        What yields beneath: displacement of every column under a unit sum of pressures on each, a part of K too.
-    """
-
-    gap: Array
-    aspect: float
-    total: float | None
-    approach: float
-    cap: float
-    edges: tuple[AnyMirror, ...] = ()
-    columns: Array | None = None
-
-    def operator(
-        self, window: Window | None = None, dtype: str = "float64", threads: int = 2
-    ) -> Convolution | MirroredConvolution | YieldingColumns:
-        """K for pressures on a window of the grid, or on all of it."""
-        shape = (self.gap.shape[0], self.gap.shape[1])
-        convolve = displacement_operator(shape, self.aspect, self.edges, window, dtype, threads)
-        return yielding(convolve, self.columns, window, dtype)
-
-    def clip(self, pressure: Array, movable: Mask) -> Array:
-        """Pressure within the bounds and with the right sum: scaled where there is no cap, projected otherwise."""
-        if self.total is None or not math.isinf(self.cap):
-            return self.project(pressure, movable)
-        clipped = np.maximum(pressure, 0.0)
-        clipped *= self.total / clipped.sum()
-        return clipped
-
-    def project(self, pressure: Array, movable: Mask) -> Array:
-        """Nearest pressure within the bounds and with the right sum that moves only the movable cells."""
-        projected = np.clip(pressure, 0.0, self.cap)
-        if self.total is not None and movable.any():
-            rest = self.total - float(projected[~movable].sum())
-            projected[movable] = _project(pressure[movable], rest, min(self.cap, self.total))
-        return projected
-
-    @property
-    def slack(self) -> float:
-        """Distance from a bound that is a rounding error: a cell that the last digits keep off the cap is at it."""
-        return 0.0 if math.isinf(self.cap) else AT_BOUND * self.cap
-
-
-def _project(values: Array, total: float, cap: float) -> Array:
-    """Project onto 0 <= p <= cap, sum p = total: p = clip(values - shift), the shift by safeguarded Newton steps."""
-    low, high = float(values.min()) - cap, float(values.max())
-    shift = 0.0
-    for _ in range(MOST_PROJECTIONS):
-        projected = np.clip(values - shift, 0.0, cap)
-        surplus = float(projected.sum()) - total
-        if abs(surplus) <= ROUNDING * total:
-            break
-        low, high = (shift, high) if surplus > 0.0 else (low, shift)
-        inner = np.count_nonzero((projected > 0.0) & (projected < cap))
-        shift = shift + surplus / inner if inner else low
-        if not low < shift < high:
-            shift = 0.5 * (low + high)
-    return projected
 
 
 @dataclass(frozen=True)
@@ -140,12 +54,12 @@ class Judgement:
 
 def judge(grid: Grid, pressure: Array, excess: Array) -> Judgement:
     """Check the Kuhn-Tucker conditions; turns ``excess``, given as u + h, into u + h - approach in place."""
-    inner = touching = pressure > grid.slack
+    inner = loaded = pressure > grid.slack
     capped: Mask | None = None
     if not math.isinf(grid.cap):
         capped = pressure >= grid.cap - grid.slack
-        inner = touching & ~capped
-    approach = grid.approach if grid.total is None else _mean_level(excess, touching, inner, capped)
+        inner = loaded & ~capped
+    approach = grid.approach if grid.total is None else _mean_level(excess, loaded, inner, capped)
     excess -= approach
     free = inner | (excess < 0.0)
     widest = 0.0
@@ -154,19 +68,19 @@ def judge(grid: Grid, pressure: Array, excess: Array) -> Judgement:
         widest = float(excess[capped].max(initial=0.0))
         free = free & ~capped | (capped & (excess > 0.0))
         misfit *= inner
-    deepest = -float(excess[free & ~touching].min(initial=0.0))
+    deepest = -float(excess[free & ~loaded].min(initial=0.0))
     weighted = dot(pressure, misfit) / max(float(pressure.sum()), TINY)
     residual = max(weighted, deepest, widest) / approach if approach > 0.0 else np.inf
     return Judgement(approach, residual, free)
 
 
-def _mean_level(level: Array, touching: Mask, inner: Mask, capped: Mask | None) -> float:
+def _mean_level(level: Array, loaded: Mask, inner: Mask, capped: Mask | None) -> float:
     """Approach that fits u + h best; with every cell at a bound any value between two limits is right."""
     count = np.count_nonzero(inner)
     if count or capped is None:
         return float((level * inner).sum() / count)
     lower = float(level[capped].max())
-    return 0.5 * (lower + float(level[~touching].min(initial=2.0 * np.abs(level).max() - lower)))
+    return 0.5 * (lower + float(level[~loaded].min(initial=2.0 * np.abs(level).max() - lower)))
 
 
 class Descent:

@@ -265,10 +265,9 @@ def without_material_beyond(
 
 
 def mirrors(
-    edges: tuple[FreeEdge, ...], spacing: tuple[float, float], window: Window | None = None
+    edges: tuple[FreeEdge, ...], spacing: tuple[float, float], starts: tuple[int, int] = (0, 0)
 ) -> tuple[AnyMirror, ...]:
-    """The edges on a grid of a spacing, counted from the first cell of a window of it."""
-    starts = (0, 0) if window is None else (window[0].start, window[1].start)
+    """The edges on a grid of a spacing, counted from a cell of it."""
     found: list[AnyMirror] = []
     for edge in edges:
         across, start = spacing[edge.axis], starts[edge.axis]
@@ -380,17 +379,3 @@ def _images(edges: tuple[Mirror, ...], starts: tuple[int, int], stops: tuple[int
             factor *= edge.factor
         images.append(((place[0], place[1]), (flips[0], flips[1]), factor))
     return images
-
-
-def displacement_operator(
-    target: tuple[int, int],
-    aspect: float,
-    edges: tuple[AnyMirror, ...],
-    window: Window | None = None,
-    dtype: str = "float64",
-    threads: int = 2,
-) -> Convolution | MirroredConvolution:
-    """Convolution with the coefficients of a half-space, and with the images of the pressure if there are edges."""
-    if not edges:
-        return Convolution(target, aspect, window, dtype, threads)
-    return MirroredConvolution(target, aspect, edges, window, dtype, threads)

@@ -1,124 +1,110 @@
-"""A contact problem in the units of the user, on the grid of one level."""
+"""A contact problem as the user states it."""
 
-from dataclasses import dataclass, replace
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike
 
 from loaded_tca.arrays import Array
-from loaded_tca.contact.columns import in_grid_units, merge_columns
-from loaded_tca.contact.convolution import Window
-from loaded_tca.contact.descent import AT_BOUND, Grid
-from loaded_tca.contact.edges import FreeEdge, amplification, mirrors
-from loaded_tca.contact.levels import coarsen
-from loaded_tca.contact.love import influence_coefficients
+from loaded_tca.contact import checks
+from loaded_tca.contact.edges import FreeEdge, check_edges, without_material_beyond
+from loaded_tca.contact.slices import check_slices
 
 Spacing = tuple[float, float]
 
-# Gaps are cut at this multiple of the largest that could close, to stay far from the limits of single precision.
-OUT_OF_REACH = 2.0
 
+@dataclass(frozen=True, eq=False)
+class ContactProblem:
+    """Two elastic half-spaces that a load, or a prescribed approach, brings together over a gap.
 
-@dataclass(frozen=True)
-class Problem:
-    """What is asked for, on the grid of one level; immutable, as its cached properties need.
+    Everything is checked when it is made. Its arrays are copies that cannot be written to.
 
     Parameters
     ----------
-    gap : (nx, ny) array [mm]
-        Gap before loading, its smallest value zero on the finest level, infinite where there is no material.
+    gap : (nx, ny) array_like [mm]
+        Gap between the surfaces before loading; +inf where there is no material, as it becomes beyond free edges.
     spacing : (float, float) [mm]
-        Width of a cell.
+        Width of a cell along the first and the second axis.
     contact_modulus : float [MPa]
-        E*.
-    load : float or None [N]
-        Normal load; None if the approach is prescribed.
-    approach : float [mm]
-        Prescribed approach, counted as ``gap`` is; of no meaning if the load is given.
-    max_pressure : float [MPa]
-        Cap on the pressure, infinity if there is none.
-    threads : int
-        Threads of a transform.
-    free_edges : tuple of FreeEdge
+        E*, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
+    load : float, optional [N]
+        Normal load, not negative.
+    approach : float, optional [mm]
+        Approach of the bodies, counted as ``gap`` is. Exactly one of load and approach has to be given.
+    max_pressure : float, optional [MPa]
+        Cap on the pressure: elastic, perfectly plastic surface.
+    free_edges : sequence of FreeEdge
         Where the bodies end beside the contact.
-    columns : (ny, ny) array [mm/N], optional
-        What yields beneath the half-spaces: displacement of every column of cells under a unit force on each.
+    slice_compliance : (ny, ny) array_like [mm/N], optional
+        Displacement of every slice (cells of one place along the second axis) under a unit force on each of them, on
+        top of that of the half-spaces.
+
+    Raises
+    ------
+    InputError
+        With every problem of the arguments.
+
+    Examples
+    --------
+    >>> problem = ContactProblem([[0.0, 0.1], [0.2, 0.3]], (1.0, 1.0), 115e3, load=10.0)
+    >>> problem.gap.flags.writeable
+    False
     """
 
     gap: Array
     spacing: Spacing
     contact_modulus: float
-    load: float | None
-    approach: float
-    max_pressure: float
-    threads: int
-    free_edges: tuple[FreeEdge, ...] = ()
-    columns: Array | None = None
+    load: float | None = None
+    approach: float | None = None
+    max_pressure: float | None = None
+    free_edges: Sequence[FreeEdge] = ()
+    slice_compliance: Array | None = None
+
+    def __post_init__(self) -> None:
+        gap, slices, edges = _numbers(self.gap), self.slice_compliance, tuple(self.free_edges)
+        slices = None if slices is None else _numbers(slices).copy()
+        checks.raise_if(
+            checks.check_grid(gap, self.spacing, self.contact_modulus)
+            + check_edges(edges)
+            + check_slices(slices, gap.shape)
+        )
+        spacing = float(self.spacing[0]), float(self.spacing[1])
+        gap = without_material_beyond(gap.copy(), spacing, edges)
+        area = np.count_nonzero(np.isfinite(gap)) * spacing[0] * spacing[1]
+        checks.raise_if([] if area else ["free_edges: no cell within them holds material"])
+        checks.raise_if(checks.check_demand(self.load, self.approach, self.max_pressure, area))
+        for array in (gap, slices):
+            if array is not None:
+                array.flags.writeable = False
+        own = {"gap": gap, "spacing": spacing, "free_edges": edges, "slice_compliance": slices}
+        for name, value in own.items():
+            object.__setattr__(self, name, value)
+
+    @cached_property
+    def first_contact(self) -> float:
+        """Smallest gap [mm]: the approach at which the load begins."""
+        return float(self.gap.min())
 
     @property
-    def unit(self) -> float:
-        """Pressure of the grid (p dx/E*) for 1 MPa [mm/MPa]."""
-        return self.spacing[0] / self.contact_modulus
+    def cap(self) -> float:
+        """Largest pressure [MPa], infinity if there is none."""
+        return math.inf if self.max_pressure is None else self.max_pressure
 
-    def grid(self, window: Window | None = None) -> Grid:
-        """The problem in the terms of :class:`Grid`, on the whole grid or on a window of it."""
-        gap = self.gap if window is None else self.gap[window]
-        total = None if self.load is None else self.load / (self.spacing[1] * self.contact_modulus)
-        gap = np.minimum(gap, OUT_OF_REACH * self.reach)
-        edges = mirrors(self.free_edges, self.spacing, window)
-        columns = in_grid_units(self.columns, window, self.spacing, self.contact_modulus)
-        cap = self.max_pressure * self.unit
-        return Grid(gap, self.spacing[1] / self.spacing[0], total, self.approach, cap, edges, columns)
+    @property
+    def cells(self) -> tuple[int, int]:
+        """Cells along the two axes."""
+        return self.gap.shape[0], self.gap.shape[1]
 
-    @cached_property
-    def reach(self) -> float:
-        """Gap beyond which no cell can touch [mm].
+    @property
+    def cell_area(self) -> float:
+        """Area of a cell [mm^2]."""
+        return self.spacing[0] * self.spacing[1]
 
-        No displacement exceeds that of the whole load on one cell, and some cell below the cap has a gap of at
-        most the (k + 1)-th smallest, k the number of cells that the load could fill to the cap: the approach is
-        at most the sum of both.
-        """
-        if self.load is None:
-            return self.approach
-        own = float(influence_coefficients((1, 1), self.spacing[1] / self.spacing[0])[0, 0])
-        farthest = amplification(self.free_edges) * own * self.load / (self.spacing[1] * self.contact_modulus)
-        if self.columns is not None:
-            farthest += float(np.abs(self.columns).max()) * self.load
-        full = int(self.load / (self.max_pressure * self.spacing[0] * self.spacing[1]))
-        if not full:
-            return farthest + float(self.gap.min())
-        rank = min(full, int(np.isfinite(self.gap).sum()) - 1)
-        return farthest + float(np.partition(self.gap.ravel(), rank)[rank])
 
-    @cached_property
-    def reachable(self) -> NDArray[np.bool_]:
-        """Cells that might touch."""
-        return self.gap <= self.reach
-
-    def coarser(self, merge: tuple[int, int]) -> "Problem":
-        """The same problem on the next coarser grid."""
-        spacing = (self.spacing[0] * merge[0], self.spacing[1] * merge[1])
-        gap = np.where(self.reachable, self.gap, np.inf)
-        columns = merge_columns(self.columns, merge[1])
-        return replace(self, gap=coarsen(gap, merge), spacing=spacing, columns=columns)
-
-    def fitted(self, pressure: Array) -> Array:
-        """A pressure within the bounds and with the load of the problem, none where there is no material."""
-        pressure = np.where(self.reachable, np.minimum(pressure, self.max_pressure), 0.0)
-        if self.load is None:
-            return pressure
-        if not pressure.any():
-            pressure = self.reachable.astype(np.float64)
-        pressure *= self.load / (float(pressure.sum()) * self.spacing[0] * self.spacing[1])
-        if pressure.max() > self.max_pressure:
-            unit = self.unit
-            pressure = self.grid().clip(pressure * unit, self.reachable) / unit
-        return pressure
-
-    def in_user_units(self, pressure: Array) -> Array:
-        """Pressure of the grid in MPa; what is at the cap but for rounding there is exactly at the cap here."""
-        if np.isinf(self.max_pressure):
-            return np.asarray(pressure / self.unit)
-        capped = pressure >= (1.0 - AT_BOUND) * self.max_pressure * self.unit
-        return np.where(capped, self.max_pressure, np.minimum(pressure / self.unit, self.max_pressure))
+def _numbers(values: ArrayLike) -> Array:
+    return np.asarray(values, dtype=np.float64)

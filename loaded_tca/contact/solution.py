@@ -9,7 +9,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact import patch
-from loaded_tca.contact.edges import FreeEdge
+from loaded_tca.contact.problem import ContactProblem, Spacing
 
 # Fewer cells than this across a contact leave errors above 1 % in its pressure.
 FEWEST_CELLS = 8
@@ -23,7 +23,7 @@ class ContactStatus(enum.Enum):
     """How a solution ended; the value is the sentence for the user."""
 
     CONVERGED = "The contact conditions hold on the whole grid within the tolerance."
-    NO_LOAD = "No load is carried: the surfaces touch in a point at most."
+    NO_LOAD = "No load is carried: the surfaces are in contact in a point at most."
     NOT_CONVERGED = "The iteration ended before the contact conditions held within the tolerance."
 
 
@@ -63,7 +63,7 @@ class CoarserGrid:
 
 @dataclass(frozen=True, eq=False)
 class ContactSolution:
-    """Pressure and gap of two elastic half-spaces pressed together.
+    """Pressure and gap of two elastic half-spaces in contact.
 
     Parameters
     ----------
@@ -78,23 +78,13 @@ class ContactSolution:
     iterations, convolutions : int
         On the grid given; the coarser ones before it are not counted.
     residual : float
-        Largest violation of the contact conditions on the whole grid, over the approach from first touch.
+        Largest violation of the contact conditions on the whole grid, over the approach from first contact.
     status : ContactStatus
         How it ended.
-    spacing : (float, float) [mm]
-        Width of a cell along the two axes.
-    contact_modulus : float [MPa]
-        E*.
-    max_pressure : float or None [MPa]
-        The cap on the pressure, if there was one.
-    first_touch : float [mm]
-        Smallest gap as given: the approach at which the load begins.
+    problem : ContactProblem
+        What was solved.
     coarser : CoarserGrid or None
         The grid that ``error_estimate`` compares with, if there was one.
-    free_edges : tuple of FreeEdge
-        The edges that were corrected for.
-    column_compliance : (ny, ny) array or None [mm/N]
-        What yielded beneath the half-spaces.
     """
 
     pressure: Array
@@ -105,13 +95,8 @@ class ContactSolution:
     convolutions: int
     residual: float
     status: ContactStatus
-    spacing: tuple[float, float]
-    contact_modulus: float
-    max_pressure: float | None
-    first_touch: float
-    coarser: CoarserGrid | None
-    free_edges: tuple[FreeEdge, ...] = ()
-    column_compliance: Array | None = None
+    problem: ContactProblem
+    coarser: CoarserGrid | None = None
 
     def __repr__(self) -> str:
         cells = "x".join(str(n) for n in self.pressure.shape)
@@ -123,7 +108,7 @@ class ContactSolution:
     @cached_property
     def peak_pressure(self) -> float:
         """Largest pressure [MPa], between the cells where the contact is a smooth patch (see ``patch``)."""
-        if self.max_pressure is not None or self.bounded:
+        if self.problem.max_pressure is not None or self.bounded:
             return float(self.pressure.max())
         return patch.peak_pressure(self.pressure)
 
@@ -133,9 +118,19 @@ class ContactSolution:
         return self.pressure > 0.0
 
     @property
+    def spacing(self) -> Spacing:
+        """Width of a cell along the two axes [mm]."""
+        return self.problem.spacing
+
+    @property
     def cell_area(self) -> float:
         """Area of a cell [mm^2]."""
-        return self.spacing[0] * self.spacing[1]
+        return self.problem.cell_area
+
+    @property
+    def approach_under_load(self) -> float:
+        """Approach [mm] from first contact on."""
+        return self.approach - self.problem.first_contact
 
     @property
     def contact_area(self) -> float:
@@ -156,8 +151,8 @@ class ContactSolution:
     @cached_property
     def reaches_border(self) -> bool:
         """Whether the outermost cells of the grid carry pressure: the grid, not the bodies, bounds the contact."""
-        rim = (self.pressure[[0, -1]], self.pressure[:, [0, -1]])
-        return any(bool((cells > 0.0).any()) for cells in rim)
+        outermost = (self.pressure[[0, -1]], self.pressure[:, [0, -1]])
+        return any(bool((cells > 0.0).any()) for cells in outermost)
 
     @cached_property
     def reaches_material_edge(self) -> bool:
@@ -200,5 +195,5 @@ class ContactSolution:
         step = share * abs(largest - self.coarser.largest) / largest
         return ErrorEstimate(
             peak_pressure=max(step, LEAST_ERROR / min(self.cells_across) ** 2),
-            approach=abs(self.approach - self.coarser.approach) / (self.approach - self.first_touch),
+            approach=abs(self.approach - self.coarser.approach) / self.approach_under_load,
         )

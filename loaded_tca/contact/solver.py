@@ -15,6 +15,8 @@ Polonsky & Keer 1999, Wear 231, 206-219; Liu, Wang & Liu 2000, Wear 243, 101-111
 Sahlin, Larsson & Glavatskih 2007, Tribol. Int. 40, 574-579 (cap on the pressure).
 """
 
+from __future__ import annotations
+
 import math
 import warnings
 from collections.abc import Sequence
@@ -26,14 +28,13 @@ from numpy.typing import ArrayLike
 
 from loaded_tca.arrays import Array
 from loaded_tca.contact import checks
-from loaded_tca.contact.columns import check_columns, in_grid_units
-from loaded_tca.contact.convolution import Window
-from loaded_tca.contact.descent import Descent, Grid, Judgement, judge
-from loaded_tca.contact.edges import FreeEdge, check_edges, mirrors, without_material_beyond
+from loaded_tca.contact.descent import Descent, judge
+from loaded_tca.contact.edges import FreeEdge
+from loaded_tca.contact.grid import AT_BOUND, OUT_OF_REACH, Grid
 from loaded_tca.contact.levels import coarsening, prolong, window_around
-from loaded_tca.contact.problem import OUT_OF_REACH, Problem, Spacing
+from loaded_tca.contact.problem import ContactProblem, Spacing
 from loaded_tca.contact.solution import CoarserGrid, ContactSolution, ContactStatus
-from loaded_tca.errors import AccuracyWarning, ConvergenceError
+from loaded_tca.errors import AccuracyWarning, ConvergenceError, InputError
 
 # Iterations on one grid. Rough surfaces need about a hundred, smooth ones less than ten.
 MOST_ITERATIONS = 500
@@ -49,6 +50,9 @@ RESERVE = 0.8
 SINGLE_PRECISION = 1e-6
 
 
+OnFailure = Literal["raise", "return"]
+
+
 def solve_contact(
     gap: ArrayLike,
     spacing: Spacing,
@@ -58,14 +62,14 @@ def solve_contact(
     approach: float | None = None,
     max_pressure: float | None = None,
     tolerance: float = 1e-6,
-    on_failure: Literal["raise", "return"] = "raise",
+    on_failure: OnFailure = "raise",
     initial_pressure: ArrayLike | None = None,
     threads: int = 2,
     warn: bool = True,
     free_edges: Sequence[FreeEdge] = (),
-    column_compliance: ArrayLike | None = None,
+    slice_compliance: ArrayLike | None = None,
 ) -> ContactSolution:
-    r"""Press two elastic half-spaces together over a gap.
+    r"""Solve the contact of two elastic half-spaces over a gap.
 
     Parameters
     ----------
@@ -83,7 +87,7 @@ def solve_contact(
     max_pressure : float, optional [MPa]
         Cap on the pressure: elastic, perfectly plastic surface.
     tolerance : float
-        Largest violation of the contact conditions over the approach from first touch.
+        Largest violation of the contact conditions over the approach from first contact.
     on_failure : {"raise", "return"}
         What to do without convergence: raise, or return the last iterate with its status.
     initial_pressure : (nx, ny) array_like, optional [MPa]
@@ -95,8 +99,8 @@ def solve_contact(
     free_edges : sequence of FreeEdge
         Where the bodies end beside the contact: nothing is carried beyond, and the images of the pressure in these
         edges make up for what a half-space would be too stiff. Half-spaces if there are none.
-    column_compliance : (ny, ny) array_like [mm/N], optional
-        What bends beneath the half-spaces: displacement of every column (cells of one place along the second axis)
+    slice_compliance : (ny, ny) array_like [mm/N], optional
+        Bending beneath the half-spaces: displacement of every slice (cells of one place along the second axis)
         under a unit force on each of them; symmetric, and positive definite together with the half-spaces.
 
     Returns
@@ -127,38 +131,74 @@ def solve_contact(
     >>> bool(abs(solution.peak_pressure - 1420.7) < 1.0)
     True
     """
-    gap, start = np.asarray(gap, dtype=np.float64), _optional_array(initial_pressure)
-    columns = _optional_array(column_compliance)
-    spacing, edges = (float(spacing[0]), float(spacing[1])), tuple(free_edges)
-    checks.raise_if(
-        checks.check_grid(gap, spacing, contact_modulus)
-        + checks.check_run(tolerance, on_failure, start, gap.shape)
-        + check_edges(edges)
-        + check_columns(columns, gap.shape)
+    gap = np.asarray(gap, dtype=np.float64)
+    try:
+        problem = ContactProblem(
+            gap,
+            spacing,
+            contact_modulus,
+            load=load,
+            approach=approach,
+            max_pressure=max_pressure,
+            free_edges=free_edges,
+            slice_compliance=None if slice_compliance is None else np.asarray(slice_compliance, dtype=np.float64),
+        )
+    except InputError as error:
+        run = checks.check_run(tolerance, on_failure, initial_pressure, gap.shape)
+        raise InputError([*error.problems, *run]) from None
+    solution = solve_problem(
+        problem, tolerance=tolerance, on_failure=on_failure, initial_pressure=initial_pressure, threads=threads
     )
-    gap = without_material_beyond(gap, spacing, edges)
-    checks.raise_if([] if np.isfinite(gap).any() else ["free_edges: no cell within them holds material"])
-    material = np.isfinite(gap)
-    area = np.count_nonzero(material) * spacing[0] * spacing[1]
-    checks.raise_if(checks.check_demand(load, approach, max_pressure, area))
-    lowest = float(gap[material].min())
-    problem = Problem(
-        gap=gap - lowest,
-        spacing=spacing,
-        contact_modulus=contact_modulus,
-        load=load,
-        approach=0.0 if approach is None else approach - lowest,
-        max_pressure=math.inf if max_pressure is None else max_pressure,
-        threads=threads,
-        free_edges=edges,
-        columns=columns,
-    )
-    solution = _solve(problem, lowest, tolerance, start)
     if warn:
         for sentence in solution.accuracy_warnings:
             warnings.warn(sentence, AccuracyWarning, stacklevel=2)
+    return solution
+
+
+def solve_problem(
+    problem: ContactProblem,
+    *,
+    tolerance: float = 1e-6,
+    on_failure: OnFailure = "raise",
+    initial_pressure: ArrayLike | None = None,
+    threads: int = 2,
+) -> ContactSolution:
+    """Solve a contact problem, without warnings about its accuracy.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    tolerance, on_failure, initial_pressure, threads
+        As in :func:`solve_contact`.
+
+    Returns
+    -------
+    ContactSolution
+
+    Raises
+    ------
+    InputError, ConvergenceError
+        As :func:`solve_contact` does.
+    """
+    checks.raise_if(checks.check_run(tolerance, on_failure, initial_pressure, problem.gap.shape))
+    grid = Grid.of(problem)
+    if problem.load == 0.0 or (problem.load is None and grid.approach <= 0.0):
+        return _without_load(problem, grid.approach)
+    if initial_pressure is not None and (given := np.asarray(initial_pressure, dtype=np.float64)).any():
+        start, coarser = grid.fitted(given * _unit(problem)), None
+    else:
+        start, coarser = _start_from_coarser(grid, tolerance, threads)
+    solution = _solve_on_finest(problem, grid, tolerance, start, threads)
+    if coarser is not None:
+        coarser = CoarserGrid(coarser.largest / _unit(problem), problem.first_contact + coarser.approach)
+        solution = replace(solution, coarser=coarser)
     if solution.status is ContactStatus.NOT_CONVERGED and on_failure == "raise":
-        raise ConvergenceError(_failure(solution, tolerance), last=solution)
+        raise ConvergenceError(
+            f"contact not converged: residual {solution.residual:.1e} > tolerance {tolerance:.1e} after "
+            f"{solution.iterations} iterations; try a larger tolerance (in scenes: analysis.tolerance), or "
+            "on_failure='return' to look at it",
+            last=solution,
+        )
     return solution
 
 
@@ -178,155 +218,102 @@ def contact_stiffness(solution: ContactSolution, tolerance: float = 1e-6) -> flo
     Returns
     -------
     float [N/mm]
-        Zero where nothing touches, or where every cell in contact is at the cap.
+        Zero where nothing is in contact, or where every cell in contact is at the cap.
 
     Raises
     ------
     ConvergenceError
         If the tolerance is not reached.
     """
-    cap = math.inf if solution.max_pressure is None else solution.max_pressure
-    active = solution.in_contact & (solution.pressure < cap)
+    problem = solution.problem
+    active = solution.in_contact & (solution.pressure < problem.cap)
     if not active.any():
         return 0.0
     window = window_around(active)
-    # A flat punch of the shape of the cells between the bounds, pressed in by one: its load is the stiffness.
+    # A flat punch of the shape of the cells between the bounds, moved in by one: its load is the stiffness.
     gap = np.where(active[window], 0.0, OUT_OF_REACH)
-    edges = mirrors(solution.free_edges, solution.spacing, window)
-    columns = in_grid_units(solution.column_compliance, window, solution.spacing, solution.contact_modulus)
-    grid = Grid(gap, solution.spacing[1] / solution.spacing[0], None, 1.0, math.inf, edges, columns)
-    descent = Descent(grid, np.zeros(gap.shape))
+    punch = replace(Grid.of(problem).part(window), gap=gap, total=None, approach=1.0, cap=math.inf)
+    descent = Descent(punch, np.zeros(gap.shape))
     state = descent.run(tolerance, MOST_ITERATIONS)
     if state.residual > tolerance:
         raise ConvergenceError(f"contact_stiffness: residual {state.residual:.1e} > tolerance {tolerance:.1e}")
-    return float(descent.pressure.sum()) * solution.spacing[1] * solution.contact_modulus
+    return float(descent.pressure.sum()) * problem.spacing[1] * problem.contact_modulus
 
 
-def _optional_array(values: ArrayLike | None) -> Array | None:
-    return None if values is None else np.asarray(values, dtype=np.float64)
+def _unit(problem: ContactProblem) -> float:
+    """Pressure of a grid (p dx/E*) for 1 MPa [mm/MPa]."""
+    return problem.spacing[0] / problem.contact_modulus
 
 
-def _failure(solution: ContactSolution, tolerance: float) -> str:
-    return (
-        f"contact not converged: residual {solution.residual:.1e} > tolerance {tolerance:.1e} after "
-        f"{solution.iterations} iterations; try a larger tolerance (in scenes: analysis.tolerance), or "
-        "on_failure='return' to look at it"
-    )
-
-
-def _solve(problem: Problem, lowest: float, tolerance: float, start: Array | None) -> ContactSolution:
-    """Solve on nested grids, or from a start; no load is answered at once."""
-    if problem.load == 0.0 or (problem.load is None and problem.approach <= 0.0):
-        return _no_load(problem, lowest)
-    if start is not None and start.any():
-        window, pressure, coarse = *_cropped(problem, problem.fitted(start)), None
-    else:
-        window, pressure, coarse = _from_coarser(problem, tolerance)
-    return _finest(problem, lowest, tolerance, window, pressure, coarse)
-
-
-def _no_load(problem: Problem, lowest: float) -> ContactSolution:
+def _without_load(problem: ContactProblem, approach: float) -> ContactSolution:
     """Zero pressure; the approach is the smallest gap, or as prescribed."""
-    approach = 0.0 if problem.load == 0.0 else problem.approach
+    approach += problem.first_contact
     return ContactSolution(
         pressure=np.zeros(problem.gap.shape),
         gap=problem.gap - approach,
-        approach=lowest + approach,
+        approach=approach,
         load=0.0,
         iterations=0,
         convolutions=0,
         residual=0.0,
         status=ContactStatus.NO_LOAD,
-        spacing=problem.spacing,
-        contact_modulus=problem.contact_modulus,
-        max_pressure=None if math.isinf(problem.max_pressure) else problem.max_pressure,
-        first_touch=lowest,
-        coarser=None,
-        free_edges=problem.free_edges,
-        column_compliance=problem.columns,
+        problem=problem,
     )
 
 
-def _from_coarser(problem: Problem, tolerance: float) -> tuple[Window, Array, CoarserGrid | None]:
-    """Window, and start in it [mm], for a grid, from the solution on the next coarser one, solved in the same way."""
-    merge = coarsening((problem.gap.shape[0], problem.gap.shape[1]))
+def _start_from_coarser(grid: Grid, tolerance: float, threads: int) -> tuple[Array, CoarserGrid | None]:
+    """Start for a grid from the solution on the next coarser one, solved in the same way; what that one found."""
+    merge = coarsening(grid.shape)
     if merge == (1, 1):
-        uniform = problem.reachable.astype(np.float64) if problem.load is not None else np.zeros(problem.gap.shape)
-        return *_cropped(problem, problem.fitted(uniform)), None
-    coarse = problem.coarser(merge)
+        return grid.fitted(np.zeros(grid.shape)), None
+    coarse = grid.coarser(merge)
     tolerance = max(tolerance, min(COARSE_TOLERANCE, COARSE_FACTOR * tolerance))
-    window, start, _ = _from_coarser(coarse, tolerance)
-    descent = Descent(coarse.grid(window), start, threads=problem.threads, exact=False)
+    start, _ = _start_from_coarser(coarse, tolerance, threads)
+    window = coarse.window(start)
+    descent = Descent(coarse.part(window), start[window], threads=threads, exact=False)
     state = descent.run(tolerance, MOST_ITERATIONS)
-    pressure = np.zeros(coarse.gap.shape)
-    pressure[window] = descent.pressure / coarse.unit
+    pressure = np.zeros(coarse.shape)
+    pressure[window] = descent.pressure / merge[0]
     largest = float(pressure.max())
     found = CoarserGrid(largest, state.approach) if largest > 0.0 else None
-    return *_cropped(problem, problem.fitted(prolong(pressure, problem.gap.shape, merge))), found
+    return grid.fitted(prolong(pressure, grid.shape, merge)), found
 
 
-def _cropped(problem: Problem, pressure: Array) -> tuple[Window, Array]:
-    """Window around the contact, the whole grid where nothing is in contact yet; the pressure [mm] in it."""
-    touching = pressure > 0.0
-    window = window_around(touching if touching.any() else problem.reachable)
-    return window, pressure[window] * problem.unit
-
-
-def _finest(
-    problem: Problem, lowest: float, tolerance: float, window: Window, start: Array, coarse: CoarserGrid | None
+def _solve_on_finest(
+    problem: ContactProblem, grid: Grid, tolerance: float, start: Array, threads: int
 ) -> ContactSolution:
     """Solve in a window around the contact, check on the whole grid, widen the window where the check says so."""
-    shape = problem.gap.shape
-    exact = tolerance < SINGLE_PRECISION
-    descent = Descent(problem.grid(window), start, threads=problem.threads, exact=exact)
+    window = grid.window(start)
+    whole = grid.part((slice(0, grid.shape[0]), slice(0, grid.shape[1])))
+    descent = Descent(grid.part(window), start[window], threads=threads, exact=tolerance < SINGLE_PRECISION)
     iterations = convolutions = 0
     for _ in range(MOST_CHECKS):
         descent.run(RESERVE * tolerance, MOST_ITERATIONS - iterations)
-        whole = problem.grid()
-        check = whole.operator(window, threads=problem.threads)
-        displacement = check(descent.settle(), np.empty(shape))
-        pressure = np.zeros(shape)
+        check = whole.operator(window, threads=threads)
+        displacement = check(descent.settle(), np.empty(grid.shape))
+        pressure = np.zeros(grid.shape)
         pressure[window] = descent.pressure
-        state = judge(whole, pressure, np.add(displacement, whole.gap, out=whole.gap))
+        state = judge(whole, pressure, displacement + whole.gap)
         iterations += descent.iterations
         convolutions += descent.convolutions + check.count
         if state.residual <= tolerance or iterations >= MOST_ITERATIONS:
             break
         window = window_around(state.free | (pressure > 0.0))
         part = np.ascontiguousarray(displacement[window])
-        descent = Descent(problem.grid(window), pressure[window], part, problem.threads)
-    displacement += problem.gap
+        descent = Descent(grid.part(window), pressure[window], part, threads)
+    displacement += grid.gap
     displacement -= state.approach
-    return _solution(problem, lowest, tolerance, pressure, displacement, state, (iterations, convolutions), coarse)
-
-
-def _solution(
-    problem: Problem,
-    lowest: float,
-    tolerance: float,
-    pressure: Array,
-    gap: Array,
-    state: Judgement,
-    counts: tuple[int, int],
-    coarse: CoarserGrid | None,
-) -> ContactSolution:
-    """Put a solution together in the units of the user."""
-    pressure = problem.in_user_units(pressure)
-    load = float(pressure.sum()) * problem.spacing[0] * problem.spacing[1]
+    pressure /= _unit(problem)
+    if problem.max_pressure is not None:  # what is at the cap but for rounding is exactly at it from here on
+        pressure = np.where(pressure >= (1.0 - AT_BOUND) * problem.cap, problem.cap, pressure)
     return ContactSolution(
         pressure=pressure,
-        gap=gap,
-        approach=lowest + state.approach,
-        load=load if problem.load is None else problem.load,
-        iterations=counts[0],
-        convolutions=counts[1],
+        gap=displacement,
+        approach=problem.first_contact + state.approach,
+        load=float(pressure.sum()) * problem.cell_area if problem.load is None else problem.load,
+        iterations=iterations,
+        convolutions=convolutions,
         residual=state.residual,
         status=ContactStatus.CONVERGED if state.residual <= tolerance else ContactStatus.NOT_CONVERGED,
-        spacing=problem.spacing,
-        contact_modulus=problem.contact_modulus,
-        max_pressure=None if math.isinf(problem.max_pressure) else problem.max_pressure,
-        first_touch=lowest,
-        coarser=None if coarse is None else replace(coarse, approach=lowest + coarse.approach),
-        free_edges=problem.free_edges,
-        column_compliance=problem.columns,
+        problem=problem,
     )

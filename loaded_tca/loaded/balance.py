@@ -1,4 +1,4 @@
-"""Forces of tooth pairs whose approaches are powers of their forces, under one common rotation."""
+"""Forces of tooth pairs whose contact deformations are powers of their forces, under one common rotation."""
 
 from __future__ import annotations
 
@@ -12,32 +12,32 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError
 
 EXPONENTS = (0.3, 3.0)
-"""Range of the exponent of an approach over the force; above 1: at a cap on the pressure."""
+"""Range of the exponent of a contact deformation over the force; above 1: at a cap on the pressure."""
 POINT_EXPONENT = 2.0 / 3.0
 TELLING = 0.05
 """Relative difference of two loads from which an exponent follows: whole cells hide it where they are closer, ..."""
 SURPRISE = 1e-3
-"""... but for an approach that misses the law by more than this part, as at a cap on the pressure."""
+"""... but for a deformation that misses the law by more than this part, as at a cap on the pressure."""
 SAME_LOAD = 1e-4
 MOST_STEPS = 200
 """Newton steps before giving up; five to ten are the rule."""
 STEP_TOLERANCE = 1e-12
 """Change of the forces, over the largest, that is none."""
 LARGEST_FALL = 0.1
-ROUNDING = 1e-8
-"""Change below which steps that do not shrink are rounding, where the lags are large against the approaches."""
+STALLED = 1e-8
+"""Change below which steps that do not shrink are rounding: initial separations may be large against deformations."""
 LITTLE = 1e-3
-"""Force of a pair over the largest, below which it is parted at once where nothing closes it; it may come back."""
+"""Force of a pair over the largest, below which it parts at once where it is not closed; it may come back."""
 
 
 @dataclass(frozen=True)
 class PowerLaw:
-    """Approach of a contact near a load: approach (F/load)^exponent.
+    """Contact deformation near a load: deformation (F/load)^exponent.
 
     Parameters
     ----------
     load : float [N]
-    approach : float [mm]
+    deformation : float [mm]
         Under that load; both positive.
     exponent : float
         2/3 for a point contact, nearly 1 for a line.
@@ -45,34 +45,34 @@ class PowerLaw:
     Examples
     --------
     >>> law = PowerLaw(1000.0, 0.004)
-    >>> round(law.approach_under(8000.0), 9), round(law.force_at(0.016), 6)
+    >>> round(law.deformation_under(8000.0), 9), round(law.force_at(0.016), 6)
     (0.016, 8000.0)
     """
 
     load: float
-    approach: float
+    deformation: float
     exponent: float = POINT_EXPONENT
 
     @classmethod
-    def along(cls, load: float, approach: float, slope: float) -> PowerLaw:
-        """Return the law through a press whose approach grows by ``slope`` [mm/N] with the load."""
-        return cls(load, approach, float(np.clip(slope * load / approach, *EXPONENTS)))
+    def along(cls, load: float, deformation: float, slope: float) -> PowerLaw:
+        """Return the law through a contact whose deformation grows by ``slope`` [mm/N] with the load."""
+        return cls(load, deformation, float(np.clip(slope * load / deformation, *EXPONENTS)))
 
-    def approach_under(self, force: float) -> float:
-        """Approach [mm] under a force >= 0 [N]."""
-        return self.approach * (force / self.load) ** self.exponent
+    def deformation_under(self, force: float) -> float:
+        """Contact deformation [mm] under a force >= 0 [N]."""
+        return self.deformation * (force / self.load) ** self.exponent
 
-    def force_at(self, approach: float) -> float:
-        """Force [N] at an approach [mm]; none where that is not positive."""
-        return self.load * (approach / self.approach) ** (1.0 / self.exponent) if approach > 0.0 else 0.0
+    def force_at(self, deformation: float) -> float:
+        """Force [N] at a contact deformation [mm]; none where that is not positive."""
+        return self.load * (deformation / self.deformation) ** (1.0 / self.exponent) if deformation > 0.0 else 0.0
 
-    def through(self, load: float, approach: float) -> PowerLaw:
-        """Return the law through a further press, its exponent that between the two."""
+    def through(self, load: float, deformation: float) -> PowerLaw:
+        """Return the law through a further solution, its exponent that between the two."""
         exponent, ratio = self.exponent, load / self.load
-        surprise = abs(approach / self.approach_under(load) - 1.0)
+        surprise = abs(deformation / self.deformation_under(load) - 1.0)
         if abs(ratio - 1.0) > TELLING or (surprise > SURPRISE and abs(ratio - 1.0) > SAME_LOAD):
-            exponent = float(np.clip(math.log(approach / self.approach) / math.log(ratio), *EXPONENTS))
-        return PowerLaw(load, approach, exponent)
+            exponent = float(np.clip(math.log(deformation / self.deformation) / math.log(ratio), *EXPONENTS))
+        return PowerLaw(load, deformation, exponent)
 
 
 def balance(laws: Sequence[PowerLaw], separations: Array, levers: Array, torque: float, compliance: Array) -> Array:
@@ -81,8 +81,8 @@ def balance(laws: Sequence[PowerLaw], separations: Array, levers: Array, torque:
     Parameters
     ----------
     laws : sequence of PowerLaw, (k,)
-    lags : (k,) array [rad]
-        Rotations at which the pairs touch.
+    separations : (k,) array [rad]
+        Initial separations, as rotations of the wheel.
     levers : (2, k) array [mm]
         Of the normal forces about the axes of pinion and wheel.
     torque : float [N mm]
@@ -93,7 +93,7 @@ def balance(laws: Sequence[PowerLaw], separations: Array, levers: Array, torque:
     Returns
     -------
     (k,) array [N]
-        Zero where a pair is apart. They balance the torque to rounding.
+        Zero where a pair is not in contact. They balance the torque to rounding.
 
     Raises
     ------
@@ -110,14 +110,14 @@ def balance(laws: Sequence[PowerLaw], separations: Array, levers: Array, torque:
     """
     if not (levers > 0.0).all():
         raise ConvergenceError(f"load sharing: no rotation gives a torque of {torque:.6g} N mm", last=levers)
-    given = np.array([(law.load, law.approach, law.exponent) for law in laws]).T
+    given = np.array([(law.load, law.deformation, law.exponent) for law in laws]).T
     separations = separations - separations.min()
     forces, change = np.full(len(laws), torque / float(levers[0].sum())), math.inf
     for _ in range(MOST_STEPS):
         target = _newton_step(given, separations, levers, torque, compliance, forces)
         before, change = change, float(np.abs(target - forces).max() / target.max())
         forces = target
-        if change <= STEP_TOLERANCE or before <= change <= ROUNDING:
+        if change <= STEP_TOLERANCE or before <= change <= STALLED:
             return forces * (torque / (levers[0] @ forces))
     raise ConvergenceError(f"load sharing: forces of the tooth pairs not found in {MOST_STEPS} steps", last=forces)
 
@@ -127,22 +127,24 @@ def _newton_step(
 ) -> Array:
     """Forces (k,) after one step for the pairs under load, and those that come under load or part.
 
-    No force falls below a tenth at once. The approach grows without end over a force that vanishes (or not at all), so
-    that a pair is parted once its force is little and what the others leave it does not close it.
+    No force falls below a tenth at once. The deformation grows without end over a force that vanishes (or not at all),
+    so that a pair parts once its force is little and the rotation less the coupling does not close it.
     """
-    load, approach, exponent = given
+    load, deformation, exponent = given
     loaded = forces > 0.0
     part = np.ix_(loaded, loaded)
-    own = approach[loaded] * (forces[loaded] / load[loaded]) ** exponent[loaded]
-    yielding = np.diag(exponent[loaded] * own / forces[loaded]) + compliance[part]
+    own = deformation[loaded] * (forces[loaded] / load[loaded]) ** exponent[loaded]
+    tangent = np.diag(exponent[loaded] * own / forces[loaded]) + compliance[part]
     missing = -own - compliance[part] @ forces[loaded] - levers[1, loaded] * separations[loaded]
-    by_rotation, by_rest = np.linalg.solve(yielding, np.stack([levers[1, loaded], missing], axis=-1)).T
+    by_rotation, by_rest = np.linalg.solve(tangent, np.stack([levers[1, loaded], missing], axis=-1)).T
     rotation = (torque - levers[0, loaded] @ (forces[loaded] + by_rest)) / (levers[0, loaded] @ by_rotation)
     target = forces.copy()
     wanted = forces[loaded] + rotation * by_rotation + by_rest
     target[loaded] = np.clip(wanted, LARGEST_FALL * forces[loaded], torque / levers[0, loaded])
-    closing = levers[1] * (rotation - separations) - compliance @ target + np.diag(compliance) * target
-    target[(target < LITTLE * target.max()) & (closing <= 0.0)] = 0.0
-    comes = ~loaded & (closing > 0.0)
-    target[comes] = np.minimum(load * (np.maximum(closing, 0.0) / approach) ** (1.0 / exponent), target.max())[comes]
+    deflection = levers[1] * (rotation - separations) - compliance @ target + np.diag(compliance) * target
+    target[(target < LITTLE * target.max()) & (deflection <= 0.0)] = 0.0
+    comes = ~loaded & (deflection > 0.0)
+    target[comes] = np.minimum(load * (np.maximum(deflection, 0.0) / deformation) ** (1.0 / exponent), target.max())[
+        comes
+    ]
     return target

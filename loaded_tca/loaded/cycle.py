@@ -1,4 +1,4 @@
-"""What carries the torques over the positions of a pitch: one tooth pair, or all that touch."""
+"""Load of the tooth pairs over the positions of a pitch: one carries the torque, or all in contact share it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,15 +13,13 @@ from numpy.typing import NDArray
 from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.loaded.load_sharing import Laws, SharedLoad, share_load, tooth_pairs_at
-from loaded_tca.loaded.pair_coupling import TeethYield
-from loaded_tca.loaded.tooth_contact import Beneath, GridChoice, LoadedContact, press
+from loaded_tca.loaded.pair_coupling import BendingModel
+from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, solve_under_load
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.unloaded import ContactPath, MeshPath, trace_contact, trace_teeth
+from loaded_tca.unloaded import ContactPath, MeshPath
 
 Progress = Callable[[int, int], None]
 """Called with what is done and what there is to do, in torques times positions."""
-MakeCompliance = Callable[[int], TeethYield | None]
-"""Makes what yields beside the contacts, where loaded teeth are up to so many pitches apart; None: nothing does."""
 Contacts = list[list[list[LoadedContact | None]]]
 """By torque, position and tooth pair; None where a pair carries nothing."""
 
@@ -43,13 +40,13 @@ class Carried:
     contacts : nested list of LoadedContact or None
         By torque, position and pair.
     rotation : (m, n) array [rad]
-        By how much load lets the wheel stay behind; NaN where nothing touches.
+        Of the wheel back by the load; NaN where nothing is in contact.
     torque_rate : (m, n) array [N mm/rad]
         Tangent of the torque over the rotation.
     share : (m, n, pairs) array
         In the torque.
-    deflection : (m, n, pairs) array [mm]
-        Of the teeth, beside the approach of the contact.
+    tooth_deflection : (m, n, pairs) array [mm]
+        Bending of the teeth, on top of the contact deformation.
     """
 
     path: ContactPath
@@ -60,15 +57,15 @@ class Carried:
     rotation: Array
     torque_rate: Array
     share: Array
-    deflection: Array
+    tooth_deflection: Array
 
 
 def carried_by_one(
     pair: GearPair,
-    angles: Array,
+    path: ContactPath,
     torques: Array,
     grid: GridChoice,
-    compliance: MakeCompliance,
+    bending: BendingModel | None = None,
     progress: Progress | None = None,
 ) -> Carried:
     """Let the tooth pair at the pitch point carry the whole load.
@@ -76,27 +73,25 @@ def carried_by_one(
     Parameters
     ----------
     pair : GearPair
-    angles : (n,) array [rad]
-        Of the pinion.
+    path : ContactPath
+        Its unloaded contact, :func:`loaded_tca.unloaded.trace_contact`.
     torques : (m,) array [N mm]
         Of the pinion.
     grid : GridChoice
-    compliance : callable
+    bending : BendingModel, optional
+        Of the teeth beneath the contact; default: none.
     progress : callable, optional
     """
-    path = trace_contact(pair, angles)
     shape = len(torques), len(path)
     contacts: Contacts = [[[None] for _ in range(shape[1])] for _ in range(shape[0])]
     rotation, rate, deflection = np.full((3, *shape), math.nan)
-    teeth = compliance(0)
-    beneath = None if teeth is None else alone(teeth)
     for t, n in _told(shape, progress):
         contact = path[n]
         if contact.in_contact:
-            with _told_where(torques[t], angles[n]):
-                loaded = press(pair, contact, torques[t] / contact.pinion_lever, grid, beneath)
+            with _told_where(torques[t], contact.pinion_angle):
+                loaded = solve_under_load(pair, contact, torques[t] / contact.pinion_lever, grid, bending)
             contacts[t][n][0] = loaded
-            deflection[t, n] = loaded.own_deflection
+            deflection[t, n] = loaded.own_tooth_deflection
             rotation[t, n] = loaded.solution.approach / contact.wheel_lever
             rate[t, n] = contact.pinion_lever * contact.wheel_lever * loaded.stiffness
     share = np.broadcast_to(np.where(path.in_contact, 1.0, math.nan)[:, None], (*shape, 1)).copy()
@@ -104,29 +99,30 @@ def carried_by_one(
     return Carried(path, torques, number, (path,), contacts, rotation, rate, share, deflection[..., None])
 
 
-def alone(teeth: TeethYield) -> Beneath:
-    """Return what yields beneath the contact of tooth pair 0 where no other one carries anything."""
-    return Beneath(partial(teeth.within, 0), lambda separation: np.zeros(len(separation.y)))
-
-
 def carried_by_all(
     pair: GearPair,
-    angles: Array,
+    mesh: MeshPath,
     torques: Array,
     grid: GridChoice,
-    compliance: MakeCompliance,
+    bending: BendingModel | None = None,
     progress: Progress | None = None,
 ) -> Carried:
-    """Let all tooth pairs that touch share the load; parameters as of :func:`carried_by_one`."""
-    mesh = trace_teeth(pair, angles)
-    shape = len(torques), len(mesh)
-    teeth = compliance(_farthest_apart(mesh))
+    """Let all tooth pairs in contact share the load.
+
+    Parameters
+    ----------
+    mesh : MeshPath
+        Unloaded contact of all teeth, :func:`loaded_tca.unloaded.trace_teeth`.
+    pair, torques, grid, bending, progress
+        As of :func:`carried_by_one`.
+    """
+    angles, shape = mesh.pinion_angle, (len(torques), len(mesh))
     shared: list[list[SharedLoad]] = [[] for _ in torques]
     tooth_pairs = [tooth_pairs_at(mesh, n) for n in range(len(mesh))]
     laws = Laws()
     for t, n in _told(shape, progress):
         with _told_where(torques[t], angles[n]):
-            found = share_load(pair, tooth_pairs[n], float(torques[t]), grid, compliance=teeth, start=laws)
+            found = share_load(pair, tooth_pairs[n], float(torques[t]), grid, bending=bending, start=laws)
         laws = laws.updated(found.laws)
         shared[t].append(found)
     carrying = {0} | {share.tooth_pair.pair for row in shared for one in row for share in one.shares}
@@ -141,7 +137,7 @@ def carried_by_all(
         rotation=np.array([[one.rotation for one in row] for row in shared]),
         torque_rate=np.array([[one.torque_rate for one in row] for row in shared]),
         share=share,
-        deflection=deflection,
+        tooth_deflection=deflection,
     )
 
 
@@ -164,8 +160,8 @@ def _told_where(torque: float, angle: float) -> Iterator[None]:
         raise ConvergenceError(f"{where}: {error}", error.last) from error
 
 
-def _farthest_apart(mesh: MeshPath) -> int:
-    """How many pitches two pairs that can touch at the same position are apart."""
+def farthest_apart(mesh: MeshPath) -> int:
+    """How many pitches two tooth pairs that can be in contact at the same position are apart."""
     near = np.isfinite(mesh.initial_separation)
     spans = [int(np.ptp(mesh.pairs[column])) for column in near.T]
     return max(spans, default=0)
@@ -180,7 +176,7 @@ def _by_column(shared: list[list[SharedLoad]], pairs: list[int]) -> tuple[Contac
         for n, one in enumerate(row):
             for part in one.shares:
                 place = t, n, pairs.index(part.tooth_pair.pair)
-                contacts[t][n][place[2]], deflection[place] = part.loaded, part.deflection
+                contacts[t][n][place[2]], deflection[place] = part.loaded, part.tooth_deflection
                 share[place] = part.torque / one.torque if one.torque > 0.0 else 1.0
     return contacts, share, deflection
 

@@ -1,19 +1,19 @@
-r"""The torque shared over the tooth pairs that can touch at one position: one common rotation, one force for each.
+r"""The torque shared over the tooth pairs that can be in contact at one position: one rotation, one force for each.
 
-Load lets the wheel stay behind by a rotation theta against its unloaded place. That closes tooth pair k, whose own
-flanks touch at the lag theta_k, by the lever of its contact about the wheel's axis times what is left of the rotation,
-and the closing is the approach of its contact and the deflection of the teeth:
+Load turns the wheel back by a rotation theta against its unloaded place. The rotation beyond the initial separation
+theta_k of tooth pair k, times the lever of its contact about the wheel's axis, is its deflection: the contact
+deformation and the tooth deflection under all forces:
 
 .. math:: l_{2k} (\theta - \theta_k) = \delta_k(F_k) + \sum_j C_{kj} F_j \quad\text{where } F_k > 0, \qquad
           \sum_k l_{1k} F_k = T_1 .
 
-A pair that is apart carries nothing. The torque grows with the rotation, so that there is one answer.
+A pair that is not in contact carries nothing. The torque grows with the rotation, so that there is one answer.
 
-The contact law delta_k(F) is known from presses alone. Between them it is a power of the force, 2/3 for points and
-nearly 1 for lines, its exponent that of the tangent in a neighbouring position, or between two presses that lie far
-enough apart: balance the powers, press every pair with its force, correct the powers, until the approaches agree and
-the rotation closes no pair that was left apart. The forces of the last press fulfil the balance of the torque to
-rounding; what is left is a difference in the rotation that each pair asks for, ``residual``.
+The contact law delta_k(F) is known from solved contacts alone. Between them it is a power of the force, 2/3 for points
+and nearly 1 for lines, its exponent that of the tangent in a neighbouring position, or between two solutions that lie
+far enough apart: balance the powers, solve every pair under its force, correct the powers, until the deformations agree
+and the rotation closes no pair that was left apart. The forces of the last solutions fulfil the balance of the torque
+to rounding; what is left is a difference in the rotation that each pair asks for, ``residual``.
 
 The lever is that of the contact point for the whole contact. It is the same at every point of two involute helicoids
 (its own normal given); on bevel gears it grows with the cone distance, and the force is taken at the contact point.
@@ -27,17 +27,17 @@ Meth. Eng. 31, 525-545 (contact by the half-space, teeth by finite elements); Jo
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import product
+from itertools import combinations, product
 
 import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError, InputError
 from loaded_tca.loaded.balance import PowerLaw, balance
-from loaded_tca.loaded.pair_coupling import LoadedTeeth, TeethYield
-from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, press
+from loaded_tca.loaded.pair_coupling import BendingModel, KeptCouplings, SliceForces, coupling_deflection
+from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, solve_under_load
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded import ContactPoint, MeshPath
 
@@ -50,11 +50,11 @@ AGREEMENT = 5e-2
 AGREEMENT_ON_CELLS = 1e-5
 """The same where the cells are given."""
 SETTLED = 10.0
-"""Change of how the columns of a pair are displaced, over its closing, in agreements: it only moves force about."""
+"""Change of how the slices of a pair are displaced, over its deflection, in agreements: it only moves force about."""
 SAME_BOX = (0.75, 1.25)
 """Loads over the one a box was made for, between which the contact still fills it well."""
 SOFTEST_START = 4.0
-"""First guess of an approach: so many times F/(E* b), as slender contacts of gears have it."""
+"""First guess of a contact deformation: so many times F/(E* b), as slender contacts of gears have it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,9 +66,9 @@ class ToothPair:
     pair : int
         Its number.
     contact : ContactPoint
-        Its first touch, unloaded, in the angles of its own tooth.
+        Its first contact, unloaded, in the angles of its own tooth.
     initial_separation : float [rad]
-        Rotation of the wheel at which it touches; zero for the leading pair.
+        Rotation of the wheel that brings it into contact; zero for the leading pair.
     """
 
     pair: int
@@ -85,13 +85,13 @@ class Share:
     tooth_pair : ToothPair
     loaded : LoadedContact
         Its contact under its force.
-    deflection : float [mm]
-        What of its closing bends the teeth, not the contact.
+    tooth_deflection : float [mm]
+        Bending of the teeth under the forces of all pairs, on top of the contact deformation.
     """
 
     tooth_pair: ToothPair
     loaded: LoadedContact
-    deflection: float
+    tooth_deflection: float
 
     @property
     def force(self) -> float:
@@ -105,26 +105,25 @@ class Share:
 
     @property
     def law(self) -> PowerLaw:
-        """Approach of its flanks near its force, which must not be zero."""
-        bending = self.loaded.own_deflection / self.force
-        slope = 1.0 / self.loaded.stiffness - bending
-        return PowerLaw.along(self.force, self.loaded.approach, slope)
+        """Contact deformation near its force, which must not be zero."""
+        slope = 1.0 / self.loaded.stiffness - self.loaded.own_tooth_deflection / self.force
+        return PowerLaw.along(self.force, self.loaded.contact_deformation, slope)
 
     @property
     def rotation(self) -> float:
-        """Rotation that its closing asks for [rad]."""
-        closing = self.loaded.approach + self.deflection
-        return float(self.tooth_pair.initial_separation + closing / self.tooth_pair.contact.wheel_lever)
+        """Rotation that its deflection asks for [rad]."""
+        deflection = self.loaded.contact_deformation + self.tooth_deflection
+        return float(self.tooth_pair.initial_separation + deflection / self.tooth_pair.contact.wheel_lever)
 
 
 @dataclass(frozen=True)
 class Laws:
-    """How tooth pairs yield near the forces that they carry.
+    """Deformation and bending of tooth pairs near the forces that they carry.
 
     Attributes
     ----------
     contact : mapping of int to PowerLaw
-        Approach over the force, by the number of the pair.
+        Contact deformation over the force, by the number of the pair.
     bending : mapping of (int, int) to float [mm/N]
         Mean compliance of the teeth of the first pair under the second.
     """
@@ -151,7 +150,7 @@ class SharedLoad:
     torque : float [N mm]
         Of the pinion.
     rotation : float [rad]
-        By how much the load lets the wheel stay behind; zero without load.
+        Of the wheel back by the load; zero without load.
     shares : tuple of Share
         Of the k pairs that carry load; without load the leading one.
     compliance : (k, k) array [mm/N]
@@ -183,9 +182,9 @@ class SharedLoad:
         if not stiffness.all():
             return 0.0
         contacts = [share.tooth_pair.contact for share in self.shares]
-        closings = self.compliance.copy()
-        np.fill_diagonal(closings, 1.0 / stiffness)
-        forces = np.linalg.solve(closings, [contact.wheel_lever for contact in contacts])
+        deflections = self.compliance.copy()
+        np.fill_diagonal(deflections, 1.0 / stiffness)
+        forces = np.linalg.solve(deflections, [contact.wheel_lever for contact in contacts])
         return float(forces @ [contact.pinion_lever for contact in contacts])
 
 
@@ -195,7 +194,7 @@ def share_load(
     torque: float,
     grid: GridChoice,
     *,
-    compliance: TeethYield | None = None,
+    bending: BendingModel | None = None,
     start: Laws = Laws(),
 ) -> SharedLoad:
     """Share a torque over the tooth pairs of one position.
@@ -204,13 +203,13 @@ def share_load(
     ----------
     pair : GearPair
     tooth_pairs : sequence of ToothPair
-        Every pair that may touch, one at least with no lag; see :func:`tooth_pairs_at`.
+        Every pair that may come into contact, one at least without initial separation; see :func:`tooth_pairs_at`.
     torque : float [N mm]
         Of the pinion, >= 0.
     grid : GridChoice
         How finely each contact is resolved.
-    compliance : TeethYield, optional
-        What yields beside the contacts; default: nothing.
+    bending : BendingModel, optional
+        Of the teeth beneath the contacts; default: none.
     start : Laws
         Those of a neighbouring position or torque; default: none are known.
 
@@ -236,24 +235,24 @@ def share_load(
     >>> gear = CylindricalGear(teeth=30, normal_module=3.0, face_width=25.0)
     >>> crowned = (FlankModifications(lead_crowning=0.005), FlankModifications())
     >>> pair = cylindrical_pair(CylindricalMesh(gear, gear), modifications=crowned)
-    >>> touches = tooth_pairs_at(trace_teeth(pair, [0.5 * pair.pitch]), 0)
-    >>> shared = share_load(pair, touches, 130e3, GridChoice(accuracy=1e-2))
+    >>> candidates = tooth_pairs_at(trace_teeth(pair, [0.5 * pair.pitch]), 0)
+    >>> shared = share_load(pair, candidates, 130e3, GridChoice(accuracy=1e-2))
     >>> [round(share.torque / 130e3, 3) for share in shared.shares]
     [0.5, 0.5]
     """
     if not 0.0 <= torque < math.inf:
         raise InputError(f"torque: {torque!r} N mm is not a finite number >= 0")
     if not tooth_pairs:
-        raise InputError("touches: none given; a torque needs one tooth pair at least that can touch")
+        raise InputError("tooth_pairs: none given; a torque needs one tooth pair at least that can be in contact")
     if torque == 0.0:
         leading = min(tooth_pairs, key=lambda tooth_pair: tooth_pair.initial_separation)
-        share = Share(leading, press(pair, leading.contact, 0.0, grid), 0.0)
+        share = Share(leading, solve_under_load(pair, leading.contact, 0.0, grid), 0.0)
         return SharedLoad(0.0, 0.0, (share,), np.zeros((1, 1)), 0.0, 0)
-    return _Balance(pair, tooth_pairs, torque, grid, compliance, start).run()
+    return _Balance(pair, tooth_pairs, torque, grid, bending, start).run()
 
 
 class _Balance:
-    """Alternates between the balance of the contact laws and presses that correct them."""
+    """Alternates between the balance of the contact laws and contacts solved under the forces, which correct them."""
 
     def __init__(
         self,
@@ -261,26 +260,22 @@ class _Balance:
         tooth_pairs: Sequence[ToothPair],
         torque: float,
         grid: GridChoice,
-        compliance: TeethYield | None,
+        bending: BendingModel | None,
         start: Laws,
     ) -> None:
         self.pair, self.tooth_pairs, self.torque, self.grid = pair, tuple(tooth_pairs), torque, grid
-        numbers = [tooth_pair.pair for tooth_pair in tooth_pairs]
-        self.teeth = None if compliance is None else LoadedTeeth(compliance, numbers)
+        self.bending = None if bending is None else KeptCouplings(bending)
         self.separations = np.array([tooth_pair.initial_separation for tooth_pair in tooth_pairs])
-        self.levers = np.array(
-            [(tooth_pair.contact.pinion_lever, tooth_pair.contact.wheel_lever) for tooth_pair in tooth_pairs]
-        ).T
-        self.laws = [
-            start.contact.get(tooth_pair.pair) or self._borrowed(start.contact, tooth_pair)
-            for tooth_pair in tooth_pairs
-        ]
-        self.pressed: list[LoadedContact | None] = [None] * len(tooth_pairs)
-        self.matrix = np.array([[start.compliance(one, other) for other in numbers] for one in numbers])
+        contacts = [tooth_pair.contact for tooth_pair in tooth_pairs]
+        self.levers = np.array([(contact.pinion_lever, contact.wheel_lever) for contact in contacts]).T
+        numbers = [tooth_pair.pair for tooth_pair in tooth_pairs]
+        self.laws = [self._first_law(start.contact, tooth_pair) for tooth_pair in tooth_pairs]
+        self.solved: list[LoadedContact | None] = [None] * len(tooth_pairs)
+        self.compliance = np.array([[start.compliance(one, other) for other in numbers] for one in numbers])
         self.agreement = AGREEMENT_ON_CELLS if grid.cells is not None else AGREEMENT * grid.accuracy
 
-    def _borrowed(self, start: Mapping[int, PowerLaw], tooth_pair: ToothPair) -> PowerLaw:
-        """Law of the nearest pair that has one; else that of a slender contact over the face."""
+    def _first_law(self, start: Mapping[int, PowerLaw], tooth_pair: ToothPair) -> PowerLaw:
+        """Law of the pair or else of the nearest that has one; else that of a slender contact over the face."""
         if start:
             return start[min(start, key=lambda other: abs(other - tooth_pair.pair))]
         load = self.torque / tooth_pair.contact.pinion_lever
@@ -290,83 +285,106 @@ class _Balance:
         residual, forces = math.inf, np.zeros(len(self.laws))
         for count in range(1, MOST_BALANCES + 1):
             before = forces
-            forces = balance(self.laws, self.separations, self.levers, self.torque, self.matrix)
+            forces = balance(self.laws, self.separations, self.levers, self.torque, self.compliance)
             if count > SWINGING:
                 forces = 0.5 * (before + forces)
-            for index in np.flatnonzero(forces):
-                self._press(int(index), forces)
-            if self.teeth is not None:
-                self.teeth.correct(self.matrix, self.pressed)
+            for index in np.flatnonzero(forces).tolist():
+                self._solve(index, forces)
+            if self.bending is not None:
+                self.compliance = self._corrected(self.compliance, self.bending)
             shared = self._shared(forces, count)
             residual = shared.residual
-            fits = residual <= self.agreement and self._stay_apart(forces, shared.rotation)
-            if fits and self._settled(forces, shared.rotation):
+            if residual <= self.agreement and self._settled(forces, shared.rotation):
                 return shared
+        cap = self.pair.max_pressure
+        limit = "" if cap is None else f"; with max_pressure {cap:g} MPa contacts near their limit deform without end"
         raise ConvergenceError(
             f"load sharing not converged: the tooth pairs' rotations differ by {residual:.1e} > {self.agreement:.1e} "
-            f"of the rotation after {MOST_BALANCES} balances{self._cap_told()}",
+            f"of the rotation after {MOST_BALANCES} balances{limit}",
             last=shared,
         )
 
-    def _cap_told(self) -> str:
-        """What a cap on the pressure has to do with it, if there is one."""
-        cap = self.pair.max_pressure
-        return "" if cap is None else f"; with max_pressure {cap:g} MPa contacts near their limit yield without end"
-
-    def _press(self, index: int, forces: Array) -> None:
-        """Press a pair with its force, on the grid it has if that still fits, and correct its law."""
-        force, before, law = float(forces[index]), self.pressed[index], self.laws[index]
-        if before is not None and SAME_BOX[0] * before.solution.load <= force <= SAME_BOX[1] * before.solution.load:
-            lift = None if self.teeth is None else self.teeth.lift(index, before.separation, self.pressed, forces)
-            loaded = self._tell(index, lambda: before.under(force, lift))
-        else:
-            beneath = None if self.teeth is None else self.teeth.beneath(index, self.pressed, forces)
-            contact = self.tooth_pairs[index].contact
-            loaded = self._tell(index, lambda: press(self.pair, contact, force, self.grid, beneath))
-        self.pressed[index] = loaded
-        approach = loaded.approach
-        if loaded.solution.load > 0.0 and approach > 0.0:
-            self.laws[index] = (
-                replace(law, load=force, approach=approach) if before is None else law.through(force, approach)
-            )
-
-    def _tell(self, index: int, solve: Callable[[], LoadedContact]) -> LoadedContact:
-        """Solve; say of which pair it is if that does not converge."""
+    def _solve(self, index: int, forces: Array) -> None:
+        """Solve a pair under its force, on the grid it has if that still fits, and correct its law."""
+        force, before, law = float(forces[index]), self.solved[index], self.laws[index]
+        tooth_pair, others = self.tooth_pairs[index], [] if self.bending is None else self._others(index, forces)
         try:
-            return solve()
+            if before is not None and SAME_BOX[0] * before.solution.load <= force <= SAME_BOX[1] * before.solution.load:
+                loaded = before.under(force, self._coupling(index, before, others))
+            else:
+                contact, number = tooth_pair.contact, tooth_pair.pair
+                loaded = solve_under_load(self.pair, contact, force, self.grid, self.bending, number, others)
         except ConvergenceError as error:
-            raise ConvergenceError(f"tooth pair {self.tooth_pairs[index].pair:+d}: {error}", error.last) from error
+            raise ConvergenceError(f"tooth pair {tooth_pair.pair:+d}: {error}", error.last) from error
+        self.solved[index] = loaded
+        deformation = loaded.contact_deformation
+        if loaded.solution.load > 0.0 and deformation > 0.0:
+            first = replace(law, load=force, deformation=deformation)
+            self.laws[index] = first if before is None else law.through(force, deformation)
 
-    def _stay_apart(self, forces: Array, rotation: float) -> bool:
-        """Whether the rotation closes none of the pairs that carry nothing."""
-        closing = self.levers[1] * (rotation - self.separations) - self.matrix @ forces
-        return bool((closing <= self.agreement * rotation * self.levers[1])[forces == 0.0].all())
+    def _loaded(self) -> Iterator[tuple[int, LoadedContact]]:
+        """Place and contact of the pairs that were solved under a load."""
+        return ((n, loaded) for n, loaded in enumerate(self.solved) if loaded is not None and loaded.solution.load > 0)
+
+    def _others(self, index: int, forces: Array) -> list[SliceForces]:
+        """What the other pairs carry: their forces, spread over the slices as in their last solution."""
+        return [
+            SliceForces(self.tooth_pairs[n].pair, other.separation, forces[n] * other.slice_shares)
+            for n, other in self._loaded()
+            if n != index and forces[n] > 0.0
+        ]
+
+    def _coupling(self, index: int, loaded: LoadedContact, others: Sequence[SliceForces]) -> Array | None:
+        """Displacement of a pair's slices (ny,) [mm] by what the others carry; None if nothing bends."""
+        if self.bending is None:
+            return None
+        return coupling_deflection(self.bending, self.tooth_pairs[index].pair, loaded.separation, others)
+
+    def _corrected(self, compliance: Array, bending: BendingModel) -> Array:
+        """Compliance (k, k) [mm/N], that of the pairs solved so far the mean over the forces on their slices."""
+        compliance = compliance.copy()
+        for index, loaded in self._loaded():
+            compliance[index, index] = loaded.own_tooth_deflection / loaded.solution.load
+        for (index, one), (other, two) in combinations(self._loaded(), 2):
+            numbers = self.tooth_pairs[index].pair, self.tooth_pairs[other].pair
+            matrix = bending.between((numbers[0], one.separation), (numbers[1], two.separation))
+            compliance[index, other] = compliance[other, index] = one.slice_shares @ matrix @ two.slice_shares
+        return compliance
 
     def _settled(self, forces: Array, rotation: float) -> bool:
-        """Whether every pair was pressed on columns that the others still displace alike, but for a constant."""
-        if self.teeth is None:
-            return True
-        allowed = SETTLED * self.agreement * rotation * self.levers[1]
-        moved = (self.teeth.moved(int(index), self.pressed, forces) for index in np.flatnonzero(forces))
-        return all(part <= most for part, most in zip(moved, allowed[forces > 0.0], strict=True))
+        """Whether the rotation closes no pair that carries nothing, and all were solved as the others still bend them.
+
+        A constant on top of all slices of a pair is of no account: it moves no force about.
+        """
+        deflection = self.levers[1] * (rotation - self.separations) - self.compliance @ forces
+        allowed = self.agreement * rotation * self.levers[1]
+        if not (deflection <= allowed)[forces == 0.0].all():
+            return False
+        for index, loaded in self._loaded():
+            if forces[index] > 0.0 and loaded.coupling_deflection is not None:
+                now = self._coupling(index, loaded, self._others(index, forces))
+                moved = (now - loaded.coupling_deflection)[loaded.slice_force > 0.0]
+                if np.ptp(moved) > SETTLED * allowed[index]:
+                    return False
+        return True
 
     def _shared(self, forces: Array, count: int) -> SharedLoad:
         carrying = np.flatnonzero(forces)
-        deflections = self.matrix @ forces
+        deflections = self.compliance @ forces
         shares = []
-        for index in carrying:
-            loaded = self.pressed[index]
+        for index in carrying.tolist():
+            loaded = self.solved[index]
             assert loaded is not None
             shares.append(Share(self.tooth_pairs[index], loaded, float(deflections[index])))
         asked = np.array([share.rotation for share in shares])
         rotation = float(asked @ forces[carrying] / forces[carrying].sum())
         residual = float(np.abs(asked - rotation).max()) / rotation
-        part = self.matrix[np.ix_(carrying, carrying)]
+        part = self.compliance[np.ix_(carrying, carrying)]
         return SharedLoad(self.torque, rotation, tuple(shares), part, residual, count)
 
 
 def tooth_pairs_at(mesh: MeshPath, position: int) -> tuple[ToothPair, ...]:
-    """Tooth pairs that can touch at a position, with their lags: those within reach, corner contacts included.
+    """Tooth pairs that can be in contact at a position: those within reach, corner contacts included.
 
     Parameters
     ----------

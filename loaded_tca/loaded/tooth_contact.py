@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Any
+from functools import cache, cached_property
 
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.contact import ContactSolution, solve_contact, solve_to_accuracy
+from loaded_tca.contact import ContactProblem, ContactSolution, solve_problem, solve_to_accuracy
 from loaded_tca.contact.adaptive import TOLERANCE_SHARE
 from loaded_tca.contact.checks import memory_problem
-from loaded_tca.contact.edges import FreeEdge
 from loaded_tca.contact.levels import under_other_load
 from loaded_tca.contact.solution import CoarserGrid
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.free_edges import tooth_edges
+from loaded_tca.loaded.pair_coupling import BendingModel, SliceForces, coupling_deflection
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import PointContact, point_contact
 from loaded_tca.separation import Separation, sample_separation
@@ -49,29 +48,13 @@ MOST_BOXES = 8
 class GridChoice:
     """How finely a contact is resolved: on ``cells`` as given, or on as many as ``accuracy`` needs.
 
-    ``free_edges``: whether the tips and sides of the teeth yield more than a half-space.
+    ``free_edges``: whether the tips and faces of the teeth are softer than a half-space.
     """
 
     cells: tuple[int, int] | None = None
     accuracy: float = 1e-3
     tolerance: float = 1e-6
     free_edges: bool = False
-
-
-@dataclass(frozen=True)
-class Beneath:
-    """What yields beneath a contact: its tooth pair under its own load, and under that of other pairs.
-
-    Attributes
-    ----------
-    own : callable
-        ``own(separation, free_edges)``: displacement of every column of the grid per force on each, (ny, ny) [mm/N].
-    lift : callable
-        ``lift(separation)``: displacement of every column under the load of other pairs, (ny,) [mm].
-    """
-
-    own: Callable[[Separation, Sequence[FreeEdge]], Array]
-    lift: Callable[[Separation], Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,8 +71,8 @@ class LoadedContact:
         Whether the start of a linear relief lies in the contact.
     tolerance : float
         To which the solver kept the contact conditions.
-    lift : (ny,) array or None [mm]
-        Displacement of the columns under the load of other tooth pairs; None if nothing bends.
+    coupling_deflection : (ny,) array or None [mm]
+        Displacement of the slices under the load of other tooth pairs; None if nothing bends.
     """
 
     contact: ContactPoint
@@ -97,7 +80,7 @@ class LoadedContact:
     solution: ContactSolution
     at_relief_start: bool
     tolerance: float = 1e-6
-    lift: Array | None = None
+    coupling_deflection: Array | None = None
 
     @property
     def at_edge(self) -> bool:
@@ -144,7 +127,7 @@ class LoadedContact:
         smooth = along > 0.0 and not (self.at_edge or self.at_relief_start or self.contact.on_line)
         if not smooth or self.solution.load <= 0.0:
             return None
-        ellipse = point_contact(self.solution.load, (across, along), self.solution.contact_modulus)
+        ellipse = point_contact(self.solution.load, (across, along), self.solution.problem.contact_modulus)
         if ellipse.semi_major >= self.separation.half_lengths[1] or self._misfit(ellipse) > LARGEST_MISFIT:
             return None
         return ellipse
@@ -170,78 +153,81 @@ class LoadedContact:
         return nx * dx, ny * dy
 
     @cached_property
-    def column_force(self) -> Array:
-        """Force on every column of the grid, (ny,) [N]."""
+    def slice_force(self) -> Array:
+        """Force on every slice of the grid, (ny,) [N]."""
         return np.asarray(self.solution.pressure.sum(axis=0) * self.solution.cell_area)
 
+    @property
+    def slice_shares(self) -> Array:
+        """Shares of the slices in the force, which must not be zero, (ny,)."""
+        return np.asarray(self.slice_force / self.slice_force.sum())
+
     @cached_property
-    def own_deflection(self) -> float:
-        """What the tooth pair bends under its own load, the mean over the force [mm]."""
-        compliance, force = self.solution.column_compliance, self.column_force
+    def own_tooth_deflection(self) -> float:
+        """Deflection of the teeth under the pair's own load, the mean over the force [mm]."""
+        compliance, force = self.solution.problem.slice_compliance, self.slice_force
         if compliance is None or not force.any():
             return 0.0
         return float(force @ compliance @ force / force.sum())
 
     @property
-    def approach(self) -> float:
-        """Approach of the flanks [mm]: of the closing what is left beside the bending, the mean over the force."""
-        force, closing = self.column_force, self.solution.approach
-        if self.lift is None or not force.any():
-            return closing
-        return float(closing - self.own_deflection - self.lift @ force / force.sum())
+    def contact_deformation(self) -> float:
+        """Contact deformation [mm]: total deflection less bending, the mean over the force."""
+        force, deflection = self.slice_force, self.solution.approach
+        if self.coupling_deflection is None or not force.any():
+            return deflection
+        return float(deflection - self.own_tooth_deflection - self.coupling_deflection @ force / force.sum())
 
     @cached_property
     def stiffness(self) -> float:
-        """Stiffness dF/d closing [N/mm], of the power law through the load and 0.8 of it; zero without load.
+        """Stiffness dF/d deflection [N/mm], of the power law through the load and 0.8 of it; zero without load.
 
-        The closing is that of the flanks and of what bends beneath them, under other loads as they are. A contact
+        The deflection is that of the flanks and of the teeth beneath them, under other loads as they are. A contact
         grows by whole cells, so that the exact tangent of the discrete problem (``contact_stiffness``) scatters by a
         percent or two about that of the continuum; a chord scatters less, and the power makes up for its width.
         """
         solution = self.solution
         if solution.load <= 0.0:
             return 0.0
-        less = self._solved(CHORD * solution.load, max(self.tolerance, CHORD_TOLERANCE), self.lift)
-        closings = solution.approach - solution.first_touch, less.approach - solution.first_touch
-        exponent = math.log(closings[1] / closings[0]) / math.log(CHORD)
-        return solution.load / (exponent * closings[0])
+        problem = replace(solution.problem, load=CHORD * solution.load)
+        less = self._solved(problem, max(self.tolerance, CHORD_TOLERANCE)).approach_under_load
+        exponent = math.log(less / solution.approach_under_load) / math.log(CHORD)
+        return solution.load / (exponent * solution.approach_under_load)
 
-    def under(self, load: float, lift: Array | None = None) -> LoadedContact:
+    def under(self, load: float, coupling: Array | None = None) -> LoadedContact:
         """Return the contact under another load > 0 [N] near this one, on the same grid and as closely solved.
 
-        ``lift``: displacement of the columns under the load of other pairs, if anything bends, (ny,) [mm].
+        ``coupling``: displacement of the slices under the load of other pairs, if anything bends, (ny,) [mm].
 
         The estimated error is that of the grid: its share of the peak and of the approach is kept.
         """
-        solution, before = self._solved(load, self.tolerance, lift), self.solution
-        coarser = before.coarser
+        gap, before = self.separation.gap, self.solution
+        problem = replace(before.problem, load=load, gap=gap if coupling is None else gap + coupling)
+        solution, coarser = self._solved(problem, self.tolerance), before.coarser
         if coarser is not None:
-            higher = float(solution.pressure.max()) / float(before.pressure.max())
-            deeper = (solution.approach - solution.first_touch) / (before.approach - before.first_touch)
-            approach = solution.first_touch + deeper * (coarser.approach - before.first_touch)
+            first, higher = before.problem.first_contact, float(solution.pressure.max() / before.pressure.max())
+            deeper = solution.approach_under_load / before.approach_under_load
+            approach = problem.first_contact + deeper * (coarser.approach - first)
             solution = replace(solution, coarser=CoarserGrid(higher * coarser.largest, approach))
-        return replace(self, solution=solution, lift=lift)
+        return replace(self, solution=solution, coupling_deflection=coupling)
 
-    def _solved(self, load: float, tolerance: float = 1e-6, lift: Array | None = None) -> ContactSolution:
-        solution = self.solution
-        return solve_contact(
-            self.separation.gap if lift is None else self.separation.gap + lift,
-            self.separation.spacing,
-            solution.contact_modulus,
-            load=load,
-            max_pressure=solution.max_pressure,
-            tolerance=tolerance,
-            initial_pressure=under_other_load(solution.pressure, load / solution.load),
-            free_edges=solution.free_edges,
-            column_compliance=solution.column_compliance,
-            warn=False,
-        )
+    def _solved(self, problem: ContactProblem, tolerance: float) -> ContactSolution:
+        """Solve a problem on the same grid, starting from this pressure."""
+        assert problem.load is not None
+        start = under_other_load(self.solution.pressure, problem.load / self.solution.load)
+        return solve_problem(problem, tolerance=tolerance, initial_pressure=start)
 
 
-def press(
-    pair: GearPair, contact: ContactPoint, load: float, grid: GridChoice, beneath: Beneath | None = None
+def solve_under_load(
+    pair: GearPair,
+    contact: ContactPoint,
+    load: float,
+    grid: GridChoice,
+    bending: BendingModel | None = None,
+    number: int = 0,
+    others: Sequence[SliceForces] = (),
 ) -> LoadedContact:
-    """Press one tooth pair together at one position.
+    """Contact of one tooth pair at one position under a normal force.
 
     The box is the estimated one, made larger as long as the contact reaches it.
 
@@ -252,8 +238,12 @@ def press(
     load : float [N]
         Normal force, >= 0.
     grid : GridChoice
-    beneath : Beneath, optional
-        What yields beside the half-spaces; default: nothing.
+    bending : BendingModel, optional
+        Of the teeth beneath the half-spaces; default: none.
+    number : int
+        Of the tooth pair, as the bending model counts.
+    others : sequence of SliceForces
+        What other tooth pairs carry at the same time.
 
     Returns
     -------
@@ -272,11 +262,14 @@ def press(
     load = 0.0 if 0.0 < load <= SMALLEST_LOAD * pair.contact_modulus * pair.module**2 else load
     separation = _box_for_cap(pair, contact, load, sample_separation(pair, contact, cells=cells, load=load))
     for _ in range(MOST_BOXES):
-        loaded = _press_in_box(pair, contact, load, grid, separation, beneath)
-        grown = _grown_box(loaded.solution)
-        if grown is None:
+        loaded = _solve_in_box(pair, contact, load, grid, separation, bending, number, others)
+        pressure = loaded.solution.pressure
+        filled = [bool((np.take(pressure, [0, -1], axis=axis) > 0.0).any()) for axis in (0, 1)]
+        if not any(filled):
             break
-        separation = sample_separation(pair, contact, cells=cells, box=grown)
+        lengths = zip(loaded.separation.half_lengths, filled, strict=True)
+        across, along = (length * (GROWTH if grow else 1.0) for length, grow in lengths)
+        separation = sample_separation(pair, contact, cells=cells, box=(across, along))
     return loaded
 
 
@@ -296,60 +289,54 @@ def _box_for_cap(pair: GearPair, contact: ContactPoint, load: float, separation:
     return separation
 
 
-def _press_in_box(
+def _solve_in_box(
     pair: GearPair,
     contact: ContactPoint,
     load: float,
     grid: GridChoice,
     first: Separation,
-    beneath: Beneath | None,
+    bending: BendingModel | None,
+    number: int,
+    others: Sequence[SliceForces],
 ) -> LoadedContact:
     """Solve in the box of ``first``, on its grid if cells were given, else on finer and finer ones."""
-    finest, modulus = [(first, _lift(first, beneath))], pair.contact_modulus
     edges = tooth_edges(pair, contact, first) if grid.free_edges else ()
 
-    def sampler(cells: tuple[int, int]) -> tuple[Array, tuple[float, float]]:
-        if cells != first.gap.shape:
-            finer = sample_separation(pair, contact, cells=cells, box=first.half_lengths)
-            finest[0] = finer, _lift(finer, beneath)
-        separation, lift = finest[0]
-        return separation.gap if lift is None else separation.gap + lift, separation.spacing
+    @cache
+    def sampled(cells: tuple[int, int]) -> tuple[Separation, Array | None]:
+        box, given = first.half_lengths, first.gap.shape == cells
+        separation = first if given else sample_separation(pair, contact, cells=cells, box=box)
+        return separation, None if bending is None else coupling_deflection(bending, number, separation, others)
 
-    def columns(_: tuple[int, int]) -> Array | None:
-        return None if beneath is None else beneath.own(finest[0][0], edges)
+    def problem(cells: tuple[int, int]) -> ContactProblem:
+        separation, coupling = sampled(cells)
+        return ContactProblem(
+            separation.gap if coupling is None else separation.gap + coupling,
+            separation.spacing,
+            pair.contact_modulus,
+            load=load,
+            max_pressure=pair.max_pressure,
+            free_edges=edges,
+            slice_compliance=None if bending is None else bending.within(number, separation, edges),
+        )
 
-    common: dict[str, Any] = {
-        "load": load,
-        "max_pressure": pair.max_pressure,
-        "tolerance": grid.tolerance,
-        "free_edges": edges,
-        "warn": False,
-    }
     if grid.cells is not None:
         tolerance = grid.tolerance
-        gap, spacing = sampler(grid.cells)
-        solution = solve_contact(gap, spacing, modulus, column_compliance=columns(grid.cells), **common)
+        solution = solve_problem(problem(grid.cells), tolerance=tolerance)
     else:
         tolerance, expected = min(grid.tolerance, TOLERANCE_SHARE * grid.accuracy), _expected(first)
         solution = solve_to_accuracy(
-            sampler,
-            modulus,
+            problem,
             accuracy=grid.accuracy,
+            tolerance=grid.tolerance,
             smooth=not _crosses_relief_start(pair, contact, first, expected > 0.0),
             first_cells=FIRST_CELLS,
             initial_pressure=expected,
-            column_compliance=columns,
-            **common,
+            warn=False,
         )
-    pressed = solution.pressure > 0.0
-    separation, lift = finest[0]
-    at_relief_start = _crosses_relief_start(pair, contact, separation, pressed)
-    return LoadedContact(contact, separation, solution, at_relief_start, tolerance, lift)
-
-
-def _lift(separation: Separation, beneath: Beneath | None) -> Array | None:
-    """Displacement of the columns (ny,) [mm] under the load of other tooth pairs; None if nothing bends."""
-    return None if beneath is None else beneath.lift(separation)
+    separation, coupling = sampled(solution.problem.cells)
+    at_relief_start = _crosses_relief_start(pair, contact, separation, solution.in_contact)
+    return LoadedContact(contact, separation, solution, at_relief_start, tolerance, coupling)
 
 
 def _crosses_relief_start(pair: GearPair, contact: ContactPoint, separation: Separation, where: Array) -> bool:
@@ -368,13 +355,3 @@ def _expected(separation: Separation) -> Array:
     across, along = (MARGIN_LEFT * length for length in separation.half_lengths)
     square = 1.0 - (separation.x[:, None] / across) ** 2 - (separation.y / along) ** 2
     return np.where(np.isfinite(separation.gap), np.sqrt(np.maximum(square, 0.0)), 0.0)
-
-
-def _grown_box(solution: ContactSolution) -> tuple[float, float] | None:
-    """Half lengths of a larger box [mm], if the contact reaches the outermost cells."""
-    touched = [bool((np.take(solution.pressure, [0, -1], axis=axis) > 0.0).any()) for axis in (0, 1)]
-    if not any(touched):
-        return None
-    sizes = zip(solution.pressure.shape, solution.spacing, touched, strict=True)
-    across, along = (0.5 * n * step * (GROWTH if grow else 1.0) for n, step, grow in sizes)
-    return across, along

@@ -10,8 +10,7 @@ from loaded_tca.compliance import MeshDensity, default_density, tooth_compliance
 from loaded_tca.contact.edges import FreeEdge
 from loaded_tca.errors import InputError
 from loaded_tca.gears import bevel_mesh
-from loaded_tca.loaded.cycle import alone
-from loaded_tca.loaded.tooth_contact import GridChoice, press
+from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.reference.iso6336 import theoretical_single_stiffness
 from loaded_tca.reference.weber_banaschek import ring_wind_up
@@ -65,7 +64,7 @@ def test_stiffness_of_a_tooth_pair_is_that_of_the_standard():
     """ISO 6336-1: 0.8 c'_th in single contact, N/(mm um)."""
     compliance = made()
     contact = trace_contact(compliance.pair, [0.0])[0]
-    loaded = press(compliance.pair, contact, 2000.0, GridChoice(cells=(16, 32)), alone(compliance))
+    loaded = solve_under_load(compliance.pair, contact, 2000.0, GridChoice(cells=(16, 32)), compliance)
     stiffness = 1e-3 * 2000.0 / (loaded.solution.approach * compliance.pair.face_width)
     assert_allclose(stiffness, 0.8 * theoretical_single_stiffness((25, 37), (0.0, 0.0)), rtol=STANDARD)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.contact import solve_contact, solve_to_accuracy
+from loaded_tca.contact import ContactProblem, solve_problem, solve_to_accuracy
 from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.reference import hertz
 
@@ -12,8 +12,11 @@ E_STAR = 115e3
 LOAD = 100.0
 
 
-def paraboloid(curvatures, box=1.5, edge=np.inf):
-    """A sampler, and what Hertz says; no material beyond ``edge`` times the semi-minor axis."""
+def paraboloid(curvatures, box=1.5, edge=np.inf, **asked):
+    """The problem on every grid, under ``LOAD`` if nothing else is asked, and Hertz's contact.
+
+    No material beyond ``edge`` times the semi-minor axis.
+    """
     contact = hertz.point_contact(LOAD, curvatures, E_STAR)
     small, large = sorted(curvatures)
 
@@ -22,7 +25,7 @@ def paraboloid(curvatures, box=1.5, edge=np.inf):
         x, y = ((np.arange(n) - (n - 1) / 2) * width for n, width in zip(cells, spacing, strict=True))
         gap = 0.5 * large * x[:, None] ** 2 + 0.5 * small * y**2
         gap[x > edge * contact.semi_minor] = np.inf
-        return gap, spacing
+        return ContactProblem(gap, spacing, E_STAR, **(asked or {"load": LOAD}))
 
     return sample, contact
 
@@ -31,14 +34,14 @@ def paraboloid(curvatures, box=1.5, edge=np.inf):
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-3, 1e-4])
 def test_error_is_below_the_accuracy(ratio, accuracy):
     sample, contact = paraboloid((0.1, 0.1 / ratio**1.5))
-    solution = solve_to_accuracy(sample, E_STAR, load=LOAD, accuracy=accuracy)
+    solution = solve_to_accuracy(sample, accuracy=accuracy)
     assert solution.error_estimate.peak_pressure <= accuracy
     assert_allclose(solution.peak_pressure, contact.max_pressure, rtol=accuracy)
 
 
 def test_grid_is_the_first_that_is_fine_enough():
     sample, _ = paraboloid((0.1, 0.1))
-    sizes = [solve_to_accuracy(sample, E_STAR, load=LOAD, accuracy=a).pressure.size for a in (3e-2, 1e-3, 1e-5)]
+    sizes = [solve_to_accuracy(sample, accuracy=a).pressure.size for a in (3e-2, 1e-3, 1e-5)]
     assert sizes == sorted(sizes)
     assert sizes[0] == 32 * 32
     assert sizes[-1] <= 512 * 512
@@ -47,22 +50,22 @@ def test_grid_is_the_first_that_is_fine_enough():
 def test_answer_is_that_of_its_grid():
     """Coming from coarser grids changes the way, not the answer."""
     sample, contact = paraboloid((0.1, 0.02))
-    solution = solve_to_accuracy(sample, E_STAR, load=LOAD, accuracy=1e-3)
-    gap, spacing = sample(solution.pressure.shape)
-    direct = solve_contact(gap, spacing, E_STAR, load=LOAD, tolerance=1e-5)
+    solution = solve_to_accuracy(sample, accuracy=1e-3)
+    direct = solve_problem(sample(solution.pressure.shape), tolerance=1e-5)
     assert_allclose(solution.pressure, direct.pressure, atol=1e-3 * contact.max_pressure)
 
 
 def test_approach_control_refines_too():
-    sample, contact = paraboloid((0.1, 0.1))
-    solution = solve_to_accuracy(sample, E_STAR, approach=contact.approach, accuracy=1e-3)
+    approach = hertz.point_contact(LOAD, (0.1, 0.1), E_STAR).approach
+    sample, _ = paraboloid((0.1, 0.1), approach=approach)
+    solution = solve_to_accuracy(sample, accuracy=1e-3)
     assert_allclose(solution.load, LOAD, rtol=1e-3)
 
 
 def test_edge_of_the_material_asks_for_the_approach_and_stops_at_64_cells():
     sample, contact = paraboloid((0.1, 0.1), edge=0.3)
     with pytest.warns(AccuracyWarning, match="above the accuracy"):
-        solution = solve_to_accuracy(sample, E_STAR, load=LOAD, accuracy=1e-6)
+        solution = solve_to_accuracy(sample, accuracy=1e-6)
     assert solution.pressure.shape == (64, 64)
     assert solution.approach > contact.approach
 
@@ -70,17 +73,17 @@ def test_edge_of_the_material_asks_for_the_approach_and_stops_at_64_cells():
 def test_doubts_warn_unless_left_to_the_caller():
     sample, _ = paraboloid((0.1, 0.1), box=0.8)
     with pytest.warns(AccuracyWarning, match="reaches the box"):
-        solve_to_accuracy(sample, E_STAR, load=LOAD, accuracy=1e-2)
-    assert solve_to_accuracy(sample, E_STAR, load=LOAD, accuracy=1e-2, warn=False).reaches_border
+        solve_to_accuracy(sample, accuracy=1e-2)
+    assert solve_to_accuracy(sample, accuracy=1e-2, warn=False).reaches_border
 
 
 def test_no_load_needs_no_grid():
-    sample, _ = paraboloid((0.1, 0.1))
-    assert solve_to_accuracy(sample, E_STAR, load=0.0, accuracy=1e-3).pressure.shape == (16, 16)
+    sample, _ = paraboloid((0.1, 0.1), load=0.0)
+    assert solve_to_accuracy(sample, accuracy=1e-3).pressure.shape == (16, 16)
 
 
 @pytest.mark.parametrize("accuracy", [0.0, -1.0, 1.0, np.nan])
 def test_refuses_an_accuracy_out_of_range(accuracy):
     sample, _ = paraboloid((0.1, 0.1))
     with pytest.raises(InputError, match="accuracy"):
-        solve_to_accuracy(sample, E_STAR, load=LOAD, accuracy=accuracy)
+        solve_to_accuracy(sample, accuracy=accuracy)

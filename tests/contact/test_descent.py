@@ -8,12 +8,13 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.contact import descent
 from loaded_tca.contact.convolution import Convolution
-from loaded_tca.contact.descent import Descent, Grid, judge
+from loaded_tca.contact.descent import Descent, judge
+from loaded_tca.contact.grid import Grid, shifted_to_sum
 
 
 def paraboloid(n=24, total=1.0, cap=np.inf, approach=0.0):
     x = (np.arange(n) - (n - 1) / 2) / n
-    return Grid(x[:, None] ** 2 + x**2, 1.0, total, approach, cap)
+    return Grid(x[:, None] ** 2 + x**2, (1.0, 1.0), total, approach, cap)
 
 
 def energy(grid, pressure):
@@ -31,7 +32,7 @@ def test_projection_is_the_nearest_point(values, cap, fill):
     """Bounds and sum hold, and p - values is one constant where p is between the bounds: the conditions of it."""
     values = np.array(values)
     total = fill * cap * values.size
-    projected = descent._project(values, total, cap)
+    projected = shifted_to_sum(values, total, cap)
     assert projected.min() >= 0.0
     assert projected.max() <= cap
     assert_allclose(projected.sum(), total, rtol=1e-12, atol=1e-15 * np.abs(values).sum())
@@ -80,7 +81,7 @@ def test_judgement_of_a_penetrating_start():
 
 def test_judgement_with_every_cell_at_a_bound():
     """Any approach between the two limits is right; nothing is violated."""
-    grid = Grid(np.array([[0.0, 5.0]]), 1.0, 1.0, 0.0, 1.0)
+    grid = Grid(np.array([[0.0, 5.0]]), (1.0, 1.0), 1.0, 0.0, 1.0)
     pressure = np.array([[1.0, 0.0]])
     level = Convolution((1, 2), 1.0)(pressure, np.empty((1, 2))) + grid.gap
     low, high = level[0]

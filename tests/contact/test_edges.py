@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.contact import (
+    ContactProblem,
     ContactStatus,
     FreeEdge,
     contact_stiffness,
@@ -200,7 +201,7 @@ def test_nothing_is_carried_beyond_an_edge():
     assert not found.pressure[:, :24].any()
     assert found.pressure[:, 24].any()
     assert np.isinf(found.gap[:, :24]).all()
-    assert found.free_edges == (edge,)
+    assert found.problem.free_edges == (edge,)
 
 
 def test_edge_turned_round_mirrors_the_pressure():
@@ -231,15 +232,17 @@ def test_pressure_at_a_crossed_edge_converges_with_the_grid():
 
 
 def test_accuracy_is_reached_with_an_edge():
-    def sampler(cells):
+    edge = FreeEdge(1, 0.55, "below", PSI)
+
+    def problem(cells):
         widths = 0.6 / cells[0], 0.6 / cells[1]
         x, y = centred(cells[0], widths[0]), centred(cells[1], widths[1])
-        return (x[:, None] ** 2 + y**2) / 20.0, widths
+        gap = (x[:, None] ** 2 + y**2) / 20.0
+        return ContactProblem(gap, widths, E_STAR, load=LOAD, free_edges=[edge])
 
-    edge = FreeEdge(1, 0.55, "below", PSI)
-    found = solve_to_accuracy(sampler, E_STAR, load=LOAD, accuracy=2e-3, free_edges=[edge])
+    found = solve_to_accuracy(problem, accuracy=2e-3)
     assert found.error_estimate.peak_pressure <= 2e-3
-    assert found.free_edges == (edge,)
+    assert found.problem.free_edges == (edge,)
 
 
 def test_factor_grows_with_poissons_ratio_and_with_the_share():

@@ -84,8 +84,8 @@ def test_displacement_of_a_window_is_that_of_the_whole_pressure(mirror):
 
 
 def test_edge_counted_from_a_window_is_the_same_edge():
-    edge, spacing, window = FreeEdge(0, 0.6, "below", 0.7, slope=0.05), (0.1, 0.4), (slice(2, 9), slice(3, 7))
-    (whole,), (part,) = mirrors((edge,), spacing), mirrors((edge,), spacing, window)
+    edge, spacing = FreeEdge(0, 0.6, "below", 0.7, slope=0.05), (0.1, 0.4)
+    (whole,), (part,) = mirrors((edge,), spacing), mirrors((edge,), spacing, (2, 3))
     row = np.arange(4) + 0.5
     assert_allclose(part.first + part.slope * row, whole.first + whole.slope * (row + 3) - 2)
 

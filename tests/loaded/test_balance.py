@@ -13,14 +13,14 @@ LAWS = st.builds(PowerLaw, st.floats(10.0, 1e4), st.floats(1e-4, 1e-2), st.float
 
 
 @given(LAWS, st.floats(1e-3, 1e5))
-def test_force_at_an_approach_is_the_inverse_of_the_approach_under_it(law, force):
-    assert_allclose(law.force_at(law.approach_under(force)), force, rtol=1e-9)
+def test_force_at_an_approach_is_the_inverse_of_the_deformation_under_it(law, force):
+    assert_allclose(law.force_at(law.deformation_under(force)), force, rtol=1e-9)
 
 
 def test_law_through_a_second_press_has_its_exponent():
     law = PowerLaw(1000.0, 0.004).through(2000.0, 0.004 * 2.0**0.9)
     assert_allclose(law.exponent, 0.9, rtol=1e-12)
-    assert_allclose(law.approach_under(1000.0), 0.004, rtol=1e-12)
+    assert_allclose(law.deformation_under(1000.0), 0.004, rtol=1e-12)
 
 
 def test_law_keeps_its_exponent_where_the_loads_do_not_tell():
@@ -49,7 +49,7 @@ def test_balance_fulfils_torque_and_compatibility(parts, torque, coupling):
     forces = balance(laws, separations, levers, torque, compliance)
     assert (forces >= 0.0).all()
     assert_allclose(levers[0] @ forces, torque, rtol=1e-12)
-    approaches = np.array([law.approach_under(force) for law, force in zip(laws, forces, strict=True)])
+    approaches = np.array([law.deformation_under(force) for law, force in zip(laws, forces, strict=True)])
     asked = separations + (approaches + compliance @ forces) / levers[1]
     rotation = asked[forces > 0.0].mean()
     assert_allclose(asked[forces > 0.0], rotation, rtol=1e-6)

@@ -14,7 +14,7 @@ from loaded_tca.contact.edges import quarter_space_factor, wedge_factor
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, bevel_mesh
 from loaded_tca.loaded.free_edges import oblique_ends, tooth_edges
-from loaded_tca.loaded.tooth_contact import GridChoice, press
+from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.cylindrical import cylindrical_pair
 from tests.samples.gear_pairs import gear_pair
@@ -66,7 +66,9 @@ def test_sides_that_yield_take_the_spike_off_the_ends_of_a_line_contact():
     pair = gear_pair(width=8.0)
     contact = trace_contact(pair, [0.0])[0]
     grid = GridChoice(cells=(16, 64))
-    stiff, yielding = (press(pair, contact, LOAD, dataclasses.replace(grid, free_edges=on)) for on in (False, True))
+    stiff, yielding = (
+        solve_under_load(pair, contact, LOAD, dataclasses.replace(grid, free_edges=on)) for on in (False, True)
+    )
     ends = []
     for loaded in (stiff, yielding):
         line = loaded.solution.pressure.max(axis=0)
@@ -81,7 +83,9 @@ def test_sides_that_yield_take_the_spike_off_the_ends_of_a_line_contact():
 def test_contact_away_from_the_sides_does_not_feel_them():
     pair = gear_pair(FlankModifications(lead_crowning=0.2), width=60.0)
     contact = trace_contact(pair, [0.0])[0]
-    plain, free = (press(pair, contact, 10.0, GridChoice(cells=(16, 16), free_edges=on)) for on in (False, True))
+    plain, free = (
+        solve_under_load(pair, contact, 10.0, GridChoice(cells=(16, 16), free_edges=on)) for on in (False, True)
+    )
     assert_allclose(free.solution.pressure, plain.solution.pressure, rtol=0, atol=0)
 
 
@@ -163,7 +167,7 @@ def test_lightest_contacts_do_not_reach_for_far_images(helix_deg):
     """A contact of nanometres beside a tip at tenths of a millimetre: not millions of cells."""
     pair = gear_pair(helix_deg=helix_deg)
     contact = trace_contact(pair, [0.75 * pair.pitch])[0]
-    loaded = press(pair, contact, 1e-6, GridChoice(cells=(16, 16), free_edges=True))
+    loaded = solve_under_load(pair, contact, 1e-6, GridChoice(cells=(16, 16), free_edges=True))
     assert_allclose(loaded.solution.load, 1e-6, rtol=1e-9)
 
 
@@ -182,8 +186,10 @@ def test_tip_that_yields_lowers_the_pressure_and_lets_the_teeth_approach(pitches
     pair = gear_pair(FlankModifications(lead_crowning=0.03), width=40.0)
     contact = trace_contact(pair, [pitches * pair.pitch])[0]
     grid = GridChoice(cells=(48, 16))
-    stiff, yielding = (press(pair, contact, 100.0, dataclasses.replace(grid, free_edges=on)) for on in (False, True))
-    (edge,) = yielding.solution.free_edges
+    stiff, yielding = (
+        solve_under_load(pair, contact, 100.0, dataclasses.replace(grid, free_edges=on)) for on in (False, True)
+    )
+    (edge,) = yielding.solution.problem.free_edges
     assert edge.axis == 0
     assert yielding.solution.pressure.max() < stiff.solution.pressure.max()
     assert yielding.solution.approach > 1.05 * stiff.solution.approach
@@ -219,8 +225,10 @@ def test_tip_of_a_helical_gear_that_yields_lowers_the_pressure_and_lets_the_teet
     pair = gear_pair(FlankModifications(lead_crowning=0.03), helix_deg=15.0, width=40.0)
     contact = trace_contact(pair, [0.9 * pair.pitch])[0]
     grid = GridChoice(cells=(32, 32))
-    stiff, yielding = (press(pair, contact, 300.0, dataclasses.replace(grid, free_edges=on)) for on in (False, True))
-    assert [edge.axis for edge in yielding.solution.free_edges] == [0]
+    stiff, yielding = (
+        solve_under_load(pair, contact, 300.0, dataclasses.replace(grid, free_edges=on)) for on in (False, True)
+    )
+    assert [edge.axis for edge in yielding.solution.problem.free_edges] == [0]
     assert yielding.solution.pressure.max() < stiff.solution.pressure.max()
     assert yielding.solution.approach > 1.03 * stiff.solution.approach
     assert_allclose(yielding.solution.load, 300.0, rtol=1e-9)

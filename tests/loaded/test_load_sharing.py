@@ -27,9 +27,9 @@ CENTRE = math.pi / 34
 
 
 @cache
-def shared(pair_of, phi1, torque=TORQUE, compliance=None):
+def shared(pair_of, phi1, torque=TORQUE, bending=None):
     pair = pair_of()
-    more = {} if compliance is None else {"compliance": compliance}
+    more = {} if bending is None else {"bending": bending}
     return share_load(pair, tooth_pairs_at(trace_teeth(pair, [phi1]), 0), torque, GRID, **more)
 
 
@@ -95,7 +95,7 @@ LENGTHS = 0.02
 @pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")
 @pytest.mark.parametrize("part", [-0.5, 0.8])
 def test_helical_pairs_without_crowning_share_by_the_lengths_of_their_lines(part):
-    """A line of length l and width w yields by F/l (ln(4 l/w) - 1) times the same for all."""
+    """A line of length l and width w deforms by F/l (ln(4 l/w) - 1) times the same for all."""
     found = shared(uncrowned_helical, part * CENTRE)
     lengths = np.array([np.linalg.norm(np.diff(share.tooth_pair.contact.line_ends, axis=0)) for share in found.shares])
     widths = [share.loaded.extent[0] for share in found.shares]
@@ -109,9 +109,9 @@ def elastic_energy(found):
     energy = 0.0
     for share in found.shares:
         solution = share.loaded.solution
-        pressed = solution.in_contact
-        displacement = solution.approach + solution.gap[pressed] - share.loaded.separation.gap[pressed]
-        energy += 0.5 * float(solution.pressure[pressed] @ displacement) * solution.cell_area
+        loaded = solution.in_contact
+        displacement = solution.approach + solution.gap[loaded] - share.loaded.separation.gap[loaded]
+        energy += 0.5 * float(solution.pressure[loaded] @ displacement) * solution.cell_area
     return energy
 
 
@@ -167,7 +167,7 @@ def test_pairs_apart_are_not_closed_by_the_rotation():
     pair, torque, own = helical(), 300.0, 1e-3
     tooth_pairs = tooth_pairs_at(trace_teeth(pair, [0.0]), 0)
     assert len(share_load(pair, tooth_pairs, torque, GRID).shares) == 1
-    found = share_load(pair, tooth_pairs, torque, GRID, compliance=Springs(own))
+    found = share_load(pair, tooth_pairs, torque, GRID, bending=Springs(own))
     assert len(found.shares) == 3
     for tooth_pair in tooth_pairs:
         assert (tooth_pair.initial_separation < found.rotation) == (tooth_pair.pair in found.laws.contact)
@@ -186,14 +186,14 @@ def test_unknown_compliances_are_the_least_known():
 def test_next_to_no_torque_is_carried_by_the_leading_pair(torque, springs):
     pair = helical()
     tooth_pairs = tooth_pairs_at(trace_teeth(pair, [0.2 * CENTRE]), 0)
-    found = share_load(pair, tooth_pairs, torque, GRID, compliance=None if springs is None else Springs(*springs))
+    found = share_load(pair, tooth_pairs, torque, GRID, bending=None if springs is None else Springs(*springs))
     assert len(found.shares) == 1
     assert 0.0 <= found.rotation < 1e-8
     assert found.torque_rate >= 0.0
 
 
 class Springs:
-    """Every pair yields by some amount more, and a little by the load of the others."""
+    """Every pair deflects by some amount more, and a little by the load of the others."""
 
     def __init__(self, own, coupling=0.0):
         self.own, self.coupling = own, coupling
@@ -208,26 +208,28 @@ class Springs:
         return np.full((len(at[1].y), len(under[1].y)), self.coupling)
 
 
-def test_soft_teeth_share_by_their_lags_alone():
-    """Springs far softer than the contacts: forces follow from the lags by a linear balance."""
+def test_soft_teeth_share_by_their_initial_separations_alone():
+    """Springs far softer than the contacts: forces follow from the initial separations by a linear balance."""
     pair, phi1, own = helical(), -0.6 * CENTRE, 1e-3
     tooth_pairs = tooth_pairs_at(trace_teeth(pair, [phi1]), 0)
-    found = share_load(pair, tooth_pairs, TORQUE, GRID, compliance=Springs(own))
+    found = share_load(pair, tooth_pairs, TORQUE, GRID, bending=Springs(own))
     levers = np.array([(s.tooth_pair.contact.pinion_lever, s.tooth_pair.contact.wheel_lever) for s in found.shares]).T
     separations = np.array([s.tooth_pair.initial_separation for s in found.shares])
     rotation = (TORQUE * own + (levers[0] * levers[1] * separations).sum()) / (levers[0] * levers[1]).sum()
     expected = levers[1] * (rotation - separations) / own
-    assert_allclose([s.force for s in found.shares], expected, rtol=2e-2)  # a contact yields by 2e-6 mm/N
+    assert_allclose([s.force for s in found.shares], expected, rtol=2e-2)  # a contact deforms by 2e-6 mm/N
 
 
-def test_deflections_of_the_teeth_are_part_of_the_closing():
+def test_deflections_of_the_teeth_are_part_of_the_total():
     pair, phi1 = spur(), -0.9 * CENTRE
     tooth_pairs = tooth_pairs_at(trace_teeth(pair, [phi1]), 0)
     own, coupling = 2e-6, 3e-7
-    found = share_load(pair, tooth_pairs, TORQUE, GRID, compliance=Springs(own, coupling))
+    found = share_load(pair, tooth_pairs, TORQUE, GRID, bending=Springs(own, coupling))
     forces = np.array([share.force for share in found.shares])
     assert len(forces) == 2
-    assert_allclose([share.deflection for share in found.shares], own * forces + coupling * forces[::-1], rtol=1e-9)
+    assert_allclose(
+        [share.tooth_deflection for share in found.shares], own * forces + coupling * forces[::-1], rtol=1e-9
+    )
     assert_allclose([share.rotation for share in found.shares], found.rotation, rtol=COMPATIBLE)
     assert found.rotation > shared(spur, phi1).rotation
     assert found.torque_rate < shared(spur, phi1).torque_rate
@@ -253,7 +255,7 @@ def test_balance_that_is_never_found_is_told_with_the_last_one(monkeypatch):
     pair = spur()
     tooth_pairs = tooth_pairs_at(trace_teeth(pair, [-0.9 * CENTRE]), 0)
     with pytest.raises(ConvergenceError, match=r"load sharing not converged.*after 40 balances") as caught:
-        share_load(pair, tooth_pairs, TORQUE, GRID, compliance=Restless())
+        share_load(pair, tooth_pairs, TORQUE, GRID, bending=Restless())
     assert len(caught.value.last.shares) == 2
 
 
@@ -273,11 +275,11 @@ def test_torque_that_is_no_number_from_zero_on_is_refused(torque):
 
 
 def test_no_tooth_pair_is_refused():
-    with pytest.raises(InputError, match="touches: none given"):
+    with pytest.raises(InputError, match="tooth_pairs: none given"):
         share_load(spur(), (), TORQUE, GRID)
 
 
-def test_touches_are_those_within_reach():
+def test_candidates_are_those_within_reach():
     mesh = trace_teeth(helical(), [-CENTRE, 0.0])
     for position in (0, 1):
         found = tooth_pairs_at(mesh, position)

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import AccuracyWarning, InputError, trace_contact
 from loaded_tca.flanks import FlankModifications
-from loaded_tca.loaded.tooth_contact import GridChoice, press
+from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.material import Material
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.reference import hertz
@@ -22,11 +22,11 @@ HERTZ = 5e-3  # the flanks are no paraboloids over an ellipse as long as the fac
 GRID = GridChoice(cells=(32, 32))
 
 
-def pressed(pair, load, turn=0.0, grid=GRID):
+def solved(pair, load, turn=0.0, grid=GRID):
     contact = trace_contact(pair, [turn * pair.pitch])[0]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
-        return press(pair, contact, load, grid)
+        return solve_under_load(pair, contact, load, grid)
 
 
 CASES = {
@@ -40,7 +40,7 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize("load", [1.0, 2700.0])
 def test_pressure_balances_the_load(name, load):
-    loaded = pressed(CASES[name](), load)
+    loaded = solved(CASES[name](), load)
     dx, dy = loaded.separation.spacing
     assert_allclose(loaded.solution.pressure.sum() * dx * dy, load, rtol=BALANCE)
     assert loaded.solution.pressure.min() >= 0.0
@@ -50,7 +50,7 @@ def test_pressure_balances_the_load(name, load):
 @pytest.mark.parametrize("driving", ["pinion", "wheel"])
 def test_peak_pressure_of_the_sam_paper_pairs_is_that_of_hertz(helix_deg, driving):
     load = cylindrical_mesh(helix_deg=helix_deg).normal_force(SAM_PAPER_TORQUE)
-    loaded = pressed(sam_paper(helix_deg, driving=driving), load)
+    loaded = solved(sam_paper(helix_deg, driving=driving), load)
     assert not loaded.at_edge, "the ellipse is shorter than the face"
     assert loaded.hertz is not None
     assert_allclose(loaded.peak_pressure, loaded.hertz.max_pressure, rtol=HERTZ)
@@ -63,7 +63,7 @@ def test_peak_pressure_of_the_sam_paper_pairs_is_that_of_hertz(helix_deg, drivin
 
 
 def test_stiffness_of_a_point_contact_is_that_of_hertz():
-    loaded = pressed(gear_pair(FlankModifications(lead_crowning=0.05)), 500.0)
+    loaded = solved(gear_pair(FlankModifications(lead_crowning=0.05)), 500.0)
     assert_allclose(loaded.stiffness, loaded.hertz.stiffness, rtol=1e-2)
 
 
@@ -74,7 +74,7 @@ def test_hertz_does_not_hold_on_edges_and_lines(helix_deg, name):
         "tip": sam_paper(helix_deg),
         "line": gear_pair(helix_deg=helix_deg),
     }[name]
-    loaded = pressed(pair, 1000.0, turn=0.9 if name == "tip" else 0.0)
+    loaded = solved(pair, 1000.0, turn=0.9 if name == "tip" else 0.0)
     assert loaded.at_edge
     assert loaded.hertz is None
     assert loaded.peak_pressure == loaded.solution.pressure.max()
@@ -82,13 +82,13 @@ def test_hertz_does_not_hold_on_edges_and_lines(helix_deg, name):
 
 def test_contact_that_grows_to_the_end_of_the_face_is_at_a_edge():
     pair = sam_paper()
-    assert not pressed(pair, 1500.0).at_edge
-    assert pressed(pair, 9000.0).at_edge
+    assert not solved(pair, 1500.0).at_edge
+    assert solved(pair, 9000.0).at_edge
 
 
 def test_middle_of_an_unmodified_spur_pair_carries_the_line_contact_of_its_section():
     load, pair = 2712.6, gear_pair()
-    loaded = pressed(pair, load, grid=GridChoice(cells=(64, 64)))
+    loaded = solved(pair, load, grid=GridChoice(cells=(64, 64)))
     section = int(abs(loaded.separation.y).argmin())
     line_load = loaded.solution.pressure[:, section].sum() * loaded.separation.spacing[0]
     expected = hertz.line_contact(line_load, loaded.separation.curvatures[0], pair.contact_modulus)
@@ -98,7 +98,7 @@ def test_middle_of_an_unmodified_spur_pair_carries_the_line_contact_of_its_secti
 
 
 def test_load_of_zero_leaves_no_pressure_and_no_stiffness():
-    loaded = pressed(sam_paper(), 0.0)
+    loaded = solved(sam_paper(), 0.0)
     assert loaded.solution.pressure.max() == 0.0
     assert loaded.peak_pressure == loaded.stiffness == 0.0
     assert loaded.extent == (0.0, 0.0)
@@ -110,7 +110,7 @@ def test_hertz_holds_nothing_on_a_flank_with_end_relief_alone(helix_deg):
     """The middle of the face is flat: no ellipse lies in it, and the contact point is its middle."""
     relief = FlankModifications(end_relief=0.02, end_relief_length=8.0)
     pair = gear_pair(relief, helix_deg=helix_deg)
-    loaded = pressed(pair, 2700.0, turn=0.05)
+    loaded = solved(pair, 2700.0, turn=0.05)
     assert loaded.hertz is None
     assert not loaded.at_edge
     assert_allclose(loaded.contact.pinion_axial, 0.0, atol=0.1)
@@ -120,8 +120,8 @@ def test_hertz_holds_nothing_where_a_relief_begins_in_the_ellipse():
     """A parabolic tip relief from the pitch circle on: its curvature is added on one side of the contact point."""
     relief = FlankModifications(lead_crowning=0.01, tip_relief=0.1, tip_relief_start=102.0)
     helical = gear_pair(relief, helix_deg=15.0)
-    assert pressed(helical, 2700.0).hertz is None
-    assert pressed(sam_paper(15.0), 2700.0).hertz is not None
+    assert solved(helical, 2700.0).hertz is None
+    assert solved(sam_paper(15.0), 2700.0).hertz is not None
 
 
 def test_box_of_a_corner_holds_its_contact():
@@ -138,7 +138,7 @@ def test_box_of_a_corner_holds_its_contact():
     for contact in corners:
         for load in (5.0, 150.0):
             first = sample_separation(pair, contact, cells=(32, 32), load=load)
-            loaded = press(pair, contact, load, GridChoice(cells=(32, 32)))
+            loaded = solve_under_load(pair, contact, load, GridChoice(cells=(32, 32)))
             assert np.isfinite(first.gap).any()
             assert loaded.separation.half_lengths[0] < 3.0 * first.half_lengths[0]
             assert not loaded.solution.reaches_border
@@ -148,13 +148,13 @@ def test_grid_that_is_too_large_for_the_memory_is_refused_before_it_is_made():
     pair = sam_paper()
     contact = trace_contact(pair, [0.0])[0]
     with pytest.raises(InputError, match=r"cells: \(1000000, 1000000\) cells need .* GiB, the machine has"):
-        press(pair, contact, 100.0, GridChoice(cells=(1_000_000, 1_000_000)))
+        solve_under_load(pair, contact, 100.0, GridChoice(cells=(1_000_000, 1_000_000)))
 
 
 def test_negative_load_is_refused():
     pair = sam_paper()
     with pytest.raises(InputError, match=r"load: -1.0 N"):
-        press(pair, trace_contact(pair, [0.0])[0], -1.0, GRID)
+        solve_under_load(pair, trace_contact(pair, [0.0])[0], -1.0, GRID)
 
 
 def test_pressure_cap_of_the_pair_holds_and_the_load_is_balanced_again():
@@ -164,7 +164,7 @@ def test_pressure_cap_of_the_pair_holds_and_the_load_is_balanced_again():
         modifications=(FlankModifications(lead_crowning=0.005), FlankModifications()),
         materials=soft,
     )
-    loaded = pressed(pair, 2712.6)
+    loaded = solved(pair, 2712.6)
     assert_allclose(loaded.solution.pressure.max(), 600.0, rtol=1e-9)
     assert_allclose(loaded.solution.pressure.sum() * math.prod(loaded.separation.spacing), 2712.6, rtol=1e-6)
 
@@ -174,13 +174,13 @@ def test_corner_contact_does_not_depend_on_which_side_of_the_corner_it_lies(past
     """Faces that overlap by 3 mm: the contact runs into a corner with material on neither side along the line."""
     pair = sam_paper(15.0, mounting=Mounting(axial_offset=22.0))
     corner = 0.5404145177775719
-    loaded = pressed(pair, 2700.0, corner + past, GridChoice(cells=(64, 64)))
+    loaded = solved(pair, 2700.0, corner + past, GridChoice(cells=(64, 64)))
     assert_allclose(loaded.solution.approach, 0.0228, rtol=0.06)  # 0.0217 to 0.0230 in a box of 4 x 6 mm
 
 
 @pytest.mark.parametrize("offset", [23.5, 24.9])
 def test_faces_that_barely_overlap_carry_load(offset):
-    loaded = pressed(sam_paper(15.0, mounting=Mounting(axial_offset=offset)), 100.0, 0.5)
+    loaded = solved(sam_paper(15.0, mounting=Mounting(axial_offset=offset)), 100.0, 0.5)
     assert_allclose(loaded.solution.load, 100.0, rtol=BALANCE)
 
 
@@ -190,7 +190,7 @@ def test_box_makes_room_for_a_capped_contact():
     pair = cylindrical_pair(
         mesh, modifications=(FlankModifications(lead_crowning=0.005), FlankModifications()), materials=(soft, soft)
     )
-    loaded = pressed(pair, mesh.normal_force(SAM_PAPER_TORQUE), grid=GridChoice(cells=(64, 64)))
+    loaded = solved(pair, mesh.normal_force(SAM_PAPER_TORQUE), grid=GridChoice(cells=(64, 64)))
     assert loaded.solution.pressure.max() == 200.0
     assert_allclose(loaded.solution.approach, 0.00737, rtol=5e-2)  # in a box of 2.4 x 27 mm
 
@@ -199,11 +199,11 @@ def test_load_beyond_what_the_whole_flank_carries_is_refused():
     weak = Material(max_pressure=5.0)
     pair = cylindrical_pair(cylindrical_mesh(), materials=(weak, weak))
     with pytest.raises(InputError, match="more than the flank carries at max_pressure, 5 MPa"):
-        pressed(pair, 2700.0)
+        solved(pair, 2700.0)
 
 
 def test_load_that_closes_no_gap_is_none():
-    assert pressed(sam_paper(), 1e-12).solution.load == 0.0
+    assert solved(sam_paper(), 1e-12).solution.load == 0.0
 
 
 def test_linear_relief_in_the_contact_leaves_no_hertz_and_a_coarse_grid():
@@ -211,19 +211,19 @@ def test_linear_relief_in_the_contact_leaves_no_hertz_and_a_coarse_grid():
     pair = gear_pair(relief)
     path = trace_contact(pair)
     turn = float(path.pinion_angle[abs(2.0 * path.pinion_radius - 105.0).argmin()] / pair.pitch)
-    loaded = pressed(pair, 2700.0, turn, GridChoice(accuracy=1e-4))
+    loaded = solved(pair, 2700.0, turn, GridChoice(accuracy=1e-4))
     assert loaded.at_relief_start
     assert loaded.hertz is None
     assert max(loaded.solution.pressure.shape) <= 64
 
 
 def test_central_pressure_is_the_peak_of_a_smooth_contact():
-    loaded = pressed(sam_paper(), 2700.0)
+    loaded = solved(sam_paper(), 2700.0)
     assert_allclose(loaded.central_pressure, loaded.peak_pressure, rtol=HERTZ)
     radius, axial = loaded.peak_place
     assert_allclose([radius, axial], [51.0, 0.0], atol=1.0)
 
 
 def test_edge_contact_has_its_peak_at_the_edge():
-    loaded = pressed(CASES["edge"](), 2700.0)
+    loaded = solved(CASES["edge"](), 2700.0)
     assert_allclose(loaded.peak_place[1], 12.5, atol=2.0 * loaded.separation.spacing[1])

@@ -1,7 +1,5 @@
 """The contact conditions of a solution, computed apart from the solver."""
 
-import math
-
 import numpy as np
 
 from loaded_tca.contact.convolution import Convolution
@@ -11,10 +9,10 @@ def contact_conditions(solution, gap):
     """Largest violation of the contact conditions on the whole grid, over the approach from first touch."""
     aspect = solution.spacing[1] / solution.spacing[0]
     displacement = Convolution(gap.shape, aspect)(solution.pressure, np.empty(gap.shape))
-    displacement *= solution.spacing[0] / solution.contact_modulus
+    displacement *= solution.spacing[0] / solution.problem.contact_modulus
     excess = displacement + gap - solution.approach
     scale = solution.approach - gap.min()
-    cap = math.inf if solution.max_pressure is None else solution.max_pressure
+    cap = solution.problem.cap
     inner = (solution.pressure > 0.0) & (solution.pressure < cap)
     complementarity = (solution.pressure[inner] * np.abs(excess[inner])).sum() / solution.pressure.sum()
     penetration = max(0.0, -excess[solution.pressure == 0.0].min(initial=0.0))

@@ -25,7 +25,7 @@ from matplotlib.ticker import LogFormatter
 from numpy.typing import NDArray
 
 from loaded_tca.flanks import FlankModifications
-from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, press
+from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, solve_under_load
 from loaded_tca.pairs.bevel import BevelMounting
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.plots.pressure_map import cell_limits
@@ -104,13 +104,13 @@ class Pressed:
 
 
 @cache
-def pressed(case: Case) -> tuple[Pressed, ...]:
+def solved(case: Case) -> tuple[Pressed, ...]:
     """Every position of a case."""
     pair, load = case.pair, case.gears.load
     path = trace_contact(pair, np.array(TURNS) * pair.pitch, warn=False)
     found = []
     for turn, row in zip(TURNS, range(len(path)), strict=True):
-        loaded = press(pair, path[row], load, GRID)
+        loaded = solve_under_load(pair, path[row], load, GRID)
         hertz = point_contact(load, loaded.separation.curvatures, pair.contact_modulus)
         found.append(Pressed(turn, loaded, hertz))
     return tuple(found)
@@ -118,7 +118,7 @@ def pressed(case: Case) -> tuple[Pressed, ...]:
 
 def rows() -> list[Row]:
     """Hertz within 1 % where it holds; elsewhere the difference, and the load."""
-    return [row for case in CASES for one in pressed(case) for row in _rows_of(case, one)]
+    return [row for case in CASES for one in solved(case) for row in _rows_of(case, one)]
 
 
 def _rows_of(case: Case, one: Pressed) -> list[Row]:
@@ -165,7 +165,7 @@ def document() -> str:
         loads=", ".join(loads),
         assumed=";\n".join(sorted({f"{case.gears.name}, {case.assumed}" for case in CASES})),
         worst=100.0 * max(deviations),
-        lines="\n".join(_line(case, one) for case in CASES for one in pressed(case)),
+        lines="\n".join(_line(case, one) for case in CASES for one in solved(case)),
     )
 
 
@@ -200,7 +200,7 @@ def picture() -> Figure:
 def _draw_maps(figure: Figure, axes: Axes, case: Case) -> None:
     """Cells under pressure; the scale ends where Hertz does, so that spikes do not hide the rest."""
     draw_flank(axes, case.gears)
-    found = [one for one in pressed(case) if one.turn in DRAWN]
+    found = [one for one in solved(case) if one.turn in DRAWN]
     scale = Normalize(0.0, max(one.hertz.max_pressure for one in found))
     for one in found:
         pressure = one.loaded.solution.pressure
@@ -235,7 +235,7 @@ def _on_pinion(case: Case, one: Pressed, x: Array, y: Array) -> tuple[Array, Arr
 
 def _draw_over(axes: Axes, case: Case) -> None:
     """Pressure of the maps and after Hertz over the rotation."""
-    found = pressed(case)
+    found = solved(case)
     turns, hertz = np.array(TURNS), np.array([one.hertz.max_pressure for one in found])
     peaks, holds = (np.array([part(one) for one in found]) for part in (_peak, _holds))
     axes.plot(turns, hertz, color=COLOURS[2], linewidth=1.0, label="Hertz, from the curvatures")

@@ -15,11 +15,12 @@ import numpy as np
 
 from loaded_tca.compliance import MeshDensity, tooth_compliance
 from loaded_tca.loaded.cycle import Carried, carried_by_all
-from loaded_tca.loaded.pair_coupling import TeethYield
+from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import parse_scene
 from loaded_tca.tooth import tooth_forms
+from loaded_tca.unloaded import trace_teeth
 from validation.calculix.case import FACE_WIDTH, POSITIONS, pinion_angle
 from validation.calculix.deck import LOAD_STEPS
 from validation.calculix.tables import CONTACTS_FILE, POSITIONS_FILE, read_table
@@ -168,15 +169,15 @@ class Model:
     ----------
     pairs : dict of str to GearPair
         By variant.
-    compliance : TeethYield
+    bending : BendingModel
         Of the unmodified teeth: 15 um of relief are no part of a body.
     face_width : float [mm]
     seconds : float
-        Processor time of the compliance.
+        Processor time of the bending model.
     """
 
     pairs: dict[str, GearPair]
-    compliance: TeethYield
+    bending: BendingModel
     face_width: float
     seconds: float
 
@@ -195,7 +196,7 @@ class Model:
         whole = 1e3 * torque * self.face_width / FACE_WIDTH
         torques = whole * np.array(LOAD_STEPS)
         start = time.process_time()
-        carried = carried_by_all(pair, np.asarray(angles), torques, GRID, lambda _: self.compliance)
+        carried = carried_by_all(pair, trace_teeth(pair, np.asarray(angles)), torques, GRID, self.bending)
         seconds = (time.process_time() - start) / (len(torques) * len(angles))
         return [self._position(pair, carried, n, seconds) for n in range(len(angles))]
 
@@ -214,13 +215,13 @@ class Model:
         )
 
     def _pair(self, loaded: LoadedContact, share: float) -> PairLoad:
-        """Pressure of the middle column; by Hertz it goes with the root of the line load."""
+        """Pressure of the middle slice; by Hertz it goes with the root of the line load."""
         pressure = loaded.solution.pressure
         middle = pressure[:, pressure.shape[1] // 2]
         line_load = float(middle.sum()) * loaded.separation.spacing[0]
         mean = loaded.solution.load / self.face_width
-        pressed = float(middle.max())
-        return PairLoad(share, pressed * float(np.sqrt(mean / line_load)), pressed, bool(loaded.contact.on_edge))
+        highest = float(middle.max())
+        return PairLoad(share, highest * float(np.sqrt(mean / line_load)), highest, bool(loaded.contact.on_edge))
 
 
 def model(face_width: float, layers: int | None = None) -> Model:

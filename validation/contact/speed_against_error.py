@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from loaded_tca.contact import solve_contact, solve_to_accuracy
+from loaded_tca.contact import ContactProblem, solve_contact, solve_to_accuracy
 from loaded_tca.contact.convolution import Convolution
 from loaded_tca.reference import hertz
 from validation.loaded import speed as speed_of_mesh_cycle
@@ -232,16 +232,16 @@ def accuracies() -> list[str]:
     """What :func:`solve_to_accuracy` takes for the gear ellipse, one line an accuracy."""
     case, lines = "gear 80:1", []
 
-    def sample(cells: tuple[int, int]) -> tuple[Array, tuple[float, float]]:
+    def sample(cells: tuple[int, int]) -> ContactProblem:
         problem = Problem.make(case, cells[0], 1e-6)
-        return problem.gap, problem.spacing
+        return ContactProblem(problem.gap, problem.spacing, E_STAR, load=LOAD)
 
     exact = Problem.make(case, 16, 1e-6).contact.max_pressure
     for accuracy in (1e-3, 1e-4):
         times = []
         for _ in range(101):
             begin = time.perf_counter()
-            found = solve_to_accuracy(sample, E_STAR, load=LOAD, accuracy=accuracy)
+            found = solve_to_accuracy(sample, accuracy=accuracy)
             times.append(time.perf_counter() - begin)
         error = abs(found.peak_pressure / exact - 1.0)
         lines.append(

@@ -1,0 +1,61 @@
+"""A contact problem is what was given, checked, and stays so."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+from loaded_tca.contact import ContactProblem, FreeEdge, solve_contact, solve_problem
+from loaded_tca.errors import InputError
+
+E_STAR = 115e3
+
+
+def ball(n=24):
+    x = (np.arange(n) - (n - 1) / 2) * 0.03
+    return 0.05 * (x[:, None] ** 2 + x**2) + 0.3
+
+
+def test_arrays_are_copies_that_cannot_be_written_to():
+    gap, slices = ball(), np.zeros((24, 24))
+    problem = ContactProblem(gap, (0.03, 0.03), E_STAR, load=50.0, slice_compliance=slices)
+    gap[:], slices[:] = -1.0, -1.0
+    assert_array_equal(problem.gap, ball())
+    assert not problem.slice_compliance.any()
+    for array in (problem.gap, problem.slice_compliance):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0, 0] = 1.0
+
+
+def test_solution_keeps_the_problem_as_it_was():
+    before = ball()
+    solution = solve_contact(ball(), (0.03, 0.03), E_STAR, load=50.0, max_pressure=900.0)
+    assert_array_equal(solution.problem.gap, before)
+    assert solution.problem.load == 50.0
+    assert solution.problem.cap == solution.problem.max_pressure == 900.0
+    assert solution.problem.first_contact == before.min()
+    again = solve_problem(solution.problem)
+    assert_array_equal(again.pressure, solution.pressure)
+
+
+def test_load_is_changed_by_replacement():
+    solution = solve_contact(ball(), (0.03, 0.03), E_STAR, load=50.0)
+    other = solve_problem(dataclasses.replace(solution.problem, load=60.0), initial_pressure=solution.pressure)
+    direct = solve_contact(ball(), (0.03, 0.03), E_STAR, load=60.0)
+    assert abs(other.approach / direct.approach - 1.0) < 1e-5
+    assert solution.problem.load == 50.0
+
+
+def test_gap_is_infinite_beyond_free_edges():
+    problem = ContactProblem(ball(), (0.03, 0.03), E_STAR, load=50.0, free_edges=[FreeEdge(0, 0.36, "below", 1.0)])
+    assert np.isinf(problem.gap[12:]).all()
+    assert_array_equal(problem.gap[:12], ball()[:12])
+
+
+def test_refusal_names_every_problem_and_comes_before_the_solution():
+    with pytest.raises(InputError) as caught:
+        ContactProblem([[np.nan]], (0.0, -1.0), 0.0, load=1.0)
+    assert len(caught.value.problems) == 4
+    with pytest.raises(InputError, match="exactly one"):
+        ContactProblem(ball(), (0.03, 0.03), E_STAR)
