@@ -10,7 +10,6 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import tooth_compliance
-from loaded_tca.compliance.compliance import BORE
 from loaded_tca.errors import AccuracyWarning
 from loaded_tca.loaded.cycle import Carried, Contacts, MakeCompliance, Progress, carried_by_all, carried_by_one
 from loaded_tca.loaded.free_edges import oblique_ends
@@ -20,7 +19,6 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.contacts import NUMBERS, PairContacts, PressureMap
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
-from loaded_tca.tooth import tooth_forms
 from loaded_tca.unloaded import heelwards
 from loaded_tca.unloaded.tooth_cycle import REACH
 
@@ -82,10 +80,7 @@ def _compliance(scene: Scene, pair: GearPair) -> MakeCompliance:
         return lambda _: None
 
     def make(neighbours: int) -> TeethYield:
-        backs = scene.pair("negative" if pair.sense > 0 else "positive")
-        bores = getattr(scene.pinion, BORE), getattr(scene.wheel, BORE)
-        forms = tooth_forms(scene.mesh())
-        return tooth_compliance(forms, pair, backs, bore_diameters=bores, neighbours=max(neighbours, 1))
+        return tooth_compliance(pair, neighbours=max(neighbours, 1))
 
     return make
 
