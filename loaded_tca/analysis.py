@@ -10,7 +10,6 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import tooth_compliance
-from loaded_tca.compliance.compliance import BORE
 from loaded_tca.errors import AccuracyWarning
 from loaded_tca.loaded.cycle import Carried, Contacts, Progress, carried_by_all, carried_by_one, farthest_apart
 from loaded_tca.loaded.free_edges import oblique_ends
@@ -20,7 +19,6 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.contacts import NUMBERS, PairContacts, PressureMap
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
-from loaded_tca.tooth import tooth_forms
 from loaded_tca.unloaded import heelwards, trace_contact, trace_teeth
 from loaded_tca.unloaded.tooth_cycle import REACH
 
@@ -84,10 +82,7 @@ def _bending(scene: Scene, pair: GearPair, neighbours: int = 0) -> BendingModel 
     """Bending of the teeth, where loaded ones are up to so many pitches apart; None if the scene asks for none."""
     if scene.analysis.compliance == "contact":
         return None
-    backs = scene.pair("negative" if pair.sense > 0 else "positive")
-    bores = getattr(scene.pinion, BORE), getattr(scene.wheel, BORE)
-    forms = tooth_forms(scene.mesh())
-    return tooth_compliance(forms, pair, backs, bore_diameters=bores, neighbours=max(neighbours, 1))
+    return tooth_compliance(pair, neighbours=max(neighbours, 1))
 
 
 def _warn_of_accuracy(pair: GearPair, grid: GridChoice, contacts: Contacts) -> None:

@@ -249,14 +249,15 @@ def _place_of_its_own(options: argparse.Namespace) -> str:
 
 def _tooth(options: argparse.Namespace) -> None:
     from loaded_tca.output.surface_files import write_teeth
-    from loaded_tca.output.teeth_in_space import complete_teeth, teeth_in_space
+    from loaded_tca.output.teeth_in_space import teeth_in_space
+    from loaded_tca.pairs import mating_teeth
     from loaded_tca.plots import save_figure
     from loaded_tca.plots.three_d import draw_teeth
     from loaded_tca.scene import parse_scene
 
     result, directory = _loaded(options)
     torque, position = _chosen_torque(result, options.torque), _chosen_position(result, options.position)
-    teeth = complete_teeth(parse_scene(result.scene_toml), fillet_radius=options.fillet_radius)
+    teeth = mating_teeth(parse_scene(result.scene_toml).pair(), fillet_radius=options.fillet_radius)
     shown = teeth_in_space(result, teeth, position, torque)
     written = write_teeth(shown, teeth, directory, title=result.title, whole_gears=options.whole_gears)
     save_figure(draw_teeth(result, shown), directory / "teeth.png")

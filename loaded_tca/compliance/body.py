@@ -14,50 +14,32 @@ from loaded_tca.compliance.geometry import BodyNodes, body_nodes
 from loaded_tca.compliance.layout import MeshDensity, RingLayout
 from loaded_tca.flanks.base import Flank, outward_normal
 from loaded_tca.material import Material
+from loaded_tca.pairs.gear import Gear
 from loaded_tca.tooth.build import Resolution, build_tooth
-from loaded_tca.tooth.form import ToothForm
 
-DEFAULT_BORE = 0.55
-"""Bore of a gear that has none given, over its (smallest) root diameter."""
 BISECTIONS = 50
 FIRST_CHORD = 0.25
 """First guess of the distance from a flank to the middle of the tooth, over the height of the flank."""
 
 
-@dataclass(frozen=True, eq=False)
-class GearTooth:
-    """What the compliance of a gear is made from.
+def gear_nodes(gear: Gear, density: MeshDensity) -> BodyNodes:
+    """Nodes of the whole ring of a gear.
 
-    Attributes
-    ----------
-    flanks : (Flank, Flank)
-        Of the sides s = +1 and s = -1.
-    form : ToothForm
-    material : Material
-    bore_diameter : float [mm], optional
-        Held rigid; default: 0.55 of the root diameter.
+    They follow the flanks without modifications: microns of material make no difference to the bending of teeth, and
+    variants of the micro-geometry share one model.
+
+    Raises
+    ------
+    InputError
+        If the bore reaches the teeth.
+    GeometryError
+        If the tooth is pointed or cut off.
     """
-
-    flanks: tuple[Flank, Flank]
-    form: ToothForm
-    material: Material = Material()
-    bore_diameter: float | None = None
-
-    def nodes(self, density: MeshDensity) -> BodyNodes:
-        """Nodes of the whole ring.
-
-        Raises
-        ------
-        InputError
-            If the bore reaches the teeth.
-        GeometryError
-            If the tooth is pointed or cut off.
-        """
-        resolution = Resolution(flank=65, fillet=65, land=9, lengthwise=2 * density.lengthwise + 1)
-        tooth = build_tooth(self.flanks, self.form, resolution)
-        root = np.hypot(*tooth.outline[0, :, :2].T)
-        bore = DEFAULT_BORE * root if self.bore_diameter is None else 0.5 * self.bore_diameter
-        return body_nodes(tooth, self.form.sections, bore, RingLayout(self.form.teeth, density))
+    resolution = Resolution(flank=65, fillet=65, land=9, lengthwise=2 * density.lengthwise + 1)
+    tooth = build_tooth(gear.nominal_flanks, gear.form, resolution)
+    sections, root = gear.form.sections, tooth.outline[0]
+    bore = gear.bore_radius(sections.coordinate(np.hypot(root[:, 0], root[:, 1]), root[:, 2]))
+    return body_nodes(tooth, sections, bore, RingLayout(gear.form.teeth, density))
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,20 +89,22 @@ class ToothFrame:
 
     Attributes
     ----------
-    gear : GearTooth
-    side : int
-        s of the flank in contact.
+    gear : Gear
     nodes : BodyNodes
     """
 
-    gear: GearTooth
-    side: int
+    gear: Gear
     nodes: BodyNodes
 
     @property
+    def side(self) -> int:
+        """The side s = +1 or -1 of the flank in contact."""
+        return self.gear.flank.side
+
+    @property
     def flank(self) -> Flank:
-        """The flank in contact."""
-        return self.gear.flanks[0 if self.side > 0 else 1]
+        """The flank in contact, without modifications."""
+        return self.gear.nominal_flank
 
     def _column(self, part: float, tooth: int = 0) -> int:
         """Column of nodes at a part of the thickness, 0 at s = -1 and 1 at s = +1."""

@@ -62,6 +62,8 @@ class BevelGear:
         delta_a and delta_f; None: pitch angle + atan((1 + x) m_et/R_e) and pitch angle - atan((1.25 - x) m_et/R_e).
     name : str
         What messages call this gear.
+    bore_diameter : float [mm], optional
+        For the compliance of the body.
 
     Raises
     ------
@@ -91,6 +93,7 @@ class BevelGear:
     face_angle: float | None = None
     root_angle: float | None = None
     name: str = "gear"
+    bore_diameter: float | None = None
 
     def __post_init__(self) -> None:
         problems = self._input_problems() or self._cone_problems()
@@ -103,8 +106,8 @@ class BevelGear:
         problems = []
         if not (isfinite(self.teeth) and self.teeth == int(self.teeth) and self.teeth >= 3):
             problems.append(f"teeth: {self.teeth} is not a whole number from 3 on")
-        for key in ("outer_module", "face_width"):
-            if not 0.0 < (value := getattr(self, key)) < float("inf"):
+        for key in ("outer_module", "face_width", "bore_diameter"):
+            if (value := getattr(self, key)) is not None and not 0.0 < value < float("inf"):
                 problems.append(f"{key}: {value} is not positive and finite")
         for key in ("pitch_angle", "face_angle", "root_angle"):
             if (angle := getattr(self, key)) is not None and not 0.0 < angle < pi:
@@ -139,6 +142,12 @@ class BevelGear:
             raise GeometryError(
                 f"{self.name}: the root cone, {_degrees(self.root_cone_angle)}, reaches the axis; raise profile_shift"
                 " or teeth"
+            )
+        largest = 2.0 * self.inner_cone_distance * sin(self.root_cone_angle)
+        if self.bore_diameter is not None and self.bore_diameter >= largest:
+            raise InputError(
+                f"{self.name}: bore_diameter: {self.bore_diameter:.6g} mm is not below the root diameter at the toe, "
+                f"{largest:.6g} mm"
             )
         face = f"{self.name}: the face cone, {_degrees(self.tip_angle)},"
         if self.tip_angle >= pi - self.base_angle:

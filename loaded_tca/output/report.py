@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.compliance.compliance import rigid_bores
 from loaded_tca.errors import InputError
 from loaded_tca.results.contacts import MAP_PARTS, NUMBERS, PAIRS, PATH_PARTS, contact_parts
 from loaded_tca.results.files import FilePath, Part, remove, replacing
@@ -99,7 +98,7 @@ def summary_json(result: MeshCycle) -> str:
         "face_width_mm": result.face_width,
         "wheel_base_radius_mm": result.wheel_base_radius,
         "mesh_stiffness_is": f"d(F_bt/b)/d(r_b2 TE); {result.yielding}",
-        "rigid_bore_diameters_mm": rigid_bores(parse_scene(result.scene_toml)),
+        "rigid_bore_diameters_mm": parse_scene(result.scene_toml).rigid_bores,
         "torques": [
             {**{name: _known(value, name) for name, value in figures.items()}, **_pair_at_peak(result, torque)}
             for torque, figures in enumerate(result.key_figures())

@@ -8,11 +8,10 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError
-from loaded_tca.pairs import MatingTeeth, mating_teeth
+from loaded_tca.pairs import MatingTeeth
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.scene import Scene
-from loaded_tca.tooth import Resolution, TriangleMesh, tooth_forms
+from loaded_tca.tooth import TriangleMesh
 from loaded_tca.unloaded import ContactPoint
 
 
@@ -58,30 +57,6 @@ class TeethInSpace:
         return float(self.pressure.cell_data["pressure_MPa"].max(initial=0.0))
 
 
-def complete_teeth(
-    scene: Scene, resolution: Resolution = Resolution(), *, fillet_radius: float | None = None
-) -> MatingTeeth:
-    """Complete teeth of both gears of a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-    resolution : Resolution
-    fillet_radius : float [mm], optional
-        Of arcs at the root, see :func:`loaded_tca.tooth.tooth_forms`.
-
-    Raises
-    ------
-    InputError
-        If the fillet radius does not fit.
-    GeometryError
-        If a tooth is pointed, or cut off by its undercut.
-    """
-    pair = scene.pair()
-    backs = scene.pair("negative" if pair.sense > 0 else "positive")
-    return mating_teeth(tooth_forms(scene.mesh(), fillet_radius=fillet_radius), pair, backs, resolution)
-
-
 def teeth_in_space(
     result: MeshCycle, teeth: MatingTeeth, position: int | None = None, torque: int | None = None
 ) -> TeethInSpace:
@@ -91,7 +66,7 @@ def teeth_in_space(
     ----------
     result : MeshCycle
     teeth : MatingTeeth
-        Of the scene of the result, see :func:`complete_teeth`.
+        Of the scene of the result: ``mating_teeth(scene.pair())``.
     position : int, optional
         Index along the path; default: that of the peak pressure, ``result.peak_position``.
     torque : int, optional

@@ -1,4 +1,4 @@
-"""Pairs of spur and helical gears: their mounting errors and their flanks."""
+"""Pairs of spur and helical gears, and their mounting errors."""
 
 from __future__ import annotations
 
@@ -9,13 +9,12 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.flanks.base import Flank
-from loaded_tca.flanks.cylindrical import InvoluteFlank
-from loaded_tca.flanks.modification import FlankModifications, modified
+from loaded_tca.flanks.modification import FlankModifications
 from loaded_tca.gears import CylindricalMesh
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense, require_finite, signs_of
+from loaded_tca.tooth.cylindrical import CylindricalTooth
 
 LARGEST_ANGLE = math.radians(45.0)
 """Angular errors stay below this [rad]: the axes are those of parallel gears, which still face each other."""
@@ -118,13 +117,22 @@ def cylindrical_pair(
     GearPair(34/57, module 3 mm, face 25 mm)
     """
     turning, drive = signs_of(driving, sense)
-    side = turning * drive
-    _require_less_than_a_turn(mesh)
-    flanks = [_involute_flank(mesh, member, side, modifications[member]) for member in (0, 1)]
+    radii = mesh.pinion_working_radius, mesh.wheel_working_radius
+    profiles = mesh.pinion_active_profile, mesh.wheel_active_profile
+    gears = []
+    for member, gear in enumerate((mesh.pinion, mesh.wheel)):
+        turn = gear.face_width * abs(math.tan(gear.base_helix_angle)) / gear.base_radius
+        if turn >= 2.0 * math.pi:  # in one position such teeth would be in mesh at two places
+            raise GeometryError(
+                f"{gear.name}: its teeth wind {turn / (2.0 * math.pi):.3g} times around the gear over its face width, "
+                f"{gear.face_width:.6g} mm; less than one turn is allowed"
+            )
+        tooth = CylindricalTooth(gear, radii[member], profiles[member], modifications[member])
+        gears.append(Gear.of(tooth, turning * drive, materials[member], gear.bore_diameter))
     origin, axes = mounting.place_parallel(mesh.working_centre_distance)
     return GearPair(
-        pinion=Gear(flanks[0], materials[0]),
-        wheel=Gear(flanks[1], materials[1]),
+        pinion=gears[0],
+        wheel=gears[1],
         teeth=(mesh.pinion.teeth, mesh.wheel.teeth),
         wheel_origin=origin,
         wheel_axes=axes,
@@ -134,34 +142,3 @@ def cylindrical_pair(
         base_radii=(mesh.pinion.base_radius, mesh.wheel.base_radius),
         face_width=min(mesh.pinion.face_width, mesh.wheel.face_width),
     )
-
-
-def _require_less_than_a_turn(mesh: CylindricalMesh) -> None:
-    """Refuse teeth that wind around their gear: in one position they would be in mesh at two places."""
-    for gear in (mesh.pinion, mesh.wheel):
-        turn = gear.face_width * abs(math.tan(gear.base_helix_angle)) / gear.base_radius
-        if turn >= 2.0 * math.pi:
-            raise GeometryError(
-                f"{gear.name}: its teeth wind {turn / (2.0 * math.pi):.3g} times around the gear over its face width, "
-                f"{gear.face_width:.6g} mm; less than one turn is allowed"
-            )
-
-
-def _involute_flank(mesh: CylindricalMesh, member: int, side: int, modifications: FlankModifications) -> Flank:
-    gear = (mesh.pinion, mesh.wheel)[member]
-    working_radius = (mesh.pinion_working_radius, mesh.wheel_working_radius)[member]
-    active = (mesh.pinion_active_profile, mesh.wheel_active_profile)[member]
-    nominal = InvoluteFlank(
-        gear.base_radius,
-        gear.base_helix_angle,
-        side,
-        working_radius,
-        (gear.form_radius, gear.tip_radius),
-        gear.face_width,
-    )
-    diameters = (2.0 * active.start_radius, 2.0 * active.end_radius)
-
-    def roll_length(diameter: float) -> float:
-        return gear.roll_length(0.5 * diameter)
-
-    return modified(nominal, modifications, gear.face_width, diameters, roll_length, owner=gear.name)

@@ -113,6 +113,25 @@ class GearPair:
             wheel=replace(self.wheel, flank=wheel or self.wheel.flank),
         )
 
+    @property
+    def rigid_bores(self) -> tuple[float, float]:
+        """Bore diameters of pinion and wheel [mm] that are held where teeth bend; the smallest one of a cone.
+
+        Raises
+        ------
+        InputError
+            If a bore leaves no rim below the teeth; every gear that it holds for is named.
+        """
+        bores, problems = [], []
+        for name, gear in (("pinion", self.pinion), ("wheel", self.wheel)):
+            try:
+                bores.append(gear.smallest_bore)
+            except InputError as error:
+                problems += [f"{name}: {problem}" for problem in error.problems]
+        if problems:
+            raise InputError(problems)
+        return bores[0], bores[1]
+
     def to_wheel(self, point: Array) -> tuple[Array, Array, Array]:
         """Cylindrical coordinates (rho, theta, z) of points (..., 3) in the wheel frame."""
         x, y, z = np.moveaxis((point - self.wheel_origin) @ self.wheel_axes.T, -1, 0)

@@ -16,7 +16,8 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
-from loaded_tca.output.teeth_in_space import TeethInSpace, complete_teeth, teeth_in_space
+from loaded_tca.output.teeth_in_space import TeethInSpace, teeth_in_space
+from loaded_tca.pairs import mating_teeth
 from loaded_tca.plots.style import ACCENT, COLOURS, load, place, set_title
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import parse_scene
@@ -57,7 +58,7 @@ def plot_teeth(result: MeshCycle, position: int | None = None, torque: int | Non
     ------
     InputError, GeometryError
         If nothing touches at that position, or there are no complete teeth, see
-        :func:`loaded_tca.output.teeth_in_space.complete_teeth`.
+        :func:`loaded_tca.pairs.mating_teeth`.
     """
     return draw_teeth(result, _shown(result, position, torque))
 
@@ -97,7 +98,7 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
 
 def _shown(result: MeshCycle, position: int | None, torque: int | None) -> TeethInSpace:
     """Teeth of the resolution of a picture, in place."""
-    return teeth_in_space(result, complete_teeth(parse_scene(result.scene_toml), DRAWN), position, torque)
+    return teeth_in_space(result, mating_teeth(parse_scene(result.scene_toml).pair(), DRAWN), position, torque)
 
 
 def _view(axes: Any, shown: TeethInSpace) -> None:

@@ -3,7 +3,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.output.teeth_in_space import complete_teeth, teeth_in_space
+from loaded_tca.output.teeth_in_space import teeth_in_space
+from loaded_tca.pairs import mating_teeth
 from loaded_tca.scene import parse_scene
 from loaded_tca.tooth import Resolution
 from tests.samples.results import result, with_a_gap
@@ -12,7 +13,7 @@ COARSE = Resolution(9, 5, 3, 5)
 
 
 def placed(cycle, **where):
-    return teeth_in_space(cycle, complete_teeth(parse_scene(cycle.scene_toml), COARSE), **where)
+    return teeth_in_space(cycle, mating_teeth(parse_scene(cycle.scene_toml).pair(), COARSE), **where)
 
 
 @pytest.mark.parametrize("name", ["helical", "straight_bevel", "spiral_bevel"])
@@ -38,9 +39,9 @@ def test_path_runs_through_the_contact_point_of_the_position(name):
 @pytest.mark.parametrize("changes", [{"pair.sense": "negative"}, {"pair.driving": "wheel"}])
 def test_any_sense_and_drive_brings_the_right_flanks_together(changes):
     scene = parse_scene(result("straight_bevel", positions=3).scene_toml).with_changes(changes)
-    teeth = complete_teeth(scene, COARSE)
+    teeth = mating_teeth(scene.pair(), COARSE)
     assert teeth.pair.pinion.flank.side == teeth.pair.sense * teeth.pair.driving
-    turned = complete_teeth(scene.with_changes({"pair.sense": None}), COARSE)
+    turned = mating_teeth(scene.with_changes({"pair.sense": None}).pair(), COARSE)
     assert_allclose(turned.pinion.outline, teeth.pinion.outline)  # the teeth themselves are the same
 
 
@@ -71,4 +72,4 @@ def test_positions_without_contact_have_no_place_on_the_path():
 def test_fillet_that_does_not_fit_is_refused():
     scene = parse_scene(result("straight_bevel", positions=3).scene_toml)
     with pytest.raises(InputError, match="pinion: fillet_radius: 9 mm does not fit"):
-        complete_teeth(scene, COARSE, fillet_radius=9.0)
+        mating_teeth(scene.pair(), COARSE, fillet_radius=9.0)

@@ -11,7 +11,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca import AccuracyWarning, InputError, analyse, load_result, read_scene
 from loaded_tca.output.report import positions_csv, summary_json
-from loaded_tca.output.teeth_in_space import complete_teeth, teeth_in_space
+from loaded_tca.output.teeth_in_space import teeth_in_space
+from loaded_tca.pairs import mating_teeth
 from loaded_tca.plots import PICTURES, plot_all
 from loaded_tca.results.contacts import NUMBERS, ContactNumbers, _peaks_at_end
 from loaded_tca.results.files import read_netcdf, write_netcdf
@@ -266,7 +267,7 @@ def test_teeth_are_placed_where_the_pair_with_the_pressure_stands():
     result = cycle(positions=9, torques=(130.0,))
     columns = result.contacts.highest_inner[0]
     position = int(np.flatnonzero(columns > 0)[0])
-    teeth = complete_teeth(parse_scene(result.scene_toml))
+    teeth = mating_teeth(parse_scene(result.scene_toml).pair())
     shown = teeth_in_space(result, teeth, position, 0)
     one = result.contacts.maps[0][position][columns[position]]
     cells = shown.pressure.vertices

@@ -25,7 +25,6 @@ from loaded_tca.compliance import tooth_compliance
 from loaded_tca.compliance.kept import FOLDER, forget
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
-from loaded_tca.tooth import tooth_forms
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
 NAMES = ("mesh_cycle_spur", "mesh_cycle_helical", "mesh_cycle_bevel")
@@ -87,13 +86,12 @@ def cycles(names: tuple[str, ...] = NAMES, runs: int = RUNS) -> str:
 
 def _seconds_of_models(scene: Scene) -> float:
     """Time of making the models of both gears anew."""
-    pair, backs = (scene.pair(sense) for sense in ("positive", "negative"))
-    forms = tooth_forms(scene.mesh())
+    pair = scene.pair()
     kept = os.environ.get(FOLDER)
     os.environ[FOLDER] = "off"
     forget()
     begin = time.perf_counter()
-    tooth_compliance(forms, pair, backs, neighbours=NEIGHBOURS)
+    tooth_compliance(pair, neighbours=NEIGHBOURS)
     seconds = time.perf_counter() - begin
     os.environ.pop(FOLDER)
     if kept is not None:
