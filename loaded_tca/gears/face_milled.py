@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite, sin
+from math import sin
 
 from loaded_tca.errors import InputError
+from loaded_tca.gears.checks import teeth_problems
 from loaded_tca.gears.cutter import BLADE_SIGNS, Cutter, FlankName
 from loaded_tca.gears.machine_settings import FaceMilledBlank, MachineSettings
 
@@ -40,14 +41,15 @@ class FaceMilledGear:
     bore_diameter: float | None = None
 
     def __post_init__(self) -> None:
-        if not (isfinite(self.teeth) and self.teeth == int(self.teeth) and self.teeth >= 3):
-            raise InputError(f"{self.name}: teeth: {self.teeth} is not a whole number from 3 on")
+        problems = teeth_problems(self.teeth)
         largest = 2.0 * self.blank.cone_distances[0] * sin(self.blank.root_angle)
         if self.bore_diameter is not None and not 0.0 < self.bore_diameter < largest:
-            raise InputError(
-                f"{self.name}: bore_diameter: {self.bore_diameter:.6g} mm is not below the root diameter at the toe, "
+            problems.append(
+                f"bore_diameter: {self.bore_diameter:.6g} mm is not below the root diameter at the toe, "
                 f"{largest:.6g} mm"
             )
+        if problems:
+            raise InputError(f"{self.name}: {problem}" for problem in problems)
 
     @property
     def mirror(self) -> int:

@@ -68,10 +68,7 @@ class BevelMounting:
 def bevel_pair(
     mesh: BevelMesh,
     *,
-    modifications: tuple[FlankModifications, FlankModifications] = (
-        FlankModifications(),
-        FlankModifications(),
-    ),
+    modifications: tuple[FlankModifications, FlankModifications] = (FlankModifications(), FlankModifications()),
     mounting: BevelMounting = BevelMounting(),
     materials: tuple[Material, Material] = (Material(), Material()),
     driving: Driving = "pinion",

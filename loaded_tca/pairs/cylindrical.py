@@ -48,11 +48,10 @@ class Mounting:
 
     def __post_init__(self) -> None:
         require_finite(self, ("rad", "rad", "mm", "mm"))
-        limit = f"is not between -{math.degrees(LARGEST_ANGLE):.3g} and {math.degrees(LARGEST_ANGLE):.3g} deg"
-        angles = {"in_plane": self.in_plane, "out_of_plane": self.out_of_plane}
         problems = [
-            f"{name}: {angle:.6g} rad, {math.degrees(angle):.6g} deg, {limit}: the axes are nearly parallel"
-            for name, angle in angles.items()
+            f"{name}: {angle:.6g} rad, {math.degrees(angle):.6g} deg, is not between -45 and 45 deg: the axes are "
+            "nearly parallel"
+            for name, angle in (("in_plane", self.in_plane), ("out_of_plane", self.out_of_plane))
             if abs(angle) >= LARGEST_ANGLE
         ]
         if problems:
@@ -60,15 +59,10 @@ class Mounting:
 
     def place_parallel(self, centre_distance: float) -> tuple[Array, Array]:
         """Origin (3,) and axes (3, 3), in rows, of the wheel frame: R_y(gamma) R_x(delta) about its mid-face."""
-        gamma, delta = self.in_plane, self.out_of_plane
-        about_x = np.array(
-            [[1, 0, 0], [0, math.cos(delta), -math.sin(delta)], [0, math.sin(delta), math.cos(delta)]],
-            dtype=float,
-        )
-        about_y = np.array(
-            [[math.cos(gamma), 0, math.sin(gamma)], [0, 1, 0], [-math.sin(gamma), 0, math.cos(gamma)]],
-            dtype=float,
-        )
+        sin_gamma, cos_gamma = math.sin(self.in_plane), math.cos(self.in_plane)
+        sin_delta, cos_delta = math.sin(self.out_of_plane), math.cos(self.out_of_plane)
+        about_x = np.array([[1.0, 0.0, 0.0], [0.0, cos_delta, -sin_delta], [0.0, sin_delta, cos_delta]])
+        about_y = np.array([[cos_gamma, 0.0, sin_gamma], [0.0, 1.0, 0.0], [-sin_gamma, 0.0, cos_gamma]])
         nominal = np.diag([-1.0, -1.0, 1.0])
         origin = np.array([centre_distance + self.centre_distance_error, 0.0, self.axial_offset])
         return origin, nominal @ (about_y @ about_x).T
@@ -77,10 +71,7 @@ class Mounting:
 def cylindrical_pair(
     mesh: CylindricalMesh,
     *,
-    modifications: tuple[FlankModifications, FlankModifications] = (
-        FlankModifications(),
-        FlankModifications(),
-    ),
+    modifications: tuple[FlankModifications, FlankModifications] = (FlankModifications(), FlankModifications()),
     mounting: Mounting = Mounting(),
     materials: tuple[Material, Material] = (Material(), Material()),
     driving: Driving = "pinion",

@@ -30,10 +30,7 @@ def face_milled_pair(
     pinion_flank: FlankName = "concave",
     driving: Driving = "pinion",
     shaft_angle: float | None = None,
-    modifications: tuple[FlankModifications, FlankModifications] = (
-        FlankModifications(),
-        FlankModifications(),
-    ),
+    modifications: tuple[FlankModifications, FlankModifications] = (FlankModifications(), FlankModifications()),
     mounting: BevelMounting = BevelMounting(),
     materials: tuple[Material, Material] = (Material(), Material()),
     exact: bool = False,

@@ -18,7 +18,7 @@ point of the mid-face section. Mounting errors are counted in the fixed frame, w
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -35,16 +35,13 @@ Sense = Literal["positive", "negative"]
 
 def require_finite(errors: Any, units: tuple[str, ...]) -> None:
     """Refuse a dataclass of mounting errors of which one is not finite, naming each with its unit."""
-    values = [
-        (entry.name, getattr(errors, entry.name), unit) for entry, unit in zip(fields(errors), units, strict=True)
+    problems = [
+        f"{name}: {value!r} {unit} is not finite"
+        for (name, value), unit in zip(vars(errors).items(), units, strict=True)
+        if not (isinstance(value, int | float | np.number) and math.isfinite(value))
     ]
-    problems = [f"{name}: {value!r} {unit} is not finite" for name, value, unit in values if not _is_finite(value)]
     if problems:
         raise InputError(problems)
-
-
-def _is_finite(value: Any) -> bool:
-    return isinstance(value, int | float | np.number) and math.isfinite(value)
 
 
 @dataclass(frozen=True, eq=False)
