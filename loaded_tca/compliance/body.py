@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize.elementwise import bracket_root, find_root
 from scipy.sparse import csr_array
 
 from loaded_tca.arrays import Array, Indices
@@ -17,7 +18,6 @@ from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.tooth.build import Resolution, build_tooth
 
-BISECTIONS = 50
 FIRST_CHORD = 0.25
 """First guess of the distance from a flank to the middle of the tooth, over the height of the flank."""
 
@@ -143,30 +143,17 @@ class ToothFrame:
 
     def _depth(self, point: Array, normal: Array, scale: float) -> Array:
         """Distances (m,) along the normals to the middle of the tooth [mm]."""
-
-        def beyond(depth: Array) -> Array:
-            place = point - depth[:, None] * normal
-            azimuth = np.arctan2(place[:, 1], place[:, 0])
-            return self.side * (azimuth - self._middle_angle(place))
-
-        low, high = np.zeros(len(point)), np.full(len(point), FIRST_CHORD * scale)
-        for _ in range(BISECTIONS):
-            far = beyond(high) > 0.0
-            if not far.any():
-                break
-            high = np.where(far, 1.5 * high, high)
-        for _ in range(BISECTIONS):
-            middle = 0.5 * (low + high)
-            outside = beyond(middle) > 0.0
-            low, high = np.where(outside, middle, low), np.where(outside, high, middle)
-        return 0.5 * (low + high)
-
-    def _middle_angle(self, place: Array) -> Array:
-        """Azimuth (m,) of the middle of the tooth at half the height of the flank, in the sections of points (m, 3)."""
-        where = self.nodes.sections.coordinate(np.hypot(place[:, 0], place[:, 1]), place[:, 2])
         rows = self._flank_rows()
-        angle = self.nodes.angle[self._column(0.5), (rows.start + rows.stop) // 2]
-        return np.interp(where, self.nodes.coordinate, angle)
+        middle = self.nodes.angle[self._column(0.5), (rows.start + rows.stop) // 2]  # half way up the flank
+
+        def beyond(depth: Array, number: Indices) -> Array:
+            x, y, z = (point[number] - depth[:, None] * normal[number]).T
+            where = self.nodes.sections.coordinate(np.hypot(x, y), z)
+            return self.side * (np.arctan2(y, x) - np.interp(where, self.nodes.coordinate, middle))
+
+        every = (np.arange(len(point)),)
+        found = bracket_root(beyond, np.zeros(len(point)), FIRST_CHORD * scale, xmin=0.0, args=every)
+        return np.asarray(find_root(beyond, found.bracket, args=every).x)
 
     def on_flank(self, places: FlankPlaces, number: Indices) -> SurfacePlaces:
         """Places among the nodes (columns, rows, layers) numbered ``number``, on the flank in contact."""

@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize.elementwise import find_root
 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.layout import MeshDensity, RingLayout, SectorLayout
@@ -28,7 +29,6 @@ GROWTH = 1.8
 """Each layer of the rim is so much thicker than the one above."""
 SHARP = math.pi / 3.0
 """Bend of an edge between its halves from which it is made straight; 29 deg on usual teeth, 66 where one folded."""
-BISECTIONS = 60
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +113,13 @@ def body_nodes(tooth: ToothSurface, sections: Sections, bore_radius: Array, layo
     rho, z = np.hypot(outline[..., 0], outline[..., 1]), outline[..., 2]
     coordinate = sections.coordinate(rho[0], z[0])
     polar = sections.radius(rho, z), np.unwrap(np.arctan2(outline[..., 1], outline[..., 0]), axis=0)
-    bore = _image_of_circle(sections, bore_radius, coordinate, polar[0].min(axis=0))
+    lowest = polar[0].min(axis=0)
+
+    def beyond_bore(image: Array, section: Array, rho: Array) -> Array:
+        return sections.point(image, section)[0] - rho
+
+    circles = coordinate, np.broadcast_to(bore_radius, lowest.shape)
+    bore = find_root(beyond_bore, (0.0 * lowest, lowest), args=circles).x
     sides = _side(tooth, polar, 1), _side(tooth, polar, -1)
     radius, angle = (np.full((*layout.shape, len(coordinate)), np.nan) for _ in range(2))
     for sector in layout.sectors:
@@ -201,13 +207,3 @@ def _interpolated(wanted: Array, places: Array, values: Array) -> Array:
     """Values (n, k) at places (n, k), between those of increasing places (m, k)."""
     columns = [np.interp(wanted[:, k], places[:, k], values[:, k]) for k in range(places.shape[1])]
     return np.stack(columns, axis=-1)
-
-
-def _image_of_circle(sections: Sections, rho: Array, coordinate: Array, largest: Array) -> Array:
-    """Radii (k,) of the images of circles about the axis, below ``largest``."""
-    low, high = 0.0 * largest, largest
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        below = sections.point(middle, coordinate)[0] < rho
-        low, high = np.where(below, middle, low), np.where(below, high, middle)
-    return 0.5 * (low + high)
