@@ -22,8 +22,8 @@ def main() -> float:
     save_figure(plot_transmission_error(result), "transmission_error.png")
 
     pitch_point = len(result.path) // 2
-    lag = -result.transmission_error[:, pitch_point]  # rad
-    return math.log(lag[-1] / lag[0]) / math.log(TORQUES[-1] / TORQUES[0])
+    error = result.transmission_error[:, pitch_point]  # rad
+    return math.log(error[-1] / error[0]) / math.log(TORQUES[-1] / TORQUES[0])
 
 
 if __name__ == "__main__":
