@@ -33,7 +33,7 @@ def main() -> float:
 
     sizes = np.linalg.norm(shown.pressure.normals, axis=1)  # mm2
     carried = float((sizes * shown.pressure.cell_data["pressure_MPa"]).sum())  # N
-    return carried / float(result.normal_force[middle])
+    return carried / float(result.normal_force[0, middle, 0])
 
 
 if __name__ == "__main__":

@@ -168,7 +168,7 @@ def _parser() -> argparse.ArgumentParser:
     below.add_argument("result", metavar="DIR|FILE", type=Path, help="result.nc, or the directory that holds it")
     below.add_argument("--out", metavar="DIR", type=Path, help="directory for the files; default: beside the result")
     below.add_argument("--torque", metavar="NM", type=float, help="pinion torque; default: largest")
-    first = "default: that of the first number of the summary"
+    first = "default: that of the peak pressure of the summary"
     below.add_argument("--position", metavar="N", type=int, help=f"position, from 1; {first}")
     below.add_argument("--pair", metavar="K", type=int, help=f"tooth pair, as load_share.png counts; {first}")
     below.add_argument(
@@ -253,13 +253,12 @@ def _tooth(options: argparse.Namespace) -> None:
     from loaded_tca.pairs import mating_teeth
     from loaded_tca.plots import save_figure
     from loaded_tca.plots.three_d import draw_teeth
-    from loaded_tca.scene import parse_scene
 
     result, directory = _loaded(options)
     torque, position = _chosen_torque(result, options.torque), _chosen_position(result, options.position)
-    teeth = mating_teeth(parse_scene(result.scene_toml).pair(), fillet_radius=options.fillet_radius)
+    teeth = mating_teeth(result.gear_pair, fillet_radius=options.fillet_radius)
     shown = teeth_in_space(result, teeth, position, torque)
-    written = write_teeth(shown, teeth, directory, title=result.title, whole_gears=options.whole_gears)
+    written = write_teeth(shown, teeth, directory, title=result.scene.title, whole_gears=options.whole_gears)
     save_figure(draw_teeth(result, shown), directory / "teeth.png")
     _print_files([*written, directory / "teeth.png"])
 
@@ -325,7 +324,7 @@ def _chosen_position(result: MeshCycle, wanted: int | None) -> int | None:
     if not 1 <= wanted <= len(result.path):
         raise InputError(f"--position {wanted}: the result has the positions 1 to {len(result.path)}")
     if not result.path.in_contact[wanted - 1]:
-        raise InputError(f"--position {wanted}: the tooth pair does not touch there")
+        raise InputError(f"--position {wanted}: no tooth pair is in contact there")
     return wanted - 1
 
 
@@ -361,7 +360,7 @@ def _check_place(directory: Path) -> None:
 def _progress_bar(torques: int, positions: int) -> Iterator[Callable[[int, int], None] | None]:
     """A bar on a terminal, with what is done, of how much, and the time left; nothing in a file or a pipe.
 
-    It is there from the start: before the first position teeth that yield are modelled.
+    It is there from the start: before the first position teeth that bend are modelled.
     """
     if not sys.stderr.isatty():
         yield None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -15,9 +17,8 @@ from loaded_tca.arrays import Array
 from loaded_tca.flanks.base import Flank
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.plots.style import ACCENT, COLOURS, NOT_REACHED, highest_torque, load, range_of_positions, set_title
-from loaded_tca.results.contacts import PressureMap
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.scene import parse_scene
+from loaded_tca.results.pressure_map import PressureMap
 
 CONTACT_POINTS = "unloaded contact points of all positions and pairs"
 MOST_AREAS = 7
@@ -45,15 +46,17 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     torque = highest_torque(result) if torque is None else torque
     figure = Figure(figsize=(11.0, 5.5), layout="constrained")
     panels = figure.subplots(1, 2)
-    scene = parse_scene(result.scene_toml)
-    starts, pair, paths = scene.active_starts(), scene.pair(), result.contacts.paths
+    scene, pair, paths = result.scene, result.gear_pair, result.paths
+    starts = scene.active_starts()
     sides = (
         (pair.pinion.flank, starts[0], [(path.pinion_radius, path.pinion_axial) for path in paths]),
         (pair.wheel.flank, starts[1], [(path.wheel_radius, path.wheel_axial) for path in paths]),
     )
-    drawn = _drawn_maps(result, torque)
+    last = len(result.path) - 1
+    positions = sorted({round(last * part / (MOST_AREAS - 1)) for part in range(MOST_AREAS)})
+    drawn = [row for row in (loaded_maps(result, torque, [position]) for position in positions) if row]
     maps = [one for row in drawn for one in row]
-    scale = Normalize(0.0, highest_inner_pressure(result, torque, maps))
+    scale = Normalize(0.0, highest_mesh_independent_pressure(result, torque, maps))
     for axes, name, (flank, start, points) in zip(panels, scene.flank_names, sides, strict=True):
         outline = draw_flank(axes, name, flank, start)
         for one in maps:
@@ -71,26 +74,18 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     return figure
 
 
-def pressed_maps(result: MeshCycle, torque: int) -> list[PressureMap]:
-    """Maps under pressure, of all pairs and positions."""
-    return [one for row in result.contacts.maps[torque] for one in row if one is not None and one.pressure.any()]
+def loaded_maps(result: MeshCycle, torque: int, positions: Sequence[int] | None = None) -> list[PressureMap]:
+    """Maps under pressure, of all pairs, at all positions or some."""
+    rows = result.maps[torque] if positions is None else [result.maps[torque][position] for position in positions]
+    return [one for row in rows for one in row if one is not None and one.pressure.any()]
 
 
-def highest_inner_pressure(result: MeshCycle, torque: int, maps: list[PressureMap]) -> float:
-    """Highest pressure that is no matter of the grid [MPa]; the highest at all if there is none: the end of a scale."""
-    inner = result.contacts.inner_pressure[torque]
-    if np.isfinite(inner).any():
-        return float(np.nanmax(inner)) or 1.0
+def highest_mesh_independent_pressure(result: MeshCycle, torque: int, maps: list[PressureMap]) -> float:
+    """Highest mesh-independent pressure [MPa], the end of a scale; the highest at all if there is none."""
+    known = result.mesh_independent_pressure[torque]
+    if np.isfinite(known).any():
+        return float(np.nanmax(known)) or 1.0
     return max((float(one.pressure.max()) for one in maps), default=1.0)
-
-
-def _drawn_maps(result: MeshCycle, torque: int) -> list[list[PressureMap]]:
-    """Maps under pressure, of all pairs, of few enough positions to be told apart."""
-    last = len(result.path) - 1
-    positions = sorted({round(last * part / (MOST_AREAS - 1)) for part in range(MOST_AREAS)})
-    rows = (result.contacts.maps[torque][position] for position in positions)
-    pressed = ([one for one in row if one is not None and one.pressure.any()] for row in rows)
-    return [row for row in pressed if row]
 
 
 def _explain(figure: Figure, drawn: int, positions: int, unreached: bool) -> None:

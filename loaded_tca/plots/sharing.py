@@ -16,7 +16,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.plots.flanks import draw_flank, highest_inner_pressure, on_gear, pressed_maps
+from loaded_tca.plots.flanks import draw_flank, highest_mesh_independent_pressure, loaded_maps, on_gear
 from loaded_tca.plots.style import (
     COLOURS,
     HERTZ,
@@ -31,12 +31,11 @@ from loaded_tca.plots.style import (
     torque_styles,
     widen,
 )
-from loaded_tca.results.contacts import PressureMap
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.scene import parse_scene
+from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.unloaded import trace_contact
 
-EDGE = "contact at an edge (its peak grows with the grid)"
+EDGE = "contact at an edge (its peak is mesh-dependent)"
 ROW_OF_ENDS, MOST_ROWS = 0.035, 4
 """Height of a row of such marks over that of the axis, and how many rows there are at most."""
 WHAT_LETTERS_ARE = "A, E: the unloaded contact of these flanks begins, ends; B, D: a pitch from E, A; C: pitch point"
@@ -72,12 +71,12 @@ def plot_load_share(result: MeshCycle, torque: int | None = None) -> Figure:
     for axes, index in zip(panels, shown, strict=True):
         _draw_shares(axes, result, index)
         torque_label, colour, _ = styles[index]
-        below.step(angle, result.by_torque("loaded_pairs")[index], where="mid", color=colour, label=torque_label)
+        below.step(angle, result.loaded_pairs[index], where="mid", color=colour, label=torque_label)
         if len(shown) > 1:
             axes.set_title(load(result, index).partition(" (")[0], fontsize="small")
     below.set_ylabel("pairs\nunder load")
-    below.set_ylim(0.0, len(result.pairs) + 0.5)
-    below.set_yticks(range(len(result.pairs) + 1))
+    below.set_ylim(0.0, len(result.pair) + 0.5)
+    below.set_yticks(range(len(result.pair) + 1))
     if len(shown) > 1:
         below.legend(loc="lower right", ncols=len(shown), fontsize="x-small")
     below.set_xlabel("pinion angle [deg]")
@@ -97,9 +96,8 @@ def _shown_torques(result: MeshCycle) -> list[int]:
 
 def _draw_shares(axes: Axes, result: MeshCycle, torque: int) -> None:
     """One curve per tooth pair, in the order of the mesh."""
-    angle, order = np.degrees(result.pinion_angle), np.argsort(result.pairs)
-    shares = result.load_share.reshape(len(result.torque), len(angle), len(result.pairs))[torque]
-    for number, share in zip(result.pairs[order], shares.T[order], strict=True):
+    angle = np.degrees(result.pinion_angle)
+    for number, share in zip(result.pair, result.load_share[torque].T, strict=True):
         marker = MARKERS[int(number) % len(MARKERS)]
         axes.plot(angle, 100.0 * share, marker=marker, markersize=4.0, label=f"tooth pair {signed(int(number))}")
     axes.set_ylabel("share of\nthe torque [%]")
@@ -119,15 +117,14 @@ def plot_mesh_stiffness(result: MeshCycle) -> Figure:
     matplotlib.figure.Figure
     """
     figure, axes = _one_panel()
-    tangent, secant = result.by_torque("mesh_stiffness"), result.by_torque("secant_stiffness")
     for torque, label, colour, marker in torque_styles(result):
         angle = np.degrees(result.pinion_angle)
-        axes.plot(angle, tangent[torque], color=colour, marker=marker, markersize=4.0, label=label)
-        axes.plot(angle, secant[torque], color=colour, marker=".", markersize=3.0, linestyle=":")
+        axes.plot(angle, result.mesh_stiffness[torque], color=colour, marker=marker, markersize=4.0, label=label)
+        axes.plot(angle, result.secant_stiffness[torque], color=colour, marker=".", markersize=3.0, linestyle=":")
     axes.plot([], [], color="black", linestyle=":", label="secant, from no load")
     axes.set_ylabel("mesh stiffness [N/(mm µm)]")
     from_zero(axes)
-    return _finished(figure, axes, result, f"mesh stiffness, {result.yielding}, {loads(result)}")
+    return _finished(figure, axes, result, f"mesh stiffness, {result.bending}, {loads(result)}")
 
 
 def plot_line_load(result: MeshCycle) -> Figure:
@@ -142,7 +139,7 @@ def plot_line_load(result: MeshCycle) -> Figure:
     matplotlib.figure.Figure
     """
     figure, axes = _one_panel()
-    line_load = result.by_torque("line_load")
+    line_load = result.at_position("line_load")
     for torque, label, colour, marker in torque_styles(result):
         axes.plot(
             np.degrees(result.pinion_angle), line_load[torque], color=colour, marker=marker, markersize=4.0, label=label
@@ -198,8 +195,8 @@ def plot_pressure_envelope(result: MeshCycle, torque: int | None = None) -> Figu
     matplotlib.figure.Figure
     """
     torque = highest_torque(result) if torque is None else torque
-    maps = pressed_maps(result, torque)
-    scale = Normalize(0.0, highest_inner_pressure(result, torque, maps))
+    maps = loaded_maps(result, torque)
+    scale = Normalize(0.0, highest_mesh_independent_pressure(result, torque, maps))
 
     def draw(axes: Axes, pair: GearPair, flank: Flank) -> PolyCollection:
         cells, pressure = _cells(maps, pair, flank)
@@ -229,7 +226,7 @@ def plot_line_load_distribution(result: MeshCycle, torque: int | None = None) ->
     matplotlib.figure.Figure
     """
     torque = highest_torque(result) if torque is None else torque
-    lines = [_line_load(one) for one in pressed_maps(result, torque)]
+    lines = [_line_load(one) for one in loaded_maps(result, torque)]
     scale = Normalize(0.0, max((float(line_load.max()) for _, line_load in lines), default=1.0))
 
     def draw(axes: Axes, pair: GearPair, flank: Flank) -> LineCollection:
@@ -254,8 +251,7 @@ def _both_flanks(
 ) -> tuple[Figure, list[Axes]]:
     """A panel for each flank, with what is drawn cut off at its outline."""
     figure = Figure(figsize=(11.0, 5.5), layout="constrained")
-    scene = parse_scene(result.scene_toml)
-    pair, panels = scene.pair(), list(figure.subplots(1, 2))
+    scene, pair, panels = result.scene, result.gear_pair, list(figure.subplots(1, 2))
     sides = zip(panels, scene.flank_names, (pair.pinion.flank, pair.wheel.flank), scene.active_starts(), strict=True)
     for axes, name, flank, start in sides:
         outline = draw_flank(axes, name, flank, start)
@@ -266,7 +262,7 @@ def _both_flanks(
 
 
 def _line_load(one: PressureMap) -> tuple[Array, Array]:
-    """Middles (k, 3) of the pressure of the loaded columns of a map, in the fixed frame, and line load (k,) [N/mm]."""
+    """Middles (k, 3) of the pressure of the loaded slices of a map, in the fixed frame, and line load (k,) [N/mm]."""
     sums = one.pressure.sum(axis=0)
     loaded = sums > 0.0
     across = one.x @ one.pressure[:, loaded] / sums[loaded]
@@ -279,7 +275,7 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
 
     For a spur pair that is the pressure from A to E, single contact from B to D. Dotted lines mark where the unloaded
     contact point comes into the flanks and leaves them (A, E), a pitch before the end and after the begin (B, D: only
-    one pair touches between them without load, if they lie in this order) and the pitch point (C).
+    one pair is in contact between them without load, if they lie in this order) and the pitch point (C).
 
     Parameters
     ----------
@@ -290,12 +286,13 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
     matplotlib.figure.Figure
     """
     figure, axes = _one_panel()
-    contacts, pair = result.contacts, parse_scene(result.scene_toml).pair()
-    inner, peak, hertz = contacts.inner_pressure, contacts.peak_pressure, contacts.hertz_pressure
-    angle = np.degrees(result.pinion_angle[:, None] - pair.pitch * result.pairs).ravel()
+    pair, hertz = result.gear_pair, result.hertz_pressure
+    angle = np.degrees(result.pinion_angle[:, None] - pair.pitch * result.pair).ravel()
     order, ends = np.argsort(angle, kind="stable"), []
     for torque, label, colour, marker in torque_styles(result):
-        curve, largest, ellipse = (values[torque].ravel()[order] for values in (inner, peak, hertz))
+        curve, largest, ellipse = (
+            values[torque].ravel()[order] for values in (result.mesh_independent_pressure, result.peak_pressure, hertz)
+        )
         known = np.isfinite(curve)
         axes.plot(angle[order][known], curve[known], color=colour, marker=marker, markersize=4.0, label=label)
         axes.plot(angle[order], ellipse, color=colour, **HERTZ)
@@ -336,7 +333,7 @@ def _leaves_flanks(pair: GearPair, farthest: float) -> float:
         angles = np.linspace(low, high, FINENESS)
         try:
             path = trace_contact(pair, angles, warn=False)
-        except GeometryError:  # nothing touches on that side
+        except GeometryError:  # nothing is in contact on that side
             return math.nan
         outside = path.on_edge | ~path.in_contact
         if not outside.any() or outside[0]:
@@ -347,7 +344,7 @@ def _leaves_flanks(pair: GearPair, farthest: float) -> float:
 
 
 def _draw_ends(axes: Axes, ends: list[tuple[Array, str]]) -> None:
-    """Arrows above the curves, a row for each torque, where a contact lies on an edge: the grid alone says its peak."""
+    """Arrows above the curves, a row for each torque, where a contact lies on an edge: its peak is mesh-dependent."""
     rows = [(angles, colour) for angles, colour in ends if angles.size]
     from_zero(axes, 1.0 - ROW_OF_ENDS * (min(len(rows), MOST_ROWS) + 1.0) if rows else 1.0)
     for row, (angles, colour) in enumerate(reversed(rows)):

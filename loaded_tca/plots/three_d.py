@@ -20,7 +20,6 @@ from loaded_tca.output.teeth_in_space import TeethInSpace, teeth_in_space
 from loaded_tca.pairs import mating_teeth
 from loaded_tca.plots.style import ACCENT, COLOURS, load, place, set_title
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.scene import parse_scene
 from loaded_tca.tooth import PATCHES, Resolution, TriangleMesh
 
 if TYPE_CHECKING:
@@ -46,7 +45,7 @@ def plot_teeth(result: MeshCycle, position: int | None = None, torque: int | Non
     ----------
     result : MeshCycle
     position : int, optional
-        Index along the path; default: that of the peak pressure, ``result.peak_position``.
+        Index along the path; default: that of the peak pressure, ``result.peak_contact``.
     torque : int, optional
         Index of the torque; default: the largest one.
 
@@ -57,7 +56,7 @@ def plot_teeth(result: MeshCycle, position: int | None = None, torque: int | Non
     Raises
     ------
     InputError, GeometryError
-        If nothing touches at that position, or there are no complete teeth, see
+        If nothing is in contact at that position, or there are no complete teeth, see
         :func:`loaded_tca.pairs.mating_teeth`.
     """
     return draw_teeth(result, _shown(result, position, torque))
@@ -91,14 +90,14 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
     axes.add_collection3d(_lines(shown.wheel, side))
     _explain(figure)
     what = "teeth in contact" if shown.highest_pressure > 0.0 else "teeth, no load, no pressure"
-    where = place(result, shown.position, shown.pair.pinion.flank.frame)
+    where = place(result, shown.position, shown.pair.pinion.flank.frame, shown.column)
     set_title(figure, result, f"{what}, {load(result, shown.torque)}", *where)
     return figure
 
 
 def _shown(result: MeshCycle, position: int | None, torque: int | None) -> TeethInSpace:
     """Teeth of the resolution of a picture, in place."""
-    return teeth_in_space(result, mating_teeth(parse_scene(result.scene_toml).pair(), DRAWN), position, torque)
+    return teeth_in_space(result, mating_teeth(result.gear_pair, DRAWN), position, torque)
 
 
 def _view(axes: Any, shown: TeethInSpace) -> None:
@@ -163,7 +162,7 @@ def show_teeth(
     InputError
         If pyvista is not installed.
     GeometryError
-        If nothing touches at that position.
+        If nothing is in contact at that position.
     """
     try:
         import pyvista
