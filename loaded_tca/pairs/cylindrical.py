@@ -19,6 +19,9 @@ from loaded_tca.tooth.cylindrical import CylindricalTooth
 LARGEST_ANGLE = math.radians(45.0)
 """Angular errors stay below this [rad]: the axes are those of parallel gears, which still face each other."""
 
+LARGEST_TURN = 2.0 * math.pi
+"""Teeth wind by less than this around their gear [rad]: others would be in mesh at two places of one position."""
+
 
 @dataclass(frozen=True)
 class Mounting:
@@ -113,7 +116,7 @@ def cylindrical_pair(
     gears = []
     for member, gear in enumerate((mesh.pinion, mesh.wheel)):
         turn = gear.face_width * abs(math.tan(gear.base_helix_angle)) / gear.base_radius
-        if turn >= 2.0 * math.pi:  # in one position such teeth would be in mesh at two places
+        if turn >= LARGEST_TURN:
             raise GeometryError(
                 f"{gear.name}: its teeth wind {turn / (2.0 * math.pi):.3g} times around the gear over its face width, "
                 f"{gear.face_width:.6g} mm; less than one turn is allowed"
