@@ -142,7 +142,7 @@ class ContactPattern:
 
 
 def flank_gap(
-    pair: GearPair, gear: Gear, angles: tuple[Array, Array], place: tuple[Array, Array]
+    pair: GearPair, gear: Gear, angles: tuple[Any, Any], place: tuple[Array, Array]
 ) -> tuple[Array, Array, Array]:
     """Gap at points of one flank, to first order, and the same points on the mating gear.
 
@@ -151,7 +151,7 @@ def flank_gap(
     pair : GearPair
     gear : {"pinion", "wheel"}
         The gear whose flank the points lie on.
-    angles : two arrays [rad]
+    angles : two floats or arrays [rad]
         phi1 and phi2 at which the gears stand; they broadcast against the points.
     place : two arrays [mm]
         rho and z of the points.
@@ -165,22 +165,18 @@ def flank_gap(
     """
     if gear == "wheel":
         pair, angles = exchanged(pair), angles[::-1]
-    gap, radius, axial = _endless_gap(pair, angles[1], _in_space(pair, angles[0], *place))
-    return np.where(pair.wheel.flank.inside(radius, axial), gap, np.inf), radius, axial
+    point = _in_space(pair, angles[0], *place)
+    radius, theta, axial = pair.to_wheel(point)
+    jet = pair.wheel.flank.theta(radius, axial)
+    apart = pair.driving * (angles[1] - pair.sense * (jet.value - theta))
+    lever = 1.0 / np.sqrt(jet.rho**2 + 1.0 / radius**2 + jet.z**2)
+    return np.where(pair.wheel.flank.inside(radius, axial), apart * lever, np.inf), radius, axial
 
 
 def _in_space(pair: GearPair, phi1: Any, rho: Array, z: Array) -> Array:
     """Points (..., 3) of the pinion's flank in the fixed frame."""
     azimuth = pair.pinion.flank.theta(rho, z).value + pair.sense * phi1
     return np.stack(np.broadcast_arrays(rho * np.cos(azimuth), rho * np.sin(azimuth), z), axis=-1)
-
-
-def _endless_gap(pair: GearPair, phi2: Any, point: Array) -> tuple[Array, Array, Array]:
-    """Gap (...) between points in the fixed frame and the wheel's flank, as if it had no edges, and (rho, z) on it."""
-    radius, theta, axial = pair.to_wheel(point)
-    jet = pair.wheel.flank.theta(radius, axial)
-    lever = 1.0 / np.sqrt(jet.rho**2 + 1.0 / radius**2 + jet.z**2)
-    return pair.driving * (phi2 - pair.sense * (jet.value - theta)) * lever, radius, axial
 
 
 @dataclass(frozen=True, eq=False)
@@ -240,12 +236,13 @@ class _Rays:
         return self.contact.pinion_radius + share * rho, self.contact.pinion_axial + share * z
 
     def _room(self, share: Array, turn: Array) -> Array:
-        """Part of the compound that the gap leaves, then distances to the edges of both flanks [mm]: (9, ...)."""
+        """Part of the compound that the gap leaves (1 off the wheel), distances to all edges [mm]: (9, ...)."""
         rho, z = self._place(turn, share)
-        point = _in_space(self.pair, self.contact.pinion_angle, rho, z)
-        gap, radius, axial = _endless_gap(self.pair, self.contact.wheel_angle, point)
+        angles = self.contact.pinion_angle, self.contact.wheel_angle
+        gap, radius, axial = flank_gap(self.pair, "pinion", angles, (rho, z))
+        left = np.where(np.isfinite(gap), 1.0 - gap / self.compound, 1.0)
         edges = (*self.pair.pinion.flank.edges(rho, z), *self.pair.wheel.flank.edges(radius, axial))
-        return np.stack(np.broadcast_arrays(1.0 - gap / self.compound, *(jet.value for jet in edges)))
+        return np.stack(np.broadcast_arrays(left, *(jet.value for jet in edges)))
 
     def _ends(self, turn: Array) -> list[Array]:
         """Angle, share of the ray, place in the tangent plane and edge (m,) where rays at angles (m,) end."""
