@@ -104,12 +104,12 @@ def _warn_of_accuracy(pair: GearPair, grid: GridChoice, contacts: Contacts) -> N
 
 
 def _warn_of_reach(pair: GearPair, carried: Carried) -> None:
-    """An AccuracyWarning if the load closes the teeth by more than the gap within which pairs are looked for."""
-    closing = float(np.nanmax(carried.rotation, initial=0.0)) * pair.base_radii[1]
-    if closing > REACH * pair.module:
+    """An AccuracyWarning if the deflection is more than the gap within which tooth pairs are looked for."""
+    deflection = float(np.nanmax(carried.rotation, initial=0.0)) * pair.base_radii[1]
+    if deflection > REACH * pair.module:
         warnings.warn(
-            f"the load closes the teeth by up to {closing:.3g} mm, more than {REACH:g} modules: tooth pairs that are "
-            "further apart without load are not looked for",
+            f"the load moves the flanks towards each other by up to {deflection:.3g} mm, more than {REACH:g} modules: "
+            "tooth pairs that are further apart without load are not looked for",
             AccuracyWarning,
             stacklevel=3,
         )
