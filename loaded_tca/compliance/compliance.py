@@ -14,7 +14,7 @@ from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.contact.edges import FreeEdge, edge_images
 from loaded_tca.pairs.gear import Gear, named
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.reference.weber_banaschek import ring_wind_up
+from loaded_tca.reference.weber_banaschek import ring_torsion
 from loaded_tca.separation import Separation
 
 LAYERS_PER_HEIGHT = 2.5
@@ -37,23 +37,23 @@ class ToothCompliance:
     wheel: GearCompliance
 
     @property
-    def wind_up(self) -> tuple[float, float]:
-        """Of pinion and wheel: what the twist of the ring between bore and root adds, as a closed form [mm/N].
+    def body_torsion(self) -> tuple[float, float]:
+        """Twist of the gear body between bore and root of pinion and wheel, in closed form [mm/N].
 
         It is a part of :meth:`within`, told to show what a bore diameter does; of bevel gears that of the mean section.
         """
         gears = zip((self.pinion, self.wheel), self.pair.base_radii, strict=True)
-        return tuple(_wind_up(gear, base_radius) for gear, base_radius in gears)  # type: ignore[return-value]
+        return tuple(_body_torsion(gear, base_radius) for gear, base_radius in gears)  # type: ignore[return-value]
 
     def within(self, number: int, separation: Separation, edges: Sequence[FreeEdge] = ()) -> Array:
-        """Closing of every column of a contact's grid per force on each, both gears together.
+        """Deflection of every slice of a contact's grid per force on each, both gears together.
 
         It comes on top of the displacement of the two half-spaces that carry the same pressures.
 
         Parameters
         ----------
         number : int
-            Of the tooth pair: 0 touches at the pitch point at phi1 = 0, +1 comes into mesh after it.
+            Of the tooth pair: 0 is in contact at the pitch point at phi1 = 0, +1 comes into mesh after it.
         separation : Separation
             Grid of its contact, in the angles of its own tooth: as if it were pair 0.
         edges : sequence of FreeEdge
@@ -71,7 +71,7 @@ class ToothCompliance:
         return np.asarray(pinion + wheel)
 
     def between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
-        """Closing of every column of one contact's grid per force on each column of another's.
+        """Deflection of every slice of one contact's grid per force on each slice of another's.
 
         Parameters
         ----------
@@ -92,7 +92,7 @@ class ToothCompliance:
         return self.pinion.between(there[0], here[0]) + self.wheel.between(there[1], here[1])
 
     def _lines(self, number: int, separation: Separation) -> tuple[FlankLine, FlankLine]:
-        """Middles of the columns of a grid on both flanks."""
+        """Middles of the slices of a grid on both flanks."""
         points = separation.origin + separation.y[:, None] * separation.axes[1]
         radius, _, axial = self.pair.to_wheel(points)
         tooth = self.pair.sense * number
@@ -101,7 +101,7 @@ class ToothCompliance:
 
 
 def _images(separation: Separation, edges: Sequence[FreeEdge]) -> list[Image]:
-    """Distances (ny, ny) of the middles of columns from their images in free edges, and the factors of these."""
+    """Distances (ny, ny) of the middles of slices from their images in free edges, and the factors of these."""
     half_across, half_along = separation.half_lengths
     found = []
     for chosen in edge_images(edges):
@@ -156,12 +156,12 @@ def tooth_compliance(pair: GearPair, *, neighbours: int = 1, density: MeshDensit
     return ToothCompliance(pair, *found)
 
 
-def _wind_up(gear: GearCompliance, base_radius: float) -> float:
+def _body_torsion(gear: GearCompliance, base_radius: float) -> float:
     """Displacement along the line of action per force [mm/N] by the twist of the ring."""
     nodes = gear.frame.nodes
     middle, width = len(nodes.coordinate) // 2, float(np.ptp(nodes.coordinate))
     radii, _ = nodes.sections.point(nodes.radius[0, [0, nodes.layout.base_row], middle], nodes.coordinate[middle])
-    return base_radius**2 * ring_wind_up(float(radii[0]), float(radii[1]), gear.frame.gear.material) / width
+    return base_radius**2 * ring_torsion(float(radii[0]), float(radii[1]), gear.frame.gear.material) / width
 
 
 def default_density(gear: Gear) -> MeshDensity:

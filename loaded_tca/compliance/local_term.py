@@ -1,4 +1,4 @@
-r"""What the flank of a tooth gives way locally, more than a half-plane does down to the same depth.
+r"""Local compliance of the flank of a tooth, beyond that of a half-plane down to the same depth.
 
 In the middle section of a whole ring, strain being plane, a line force on the flank makes the field of a half-plane,
 which is infinite under the force, and a smooth rest:
@@ -63,10 +63,10 @@ def local_flexibility(gear: Gear, density: MeshDensity = DENSITY) -> LocalFlexib
     section = _section(gear, density)
     forces = [section.force_at(row) for row in section.rows]
     loads = np.stack([section.rest_loads(force) for force in forces], axis=-1)
-    lift = np.stack([section.lift(force) for force in forces], axis=-1)
+    held = np.stack([section.held_displacement(force) for force in forces], axis=-1)
     factor, matrices = factorised(section.mesh, gear.material)
-    loads -= _product(matrices[section.mesh.kinds], section.mesh.dofs, lift)
-    rest = (factor.solve(loads) + lift).reshape(-1, 2, len(forces))
+    loads -= _product(matrices[section.mesh.kinds], section.mesh.dofs, held)
+    rest = (factor.solve(loads) + held).reshape(-1, 2, len(forces))
     value = [section.between(force, rest[..., n]) for n, force in enumerate(forces)]
     return LocalFlexibility((section.rows - section.first) / (2.0 * density.flank), np.array(value))
 
@@ -115,7 +115,7 @@ class _Section:
         np.add.at(loads, nodes, np.einsum("qk,eqa->eka", shares, traction))
         return loads.ravel()
 
-    def lift(self, force: _Force) -> Array:
+    def held_displacement(self, force: _Force) -> Array:
         """Displacements of the rest in the bore, zero elsewhere."""
         held = self.mesh.number[:, 0]
         found = np.zeros_like(self.mesh.points)

@@ -1,10 +1,10 @@
-r"""Free edges: a body that ends beside its contact yields more than a half-space.
+r"""Free edges: a body that ends beside its contact is softer than a half-space.
 
 Pressure on a half-space would leave stresses on the plane where the body really ends. The same pressure mirrored in
-that plane takes the shear off it and doubles what the half-space yields there; the rest is tension across the
-plane, twice that of the half-space, and taking it off makes the edge yield more again. Both together are close to
+that plane takes the shear off it and doubles the displacement of the half-space there; the rest is tension across
+the plane, twice that of the half-space, and taking it off softens the edge again. Both together are close to
 a single image of the pressure, multiplied by a factor psi that depends on Poisson's ratio and on the angle of the
-material between the surface and the plane (90 deg at the side of a spur tooth, more at its tip):
+material between the surface and the plane (90 deg at the face end of a spur tooth, more at its tip):
 
 .. math:: u = K (p + \psi\, p_{mirrored})
 
@@ -94,7 +94,7 @@ def quarter_space_factor(poisson_ratio: float, share: float = 1.0) -> float:
 
     .. math:: \psi = s (1.28 + 0.44 \nu + 3.7 \nu^2)
 
-    It gives the mean displacement of a quarter-space under contacts that touch the edge or are cut by it within 2 %,
+    It gives the mean displacement of a quarter-space under contacts that reach the edge or are cut by it within 2 %,
     and 6 % too much displacement at the edge itself, for nu = 0.3 (``docs/contact_solver.md``).
 
     Parameters
@@ -130,15 +130,15 @@ def wedge_factor(angle: float, poisson_ratio: float, share: float = 1.0) -> floa
     .. math:: \psi = s (1.28 + 0.44 \nu + 3.7 \nu^2) \left(\frac{m(\omega)}{m(90^\circ)}\right)^{1.07}, \qquad
               m = \pi \frac{\omega + \sin\omega \cos\omega}{\omega^2 - \sin^2\omega} - 1
 
-    1 + m is how much farther than a half-space a wedge yields, seen from afar, under a line load normal to its face at
+    1 + m is how much softer than a half-space a wedge is, seen from afar, under a line load normal to its face at
     its edge (Michell); the power is fitted. At 105 to 135 deg and nu = 0.3 it gives the mean displacement under
-    contacts that touch the edge within 4 % (``docs/contact_solver.md``).
+    contacts that reach the edge within 4 % (``docs/contact_solver.md``).
 
     Parameters
     ----------
     angle : float [rad]
-        omega, of the material between the loaded surface and the other one, from pi/6 to pi: pi/2 at the side of a
-        spur tooth, pi/2 and the pressure angle there at its tip, pi for a surface that goes on.
+        omega, of the material between the loaded surface and the other one, from pi/6 to pi: pi/2 at the face end of
+        a spur tooth, pi/2 and the pressure angle there at its tip, pi for a surface that goes on.
     poisson_ratio : float
         Of the body that ends, between 0 and 0.5.
     share : float
@@ -170,11 +170,11 @@ def wedge_factor(angle: float, poisson_ratio: float, share: float = 1.0) -> floa
     if problems:
         raise InputError(problems)
     square = float(np.polynomial.polynomial.polyval(poisson_ratio, FACTOR))
-    return share * square * (_yielding_wedge(angle) / _yielding_wedge(0.5 * math.pi)) ** POWER
+    return share * square * (_extra_displacement(angle) / _extra_displacement(0.5 * math.pi)) ** POWER
 
 
-def _yielding_wedge(angle: float) -> float:
-    """What a wedge yields more than a half-space under a line load at its edge, over what the half-space does."""
+def _extra_displacement(angle: float) -> float:
+    """Displacement of a wedge beyond that of a half-space, over the latter, under a line load at the edge."""
     sine, cosine = math.sin(angle), math.cos(angle)
     return max(0.0, math.pi * (angle + sine * cosine) / (angle * angle - sine * sine) - 1.0)
 
@@ -219,7 +219,7 @@ def edge_of_plane(
 
     Examples
     --------
-    The side of a spur tooth, 2 mm from the contact point towards positive y, on 20 cells of 0.5 mm:
+    The face end of a spur tooth, 2 mm from the contact point towards positive y, on 20 cells of 0.5 mm:
 
     >>> edge_of_plane((0.0, 1.0, 0.0), 2.0, (0.01, 0.5), (32, 20), 1.745)
     FreeEdge(axis=1, position=7.0, material='below', factor=1.745, slope=0.0)

@@ -1,4 +1,4 @@
-"""Where the tips and the sides of the teeth cut a contact: the free edges of its grid."""
+"""Where tip edges and face ends of the teeth cut a contact: the free edges of its grid."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from loaded_tca.separation import Separation
 from loaded_tca.unloaded import ContactPoint
 
 ENDS = (0, 2, 3)
-"""The edges of a flank where the tooth ends, its tip and its sides; at the root it goes on as the fillet."""
+"""The edges of a flank where the tooth ends, its tip edge and its face ends; at the root it goes on as the fillet."""
 REACH = 2.0
 """Distance of an edge across the contact over the half length of the box up to which it counts in full; at twice that
 it is out of reach."""
@@ -29,25 +29,25 @@ STRAIGHT = 0.1
 """How far an edge along the contact leaves its direction over the half length of the box, over the half width, if it is
 taken to be straight."""
 STEPS = 3
-"""Planes taken until they touch an oblique tip where it crosses the contact."""
+"""Tangent planes taken until one stands where an oblique tip edge crosses the contact."""
 SAME = 1e-6
 """Distance between ends of both gears, over the module, that is none: both end there."""
 
 
 def tooth_edges(pair: GearPair, contact: ContactPoint, separation: Separation) -> tuple[FreeEdge, ...]:
-    """Free edges that the tips and sides of both gears make in the grid of a contact.
+    """Free edges that tip edges and face ends of both gears make in the grid of a contact.
 
-    A tip or side is the plane that touches its surface beside the contact; tip cylinder, face cone and the spheres of
-    toe and heel are nearly planes there. Its factor is that of the angle between flank and surface. Edges along the
-    contact keep their angle to it, as the tip of a helical tooth has one; those across it are narrow there and taken
-    to be straight. Edges more than 30 degrees off both axes are left out, see :func:`oblique_ends`.
+    A tip edge or face end is the tangent plane of its surface beside the contact; tip cylinder, face cone and the
+    spheres of toe and heel are nearly planes there. Its factor is that of the angle between flank and surface. Edges
+    along the contact keep their angle to it, as the tip of a helical tooth has one; those across it are narrow there
+    and taken to be straight. Edges more than 30 degrees off both axes are left out, see :func:`oblique_ends`.
 
     Parameters
     ----------
     pair : GearPair
     contact : ContactPoint
     separation : Separation
-        Its box tells which sides are in reach.
+        Its box tells which edges are in reach.
 
     Returns
     -------
@@ -85,7 +85,7 @@ def tooth_edges(pair: GearPair, contact: ContactPoint, separation: Separation) -
 
 
 def oblique_ends(pair: GearPair, contact: ContactPoint, separation: Separation) -> tuple[str, ...]:
-    """Names of the tips and sides in reach, more than 30 degrees off both axes of the grid, for which no edge stands.
+    """Names of the tip edges and face ends in reach that are more than 30 degrees off both axes of the grid.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def oblique_ends(pair: GearPair, contact: ContactPoint, separation: Separation) 
 
 @dataclass(frozen=True, eq=False)
 class _End:
-    """Tip or side of a gear: a plane beside the contact, and how it crosses the grid.
+    """Tip edge or face end of a gear: a plane beside the contact, and how it crosses the grid.
 
     ``normal`` (3,) in the fixed frame, out of the material; ``distance`` of the contact point from it [mm]; ``angle``
     of the material between flank and plane [rad]; ``weight``, 0 to 1, how much of its factor counts.
@@ -121,12 +121,12 @@ class _End:
 
 
 def _ends(pair: GearPair, contact: ContactPoint, separation: Separation) -> list[_End]:
-    """Tips and sides of both gears."""
+    """Tip edges and face ends of both gears."""
     return [_end(pair, contact.point, separation, (member, edge)) for member in (0, 1) for edge in ENDS]
 
 
 def _end(pair: GearPair, origin: Array, separation: Separation, place: tuple[int, int]) -> _End:
-    """One edge of one gear, as a plane that touches its surface where it crosses the long axis of the contact."""
+    """One edge of one gear: the tangent plane of its surface where it crosses the long axis of the contact."""
     point = origin
     for _ in range(STEPS):
         end = _crossing(pair, separation, _plane(pair, origin, point, place))
@@ -139,7 +139,7 @@ def _end(pair: GearPair, origin: Array, separation: Separation, place: tuple[int
 
 
 def _plane(pair: GearPair, origin: Array, point: Array, place: tuple[int, int]) -> _End:
-    """Plane that touches an edge of a gear beside a point."""
+    """Tangent plane at an edge of a gear beside a point."""
     member, edge = place
     if member == 0:
         flank, rho, z = pair.pinion.flank, math.hypot(point[0], point[1]), float(point[2])

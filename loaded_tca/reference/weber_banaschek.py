@@ -132,7 +132,7 @@ def flank_flattening(half_width: float, depth: float, material: Material = Mater
     return (2.0 * math.log(2.0 * depth / half_width) - nu / (1.0 - nu)) / (math.pi * material.plane_strain_modulus)
 
 
-def ring_wind_up(inner_radius: float, outer_radius: float, material: Material = Material()) -> float:
+def ring_torsion(inner_radius: float, outer_radius: float, material: Material = Material()) -> float:
     r"""Rotation of a ring's outside against its rigid inside, per torque and width [rad per N].
 
     .. math:: \frac{\varphi\,b}{T} = \frac{1}{4 \pi G} \left(\frac{1}{r_i^2} - \frac{1}{r_o^2}\right)
@@ -155,7 +155,7 @@ def ring_wind_up(inner_radius: float, outer_radius: float, material: Material = 
 
     Examples
     --------
-    >>> round(1e9 * ring_wind_up(20.0, 35.0), 4)
+    >>> round(1e9 * ring_torsion(20.0, 35.0), 4)
     1.691
     """
     if not 0.0 < inner_radius <= outer_radius < math.inf:

@@ -115,14 +115,14 @@ def _strip_extent(gap: Array, x: Array, y: Array, load: float, modulus: float) -
     for _ in range(4):
         stiffness = 0.5 * math.pi * modulus / max(math.log(4.0 * max(length / width, 1.0)) - 1.0, 0.25 * math.pi)
         penetration = _water_level(ordered, sums, load / (stiffness * dy)) - floor
-        pressed = penetration > 0.0
-        loaded = (depth <= 2.0 * stiffness / (math.pi * modulus) * penetration) & pressed
+        loaded_strips = penetration > 0.0
+        loaded = (depth <= 2.0 * stiffness / (math.pi * modulus) * penetration) & loaded_strips
         width = float(across[loaded.any(axis=1)].max()) + 0.5 * dx
-        length = float(reach[pressed].max()) + 0.5 * dy
+        length = float(reach[loaded_strips].max()) + 0.5 * dy
     rise = float(np.ptp(gap[np.isfinite(gap)]))
     growth = (float(penetration.max()) / rise) ** (1.0 / 3.0) if rise > 0.0 else 0.0
     growth = min(max(growth, LEAST_GROWTH), MOST_GROWTH)
-    return width, length, _end_of_parabola(reach[pressed], penetration[pressed]), growth
+    return width, length, _end_of_parabola(reach[loaded_strips], penetration[loaded_strips]), growth
 
 
 def _end_of_parabola(distance: Array, penetration: Array) -> float:

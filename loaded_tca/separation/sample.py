@@ -133,7 +133,7 @@ def sample_separation(
     InputError
         If an argument is out of range, or neither load nor box is given.
     GeometryError
-        If the tooth pair does not touch at this position, or the contact point lies off the flanks.
+        If the tooth pair is not in contact at this position, or the contact point lies off the flanks.
 
     Examples
     --------

@@ -14,7 +14,7 @@ from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.reference.iso6336 import theoretical_single_stiffness
-from loaded_tca.reference.weber_banaschek import ring_wind_up
+from loaded_tca.reference.weber_banaschek import ring_torsion
 from loaded_tca.separation import sample_separation
 from loaded_tca.unloaded import trace_contact
 from tests.samples.bodies import pinion, spur_mesh
@@ -117,12 +117,12 @@ def test_a_smaller_bore_makes_the_pair_softer():
     assert_allclose(made().pair.rigid_bores, [0.55 * 2.0 * gear.root_radius for gear in (mesh.pinion, mesh.wheel)])
 
 
-def test_wind_up_is_a_part_of_the_compliance():
+def test_body_torsion_is_a_part_of_the_compliance():
     compliance = made()
-    assert 0.0 < sum(compliance.wind_up) < 0.2 * compliance.within(0, grids(compliance, 0.0)[0]).mean()
+    assert 0.0 < sum(compliance.body_torsion) < 0.2 * compliance.within(0, grids(compliance, 0.0)[0]).mean()
     pinion_radius = spur_mesh().pinion.root_radius
-    expected = ring_wind_up(0.55 * pinion_radius, pinion_radius) * spur_mesh().pinion.base_radius ** 2 / 20.0
-    assert_allclose(compliance.wind_up[0], expected)
+    expected = ring_torsion(0.55 * pinion_radius, pinion_radius) * spur_mesh().pinion.base_radius ** 2 / 20.0
+    assert_allclose(compliance.body_torsion[0], expected)
 
 
 def test_layers_follow_the_face_width():

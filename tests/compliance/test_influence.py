@@ -12,7 +12,7 @@ from loaded_tca.compliance.finite_elements import discretise
 from loaded_tca.errors import InputError
 from loaded_tca.gears.transverse_profile import half_tooth
 from loaded_tca.material import Material
-from loaded_tca.reference.weber_banaschek import ring_wind_up, tooth_deflection
+from loaded_tca.reference.weber_banaschek import ring_torsion, tooth_deflection
 from tests.samples.bodies import COARSE, WIDTH, between, line, model, pinion, spur_mesh, within
 
 HEIGHTS = (0.1, 0.5, 0.9)
@@ -146,7 +146,7 @@ def test_places_beyond_the_flank_count_as_its_edge():
     assert_allclose(gear.between(beyond, beyond), gear.between(top, top), rtol=1e-9)
 
 
-def test_wind_up_is_that_of_a_ring():
+def test_body_torsion_is_that_of_a_ring():
     """All teeth loaded alike: a pure torque, of which two bores take the ring between them differently."""
     density = MeshDensity(through=2, flank=3, fillet=1, land=1, rim=4, lengthwise=1, neighbours=12)
     bores = (40.0, 30.0)
@@ -155,7 +155,7 @@ def test_wind_up_is_that_of_a_ring():
         gear = model(density, bore_diameter=bore)
         middle = line(gear, 0.5)
         found.append(WIDTH * sum(between(gear, middle, line(gear, 0.5, tooth=tooth)) for tooth in range(25)))
-    wound = 25.0 * spur_mesh().pinion.base_radius ** 2 * ring_wind_up(0.5 * bores[1], 0.5 * bores[0])
+    wound = 25.0 * spur_mesh().pinion.base_radius ** 2 * ring_torsion(0.5 * bores[1], 0.5 * bores[0])
     assert_allclose(found[1] - found[0], wound, rtol=RING)
 
 
@@ -195,7 +195,7 @@ def test_deflection_is_that_of_weber_and_banaschek(height):
     load_angle = math.atan2(place.normal[0, 0], place.normal[0, 1])
     y, s = outline[root:, 0] - outline[root, 0], 2.0 * outline[root:, 1]
     expected = tooth_deflection(y, s, load_height, load_angle).total
-    expected += cylinder.base_radius**2 * ring_wind_up(0.55 * cylinder.root_radius, cylinder.root_radius)
+    expected += cylinder.base_radius**2 * ring_torsion(0.55 * cylinder.root_radius, cylinder.root_radius)
     found = below(gear, height)
     assert_allclose(found, expected, rtol=CLOSED_FORM)
     assert found > expected

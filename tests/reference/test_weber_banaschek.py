@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.errors import InputError
 from loaded_tca.material import Material
-from loaded_tca.reference.weber_banaschek import flank_flattening, ring_wind_up, tooth_deflection
+from loaded_tca.reference.weber_banaschek import flank_flattening, ring_torsion, tooth_deflection
 
 STEEL = Material()
 PRISM = np.array([0.0, 1.0, 4.0, 10.0]), np.full(4, 2.0)
@@ -45,8 +45,8 @@ def test_flattening_grows_by_the_logarithm_of_the_depth():
     assert_allclose(np.diff(found), step)
 
 
-def test_wind_up_adds_over_rings():
-    assert_allclose(ring_wind_up(10.0, 30.0), ring_wind_up(10.0, 17.0) + ring_wind_up(17.0, 30.0))
+def test_body_torsion_adds_over_rings():
+    assert_allclose(ring_torsion(10.0, 30.0), ring_torsion(10.0, 17.0) + ring_torsion(17.0, 30.0))
 
 
 def test_tooth_tells_every_problem():
@@ -70,4 +70,4 @@ def test_a_contact_wider_than_the_tooth_is_refused(width, depth):
 @pytest.mark.parametrize(("inner", "outer"), [(0.0, 1.0), (2.0, 1.0)])
 def test_a_ring_without_thickness_is_refused(inner, outer):
     with pytest.raises(InputError, match="inner_radius"):
-        ring_wind_up(inner, outer)
+        ring_torsion(inner, outer)
