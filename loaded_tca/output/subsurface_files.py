@@ -5,8 +5,9 @@ from __future__ import annotations
 import csv
 import io
 from pathlib import Path
+from typing import Any
 
-from loaded_tca.results.files import FilePath, replacing, variables_of, write_dataset
+from loaded_tca.results.files import FilePath, Part, replacing, variables_of, write_dataset
 from loaded_tca.results.mesh_cycle import QUANTITIES
 from loaded_tca.results.pressure_map import MAP_PARTS
 from loaded_tca.results.stress_below import StressBelow
@@ -45,31 +46,22 @@ def write_subsurface(below: StressBelow, directory: FilePath) -> tuple[Path, Pat
     InputError
         If they cannot be written.
     """
-    fields, table = Path(directory) / FIELDS, Path(directory) / TABLE
     import xarray
 
+    fields, table = Path(directory) / FIELDS, Path(directory) / TABLE
     one, stress, result = below.pressure_map, below.stress, below.result
     grid = ("depth", "across", "along")
-    parts = {
-        "pinion_torque": ((), "N mm", "pinion torque"),
-        "pinion_angle": ((), "rad", "angle of the pinion phi1"),
-        "position": ((), "1", "position of the result, from 1"),
-        "pair": ((), "1", QUANTITIES["pair"][2]),
-        "poisson_ratio": ((), "1", "Poisson's ratio of the body looked at"),
-        "depth": (("depth",), "mm", "distance below the flank"),
-        **{name: MAP_PARTS[name] for name in ("x", "y", "pressure")},
-        **{name: (grid, "MPa", text) for name, text in STRESSES.items()},
+    told: dict[str, tuple[Part, Any]] = {
+        "pinion_torque": (((), "N mm", "pinion torque"), result.torque[below.torque]),
+        "pinion_angle": (((), "rad", "angle of the pinion phi1"), result.pinion_angle[below.position]),
+        "position": (((), "1", "position of the result, from 1"), below.position + 1),
+        "pair": (((), *QUANTITIES["pair"][1:]), below.pair),
+        "poisson_ratio": (((), "1", "Poisson's ratio of the body looked at"), stress.poisson_ratio),
+        "depth": ((("depth",), "mm", "distance below the flank"), stress.depths),
+        **{name: (MAP_PARTS[name], getattr(one, name)) for name in ("x", "y", "pressure")},
+        **{name: ((grid, "MPa", text), getattr(stress, name)) for name, text in STRESSES.items()},
     }
-    arrays = {
-        "pinion_torque": result.torque[below.torque],
-        "pinion_angle": result.pinion_angle[below.position],
-        "position": below.position + 1,
-        "pair": below.pair,
-        "poisson_ratio": stress.poisson_ratio,
-        "depth": stress.depths,
-        **{name: getattr(one, name) for name in ("x", "y", "pressure")},
-        **{name: getattr(stress, name) for name in STRESSES},
-    }
+    parts, arrays = ({name: entry[k] for name, entry in told.items()} for k in (0, 1))
     texts = {"title": result.scene.title, "scene_toml": result.scene.to_toml(), "version": result.version}
     write_dataset(fields, xarray.Dataset(variables_of(parts, arrays), attrs={**texts, "gear": below.gear}))
     with replacing(table) as temporary:

@@ -103,8 +103,19 @@ def plot_all(
         "transmission_error": plot_transmission_error(result),
         "peak_pressure": plot_peak_pressure(result),
     }
-    for name, (place, column) in _map_places(result, torque, position).items():
-        figures[name] = plot_pressure_map(result, place, torque, column)
+    peak, edge = result.peak_contact(torque), result.edge_contact(torque)
+    smooth = result.peak_contact(torque, where_hertz_holds=True)
+    hertz_at_peak = peak is not None and result.hertz_pressure[torque][peak] > 0.0
+    places = {
+        "pressure_map": peak,
+        "pressure_map_edge": None if edge == peak else edge,
+        "pressure_map_hertz": None if hertz_at_peak else smooth,
+    }
+    if position is not None:
+        places = {"pressure_map": (position, int(result.peak_column[torque, position]))}
+    for name, place in places.items():
+        if place is not None:
+            figures[name] = plot_pressure_map(result, place[0], torque, place[1])
     if result.scene.analysis.load_sharing and len(result.path) > 1:
         figures |= {
             "load_share": plot_load_share(result, asked),
@@ -122,18 +133,3 @@ def plot_all(
         else:
             remove(file)
     return tuple(files[name] for name in figures)
-
-
-def _map_places(result: MeshCycle, torque: int, position: int | None) -> dict[str, tuple[int, int]]:
-    """Picture -> position and column of the tooth pair of each pressure map to be drawn."""
-    if position is not None:
-        return {"pressure_map": (position, int(result.peak_column[torque, position]))}
-    peak, edge = result.peak_contact(torque), result.edge_contact(torque)
-    smooth = result.peak_contact(torque, where_hertz_holds=True)
-    hertz_at_peak = peak is not None and result.hertz_pressure[torque][peak] > 0.0
-    wanted = {
-        "pressure_map": peak,
-        "pressure_map_edge": None if edge == peak else edge,
-        "pressure_map_hertz": None if hertz_at_peak else smooth,
-    }
-    return {name: place for name, place in wanted.items() if place is not None}

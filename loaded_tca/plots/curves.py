@@ -52,19 +52,14 @@ def plot_transmission_error(result: MeshCycle) -> Figure:
     about_mean.set_ylabel("the same, less its mean [arcsec]")
     about_mean.set_xlabel("pinion angle [deg]")
     figure.legend(*absolute.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize="small")
+    factor = result.wheel_base_radius * 1e3 / ARCSEC  # um per arcsec
     for axes in (absolute, about_mean):
         widen(axes, SMALLEST_SPAN_ARCSEC)
-        _add_length_axis(axes, result.wheel_base_radius)
+        right = axes.secondary_yaxis("right", functions=(lambda arcsec: arcsec * factor, lambda um: um / factor))
+        right.set_ylabel("at the wheel's base circle [µm]")
         axes.grid(alpha=0.3)
     set_title(figure, result, f"transmission error, {loads(result)}", range_of_positions(result))
     return figure
-
-
-def _add_length_axis(axes: Axes, base_radius: float) -> None:
-    """A second axis with the transmission error as a length at the wheel's base circle."""
-    factor = base_radius * 1e3 / ARCSEC
-    functions = (lambda arcsec: arcsec * factor, lambda length: length / factor)
-    axes.secondary_yaxis("right", functions=functions).set_ylabel("at the wheel's base circle [µm]")
 
 
 def plot_peak_pressure(result: MeshCycle) -> Figure:

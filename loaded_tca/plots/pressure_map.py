@@ -58,8 +58,17 @@ def plot_pressure_map(
     scale, height = _scale_factor(one)
     figure = Figure(figsize=(9.0, 1.8 + height), layout="constrained")
     axes = figure.add_subplot()
-    _draw_pressure(figure, axes, one, _end_of_scale(result, (torque, *at), one))
-    _draw_ellipse(axes, result, (torque, *at))
+    highest = float(one.pressure.max())
+    if result.peak_at_edge[torque][at]:  # what nearly all cells stay below, or the highest pressure that is no spike
+        most = float(np.quantile(one.pressure[one.pressure > 0.0], 1.0 - CELLS_OF_A_SPIKE))
+        highest = min(highest, max(most, highest_mesh_independent_pressure(result, torque, [one])))
+    _draw_pressure(figure, axes, one, highest)
+    names = ("hertz_semi_minor", "hertz_semi_major", "hertz_pressure")
+    minor, major, pressure = (float(getattr(result, name)[torque][at]) for name in names)
+    if math.isfinite(pressure):
+        label = f"ellipse after Hertz, peak pressure {pressure:.4g} MPa"
+        ellipse = Ellipse((0.0, 0.0), 2.0 * major, 2.0 * minor, fill=False, color=ACCENT, linestyle="--", label=label)
+        axes.add_patch(ellipse)
     axes.plot(0.0, 0.0, "+", color=ACCENT, label="unloaded contact point")
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
     axes.set_aspect(scale)
@@ -88,15 +97,6 @@ def _on_pinion(frame: FlankFrame, point: Array) -> tuple[Array, Array]:
     return frame.to_picture(np.hypot(point[0], point[1]), point[2])
 
 
-def _end_of_scale(result: MeshCycle, at: tuple[int, int, int], one: PressureMap) -> float:
-    """The peak; of a spike at an edge what nearly all cells stay below, or the highest that is no spike [MPa]."""
-    peak = float(one.pressure.max())
-    if not result.peak_at_edge[at]:
-        return peak
-    most = float(np.quantile(one.pressure[one.pressure > 0.0], 1.0 - CELLS_OF_A_SPIKE))
-    return min(peak, max(most, highest_mesh_independent_pressure(result, at[0], [one])))
-
-
 def _draw_pressure(figure: Figure, axes: Axes, one: PressureMap, highest: float) -> None:
     """Pressure of each cell, in colours up to the highest; white without pressure, grey without material."""
     y, x = (cell_limits(centres, step) for centres, step in ((one.y, one.spacing[1]), (one.x, one.spacing[0])))
@@ -115,16 +115,6 @@ def _draw_pressure(figure: Figure, axes: Axes, one: PressureMap, highest: float)
     if highest < peak:
         label += f"\n(few cells at the edge: up to {peak:.0f})"
     figure.colorbar(mesh, ax=axes, label=label, extend="max" if highest < peak else "neither")
-
-
-def _draw_ellipse(axes: Axes, result: MeshCycle, at: tuple[int, int, int]) -> None:
-    """The contact ellipse after Hertz, where it is known."""
-    names = ("hertz_semi_minor", "hertz_semi_major", "hertz_pressure")
-    minor, major, pressure = (float(getattr(result, name)[at]) for name in names)
-    if math.isfinite(pressure):
-        label = f"ellipse after Hertz, peak pressure {pressure:.4g} MPa"
-        ellipse = Ellipse((0.0, 0.0), 2.0 * major, 2.0 * minor, fill=False, color=ACCENT, linestyle="--", label=label)
-        axes.add_patch(ellipse)
 
 
 def cell_limits(centres: Array, step: float) -> Array:

@@ -63,13 +63,20 @@ def plot_load_share(result: MeshCycle, torque: int | None = None) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    shown = _shown_torques(result) if torque is None else [torque]
+    order = np.argsort(result.torque, kind="stable")
+    spread = np.linspace(0.0, len(order) - 1.0, min(len(order), MOST_PANELS)).round().astype(int)
+    shown = order[np.unique(spread)].tolist() if torque is None else [torque]
     figure = Figure(figsize=(8.0, 2.8 + (3.0 if len(shown) == 1 else 1.8 * len(shown))), layout="constrained")
     *panels, below = figure.subplots(len(shown) + 1, 1, sharex=True, height_ratios=(*(3.0,) * len(shown), 1.5))
     angle = np.degrees(result.pinion_angle)
     styles = {index: style for index, *style in torque_styles(result)}
     for axes, index in zip(panels, shown, strict=True):
-        _draw_shares(axes, result, index)
+        for number, share in zip(result.pair, result.load_share[index].T, strict=True):
+            marker = MARKERS[int(number) % len(MARKERS)]
+            axes.plot(angle, 100.0 * share, marker=marker, markersize=4.0, label=f"tooth pair {signed(int(number))}")
+        axes.set_ylabel("share of\nthe torque [%]")
+        axes.set_ylim(-4.0, 106.0)
+        axes.grid(alpha=0.3)
         torque_label, colour, _ = styles[index]
         below.step(angle, result.loaded_pairs[index], where="mid", color=colour, label=torque_label)
         if len(shown) > 1:
@@ -85,24 +92,6 @@ def plot_load_share(result: MeshCycle, torque: int | None = None) -> Figure:
     about = load(result, shown[0]) if len(shown) == 1 else loads(result)
     set_title(figure, result, f"load sharing, {about}", range_of_positions(result))
     return figure
-
-
-def _shown_torques(result: MeshCycle) -> list[int]:
-    """Indices of all torques, from the least to the largest; of many, a few spread over them."""
-    order = np.argsort(result.torque, kind="stable")
-    chosen = np.unique(np.linspace(0.0, len(order) - 1.0, min(len(order), MOST_PANELS)).round().astype(int))
-    return [int(index) for index in order[chosen]]
-
-
-def _draw_shares(axes: Axes, result: MeshCycle, torque: int) -> None:
-    """One curve per tooth pair, in the order of the mesh."""
-    angle = np.degrees(result.pinion_angle)
-    for number, share in zip(result.pair, result.load_share[torque].T, strict=True):
-        marker = MARKERS[int(number) % len(MARKERS)]
-        axes.plot(angle, 100.0 * share, marker=marker, markersize=4.0, label=f"tooth pair {signed(int(number))}")
-    axes.set_ylabel("share of\nthe torque [%]")
-    axes.set_ylim(-4.0, 106.0)
-    axes.grid(alpha=0.3)
 
 
 def plot_mesh_stiffness(result: MeshCycle) -> Figure:
@@ -139,11 +128,9 @@ def plot_line_load(result: MeshCycle) -> Figure:
     matplotlib.figure.Figure
     """
     figure, axes = _one_panel()
-    line_load = result.at_position("line_load")
+    angle, line_load = np.degrees(result.pinion_angle), result.at_position("line_load")
     for torque, label, colour, marker in torque_styles(result):
-        axes.plot(
-            np.degrees(result.pinion_angle), line_load[torque], color=colour, marker=marker, markersize=4.0, label=label
-        )
+        axes.plot(angle, line_load[torque], color=colour, marker=marker, markersize=4.0, label=label)
     axes.set_ylabel("line load of the most loaded pair [N/mm]")
     from_zero(axes)
     return _finished(figure, axes, result, f"line load along the contact, {loads(result)}")
@@ -167,8 +154,7 @@ def plot_harmonics(result: MeshCycle) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    figure = Figure(figsize=(8.0, 5.0), layout="constrained")
-    axes = figure.add_subplot()
+    figure, axes = _one_panel()
     amplitudes = 1e3 * result.wheel_base_radius * result.harmonics(MOST_ORDERS)
     orders, width = np.arange(1, MOST_ORDERS + 1), 0.8 / len(result.torque)
     for torque, label, colour, _ in torque_styles(result):
@@ -177,7 +163,7 @@ def plot_harmonics(result: MeshCycle) -> Figure:
     axes.set_xlabel("order of the tooth mesh")
     axes.set_ylabel("amplitude at the wheel's base circle [µm]")
     widen(axes, SMALLEST_AMPLITUDE_UM)
-    axes.grid(alpha=0.3, axis="y")
+    axes.grid(visible=False, axis="x")
     return _finished(figure, axes, result, f"harmonics of the transmission error, {loads(result)}")
 
 
@@ -199,8 +185,16 @@ def plot_pressure_envelope(result: MeshCycle, torque: int | None = None) -> Figu
     scale = Normalize(0.0, highest_mesh_independent_pressure(result, torque, maps))
 
     def draw(axes: Axes, pair: GearPair, flank: Flank) -> PolyCollection:
-        cells, pressure = _cells(maps, pair, flank)
-        drawn = PolyCollection(list(cells), array=pressure, cmap=COLOURS, norm=scale, edgecolors="face", linewidths=0.3)
+        cells, pressures = [np.zeros((0, 4, 2))], [np.zeros(0)]
+        for one in maps:
+            at = np.stack(flank.frame.to_picture(*on_gear(pair, flank, one.corners)), axis=-1)
+            around = np.stack([at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]], axis=2)
+            cells.append(around[one.pressure > 0.0])
+            pressures.append(one.pressure[one.pressure > 0.0])
+        pressure = np.concatenate(pressures)
+        highest_last = np.argsort(pressure, kind="stable")
+        drawn = PolyCollection(list(np.concatenate(cells)[highest_last]), cmap=COLOURS, norm=scale, edgecolors="face")
+        drawn.set(array=pressure[highest_last], linewidths=0.3)
         axes.add_collection(drawn, autolim=False)
         return drawn
 
@@ -360,16 +354,3 @@ def _one_panel() -> tuple[Figure, Axes]:
     axes.set_xlabel("pinion angle [deg]")
     axes.grid(alpha=0.3)
     return figure, axes
-
-
-def _cells(maps: list[PressureMap], pair: GearPair, flank: Flank) -> tuple[Array, Array]:
-    """Corners (cells, 4, 2) in the picture of a flank, and pressure (cells,), of all cells under it, highest last."""
-    corners, pressures = [np.zeros((0, 4, 2))], [np.zeros(0)]
-    for one in maps:
-        at = np.stack(flank.frame.to_picture(*on_gear(pair, flank, one.corners)), axis=-1)
-        around = np.stack([at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]], axis=2)
-        corners.append(around[one.pressure > 0.0])
-        pressures.append(one.pressure[one.pressure > 0.0])
-    pressure = np.concatenate(pressures)
-    order = np.argsort(pressure, kind="stable")
-    return np.concatenate(corners)[order], pressure[order]

@@ -76,19 +76,32 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
     matplotlib.figure.Figure
     """
     figure = Figure(figsize=(9.0, 7.5), layout="constrained")
-    axes = figure.add_subplot(projection="3d", computed_zorder=False)
-    _view(axes, shown)
+    axes: Any = figure.add_subplot(projection="3d", computed_zorder=False)
+    points = np.concatenate([shown.pinion.vertices, shown.wheel.vertices])
+    low, high = points.min(axis=0), points.max(axis=0)
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
+    axes.set_box_aspect(high - low, zoom=0.98)
+    axes.set(xlabel="x [mm]", ylabel="y [mm]", zlabel="z [mm]")
+    x, y, z = shown.eye
+    axes.view_init(elev=math.degrees(math.asin(z)), azim=math.degrees(math.atan2(y, x)))
     side = shown.pair.pinion.flank.side
     axes.add_collection3d(_solid(shown.pinion, PINION, 1.0, shown.eye))
     axes.add_collection3d(_lines(shown.pinion, side))
     if shown.highest_pressure > 0.0:
         norm = Normalize(0.0, shown.highest_pressure)
-        axes.add_collection3d(_painted(shown.pressure, norm))
+        faces = colormaps[COLOURS](norm(shown.pressure.cell_data["pressure_MPa"]))
+        corners = shown.pressure.corners
+        axes.add_collection3d(Poly3DCollection(corners, facecolors=faces, edgecolors=faces, linewidths=0.2))
         figure.colorbar(ScalarMappable(norm, COLOURS), ax=axes, label="contact pressure [MPa]", shrink=0.7)
     axes.plot(*shown.path.T, ".", color=ACCENT, markersize=3.0)
     axes.add_collection3d(_solid(shown.wheel, WHEEL, SEE_THROUGH, shown.eye))
     axes.add_collection3d(_lines(shown.wheel, side))
-    _explain(figure)
+    handles = [
+        Patch(facecolor=PINION, label="pinion's tooth"),
+        Patch(facecolor=WHEEL, alpha=SEE_THROUGH, label="wheel's tooth, see-through"),
+        Line2D([], [], color=ACCENT, marker=".", linestyle="", label="unloaded contact points of all positions"),
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize="small")
     what = "teeth in contact" if shown.highest_pressure > 0.0 else "teeth, no load, no pressure"
     where = place(result, shown.position, shown.pair.pinion.flank.frame, shown.column)
     set_title(figure, result, f"{what}, {load(result, shown.torque)}", *where)
@@ -98,17 +111,6 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
 def _shown(result: MeshCycle, position: int | None, torque: int | None) -> TeethInSpace:
     """Teeth of the resolution of a picture, in place."""
     return teeth_in_space(result, mating_teeth(result.gear_pair, DRAWN), position, torque)
-
-
-def _view(axes: Any, shown: TeethInSpace) -> None:
-    """Box of equal scales around both teeth, seen from the wheel."""
-    points = np.concatenate([shown.pinion.vertices, shown.wheel.vertices])
-    low, high = points.min(axis=0), points.max(axis=0)
-    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set_box_aspect(high - low, zoom=0.98)
-    axes.set(xlabel="x [mm]", ylabel="y [mm]", zlabel="z [mm]")
-    x, y, z = shown.eye
-    axes.view_init(elev=math.degrees(math.asin(z)), azim=math.degrees(math.atan2(y, x)))
 
 
 def _solid(mesh: TriangleMesh, colour: str, opacity: float, towards: Array) -> Poly3DCollection:
@@ -127,21 +129,6 @@ def _lines(mesh: TriangleMesh, side: int) -> Line3DCollection:
     front = side * (patch - PATCHES.index("tip land")) >= 0
     seen = TriangleMesh(mesh.vertices, mesh.triangles[front], cell_data={"patch": patch[front]})
     return Line3DCollection(seen.seams("patch"), colors=SEAMS, linewidths=0.6)
-
-
-def _painted(mesh: TriangleMesh, norm: Normalize) -> Poly3DCollection:
-    """The pressure, in colours."""
-    faces = colormaps[COLOURS](norm(mesh.cell_data["pressure_MPa"]))
-    return Poly3DCollection(mesh.corners, facecolors=faces, edgecolors=faces, linewidths=0.2)
-
-
-def _explain(figure: Figure) -> None:
-    handles = [
-        Patch(facecolor=PINION, label="pinion's tooth"),
-        Patch(facecolor=WHEEL, alpha=SEE_THROUGH, label="wheel's tooth, see-through"),
-        Line2D([], [], color=ACCENT, marker=".", linestyle="", label="unloaded contact points of all positions"),
-    ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize="small")
 
 
 def show_teeth(

@@ -7,6 +7,7 @@ from importlib.metadata import version
 
 import numpy as np
 
+from loaded_tca.arrays import Array
 from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.tooth_contact import LoadedContact
 from loaded_tca.pairs.gear_pair import GearPair
@@ -14,16 +15,6 @@ from loaded_tca.results.mesh_cycle import MeshCycle, dataset_of
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.scene import Scene
 from loaded_tca.unloaded import heelwards
-
-NUMBERS: dict[str, float | bool | int] = {
-    **dict.fromkeys(("normal_force", "peak_pressure", "central_pressure", "peak_radius", "peak_axial"), math.nan),
-    **dict.fromkeys(("hertz_pressure", "hertz_semi_minor", "hertz_semi_major"), math.nan),
-    **dict.fromkeys(("contact_width", "contact_length", "line_load", "line_load_ratio"), math.nan),
-    **dict.fromkeys(("contact_deformation", "residual"), math.nan),
-    **dict.fromkeys(("on_edge", "on_relief_start"), False),
-    **dict.fromkeys(("cells_across", "cells_along", "iterations"), 0),
-}
-"""Number of a loaded contact -> what stands for it where a pair carries nothing."""
 
 
 def mesh_cycle(scene: Scene, pair: GearPair, carried: Carried) -> MeshCycle:
@@ -39,11 +30,11 @@ def mesh_cycle(scene: Scene, pair: GearPair, carried: Carried) -> MeshCycle:
     order = np.argsort(carried.pairs)
     share = carried.share[..., order]
     contacts = {(t, n, k): carried.contacts[t][n][order[k]] for t, n, k in np.ndindex(share.shape)}
-    numbers = {name: np.full(share.shape, missing) for name, missing in NUMBERS.items()}
+    numbers: dict[str, Array] = {}
     for place, loaded in contacts.items():
-        if loaded is not None:
-            for name, number in _numbers(pair, loaded).items():
-                numbers[name][place] = number
+        for name, number in ({} if loaded is None else _numbers(pair, loaded)).items():
+            missing = math.nan if isinstance(number, float) else type(number)()
+            numbers.setdefault(name, np.full(share.shape, missing))[place] = number
     apart = np.isnan(numbers["contact_deformation"])
     numbers["normal_force"] = np.where(apart & ~np.isnan(share), 0.0, numbers["normal_force"])
     lengths = 1e3 * pair.base_radii[0] * pair.base_radii[1] * pair.face_width
@@ -84,7 +75,7 @@ def _pressure_map(loaded: LoadedContact | None) -> PressureMap | None:
 
 
 def _numbers(pair: GearPair, loaded: LoadedContact) -> dict[str, float | bool | int]:
-    """What a result has of one loaded contact, by the names of ``NUMBERS``."""
+    """What a result has of one loaded contact, by the names of its dataset."""
     solution, hertz = loaded.solution, loaded.hertz
     width, length = loaded.extent
     radius, axial = loaded.peak_place

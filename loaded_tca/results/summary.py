@@ -72,7 +72,7 @@ def summary_text(title: str, scope: str, figures: Sequence[Figures]) -> str:
         Of each torque, as ``MeshCycle.key_figures`` gives them.
     """
     rows = [
-        (label, [_cell(entry, names) for entry in figures])
+        (label, [" | ".join(_shown(entry[name], name) for name in names) for entry in figures])
         for label, names in ROWS
         if not any(part in name for name in names for part in ONLY_IF_KNOWN)
         or any(math.isfinite(entry[name]) for entry in figures for name in names)
@@ -89,12 +89,9 @@ def without_rounding(value: float, name: str) -> float:
     return value if "residual" in name or not abs(value) < ROUNDING else 0.0
 
 
-def _cell(figures: Figures, names: tuple[str, ...]) -> str:
-    return " | ".join(_shown(without_rounding(figures[name], name), name) for name in names)
-
-
 def _shown(value: float, name: str) -> str:
     """Four digits, all those before the point; a dash for what is not known."""
+    value = without_rounding(value, name)
     if math.isnan(value):
         return "-"
     if "residual" in name:
