@@ -166,7 +166,7 @@ def _body_torsion(gear: GearCompliance, base_radius: float) -> float:
 
 def default_density(gear: Gear) -> MeshDensity:
     """Density whose layers follow the face width, in heights of the tooth."""
-    rho, z = gear.nominal_flank.grid(2, 2)
+    rho, z = gear.nominal_flanks[0].grid(2, 2)
     coordinate = gear.form.sections.coordinate(rho, z)
     height = float(np.hypot(rho[1] - rho[0], z[1] - z[0]).mean())
     layers = round(LAYERS_PER_HEIGHT * float(np.ptp(coordinate)) / height)
