@@ -6,7 +6,7 @@ from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.convolution import Window, fast_length
 
 COARSEST = 16
-MARGIN = 3
+MARGIN_CELLS = 3
 # Newton steps for the constant between the squares of two pressures; the solver takes care of what is left.
 SHIFTS = 3
 
@@ -113,8 +113,8 @@ def window_around(cells: Mask) -> Window:
     for axis in (0, 1):
         marked = np.flatnonzero(cells.any(axis=1 - axis))
         size = cells.shape[axis]
-        start = max(0, int(marked[0]) - MARGIN)
-        stop = min(size, int(marked[-1]) + 1 + MARGIN)
+        start = max(0, int(marked[0]) - MARGIN_CELLS)
+        stop = min(size, int(marked[-1]) + 1 + MARGIN_CELLS)
         stop = min(size, start + fast_length(2 * (stop - start)) // 2)
         spans.append(slice(start, stop))
     return spans[0], spans[1]

@@ -263,11 +263,6 @@ def _sigma_x(x: Array, y: Array, z: float, nu: float) -> Array:
     return np.asarray(potential - (1.0 - 2.0 * nu) * np.arctan2(x * y * (r - z), x * x * r + z * y * y))
 
 
-def _sigma_y(x: Array, y: Array, z: float, nu: float) -> Array:
-    """As :func:`_sigma_x`, with the axes exchanged."""
-    return _sigma_x(y, x, z, nu)
-
-
 def _sigma_z(x: Array, y: Array, z: float, _: float) -> Array:
     """Integral of 2 pi sigma_z; it does not depend on Poisson's ratio."""
     r = _root(x, y, z)
@@ -286,16 +281,11 @@ def _tau_xz(x: Array, y: Array, z: float, _: float) -> Array:
     return np.asarray(z * z * y / ((x * x + z * z) * _root(x, y, z)))
 
 
-def _tau_yz(x: Array, y: Array, z: float, nu: float) -> Array:
-    """As :func:`_tau_xz`, with the axes exchanged."""
-    return _tau_xz(y, x, z, nu)
-
-
 _KERNELS: tuple[tuple[Kernel, tuple[int, int]], ...] = (
     (_sigma_x, (1, 1)),
-    (_sigma_y, (1, 1)),
+    (lambda x, y, z, nu: _sigma_x(y, x, z, nu), (1, 1)),
     (_sigma_z, (1, 1)),
     (_tau_xy, (-1, -1)),
     (_tau_xz, (-1, 1)),
-    (_tau_yz, (1, -1)),
+    (lambda x, y, z, nu: _tau_xz(y, x, z, nu), (1, -1)),
 )

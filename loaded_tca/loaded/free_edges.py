@@ -16,7 +16,7 @@ from loaded_tca.unloaded import ContactPoint
 
 ENDS = (0, 2, 3)
 """The edges of a flank where the tooth ends, its tip edge and its face ends; at the root it goes on as the fillet."""
-REACH = 2.0
+REACH_ALONG = 2.0
 """Distance of an edge across the contact over the half length of the box up to which it counts in full; at twice that
 it is out of reach."""
 REACH_BESIDE = 0.5
@@ -25,7 +25,7 @@ distance only, as long as that is short against the contact; a tooth is no longe
 tip. From half of that on the factor fades out, so that the approach has no step where a tip comes into reach."""
 FARTHEST = 20.0
 """Distance of such an edge, over the half width of the box, from which on it fades too: light contacts are narrow."""
-STRAIGHT = 0.1
+STRAIGHT_WITHIN = 0.1
 """How far an edge along the contact leaves its direction over the half length of the box, over the half width, if it is
 taken to be straight."""
 STEPS = 3
@@ -74,7 +74,8 @@ def tooth_edges(pair: GearPair, contact: ContactPoint, separation: Separation) -
     ends = _ends(pair, contact, separation)
     edges = []
     for end in ends:
-        mating = [other for other in ends if _same(pair, end, other)]
+        beside = [other for other in ends if abs(end.distance - other.distance) <= SAME * pair.module]
+        mating = [other for other in beside if other.member != end.member and float(end.normal @ other.normal) > 0.0]
         if end.weight == 0.0 or end.oblique or any(mating.member < end.member for mating in mating):
             continue
         factor = end.weight * sum(_factor(pair, body) for body in (end, *mating))
@@ -158,15 +159,6 @@ def _plane(pair: GearPair, origin: Array, point: Array, place: tuple[int, int]) 
     return _End(member, name, normal, float(value / steep + normal @ (point - origin)), angle)
 
 
-def _same(pair: GearPair, one: _End, other: _End) -> bool:
-    """Whether both gears end there."""
-    return (
-        one.member != other.member
-        and abs(one.distance - other.distance) <= SAME * pair.module
-        and float(one.normal @ other.normal) > 0.0
-    )
-
-
 def _crossing(pair: GearPair, separation: Separation, end: _End) -> _End:
     """The end with how it crosses the grid."""
     x, y, _ = (float(part) for part in separation.axes @ end.normal)
@@ -174,9 +166,9 @@ def _crossing(pair: GearPair, separation: Separation, end: _End) -> _End:
     flattest, steepest = sorted((abs(x), abs(y)))
     oblique = not flattest <= math.tan(MOST_OBLIQUE) * steepest > 0.0
     if abs(x) <= abs(y):
-        return replace(end, weight=_faded(end.distance, REACH * abs(y) * along), oblique=oblique)
+        return replace(end, weight=_faded(end.distance, REACH_ALONG * abs(y) * along), oblique=oblique)
     aside = abs(y) * along
-    straight = aside <= STRAIGHT * abs(x) * across
+    straight = aside <= STRAIGHT_WITHIN * abs(x) * across
     nearest = end.distance - (0.0 if straight else aside)
     reach = min(0.5 * REACH_BESIDE * pair.module, FARTHEST * across)
     return replace(end, weight=_faded(nearest, abs(x) * reach), oblique=oblique, straight=straight)

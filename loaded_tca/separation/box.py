@@ -33,7 +33,7 @@ LEAST_GROWTH, MOST_GROWTH = 2.0, 100.0
 """Of a probe that a contact fills."""
 END_OF_MATERIAL = 1e-6
 """Accuracy of the end of the material, over the half length of the box."""
-STRAIGHT = 5e-5
+STRAIGHT_CHORD = 5e-5
 """Change of the fall of the room from row to row, relative, below which its chord ends where the material does: to
 an eighth of that, of the distance of the rows."""
 
@@ -115,14 +115,14 @@ def _strip_extent(gap: Array, x: Array, y: Array, load: float, modulus: float) -
     for _ in range(4):
         stiffness = 0.5 * math.pi * modulus / max(math.log(4.0 * max(length / width, 1.0)) - 1.0, 0.25 * math.pi)
         penetration = _water_level(ordered, sums, load / (stiffness * dy)) - floor
-        loaded_strips = penetration > 0.0
-        loaded = (depth <= 2.0 * stiffness / (math.pi * modulus) * penetration) & loaded_strips
+        closed = penetration > 0.0
+        loaded = (depth <= 2.0 * stiffness / (math.pi * modulus) * penetration) & closed
         width = float(across[loaded.any(axis=1)].max()) + 0.5 * dx
-        length = float(reach[loaded_strips].max()) + 0.5 * dy
+        length = float(reach[closed].max()) + 0.5 * dy
     rise = float(np.ptp(gap[np.isfinite(gap)]))
     growth = (float(penetration.max()) / rise) ** (1.0 / 3.0) if rise > 0.0 else 0.0
     growth = min(max(growth, LEAST_GROWTH), MOST_GROWTH)
-    return width, length, _end_of_parabola(reach[loaded_strips], penetration[loaded_strips]), growth
+    return width, length, _end_of_parabola(reach[closed], penetration[closed]), growth
 
 
 def _end_of_parabola(distance: Array, penetration: Array) -> float:
@@ -158,7 +158,7 @@ def _material_length(gap: NormalGap, room: Array, x: Array, y: Array, reach: flo
     sides = np.array([side for side in (-1, 1) if room[middle + side * last] >= 0.0])
     before, inner, outer, beyond = middle + np.arange(last - 1, last + 3)[:, None] * sides
     fall = room[inner] - room[outer]
-    if (np.abs(room[before] - room[inner] - fall) <= STRAIGHT * fall).all():
+    if (np.abs(room[before] - room[inner] - fall) <= STRAIGHT_CHORD * fall).all():
         return min(float(np.abs(y[inner] + room[inner] / fall * (y[outer] - y[inner])).max()), reach)
     tolerance = END_OF_MATERIAL * reach
 

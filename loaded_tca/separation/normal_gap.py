@@ -16,7 +16,7 @@ from loaded_tca.flanks.base import Flank
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded import ContactPoint
 
-ROUNDING = 1e-13
+STEP_ROUNDING = 1e-13
 """Newton steps shorter than this times the sum of the base radii are rounding."""
 BEND = 100.0
 """Factor by which the bend of a flank along the normal may differ from place to place."""
@@ -88,7 +88,7 @@ class NormalGap:
             ),
         )
         self._size = sum(pair.base_radii)
-        self._rounding = ROUNDING * self._size
+        self._rounding = STEP_ROUNDING * self._size
 
     def __call__(self, x: Array, y: Array) -> Array:
         """Gap (nx, ny) [mm] over the grid of x (nx,) and y (ny,); +inf where a flank ends or bends away."""

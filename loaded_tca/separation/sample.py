@@ -38,7 +38,7 @@ from loaded_tca.unloaded import ContactPoint, relative_curvature
 PEAK_ERROR = 0.26
 """Relative error of the peak pressure times the square of the number of cells across a smooth contact (measured on
 circles and ellipses: 1e-3 at 16 cells, 2.5e-4 at 32)."""
-SMALLEST_LOAD = 1e-6
+LOAD_OF_UNLOADED_BOX = 1e-6
 """Load [N] that sizes the box of an unloaded contact: small enough for its smallest gap to be rounding."""
 
 
@@ -155,7 +155,7 @@ def sample_separation(
         box
         if box is not None
         else _box_of_whole_cells(
-            *_estimate_box(gap, curvature, contact, load if load else SMALLEST_LOAD, guess), shape[1]
+            *_estimate_box(gap, curvature, contact, load if load else LOAD_OF_UNLOADED_BOX, guess), shape[1]
         )
     )
     spacing = (2.0 * half[0] / shape[0], 2.0 * half[1] / shape[1])

@@ -88,8 +88,8 @@ def test_window_holds_the_cells_and_a_margin(corner):
     rows, columns = levels.window_around(cells)
     assert cells[rows, columns].any()
     for span, place, size in ((rows, corner[0], 64), (columns, corner[1], 120)):
-        assert span.start <= max(0, place - levels.MARGIN)
-        assert span.stop >= min(size, place + 1 + levels.MARGIN)
+        assert span.start <= max(0, place - levels.MARGIN_CELLS)
+        assert span.stop >= min(size, place + 1 + levels.MARGIN_CELLS)
         assert 0 <= span.start < span.stop <= size
 
 

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from loaded_tca import read_scene, sample_separation, trace_contact
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.pairs.cylindrical import Mounting
-from loaded_tca.separation.normal_gap import ON_EDGE, ROUNDING, NormalGap
+from loaded_tca.separation.normal_gap import ON_EDGE, STEP_ROUNDING, NormalGap
 from loaded_tca.unloaded import relative_curvature
 from tests.samples.gear_pairs import gear_pair, sam_paper
 from tests.samples.results import SCENES
@@ -87,6 +87,6 @@ def test_steps_end_where_the_next_one_is_rounding():
     x, y = np.linspace(-0.1, 0.1, 5)[:, None], np.linspace(-2.0, 2.0, 7)
     finer, there = gap.at(x, y)
     moved = gap_of(pair)
-    moved._rounding = 1e-3 * ROUNDING * sum(pair.base_radii)
+    moved._rounding = 1e-3 * STEP_ROUNDING * sum(pair.base_radii)
     assert (there > 0.0).all()
     assert_allclose(finer, moved.at(x, y)[0], rtol=0, atol=GAP)
