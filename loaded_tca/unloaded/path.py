@@ -55,14 +55,16 @@ class _Contact(Generic[Number, Whole, Truth]):
     residual: Number
 
 
+@dataclass(frozen=True, eq=False)
 class ContactPoint(_Contact[float, int, bool]):
     """First touch of one tooth pair at one position; the fields of ``ContactPath`` without their first axis."""
 
 
+@dataclass(frozen=True, eq=False, repr=False)
 class ContactPath(_Contact[Array, Indices, Mask]):
     """First touches of one tooth pair over the pinion angles, n positions.
 
-    Rows where no point of the tooth pair can touch are NaN, with ``touches`` False.
+    Rows where no point of the tooth pair can touch are NaN, with ``in_contact`` False.
 
     Attributes
     ----------
@@ -78,8 +80,8 @@ class ContactPath(_Contact[Array, Indices, Mask]):
         (rho, z) of the point on each flank.
     pinion_lever, wheel_lever : (n,) array [mm]
         Torque of a unit normal force about each axis.
-    touches, on_edge, on_relief_start, on_line : (n,) bool array
-        Whether the pair touches; whether the point lies on a tip, root or side edge; on the start of a linear
+    in_contact, on_edge, on_relief_start, on_line : (n,) bool array
+        Whether the pair is in contact; whether the point lies on a tip, root or side edge; on the start of a linear
         relief; whether the contact is a line.
     line_ends : (n, 2, 3) array [mm]
         Ends of the line; NaN for a point contact.
