@@ -33,9 +33,8 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import Flank
-from loaded_tca.flanks.cone_coordinates import cone_angle, cone_distance
 from loaded_tca.flanks.frame import ConeFrame
-from loaded_tca.flanks.jet import Jet
+from loaded_tca.flanks.jet import Jet, cone_angle, cone_distance
 
 SMALLEST_Q = 3e-5
 """Q is kept above this: at the base cone itself the curvature is infinite, below it there is no involute. That

@@ -17,8 +17,8 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError
+from loaded_tca.flanks.base import Region
 from loaded_tca.flanks.cradle import CradleGeneration, GeneratedPoints
-from loaded_tca.flanks.derived import Region
 from loaded_tca.flanks.frame import ConeFrame
 from loaded_tca.flanks.jet import Jet
 from loaded_tca.flanks.spline import FitError, SplineFlank

@@ -17,8 +17,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
-from loaded_tca.flanks.base import Flank
-from loaded_tca.flanks.derived import DerivedFlank
+from loaded_tca.flanks.base import DerivedFlank, Flank
 from loaded_tca.flanks.jet import Jet
 
 Shape = Callable[[Any], tuple[Any, Any, Any]]

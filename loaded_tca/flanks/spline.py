@@ -19,8 +19,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import AccuracyWarning, GeometryError, InputError
-from loaded_tca.flanks.base import Flank
-from loaded_tca.flanks.derived import DerivedFlank, Region, unmodified
+from loaded_tca.flanks.base import DerivedFlank, Flank, Region, unmodified
 from loaded_tca.flanks.jet import Jet
 from loaded_tca.flanks.structured_grid import FEWEST_POINTS, StructuredGrid, flank_coordinates
 from loaded_tca.flanks.tensor_spline import TensorSpline, fit

@@ -24,9 +24,8 @@ from numpy.polynomial import chebyshev
 
 from loaded_tca.arrays import Array
 from loaded_tca.flanks.base import Flank
-from loaded_tca.flanks.cone_coordinates import cone_angle, cone_distance
 from loaded_tca.flanks.frame import ConeFrame
-from loaded_tca.flanks.jet import Jet
+from loaded_tca.flanks.jet import Jet, cone_angle, cone_distance
 
 NODES = 11
 """Cone distances at which a curve over R is known; they resolve it to the last digits."""

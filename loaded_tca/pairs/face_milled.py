@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from loaded_tca.errors import InputError
-from loaded_tca.flanks.derived import unmodified
+from loaded_tca.flanks.base import unmodified
 from loaded_tca.flanks.face_milled import GeneratedFlank
 from loaded_tca.flanks.modification import FlankModifications
 from loaded_tca.gears.cutter import FlankName

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from loaded_tca.errors import GeometryError
-from loaded_tca.flanks.base import Flank
-from loaded_tca.flanks.derived import unmodified
+from loaded_tca.flanks.base import Flank, unmodified
 from loaded_tca.flanks.face_milled import GeneratedFlank, tooth_angle
 from loaded_tca.flanks.modification import FlankModifications, modified
 from loaded_tca.flanks.tooth_region import chebyshev_nodes, face_cone_angles

@@ -5,12 +5,12 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import Any, overload
+from typing import Any, Generic, TypeVar, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from loaded_tca.arrays import Array, finite_row
+from loaded_tca.arrays import Array, Indices, Mask, finite_row
 from loaded_tca.errors import AccuracyWarning, GeometryError, InputError
 from loaded_tca.flanks.base import EDGE_NAMES, outward_normal
 from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
@@ -25,39 +25,46 @@ EDGE_SLOPE = 1e-9
 """Slope of the ease-off against an edge above which the contact is held by it: far above rounding (1e-13), far
 below any slope that an engineer's modification or mounting error gives."""
 
-Bools = NDArray[np.bool_]
+Number = TypeVar("Number")
+Whole = TypeVar("Whole")
+Truth = TypeVar("Truth")
 
 
 @dataclass(frozen=True, eq=False)
-class ContactPoint:
-    """First touch of one tooth pair at one position; the fields of ``ContactPath`` without their first axis."""
+class _Contact(Generic[Number, Whole, Truth]):
+    """Fields of one position, and of a row of them; the shapes are told by :class:`ContactPath`."""
 
-    pinion_angle: float
-    wheel_angle: float
-    transmission_error: float
+    pinion_angle: Number
+    wheel_angle: Number
+    transmission_error: Number
     point: Array
     normal: Array
-    pinion_radius: float
-    pinion_axial: float
-    wheel_radius: float
-    wheel_axial: float
-    pinion_lever: float
-    wheel_lever: float
-    in_contact: bool
-    on_edge: bool
-    on_relief_start: bool
-    on_line: bool
+    pinion_radius: Number
+    pinion_axial: Number
+    wheel_radius: Number
+    wheel_axial: Number
+    pinion_lever: Number
+    wheel_lever: Number
+    in_contact: Truth
+    on_edge: Truth
+    on_relief_start: Truth
+    on_line: Truth
     line_ends: Array
-    edges: Bools
-    iterations: int
-    residual: float
+    edges: Mask
+    iterations: Whole
+    residual: Number
 
 
 @dataclass(frozen=True, eq=False)
-class ContactPath:
+class ContactPoint(_Contact[float, int, bool]):
+    """First touch of one tooth pair at one position; the fields of ``ContactPath`` without their first axis."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ContactPath(_Contact[Array, Indices, Mask]):
     """First touches of one tooth pair over the pinion angles, n positions.
 
-    Rows where no point of the tooth pair can touch are NaN, with ``touches`` False.
+    Rows where no point of the tooth pair can touch are NaN, with ``in_contact`` False.
 
     Attributes
     ----------
@@ -73,8 +80,8 @@ class ContactPath:
         (rho, z) of the point on each flank.
     pinion_lever, wheel_lever : (n,) array [mm]
         Torque of a unit normal force about each axis.
-    touches, on_edge, on_relief_start, on_line : (n,) bool array
-        Whether the pair touches; whether the point lies on a tip, root or side edge; on the start of a linear
+    in_contact, on_edge, on_relief_start, on_line : (n,) bool array
+        Whether the pair is in contact; whether the point lies on a tip, root or side edge; on the start of a linear
         relief; whether the contact is a line.
     line_ends : (n, 2, 3) array [mm]
         Ends of the line; NaN for a point contact.
@@ -85,26 +92,6 @@ class ContactPath:
     residual : (n,) array
         Sine of the angle between the two normals; on an edge, of its part along the edge.
     """
-
-    pinion_angle: Array
-    wheel_angle: Array
-    transmission_error: Array
-    point: Array
-    normal: Array
-    pinion_radius: Array
-    pinion_axial: Array
-    wheel_radius: Array
-    wheel_axial: Array
-    pinion_lever: Array
-    wheel_lever: Array
-    in_contact: Bools
-    on_edge: Bools
-    on_relief_start: Bools
-    on_line: Bools
-    line_ends: Array
-    edges: Bools
-    iterations: NDArray[np.int_]
-    residual: Array
 
     def __len__(self) -> int:
         return len(self.pinion_angle)
@@ -167,14 +154,14 @@ def trace_contact(pair: GearPair, pinion_angles: ArrayLike | None = None, *, war
     >>> [round(float(x), 6) for x in (*path.pinion_radius, *path.wheel_radius)]
     [51.0, 85.5]
     """
-    phi1 = _checked_angles(pair, pinion_angles)
+    phi1 = default_angles(pair) if pinion_angles is None else finite_row("pinion_angles", pinion_angles)
     touch = first_touch(pair, phi1)
     if not touch.in_contact.any():
         raise GeometryError(
             f"no common flank: at none of the {len(phi1)} pinion angles between {phi1.min():.6g} and {phi1.max():.6g} "
             "rad do the two flanks cover a common region; check the tips of the teeth and how the gears are mounted"
         )
-    path = _assemble(pair, phi1, touch)
+    path = _path(pair, phi1, touch)
     if warn:
         warn_of_fillets(pair, path, "contact")
     return path
@@ -192,13 +179,13 @@ def warn_of_fillets(pair: GearPair, path: ContactPath, what: str) -> None:
         warnings.warn(message + ", where the flank ends and the fillet begins", AccuracyWarning, stacklevel=3)
 
 
-def _checked_angles(pair: GearPair, pinion_angles: ArrayLike | None) -> Array:
-    if pinion_angles is None:
-        return np.linspace(-0.5 * pair.pitch, 0.5 * pair.pitch, POSITIONS)
-    return finite_row("pinion_angles", pinion_angles)
+def default_angles(pair: GearPair) -> Array:
+    """Pinion angles [rad] of 21 positions over one pitch about phi1 = 0, both ends included."""
+    return np.linspace(-0.5 * pair.pitch, 0.5 * pair.pitch, POSITIONS)
 
 
-def _assemble(pair: GearPair, phi1: Array, touch: FirstTouch) -> ContactPath:
+def _path(pair: GearPair, phi1: Array, touch: FirstTouch) -> ContactPath:
+    """Contact path of first touches; lines are represented by their middles."""
     rows = np.flatnonzero(touch.in_contact)
     angle, rho, z = phi1[rows], touch.rho[rows].copy(), touch.z[rows].copy()
     field = EaseOff(pair, touch.beyond[rows] if touch.beyond.shape[1] else None)
@@ -222,21 +209,26 @@ def _assemble(pair: GearPair, phi1: Array, touch: FirstTouch) -> ContactPath:
         "in_contact": np.ones(len(rows), dtype=bool),
         "iterations": touch.iterations[rows],
     }
-    return ContactPath(pinion_angle=phi1, **{name: _spread(part, rows, len(phi1)) for name, part in known.items()})
+    return ContactPath(pinion_angle=phi1, **{name: spread(part, rows, len(phi1)) for name, part in known.items()})
 
 
-def _spread(part: Array, rows: Array, count: int) -> Array:
-    """Rows of a full-length array; the others NaN, False or zero."""
+def spread(part: Array, rows: Array, count: int) -> Array:
+    """Rows of an array of ``count`` rows; the others NaN, False or zero."""
     full = np.full((count, *part.shape[1:]), np.nan if part.dtype.kind == "f" else 0, dtype=part.dtype)
     full[rows] = part
     return full
 
 
-def _contact(pair: GearPair, field: EaseOff, station: Station, held: Bools) -> dict[str, Any]:
+def _contact(pair: GearPair, field: EaseOff, station: Station, held: Mask) -> dict[str, Any]:
     """Normals, levers, edges and residual of the points; ``held`` tells the edges and relief starts they rest on."""
     pinion_basis = cylindrical_basis(np.arctan2(station.point[:, 1], station.point[:, 0]))
-    out_of_pinion = _in_space(outward_normal(pair.pinion.flank, station.rho, station.z), pinion_basis)
-    out_of_wheel = _in_space(outward_normal(pair.wheel.flank, station.wheel_rho, station.wheel_z), station.wheel_basis)
+    out_of_pinion, out_of_wheel = (
+        np.einsum("nk,nkj->nj", outward_normal(flank, rho, z), basis)
+        for flank, rho, z, basis in (
+            (pair.pinion.flank, station.rho, station.z, pinion_basis),
+            (pair.wheel.flank, station.wheel_rho, station.wheel_z, station.wheel_basis),
+        )
+    )
     edges = held[:, ~field.edge_is_relief_start()]
     use_wheel = _ends(field, station, held, 0) & ~_ends(field, station, held, 1)
     normal = np.where(use_wheel[:, None], -out_of_wheel, out_of_pinion)
@@ -254,11 +246,7 @@ def _contact(pair: GearPair, field: EaseOff, station: Station, held: Bools) -> d
     }
 
 
-def _in_space(components: Array, basis: Array) -> Array:
-    return np.einsum("nk,nkj->nj", components, basis)
-
-
-def _ends(field: EaseOff, station: Station, held: Bools, member: int) -> Array:
+def _ends(field: EaseOff, station: Station, held: Mask, member: int) -> Array:
     """Whether the flank of one gear ends, or has its relief start, at the contact."""
     own, relief_start = field.edge_owner() == member, field.edge_is_relief_start()
     distances, _ = field.edges(station)
@@ -267,7 +255,7 @@ def _ends(field: EaseOff, station: Station, held: Bools, member: int) -> Array:
     return on_edge | (held & own).any(axis=-1)
 
 
-def _residual(field: EaseOff, station: Station, normals: tuple[Array, Array], held: Bools) -> Array:
+def _residual(field: EaseOff, station: Station, normals: tuple[Array, Array], held: Mask) -> Array:
     """Sine of the angle between the normals; along the edge if one edge holds the point; zero in a corner."""
     residual = np.linalg.norm(np.cross(*normals), axis=-1)
     residual[held.sum(axis=-1) > 1] = 0.0

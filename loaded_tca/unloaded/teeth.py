@@ -27,9 +27,18 @@ from numpy.typing import ArrayLike, NDArray
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.unloaded.path import POSITIONS, ContactPath, trace_contact, warn_of_fillets
-from loaded_tca.unloaded.tooth_cycle import COINCIDE, REACH, ToothCycle, leading, reach, teeth_between, tooth_cycle
-from loaded_tca.unloaded.transfers import Transfer, find_transfers
+from loaded_tca.unloaded.path import ContactPath, default_angles, spread, trace_contact, warn_of_fillets
+from loaded_tca.unloaded.tooth_cycle import (
+    COINCIDE,
+    REACH,
+    ToothCycle,
+    Transfer,
+    find_transfers,
+    leading,
+    reach,
+    teeth_between,
+    tooth_cycle,
+)
 
 MOST_TEETH = 10**9
 """Tooth pairs are numbered below this, turns of the pinion away."""
@@ -248,7 +257,7 @@ def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: I
     (True, True)
     """
     phi1 = _checked_angles(pair, pinion_angles)
-    chosen = None if teeth is None else _checked_teeth(teeth)
+    chosen = None if teeth is None else _checked_teeth(teeth)  # before the reach is looked for
     low, high = reach(pair)
     pairs = teeth_between(phi1[0], phi1[-1], (low, high), pair.pitch) if chosen is None else chosen
     own = phi1 - pairs[:, None] * pair.pitch
@@ -266,7 +275,11 @@ def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: I
             f"at pinion angle {phi1[apart][0]:.6g} rad"
         )
     near = np.flatnonzero(heights >= np.tile(top, len(pairs)) - REACH * pair.module)
-    paths = _split(path, np.searchsorted(rows, near), near, own)
+    found = path[np.searchsorted(rows, near)]
+    parts = {entry.name: spread(getattr(found, entry.name), near, own.size) for entry in fields(ContactPath)}
+    parts["pinion_angle"] = own.ravel()
+    teeth_apart = ContactPath(**parts)
+    paths = tuple(teeth_apart[k * len(phi1) : (k + 1) * len(phi1)] for k in range(len(pairs)))
     mesh = MeshPath(pair, phi1, pairs, paths, pairs[column], pair.driving * top / pair.base_radii[1])
     warn_of_fillets(pair, mesh.leading_contact, "leading contact")
     return mesh
@@ -274,7 +287,7 @@ def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: I
 
 def _checked_angles(pair: GearPair, pinion_angles: ArrayLike | None) -> Array:
     if pinion_angles is None:
-        return np.linspace(-0.5 * pair.pitch, 0.5 * pair.pitch, POSITIONS)
+        return default_angles(pair)
     wanted = "finite, increasing numbers in one dimension are asked for"
     try:
         phi1 = np.asarray(pinion_angles, dtype=float)
@@ -291,15 +304,3 @@ def _checked_teeth(teeth: Iterable[int]) -> NDArray[np.int_]:
     if not whole or not chosen or len(set(chosen)) < len(chosen):
         raise InputError(f"teeth: {chosen}; whole numbers are asked for, at least one, none twice")
     return np.array(chosen, dtype=int)
-
-
-def _split(path: ContactPath, found: NDArray[np.int_], rows: NDArray[np.int_], own: Array) -> tuple[ContactPath, ...]:
-    """One path per tooth, (n,) rows each: those ``found`` of all of them go to ``rows``, the others are apart."""
-    parts = {}
-    for field in fields(ContactPath):
-        part = getattr(path, field.name)
-        full = np.full((own.size, *part.shape[1:]), np.nan if part.dtype.kind == "f" else 0, dtype=part.dtype)
-        full[rows] = part[found]
-        parts[field.name] = full.reshape(*own.shape, *part.shape[1:])
-    parts["pinion_angle"] = own
-    return tuple(ContactPath(**{name: part[k] for name, part in parts.items()}) for k in range(len(own)))

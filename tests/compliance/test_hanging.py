@@ -6,8 +6,7 @@ from numpy.testing import assert_allclose
 from skfem import ElementHexS2, ElementQuadS2
 
 from loaded_tca.compliance import gear_compliance, kept
-from loaded_tca.compliance.finite_elements import discretise
-from loaded_tca.compliance.hanging import FACES, following, nodes_of
+from loaded_tca.compliance.finite_elements import FACES, discretise, following, nodes_of
 from loaded_tca.compliance.layout import RingLayout
 from loaded_tca.material import Material
 from tests.samples.bodies import COARSE, between, line, pinion, within

@@ -5,8 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError
-from loaded_tca.flank_maps.conjugate import exchanged
-from loaded_tca.flank_maps.mating_part import mated_grid
+from loaded_tca.flank_maps.conjugate import exchanged, mated_grid
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, bevel_mesh
 from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import AccuracyWarning, InputError, trace_contact
 from loaded_tca.flanks import FlankModifications, MeasuredDeviations, MeasuredPoints, measured
-from loaded_tca.flanks.derived import unmodified
+from loaded_tca.flanks.base import unmodified
 from loaded_tca.flanks.spline import pitch_point
 from loaded_tca.gears import bevel_mesh
 from loaded_tca.pairs.bevel import bevel_pair
