@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import InputError
 from loaded_tca.flanks import FlankModifications, SplineFlank
-from loaded_tca.flanks.derived import unmodified
+from loaded_tca.flanks.base import unmodified
 from loaded_tca.scene import read_scene
 from tests.samples.teeth import MESHES, RELIEVED, gear_of, pair_of
 

@@ -149,7 +149,7 @@ def _mean_stiffness(mesh: CylindricalMesh, torque: float, neighbours: int) -> fl
     cycle = trace_teeth(pair, pair.pitch * np.linspace(-0.5, 0.5, STIFFNESS_POSITIONS, endpoint=False))
     rates, laws = [], Laws()
     for position in range(STIFFNESS_POSITIONS):
-        found = share_load(pair, tooth_pairs_at(cycle, position), torque, GRID, compliance=teeth, start=laws)
+        found = share_load(pair, tooth_pairs_at(cycle, position), torque, GRID, bending=teeth, start=laws)
         laws = found.laws
         rates.append(found.torque_rate)
     return float(np.mean(rates) / (1e3 * pair.base_radii[0] * pair.base_radii[1] * pair.face_width))
