@@ -34,7 +34,7 @@ def main() -> float:
         result = analyse(scene)
     print(result.summary())
     angle, error = kept(scene.load.pinion_torque_Nm)
-    ours = 1e3 * result.wheel_base_radius * result.transmission_error
+    ours = 1e3 * result.wheel_base_radius * result.transmission_error[0]
 
     figure = Figure(figsize=(7.0, 4.5), layout="constrained")
     axes = figure.subplots()

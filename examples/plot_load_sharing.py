@@ -19,7 +19,7 @@ def main() -> float:
     print(result.summary())
     save_figure(plot_load_share(result), "load_sharing.png")
 
-    pair_at_pitch_point = result.load_share[:, 0]
+    pair_at_pitch_point = result.dataset.load_share.isel(torque=0).sel(pair=0)
     return float(pair_at_pitch_point[0] + pair_at_pitch_point[-1])
 
 

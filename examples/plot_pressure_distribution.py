@@ -24,7 +24,7 @@ def main() -> float:
     print(result.summary())
     save_figure(plot_pressure_map(result), "pressure_distribution.png")
 
-    one = result.maps[0][0]
+    one = result.maps[0][0][0]  # torque, position, tooth pair
     carried = one.pressure.sum() * one.spacing[0] * one.spacing[1]  # N
     wanted = result.torque[0] / result.path.pinion_lever[0]  # N mm / mm
     return carried / wanted

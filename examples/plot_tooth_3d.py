@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from loaded_tca import analyse, read_scene
-from loaded_tca.output import complete_teeth, teeth_in_space
+from loaded_tca.output import teeth_in_space
+from loaded_tca.pairs import mating_teeth
 from loaded_tca.plots import draw_teeth, save_figure
 from loaded_tca.tooth import Resolution
 
@@ -23,7 +24,7 @@ def main() -> float:
     result = analyse(scene)
     middle = len(result.path) // 2
 
-    teeth = complete_teeth(scene, Resolution(flank=25, fillet=9, land=3, lengthwise=25))
+    teeth = mating_teeth(scene.pair(), Resolution(flank=25, fillet=9, land=3, lengthwise=25))
     pinion = teeth.pinion.triangles(closed=True)
     print(f"one tooth of the pinion with its part of the rim: {pinion.volume:.2f} mm3, {pinion.area:.2f} mm2")
 
@@ -32,7 +33,7 @@ def main() -> float:
 
     sizes = np.linalg.norm(shown.pressure.normals, axis=1)  # mm2
     carried = float((sizes * shown.pressure.cell_data["pressure_MPa"]).sum())  # N
-    return carried / float(result.normal_force[middle])
+    return carried / float(result.normal_force[0, middle, 0])
 
 
 if __name__ == "__main__":

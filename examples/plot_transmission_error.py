@@ -22,7 +22,7 @@ def main() -> float:
     save_figure(plot_transmission_error(result), "transmission_error.png")
 
     pitch_point = len(result.path) // 2
-    error = -result.transmission_error[:, pitch_point]  # rad
+    error = result.transmission_error[:, pitch_point]  # rad
     return math.log(error[-1] / error[0]) / math.log(TORQUES[-1] / TORQUES[0])
 
 

@@ -152,32 +152,33 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("scene", metavar="SCENE.toml", help="scene file")
     run.add_argument("--out", metavar="DIR", required=True, type=Path, help="directory for the results")
     plot = command("plot", _plot, "draw the pictures of a result again")
-    plot.add_argument("result", metavar="DIR|FILE", type=Path, help="result.nc, or the directory that holds it")
     own = "beside the result, with --torque or --position in a directory there that these name"
     plot.add_argument("--out", metavar="DIR", type=Path, help=f"directory for the pictures; default: {own}")
     plot.add_argument("--torque", metavar="NM", type=float, help="pinion torque of maps and flanks; default: largest")
     plot.add_argument("--position", metavar="N", type=int, help="position of pressure_map.png, from 1; default: peak")
     tooth = command("tooth", _tooth, "write the complete teeth of a result as surfaces (VTK, STL) and as a picture")
-    tooth.add_argument("result", metavar="DIR|FILE", type=Path, help="result.nc, or the directory that holds it")
     tooth.add_argument("--out", metavar="DIR", type=Path, help="directory for the files; default: beside the result")
     tooth.add_argument("--torque", metavar="NM", type=float, help="pinion torque of the pressure; default: largest")
     tooth.add_argument("--position", metavar="N", type=int, help="position of the teeth, from 1; default: peak")
     tooth.add_argument("--fillet-radius", metavar="MM", type=float, help="of arcs at the root; default: by the module")
     tooth.add_argument("--whole-gears", action="store_true", help="all teeth in the STL files, not one")
     below = command("subsurface", _subsurface, "show the stresses below a pressure map of a result")
-    below.add_argument("result", metavar="DIR|FILE", type=Path, help="result.nc, or the directory that holds it")
     below.add_argument("--out", metavar="DIR", type=Path, help="directory for the files; default: beside the result")
     below.add_argument("--torque", metavar="NM", type=float, help="pinion torque; default: largest")
-    first = "default: that of the first number of the summary"
+    first = "default: that of the peak pressure of the summary"
     below.add_argument("--position", metavar="N", type=int, help=f"position, from 1; {first}")
     below.add_argument("--pair", metavar="K", type=int, help=f"tooth pair, as load_share.png counts; {first}")
-    below.add_argument(
-        "--gear", choices=("pinion", "wheel"), default="pinion", help="below whose flank; default: pinion"
-    )
     ease_off = command("ease-off", _ease_off, "draw the ease-off of a scene, without load")
     ease_off.add_argument("scene", metavar="SCENE.toml", help="scene file")
     ease_off.add_argument("--out", metavar="DIR", required=True, type=Path, help="directory for the picture")
-    ease_off.add_argument("--gear", choices=("pinion", "wheel"), default="pinion", help="whose flank; default: pinion")
+    for parser_of_result in (plot, tooth, below):
+        parser_of_result.add_argument(
+            "result", metavar="DIR|FILE", type=Path, help="result.nc, or the directory that holds it"
+        )
+    for parser_of_gear in (below, ease_off):
+        parser_of_gear.add_argument(
+            "--gear", choices=("pinion", "wheel"), default="pinion", help="whose flank; default: pinion"
+        )
     check = command("check", _check, "read a scene and show its geometry, without computing a contact")
     check.add_argument("scene", metavar="SCENE.toml", help="scene file")
     return parser
@@ -233,32 +234,26 @@ def _analyse_to(scene_file: str, directory: Path) -> None:
 def _plot(options: argparse.Namespace) -> None:
     from loaded_tca.output.report import make_directory
 
-    result, directory = _loaded(options)
-    torque, position = _chosen_torque(result, options.torque), _chosen_position(result, options.position)
+    result, directory, torque, position = _loaded(options)
     if options.out is None:
-        directory /= _place_of_its_own(options)
+        # Pictures of a torque or position would replace those of the result as a whole.
+        chosen = {"torque_{:g}_Nm": options.torque, "position_{}": options.position}
+        directory /= "_".join(name.format(value) for name, value in chosen.items() if value is not None)
         make_directory(directory)
     _print_files(_draw(result, directory, torque, position))
 
 
-def _place_of_its_own(options: argparse.Namespace) -> str:
-    """Directory of pictures that are not those of the result as a whole, which they would replace; empty: they are."""
-    chosen = {"torque_{:g}_Nm": options.torque, "position_{}": options.position}
-    return "_".join(name.format(value) for name, value in chosen.items() if value is not None)
-
-
 def _tooth(options: argparse.Namespace) -> None:
     from loaded_tca.output.surface_files import write_teeth
-    from loaded_tca.output.teeth_in_space import complete_teeth, teeth_in_space
+    from loaded_tca.output.teeth_in_space import teeth_in_space
+    from loaded_tca.pairs import mating_teeth
     from loaded_tca.plots import save_figure
     from loaded_tca.plots.three_d import draw_teeth
-    from loaded_tca.scene import parse_scene
 
-    result, directory = _loaded(options)
-    torque, position = _chosen_torque(result, options.torque), _chosen_position(result, options.position)
-    teeth = complete_teeth(parse_scene(result.scene_toml), fillet_radius=options.fillet_radius)
+    result, directory, torque, position = _loaded(options)
+    teeth = mating_teeth(result.gear_pair, fillet_radius=options.fillet_radius)
     shown = teeth_in_space(result, teeth, position, torque)
-    written = write_teeth(shown, teeth, directory, title=result.title, whole_gears=options.whole_gears)
+    written = write_teeth(shown, teeth, directory, title=result.scene.title, whole_gears=options.whole_gears)
     save_figure(draw_teeth(result, shown), directory / "teeth.png")
     _print_files([*written, directory / "teeth.png"])
 
@@ -268,8 +263,7 @@ def _subsurface(options: argparse.Namespace) -> None:
     from loaded_tca.plots import plot_stress_below, save_figure
     from loaded_tca.results.stress_below import NAMES, stress_below
 
-    result, directory = _loaded(options)
-    torque, position = _chosen_torque(result, options.torque), _chosen_position(result, options.position)
+    result, directory, torque, position = _loaded(options)
     below = stress_below(result, torque, position, options.pair, gear=options.gear)
     written = [*write_subsurface(below, directory)]
     for quantity in NAMES:
@@ -294,8 +288,8 @@ def _ease_off(options: argparse.Namespace) -> None:
     _print_files([options.out / "ease_off.png"])
 
 
-def _loaded(options: argparse.Namespace) -> tuple[MeshCycle, Path]:
-    """The result that the command line names, and the directory to write to."""
+def _loaded(options: argparse.Namespace) -> tuple[MeshCycle, Path, int | None, int | None]:
+    """What the command line names: the result, the directory to write to, and indices of the torque and position."""
     from loaded_tca.output.report import RESULT, make_directory
     from loaded_tca.results.mesh_cycle import MeshCycle
 
@@ -303,29 +297,19 @@ def _loaded(options: argparse.Namespace) -> tuple[MeshCycle, Path]:
     result = MeshCycle.load(path)
     directory = options.out or path.parent
     make_directory(directory)
-    return result, directory
-
-
-def _chosen_torque(result: MeshCycle, wanted: float | None) -> int | None:
-    """Index of the torque that --torque names."""
-    torques = [1e-3 * float(torque) for torque in result.torque]
-    matches = [
-        index for index, torque in enumerate(torques) if wanted is not None and f"{torque:.6g}" == f"{wanted:.6g}"
-    ]
-    if wanted is not None and not matches:
-        raise InputError(f"--torque {wanted:g}: the result has {', '.join(f'{torque:.6g}' for torque in torques)} N m")
-    return matches[0] if matches else None
-
-
-def _chosen_position(result: MeshCycle, wanted: int | None) -> int | None:
-    """Index of the position that --position names."""
-    if wanted is None:
-        return None
-    if not 1 <= wanted <= len(result.path):
-        raise InputError(f"--position {wanted}: the result has the positions 1 to {len(result.path)}")
-    if not result.path.in_contact[wanted - 1]:
-        raise InputError(f"--position {wanted}: the tooth pair does not touch there")
-    return wanted - 1
+    torque, position = options.torque, options.position
+    if torque is not None:
+        known = [f"{1e-3 * float(one):.6g}" for one in result.torque]
+        if f"{torque:.6g}" not in known:
+            raise InputError(f"--torque {torque:g}: the result has {', '.join(known)} N m")
+        torque = known.index(f"{torque:.6g}")
+    if position is not None:
+        if not 1 <= position <= len(result.path):
+            raise InputError(f"--position {position}: the result has the positions 1 to {len(result.path)}")
+        if not result.path.in_contact[position - 1]:
+            raise InputError(f"--position {position}: no tooth pair is in contact there")
+        position -= 1
+    return result, directory, torque, position
 
 
 def _check(options: argparse.Namespace) -> None:
@@ -360,7 +344,7 @@ def _check_place(directory: Path) -> None:
 def _progress_bar(torques: int, positions: int) -> Iterator[Callable[[int, int], None] | None]:
     """A bar on a terminal, with what is done, of how much, and the time left; nothing in a file or a pipe.
 
-    It is there from the start: before the first position teeth that yield are modelled.
+    It is there from the start: before the first position teeth that bend are modelled.
     """
     if not sys.stderr.isatty():
         yield None

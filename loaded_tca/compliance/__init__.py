@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 from loaded_tca.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from loaded_tca.compliance.body import DEFAULT_BORE, GearTooth
     from loaded_tca.compliance.compliance import ToothCompliance, default_density, tooth_compliance
     from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_compliance
     from loaded_tca.compliance.layout import MeshDensity
@@ -13,10 +12,8 @@ else:
     __getattr__, __dir__ = lazy_names(__name__)
 
 __all__ = [
-    "DEFAULT_BORE",
     "FlankLine",
     "GearCompliance",
-    "GearTooth",
     "MeshDensity",
     "ToothCompliance",
     "default_density",

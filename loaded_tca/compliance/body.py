@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize.elementwise import bracket_root, find_root
 from scipy.sparse import csr_array
 
 from loaded_tca.arrays import Array, Indices
@@ -14,50 +15,31 @@ from loaded_tca.compliance.geometry import BodyNodes, body_nodes
 from loaded_tca.compliance.layout import MeshDensity, RingLayout
 from loaded_tca.flanks.base import Flank, outward_normal
 from loaded_tca.material import Material
+from loaded_tca.pairs.gear import Gear
 from loaded_tca.tooth.build import Resolution, build_tooth
-from loaded_tca.tooth.form import ToothForm
 
-DEFAULT_BORE = 0.55
-"""Bore of a gear that has none given, over its (smallest) root diameter."""
-BISECTIONS = 50
 FIRST_CHORD = 0.25
 """First guess of the distance from a flank to the middle of the tooth, over the height of the flank."""
 
 
-@dataclass(frozen=True, eq=False)
-class GearTooth:
-    """What the compliance of a gear is made from.
+def gear_nodes(gear: Gear, density: MeshDensity) -> BodyNodes:
+    """Nodes of the whole ring of a gear.
 
-    Attributes
-    ----------
-    flanks : (Flank, Flank)
-        Of the sides s = +1 and s = -1.
-    form : ToothForm
-    material : Material
-    bore_diameter : float [mm], optional
-        Held rigid; default: 0.55 of the root diameter.
+    They follow the flanks without modifications: microns of material make no difference to the bending of teeth, and
+    variants of the micro-geometry share one model.
+
+    Raises
+    ------
+    InputError
+        If the bore reaches the teeth.
+    GeometryError
+        If the tooth is pointed or cut off.
     """
-
-    flanks: tuple[Flank, Flank]
-    form: ToothForm
-    material: Material = Material()
-    bore_diameter: float | None = None
-
-    def nodes(self, density: MeshDensity) -> BodyNodes:
-        """Nodes of the whole ring.
-
-        Raises
-        ------
-        InputError
-            If the bore reaches the teeth.
-        GeometryError
-            If the tooth is pointed or cut off.
-        """
-        resolution = Resolution(flank=65, fillet=65, land=9, lengthwise=2 * density.lengthwise + 1)
-        tooth = build_tooth(self.flanks, self.form, resolution)
-        root = np.hypot(*tooth.outline[0, :, :2].T)
-        bore = DEFAULT_BORE * root if self.bore_diameter is None else 0.5 * self.bore_diameter
-        return body_nodes(tooth, self.form.sections, bore, RingLayout(self.form.teeth, density))
+    resolution = Resolution(flank=65, fillet=65, land=9, lengthwise=2 * density.lengthwise + 1)
+    tooth = build_tooth(gear.nominal_flanks, gear.form, resolution)
+    sections, root = gear.form.sections, tooth.outline[0]
+    bore = gear.bore_radius(sections.coordinate(np.hypot(root[:, 0], root[:, 1]), root[:, 2]))
+    return body_nodes(tooth, sections, bore, RingLayout(gear.form.teeth, density))
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,20 +89,22 @@ class ToothFrame:
 
     Attributes
     ----------
-    gear : GearTooth
-    side : int
-        s of the flank in contact.
+    gear : Gear
     nodes : BodyNodes
     """
 
-    gear: GearTooth
-    side: int
+    gear: Gear
     nodes: BodyNodes
 
     @property
+    def side(self) -> int:
+        """The side s = +1 or -1 of the flank in contact."""
+        return self.gear.flank.side
+
+    @property
     def flank(self) -> Flank:
-        """The flank in contact."""
-        return self.gear.flanks[0 if self.side > 0 else 1]
+        """The flank in contact, without modifications."""
+        return self.gear.nominal_flank
 
     def _column(self, part: float, tooth: int = 0) -> int:
         """Column of nodes at a part of the thickness, 0 at s = -1 and 1 at s = +1."""
@@ -159,30 +143,17 @@ class ToothFrame:
 
     def _depth(self, point: Array, normal: Array, scale: float) -> Array:
         """Distances (m,) along the normals to the middle of the tooth [mm]."""
-
-        def beyond(depth: Array) -> Array:
-            place = point - depth[:, None] * normal
-            azimuth = np.arctan2(place[:, 1], place[:, 0])
-            return self.side * (azimuth - self._middle_angle(place))
-
-        low, high = np.zeros(len(point)), np.full(len(point), FIRST_CHORD * scale)
-        for _ in range(BISECTIONS):
-            far = beyond(high) > 0.0
-            if not far.any():
-                break
-            high = np.where(far, 1.5 * high, high)
-        for _ in range(BISECTIONS):
-            middle = 0.5 * (low + high)
-            outside = beyond(middle) > 0.0
-            low, high = np.where(outside, middle, low), np.where(outside, high, middle)
-        return 0.5 * (low + high)
-
-    def _middle_angle(self, place: Array) -> Array:
-        """Azimuth (m,) of the middle of the tooth at half the height of the flank, in the sections of points (m, 3)."""
-        where = self.nodes.sections.coordinate(np.hypot(place[:, 0], place[:, 1]), place[:, 2])
         rows = self._flank_rows()
-        angle = self.nodes.angle[self._column(0.5), (rows.start + rows.stop) // 2]
-        return np.interp(where, self.nodes.coordinate, angle)
+        middle = self.nodes.angle[self._column(0.5), (rows.start + rows.stop) // 2]  # half way up the flank
+
+        def beyond(depth: Array, number: Indices) -> Array:
+            x, y, z = (point[number] - depth[:, None] * normal[number]).T
+            where = self.nodes.sections.coordinate(np.hypot(x, y), z)
+            return self.side * (np.arctan2(y, x) - np.interp(where, self.nodes.coordinate, middle))
+
+        every = (np.arange(len(point)),)
+        found = bracket_root(beyond, np.zeros(len(point)), FIRST_CHORD * scale, xmin=0.0, args=every)
+        return np.asarray(find_root(beyond, found.bracket, args=every).x)
 
     def on_flank(self, places: FlankPlaces, number: Indices) -> SurfacePlaces:
         """Places among the nodes (columns, rows, layers) numbered ``number``, on the flank in contact."""

@@ -71,4 +71,4 @@ def tooth_flexibility(frame: ToothFrame) -> ToothFlexibility:
     readings = vstack([middle.along(-places.normal, size) for middle in teeth], format="csr")
     displacement = body.factorisation.flexibility(forces, readings).reshape(len(teeth), len(places.height), -1)
     depth = places.depth.reshape(len(heights), len(lengths))
-    return ToothFlexibility(heights, lengths, displacement, depth, local_flexibility(frame.gear, frame.side))
+    return ToothFlexibility(heights, lengths, displacement, depth, local_flexibility(frame.gear))

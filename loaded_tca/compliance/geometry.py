@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize.elementwise import find_root
 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.layout import MeshDensity, RingLayout, SectorLayout
@@ -26,11 +27,8 @@ SHALLOW = 0.3
 """The same at most over the depth of the rim."""
 GROWTH = 1.8
 """Each layer of the rim is so much thicker than the one above."""
-LARGEST_BORE = 0.98
-"""Of the smallest root circle."""
 SHARP = math.pi / 3.0
 """Bend of an edge between its halves from which it is made straight; 29 deg on usual teeth, 66 where one folded."""
-BISECTIONS = 60
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,8 +43,6 @@ class BodyNodes:
         Which sections.
     radius, angle : (columns, rows, k) array [mm], [rad]
         Polar coordinates of the images.
-    bore_diameter : float [mm]
-        Smallest one.
     outline : (n, k, 3) array [mm]
         Of the tooth between which the nodes were drawn, finer than they are.
     """
@@ -56,7 +52,6 @@ class BodyNodes:
     coordinate: Array
     radius: Array
     angle: Array
-    bore_diameter: float
     outline: Array
 
     @property
@@ -93,7 +88,7 @@ class _Side:
         return radius, angle
 
 
-def body_nodes(tooth: ToothSurface, sections: Sections, bore_radius: float | Array, layout: RingLayout) -> BodyNodes:
+def body_nodes(tooth: ToothSurface, sections: Sections, bore_radius: Array, layout: RingLayout) -> BodyNodes:
     """Nodes of a whole ring.
 
     Parameters
@@ -102,29 +97,29 @@ def body_nodes(tooth: ToothSurface, sections: Sections, bore_radius: float | Arr
         Finely resolved, with 2 lengthwise + 1 sections.
     sections : Sections
         Those that the tooth was built of.
-    bore_radius : float or (k,) array [mm]
+    bore_radius : (k,) array [mm]
         Distance from the axis at which each section meets the bore.
     layout : RingLayout
 
     Raises
     ------
     InputError
-        If the sections are not those of the layout, or the bore reaches the teeth.
+        If the sections are not those of the layout.
     """
     outline = tooth.outline
     wanted = 2 * layout.density.lengthwise + 1
     if outline.shape[1] != wanted:
         raise InputError(f"tooth: {outline.shape[1]} sections, {wanted} are needed")
     rho, z = np.hypot(outline[..., 0], outline[..., 1]), outline[..., 2]
-    part_of_root = bore_radius / rho.min(axis=0)
-    if not ((part_of_root > 0.0) & (part_of_root < LARGEST_BORE)).all():
-        raise InputError(
-            f"bore_diameter: {2.0 * np.max(bore_radius):.6g} mm is not between 0 and {LARGEST_BORE:g} times the "
-            f"smallest root diameter, {2.0 * rho.min():.6g} mm: no rim is left below the teeth"
-        )
     coordinate = sections.coordinate(rho[0], z[0])
     polar = sections.radius(rho, z), np.unwrap(np.arctan2(outline[..., 1], outline[..., 0]), axis=0)
-    bore = _image_of_circle(sections, bore_radius, coordinate, polar[0].min(axis=0))
+    lowest = polar[0].min(axis=0)
+
+    def beyond_bore(image: Array, section: Array, rho: Array) -> Array:
+        return sections.point(image, section)[0] - rho
+
+    circles = coordinate, np.broadcast_to(bore_radius, lowest.shape)
+    bore = find_root(beyond_bore, (0.0 * lowest, lowest), args=circles).x
     sides = _side(tooth, polar, 1), _side(tooth, polar, -1)
     radius, angle = (np.full((*layout.shape, len(coordinate)), np.nan) for _ in range(2))
     for sector in layout.sectors:
@@ -132,7 +127,7 @@ def body_nodes(tooth: ToothSurface, sections: Sections, bore_radius: float | Arr
         columns = slice(sector.first, sector.first + 2 * sector.columns)
         block = _sector(sector, layout, sides, bore)
         radius[columns], angle[columns] = block[0][:-1], block[1][:-1] + turn
-    return BodyNodes(layout, sections, coordinate, radius, angle, 2.0 * float(np.min(bore_radius)), outline)
+    return BodyNodes(layout, sections, coordinate, radius, angle, outline)
 
 
 def _side(tooth: ToothSurface, polar: tuple[Array, Array], sign: int) -> _Side:
@@ -212,13 +207,3 @@ def _interpolated(wanted: Array, places: Array, values: Array) -> Array:
     """Values (n, k) at places (n, k), between those of increasing places (m, k)."""
     columns = [np.interp(wanted[:, k], places[:, k], values[:, k]) for k in range(places.shape[1])]
     return np.stack(columns, axis=-1)
-
-
-def _image_of_circle(sections: Sections, rho: float | Array, coordinate: Array, largest: Array) -> Array:
-    """Radii (k,) of the images of circles about the axis, below ``largest``."""
-    low, high = 0.0 * largest, largest
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        below = sections.point(middle, coordinate)[0] < rho
-        low, high = np.where(below, middle, low), np.where(below, high, middle)
-    return 0.5 * (low + high)

@@ -26,12 +26,13 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
 from loaded_tca.arrays import Array
-from loaded_tca.compliance.body import GearTooth, ToothFrame
+from loaded_tca.compliance.body import ToothFrame, gear_nodes
 from loaded_tca.compliance.flexibility import ToothFlexibility
 from loaded_tca.compliance.half_space import depth_displacement
 from loaded_tca.compliance.kept import kept_flexibility
 from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.errors import InputError
+from loaded_tca.pairs.gear import Gear
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,14 +166,12 @@ class _Places:
         return (self.across[:, :, None] * self.along[:, None, :]).reshape(len(self.across), -1)
 
 
-def gear_compliance(gear: GearTooth, side: int, density: MeshDensity = MeshDensity()) -> GearCompliance:
+def gear_compliance(gear: Gear, density: MeshDensity = MeshDensity()) -> GearCompliance:
     """Load a gear body by unit forces all over one flank, or take what is known of it.
 
     Parameters
     ----------
-    gear : GearTooth
-    side : int
-        s of the flank in contact.
+    gear : Gear
     density : MeshDensity
 
     Raises
@@ -182,7 +181,7 @@ def gear_compliance(gear: GearTooth, side: int, density: MeshDensity = MeshDensi
     GeometryError
         If the tooth is pointed or cut off, or the mesh is turned inside out.
     """
-    frame = ToothFrame(gear, side, gear.nodes(density))
+    frame = ToothFrame(gear, gear_nodes(gear, density))
     return GearCompliance(frame, kept_flexibility(frame))
 
 

@@ -16,11 +16,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from loaded_tca.arrays import Array, Indices
-from loaded_tca.compliance.body import GearTooth, factorised
+from loaded_tca.compliance.body import factorised, gear_nodes
 from loaded_tca.compliance.finite_elements import Discretisation, discretise
 from loaded_tca.compliance.half_space import line_force
 from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.material import Material
+from loaded_tca.pairs.gear import Gear
 
 DENSITY = MeshDensity(through=8, flank=12, fillet=4, land=4, rim=6, lengthwise=1, neighbours=0)
 """Of the middle section: twice as fine gives the same to 1 %. Without neighbours the cut of the half-plane's field,
@@ -50,18 +51,16 @@ class LocalFlexibility:
         return np.interp(height, self.height, self.value)
 
 
-def local_flexibility(gear: GearTooth, side: int, density: MeshDensity = DENSITY) -> LocalFlexibility:
+def local_flexibility(gear: Gear, density: MeshDensity = DENSITY) -> LocalFlexibility:
     """Local term of the middle section.
 
     Parameters
     ----------
-    gear : GearTooth
-    side : int
-        s of the flank in contact.
+    gear : Gear
     density : MeshDensity
         Lengthwise elements are of no account.
     """
-    section = _section(gear, side, density)
+    section = _section(gear, density)
     forces = [section.force_at(row) for row in section.rows]
     loads = np.stack([section.rest_loads(force) for force in forces], axis=-1)
     held = np.stack([section.held_displacement(force) for force in forces], axis=-1)
@@ -138,16 +137,16 @@ def _cross(a: Array, b: Array) -> float:
     return float(a[0] * b[1] - a[1] * b[0])
 
 
-def _section(gear: GearTooth, side: int, density: MeshDensity) -> _Section:
+def _section(gear: Gear, density: MeshDensity) -> _Section:
     """Mesh of the middle section."""
-    nodes = gear.nodes(density)
+    nodes = gear_nodes(gear, density)
     radius, angle = (values[:, :, density.lengthwise] for values in (nodes.radius, nodes.angle))
     points = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
     mesh = discretise(points, nodes.layout.elements)
     left = nodes.layout.sector(0).first + 2 * density.land
     first = nodes.layout.base_row + 2 * density.fillet
     rows = first + np.arange(2, 2 * density.flank - 1, 2)
-    flank = mesh.number[left + (2 * density.through if side > 0 else 0)]
+    flank = mesh.number[left + (2 * density.through if gear.flank.side > 0 else 0)]
     border = _border(mesh)
     return _Section(mesh, gear.material, flank, mesh.number[left + density.through], first, rows, border)
 

@@ -28,7 +28,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flank_maps.conjugate import conjugate_contact, exchanged
 from loaded_tca.flank_maps.mating_part import ROUNDING, mated_grid
-from loaded_tca.flank_maps.rotary_gap import Gear
+from loaded_tca.flank_maps.pattern import Gear
 from loaded_tca.flank_maps.second_order import SecondOrder, central, flank_lengths, second_order
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.frame import FlankFrame

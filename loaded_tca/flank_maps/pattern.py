@@ -1,7 +1,13 @@
-"""Contact pattern by the searching method: where the flanks are nearer than the marking compound is thick.
+r"""Contact pattern by the searching method: where the flanks are nearer than the marking compound is thick.
 
-The gap is that of :mod:`loaded_tca.flank_maps.rotary_gap`, without tangent plane or curvature, and the edges of the
-flanks cut the pattern where it ends.
+Gears that stand at phi1 and phi2 are apart by an angle about one axis at every point of a flank: what the mating gear
+would have to turn to touch it there. Times the lever of the mating gear's normal about its axis this is the gap, to
+first order,
+
+.. math:: g = \Delta\varphi\,|n \cdot (w \times r)| = \Delta\varphi/|\nabla F|, \qquad F = \theta - \Theta(\rho, z),
+
+since the normal is the direction of grad F, whose azimuthal part is 1/rho. No tangent plane, no curvature and no
+fitted section is needed, and the edges of the flanks cut the pattern where it ends.
 
 References
 ----------
@@ -13,26 +19,37 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.flank_maps.contour import RaySearch
-from loaded_tca.flank_maps.rotary_gap import Gear, flank_gap
+from loaded_tca.flank_maps.conjugate import exchanged
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.curvature import relative_curvature
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.path import ContactPoint
+from loaded_tca.unloaded.roots import find_roots
 from loaded_tca.unloaded.teeth import MeshPath, trace_teeth
+
+Gear = Literal["pinion", "wheel"]
 
 COMPOUND = 6.35e-3
 """Thickness of the usual marking compound [mm]."""
 RAYS = 360
 LONGEST = 4.0
 """Length of a ray in semi-axes of the ellipse."""
+SCAN = 65
+"""Points of a ray at which its first crossing of the contour is looked for."""
+RESOLVED = 1e-14
+"""Accuracy of the end of a ray, over its length in the drawn ellipse."""
+SECTOR = 1e-6
+"""Part of the area that may hide between two rays."""
+MOST_HALVINGS = 40
+JUMP, EDGE_POINTS = 0.01, 15
+"""Lengths of neighbouring rays that differ by more than this part run along an edge, which then has so many points."""
 POSITIONS = 61
 """Positions per pitch of the accumulated pattern: between two of them the gap of a spur pair rises by 0.2 um."""
 GRID = (61, 81)
@@ -124,6 +141,134 @@ class ContactPattern:
         return f"ContactPattern({self.gear}, {self.touched.mean():.0%} of {self.gap.size} points touched)"
 
 
+def flank_gap(
+    pair: GearPair, gear: Gear, angles: tuple[Any, Any], place: tuple[Array, Array]
+) -> tuple[Array, Array, Array]:
+    """Gap at points of one flank, to first order, and the same points on the mating gear.
+
+    Parameters
+    ----------
+    pair : GearPair
+    gear : {"pinion", "wheel"}
+        The gear whose flank the points lie on.
+    angles : two floats or arrays [rad]
+        phi1 and phi2 at which the gears stand; they broadcast against the points.
+    place : two arrays [mm]
+        rho and z of the points.
+
+    Returns
+    -------
+    gap : array [mm]
+        Negative where the flanks penetrate; +inf beyond the edges of the mating gear.
+    radius, axial : array [mm]
+        Of the points in the mating gear's frame.
+    """
+    if gear == "wheel":
+        pair, angles = exchanged(pair), angles[::-1]
+    point = _in_space(pair, angles[0], *place)
+    radius, theta, axial = pair.to_wheel(point)
+    jet = pair.wheel.flank.theta(radius, axial)
+    apart = pair.driving * (angles[1] - pair.sense * (jet.value - theta))
+    lever = 1.0 / np.sqrt(jet.rho**2 + 1.0 / radius**2 + jet.z**2)
+    return np.where(pair.wheel.flank.inside(radius, axial), apart * lever, np.inf), radius, axial
+
+
+def _in_space(pair: GearPair, phi1: Any, rho: Array, z: Array) -> Array:
+    """Points (..., 3) of the pinion's flank in the fixed frame."""
+    azimuth = pair.pinion.flank.theta(rho, z).value + pair.sense * phi1
+    return np.stack(np.broadcast_arrays(rho * np.cos(azimuth), rho * np.sin(azimuth), z), axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class _Rays:
+    """Rays from a contact point in (rho, z), and where the gap reaches the compound, or a flank ends, on each.
+
+    ``drawn`` (2, 2): the semi-axes of the ellipse that the rays fill, along the directions ``plane`` (2, 3), as steps
+    of (rho, z); ``size``: their product [mm^2].
+    """
+
+    pair: GearPair
+    contact: ContactPoint
+    plane: Array
+    drawn: Array
+    size: float
+    compound: float
+
+    def contour(self, rays: int) -> tuple[Array, Array, Array, NDArray[np.int_]]:
+        """Angle, rho, z and edge (m,) of the ends of rays at even angles, and of those between that the area needs.
+
+        Edges are counted from 1, the pinion's first; 0: the compound.
+        """
+        ends = self._ends(np.arange(rays + 1) * (2.0 * math.pi / rays))
+        low = np.arange(rays)
+        for _ in range(MOST_HALVINGS):
+            (turn, _, x, y, edge), rows = ends, np.stack([low, low + 1])
+            middle = self._ends(turn[rows].mean(axis=0))
+            three = [np.insert(own[rows], 1, new, axis=0) for own, new in zip(ends, middle, strict=True)]
+            whole = _sectors(*(part[::2] for part in (three[0], *three[2:])))
+            hidden = np.abs(_sectors(three[0], *three[2:]).sum(axis=0) - whole[0])
+            # what lies between two rays if both are as long as the longer one
+            corner = 0.5 * self.size * three[1][::2].max(axis=0) ** 2 * np.diff(turn[rows], axis=0)[0]
+            unlike = edge[low] != edge[low + 1]
+            rows = np.flatnonzero(np.maximum(hidden, corner * unlike) > SECTOR * abs(_sectors(turn, x, y, edge).sum()))
+            if not rows.size:
+                break
+            ends = [np.insert(own, low[rows] + 1, new[rows]) for own, new in zip(ends, middle, strict=True)]
+            low = low[rows] + np.arange(len(rows))
+            low = np.sort(np.concatenate([low, low + 1]))
+        turn, share, _, _, edge = (part[:-1] for part in ends)
+        rho, z = self._place(turn, share)
+        # more points where a ray runs along the edge that ends its neighbour: the edge may be curved in space
+        share_after, rho_after, z_after, edge_after = (np.roll(part, -1) for part in (share, rho, z, edge))
+        jumps = (edge != edge_after) & (np.abs(share - share_after) > JUMP * np.maximum(share, share_after))
+        rows = np.repeat(np.flatnonzero(jumps), EDGE_POINTS)
+        part = np.tile(np.arange(1, EDGE_POINTS + 1) / (EDGE_POINTS + 1), int(jumps.sum()))
+        return (
+            np.insert(turn, rows + 1, turn[rows]),
+            np.insert(rho, rows + 1, rho[rows] + part * (rho_after - rho)[rows]),
+            np.insert(z, rows + 1, z[rows] + part * (z_after - z)[rows]),
+            np.insert(edge, rows + 1, np.maximum(edge, edge_after)[rows]),
+        )
+
+    def _place(self, turn: Array, share: Array) -> tuple[Array, Array]:
+        """(rho, z) at shares of the rays at angles that broadcast against them."""
+        rho, z = (np.cos(turn) * along + np.sin(turn) * across for along, across in self.drawn.T)
+        return self.contact.pinion_radius + share * rho, self.contact.pinion_axial + share * z
+
+    def _room(self, share: Array, turn: Array) -> Array:
+        """Part of the compound that the gap leaves (1 off the wheel), distances to all edges [mm]: (9, ...)."""
+        rho, z = self._place(turn, share)
+        angles = self.contact.pinion_angle, self.contact.wheel_angle
+        gap, radius, axial = flank_gap(self.pair, "pinion", angles, (rho, z))
+        left = np.where(np.isfinite(gap), 1.0 - gap / self.compound, 1.0)
+        edges = (*self.pair.pinion.flank.edges(rho, z), *self.pair.wheel.flank.edges(radius, axial))
+        return np.stack(np.broadcast_arrays(left, *(jet.value for jet in edges)))
+
+    def _ends(self, turn: Array) -> list[Array]:
+        """Angle, share of the ray, place in the tangent plane and edge (m,) where rays at angles (m,) end."""
+        brackets, room, rows = np.zeros((2, len(turn))), np.zeros((2, len(turn))), np.arange(len(turn))
+        start, stop = 0.0, 1.0
+        while rows.size:  # rays too short are made longer
+            scan = np.linspace(start, stop, SCAN)
+            least = self._room(scan, turn[rows, None]).min(axis=0)
+            least[:, 0] = np.maximum(least[:, 0], 0.0)
+            first = np.where((least >= 0.0).all(axis=1), SCAN, (least < 0.0).argmax(axis=1))
+            ends = np.stack([first - 1, np.minimum(first, SCAN - 1)])
+            brackets[:, rows], room[:, rows] = scan[ends], least[np.arange(len(rows)), ends]
+            rows, start, stop = rows[first == SCAN], stop, 2.0 * stop
+        share = find_roots(lambda at, rows: self._room(at, turn[rows]).min(axis=0), brackets, room, RESOLVED)
+        point = _in_space(self.pair, self.contact.pinion_angle, *self._place(turn, share))
+        x, y = self.plane @ (point - self.contact.point).T
+        return [turn, share, x, y, self._room(share, turn).argmin(axis=0)]
+
+
+def _sectors(turn: Array, x: Array, y: Array, edge: Array) -> Array:
+    """Areas between neighbouring rays: triangles, and sectors of an ellipse where the compound ends both rays."""
+    opened = np.remainder(np.diff(turn, axis=0), 2.0 * math.pi)
+    bow = np.where((edge[:-1] == 0) & (edge[1:] == 0), 1.0 / np.sinc(opened / math.pi), 1.0)
+    return 0.5 * bow * (x[:-1] * y[1:] - x[1:] * y[:-1])
+
+
 def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOUND, rays: int = RAYS) -> ContactArea:
     """Instantaneous contact area around a contact point, on its own tooth pair.
 
@@ -183,21 +328,25 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
     longest = math.hypot(*pair.pinion.flank.extent)
     drawn = [min(LONGEST * axis, longest) for axis in semi_axes]
     plane = curvature.axes[:2]
-    search = RaySearch(
-        pair, contact, plane, _on_flank(pair, contact, plane, np.diag(drawn)), math.prod(drawn), compound
-    )
-    contour = search.contour(rays)
-    _, wheel_radius, wheel_axial = flank_gap(pair, "pinion", search.angles, (contour.rho, contour.z))
+    place = (np.atleast_1d(v) for v in (contact.pinion_angle, contact.pinion_radius, contact.pinion_axial))
+    tangents = EaseOff(pair).station(*place).tangents[0]
+    on_flank = np.linalg.solve(plane @ tangents.T, np.diag(drawn).T).T
+    search = _Rays(pair, contact, plane, on_flank, math.prod(drawn), compound)
+    turn, rho, z, edge = search.contour(rays)
+    point = _in_space(pair, contact.pinion_angle, rho, z)
+    wheel_radius, _, wheel_axial = pair.to_wheel(point)
+    x, y = plane @ (point - contact.point).T
+    sectors = _sectors(np.append(turn, turn[0]), *(np.append(part, part[0]) for part in (x, y, edge)))
     return ContactArea(
         compound=float(compound),
-        point=search.in_space(contour.rho, contour.z),
-        pinion_radius=contour.rho,
-        pinion_axial=contour.z,
+        point=point,
+        pinion_radius=rho,
+        pinion_axial=z,
         wheel_radius=wheel_radius,
         wheel_axial=wheel_axial,
-        on_edge=contour.edge > 0,
-        area=contour.area,
-        semi_axes=(0.5 * float(np.ptp(contour.x)), 0.5 * float(np.ptp(contour.y))),
+        on_edge=edge > 0,
+        area=abs(float(sectors.sum())),
+        semi_axes=(0.5 * float(np.ptp(x)), 0.5 * float(np.ptp(y))),
         ellipse_semi_axes=(semi_axes[0], semi_axes[1]),
         ellipse_points=_ellipse(contact.point, plane, semi_axes, np.arange(rays) * (2.0 * math.pi / rays)),
     )
@@ -274,13 +423,6 @@ def _problems_of_mesh(pair: GearPair, mesh: Any) -> list[str]:
     if mesh.pair is not pair:
         return [f"mesh: it was traced for another object, {mesh.pair!r}, not for the pair given; hand over mesh.pair"]
     return []
-
-
-def _on_flank(pair: GearPair, contact: ContactPoint, plane: Array, tangent: Array) -> Array:
-    """Directions (m, 2) of the tangent plane as steps of (rho, z)."""
-    place = (np.atleast_1d(v) for v in (contact.pinion_angle, contact.pinion_radius, contact.pinion_axial))
-    tangents = EaseOff(pair).station(*place).tangents[0]
-    return np.asarray(np.linalg.solve(plane @ tangents.T, tangent.T).T)
 
 
 def _ellipse(centre: Array, plane: Array, semi_axes: list[float], turn: Array) -> Array:

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import acos, asin, atan, atan2, cos, degrees, isclose, isfinite, log, pi, radians, sin, sqrt, tan
+from math import acos, asin, atan, atan2, cos, degrees, isclose, log, pi, radians, sin, sqrt, tan
 
 from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.gears.checks import LARGEST_SPIRAL_ANGLE, input_problems, teeth_problems
 
-_MIN_PRESSURE_ANGLE, _MAX_PRESSURE_ANGLE = radians(1), radians(45)
-_MAX_SPIRAL_ANGLE = radians(60)
 _EQUAL = 1e-9
 _DEDENDUM = 1.25
 # In outer modules: the straight blade of a generating tool reaches this deep (ISO 23509:2016, clause 8).
@@ -62,6 +61,8 @@ class BevelGear:
         delta_a and delta_f; None: pitch angle + atan((1 + x) m_et/R_e) and pitch angle - atan((1.25 - x) m_et/R_e).
     name : str
         What messages call this gear.
+    bore_diameter : float [mm], optional
+        For the compliance of the body.
 
     Raises
     ------
@@ -91,6 +92,7 @@ class BevelGear:
     face_angle: float | None = None
     root_angle: float | None = None
     name: str = "gear"
+    bore_diameter: float | None = None
 
     def __post_init__(self) -> None:
         problems = self._input_problems() or self._cone_problems()
@@ -100,23 +102,13 @@ class BevelGear:
 
     def _input_problems(self) -> list[str]:
         """Every value that is out of its own range."""
-        problems = []
-        if not (isfinite(self.teeth) and self.teeth == int(self.teeth) and self.teeth >= 3):
-            problems.append(f"teeth: {self.teeth} is not a whole number from 3 on")
-        for key in ("outer_module", "face_width"):
-            if not 0.0 < (value := getattr(self, key)) < float("inf"):
-                problems.append(f"{key}: {value} is not positive and finite")
+        problems = teeth_problems(self.teeth)
+        problems += input_problems(self, ("outer_module", "face_width", "bore_diameter"), ("profile_shift",))
         for key in ("pitch_angle", "face_angle", "root_angle"):
             if (angle := getattr(self, key)) is not None and not 0.0 < angle < pi:
                 problems.append(f"{key}: {angle:.6g} rad is not between 0 and 3.142 rad (180 deg)")
-        if not _MIN_PRESSURE_ANGLE <= self.pressure_angle <= _MAX_PRESSURE_ANGLE:
-            problems.append(
-                f"pressure_angle: {self.pressure_angle:.6g} rad is not between 0.0175 and 0.785 rad (1 to 45 deg)"
-            )
-        if not abs(self.spiral_angle) < _MAX_SPIRAL_ANGLE:
+        if not abs(self.spiral_angle) < LARGEST_SPIRAL_ANGLE:
             problems.append(f"spiral_angle: {self.spiral_angle:.6g} rad is not within 1.047 rad (60 deg)")
-        if not isfinite(self.profile_shift):
-            problems.append(f"profile_shift: {self.profile_shift} is not finite")
         return problems
 
     def _cone_problems(self) -> list[str]:
@@ -139,6 +131,12 @@ class BevelGear:
             raise GeometryError(
                 f"{self.name}: the root cone, {_degrees(self.root_cone_angle)}, reaches the axis; raise profile_shift"
                 " or teeth"
+            )
+        largest = 2.0 * self.inner_cone_distance * sin(self.root_cone_angle)
+        if self.bore_diameter is not None and self.bore_diameter >= largest:
+            raise InputError(
+                f"{self.name}: bore_diameter: {self.bore_diameter:.6g} mm is not below the root diameter at the toe, "
+                f"{largest:.6g} mm"
             )
         face = f"{self.name}: the face cone, {_degrees(self.tip_angle)},"
         if self.tip_angle >= pi - self.base_angle:

@@ -9,17 +9,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import asin, atan, cos, degrees, inf, isfinite, pi, radians, sin, tan
+from math import asin, atan, cos, degrees, inf, pi, radians, sin, tan
 from typing import Any, Literal, get_args
 
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.gears.bevel import pitch_angles
 from loaded_tca.gears.blank_gear import SECTIONS, BlankGear, Triple, triple, virtual_curvature
+from loaded_tca.gears.checks import LARGEST_SPIRAL_ANGLE, input_problems, teeth_problems
 
 Taper = Literal["standard", "uniform", "duplex", "modified"]
 
-_MIN_PRESSURE_ANGLE, _MAX_PRESSURE_ANGLE = radians(1), radians(45)
-_MAX_SPIRAL_ANGLE = radians(60)
 _MAX_DEPTH_ANGLE = radians(45)
 # The straight blade of a tool reaches this much deeper than the mating gear's tip (ISO 23509, clause 8).
 _TOOL_DEPTH = 1.1
@@ -169,17 +168,9 @@ class BevelBlank:
 
     def _input_problems(self) -> list[str]:
         """Every value that is out of its own range."""
-        problems = [
-            f"teeth: {teeth} is not a whole number from 3 on"
-            for teeth in self.teeth
-            if not (isfinite(teeth) and teeth == int(teeth) and teeth >= 3)
-        ]
-        for key in ("outer_module", "face_width", "cutter_radius", "addendum_factor", "dedendum_factor"):
-            if (value := getattr(self, key)) is not None and not 0.0 < value < inf:
-                problems.append(f"{key}: {value} is not positive and finite")
-        for key in ("profile_shift", "thickness_modification"):
-            if not isfinite(value := getattr(self, key)):
-                problems.append(f"{key}: {value} is not finite")
+        positive = "outer_module", "face_width", "cutter_radius", "addendum_factor", "dedendum_factor"
+        problems = teeth_problems(*self.teeth)
+        problems += input_problems(self, positive, ("profile_shift", "thickness_modification"))
         if not 0.0 <= self.outer_normal_backlash < inf:
             problems.append(f"outer_normal_backlash: {self.outer_normal_backlash} mm is negative or not finite")
         return problems + self._angle_problems()
@@ -188,11 +179,7 @@ class BevelBlank:
         problems = []
         if not 0.0 < self.shaft_angle < pi:
             problems.append(f"shaft_angle: {self.shaft_angle:.6g} rad is not between 0 and 3.142 rad (180 deg)")
-        if not _MIN_PRESSURE_ANGLE <= self.pressure_angle <= _MAX_PRESSURE_ANGLE:
-            problems.append(
-                f"pressure_angle: {self.pressure_angle:.6g} rad is not between 0.0175 and 0.785 rad (1 to 45 deg)"
-            )
-        if not 0.0 <= self.spiral_angle < _MAX_SPIRAL_ANGLE:
+        if not 0.0 <= self.spiral_angle < LARGEST_SPIRAL_ANGLE:
             problems.append(f"spiral_angle: {self.spiral_angle:.6g} rad is not from 0 to below 1.047 rad (60 deg)")
         if self.wheel_angles is not None and not all(abs(angle) < _MAX_DEPTH_ANGLE for angle in self.wheel_angles):
             problems.append(f"wheel_angles: {self.wheel_angles} rad are not within 0.785 rad (45 deg)")

@@ -6,7 +6,7 @@ transverse section.
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import asin, atan, cos, hypot, isfinite, pi, radians, sin, sqrt, tan
+from math import asin, atan, cos, hypot, pi, radians, sin, sqrt, tan
 from typing import Any
 
 import numpy as np
@@ -14,9 +14,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from loaded_tca.errors import GeometryError, InputError
-
-_MIN_PRESSURE_ANGLE, _MAX_PRESSURE_ANGLE = radians(1), radians(45)
-_MAX_HELIX_ANGLE = radians(60)
+from loaded_tca.gears.checks import LARGEST_SPIRAL_ANGLE, input_problems, teeth_problems
 
 
 def involute(angle: float) -> float:
@@ -123,21 +121,10 @@ class CylindricalGear:
 
     def _input_problems(self) -> list[str]:
         """Every value that is out of its own range."""
-        problems = []
-        if not (isfinite(self.teeth) and self.teeth == int(self.teeth) and self.teeth >= 3):
-            problems.append(f"teeth: {self.teeth} is not a whole number from 3 on")
-        for key in ("normal_module", "face_width", "tip_diameter", "dedendum_coefficient", "bore_diameter"):
-            value = getattr(self, key)
-            if value is not None and not 0.0 < value < float("inf"):
-                problems.append(f"{key}: {value} is not positive and finite")
-        if not _MIN_PRESSURE_ANGLE <= self.pressure_angle <= _MAX_PRESSURE_ANGLE:
-            problems.append(
-                f"pressure_angle: {self.pressure_angle:.6g} rad is not between 0.0175 and 0.785 rad (1 to 45 deg)"
-            )
-        if not abs(self.helix_angle) < _MAX_HELIX_ANGLE:
+        positive = "normal_module", "face_width", "tip_diameter", "dedendum_coefficient", "bore_diameter"
+        problems = teeth_problems(self.teeth) + input_problems(self, positive, ("profile_shift",))
+        if not abs(self.helix_angle) < LARGEST_SPIRAL_ANGLE:
             problems.append(f"helix_angle: {self.helix_angle:.6g} rad is not within 1.047 rad (60 deg)")
-        if not isfinite(self.profile_shift):
-            problems.append(f"profile_shift: {self.profile_shift} is not finite")
         if not 0.0 <= self.root_radius_coefficient < float("inf"):
             problems.append(f"root_radius_coefficient: {self.root_radius_coefficient} is negative or not finite")
         return problems

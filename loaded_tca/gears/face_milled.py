@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite
+from math import sin
 
 from loaded_tca.errors import InputError
+from loaded_tca.gears.checks import teeth_problems
 from loaded_tca.gears.cutter import BLADE_SIGNS, Cutter, FlankName
 from loaded_tca.gears.machine_settings import FaceMilledBlank, MachineSettings
 
@@ -23,11 +24,13 @@ class FaceMilledGear:
     machine : MachineSettings
     name : str
         What messages call this gear.
+    bore_diameter : float [mm], optional
+        For the compliance of the body.
 
     Raises
     ------
     InputError
-        If the number of teeth is none.
+        If the number of teeth is none, or the bore reaches the root at the toe.
     """
 
     teeth: int
@@ -35,10 +38,18 @@ class FaceMilledGear:
     cutter: Cutter
     machine: MachineSettings
     name: str = "gear"
+    bore_diameter: float | None = None
 
     def __post_init__(self) -> None:
-        if not (isfinite(self.teeth) and self.teeth == int(self.teeth) and self.teeth >= 3):
-            raise InputError(f"{self.name}: teeth: {self.teeth} is not a whole number from 3 on")
+        problems = teeth_problems(self.teeth)
+        largest = 2.0 * self.blank.cone_distances[0] * sin(self.blank.root_angle)
+        if self.bore_diameter is not None and not 0.0 < self.bore_diameter < largest:
+            problems.append(
+                f"bore_diameter: {self.bore_diameter:.6g} mm is not below the root diameter at the toe, "
+                f"{largest:.6g} mm"
+            )
+        if problems:
+            raise InputError(f"{self.name}: {problem}" for problem in problems)
 
     @property
     def mirror(self) -> int:

@@ -4,10 +4,9 @@ from loaded_tca.output.overview import describe_scene
 from loaded_tca.output.report import write_report
 from loaded_tca.output.subsurface_files import write_subsurface
 from loaded_tca.output.surface_files import write_stl, write_teeth, write_vtk
-from loaded_tca.output.teeth_in_space import complete_teeth, teeth_in_space
+from loaded_tca.output.teeth_in_space import teeth_in_space
 
 __all__ = [
-    "complete_teeth",
     "describe_scene",
     "teeth_in_space",
     "write_report",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from loaded_tca.compliance.compliance import rigid_bores
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import Scene
@@ -26,7 +25,7 @@ def describe_scene(scene: Scene) -> str:
     """
     pair = scene.pair()
     cap = [] if pair.max_pressure is None else [("cap on the pressure [MPa]", f"{pair.max_pressure:g}")]
-    asked = [*_load_rows(scene), *cap, *_analysis_rows(scene)]
+    asked = [*_load_rows(scene), *cap, *_analysis_rows(scene, pair)]
     rows = [*scene.geometry_rows(), *asked, *_departures(scene), *_spline_rows(scene, pair)]
     lines = [f"{label:<{LABEL}}" + "".join(f"{cell:>14}" for cell in cells) for label, *cells in rows]
     return "\n".join([scene.title or "Scene", *lines, *(f"note: {note}" for note in scene.notes())])
@@ -40,15 +39,14 @@ def _load_rows(scene: Scene) -> list[Row]:
     return [(f"{label} [N m]", *(f"{1e-3 * torque:g}" for torque in torques)), *scene.force_rows(torques)]
 
 
-def _analysis_rows(scene: Scene) -> Iterator[Row]:
+def _analysis_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     """What the analysis is asked to do, and the bores that it holds where teeth bend."""
     wanted = scene.analysis
     switches = ("on" if switch else "off" for switch in (wanted.load_sharing, wanted.free_edges))
     yield "load sharing, free edges, compliance", *switches, wanted.compliance
     yield "positions, torques", f"{wanted.positions}", f"{len(scene.torques)}"
-    bores = rigid_bores(scene)
-    if bores is not None:
-        yield "bores held rigid, smallest diameter [mm]", *(f"{bore:.4f}" for bore in bores)
+    if wanted.compliance != "contact":
+        yield "bores held rigid, smallest diameter [mm]", *(f"{bore:.4f}" for bore in pair.rigid_bores)
 
 
 def _departures(scene: Scene) -> Iterator[Row]:

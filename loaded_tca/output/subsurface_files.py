@@ -5,10 +5,11 @@ from __future__ import annotations
 import csv
 import io
 from pathlib import Path
+from typing import Any
 
-import numpy as np
-
-from loaded_tca.results.files import FilePath, Variable, replacing, write_netcdf
+from loaded_tca.results.files import FilePath, Part, replacing, variables_of, write_dataset
+from loaded_tca.results.mesh_cycle import QUANTITIES
+from loaded_tca.results.pressure_map import MAP_PARTS
 from loaded_tca.results.stress_below import StressBelow
 
 FIELDS, TABLE = "subsurface.nc", "subsurface.csv"
@@ -45,33 +46,27 @@ def write_subsurface(below: StressBelow, directory: FilePath) -> tuple[Path, Pat
     InputError
         If they cannot be written.
     """
+    import xarray
+
     fields, table = Path(directory) / FIELDS, Path(directory) / TABLE
-    result = below.result
-    texts = {"title": result.title, "scene_toml": result.scene_toml, "version": result.version, "gear": below.gear}
-    write_netcdf(fields, _variables(below), texts)
+    one, stress, result = below.pressure_map, below.stress, below.result
+    grid = ("depth", "across", "along")
+    told: dict[str, tuple[Part, Any]] = {
+        "pinion_torque": (((), "N mm", "pinion torque"), result.torque[below.torque]),
+        "pinion_angle": (((), "rad", "angle of the pinion phi1"), result.pinion_angle[below.position]),
+        "position": (((), "1", "position of the result, from 1"), below.position + 1),
+        "pair": (((), *QUANTITIES["pair"][1:]), below.pair),
+        "poisson_ratio": (((), "1", "Poisson's ratio of the body looked at"), stress.poisson_ratio),
+        "depth": ((("depth",), "mm", "distance below the flank"), stress.depths),
+        **{name: (MAP_PARTS[name], getattr(one, name)) for name in ("x", "y", "pressure")},
+        **{name: ((grid, "MPa", text), getattr(stress, name)) for name, text in STRESSES.items()},
+    }
+    parts, arrays = ({name: entry[k] for name, entry in told.items()} for k in (0, 1))
+    texts = {"title": result.scene.title, "scene_toml": result.scene.to_toml(), "version": result.version}
+    write_dataset(fields, xarray.Dataset(variables_of(parts, arrays), attrs={**texts, "gear": below.gear}))
     with replacing(table) as temporary:
         temporary.write_text(subsurface_csv(below), encoding="utf-8", newline="")
     return fields, table
-
-
-def _variables(below: StressBelow) -> dict[str, Variable]:
-    one, stress, result = below.pressure_map, below.stress, below.result
-    grid = ("depth", "across", "along")
-    scalars = {
-        "pinion_torque": (result.torque[below.torque], "N mm", "pinion torque"),
-        "pinion_angle": (result.pinion_angle[below.position], "rad", "angle of the pinion phi1"),
-        "position": (below.position + 1, "1", "position of the result, from 1"),
-        "pair": (below.pair, "1", "tooth pair: 0 is the pair at phi1, 1 the next one"),
-        "poisson_ratio": (stress.poisson_ratio, "1", "Poisson's ratio of the body looked at"),
-    }
-    return {
-        **{name: Variable((), np.asarray(value), unit, text) for name, (value, unit, text) in scalars.items()},
-        "depth": Variable(("depth",), stress.depths, "mm", "distance below the flank"),
-        "x": Variable(("across",), one.x, "mm", "cell centres across the contact, from the contact point"),
-        "y": Variable(("along",), one.y, "mm", "cell centres along the contact, from the contact point"),
-        "pressure": Variable(grid[1:], one.pressure, "MPa", "contact pressure"),
-        **{name: Variable(grid, getattr(stress, name), "MPa", text) for name, text in STRESSES.items()},
-    }
 
 
 def subsurface_csv(below: StressBelow) -> str:

@@ -1,4 +1,4 @@
-"""The teeth of a result where they touch, with the path of contact and the pressure, for pictures and files."""
+"""The teeth of a result in contact, with the path of contact and the pressure, for pictures and files."""
 
 from __future__ import annotations
 
@@ -8,11 +8,10 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError
-from loaded_tca.pairs import MatingTeeth, mating_teeth
+from loaded_tca.pairs import MatingTeeth
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.scene import Scene
-from loaded_tca.tooth import Resolution, TriangleMesh, tooth_forms
+from loaded_tca.tooth import TriangleMesh
 from loaded_tca.unloaded import ContactPoint
 
 
@@ -23,8 +22,8 @@ class TeethInSpace:
     Attributes
     ----------
     pair : GearPair
-    position, torque : int
-        Indices in the result.
+    position, column, torque : int
+        Indices in the result, the second one of the tooth pair.
     pinion, wheel : TriangleMesh
         The teeth in contact.
     path : (n, 3) array [mm]
@@ -37,6 +36,7 @@ class TeethInSpace:
 
     pair: GearPair
     position: int
+    column: int
     torque: int
     pinion: TriangleMesh
     wheel: TriangleMesh
@@ -58,30 +58,6 @@ class TeethInSpace:
         return float(self.pressure.cell_data["pressure_MPa"].max(initial=0.0))
 
 
-def complete_teeth(
-    scene: Scene, resolution: Resolution = Resolution(), *, fillet_radius: float | None = None
-) -> MatingTeeth:
-    """Complete teeth of both gears of a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-    resolution : Resolution
-    fillet_radius : float [mm], optional
-        Of arcs at the root, see :func:`loaded_tca.tooth.tooth_forms`.
-
-    Raises
-    ------
-    InputError
-        If the fillet radius does not fit.
-    GeometryError
-        If a tooth is pointed, or cut off by its undercut.
-    """
-    pair = scene.pair()
-    backs = scene.pair("negative" if pair.sense > 0 else "positive")
-    return mating_teeth(tooth_forms(scene.mesh(), fillet_radius=fillet_radius), pair, backs, resolution)
-
-
 def teeth_in_space(
     result: MeshCycle, teeth: MatingTeeth, position: int | None = None, torque: int | None = None
 ) -> TeethInSpace:
@@ -91,28 +67,29 @@ def teeth_in_space(
     ----------
     result : MeshCycle
     teeth : MatingTeeth
-        Of the scene of the result, see :func:`complete_teeth`.
+        Of the scene of the result: ``mating_teeth(scene.pair())``.
     position : int, optional
-        Index along the path; default: that of the peak pressure, ``result.peak_position``.
+        Index along the path; default: that of the peak pressure, ``result.peak_contact``.
     torque : int, optional
         Index of the torque; default: the largest one.
 
     Raises
     ------
     GeometryError
-        If nothing touches at that position.
+        If nothing is in contact at that position.
     """
     torque = int(np.argmax(result.torque)) if torque is None else torque
-    position = result.peak_position(torque) if position is None else position
-    column = 0 if position is None else result.highest_column(torque, position)
-    one = None if position is None else result.contacts.maps[torque][position][column]
-    if position is None or one is None:
-        raise GeometryError("no teeth in contact: the tooth pair does not touch at this position")
+    place = result.peak_contact(torque) if position is None else (position, int(result.peak_column[torque, position]))
+    one = None if place is None else result.maps[torque][place[0]][place[1]]
+    if place is None or one is None:
+        raise GeometryError("no teeth in contact: the tooth pair is not in contact at this position")
+    position, column = place
     contact, path = _of_own_teeth(result, teeth.pair, position, column), result.path[result.path.in_contact]
     pinion, wheel = teeth.in_mesh(contact.pinion_angle, contact.wheel_angle)
     return TeethInSpace(
         teeth.pair,
         position,
+        column,
         torque,
         pinion,
         wheel,
@@ -125,8 +102,8 @@ def teeth_in_space(
 
 def _of_own_teeth(result: MeshCycle, pair: GearPair, position: int, column: int) -> ContactPoint:
     """Unloaded contact of a tooth pair, in the angles of its own teeth, as if it were the pair at the pitch point."""
-    contact = result.contacts.paths[column][position]
-    pitches = float(result.pairs[column]) * pair.pitch
+    contact = result.paths[column][position]
+    pitches = float(result.pair[column]) * pair.pitch
     return replace(
         contact,
         pinion_angle=contact.pinion_angle - pitches,

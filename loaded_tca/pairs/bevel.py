@@ -21,13 +21,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.flanks.base import Flank
-from loaded_tca.flanks.bevel import SphericalInvoluteFlank
-from loaded_tca.flanks.modification import FlankModifications, modified
-from loaded_tca.gears.bevel import BevelGear, BevelMesh
+from loaded_tca.flanks.modification import FlankModifications
+from loaded_tca.gears.bevel import BevelMesh
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense, require_finite, signs_of
+from loaded_tca.tooth.bevel import BevelTooth
 
 
 @dataclass(frozen=True)
@@ -69,10 +68,7 @@ class BevelMounting:
 def bevel_pair(
     mesh: BevelMesh,
     *,
-    modifications: tuple[FlankModifications, FlankModifications] = (
-        FlankModifications(),
-        FlankModifications(),
-    ),
+    modifications: tuple[FlankModifications, FlankModifications] = (FlankModifications(), FlankModifications()),
     mounting: BevelMounting = BevelMounting(),
     materials: tuple[Material, Material] = (Material(), Material()),
     driving: Driving = "pinion",
@@ -108,11 +104,16 @@ def bevel_pair(
     GearPair(20/40, module 3.55279 mm, face 20 mm)
     """
     turning, drive = signs_of(driving, sense)
-    side = turning * drive
+    pinion, wheel = (
+        Gear.of(BevelTooth(gear, active, changes), turning * drive, material, gear.bore_diameter)
+        for gear, active, changes, material in zip(
+            (mesh.pinion, mesh.wheel), mesh.active_cones, modifications, materials, strict=True
+        )
+    )
     origin, axes = mounting.place(mesh.shaft_angle)
     return GearPair(
-        pinion=Gear(_flank(mesh.pinion, mesh.active_cones[0], side, modifications[0]), materials[0]),
-        wheel=Gear(_flank(mesh.wheel, mesh.active_cones[1], side, modifications[1]), materials[1]),
+        pinion=pinion,
+        wheel=wheel,
         teeth=(mesh.pinion.teeth, mesh.wheel.teeth),
         wheel_origin=origin,
         wheel_axes=axes,
@@ -122,20 +123,3 @@ def bevel_pair(
         base_radii=(mesh.pinion.mean_base_radius, mesh.wheel.mean_base_radius),
         face_width=mesh.pinion.face_width,
     )
-
-
-def _flank(gear: BevelGear, active: tuple[float, float], side: int, modifications: FlankModifications) -> Flank:
-    nominal = SphericalInvoluteFlank(
-        gear.pitch_angle,
-        gear.pressure_angle,
-        gear.spiral_angle,
-        side,
-        (gear.form_angle, gear.tip_angle),
-        (gear.inner_cone_distance, gear.outer_cone_distance),
-    )
-
-    def arc(diameter: float) -> float:
-        return gear.unwound_arc(gear.cone_angle_at_diameter(diameter))
-
-    diameters = gear.diameter_at(active[0]), gear.diameter_at(active[1])
-    return modified(nominal, modifications, gear.face_width, diameters, arc, owner=gear.name)

@@ -1,4 +1,4 @@
-"""Pairs of spur and helical gears: their mounting errors and their flanks."""
+"""Pairs of spur and helical gears, and their mounting errors."""
 
 from __future__ import annotations
 
@@ -9,16 +9,18 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.flanks.base import Flank
-from loaded_tca.flanks.cylindrical import InvoluteFlank
-from loaded_tca.flanks.modification import FlankModifications, modified
+from loaded_tca.flanks.modification import FlankModifications
 from loaded_tca.gears import CylindricalMesh
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense, require_finite, signs_of
+from loaded_tca.tooth.cylindrical import CylindricalTooth
 
 LARGEST_ANGLE = math.radians(45.0)
 """Angular errors stay below this [rad]: the axes are those of parallel gears, which still face each other."""
+
+LARGEST_TURN = 2.0 * math.pi
+"""Teeth wind by less than this around their gear [rad]: others would be in mesh at two places of one position."""
 
 
 @dataclass(frozen=True)
@@ -49,11 +51,10 @@ class Mounting:
 
     def __post_init__(self) -> None:
         require_finite(self, ("rad", "rad", "mm", "mm"))
-        limit = f"is not between -{math.degrees(LARGEST_ANGLE):.3g} and {math.degrees(LARGEST_ANGLE):.3g} deg"
-        angles = {"in_plane": self.in_plane, "out_of_plane": self.out_of_plane}
         problems = [
-            f"{name}: {angle:.6g} rad, {math.degrees(angle):.6g} deg, {limit}: the axes are nearly parallel"
-            for name, angle in angles.items()
+            f"{name}: {angle:.6g} rad, {math.degrees(angle):.6g} deg, is not between -45 and 45 deg: the axes are "
+            "nearly parallel"
+            for name, angle in (("in_plane", self.in_plane), ("out_of_plane", self.out_of_plane))
             if abs(angle) >= LARGEST_ANGLE
         ]
         if problems:
@@ -61,15 +62,10 @@ class Mounting:
 
     def place_parallel(self, centre_distance: float) -> tuple[Array, Array]:
         """Origin (3,) and axes (3, 3), in rows, of the wheel frame: R_y(gamma) R_x(delta) about its mid-face."""
-        gamma, delta = self.in_plane, self.out_of_plane
-        about_x = np.array(
-            [[1, 0, 0], [0, math.cos(delta), -math.sin(delta)], [0, math.sin(delta), math.cos(delta)]],
-            dtype=float,
-        )
-        about_y = np.array(
-            [[math.cos(gamma), 0, math.sin(gamma)], [0, 1, 0], [-math.sin(gamma), 0, math.cos(gamma)]],
-            dtype=float,
-        )
+        sin_gamma, cos_gamma = math.sin(self.in_plane), math.cos(self.in_plane)
+        sin_delta, cos_delta = math.sin(self.out_of_plane), math.cos(self.out_of_plane)
+        about_x = np.array([[1.0, 0.0, 0.0], [0.0, cos_delta, -sin_delta], [0.0, sin_delta, cos_delta]])
+        about_y = np.array([[cos_gamma, 0.0, sin_gamma], [0.0, 1.0, 0.0], [-sin_gamma, 0.0, cos_gamma]])
         nominal = np.diag([-1.0, -1.0, 1.0])
         origin = np.array([centre_distance + self.centre_distance_error, 0.0, self.axial_offset])
         return origin, nominal @ (about_y @ about_x).T
@@ -78,10 +74,7 @@ class Mounting:
 def cylindrical_pair(
     mesh: CylindricalMesh,
     *,
-    modifications: tuple[FlankModifications, FlankModifications] = (
-        FlankModifications(),
-        FlankModifications(),
-    ),
+    modifications: tuple[FlankModifications, FlankModifications] = (FlankModifications(), FlankModifications()),
     mounting: Mounting = Mounting(),
     materials: tuple[Material, Material] = (Material(), Material()),
     driving: Driving = "pinion",
@@ -118,13 +111,22 @@ def cylindrical_pair(
     GearPair(34/57, module 3 mm, face 25 mm)
     """
     turning, drive = signs_of(driving, sense)
-    side = turning * drive
-    _require_less_than_a_turn(mesh)
-    flanks = [_involute_flank(mesh, member, side, modifications[member]) for member in (0, 1)]
+    radii = mesh.pinion_working_radius, mesh.wheel_working_radius
+    profiles = mesh.pinion_active_profile, mesh.wheel_active_profile
+    gears = []
+    for member, gear in enumerate((mesh.pinion, mesh.wheel)):
+        turn = gear.face_width * abs(math.tan(gear.base_helix_angle)) / gear.base_radius
+        if turn >= LARGEST_TURN:
+            raise GeometryError(
+                f"{gear.name}: its teeth wind {turn / (2.0 * math.pi):.3g} times around the gear over its face width, "
+                f"{gear.face_width:.6g} mm; less than one turn is allowed"
+            )
+        tooth = CylindricalTooth(gear, radii[member], profiles[member], modifications[member])
+        gears.append(Gear.of(tooth, turning * drive, materials[member], gear.bore_diameter))
     origin, axes = mounting.place_parallel(mesh.working_centre_distance)
     return GearPair(
-        pinion=Gear(flanks[0], materials[0]),
-        wheel=Gear(flanks[1], materials[1]),
+        pinion=gears[0],
+        wheel=gears[1],
         teeth=(mesh.pinion.teeth, mesh.wheel.teeth),
         wheel_origin=origin,
         wheel_axes=axes,
@@ -134,34 +136,3 @@ def cylindrical_pair(
         base_radii=(mesh.pinion.base_radius, mesh.wheel.base_radius),
         face_width=min(mesh.pinion.face_width, mesh.wheel.face_width),
     )
-
-
-def _require_less_than_a_turn(mesh: CylindricalMesh) -> None:
-    """Refuse teeth that wind around their gear: in one position they would be in mesh at two places."""
-    for gear in (mesh.pinion, mesh.wheel):
-        turn = gear.face_width * abs(math.tan(gear.base_helix_angle)) / gear.base_radius
-        if turn >= 2.0 * math.pi:
-            raise GeometryError(
-                f"{gear.name}: its teeth wind {turn / (2.0 * math.pi):.3g} times around the gear over its face width, "
-                f"{gear.face_width:.6g} mm; less than one turn is allowed"
-            )
-
-
-def _involute_flank(mesh: CylindricalMesh, member: int, side: int, modifications: FlankModifications) -> Flank:
-    gear = (mesh.pinion, mesh.wheel)[member]
-    working_radius = (mesh.pinion_working_radius, mesh.wheel_working_radius)[member]
-    active = (mesh.pinion_active_profile, mesh.wheel_active_profile)[member]
-    nominal = InvoluteFlank(
-        gear.base_radius,
-        gear.base_helix_angle,
-        side,
-        working_radius,
-        (gear.form_radius, gear.tip_radius),
-        gear.face_width,
-    )
-    diameters = (2.0 * active.start_radius, 2.0 * active.end_radius)
-
-    def roll_length(diameter: float) -> float:
-        return gear.roll_length(0.5 * diameter)
-
-    return modified(nominal, modifications, gear.face_width, diameters, roll_length, owner=gear.name)

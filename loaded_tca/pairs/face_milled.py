@@ -8,22 +8,19 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
-from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.flanks.base import Flank
-from loaded_tca.flanks.face_milled import FlankAngles, GeneratedFlank, tooth_angle
-from loaded_tca.flanks.modification import FlankModifications, modified
-from loaded_tca.flanks.tooth_region import chebyshev_nodes, face_cone_angles
+from loaded_tca.errors import InputError
+from loaded_tca.flanks.derived import unmodified
+from loaded_tca.flanks.face_milled import GeneratedFlank
+from loaded_tca.flanks.modification import FlankModifications
 from loaded_tca.gears.cutter import FlankName
 from loaded_tca.gears.face_milled import FaceMilledGear
 from loaded_tca.material import Material
 from loaded_tca.pairs.bevel import BevelMounting
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, signs_of
+from loaded_tca.tooth.face_milled import FaceMilledTooth
 
 _EQUAL = 1e-6
-_TIP_POINTS = 9
 
 
 def face_milled_pair(
@@ -33,10 +30,7 @@ def face_milled_pair(
     pinion_flank: FlankName = "concave",
     driving: Driving = "pinion",
     shaft_angle: float | None = None,
-    modifications: tuple[FlankModifications, FlankModifications] = (
-        FlankModifications(),
-        FlankModifications(),
-    ),
+    modifications: tuple[FlankModifications, FlankModifications] = (FlankModifications(), FlankModifications()),
     mounting: BevelMounting = BevelMounting(),
     materials: tuple[Material, Material] = (Material(), Material()),
     exact: bool = False,
@@ -83,31 +77,29 @@ def face_milled_pair(
     """
     _require_mating_gears(pinion, wheel, pinion_flank)
     drive = signs_of(driving, "positive")[1]
-    side = pinion.side(pinion_flank)
-    gears = (pinion, wheel)
-    nominal = [GeneratedFlank(gear, gear.flank_name(side)) for gear in gears]
-    for flank in nominal:
-        _require_tip(flank)
-    angles = _mean_angles(nominal)
-    distance = 0.5 * (pinion.blank.mean_cone_distance + wheel.blank.mean_cone_distance)
-    radii = [distance * math.sin(gear.blank.pitch_angle) for gear in gears]
-    sigma = pinion.blank.pitch_angle + wheel.blank.pitch_angle if shaft_angle is None else shaft_angle
-    origin, axes = mounting.place(sigma)
-    flanks = [_modified(flank, changes, exact) for flank, changes in zip(nominal, modifications, strict=True)]
+    side, blanks = pinion.side(pinion_flank), (pinion.blank, wheel.blank)
+    first, second = (
+        Gear.of(FaceMilledTooth(gear, changes, exact), side, material, gear.bore_diameter)
+        for gear, changes, material in zip((pinion, wheel), modifications, materials, strict=True)
+    )
+    flanks = [unmodified(gear.nominal_flank) for gear in (first, second)]
+    angles = [flank.angles for flank in flanks if isinstance(flank, GeneratedFlank)]
+    spiral = 0.5 * sum(abs(one.spiral) for one in angles)
+    pressure = 0.5 * sum(one.transverse_pressure for one in angles)
+    distance = 0.5 * sum(blank.mean_cone_distance for blank in blanks)
+    radii = [distance * math.sin(blank.pitch_angle) for blank in blanks]
+    origin, axes = mounting.place(sum(blank.pitch_angle for blank in blanks) if shaft_angle is None else shaft_angle)
     return GearPair(
-        pinion=Gear(flanks[0], materials[0]),
-        wheel=Gear(flanks[1], materials[1]),
+        pinion=first,
+        wheel=second,
         teeth=(pinion.teeth, wheel.teeth),
         wheel_origin=origin,
         wheel_axes=axes,
         sense=side * drive,
         driving=drive,
-        module=2.0 * radii[0] * math.cos(angles.spiral) / pinion.teeth,
-        base_radii=(
-            radii[0] * math.cos(angles.transverse_pressure),
-            radii[1] * math.cos(angles.transverse_pressure),
-        ),
-        face_width=min(gear.blank.face_width for gear in gears),
+        module=2.0 * radii[0] * math.cos(spiral) / pinion.teeth,
+        base_radii=(radii[0] * math.cos(pressure), radii[1] * math.cos(pressure)),
+        face_width=min(blank.face_width for blank in blanks),
     )
 
 
@@ -126,52 +118,3 @@ def _require_mating_gears(pinion: FaceMilledGear, wheel: FaceMilledGear, pinion_
         )
     if problems:
         raise InputError(problems)
-
-
-def _mean_angles(flanks: list[GeneratedFlank]) -> FlankAngles:
-    """Means of both flanks, which differ where the settings do not match."""
-    first, second = (flank.angles for flank in flanks)
-    return FlankAngles(
-        0.5 * (abs(first.spiral) + abs(second.spiral)),
-        0.5 * (first.pressure + second.pressure),
-        0.5 * (first.transverse_pressure + second.transverse_pressure),
-    )
-
-
-def _require_tip(flank: GeneratedFlank) -> None:
-    """Refuse a tooth whose two flanks, cut with one set of machine settings, meet below the face cone."""
-    gear = flank.gear
-    if gear.cutter.concave is None or gear.cutter.convex is None:
-        return
-    distance = chebyshev_nodes(flank.cone_distances, _TIP_POINTS)
-    angle = face_cone_angles(flank.face_cone, distance)
-    rho, z = distance * np.sin(angle), distance * np.cos(angle)
-    thickness = rho * tooth_angle(gear, rho, z)
-    worst = int(np.argmin(thickness))
-    if not thickness[worst] > 0.0:
-        raise GeometryError(
-            f"{gear.name}: pointed tooth: its flanks lie {-thickness[worst]:.3g} mm beyond each other at the tip, "
-            f"{flank.frame.place(float(rho[worst]), float(z[worst]))}; lower face_angle, or bring the point radii of "
-            "the cutter nearer to each other"
-        )
-
-
-def _modified(nominal: GeneratedFlank, modifications: FlankModifications, exact: bool) -> Flank:
-    """The flank, exact or as a B-spline, with its modifications."""
-    blank = nominal.gear.blank
-    distance = blank.mean_cone_distance
-    tip, foot = nominal.mean_cone_angles
-    flank = nominal if exact else nominal.as_spline()
-
-    def diameter(angle: float) -> float:
-        sine = math.sin(angle)
-        return 2.0 * distance * (sine if angle <= 0.5 * math.pi else 2.0 - sine)
-
-    def height(of: float) -> float:
-        sine = 0.5 * of / distance
-        angle = math.asin(sine) if sine <= 1.0 else math.pi - math.asin(2.0 - sine)
-        return nominal.mean_height * (angle - foot) / (tip - foot)
-
-    return modified(
-        flank, modifications, blank.face_width, (diameter(foot), diameter(tip)), height, owner=nominal.gear.name
-    )

@@ -1,23 +1,122 @@
-"""One gear of a pair."""
+"""One gear of a pair: both flanks of its teeth, their form, its material and bore."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.material import Material
+from loaded_tca.tooth.form import ToothForm
+from loaded_tca.tooth.geometry import ToothGeometry
+
+DEFAULT_BORE = 0.55
+"""Bore of a gear that has none given, over its (smallest) root diameter."""
+LARGEST_BORE = 0.98
+"""Largest bore, over the smallest root diameter, that leaves a rim below the teeth."""
 
 
 @dataclass(frozen=True, eq=False)
 class Gear:
     """One gear of a pair.
 
+    The backs of the teeth and their form are made when they are asked for: unloaded contact and half-spaces need
+    neither, and some cost the fit of a B-spline.
+
     Attributes
     ----------
     flank : Flank
-        The flank in contact, in the gear's own frame.
+        In contact, in the gear's own frame: with its modifications, fitted or measured.
+    nominal_flank : Flank
+        The same by its equations, without modifications.
+    geometry : ToothGeometry
+        What the other flank and the form of the teeth are made from.
     material : Material
+    bore_diameter : float [mm], optional
+        Held rigid where teeth bend; None: 0.55 of the root diameter.
     """
 
     flank: Flank
-    material: Material
+    nominal_flank: Flank
+    geometry: ToothGeometry
+    material: Material = Material()
+    bore_diameter: float | None = None
+
+    @classmethod
+    def of(cls, geometry: ToothGeometry, side: int, material: Material, bore_diameter: float | None) -> Gear:
+        """Gear in contact with its flank of the side s = +1 or -1."""
+        nominal = geometry.nominal(side)
+        return cls(geometry.modified(nominal), nominal, geometry, material, bore_diameter)
+
+    @cached_property
+    def nominal_back(self) -> Flank:
+        """The other flank by its equations, without modifications."""
+        return self.geometry.nominal(-self.flank.side)
+
+    @cached_property
+    def back(self) -> Flank:
+        """The other flank of the teeth, in the gear's own frame."""
+        return self.geometry.modified(self.nominal_back)
+
+    @cached_property
+    def form(self) -> ToothForm:
+        """All of a tooth but its flanks."""
+        return self.geometry.form()
+
+    @property
+    def flanks(self) -> tuple[Flank, Flank]:
+        """Flanks of the sides s = +1 and s = -1."""
+        return (self.flank, self.back) if self.flank.side > 0 else (self.back, self.flank)
+
+    @property
+    def nominal_flanks(self) -> tuple[Flank, Flank]:
+        """The same without modifications."""
+        flanks = self.nominal_flank, self.nominal_back
+        return flanks if self.flank.side > 0 else flanks[::-1]
+
+    def bore_radius(self, coordinate: Array) -> Array:
+        """Distance (k,) from the axis at which sections meet the bore [mm], given or by default.
+
+        Raises
+        ------
+        InputError
+            If the bore leaves no rim below the teeth.
+        """
+        root, _ = self.form.sections.point(self.form.root_radius(coordinate), coordinate)
+        if self.bore_diameter is None:
+            return DEFAULT_BORE * root
+        if not 0.0 < 0.5 * self.bore_diameter < LARGEST_BORE * root.min():
+            raise InputError(
+                f"bore_diameter: {self.bore_diameter:.6g} mm is not between 0 and {LARGEST_BORE:g} times the "
+                f"smallest root diameter, {2.0 * root.min():.6g} mm: no rim is left below the teeth"
+            )
+        return np.full_like(root, 0.5 * self.bore_diameter)
+
+    @property
+    def smallest_bore(self) -> float:
+        """Bore diameter [mm], given or by default; the smallest one of a cone, at the toe.
+
+        Raises
+        ------
+        InputError
+            If it leaves no rim below the teeth.
+        """
+        ends = self.form.sections.coordinate(*self.nominal_flank.grid(2, 2))[-1]
+        return 2.0 * float(self.bore_radius(ends).min())
+
+
+@contextmanager
+def named(gear: str) -> Iterator[None]:
+    """Say the gear before every problem that its teeth have."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"{gear}: {problem}" for problem in error.problems) from None
+    except GeometryError as error:
+        raise GeometryError(f"{gear}: {error}") from None

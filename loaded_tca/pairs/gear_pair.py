@@ -18,7 +18,7 @@ point of the mid-face section. Mounting errors are counted in the fixed frame, w
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -35,16 +35,13 @@ Sense = Literal["positive", "negative"]
 
 def require_finite(errors: Any, units: tuple[str, ...]) -> None:
     """Refuse a dataclass of mounting errors of which one is not finite, naming each with its unit."""
-    values = [
-        (entry.name, getattr(errors, entry.name), unit) for entry, unit in zip(fields(errors), units, strict=True)
+    problems = [
+        f"{name}: {value!r} {unit} is not finite"
+        for (name, value), unit in zip(vars(errors).items(), units, strict=True)
+        if not (isinstance(value, int | float | np.number) and math.isfinite(value))
     ]
-    problems = [f"{name}: {value!r} {unit} is not finite" for name, value, unit in values if not _is_finite(value)]
     if problems:
         raise InputError(problems)
-
-
-def _is_finite(value: Any) -> bool:
-    return isinstance(value, int | float | np.number) and math.isfinite(value)
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +109,25 @@ class GearPair:
             pinion=replace(self.pinion, flank=pinion or self.pinion.flank),
             wheel=replace(self.wheel, flank=wheel or self.wheel.flank),
         )
+
+    @property
+    def rigid_bores(self) -> tuple[float, float]:
+        """Bore diameters of pinion and wheel [mm] that are held where teeth bend; the smallest one of a cone.
+
+        Raises
+        ------
+        InputError
+            If a bore leaves no rim below the teeth; every gear that it holds for is named.
+        """
+        bores, problems = [], []
+        for name, gear in (("pinion", self.pinion), ("wheel", self.wheel)):
+            try:
+                bores.append(gear.smallest_bore)
+            except InputError as error:
+                problems += [f"{name}: {problem}" for problem in error.problems]
+        if problems:
+            raise InputError(problems)
+        return bores[0], bores[1]
 
     def to_wheel(self, point: Array) -> tuple[Array, Array, Array]:
         """Cylindrical coordinates (rho, theta, z) of points (..., 3) in the wheel frame."""

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.flanks.base import Flank
+from loaded_tca.errors import InputError
+from loaded_tca.pairs.gear import named
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.tooth.build import Resolution, build_tooth
-from loaded_tca.tooth.form import ToothForm
 from loaded_tca.tooth.surface import ToothSurface
 from loaded_tca.tooth.triangles import TriangleMesh, grid_triangles
 
@@ -87,26 +86,24 @@ class MatingTeeth:
 
 
 def mating_teeth(
-    forms: tuple[ToothForm, ToothForm],
-    pair: GearPair,
-    backs: GearPair,
-    resolution: Resolution = Resolution(),
+    pair: GearPair, resolution: Resolution = Resolution(), *, fillet_radius: float | None = None
 ) -> MatingTeeth:
     """Complete teeth of both gears of a pair.
 
     Parameters
     ----------
-    forms : (ToothForm, ToothForm)
-        Of pinion and wheel, see :func:`tooth_forms`.
     pair : GearPair
-    backs : GearPair
-        The same gears in contact with their other flanks: the pair in the other sense of rotation.
     resolution : Resolution
+    fillet_radius : float [mm], optional
+        Of arcs at the root, at the mean section. Default: for cylindrical gears the fillet that the basic rack cuts;
+        for face-milled gears arcs of the larger edge radius of their blades, the same from toe to heel; for other
+        bevel gears, and blades without an edge radius, of 0.38 mean normal modules. A default arc that does not fit is
+        made as large as does.
 
     Raises
     ------
     InputError
-        If both pairs touch with the same flanks, or a fillet radius does not fit; the gear is named.
+        If a fillet radius is not positive and finite, or does not fit; the gear is named.
     GeometryError
         If a tooth is pointed or cut off; the gear is named.
 
@@ -114,25 +111,13 @@ def mating_teeth(
     --------
     >>> from loaded_tca.gears import bevel_mesh
     >>> from loaded_tca.pairs.bevel import bevel_pair
-    >>> from loaded_tca.tooth import tooth_forms
-    >>> mesh = bevel_mesh((20, 40), outer_module=4.0, face_width=20.0)
-    >>> teeth = mating_teeth(tooth_forms(mesh), bevel_pair(mesh), bevel_pair(mesh, sense="negative"))
+    >>> teeth = mating_teeth(bevel_pair(bevel_mesh((20, 40), outer_module=4.0, face_width=20.0)))
     >>> teeth.in_mesh(0.0, 0.0)[0]
     TriangleMesh(3498 vertices, 6720 triangles)
     """
-    if pair.pinion.flank.side == backs.pinion.flank.side:
-        raise InputError("backs: this pair touches with the same flanks; the one in the other sense is needed")
-    both = sorted((pair, backs), key=lambda one: -one.pinion.flank.side)
-    pinion = _named("pinion", (both[0].pinion.flank, both[1].pinion.flank), forms[0], resolution)
-    wheel = _named("wheel", (both[0].wheel.flank, both[1].wheel.flank), forms[1], resolution)
-    return MatingTeeth(pair, pinion, wheel)
-
-
-def _named(name: str, flanks: tuple[Flank, Flank], form: ToothForm, resolution: Resolution) -> ToothSurface:
-    """A complete tooth, or errors that name the gear."""
-    try:
-        return build_tooth(flanks, form, resolution)
-    except InputError as error:
-        raise InputError(f"{name}: {problem}" for problem in error.problems) from None
-    except GeometryError as error:
-        raise GeometryError(f"{name}: {error}") from None
+    teeth = []
+    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+        with named(name):
+            form = gear.form if fillet_radius is None else gear.form.with_arc(fillet_radius)
+            teeth.append(build_tooth(gear.flanks, form, resolution))
+    return MatingTeeth(pair, *teeth)

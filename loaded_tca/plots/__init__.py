@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from matplotlib.figure import Figure
-
 from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
 from loaded_tca.plots.ease_off import plot_ease_off
 from loaded_tca.plots.flanks import plot_contact_path
@@ -87,7 +85,7 @@ def plot_all(
     Returns
     -------
     tuple of Path
-        ``contact_path.png``, ``transmission_error.png``, ``peak_pressure.png``; if anything touches,
+        ``contact_path.png``, ``transmission_error.png``, ``peak_pressure.png``; if anything is in contact,
         ``pressure_map.png`` of the peak pressure; if a higher one lies at an edge or a relief start in another
         position, ``pressure_map_edge.png``; if Hertz holds in other positions only, ``pressure_map_hertz.png`` of the
         highest pressure where it holds. Where tooth pairs share the load: ``load_share.png``, ``harmonics.png``,
@@ -105,10 +103,29 @@ def plot_all(
         "transmission_error": plot_transmission_error(result),
         "peak_pressure": plot_peak_pressure(result),
     }
-    for name, (place, column) in _map_places(result, torque, position).items():
-        figures[name] = plot_pressure_map(result, place, torque, column)
-    if result.pair_contacts is not None and len(result.path) > 1:
-        figures |= _shared_figures(result, torque) | {"load_share": plot_load_share(result, asked)}
+    peak, edge = result.peak_contact(torque), result.edge_contact(torque)
+    smooth = result.peak_contact(torque, where_hertz_holds=True)
+    hertz_at_peak = peak is not None and result.hertz_pressure[torque][peak] > 0.0
+    places = {
+        "pressure_map": peak,
+        "pressure_map_edge": None if edge == peak else edge,
+        "pressure_map_hertz": None if hertz_at_peak else smooth,
+    }
+    if position is not None:
+        places = {"pressure_map": (position, int(result.peak_column[torque, position]))}
+    for name, place in places.items():
+        if place is not None:
+            figures[name] = plot_pressure_map(result, place[0], torque, place[1])
+    if result.scene.analysis.load_sharing and len(result.path) > 1:
+        figures |= {
+            "load_share": plot_load_share(result, asked),
+            "harmonics": plot_harmonics(result),
+            "mesh_stiffness": plot_mesh_stiffness(result),
+            "line_load": plot_line_load(result),
+            "line_load_distribution": plot_line_load_distribution(result, torque),
+            "pressure_envelope": plot_pressure_envelope(result, torque),
+            "path_pressure": plot_path_pressure(result),
+        }
     files = {name: Path(directory) / f"{name}.png" for name in PICTURES}
     for name, file in files.items():
         if name in figures:
@@ -116,30 +133,3 @@ def plot_all(
         else:
             remove(file)
     return tuple(files[name] for name in figures)
-
-
-def _shared_figures(result: MeshCycle, torque: int) -> dict[str, Figure]:
-    """What there is to see where tooth pairs share the load."""
-    return {
-        "harmonics": plot_harmonics(result),
-        "mesh_stiffness": plot_mesh_stiffness(result),
-        "line_load": plot_line_load(result),
-        "line_load_distribution": plot_line_load_distribution(result, torque),
-        "pressure_envelope": plot_pressure_envelope(result, torque),
-        "path_pressure": plot_path_pressure(result),
-    }
-
-
-def _map_places(result: MeshCycle, torque: int, position: int | None) -> dict[str, tuple[int, int]]:
-    """Picture -> position and column of the tooth pair of each pressure map to be drawn."""
-    if position is not None:
-        return {"pressure_map": (position, result.highest_column(torque, position))}
-    peak, edge = result.peak_contact(torque), result.edge_contact(torque)
-    smooth = result.peak_contact(torque, where_hertz_holds=True)
-    hertz_at_peak = peak is not None and result.contacts.hertz_pressure[torque][peak] > 0.0
-    wanted = {
-        "pressure_map": peak,
-        "pressure_map_edge": None if edge == peak else edge,
-        "pressure_map_hertz": None if hertz_at_peak else smooth,
-    }
-    return {name: place for name, place in wanted.items() if place is not None}

@@ -25,7 +25,7 @@ SMALLEST_SPAN_ARCSEC = 0.02
 """Height of a transmission error axis below which a curve would be rounding."""
 BESIDE = "there beside the contact point"
 EDGE_HEADROOM = 1.15
-"""How far above the curves a peak at an edge may draw the axis: the grid alone says how high it is."""
+"""How far above the curves a peak at an edge may draw the axis: how high it is depends on the mesh."""
 
 
 def plot_transmission_error(result: MeshCycle) -> Figure:
@@ -41,9 +41,8 @@ def plot_transmission_error(result: MeshCycle) -> Figure:
     """
     figure = Figure(figsize=(8.0, 6.5), layout="constrained")
     absolute, about_mean = figure.subplots(2, 1, sharex=True)
-    errors = result.by_torque("transmission_error")
     curves = [("unloaded", "black", ".", result.path.transmission_error)]
-    curves += [(*style, errors[torque]) for torque, *style in torque_styles(result)]
+    curves += [(*style, result.transmission_error[torque]) for torque, *style in torque_styles(result)]
     angle = np.degrees(result.pinion_angle)
     for label, colour, marker, error in curves:
         mean = mean_over_a_pitch(error)
@@ -53,27 +52,22 @@ def plot_transmission_error(result: MeshCycle) -> Figure:
     about_mean.set_ylabel("the same, less its mean [arcsec]")
     about_mean.set_xlabel("pinion angle [deg]")
     figure.legend(*absolute.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize="small")
+    factor = result.wheel_base_radius * 1e3 / ARCSEC  # um per arcsec
     for axes in (absolute, about_mean):
         widen(axes, SMALLEST_SPAN_ARCSEC)
-        _add_length_axis(axes, result.wheel_base_radius)
+        right = axes.secondary_yaxis("right", functions=(lambda arcsec: arcsec * factor, lambda um: um / factor))
+        right.set_ylabel("at the wheel's base circle [µm]")
         axes.grid(alpha=0.3)
     set_title(figure, result, f"transmission error, {loads(result)}", range_of_positions(result))
     return figure
 
 
-def _add_length_axis(axes: Axes, base_radius: float) -> None:
-    """A second axis with the transmission error as a length at the wheel's base circle."""
-    factor = base_radius * 1e3 / ARCSEC
-    functions = (lambda arcsec: arcsec * factor, lambda length: length / factor)
-    axes.secondary_yaxis("right", functions=functions).set_ylabel("at the wheel's base circle [µm]")
-
-
 def plot_peak_pressure(result: MeshCycle) -> Figure:
     """Peak pressure over the positions for each torque, with the pressure beside the contact point and after Hertz.
 
-    Where tooth pairs share the load, the peak and that after Hertz are those of the pair with the highest inner
-    pressure. Peaks at an edge or a relief start, which grow with the grid, are single crosses, and the axis does not
-    follow them far; there the pressure beside the contact point of the most loaded pair is drawn too.
+    Where tooth pairs share the load, the peak and that after Hertz are those of the pair with the highest
+    mesh-independent pressure. Peaks at an edge or a relief start, which are mesh-dependent, are single crosses, and the
+    axis does not follow them far; there the pressure beside the contact point of the most loaded pair is drawn too.
 
     Parameters
     ----------
@@ -84,12 +78,14 @@ def plot_peak_pressure(result: MeshCycle) -> Figure:
     matplotlib.figure.Figure
     """
     figure = Figure(figsize=(8.0, 5.5), layout="constrained")
-    axes, contacts = figure.add_subplot(), result.contacts
+    axes = figure.add_subplot()
     angle = np.degrees(result.pinion_angle)
-    peak, at_edge = result.by_torque("peak_pressure"), result.by_torque("peak_at_edge")
-    central = np.where(at_edge, result.by_torque("central_pressure"), np.nan)
-    hertz = contacts.at_inner(contacts.hertz_pressure)
-    smooth = contacts.at_inner(np.where(contacts.peak_at_edge, np.nan, contacts.peak_pressure))
+    peak, at_edge = result.at_position("peak_pressure"), result.at_position("peak_at_edge")
+    central = np.where(at_edge, result.at_position("central_pressure"), np.nan)
+    hertz, smooth = (
+        np.take_along_axis(values, result.peak_column[..., None], axis=-1)[..., 0]
+        for values in (result.hertz_pressure, np.where(result.peak_at_edge, np.nan, result.peak_pressure))
+    )
     for torque, label, colour, marker in torque_styles(result):
         axes.plot(angle, smooth[torque], color=colour, marker=marker, markersize=5.0, label=label)
         if at_edge[torque].any():
@@ -122,7 +118,7 @@ def _draw_edge_peaks(axes: Axes, result: MeshCycle, angle: Array, peak: Array) -
     for torque, _, colour, _ in torque_styles(result):
         axes.plot(angle[within[torque]], peak[torque][within[torque]], "x", color=colour)
         axes.plot(angle[beyond[torque]], np.full(beyond[torque].sum(), edge), "^", color=colour)
-    label = "at an edge or relief start (grows with the grid)"
+    label = "at an edge or relief start (mesh-dependent)"
     if within.any():
         axes.plot([], [], "x", color="black", label=label)
     if beyond.any():

@@ -12,11 +12,10 @@ from matplotlib.patches import Ellipse
 
 from loaded_tca.arrays import Array
 from loaded_tca.flanks.frame import FlankFrame
-from loaded_tca.plots.flanks import highest_inner_pressure
+from loaded_tca.plots.flanks import highest_mesh_independent_pressure
 from loaded_tca.plots.style import ACCENT, COLOURS, NO_MATERIAL, highest_torque, load, place, set_title, tell_no_load
-from loaded_tca.results.contacts import PressureMap
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.scene import parse_scene
+from loaded_tca.results.pressure_map import PressureMap
 
 CELLS_OF_A_SPIKE = 0.05
 """Part of the cells under pressure that may lie beyond the scale of colours."""
@@ -34,11 +33,11 @@ def plot_pressure_map(
     ----------
     result : MeshCycle
     position : int, optional
-        Index along the path; default: that of the peak pressure, ``result.peak_position``.
+        Index along the path; default: that of the peak pressure, ``result.peak_contact``.
     torque : int, optional
         Index of the torque; default: the largest torque.
     column : int, optional
-        Of the tooth pair in ``result.pairs``; default: that with the highest pressure at the position.
+        Index of the tooth pair in ``result.pair``; default: that with the highest pressure at the position.
 
     Returns
     -------
@@ -47,27 +46,36 @@ def plot_pressure_map(
     Raises
     ------
     IndexError
-        If nothing touches at that position.
+        If nothing is in contact at that position.
     """
     torque = highest_torque(result) if torque is None else torque
-    position = result.peak_position(torque) if position is None else position
-    if column is None:
-        column = 0 if position is None else result.highest_column(torque, position)
-    one = None if position is None else result.contacts.maps[torque][position][column]
-    if position is None or one is None:
-        raise IndexError("no pressure map: the tooth pair does not touch at this position")
+    at = result.peak_contact(torque) if position is None else (position, int(result.peak_column[torque, position]))
+    if at is not None and column is not None:
+        at = at[0], column
+    one = None if at is None else result.maps[torque][at[0]][at[1]]
+    if at is None or one is None:
+        raise IndexError("no pressure map: the tooth pair is not in contact at this position")
     scale, height = _scale_factor(one)
     figure = Figure(figsize=(9.0, 1.8 + height), layout="constrained")
     axes = figure.add_subplot()
-    _draw_pressure(figure, axes, one, _end_of_scale(result, (torque, position, column), one))
-    _draw_ellipse(axes, result, (torque, position, column))
+    highest = float(one.pressure.max())
+    if result.peak_at_edge[torque][at]:  # what nearly all cells stay below, or the highest pressure that is no spike
+        most = float(np.quantile(one.pressure[one.pressure > 0.0], 1.0 - CELLS_OF_A_SPIKE))
+        highest = min(highest, max(most, highest_mesh_independent_pressure(result, torque, [one])))
+    _draw_pressure(figure, axes, one, highest)
+    names = ("hertz_semi_minor", "hertz_semi_major", "hertz_pressure")
+    minor, major, pressure = (float(getattr(result, name)[torque][at]) for name in names)
+    if math.isfinite(pressure):
+        label = f"ellipse after Hertz, peak pressure {pressure:.4g} MPa"
+        ellipse = Ellipse((0.0, 0.0), 2.0 * major, 2.0 * minor, fill=False, color=ACCENT, linestyle="--", label=label)
+        axes.add_patch(ellipse)
     axes.plot(0.0, 0.0, "+", color=ACCENT, label="unloaded contact point")
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
     axes.set_aspect(scale)
-    frame = parse_scene(result.scene_toml).pair().pinion.flank.frame
+    frame = result.gear_pair.pinion.flank.frame
     _label_axes(axes, one, scale, frame)
     what = "contact pressure" if one.pressure.any() else "no contact pressure"
-    set_title(figure, result, f"{what}, {load(result, torque)}", *place(result, position, frame, column))
+    set_title(figure, result, f"{what}, {load(result, torque)}", *place(result, at[0], frame, at[1]))
     return figure
 
 
@@ -89,15 +97,6 @@ def _on_pinion(frame: FlankFrame, point: Array) -> tuple[Array, Array]:
     return frame.to_picture(np.hypot(point[0], point[1]), point[2])
 
 
-def _end_of_scale(result: MeshCycle, at: tuple[int, int, int], one: PressureMap) -> float:
-    """The peak; of a spike at an edge what nearly all cells stay below, or the highest that is no spike [MPa]."""
-    peak = float(one.pressure.max())
-    if not result.contacts.peak_at_edge[at]:
-        return peak
-    most = float(np.quantile(one.pressure[one.pressure > 0.0], 1.0 - CELLS_OF_A_SPIKE))
-    return min(peak, max(most, highest_inner_pressure(result, at[0], [one])))
-
-
 def _draw_pressure(figure: Figure, axes: Axes, one: PressureMap, highest: float) -> None:
     """Pressure of each cell, in colours up to the highest; white without pressure, grey without material."""
     y, x = (cell_limits(centres, step) for centres, step in ((one.y, one.spacing[1]), (one.x, one.spacing[0])))
@@ -116,16 +115,6 @@ def _draw_pressure(figure: Figure, axes: Axes, one: PressureMap, highest: float)
     if highest < peak:
         label += f"\n(few cells at the edge: up to {peak:.0f})"
     figure.colorbar(mesh, ax=axes, label=label, extend="max" if highest < peak else "neither")
-
-
-def _draw_ellipse(axes: Axes, result: MeshCycle, at: tuple[int, int, int]) -> None:
-    """The contact ellipse after Hertz, where it is known."""
-    names = ("hertz_semi_minor", "hertz_semi_major", "hertz_pressure")
-    minor, major, pressure = (float(getattr(result.contacts, name)[at]) for name in names)
-    if math.isfinite(pressure):
-        label = f"ellipse after Hertz, peak pressure {pressure:.4g} MPa"
-        ellipse = Ellipse((0.0, 0.0), 2.0 * major, 2.0 * minor, fill=False, color=ACCENT, linestyle="--", label=label)
-        axes.add_patch(ellipse)
 
 
 def cell_limits(centres: Array, step: float) -> Array:

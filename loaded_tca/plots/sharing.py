@@ -16,7 +16,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.plots.flanks import draw_flank, highest_inner_pressure, on_gear, pressed_maps
+from loaded_tca.plots.flanks import draw_flank, highest_mesh_independent_pressure, loaded_maps, on_gear
 from loaded_tca.plots.style import (
     COLOURS,
     HERTZ,
@@ -31,12 +31,11 @@ from loaded_tca.plots.style import (
     torque_styles,
     widen,
 )
-from loaded_tca.results.contacts import PressureMap
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.scene import parse_scene
+from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.unloaded import trace_contact
 
-EDGE = "contact at an edge (its peak grows with the grid)"
+EDGE = "contact at an edge (its peak is mesh-dependent)"
 ROW_OF_ENDS, MOST_ROWS = 0.035, 4
 """Height of a row of such marks over that of the axis, and how many rows there are at most."""
 WHAT_LETTERS_ARE = "A, E: the unloaded contact of these flanks begins, ends; B, D: a pitch from E, A; C: pitch point"
@@ -64,20 +63,27 @@ def plot_load_share(result: MeshCycle, torque: int | None = None) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    shown = _shown_torques(result) if torque is None else [torque]
+    order = np.argsort(result.torque, kind="stable")
+    spread = np.linspace(0.0, len(order) - 1.0, min(len(order), MOST_PANELS)).round().astype(int)
+    shown = order[np.unique(spread)].tolist() if torque is None else [torque]
     figure = Figure(figsize=(8.0, 2.8 + (3.0 if len(shown) == 1 else 1.8 * len(shown))), layout="constrained")
     *panels, below = figure.subplots(len(shown) + 1, 1, sharex=True, height_ratios=(*(3.0,) * len(shown), 1.5))
     angle = np.degrees(result.pinion_angle)
     styles = {index: style for index, *style in torque_styles(result)}
     for axes, index in zip(panels, shown, strict=True):
-        _draw_shares(axes, result, index)
+        for number, share in zip(result.pair, result.load_share[index].T, strict=True):
+            marker = MARKERS[int(number) % len(MARKERS)]
+            axes.plot(angle, 100.0 * share, marker=marker, markersize=4.0, label=f"tooth pair {signed(int(number))}")
+        axes.set_ylabel("share of\nthe torque [%]")
+        axes.set_ylim(-4.0, 106.0)
+        axes.grid(alpha=0.3)
         torque_label, colour, _ = styles[index]
-        below.step(angle, result.by_torque("loaded_pairs")[index], where="mid", color=colour, label=torque_label)
+        below.step(angle, result.loaded_pairs[index], where="mid", color=colour, label=torque_label)
         if len(shown) > 1:
             axes.set_title(load(result, index).partition(" (")[0], fontsize="small")
     below.set_ylabel("pairs\nunder load")
-    below.set_ylim(0.0, len(result.pairs) + 0.5)
-    below.set_yticks(range(len(result.pairs) + 1))
+    below.set_ylim(0.0, len(result.pair) + 0.5)
+    below.set_yticks(range(len(result.pair) + 1))
     if len(shown) > 1:
         below.legend(loc="lower right", ncols=len(shown), fontsize="x-small")
     below.set_xlabel("pinion angle [deg]")
@@ -86,25 +92,6 @@ def plot_load_share(result: MeshCycle, torque: int | None = None) -> Figure:
     about = load(result, shown[0]) if len(shown) == 1 else loads(result)
     set_title(figure, result, f"load sharing, {about}", range_of_positions(result))
     return figure
-
-
-def _shown_torques(result: MeshCycle) -> list[int]:
-    """Indices of all torques, from the least to the largest; of many, a few spread over them."""
-    order = np.argsort(result.torque, kind="stable")
-    chosen = np.unique(np.linspace(0.0, len(order) - 1.0, min(len(order), MOST_PANELS)).round().astype(int))
-    return [int(index) for index in order[chosen]]
-
-
-def _draw_shares(axes: Axes, result: MeshCycle, torque: int) -> None:
-    """One curve per tooth pair, in the order of the mesh."""
-    angle, order = np.degrees(result.pinion_angle), np.argsort(result.pairs)
-    shares = result.load_share.reshape(len(result.torque), len(angle), len(result.pairs))[torque]
-    for number, share in zip(result.pairs[order], shares.T[order], strict=True):
-        marker = MARKERS[int(number) % len(MARKERS)]
-        axes.plot(angle, 100.0 * share, marker=marker, markersize=4.0, label=f"tooth pair {signed(int(number))}")
-    axes.set_ylabel("share of\nthe torque [%]")
-    axes.set_ylim(-4.0, 106.0)
-    axes.grid(alpha=0.3)
 
 
 def plot_mesh_stiffness(result: MeshCycle) -> Figure:
@@ -119,15 +106,14 @@ def plot_mesh_stiffness(result: MeshCycle) -> Figure:
     matplotlib.figure.Figure
     """
     figure, axes = _one_panel()
-    tangent, secant = result.by_torque("mesh_stiffness"), result.by_torque("secant_stiffness")
     for torque, label, colour, marker in torque_styles(result):
         angle = np.degrees(result.pinion_angle)
-        axes.plot(angle, tangent[torque], color=colour, marker=marker, markersize=4.0, label=label)
-        axes.plot(angle, secant[torque], color=colour, marker=".", markersize=3.0, linestyle=":")
+        axes.plot(angle, result.mesh_stiffness[torque], color=colour, marker=marker, markersize=4.0, label=label)
+        axes.plot(angle, result.secant_stiffness[torque], color=colour, marker=".", markersize=3.0, linestyle=":")
     axes.plot([], [], color="black", linestyle=":", label="secant, from no load")
     axes.set_ylabel("mesh stiffness [N/(mm µm)]")
     from_zero(axes)
-    return _finished(figure, axes, result, f"mesh stiffness, {result.yielding}, {loads(result)}")
+    return _finished(figure, axes, result, f"mesh stiffness, {result.bending}, {loads(result)}")
 
 
 def plot_line_load(result: MeshCycle) -> Figure:
@@ -142,11 +128,9 @@ def plot_line_load(result: MeshCycle) -> Figure:
     matplotlib.figure.Figure
     """
     figure, axes = _one_panel()
-    line_load = result.by_torque("line_load")
+    angle, line_load = np.degrees(result.pinion_angle), result.at_position("line_load")
     for torque, label, colour, marker in torque_styles(result):
-        axes.plot(
-            np.degrees(result.pinion_angle), line_load[torque], color=colour, marker=marker, markersize=4.0, label=label
-        )
+        axes.plot(angle, line_load[torque], color=colour, marker=marker, markersize=4.0, label=label)
     axes.set_ylabel("line load of the most loaded pair [N/mm]")
     from_zero(axes)
     return _finished(figure, axes, result, f"line load along the contact, {loads(result)}")
@@ -170,8 +154,7 @@ def plot_harmonics(result: MeshCycle) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    figure = Figure(figsize=(8.0, 5.0), layout="constrained")
-    axes = figure.add_subplot()
+    figure, axes = _one_panel()
     amplitudes = 1e3 * result.wheel_base_radius * result.harmonics(MOST_ORDERS)
     orders, width = np.arange(1, MOST_ORDERS + 1), 0.8 / len(result.torque)
     for torque, label, colour, _ in torque_styles(result):
@@ -180,7 +163,7 @@ def plot_harmonics(result: MeshCycle) -> Figure:
     axes.set_xlabel("order of the tooth mesh")
     axes.set_ylabel("amplitude at the wheel's base circle [µm]")
     widen(axes, SMALLEST_AMPLITUDE_UM)
-    axes.grid(alpha=0.3, axis="y")
+    axes.grid(visible=False, axis="x")
     return _finished(figure, axes, result, f"harmonics of the transmission error, {loads(result)}")
 
 
@@ -198,12 +181,20 @@ def plot_pressure_envelope(result: MeshCycle, torque: int | None = None) -> Figu
     matplotlib.figure.Figure
     """
     torque = highest_torque(result) if torque is None else torque
-    maps = pressed_maps(result, torque)
-    scale = Normalize(0.0, highest_inner_pressure(result, torque, maps))
+    maps = loaded_maps(result, torque)
+    scale = Normalize(0.0, highest_mesh_independent_pressure(result, torque, maps))
 
     def draw(axes: Axes, pair: GearPair, flank: Flank) -> PolyCollection:
-        cells, pressure = _cells(maps, pair, flank)
-        drawn = PolyCollection(list(cells), array=pressure, cmap=COLOURS, norm=scale, edgecolors="face", linewidths=0.3)
+        cells, pressures = [np.zeros((0, 4, 2))], [np.zeros(0)]
+        for one in maps:
+            at = np.stack(flank.frame.to_picture(*on_gear(pair, flank, one.corners)), axis=-1)
+            around = np.stack([at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]], axis=2)
+            cells.append(around[one.pressure > 0.0])
+            pressures.append(one.pressure[one.pressure > 0.0])
+        pressure = np.concatenate(pressures)
+        highest_last = np.argsort(pressure, kind="stable")
+        drawn = PolyCollection(list(np.concatenate(cells)[highest_last]), cmap=COLOURS, norm=scale, edgecolors="face")
+        drawn.set(array=pressure[highest_last], linewidths=0.3)
         axes.add_collection(drawn, autolim=False)
         return drawn
 
@@ -229,7 +220,7 @@ def plot_line_load_distribution(result: MeshCycle, torque: int | None = None) ->
     matplotlib.figure.Figure
     """
     torque = highest_torque(result) if torque is None else torque
-    lines = [_line_load(one) for one in pressed_maps(result, torque)]
+    lines = [_line_load(one) for one in loaded_maps(result, torque)]
     scale = Normalize(0.0, max((float(line_load.max()) for _, line_load in lines), default=1.0))
 
     def draw(axes: Axes, pair: GearPair, flank: Flank) -> LineCollection:
@@ -254,8 +245,7 @@ def _both_flanks(
 ) -> tuple[Figure, list[Axes]]:
     """A panel for each flank, with what is drawn cut off at its outline."""
     figure = Figure(figsize=(11.0, 5.5), layout="constrained")
-    scene = parse_scene(result.scene_toml)
-    pair, panels = scene.pair(), list(figure.subplots(1, 2))
+    scene, pair, panels = result.scene, result.gear_pair, list(figure.subplots(1, 2))
     sides = zip(panels, scene.flank_names, (pair.pinion.flank, pair.wheel.flank), scene.active_starts(), strict=True)
     for axes, name, flank, start in sides:
         outline = draw_flank(axes, name, flank, start)
@@ -266,7 +256,7 @@ def _both_flanks(
 
 
 def _line_load(one: PressureMap) -> tuple[Array, Array]:
-    """Middles (k, 3) of the pressure of the loaded columns of a map, in the fixed frame, and line load (k,) [N/mm]."""
+    """Middles (k, 3) of the pressure of the loaded slices of a map, in the fixed frame, and line load (k,) [N/mm]."""
     sums = one.pressure.sum(axis=0)
     loaded = sums > 0.0
     across = one.x @ one.pressure[:, loaded] / sums[loaded]
@@ -279,7 +269,7 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
 
     For a spur pair that is the pressure from A to E, single contact from B to D. Dotted lines mark where the unloaded
     contact point comes into the flanks and leaves them (A, E), a pitch before the end and after the begin (B, D: only
-    one pair touches between them without load, if they lie in this order) and the pitch point (C).
+    one pair is in contact between them without load, if they lie in this order) and the pitch point (C).
 
     Parameters
     ----------
@@ -290,12 +280,13 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
     matplotlib.figure.Figure
     """
     figure, axes = _one_panel()
-    contacts, pair = result.contacts, parse_scene(result.scene_toml).pair()
-    inner, peak, hertz = contacts.inner_pressure, contacts.peak_pressure, contacts.hertz_pressure
-    angle = np.degrees(result.pinion_angle[:, None] - pair.pitch * result.pairs).ravel()
+    pair, hertz = result.gear_pair, result.hertz_pressure
+    angle = np.degrees(result.pinion_angle[:, None] - pair.pitch * result.pair).ravel()
     order, ends = np.argsort(angle, kind="stable"), []
     for torque, label, colour, marker in torque_styles(result):
-        curve, largest, ellipse = (values[torque].ravel()[order] for values in (inner, peak, hertz))
+        curve, largest, ellipse = (
+            values[torque].ravel()[order] for values in (result.mesh_independent_pressure, result.peak_pressure, hertz)
+        )
         known = np.isfinite(curve)
         axes.plot(angle[order][known], curve[known], color=colour, marker=marker, markersize=4.0, label=label)
         axes.plot(angle[order], ellipse, color=colour, **HERTZ)
@@ -336,7 +327,7 @@ def _leaves_flanks(pair: GearPair, farthest: float) -> float:
         angles = np.linspace(low, high, FINENESS)
         try:
             path = trace_contact(pair, angles, warn=False)
-        except GeometryError:  # nothing touches on that side
+        except GeometryError:  # nothing is in contact on that side
             return math.nan
         outside = path.on_edge | ~path.in_contact
         if not outside.any() or outside[0]:
@@ -347,7 +338,7 @@ def _leaves_flanks(pair: GearPair, farthest: float) -> float:
 
 
 def _draw_ends(axes: Axes, ends: list[tuple[Array, str]]) -> None:
-    """Arrows above the curves, a row for each torque, where a contact lies on an edge: the grid alone says its peak."""
+    """Arrows above the curves, a row for each torque, where a contact lies on an edge: its peak is mesh-dependent."""
     rows = [(angles, colour) for angles, colour in ends if angles.size]
     from_zero(axes, 1.0 - ROW_OF_ENDS * (min(len(rows), MOST_ROWS) + 1.0) if rows else 1.0)
     for row, (angles, colour) in enumerate(reversed(rows)):
@@ -363,16 +354,3 @@ def _one_panel() -> tuple[Figure, Axes]:
     axes.set_xlabel("pinion angle [deg]")
     axes.grid(alpha=0.3)
     return figure, axes
-
-
-def _cells(maps: list[PressureMap], pair: GearPair, flank: Flank) -> tuple[Array, Array]:
-    """Corners (cells, 4, 2) in the picture of a flank, and pressure (cells,), of all cells under it, highest last."""
-    corners, pressures = [np.zeros((0, 4, 2))], [np.zeros(0)]
-    for one in maps:
-        at = np.stack(flank.frame.to_picture(*on_gear(pair, flank, one.corners)), axis=-1)
-        around = np.stack([at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]], axis=2)
-        corners.append(around[one.pressure > 0.0])
-        pressures.append(one.pressure[one.pressure > 0.0])
-    pressure = np.concatenate(pressures)
-    order = np.argsort(pressure, kind="stable")
-    return np.concatenate(corners)[order], pressure[order]

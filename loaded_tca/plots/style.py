@@ -88,10 +88,10 @@ def loads(result: MeshCycle) -> str:
     return load(result, 0) if len(result.torque) == 1 else f"pinion torques {low:.4g} to {high:.4g} N m"
 
 
-def place(result: MeshCycle, position: int, frame: FlankFrame, column: int = 0) -> tuple[str, str]:
+def place(result: MeshCycle, position: int, frame: FlankFrame, column: int) -> tuple[str, str]:
     """Return what a title says of one position, and of a pair's contact point in the frame of the pinion's flank."""
-    where = result.contacts.paths[column][position]
-    which = f", tooth pair {signed(int(result.pairs[column]))}" if len(result.pairs) > 1 else ""
+    where = result.paths[column][position]
+    which = f", tooth pair {signed(int(result.pair[column]))}" if len(result.pair) > 1 else ""
     return (
         f"position {position + 1} of {len(result.path)}{which}: pinion angle {_degrees(where.pinion_angle)} deg",
         f"contact point on the pinion: {frame.place(where.pinion_radius, where.pinion_axial)}",
@@ -114,7 +114,7 @@ def range_of_positions(result: MeshCycle) -> str:
 def set_title(figure: Figure, result: MeshCycle, *about: str) -> None:
     """Write the title of the scene and what is shown; taken literally, signs of TeX too."""
     joined = ", ".join(about)
-    lines = [*textwrap.wrap(result.title, 90), *([joined] if len(joined) <= LONGEST_LINE else about)]
+    lines = [*textwrap.wrap(result.scene.title, 90), *([joined] if len(joined) <= LONGEST_LINE else about)]
     figure.suptitle("\n".join(lines), fontsize="medium", parse_math=False)
 
 

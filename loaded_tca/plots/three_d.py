@@ -16,10 +16,10 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
-from loaded_tca.output.teeth_in_space import TeethInSpace, complete_teeth, teeth_in_space
+from loaded_tca.output.teeth_in_space import TeethInSpace, teeth_in_space
+from loaded_tca.pairs import mating_teeth
 from loaded_tca.plots.style import ACCENT, COLOURS, load, place, set_title
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.scene import parse_scene
 from loaded_tca.tooth import PATCHES, Resolution, TriangleMesh
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def plot_teeth(result: MeshCycle, position: int | None = None, torque: int | Non
     ----------
     result : MeshCycle
     position : int, optional
-        Index along the path; default: that of the peak pressure, ``result.peak_position``.
+        Index along the path; default: that of the peak pressure, ``result.peak_contact``.
     torque : int, optional
         Index of the torque; default: the largest one.
 
@@ -56,8 +56,8 @@ def plot_teeth(result: MeshCycle, position: int | None = None, torque: int | Non
     Raises
     ------
     InputError, GeometryError
-        If nothing touches at that position, or there are no complete teeth, see
-        :func:`loaded_tca.output.teeth_in_space.complete_teeth`.
+        If nothing is in contact at that position, or there are no complete teeth, see
+        :func:`loaded_tca.pairs.mating_teeth`.
     """
     return draw_teeth(result, _shown(result, position, torque))
 
@@ -76,32 +76,7 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
     matplotlib.figure.Figure
     """
     figure = Figure(figsize=(9.0, 7.5), layout="constrained")
-    axes = figure.add_subplot(projection="3d", computed_zorder=False)
-    _view(axes, shown)
-    side = shown.pair.pinion.flank.side
-    axes.add_collection3d(_solid(shown.pinion, PINION, 1.0, shown.eye))
-    axes.add_collection3d(_lines(shown.pinion, side))
-    if shown.highest_pressure > 0.0:
-        norm = Normalize(0.0, shown.highest_pressure)
-        axes.add_collection3d(_painted(shown.pressure, norm))
-        figure.colorbar(ScalarMappable(norm, COLOURS), ax=axes, label="contact pressure [MPa]", shrink=0.7)
-    axes.plot(*shown.path.T, ".", color=ACCENT, markersize=3.0)
-    axes.add_collection3d(_solid(shown.wheel, WHEEL, SEE_THROUGH, shown.eye))
-    axes.add_collection3d(_lines(shown.wheel, side))
-    _explain(figure)
-    what = "teeth in contact" if shown.highest_pressure > 0.0 else "teeth, no load, no pressure"
-    where = place(result, shown.position, shown.pair.pinion.flank.frame)
-    set_title(figure, result, f"{what}, {load(result, shown.torque)}", *where)
-    return figure
-
-
-def _shown(result: MeshCycle, position: int | None, torque: int | None) -> TeethInSpace:
-    """Teeth of the resolution of a picture, in place."""
-    return teeth_in_space(result, complete_teeth(parse_scene(result.scene_toml), DRAWN), position, torque)
-
-
-def _view(axes: Any, shown: TeethInSpace) -> None:
-    """Box of equal scales around both teeth, seen from the wheel."""
+    axes: Any = figure.add_subplot(projection="3d", computed_zorder=False)
     points = np.concatenate([shown.pinion.vertices, shown.wheel.vertices])
     low, high = points.min(axis=0), points.max(axis=0)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
@@ -109,6 +84,33 @@ def _view(axes: Any, shown: TeethInSpace) -> None:
     axes.set(xlabel="x [mm]", ylabel="y [mm]", zlabel="z [mm]")
     x, y, z = shown.eye
     axes.view_init(elev=math.degrees(math.asin(z)), azim=math.degrees(math.atan2(y, x)))
+    side = shown.pair.pinion.flank.side
+    axes.add_collection3d(_solid(shown.pinion, PINION, 1.0, shown.eye))
+    axes.add_collection3d(_lines(shown.pinion, side))
+    if shown.highest_pressure > 0.0:
+        norm = Normalize(0.0, shown.highest_pressure)
+        faces = colormaps[COLOURS](norm(shown.pressure.cell_data["pressure_MPa"]))
+        corners = shown.pressure.corners
+        axes.add_collection3d(Poly3DCollection(corners, facecolors=faces, edgecolors=faces, linewidths=0.2))
+        figure.colorbar(ScalarMappable(norm, COLOURS), ax=axes, label="contact pressure [MPa]", shrink=0.7)
+    axes.plot(*shown.path.T, ".", color=ACCENT, markersize=3.0)
+    axes.add_collection3d(_solid(shown.wheel, WHEEL, SEE_THROUGH, shown.eye))
+    axes.add_collection3d(_lines(shown.wheel, side))
+    handles = [
+        Patch(facecolor=PINION, label="pinion's tooth"),
+        Patch(facecolor=WHEEL, alpha=SEE_THROUGH, label="wheel's tooth, see-through"),
+        Line2D([], [], color=ACCENT, marker=".", linestyle="", label="unloaded contact points of all positions"),
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize="small")
+    what = "teeth in contact" if shown.highest_pressure > 0.0 else "teeth, no load, no pressure"
+    where = place(result, shown.position, shown.pair.pinion.flank.frame, shown.column)
+    set_title(figure, result, f"{what}, {load(result, shown.torque)}", *where)
+    return figure
+
+
+def _shown(result: MeshCycle, position: int | None, torque: int | None) -> TeethInSpace:
+    """Teeth of the resolution of a picture, in place."""
+    return teeth_in_space(result, mating_teeth(result.gear_pair, DRAWN), position, torque)
 
 
 def _solid(mesh: TriangleMesh, colour: str, opacity: float, towards: Array) -> Poly3DCollection:
@@ -129,21 +131,6 @@ def _lines(mesh: TriangleMesh, side: int) -> Line3DCollection:
     return Line3DCollection(seen.seams("patch"), colors=SEAMS, linewidths=0.6)
 
 
-def _painted(mesh: TriangleMesh, norm: Normalize) -> Poly3DCollection:
-    """The pressure, in colours."""
-    faces = colormaps[COLOURS](norm(mesh.cell_data["pressure_MPa"]))
-    return Poly3DCollection(mesh.corners, facecolors=faces, edgecolors=faces, linewidths=0.2)
-
-
-def _explain(figure: Figure) -> None:
-    handles = [
-        Patch(facecolor=PINION, label="pinion's tooth"),
-        Patch(facecolor=WHEEL, alpha=SEE_THROUGH, label="wheel's tooth, see-through"),
-        Line2D([], [], color=ACCENT, marker=".", linestyle="", label="unloaded contact points of all positions"),
-    ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize="small")
-
-
 def show_teeth(
     result: MeshCycle, position: int | None = None, torque: int | None = None, *, off_screen: bool = False
 ) -> pyvista.Plotter:
@@ -162,7 +149,7 @@ def show_teeth(
     InputError
         If pyvista is not installed.
     GeometryError
-        If nothing touches at that position.
+        If nothing is in contact at that position.
     """
     try:
         import pyvista

@@ -1,7 +1,7 @@
 """What an analysis found: the mesh cycle, its key figures, its file, the stresses below the flanks."""
 
-from loaded_tca.results.contacts import PressureMap
 from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.reached_edges import reached_edges
 from loaded_tca.results.stress_below import StressBelow, stress_below
 

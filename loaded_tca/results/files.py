@@ -6,141 +6,113 @@ import io
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.io import netcdf_file
 
+from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 
+if TYPE_CHECKING:  # xarray takes a third of a second to import: only what makes or reads a result needs it
+    import xarray
+
 FORMAT = "loaded_tca"
-FORMAT_VERSION = 2
+FORMAT_VERSION = 3
 """Raised whenever the code of one version cannot read the files of another."""
 
 FilePath = str | os.PathLike[str]
-
-_STORED_AS: dict[str, np.dtype[Any]] = {"f": np.dtype(float), "i": np.dtype(np.int32), "b": np.dtype(np.int8)}
-"""Kind of an array -> type in the file: NetCDF-3 knows neither bool nor int64."""
-_IN_MEMORY: dict[str, np.dtype[Any]] = {"f": np.dtype(float), "i": np.dtype(int), "b": np.dtype(bool)}
-
-
-@dataclass(frozen=True, eq=False)
-class Variable:
-    """An array of numbers or flags with what a reader of the file must know of it.
-
-    Parameters
-    ----------
-    dimensions : tuple of str
-        One name per axis.
-    data : array
-        Of floats, of integers of up to 32 bits, or of bool.
-    unit : str
-        As CF writes it, "1" for pure numbers.
-    text : str
-        What it is, in a few words.
-    """
-
-    dimensions: tuple[str, ...]
-    data: NDArray[Any]
-    unit: str
-    text: str
-
-
 Part = tuple[tuple[str, ...], str, str]
-"""Dimensions, unit and text of an array that an object holds."""
+"""Dimensions, unit and long name of an array."""
 
 
-def pack(source: object, parts: Mapping[str, Part], prefix: str = "") -> dict[str, Variable]:
-    """Make variables of attributes of an object.
-
-    Parameters
-    ----------
-    source : object
-    parts : mapping
-        Attribute -> what the file says of it.
-    prefix : str
-        Before the names in the file.
+def variables_of(
+    parts: Mapping[str, Part], arrays: Mapping[str, Any]
+) -> dict[str, tuple[tuple[str, ...], Array, dict[str, str]]]:
+    """Variables, as xarray takes them, of arrays and what is to be said of them.
 
     Examples
     --------
-    >>> from types import SimpleNamespace
-    >>> wheel = SimpleNamespace(width=25.0)
-    >>> variables = pack(wheel, {"width": ((), "mm", "face width")}, "wheel_")
-    >>> variables["wheel_width"].unit
-    'mm'
-    >>> unpack(variables, {"width": ((), "mm", "face width")}, "wheel_")
-    {'width': array(25.)}
+    >>> variables_of({"width": ((), "mm", "face width")}, {"width": 25.0})["width"]
+    ((), array(25.), {'units': 'mm', 'long_name': 'face width'})
     """
     return {
-        prefix + name: Variable(dimensions, np.asarray(getattr(source, name)), unit, text)
+        name: (dimensions, np.asarray(arrays[name]), {"units": unit, "long_name": text})
         for name, (dimensions, unit, text) in parts.items()
     }
 
 
-def unpack(variables: Mapping[str, Variable], parts: Mapping[str, Part], prefix: str = "") -> dict[str, NDArray[Any]]:
-    """Return the arrays that ``pack`` stored; InputError if one is missing or has other dimensions."""
-    problems = []
+def arrays_of(dataset: xarray.Dataset, parts: Mapping[str, Part]) -> dict[str, Array]:
+    """Arrays of a dataset that was read from a file, integers as the platform's.
+
+    Raises
+    ------
+    InputError
+        If one is missing, has other dimensions, or holds no numbers; every problem at once.
+    """
+    problems, arrays = [], {}
     for name, (dimensions, _, _) in parts.items():
-        found = variables.get(prefix + name)
+        found = dataset.variables.get(name)
         if found is None:
-            problems.append(f"{prefix}{name}: missing")
-        elif found.dimensions != dimensions:
-            problems.append(f"{prefix}{name}: found dimensions {found.dimensions}, expected {dimensions}")
+            problems.append(f"{name}: missing")
+        elif found.dims != dimensions:
+            problems.append(f"{name}: found dimensions {found.dims}, expected {dimensions}")
+        elif found.dtype.kind not in "fib":
+            problems.append(f"{name}: no numbers")
+        else:
+            arrays[name] = found.values.astype(int) if found.dtype.kind == "i" else found.values
     if problems:
         raise InputError(problems)
-    return {name: variables[prefix + name].data for name in parts}
+    return arrays
 
 
-def write_netcdf(path: FilePath, variables: Mapping[str, Variable], attributes: Mapping[str, str]) -> None:
-    """Write variables to a NetCDF-3 file, whole or not at all.
+def write_dataset(path: FilePath, dataset: xarray.Dataset) -> None:
+    """Write a dataset to a NetCDF-3 file, whole or not at all.
 
     Parameters
     ----------
     path : str or path
         Replaced if it exists.
-    variables : mapping
-        Name -> variable; dimensions of one name have one length, not zero.
-    attributes : mapping
-        Name -> text about the whole file.
+    dataset : xarray.Dataset
+        Its integers fit into 32 bits: NetCDF-3 has no larger ones.
 
     Raises
     ------
     InputError
         If the file cannot be written.
     """
-    with replacing(path) as temporary, _opened(temporary, "w") as file:
-        for name, text in {"format": FORMAT, "format_version": str(FORMAT_VERSION), **attributes}.items():
-            setattr(file, name, _encoded(text))
-        for name, variable in variables.items():
-            _write_variable(file, name, variable)
+    marked = dataset.assign_attrs(format=FORMAT, format_version=str(FORMAT_VERSION))
+    with replacing(path) as temporary:
+        marked.to_netcdf(temporary, engine="scipy", format="NETCDF3_64BIT")
 
 
-def read_netcdf(path: FilePath) -> tuple[dict[str, Variable], dict[str, str]]:
-    """Read a file that ``write_netcdf`` wrote.
-
-    Returns
-    -------
-    variables, attributes : dict, dict
-        As they were written, flags as bool, integers as the platform's int.
+def read_dataset(path: FilePath) -> xarray.Dataset:
+    """Read a file that ``write_dataset`` wrote into memory, its marks left out.
 
     Raises
     ------
     InputError
         If the file cannot be read, is damaged, no NetCDF-3 file, not of this package, or of another format.
     """
+    import xarray
+
     content = read_bytes(path)
     try:
-        with _opened(io.BytesIO(content), "r") as file:
-            attributes = {name: _decoded(value) for name, value in file._attributes.items()}
-            variables = {name: _read_variable(variable) for name, variable in file.variables.items()}
+        with xarray.open_dataset(io.BytesIO(content), engine="scipy", decode_times=False) as file:
+            dataset = file.load()
     except Exception as error:  # on a damaged file the reader stumbles in any way
         kind = "damaged" if content.startswith(b"CDF") else "not a NetCDF-3 file"
         raise InputError(f"{path}: {kind}; expected a result file written by loaded_tca") from error
-    _check_format(path, attributes)
-    return variables, attributes
+    version = str(dataset.attrs.pop("format_version", ""))
+    if dataset.attrs.pop("format", "") != FORMAT or not version.isdecimal():
+        raise InputError(f"{path}: a NetCDF-3 file, but not a result of loaded_tca")
+    if int(version) != FORMAT_VERSION:
+        age = "a later" if int(version) > FORMAT_VERSION else "an earlier"
+        raise InputError(
+            f"{path}: written in format {version} by {age} loaded_tca; this one reads format {FORMAT_VERSION}: "
+            "run the scene again, its text is the attribute scene_toml of the file"
+        )
+    return dataset
 
 
 def read_bytes(path: FilePath) -> bytes:
@@ -190,51 +162,5 @@ def remove(path: FilePath) -> None:
         raise InputError(f"{path}: cannot be removed: {_reason(error)}") from error
 
 
-def _opened(file: Path | io.BytesIO, mode: Literal["r", "w"]) -> Any:
-    return netcdf_file(file, mode, mmap=False, version=2)
-
-
 def _reason(error: Exception) -> str:
     return getattr(error, "strerror", None) or str(error)
-
-
-def _encoded(text: str) -> bytes:
-    """UTF-8; a blank for the empty text, since NetCDF-3 has no empty attribute."""
-    return text.encode() or b" "
-
-
-def _decoded(value: Any) -> str:
-    text: str = value.decode() if isinstance(value, bytes) else str(value)
-    return "" if text == " " else text
-
-
-def _write_variable(file: Any, name: str, variable: Variable) -> None:
-    data = np.asarray(variable.data)
-    for dimension, length in zip(variable.dimensions, data.shape, strict=True):
-        if dimension not in file.dimensions:
-            file.createDimension(dimension, length)
-    stored = _STORED_AS[data.dtype.kind]
-    target = file.createVariable(name, stored, variable.dimensions)
-    target.units, target.long_name = _encoded(variable.unit), _encoded(variable.text)
-    if data.dtype.kind == "b":
-        target.dtype = b"bool"  # as xarray marks them
-    target[...] = data.astype(stored)
-
-
-def _read_variable(variable: Any) -> Variable:
-    data = np.array(variable.data)
-    kind = "b" if "dtype" in variable._attributes else data.dtype.kind
-    unit, text = _decoded(variable.units), _decoded(variable.long_name)
-    return Variable(tuple(variable.dimensions), data.astype(_IN_MEMORY[kind]), unit, text)
-
-
-def _check_format(path: FilePath, attributes: Mapping[str, str]) -> None:
-    version = attributes.get("format_version", "")
-    if attributes.get("format") != FORMAT or not version.isdecimal():
-        raise InputError(f"{path}: a NetCDF-3 file, but not a result of loaded_tca")
-    if int(version) != FORMAT_VERSION:
-        age = "a later" if int(version) > FORMAT_VERSION else "an earlier"
-        raise InputError(
-            f"{path}: written in format {version} by {age} loaded_tca; this one reads format {FORMAT_VERSION}: "
-            "run the scene again, its text is the attribute scene_toml of the file"
-        )

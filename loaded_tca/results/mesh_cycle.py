@@ -1,4 +1,4 @@
-"""The mesh cycle: what the tooth pairs carry, and how far the wheel stays behind, over the positions of a pitch."""
+"""The result of an analysis: what the tooth pairs carry over the positions of a pitch, under each torque."""
 
 from __future__ import annotations
 
@@ -6,139 +6,230 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
-from loaded_tca.results.contacts import (
-    CAPPED,
-    CYCLE,
-    NUMBERS,
-    PATH_PARTS,
-    ContactNumbers,
-    PairContacts,
-    PressureMap,
-    contact_parts,
-    map_variables,
-    maps_from,
-    pack_contacts,
-    quantity,
-    unpack_contacts,
-)
-from loaded_tca.results.files import FilePath, Part, Variable, pack, read_netcdf, unpack, write_netcdf
-from loaded_tca.results.key_figures import (
-    harmonic_amplitudes,
-    highest_edge_peak,
-    highest_peak,
-    highest_where_hertz_holds,
-    key_figures,
-)
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.files import FilePath, Part, arrays_of, read_dataset, variables_of, write_dataset
+from loaded_tca.results.key_figures import harmonic_amplitudes, key_figures
+from loaded_tca.results.pressure_map import MAP_PARTS, SIZES, Maps, maps_from, stacked_maps
 from loaded_tca.results.summary import summary_text
+from loaded_tca.scene import Scene, parse_scene
 from loaded_tca.unloaded import ContactPath
+
+if TYPE_CHECKING:
+    import xarray
+
+CAPPED = 1.0 - 1e-6
+"""Part of the cap on the pressure from which a peak equals it."""
+CYCLE = ("torque", "position")
+PAIRS = (*CYCLE, "pair")
+
+QUANTITIES: dict[str, Part] = {
+    "torque": (("torque",), "N mm", "pinion torque"),
+    "pair": (("pair",), "1", "tooth pair: 0 is in contact at the pitch point at phi1 = 0, +1 follows it"),
+    "pinion_angle": (("position",), "rad", "angle of the pinion phi1"),
+    "wheel_base_radius": ((), "mm", "base radius of the wheel"),
+    "face_width": ((), "mm", "common face width"),
+    "max_pressure": ((), "MPa", "cap on the pressure; NaN: elastic"),
+    "unloaded_transmission_error": (("position",), "rad", "unloaded transmission error, absolute"),
+    "transmission_error": (CYCLE, "rad", "loaded transmission error, absolute"),
+    "mesh_stiffness": (CYCLE, "N/(mm um)", "tangent of the force over the face width to the transmission error"),
+    "secant_stiffness": (CYCLE, "N/(mm um)", "force over the face width, over the transmission error it adds"),
+    "loaded_pairs": (CYCLE, "1", "number of tooth pairs under load"),
+    "load_share": (PAIRS, "1", "share of the tooth pair in the torque"),
+    "normal_force": (PAIRS, "N", "normal force on the tooth pair"),
+    "peak_pressure": (
+        PAIRS,
+        "MPa",
+        "peak contact pressure; at an edge or relief start the mesh-dependent largest cell",
+    ),
+    "central_pressure": (PAIRS, "MPa", "contact pressure beside the unloaded contact point"),
+    "peak_radius": (PAIRS, "mm", "radius on the pinion of the cell with the largest pressure"),
+    "peak_axial": (PAIRS, "mm", "axial coordinate on the pinion of the cell with the largest pressure"),
+    "hertz_pressure": (PAIRS, "MPa", "peak pressure after Hertz at the contact point; NaN where Hertz does not hold"),
+    "hertz_semi_minor": (PAIRS, "mm", "semi-axis of the Hertz ellipse across the contact"),
+    "hertz_semi_major": (PAIRS, "mm", "semi-axis of the Hertz ellipse along the contact"),
+    "contact_width": (PAIRS, "mm", "full width of the contact across, from the pressure map"),
+    "contact_length": (PAIRS, "mm", "full length of the contact, from the pressure map, but not beyond the face"),
+    "line_load": (PAIRS, "N/mm", "largest force per length along the contact; at a face end mesh-dependent"),
+    "line_load_ratio": (PAIRS, "1", "largest line load over the force spread evenly along the whole face"),
+    "contact_deformation": (PAIRS, "mm", "approach of the two flanks as half-spaces, along the normal"),
+    "tooth_deflection": (PAIRS, "mm", "deflection of the teeth and bodies along the normal"),
+    "on_edge": (PAIRS, "1", "whether the contact reaches an edge of a flank"),
+    "on_relief_start": (PAIRS, "1", "whether the start of a linear relief lies in the contact"),
+    "cells_across": (PAIRS, "1", "cells of the grid across the contact"),
+    "cells_along": (PAIRS, "1", "cells of the grid along the contact"),
+    "iterations": (PAIRS, "1", "iterations of the contact solver"),
+    "residual": (PAIRS, "1", "residual of the contact solver"),
+}
+"""Name in ``MeshCycle.dataset`` -> dimensions, unit, long name."""
+COORDINATES = ("torque", "pinion_angle", "pair")
+
+OF_THE_PEAK = frozenset(
+    {"peak_pressure", "peak_radius", "peak_axial", "peak_at_edge", "capped", "on_edge", "on_relief_start"}
+    | {"cells_across", "cells_along", "iterations", "residual"}
+)
+"""Numbers whose value at a position is that of the pair with the highest peak pressure."""
+
+PATH_PARTS: dict[str, Part] = {
+    "pinion_angle": ((), "rad", "angle of the pinion phi1"),
+    "wheel_angle": ((), "rad", "unloaded angle of the wheel phi2"),
+    "transmission_error": ((), "rad", "unloaded transmission error, absolute"),
+    "point": (("vector",), "mm", "unloaded contact point in the fixed frame"),
+    "normal": (("vector",), "1", "unit normal out of the pinion"),
+    "pinion_radius": ((), "mm", "radius of the contact point on the pinion"),
+    "pinion_axial": ((), "mm", "axial coordinate of the contact point on the pinion"),
+    "wheel_radius": ((), "mm", "radius of the contact point on the wheel"),
+    "wheel_axial": ((), "mm", "axial coordinate of the contact point on the wheel"),
+    "pinion_lever": ((), "mm", "torque of a unit normal force about the axis of the pinion"),
+    "wheel_lever": ((), "mm", "torque of a unit normal force about the axis of the wheel"),
+    "in_contact": ((), "1", "whether the tooth pair is in contact"),
+    "on_edge": ((), "1", "whether the unloaded contact lies on an edge of a flank"),
+    "on_relief_start": ((), "1", "whether the unloaded contact lies on the start of a linear relief"),
+    "on_line": ((), "1", "whether the unloaded contact is a line"),
+    "line_ends": (("end", "vector"), "mm", "ends of the line in the fixed frame"),
+    "edges": (("edge",), "1", "edges that hold the point, pinion then wheel: tip, root, lower (toe), upper (heel)"),
+    "iterations": ((), "1", "Newton steps of the unloaded contact"),
+    "residual": ((), "1", "sine of the angle between the two normals"),
+}
+"""Parts of a contact path; each has the dimension position before its own."""
+
+IN_FILES: dict[str, Part] = {
+    **{f"path_{name}": (("path", "position", *own), unit, text) for name, (own, unit, text) in PATH_PARTS.items()},
+    **{f"map_{name}": ((*PAIRS, *own), unit, text) for name, (own, unit, text) in MAP_PARTS.items()},
+}
+"""What a file has beside ``QUANTITIES``: the paths, that of the leading contact before those of the pairs; the maps."""
+
+
+def dataset_of(arrays: Mapping[str, Any], version: str) -> xarray.Dataset:
+    """Make the dataset of a mesh cycle of the arrays of all ``QUANTITIES`` and the version that made them."""
+    import xarray
+
+    variables = variables_of(QUANTITIES, arrays)
+    coordinates = {name: variables.pop(name) for name in COORDINATES}
+    return xarray.Dataset(variables, coordinates, {"version": version})
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class MeshCycle(ContactNumbers):
-    """Loaded contact over the positions of a pitch.
+class MeshCycle:
+    """Loaded contact over the positions of a pitch, under each torque.
 
-    Arrays are (n,) over the positions, with several torques (m, n). NaN where the tooth pair does not touch. Where
-    several pairs share the load, peak pressure, its place and ``maps`` are those of the pair with the highest one, the
-    other numbers of a contact those of the pair with the largest force, and ``contacts`` has those of all.
+    Every name of ``QUANTITIES`` is an attribute too: ``result.peak_pressure`` is the NumPy array of
+    ``result.dataset["peak_pressure"]``, with the axes (torque, position, pair) whatever their lengths. NaN where a pair
+    carries nothing, but its ``normal_force`` and ``load_share``, which are zero; flags and counts are 0 there.
 
     Attributes
     ----------
-    title, scene_toml, version : str
-        Of the scene, its whole text, and the package version that made the result.
+    scene : Scene
+        What was analysed.
+    dataset : xarray.Dataset
+        Numbers of ``QUANTITIES`` with their units, over torque [N mm], position (``pinion_angle`` [rad]) and pair.
     path : ContactPath
-        The unloaded contact; where pairs share the load, of the pair that touches first, in the angles of the gears.
-    torque : (m,) array [N mm]
-        Pinion torques.
-    pairs : (pairs,) int array
-        Tooth pairs that share the load: 0 is the pair at phi1, +1 the next one.
-    load_share : (..., n, pairs) array
-        Share of each pair; rows sum to 1.
-    maps : tuple of tuple of PressureMap or None
-        ``maps[torque][position]``; None where nothing touches.
-    wheel_base_radius, face_width : float [mm]
-        r_b2 and the common face width: what turns the transmission error into a length and forces into line loads.
-    max_pressure : float [MPa]
-        Cap on the pressure; NaN: elastic.
-    pair_contacts : PairContacts or None
-        Of all pairs that share the load; None where one pair carries the whole load.
+        The unloaded contact; where pairs share the load, of the pair that leads, in the angles of the gears.
+    paths : tuple of ContactPath
+        Unloaded contact of each pair, in the angles of the gears; NaN where it is out of reach.
+    maps : tuple of tuple of tuple of PressureMap or None
+        ``maps[torque][position][pair]`` by index; None where a pair carries nothing.
     """
 
-    title: str
-    scene_toml: str
-    version: str
+    scene: Scene
+    dataset: xarray.Dataset
     path: ContactPath
-    torque: Array
-    pairs: Array
-    load_share: Array
-    maps: tuple[tuple[PressureMap | None, ...], ...]
-    wheel_base_radius: float
-    face_width: float
-    max_pressure: float
-    transmission_error: Array = quantity("rad", "loaded transmission error, absolute")
-    mesh_stiffness: Array = quantity("N/(mm um)", "tangent of the force over the face width to the transmission error")
-    secant_stiffness: Array = quantity("N/(mm um)", "the same, from no load to the load")
-    pair_contacts: PairContacts | None = None
+    paths: tuple[ContactPath, ...]
+    maps: Maps
 
-    @property
-    def pinion_angle(self) -> Array:
-        """phi1 of the positions (n,) [rad]."""
-        return self.path.pinion_angle
+    def __getattr__(self, name: str) -> Any:
+        if name not in QUANTITIES:
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+        values = self.dataset[name].values
+        return values if values.ndim else values.item()
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *QUANTITIES]
 
     def __repr__(self) -> str:
         peak = np.nanmax(self.peak_pressure, initial=0.0)
         torques = f"{len(self.torque)} torque" + "s" * (len(self.torque) > 1)
         return f"MeshCycle({len(self.path)} positions, {torques}, peak {peak:.6g} MPa)"
 
-    def by_torque(self, name: str) -> Array:
-        """Return a field of numbers per torque and position as an (m, n) array, for a single torque too."""
-        return np.asarray(getattr(self, name)).reshape(len(self.torque), len(self.path))
+    @property
+    def version(self) -> str:
+        """Version of the package that made the result."""
+        return str(self.dataset.attrs["version"])
 
     @cached_property
-    def contacts(self) -> PairContacts:
-        """Contacts of every tooth pair that carries load, with the axes torque, position, pair."""
-        if self.pair_contacts is not None:
-            return self.pair_contacts
-        numbers = {name: self.by_torque(name)[..., None] for name in NUMBERS}
-        maps = tuple(tuple((one,) for one in row) for row in self.maps)
-        return PairContacts(**numbers, pairs=self.pairs, paths=(self.path,), maps=maps)
+    def gear_pair(self) -> GearPair:
+        """The gears of the scene in space."""
+        return self.scene.pair()
 
     @property
-    def peak_at_edge(self) -> Array:
-        """Whether the largest cell lies at the end of a flank, or a relief start in the contact: bool, (..., n).
+    def bending(self) -> str:
+        """Whether teeth bend, in words."""
+        return "teeth do not bend" if self.scene.analysis.compliance == "contact" else "teeth bend"
 
-        There theory has an infinite pressure, and the peak grows with the grid, up to a cap if there is one.
+    @cached_property
+    def peak_at_edge(self) -> Array:
+        """Whether the largest cell lies where a flank ends, or a relief start in the contact: (torque, position, pair).
+
+        There theory has an infinite pressure, and the peak is mesh-dependent, up to a cap if there is one.
         """
-        return self.contacts.at_highest(self.contacts.peak_at_edge).reshape(self.peak_pressure.shape)
+        at_end = [[[one is not None and one.peak_is_at_end for one in row] for row in rows] for rows in self.maps]
+        return np.array(at_end, dtype=bool) | self.on_relief_start
 
     @property
     def capped(self) -> Array:
-        """Whether the peak equals the cap on the pressure: bool, (..., n)."""
+        """Whether the peak equals the cap on the pressure: bool, (torque, position, pair)."""
         return np.asarray(self.peak_pressure >= CAPPED * self.max_pressure)
 
-    @property
-    def inner_pressure(self) -> Array:
-        """Highest pressure that is no matter of the grid [MPa], (..., n).
+    @cached_property
+    def mesh_independent_pressure(self) -> Array:
+        """Highest mesh-independent pressure [MPa], (torque, position, pair).
 
-        The peak; where that grows with the grid, the pressure beside the contact point; NaN where the contact point
-        itself lies on an edge or a relief start, or nearer to an edge than half the contact is wide.
+        The peak; where that is mesh-dependent, the pressure beside the contact point; NaN where the contact point
+        itself lies on an edge or a relief start, or nearer to an edge than half the contact is wide: the spike reaches
+        it.
         """
-        return np.fmax.reduce(self.contacts.inner_pressure, axis=-1).reshape(self.peak_pressure.shape)
+        held = np.stack([path.on_edge | path.on_relief_start for path in self.paths], axis=1)
+        within = np.broadcast_to(held, self.on_edge.shape).copy()
+        for t, n, k in np.argwhere(self.on_edge):
+            one = self.maps[t][n][k]
+            within[t, n, k] |= one is not None and one.flank_ends_within(0.5 * self.contact_width[t, n, k])
+        return np.where(self.peak_at_edge, np.where(within, math.nan, self.central_pressure), self.peak_pressure)
+
+    @cached_property
+    def peak_column(self) -> NDArray[np.int_]:
+        """Index of the pair with the highest mesh-independent pressure, if none has one of the highest peak: (m, n)."""
+        known = np.nan_to_num(self.mesh_independent_pressure, nan=-math.inf)
+        return np.where(np.isfinite(known).any(axis=-1), known.argmax(axis=-1), self._highest_column)
 
     @property
-    def yielding(self) -> str:
-        """What yields beside the contacts, in words."""
-        return "teeth bend" if np.nan_to_num(self.contacts.deflection).any() else "teeth do not bend"
+    def _highest_column(self) -> NDArray[np.int_]:
+        return np.asarray(np.where(np.isfinite(self.peak_pressure), self.peak_pressure, -math.inf).argmax(axis=-1))
 
-    @property
-    def loaded_pairs(self) -> Array:
-        """How many tooth pairs carry load, (..., n)."""
-        return np.asarray((self.contacts.normal_force > 0.0).sum(axis=-1).reshape(self.peak_pressure.shape))
+    def at_position(self, name: str) -> Array:
+        """Return the number of every position, of one of its pairs: (torque, position).
+
+        Numbers of ``OF_THE_PEAK`` belong to the pair with the highest peak pressure, ``mesh_independent_pressure`` is
+        the highest of all pairs. All others belong to the pair with the largest force: a tip corner may have the
+        highest peak under next to none.
+
+        Parameters
+        ----------
+        name : str
+            Of an array (torque, position, pair).
+        """
+        if name == "mesh_independent_pressure":
+            columns = self.peak_column
+        elif name in OF_THE_PEAK:
+            columns = self._highest_column
+        else:  # without load, of the pair in contact
+            columns = np.where(np.isnan(self.peak_pressure), -1.0, self.normal_force).argmax(axis=-1)
+        return np.take_along_axis(getattr(self, name), columns[..., None], axis=-1)[..., 0]
 
     def harmonics(self, count: int) -> Array:
         """Return the amplitudes of the orders 1 to ``count`` of the tooth mesh of the loaded transmission error.
@@ -156,77 +247,47 @@ class MeshCycle(ContactNumbers):
         """
         if not isinstance(count, int | np.integer) or count < 1:
             raise InputError(f"count: {count!r} is not a whole number from 1 on")
-        errors = self.by_torque("transmission_error")
-        periodic = self.pair_contacts is not None
-        return np.stack([harmonic_amplitudes(error if periodic else error[:0], count) for error in errors])
+        periodic = self.scene.analysis.load_sharing
+        return np.stack([harmonic_amplitudes(e if periodic else e[:0], count) for e in self.transmission_error])
 
     def peak_contact(self, torque: int, *, where_hertz_holds: bool = False) -> tuple[int, int] | None:
-        """Return position and column of the pair with the highest pressure, of those asked for; None if there is none.
+        """Return indices of position and pair with the highest pressure, of those asked for; None if there is none.
 
-        By default that of ``inner_pressure``, or of the central pressure where every contact point lies on an edge.
+        By default that of ``mesh_independent_pressure``, or of the central pressure where every contact point lies on
+        an edge.
         """
-        row = self.contacts.row(torque, self.max_pressure)
-        return self._place(highest_where_hertz_holds(row) if where_hertz_holds else highest_peak(row))
-
-    def peak_position(self, torque: int, *, where_hertz_holds: bool = False) -> int | None:
-        """Return the index of the position of ``peak_contact``; None if there is none."""
-        place = self.peak_contact(torque, where_hertz_holds=where_hertz_holds)
-        return None if place is None else place[0]
+        if where_hertz_holds:
+            return _place_of_largest(np.where(np.isfinite(self.hertz_pressure), self.peak_pressure, math.nan)[torque])
+        place = _place_of_largest(self.mesh_independent_pressure[torque])
+        return _place_of_largest(self.central_pressure[torque]) if place is None else place
 
     def edge_contact(self, torque: int) -> tuple[int, int] | None:
-        """Return position and column of the pair with the highest peak at an edge or relief start, or None."""
-        return self._place(highest_edge_peak(self.contacts.row(torque, self.max_pressure)))
+        """Return indices of position and pair with the highest peak at an edge or relief start; None without one."""
+        return _place_of_largest(np.where(self.peak_at_edge, self.peak_pressure, math.nan)[torque])
 
-    def edge_position(self, torque: int) -> int | None:
-        """Return the index of the position of ``edge_contact``; None if there is none."""
-        place = self.edge_contact(torque)
-        return None if place is None else place[0]
-
-    def highest_column(self, torque: int, position: int) -> int:
-        """Return the column of the pair with the highest inner pressure at a position, or else the highest peak."""
-        return int(self.contacts.highest_inner[torque, position])
-
-    def _place(self, index: int | None) -> tuple[int, int] | None:
-        """Position and column of an entry of a row over positions and pairs."""
-        return None if index is None else (index // len(self.pairs), index % len(self.pairs))
+    def most_loaded_contact(self, torque: int) -> tuple[int, int] | None:
+        """Return indices of position and pair with the largest force; None if nothing is in contact."""
+        return _place_of_largest(np.where(np.isnan(self.peak_pressure), math.nan, self.normal_force)[torque])
 
     def key_figures(self) -> tuple[dict[str, float], ...]:
         """Return the figures of the whole cycle for each torque, by names that end in their unit.
 
-        ``peak_pressure_MPa`` is the highest ``inner_pressure``; "at_peak": at its position; "at_edge": at that of
-        the highest peak at an edge or relief start; "there": at that of the highest pressure where Hertz holds. Means
-        are over the positions. NaN: not known.
+        ``peak_pressure_MPa`` is the highest ``mesh_independent_pressure``; "at_peak": at its position; "at_edge": at
+        that of the highest peak at an edge or relief start; "there": at that of the highest pressure where Hertz holds.
+        Means are over the positions. NaN: not known.
         """
-        names = ("transmission_error", "mesh_stiffness", "secant_stiffness")
-        pairs = (
-            self.by_torque("loaded_pairs")
-            if self.pair_contacts is not None
-            else np.full((len(self.torque), 1), math.nan)
-        )
-        harmonics = self.harmonics(ORDERS)
-        return tuple(
-            {
-                "pinion_torque_Nm": 1e-3 * float(torque),
-                **key_figures(
-                    self.contacts.path,
-                    self.contacts.row(index, self.max_pressure),
-                    {
-                        **{name: self.by_torque(name)[index] for name in names},
-                        "unloaded_error": self.path.transmission_error,
-                        "in_contact": self.path.in_contact,
-                        "loaded_pairs": pairs[index],
-                        "harmonics": harmonics[index],
-                    },
-                    wheel_base_radius=self.wheel_base_radius,
-                    max_pressure=self.max_pressure,
-                ),
-            }
-            for index, torque in enumerate(self.torque)
-        )
+        return tuple(key_figures(self, torque) for torque in range(len(self.torque)))
 
     def summary(self) -> str:
         """Return the key figures in the engineer's units: about 20 lines, one column per torque."""
-        return summary_text(self.title, _scope(self), self.key_figures())
+        first, last = (math.degrees(self.pinion_angle[end]) for end in (0, -1))
+        count, pairs = len(self.path), len(self.pair)
+        where = f"{count} positions, pinion angle {first:.4g} to {last:.4g} deg" if count > 1 else "1 position"
+        if self.scene.analysis.load_sharing:
+            carrying = f"{pairs} tooth pairs share the load, up to {self.loaded_pairs.max()} at once"
+        else:
+            carrying = "one tooth pair carries the whole load (load sharing off)"
+        return summary_text(self.scene.title, f"{where}; {carrying}; {self.bending}", self.key_figures())
 
     def save(self, path: FilePath) -> None:
         """Write everything to a NetCDF-3 file, whole or not at all; ``load`` reads it back unchanged.
@@ -236,11 +297,11 @@ class MeshCycle(ContactNumbers):
         InputError
             If the file cannot be written.
         """
-        variables = {**pack(self, cycle_parts(self.transmission_error.ndim)), **pack(self.path, PATH_PARTS, "path_")}
-        variables |= map_variables(self.maps, (len(self.torque), len(self.path)), CYCLE, "map_")
-        if self.pair_contacts is not None:
-            variables |= pack_contacts(self.pair_contacts)
-        write_netcdf(path, variables, {name: getattr(self, name) for name in TEXTS})
+        paths = (self.path, *self.paths)
+        arrays = {f"path_{name}": np.stack([getattr(one, name) for one in paths]) for name in PATH_PARTS}
+        arrays |= {f"map_{name}": stack for name, stack in stacked_maps(self.maps).items()}
+        whole = self.dataset.assign(variables_of(IN_FILES, arrays))
+        write_dataset(path, whole.assign_attrs(title=self.scene.title, scene_toml=self.scene.to_toml()))
 
     @classmethod
     def load(cls, path: FilePath) -> MeshCycle:
@@ -251,59 +312,31 @@ class MeshCycle(ContactNumbers):
         InputError
             If it cannot be read, is damaged, or is no such file.
         """
-        variables, attributes = read_netcdf(path)
-        texts: dict[str, Any] = {name: attributes.get(name, "") for name in TEXTS}
+        file = read_dataset(path)
         try:
-            return cls(**texts, **_fields_from(variables))
+            arrays = arrays_of(file, QUANTITIES | IN_FILES)
+            expected = {**SIZES, "end": 2, "edge": 8, "path": 1 + file.sizes["pair"]}
+            if wrong := [name for name, size in expected.items() if file.sizes[name] != size]:
+                raise InputError(f"{name}: {file.sizes[name]} long, expected {expected[name]}" for name in wrong)
+            scene = parse_scene(str(file.attrs.get("scene_toml", "")), source="scene_toml")
         except InputError as error:
             raise InputError([f"{path}: not the result of a mesh cycle", *error.problems]) from None
+        leading, *paths = (
+            ContactPath(**{entry.name: arrays[f"path_{entry.name}"][k] for entry in fields(ContactPath)})
+            for k in range(expected["path"])
+        )
+        return cls(
+            scene=scene,
+            dataset=dataset_of(arrays, str(file.attrs.get("version", ""))),
+            path=leading,
+            paths=tuple(paths),
+            maps=maps_from({name: arrays[f"map_{name}"] for name in MAP_PARTS}),
+        )
 
 
-ORDERS = 3
-"""Orders of the tooth mesh that the key figures name."""
-TEXTS = ("title", "scene_toml", "version")
-"""Attributes of a result file."""
-
-
-def cycle_parts(axes: int) -> dict[str, Part]:
-    """Parts of the cycle itself; ``axes``: 2 where the torques have an axis, 1 where there is one torque without."""
-    leading = CYCLE[-axes:]
-    own = {
-        entry.name: (leading, entry.metadata["unit"], entry.metadata["text"])
-        for entry in fields(MeshCycle)
-        if entry.metadata and entry.name not in NUMBERS
-    }
-    return {
-        "torque": (("torque",), "N mm", "pinion torque"),
-        "pairs": (("pair",), "1", "tooth pairs: 0 is the pair at phi1, 1 the next one"),
-        "load_share": ((*leading, "pair"), "1", "share of each tooth pair in the load"),
-        "wheel_base_radius": ((), "mm", "base radius of the wheel"),
-        "face_width": ((), "mm", "common face width"),
-        "max_pressure": ((), "MPa", "cap on the pressure; NaN: elastic"),
-        **own,
-        **contact_parts(leading),
-    }
-
-
-def _fields_from(variables: Mapping[str, Variable]) -> dict[str, Any]:
-    """Every field of a cycle but its texts; InputError if a part is missing."""
-    axes = 1 if "transmission_error" in variables and variables["transmission_error"].data.ndim == 1 else 2
-    own = unpack(variables, cycle_parts(axes))
-    return {
-        **own,
-        **{name: float(own[name]) for name in ("wheel_base_radius", "face_width", "max_pressure")},
-        "path": ContactPath(**unpack(variables, PATH_PARTS, "path_")),
-        "maps": maps_from(variables, CYCLE, "map_"),
-        "pair_contacts": unpack_contacts(variables, own["pairs"]),
-    }
-
-
-def _scope(cycle: MeshCycle) -> str:
-    first, last = (math.degrees(cycle.pinion_angle[end]) for end in (0, -1))
-    count, pairs = len(cycle.path), len(cycle.pairs)
-    where = f"{count} positions, pinion angle {first:.4g} to {last:.4g} deg" if count > 1 else "1 position"
-    if cycle.pair_contacts is None:
-        carrying = "one tooth pair carries the whole load (load sharing off)"
-    else:
-        carrying = f"{pairs} tooth pairs share the load, up to {int(cycle.loaded_pairs.max(initial=0))} at once"
-    return f"{where}; {carrying}; {cycle.yielding}"
+def _place_of_largest(values: Array) -> tuple[int, int] | None:
+    """Indices of the largest finite value of an array (positions, pairs); None if there is none."""
+    if not np.isfinite(values).any():
+        return None
+    position, pair = np.unravel_index(int(np.nanargmax(values)), values.shape)
+    return int(position), int(pair)

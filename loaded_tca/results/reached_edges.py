@@ -1,4 +1,4 @@
-"""Which edges of the two flanks a loaded contact reaches: the tips, the roots, the sides of the teeth."""
+"""Which edges of the two flanks a loaded contact reaches: the tips, the roots, the face ends."""
 
 from __future__ import annotations
 
@@ -8,9 +8,8 @@ from scipy.ndimage import binary_dilation
 
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.results.contacts import PressureMap
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.scene import parse_scene
+from loaded_tca.results.pressure_map import PressureMap
 
 NAMES = tuple(f"{gear} {edge}" for gear in ("pinion", "wheel") for edge in EDGE_NAMES)
 """Edges in the order of ``ContactPath.edges``."""
@@ -29,14 +28,12 @@ def reached_edges(result: MeshCycle) -> NDArray[np.bool_]:
         Over torques, positions, pairs, and ``NAMES``: those that hold the unloaded contact point of a pair under load,
         and those beyond which the cells beside its pressure lie.
     """
-    contacts, pair = result.contacts, parse_scene(result.scene_toml).pair()
-    held = np.stack([path.edges for path in contacts.paths], axis=1) > 0
-    reached = held & (contacts.normal_force > 0.0)[..., None]
-    for place in np.argwhere(contacts.on_edge > 0):
-        at = tuple(place.tolist())
-        one = contacts.maps[at[0]][at[1]][at[2]]
+    held = np.stack([path.edges for path in result.paths], axis=1)
+    reached = held & (result.normal_force > 0.0)[..., None]
+    for t, n, k in np.argwhere(result.on_edge):
+        one = result.maps[t][n][k]
         if one is not None:
-            reached[at] |= _beside_pressure(pair, one)
+            reached[t, n, k] |= _beside_pressure(result.gear_pair, one)
     return reached
 
 

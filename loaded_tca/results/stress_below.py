@@ -13,9 +13,8 @@ from loaded_tca.contact import SubsurfaceStress, subsurface_stress
 from loaded_tca.contact.subsurface import graded_depths
 from loaded_tca.errors import InputError
 from loaded_tca.reference.hertz import LineContact, PointContact
-from loaded_tca.results.contacts import PressureMap
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.scene import parse_scene
+from loaded_tca.results.pressure_map import PressureMap
 
 GearName = Literal["pinion", "wheel"]
 GEARS: tuple[GearName, GearName] = ("pinion", "wheel")
@@ -55,7 +54,7 @@ class StressBelow:
     ----------
     result : MeshCycle
     torque, position, column : int
-        Indices of the map in ``result.contacts.maps``.
+        Indices of the map in ``result.maps``.
     gear : {"pinion", "wheel"}
         Whose Poisson's ratio is taken; the pressure is that of both.
     stress : SubsurfaceStress
@@ -75,42 +74,45 @@ class StressBelow:
     @property
     def pair(self) -> int:
         """Number of the tooth pair."""
-        return int(self.result.pairs[self.column])
+        return int(self.result.pair[self.column])
+
+    @property
+    def _at(self) -> tuple[int, int, int]:
+        return self.torque, self.position, self.column
 
     @property
     def pressure_map(self) -> PressureMap:
         """The pressure that makes the stresses."""
-        one = self.result.contacts.maps[self.torque][self.position][self.column]
+        one = self.result.maps[self.torque][self.position][self.column]
         assert one is not None
         return one
 
     @property
     def half_width(self) -> float:
-        """Half the width of the contact [mm], of the column beside a spike where there is one."""
-        if (column := self.beside_spike) is not None:
-            return 0.5 * self.pressure_map.spacing[0] * float((self.pressure_map.pressure[:, column] > 0.0).sum())
-        return 0.5 * float(self.result.contacts.contact_width[self.torque, self.position, self.column])
+        """Half the width of the contact [mm], of the slice beside a spike where there is one."""
+        if (along := self.beside_spike) is not None:
+            return 0.5 * self.pressure_map.spacing[0] * float((self.pressure_map.pressure[:, along] > 0.0).sum())
+        return 0.5 * float(self.result.contact_width[self._at])
 
     @property
     def beside_spike(self) -> int | None:
-        """Column of the map through the contact point where the peak lies at an edge and grows with the grid.
+        """Slice of the map through the contact point where the peak lies at an edge and is mesh-dependent.
 
-        There the stresses are those below the first number of the summary. None where the peak is no spike, or where
+        There the stresses are those below the peak pressure of the summary. None where the peak is no spike, or where
         the contact point itself lies within it.
         """
-        contacts, at = self.result.contacts, (self.torque, self.position, self.column)
-        if not contacts.peak_at_edge[at] or math.isnan(contacts.inner_pressure[at]):
+        if not self.result.peak_at_edge[self._at] or math.isnan(self.result.mesh_independent_pressure[self._at]):
             return None
         return int(np.argmin(np.abs(self.pressure_map.y)))
 
     @property
     def highest_pressure(self) -> tuple[int, int]:
-        """Row and column of the cell with the highest pressure, of the column beside a spike where there is one."""
+        """Indices of the cell with the highest pressure, of the slice beside a spike where there is one."""
         pressure, beside = self.pressure_map.pressure, self.beside_spike
         if beside is not None:
             return int(pressure[:, beside].argmax()), beside
-        row, column = np.unravel_index(int(pressure.argmax()), pressure.shape)
-        return int(row), int(column)
+        across, along = np.unravel_index(int(pressure.argmax()), pressure.shape)
+        return int(across), int(along)
 
     def largest(self, quantity: Quantity, *, anywhere: bool = False) -> LargestStress:
         """Return value, depth and place of the largest ``max_shear`` or ``von_mises``.
@@ -119,21 +121,21 @@ class StressBelow:
         ----------
         quantity : {"max_shear", "von_mises"}
         anywhere : bool
-            Below a spike at an edge too, where stresses grow with the grid; default: ``beside_spike``.
+            Below a spike at an edge too, where stresses are mesh-dependent; default: ``beside_spike``.
 
         Returns
         -------
         LargestStress
         """
-        values, first = getattr(self.stress, quantity), None if anywhere else self.beside_spike
-        level, row, column = getattr(self.stress, f"{quantity}_at")
-        if first is not None:
-            level, row = map(int, np.unravel_index(int(values[:, :, first].argmax()), values.shape[:2]))
-            column = first
+        values, beside = getattr(self.stress, quantity), None if anywhere else self.beside_spike
+        level, across, along = getattr(self.stress, f"{quantity}_at")
+        if beside is not None:
+            level, across = map(int, np.unravel_index(int(values[:, :, beside].argmax()), values.shape[:2]))
+            along = beside
         one = self.pressure_map
-        x, y, z = one.origin + one.x[row] * one.axes[0] + one.y[column] * one.axes[1]
-        depth = depth_of_largest(self.stress.depths, values[:, row, column])
-        return LargestStress(float(values[level, row, column]), depth, math.hypot(x, y), float(z))
+        x, y, z = one.origin + one.x[across] * one.axes[0] + one.y[along] * one.axes[1]
+        depth = depth_of_largest(self.stress.depths, values[:, across, along])
+        return LargestStress(float(values[level, across, along]), depth, math.hypot(x, y), float(z))
 
     @property
     def hertz_shear(self) -> tuple[float, float, float] | None:
@@ -143,14 +145,14 @@ class StressBelow:
         below a line contact, of a long line with the line load and the pressure of the section that holds the greatest
         shear. None where Hertz does not hold.
         """
-        contacts, at = self.result.contacts, (self.torque, self.position, self.column)
-        pressure = float(contacts.hertz_pressure[at])
+        result, at = self.result, self._at
+        pressure = float(result.hertz_pressure[at])
         if math.isfinite(pressure):
-            minor, major = float(contacts.hertz_semi_minor[at]), float(contacts.hertz_semi_major[at])
+            minor, major = float(result.hertz_semi_minor[at]), float(result.hertz_semi_major[at])
             # The stresses follow from the pressure and the axes; modulus and approach do not matter for them.
-            ellipse = PointContact(float(contacts.normal_force[at]), math.nan, major, minor, pressure, math.nan)
+            ellipse = PointContact(float(result.normal_force[at]), math.nan, major, minor, pressure, math.nan)
             return *ellipse.subsurface_shear(self.stress.poisson_ratio), pressure
-        if not bool(contacts.paths[self.column].on_line[self.position]) or contacts.at_relief_start[at]:
+        if not bool(result.paths[self.column].on_line[self.position]) or result.on_relief_start[at]:
             return None
         one = self.pressure_map
         beside = self.beside_spike
@@ -174,30 +176,25 @@ class StressBelow:
 
     def summary(self) -> str:
         """Return what is largest, how deep and where, beside what Hertz says, in a few lines."""
-        frame = parse_scene(self.result.scene_toml).pair().pinion.flank.frame
+        frame = self.result.gear_pair.pinion.flank.frame
         peak = float(self.pressure_map.pressure[self.highest_pressure])
-        lines = [self.result.title or "Stresses below the surface", *self.where]
+        lines = [self.result.scene.title or "Stresses below the surface", *self.where]
         for quantity, name in NAMES.items():
             found = self.largest(quantity)
             lines.append(self._row(name, found.value, found.depth, peak))
             lines.append(f"  on the pinion at {frame.place(found.radius, found.axial)}")
         if (hertz := self.hertz_shear) is not None:
             lines.append(self._row("greatest shear stress after Hertz", *hertz))
-        if self.result.contacts.on_edge[self.torque, self.position, self.column]:
-            note = "note: the contact reaches an edge, where pressure and stress grow with the grid"
-            lines.append(note + self._spike)
+        if self.result.on_edge[self._at]:
+            note = "note: the contact reaches an edge, where pressure and stress are mesh-dependent"
+            if self.beside_spike is not None:
+                peak, shear = float(self.pressure_map.pressure.max()), self.largest("max_shear", anywhere=True).value
+                note += (
+                    "; the numbers above are those across the contact point, not those of the edge: there the cells "
+                    f"have up to {peak:.4g} MPa and {shear:.4g} MPa of shear"
+                )
+            lines.append(note)
         return "\n".join(lines)
-
-    @property
-    def _spike(self) -> str:
-        """What lies below a spike that the numbers leave out, in words."""
-        if self.beside_spike is None:
-            return ""
-        peak, shear = float(self.pressure_map.pressure.max()), self.largest("max_shear", anywhere=True)
-        return (
-            f"; the numbers above are those across the contact point, not those of the edge: there the cells have up "
-            f"to {peak:.4g} MPa and {shear.value:.4g} MPa of shear"
-        )
 
     def _row(self, name: str, value: float, depth: float, pressure: float) -> str:
         relative = f"{value / pressure:.3f} of the pressure at {depth / self.half_width:.2f} b"
@@ -222,10 +219,11 @@ def stress_below(
     torque : int, optional
         Index of the torque; default: the largest one.
     position : int, optional
-        Index along the path; default: that of the first number of the summary, the highest inner pressure, of the
-        pair if one is asked for.
+        Index along the path; default: that of the peak pressure of the summary, of the pair if one is asked
+        for.
     pair : int, optional
-        Number of the tooth pair, one of ``result.pairs``; default: that with the highest inner pressure.
+        Number of the tooth pair, one of ``result.pair``; default: that with the highest mesh-independent
+        pressure.
     gear : {"pinion", "wheel"}
         Below whose flank.
     depths : int
@@ -261,14 +259,14 @@ def stress_below(
         raise InputError(f"gear: {gear!r} is neither 'pinion' nor 'wheel'")
     if not isinstance(depths, int | np.integer) or depths < 2:
         raise InputError(f"depths: {depths!r} is not a whole number from 2 on")
-    one = result.contacts.maps[torque][position][column]
+    one = result.maps[torque][position][column]
     if one is None or not one.pressure.any():
         raise InputError(
-            f"no stress: tooth pair {result.pairs[column]} carries no load at position {position + 1} under "
+            f"no stress: tooth pair {result.pair[column]} carries no load at position {position + 1} under "
             f"{1e-3 * result.torque[torque]:.4g} N m"
         )
-    half_width = 0.5 * float(result.contacts.contact_width[torque, position, column])
-    material = parse_scene(result.scene_toml).materials[GEARS.index(gear)]
+    half_width = 0.5 * float(result.contact_width[torque, position, column])
+    material = result.scene.materials[GEARS.index(gear)]
     levels = graded_depths(half_width, depths)
     stress = subsurface_stress(one.pressure, one.spacing, levels, material.poisson_ratio)
     return StressBelow(result, torque, position, column, gear, stress)
@@ -304,30 +302,24 @@ def depth_of_largest(depths: Array, values: Array) -> float:
 
 def _place(result: MeshCycle, torque: int | None, position: int | None, pair: int | None) -> tuple[int, int, int]:
     """Indices of torque, position and pair, those not given at the highest pressure; InputError with every problem."""
-    pairs = result.pairs.tolist()
+    pairs = result.pair.tolist()
     problems = [
         f"{name}: {index!r} is no index from 0 to {count - 1}"
         for name, index, count in (("torque", torque, len(result.torque)), ("position", position, len(result.path)))
         if index is not None and not 0 <= index < count
     ]
     if pair is not None and pair not in pairs:
-        problems.append(f"pair: {pair!r} carries no load anywhere; the result has {', '.join(map(str, sorted(pairs)))}")
+        problems.append(f"pair: {pair!r} carries no load anywhere; the result has {', '.join(map(str, pairs))}")
     if problems:
         raise InputError(problems)
     torque = int(np.argmax(result.torque)) if torque is None else torque
     if pair is None:
-        place = result.peak_contact(torque) if position is None else (position, result.highest_column(torque, position))
+        place = result.peak_contact(torque) if position is None else (position, result.peak_column[torque, position])
         if place is None:
-            raise InputError("no stress: nothing touches at any position")
+            raise InputError("no stress: nothing is in contact at any position")
         return torque, *place
     column = pairs.index(pair)
-    return torque, _highest_position(result, torque, column) if position is None else position, column
-
-
-def _highest_position(result: MeshCycle, torque: int, column: int) -> int:
-    """Position at which one pair has its highest inner pressure, or else its highest peak."""
-    contacts = result.contacts
-    for values in (contacts.inner_pressure, contacts.peak_pressure):
-        if np.isfinite(values[torque, :, column]).any():
-            return int(np.nanargmax(values[torque, :, column]))
-    return 0
+    if position is None:  # where the pair has its highest mesh-independent pressure, or else its highest peak
+        known = (values[torque, :, column] for values in (result.mesh_independent_pressure, result.peak_pressure))
+        position = next((int(np.nanargmax(one)) for one in known if np.isfinite(one).any()), 0)
+    return torque, position, column

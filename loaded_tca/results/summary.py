@@ -12,7 +12,6 @@ ROUNDING = 1e-6
 """Figures below this, in the engineer's units, are rounding; residuals are not."""
 FOUR_DIGITS = 9999.5
 """From here on four digits would be written with an exponent."""
-REMEDY = "unless the ends yield (analysis.free_edges = true)"
 MOST_TORQUES = 6
 """Torques that a note names one by one."""
 
@@ -27,14 +26,17 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("  length | width after Hertz [mm]", ("hertz_length_there_mm", "hertz_width_there_mm")),
     ("transmission error, mean [arcsec | um]", ("transmission_error_mean_arcsec", "transmission_error_mean_um")),
     ("  peak to peak [arcsec | um]", ("transmission_error_span_arcsec", "transmission_error_span_um")),
-    ("  unloaded, peak to peak [arcsec | um]", ("unloaded_error_span_arcsec", "unloaded_error_span_um")),
+    (
+        "  unloaded, peak to peak [arcsec | um]",
+        ("unloaded_transmission_error_span_arcsec", "unloaded_transmission_error_span_um"),
+    ),
     ("  orders 1 | 2 | 3 of the tooth mesh [um]", tuple(f"transmission_error_order_{order}_um" for order in (1, 2, 3))),
     (
         "mesh stiffness, mean, tangent | secant [N/(mm um)]",
         ("mesh_stiffness_mean_N_per_mm_um", "secant_stiffness_mean_N_per_mm_um"),
     ),
     ("line load of the most loaded pair [N/mm]", ("line_load_at_largest_force_N_per_mm",)),
-    ("  its face load factor", ("face_load_factor_at_largest_force",)),
+    ("  line load ratio", ("line_load_ratio_at_largest_force",)),
     (
         "tooth pairs under load, mean | fewest | most",
         ("loaded_contact_ratio", "fewest_loaded_pairs", "most_loaded_pairs"),
@@ -52,7 +54,7 @@ NOTES = (
     ("relief_start_positions", "the start of a linear relief lies in the contact: no Hertz there"),
     (
         "edge_peak_positions",
-        "the largest cell lies at an edge or relief start, where it grows with the grid: "
+        "the largest cell lies at an edge or relief start, where it is mesh-dependent: "
         "what counts there is the pressure beside the contact point",
     ),
 )
@@ -69,7 +71,12 @@ def summary_text(title: str, scope: str, figures: Sequence[Figures]) -> str:
     figures : sequence of mapping
         Of each torque, as ``MeshCycle.key_figures`` gives them.
     """
-    rows = [(label, [_cell(entry, names) for entry in figures]) for label, names in ROWS if _is_told(figures, names)]
+    rows = [
+        (label, [" | ".join(_shown(entry[name], name) for name in names) for entry in figures])
+        for label, names in ROWS
+        if not any(part in name for name in names for part in ONLY_IF_KNOWN)
+        or any(math.isfinite(entry[name]) for entry in figures for name in names)
+    ]
     width = 2 + max(len(cell) for _, cells in rows for cell in cells)
     labels = max(len(label) for label, _ in rows)
     table = [f"{label:<{labels}}" + "".join(f"{cell:>{width}}" for cell in cells) for label, cells in rows]
@@ -82,17 +89,9 @@ def without_rounding(value: float, name: str) -> float:
     return value if "residual" in name or not abs(value) < ROUNDING else 0.0
 
 
-def _is_told(figures: Sequence[Figures], names: tuple[str, ...]) -> bool:
-    optional = any(part in name for name in names for part in ONLY_IF_KNOWN)
-    return not optional or any(math.isfinite(entry[name]) for entry in figures for name in names)
-
-
-def _cell(figures: Figures, names: tuple[str, ...]) -> str:
-    return " | ".join(_shown(without_rounding(figures[name], name), name) for name in names)
-
-
 def _shown(value: float, name: str) -> str:
     """Four digits, all those before the point; a dash for what is not known."""
+    value = without_rounding(value, name)
     if math.isnan(value):
         return "-"
     if "residual" in name:
@@ -103,27 +102,26 @@ def _shown(value: float, name: str) -> str:
 def _notes(figures: Sequence[Figures]) -> Iterator[str]:
     """Sentences on what limits the figures; none for an ordinary point contact."""
     apart = [entry["positions"] - entry["positions_in_contact"] for entry in figures]
-    yield from _counted(figures, apart, "the tooth pair does not touch")
+    yield from _counted(figures, apart, "no tooth pair is in contact")
     for name, sentence in NOTES:
         yield from _counted(figures, [entry[name] for entry in figures], sentence)
     at_edge = [bool(entry["contact_point_is_at_edge"]) for entry in figures]
     if any(at_edge):
         where = "the contact point itself lies on an edge or relief start"
-        yield f"{where}{_for_torques(figures, at_edge)}: the peak pressure given grows with the grid too"
+        yield f"{where}{_for_torques(figures, at_edge)}: the peak pressure given is mesh-dependent too"
     grows = [bool(entry["largest_force_is_at_edge"]) for entry in figures]
     if any(grows):
         what = f"the most loaded contact has its peak at an edge or relief start{_for_torques(figures, grows)}"
-        yield f"{what}: where that is an end of the face, line load and face load factor grow with the grid {REMEDY}"
+        yield (
+            f"{what}: where that is a face end, line load and line load ratio are mesh-dependent without the "
+            "compliance of free edges (analysis.free_edges = true)"
+        )
     cap = figures[0]["max_pressure_MPa"]
     if math.isfinite(cap):
-        yield from _cap_notes(figures, cap)
-
-
-def _cap_notes(figures: Sequence[Figures], cap: float) -> Iterator[str]:
-    counts = [entry["capped_positions"] for entry in figures]
-    yield from _counted(figures, counts, f"the peak equals the cap on the pressure, {cap:.6g} MPa")
-    if not any(counts):
-        yield f"the cap on the pressure, {cap:.6g} MPa, is not reached"
+        counts = [entry["capped_positions"] for entry in figures]
+        yield from _counted(figures, counts, f"the peak equals the cap on the pressure, {cap:.6g} MPa")
+        if not any(counts):
+            yield f"the cap on the pressure, {cap:.6g} MPa, is not reached"
 
 
 def _counted(figures: Sequence[Figures], counts: Sequence[float], sentence: str) -> Iterator[str]:

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import sin
 from typing import ClassVar, Literal
 
-from loaded_tca.errors import InputError
 from loaded_tca.gears.bevel import BevelGear, BevelMesh, pitch_angles
 from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene import bevel_rows
-from loaded_tca.scene.blank import BlankGear, BlankScene
+from loaded_tca.scene.blank import BlankGearSection, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row, family
@@ -92,7 +90,7 @@ class Geometry(Pair):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Gear(BlankGear):
+class GearSection(BlankGearSection):
     """[pinion], [wheel] of bevel gears."""
 
     face_angle_deg: float | None = key(CONE_deg, "face angle delta_a", None, "pitch angle + atan((1 + x) m_et/R_e)")
@@ -108,7 +106,7 @@ class BevelScene(BlankScene):
     ----------
     geometry : bevel.Geometry
         Section [pair]: what both gears have in common.
-    pinion, wheel : bevel.Gear
+    pinion, wheel : bevel.GearSection
     mounting : bevel.MountingErrors
     title, material, load, analysis
         As for every ``Scene``.
@@ -118,8 +116,8 @@ class BevelScene(BlankScene):
     >>> from loaded_tca.scene import ElasticMaterial, Load
     >>> scene = BevelScene(
     ...     geometry=Geometry(type="spiral_bevel", outer_module_mm=4.0, spiral_angle_deg=35.0),
-    ...     pinion=Gear(teeth=20, face_width_mm=20.0, hand="left"),
-    ...     wheel=Gear(teeth=40, face_width_mm=20.0),
+    ...     pinion=GearSection(teeth=20, face_width_mm=20.0, hand="left"),
+    ...     wheel=GearSection(teeth=40, face_width_mm=20.0),
     ...     material=ElasticMaterial(youngs_modulus_MPa=206000.0, poisson_ratio=0.3),
     ...     load=Load(pinion_torque_Nm=100.0),
     ... )
@@ -130,8 +128,8 @@ class BevelScene(BlankScene):
     """
 
     geometry: Geometry = subsection(Geometry, "what both gears have in common", name="pair")
-    pinion: Gear = subsection(Gear, "the gear that turns about +z")
-    wheel: Gear = subsection(Gear, "its mating gear")
+    pinion: GearSection = subsection(GearSection, "the gear that turns about +z")
+    wheel: GearSection = subsection(GearSection, "its mating gear")
     mounting: MountingErrors = subsection(MountingErrors, "mounting errors")
 
     rules: ClassVar[tuple[Rule, ...]] = (
@@ -162,12 +160,7 @@ class BevelScene(BlankScene):
 
     def mesh(self) -> BevelMesh:
         """Return the macro geometry: cones, cone distances, contact ratios."""
-        mesh = BevelMesh(self._gear(0), self._gear(1))
-        bores = (self.pinion.bore_diameter_mm, self.wheel.bore_diameter_mm)
-        problems = [_bore_problem(gear, bore) for gear, bore in zip((mesh.pinion, mesh.wheel), bores, strict=True)]
-        if any(problems):
-            raise InputError(problem for problem in problems if problem)
-        return mesh
+        return BevelMesh(self._gear(0), self._gear(1))
 
     def _gear(self, member: int) -> BevelGear:
         common, own = in_base_units(self.geometry), in_base_units((self.pinion, self.wheel)[member])
@@ -182,6 +175,7 @@ class BevelScene(BlankScene):
             profile_shift=own["profile_shift"],
             face_angle=own.get("face_angle"),
             root_angle=own.get("root_angle"),
+            bore_diameter=own.get("bore_diameter"),
             name=("pinion", "wheel")[member],
         )
 
@@ -209,16 +203,9 @@ class BevelScene(BlankScene):
     def force_rows(self, torques: Sequence[float]) -> Sequence[Row]:
         """Return the forces under pinion torques [N mm]."""
         mesh = self.mesh()
-        bare = bevel_pair(mesh, driving=self.geometry.driving, sense=self.sense)
+        pair = self.analytic_pair(self.sense)
         points = [
             bevel_rows.pitch_point(gear.mean_cone_distance, gear.pitch_angle) for gear in (mesh.pinion, mesh.wheel)
         ]
-        return bevel_rows.force_rows((bare.pinion.flank, bare.wheel.flank), (points[0], points[1]), torques)
-
-
-def _bore_problem(gear: BevelGear, bore: float | None) -> str:
-    """What is wrong with a bore diameter [mm]; empty: nothing."""
-    largest = 2.0 * gear.inner_cone_distance * sin(gear.root_cone_angle)
-    if bore is None or bore < largest:
-        return ""
-    return f"{gear.name}: bore_diameter: {bore:.6g} mm is not below the root diameter at the toe, {largest:.6g} mm"
+        flanks = pair.pinion.nominal_flank, pair.wheel.nominal_flank
+        return bevel_rows.force_rows(flanks, (points[0], points[1]), torques)

@@ -8,13 +8,13 @@ from typing import ClassVar, Literal
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Scene
 from loaded_tca.scene.section import Rule, subsection
-from loaded_tca.scene.sections import DEFAULT_BORE, DIAMETER_mm, Gear, below
+from loaded_tca.scene.sections import GearSection, below
 
 Hand = Literal["right", "left"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class BlankGear(Gear):
+class BlankGearSection(GearSection):
     """[pinion], [wheel] of a gear with a face width, a hand and a profile shift."""
 
     face_width_mm: float = key(above_zero(10000.0), "face width b")
@@ -25,7 +25,6 @@ class BlankGear(Gear):
         "right for the pinion, and the other for the wheel",
     )
     profile_shift: float = key(Number(-5.0, 5.0), "profile shift coefficient x", 0.0)
-    bore_diameter_mm: float | None = key(DIAMETER_mm, "bore diameter, held rigid", None, DEFAULT_BORE)
 
     rules: ClassVar[tuple[Rule, ...]] = (below("modifications.end_relief_length_mm", "face_width_mm", 0.5),)
 
@@ -44,8 +43,8 @@ def _opposite_hands(wheel: Hand | None, pinion: Hand | None) -> str | None:
 class BlankScene(Scene):
     """A scene whose gears have opposite hands."""
 
-    pinion: BlankGear = subsection(BlankGear, "the gear that turns about +z")
-    wheel: BlankGear = subsection(BlankGear, "its mating gear")
+    pinion: BlankGearSection = subsection(BlankGearSection, "the gear that turns about +z")
+    wheel: BlankGearSection = subsection(BlankGearSection, "its mating gear")
 
     rules: ClassVar[tuple[Rule, ...]] = (*Scene.rules, Rule(("wheel.hand", "pinion.hand"), _opposite_hands))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,10 +14,11 @@ from loaded_tca.flanks.modification import FlankModifications
 from loaded_tca.flanks.spline import DEFAULT_POINTS, fitted, measured
 from loaded_tca.flanks.topography import MeasuredDeviations, MeasuredPoints, Topography
 from loaded_tca.material import Material
-from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.pairs.gear import Gear
 from loaded_tca.scene.flank_form import FITTED_DEGREE, FlankForm, Measurement
 from loaded_tca.scene.section import Section, as_table
-from loaded_tca.scene.sections import ElasticMaterial, Gear
+from loaded_tca.scene.sections import ElasticMaterial, GearSection
+from loaded_tca.tooth import ToothForm, ToothGeometry
 
 UNITS = {"mm": 1.0, "um": 1e-3, "deg": math.pi / 180.0, "MPa": 1.0, "Nm": 1e3}
 """Unit at the end of a key -> factor to mm, rad, MPa and N mm."""
@@ -44,7 +46,7 @@ def _scaled(value: Any, factor: float) -> Any:
     return tuple(_scaled(entry, factor) for entry in value) if isinstance(value, tuple) else value * factor
 
 
-def build_modifications(pinion: Gear, wheel: Gear) -> tuple[FlankModifications, FlankModifications]:
+def build_modifications(pinion: GearSection, wheel: GearSection) -> tuple[FlankModifications, FlankModifications]:
     """Return the modifications of both flanks."""
     return (
         FlankModifications(**in_base_units(pinion.modifications)),
@@ -57,41 +59,63 @@ def build_materials(materials: tuple[ElasticMaterial, ElasticMaterial]) -> tuple
     return Material(**in_base_units(materials[0])), Material(**in_base_units(materials[1]))
 
 
-def build_flanks(pair: GearPair, forms: tuple[FlankForm, FlankForm], in_contact: bool) -> GearPair:
-    """Return the pair with its flanks in the forms that are asked for.
+def described_gear(gear: Gear, form: FlankForm, owner: str, measured_side: int) -> Gear:
+    """Gear whose flanks are in the form that is asked for.
 
     Parameters
     ----------
-    pair : GearPair
+    gear : Gear
         Of analytic flanks.
-    forms : (FlankForm, FlankForm)
-        Of pinion and wheel.
-    in_contact : bool
-        Whether these flanks are those in contact by the scene, which are the ones that were measured.
+    form : FlankForm
+    owner : str
+        Name of the gear.
+    measured_side : int
+        s of the flank that a measurement belongs to; the other flank of the tooth stays analytic.
 
     Raises
     ------
     InputError
         If a flank cannot be fitted, with the section that asks for it.
     """
-    pinion, wheel = (
-        _build_flank(flank, form, name, in_contact)
-        for name, flank, form in zip(("pinion", "wheel"), (pair.pinion.flank, pair.wheel.flank), forms, strict=True)
-    )
-    return pair.with_flanks(pinion, wheel)
+    if form.form == "analytic":
+        return gear
+    geometry = DescribedTooth(gear.geometry, form, owner, measured_side)
+    return replace(gear, flank=geometry.described(gear.flank), geometry=geometry)
 
 
-def _build_flank(flank: Flank, form: FlankForm, owner: str, in_contact: bool) -> Flank:
-    try:
-        if form.form == "bspline":
-            return fitted(flank, form.points or DEFAULT_POINTS, form.degree or FITTED_DEGREE)
-        if form.measurement is not None and in_contact:
-            return measured(
-                flank, build_topography(form.measurement), degree=form.degree, coefficients=form.coefficients
-            )
-    except InputError as error:
-        raise InputError(f"{owner}.flank: {problem}" for problem in error.problems) from None
-    return flank
+@dataclass(frozen=True)
+class DescribedTooth(ToothGeometry):
+    """Teeth whose modified flanks are fitted by B-splines or measured."""
+
+    analytic: ToothGeometry
+    description: FlankForm
+    owner: str
+    measured_side: int
+
+    def nominal(self, side: int) -> Flank:
+        """Flank by its equations, without modifications."""
+        return self.analytic.nominal(side)
+
+    def form(self) -> ToothForm:
+        """All of a tooth but its flanks."""
+        return self.analytic.form()
+
+    def modified(self, nominal: Flank) -> Flank:
+        """A flank with its modifications, as it is described."""
+        return self.described(self.analytic.modified(nominal))
+
+    def described(self, flank: Flank) -> Flank:
+        """An analytic flank, fitted, or replaced by the measured one."""
+        wanted = self.description
+        try:
+            if wanted.form == "bspline":
+                return fitted(flank, wanted.points or DEFAULT_POINTS, wanted.degree or FITTED_DEGREE)
+            if wanted.measurement is not None and flank.side == self.measured_side:
+                data = build_topography(wanted.measurement)
+                return measured(flank, data, degree=wanted.degree, coefficients=wanted.coefficients)
+        except InputError as error:
+            raise InputError(f"{self.owner}.flank: {problem}" for problem in error.problems) from None
+        return flank
 
 
 def build_topography(measurement: Measurement) -> Topography:

@@ -10,7 +10,7 @@ from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene import cylindrical_rows
-from loaded_tca.scene.blank import BlankGear, BlankScene
+from loaded_tca.scene.blank import BlankGearSection, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row, family
@@ -42,13 +42,13 @@ class Geometry(Pair):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Gear(BlankGear):
+class GearSection(BlankGearSection):
     """[pinion], [wheel] of cylindrical gears."""
 
     tip_diameter_mm: float | None = key(DIAMETER_mm, "tip diameter d_a", None, "d + 2 m_n (1 + x)")
 
     rules: ClassVar[tuple[Rule, ...]] = (
-        *BlankGear.rules,
+        *BlankGearSection.rules,
         below("bore_diameter_mm", "tip_diameter_mm"),
         below("modifications.tip_relief_start_mm", "tip_diameter_mm"),
         below("modifications.root_relief_start_mm", "tip_diameter_mm"),
@@ -78,7 +78,7 @@ class CylindricalScene(BlankScene):
     ----------
     geometry : cylindrical.Geometry
         Section [pair]: what both gears have in common.
-    pinion, wheel : cylindrical.Gear
+    pinion, wheel : cylindrical.GearSection
     mounting : cylindrical.MountingErrors
     title, material, load, analysis
         As for every ``Scene``.
@@ -88,8 +88,8 @@ class CylindricalScene(BlankScene):
     >>> from loaded_tca.scene import ElasticMaterial, Load
     >>> scene = CylindricalScene(
     ...     geometry=Geometry(type="cylindrical", normal_module_mm=3.0),
-    ...     pinion=Gear(teeth=34, face_width_mm=25.0),
-    ...     wheel=Gear(teeth=57, face_width_mm=25.0),
+    ...     pinion=GearSection(teeth=34, face_width_mm=25.0),
+    ...     wheel=GearSection(teeth=57, face_width_mm=25.0),
     ...     material=ElasticMaterial(youngs_modulus_MPa=206000.0, poisson_ratio=0.3),
     ...     load=Load(pinion_torque_Nm=130.0),
     ... )
@@ -100,8 +100,8 @@ class CylindricalScene(BlankScene):
     """
 
     geometry: Geometry = subsection(Geometry, "what both gears have in common", name="pair")
-    pinion: Gear = subsection(Gear, "the gear that turns about +z")
-    wheel: Gear = subsection(Gear, "its mating gear")
+    pinion: GearSection = subsection(GearSection, "the gear that turns about +z")
+    wheel: GearSection = subsection(GearSection, "its mating gear")
     mounting: MountingErrors = subsection(MountingErrors, "mounting errors")
 
     def mesh(self) -> CylindricalMesh:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import degrees, isclose, radians, sin
+from math import degrees, isclose, radians
 from typing import ClassVar
 
 from loaded_tca.errors import InputError
@@ -17,12 +17,12 @@ from loaded_tca.pairs.face_milled import face_milled_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene import bevel_rows, face_milled_rows
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units
-from loaded_tca.scene.face_milled_keys import Blade, Blank, Cutter, FaceMilled, Geometry, Machine
+from loaded_tca.scene.face_milled_keys import Blade, Blank, Cutter, GearSection, Geometry, Machine
 from loaded_tca.scene.model import Row, Scene, family
 from loaded_tca.scene.section import Rule, subsection
 from loaded_tca.scene.spiral import AXES_THAT_MEET, MountingErrors, Side, names_of, sense_for, sides_in_contact
 
-__all__ = ["Blade", "Blank", "Cutter", "FaceMilled", "FaceMilledScene", "Geometry", "Machine", "MountingErrors"]
+__all__ = ["Blade", "Blank", "Cutter", "FaceMilledScene", "GearSection", "Geometry", "Machine", "MountingErrors"]
 
 ROUNDED_deg = 0.01
 """By how much a pitch angle may miss the one of teeth and shaft angle: half a minute of arc, as summaries round it."""
@@ -72,7 +72,7 @@ class FaceMilledScene(Scene):
     ----------
     geometry : face_milled.Geometry
         Section [pair]: what both gears have in common.
-    pinion, wheel : face_milled.FaceMilled
+    pinion, wheel : face_milled.GearSection
         Blank, machine settings and cutter of each gear.
     mounting : face_milled.MountingErrors
     title, material, load, analysis
@@ -90,8 +90,8 @@ class FaceMilledScene(Scene):
     """
 
     geometry: Geometry = subsection(Geometry, "what both gears have in common", name="pair")
-    pinion: FaceMilled = subsection(FaceMilled, "the gear that turns about +z")
-    wheel: FaceMilled = subsection(FaceMilled, "its mating gear")
+    pinion: GearSection = subsection(GearSection, "the gear that turns about +z")
+    wheel: GearSection = subsection(GearSection, "its mating gear")
     mounting: MountingErrors = subsection(MountingErrors, "mounting errors")
 
     rules: ClassVar[tuple[Rule, ...]] = (
@@ -141,9 +141,8 @@ class FaceMilledScene(Scene):
         own, name = (self.pinion, self.wheel)[member], ("pinion", "wheel")[member]
         teeth = (self.pinion.teeth, self.wheel.teeth)
         pitch = pitch_angles(teeth, radians(self.geometry.shaft_angle_deg))[member]
-        blank = _blank(own.blank, pitch)
-        _require_bore(name, own.bore_diameter_mm, blank)
-        return FaceMilledGear(own.teeth, blank, _cutter(own.cutter), _machine(own), name=name)
+        blank, cutter = _blank(own.blank, pitch), _cutter(own.cutter)
+        return FaceMilledGear(own.teeth, blank, cutter, _machine(own), name, own.bore_diameter_mm)
 
     def analytic_pair(self, sense: Sense) -> GearPair:
         """Return the two generated flanks in space."""
@@ -196,7 +195,7 @@ def _blank(own: Blank, pitch_angle: float) -> FaceMilledBlank:
     return FaceMilledBlank(**{**values, "pitch_angle": pitch_angle})
 
 
-def _machine(own: FaceMilled) -> MachineSettings:
+def _machine(own: GearSection) -> MachineSettings:
     values = in_base_units(own.machine)
     values["helical_motion"] = values.pop("helical_motion_mm_per_rad")
     return MachineSettings(**{"root_angle": radians(own.blank.root_angle_deg), **values})
@@ -219,12 +218,3 @@ def _require_blades(mesh: FaceMilledMesh, sides: tuple[Side, Side]) -> None:
     ]
     if missing:
         raise InputError(missing)
-
-
-def _require_bore(name: str, bore: float | None, blank: FaceMilledBlank) -> None:
-    """Refuse a bore that reaches the root at the toe."""
-    largest = 2.0 * blank.cone_distances[0] * sin(blank.root_angle)
-    if bore is not None and bore >= largest:
-        raise InputError(
-            f"{name}.bore_diameter_mm: found {bore:g}; allowed below the root diameter at the toe, {largest:.6g}"
-        )

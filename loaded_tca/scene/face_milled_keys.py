@@ -7,9 +7,10 @@ from typing import ClassVar, Literal
 
 from loaded_tca.gears.cutter import BLADE_SIGNS, MINUTES_PER_NUMBER
 from loaded_tca.pairs.gear_pair import Driving, Sense
+from loaded_tca.scene import sections
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.section import Rule, Section, subsection
-from loaded_tca.scene.sections import DEFAULT_BORE, DRIVING, SENSE, DIAMETER_mm, Gear, Pair, below
+from loaded_tca.scene.sections import DRIVING, SENSE, Pair, below
 from loaded_tca.scene.spiral import FLANK_OR_SENSE, SIDE, SHAFT_ANGLE_deg, Side
 
 LENGTH_mm = above_zero(10000.0)
@@ -158,10 +159,9 @@ class Cutter(Section):
 
 
 @dataclass(frozen=True, kw_only=True)
-class FaceMilled(Gear):
+class GearSection(sections.GearSection):
     """[pinion], [wheel] of face-milled gears."""
 
-    bore_diameter_mm: float | None = key(DIAMETER_mm, "bore diameter, held rigid", None, DEFAULT_BORE)
     blank: Blank = subsection(Blank, "outline of the blank")
     machine: Machine = subsection(Machine, "machine settings, with the signs of a right-hand gear")
     cutter: Cutter = subsection(Cutter, "the blades, and the number of their group")

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar, TypeVar
 
 from loaded_tca.errors import InputError
 from loaded_tca.pairs.gear_pair import GearPair, Sense
-from loaded_tca.scene.build import build_flanks, in_base_units
+from loaded_tca.scene.build import described_gear, in_base_units
 from loaded_tca.scene.keys import Choice, Key, Line, key
 from loaded_tca.scene.section import Rule, Section, Subsection, as_table, check, contents, entries, made, subsection
-from loaded_tca.scene.sections import Analysis, ElasticMaterial, Gear, Load, Pair
+from loaded_tca.scene.sections import Analysis, ElasticMaterial, GearSection, Load, Pair
 from loaded_tca.scene.text import literal
 
 Row = tuple[str, ...]
@@ -38,7 +38,7 @@ class Scene(Section, ABC):
     title : str
     geometry : Pair
         Section [pair]: what both gears have in common.
-    pinion, wheel : Gear
+    pinion, wheel : GearSection
     mounting : Section
         Mounting errors, zero by default.
     material : ElasticMaterial or None
@@ -49,8 +49,8 @@ class Scene(Section, ABC):
 
     title: str = key(Line(), "stands over reports and plots", "")
     geometry: Pair = subsection(Pair, "what both gears have in common", name="pair")
-    pinion: Gear = subsection(Gear, "the gear that turns about +z")
-    wheel: Gear = subsection(Gear, "its mating gear")
+    pinion: GearSection = subsection(GearSection, "the gear that turns about +z")
+    wheel: GearSection = subsection(GearSection, "its mating gear")
     mounting: Section = subsection(Section, "mounting errors")
     material: ElasticMaterial | None = subsection(
         ElasticMaterial, "material of both gears; needed unless each has its own", optional=True
@@ -102,10 +102,21 @@ class Scene(Section, ABC):
         AccuracyWarning
             If a B-spline misses its flank by more than 0.1 um, or a measurement leaves much of it uncovered.
         """
-        wanted = sense or self.sense
-        return build_flanks(
-            self.analytic_pair(wanted), (self.pinion.flank, self.wheel.flank), in_contact=wanted == self.sense
+        pair = self.analytic_pair(sense or self.sense)
+        side = pair.pinion.flank.side if sense in (None, self.sense) else -pair.pinion.flank.side
+        return replace(
+            pair,
+            pinion=described_gear(pair.pinion, self.pinion.flank, "pinion", side),
+            wheel=described_gear(pair.wheel, self.wheel.flank, "wheel", side),
         )
+
+    @property
+    def rigid_bores(self) -> tuple[float, float] | None:
+        """Bore diameters of pinion and wheel [mm] that are held where teeth bend; None where they do not.
+
+        See :attr:`GearPair.rigid_bores`.
+        """
+        return None if self.analysis.compliance == "contact" else self.pair().rigid_bores
 
     @abstractmethod
     def active_starts(self) -> tuple[float, float]:

@@ -15,7 +15,6 @@ from loaded_tca.scene.section import Rule, Section, subsection
 AMOUNT_um = Number(0.0, 10000.0)
 SLOPE_um = Number(-10000.0, 10000.0)
 DIAMETER_mm = above_zero(100000.0)
-DEFAULT_BORE = "0.55 of the root diameter where teeth bend"
 RELIEF_FORM = Choice(("parabolic", "linear"))
 ERROR_deg = Number(-10.0, 10.0)
 ERROR_mm = Number(-1000.0, 1000.0)
@@ -110,10 +109,13 @@ class ElasticMaterial(Section):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Gear(Section):
+class GearSection(Section):
     """[pinion], [wheel]: what each gear has of its own; each family adds its keys."""
 
     teeth: int = key(Whole(3, 10000), "number of teeth z")
+    bore_diameter_mm: float | None = key(
+        DIAMETER_mm, "bore diameter, held rigid", None, "0.55 of the root diameter where teeth bend"
+    )
     modifications: Modifications = subsection(Modifications, "material removed from the flanks")
     flank: FlankForm = subsection(FlankForm, "how the flanks are described")
     material: ElasticMaterial | None = subsection(

@@ -1,9 +1,12 @@
 """Complete teeth: flanks, fillets, tip and root lands as one surface, for every kind of gear."""
 
-from loaded_tca.tooth import bevel, cylindrical, face_milled
+from loaded_tca.tooth.bevel import BevelTooth
 from loaded_tca.tooth.build import Resolution, build_tooth
+from loaded_tca.tooth.cylindrical import CylindricalTooth
+from loaded_tca.tooth.face_milled import FaceMilledTooth
 from loaded_tca.tooth.fillet import ArcFillet, Fillet, FilletCurve, RackFillet
-from loaded_tca.tooth.form import RootCone, RootCylinder, ToothForm, tooth_forms
+from loaded_tca.tooth.form import RootCone, RootCylinder, ToothForm
+from loaded_tca.tooth.geometry import ToothGeometry
 from loaded_tca.tooth.sections import ApexSpheres, Sections, TransversePlanes
 from loaded_tca.tooth.surface import PATCHES, ToothSurface
 from loaded_tca.tooth.triangles import TriangleMesh
@@ -12,6 +15,9 @@ __all__ = [
     "PATCHES",
     "ApexSpheres",
     "ArcFillet",
+    "BevelTooth",
+    "CylindricalTooth",
+    "FaceMilledTooth",
     "Fillet",
     "FilletCurve",
     "RackFillet",
@@ -20,12 +26,9 @@ __all__ = [
     "RootCylinder",
     "Sections",
     "ToothForm",
+    "ToothGeometry",
     "ToothSurface",
     "TransversePlanes",
     "TriangleMesh",
-    "bevel",
     "build_tooth",
-    "cylindrical",
-    "face_milled",
-    "tooth_forms",
 ]

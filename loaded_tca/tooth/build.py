@@ -78,10 +78,9 @@ def build_tooth(flanks: tuple[Flank, Flank], form: ToothForm, resolution: Resolu
     --------
     >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
     >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
-    >>> from loaded_tca.tooth import tooth_forms
     >>> mesh = CylindricalMesh(*(CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)))
-    >>> plus, minus = (cylindrical_pair(mesh, sense=sense).pinion.flank for sense in ("positive", "negative"))
-    >>> build_tooth((plus, minus), tooth_forms(mesh)[0])
+    >>> pinion = cylindrical_pair(mesh).pinion
+    >>> build_tooth(pinion.flanks, pinion.form)
     ToothSurface(106 x 33 points, one of 34 teeth)
     """
     if tuple(flank.side for flank in flanks) != (1, -1):

@@ -1,37 +1,109 @@
-"""Teeth of face-milled gears beside their flanks."""
+"""Teeth of face-milled spiral bevel gears, cut after machine settings."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
+from loaded_tca.errors import GeometryError
+from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.derived import unmodified
 from loaded_tca.flanks.face_milled import GeneratedFlank, tooth_angle
-from loaded_tca.gears import FaceMilledGear, FaceMilledMesh
+from loaded_tca.flanks.modification import FlankModifications, modified
+from loaded_tca.flanks.tooth_region import chebyshev_nodes, face_cone_angles
+from loaded_tca.gears import FaceMilledGear
 from loaded_tca.gears.cutter import BLADE_SIGNS
 from loaded_tca.tooth.bevel import FILLET_RADIUS_COEFFICIENT
 from loaded_tca.tooth.fillet import ArcFillet
-from loaded_tca.tooth.form import RootCone, ToothForm, tooth_forms
+from loaded_tca.tooth.form import RootCone, ToothForm
+from loaded_tca.tooth.geometry import ToothGeometry
 from loaded_tca.tooth.sections import ApexSpheres
 
-
-@tooth_forms.register
-def _of_face_milled_gears(mesh: FaceMilledMesh, *, fillet_radius: float | None = None) -> tuple[ToothForm, ToothForm]:
-    def form(gear: FaceMilledGear) -> ToothForm:
-        distance, delta = gear.blank.mean_cone_distance, gear.blank.pitch_angle
-        rho, z = np.array([distance * math.sin(delta)]), np.array([distance * math.cos(delta)])
-        half = 0.5 * float(tooth_angle(gear, rho, z)[0])
-        fillet = ArcFillet(_edge_radius(gear, float(rho[0])) if fillet_radius is None else fillet_radius)
-        root = RootCone(gear.blank.root_angle, -gear.blank.root_apex)
-        return ToothForm(gear.teeth, half, ApexSpheres(), root, fillet, fillet_radius is None)
-
-    return form(mesh.pinion), form(mesh.wheel)
+TIP_POINTS = 9
+"""Points along the face cone at which the thickness of the tooth is checked."""
 
 
-def _edge_radius(gear: FaceMilledGear, pitch_radius: float) -> float:
-    """Larger edge radius of the blades, or that of a basic rack of the mean normal module [mm]."""
-    edge = max(gear.cutter.blade(flank).edge_radius for flank in BLADE_SIGNS)
-    if edge > 0.0:
-        return edge
-    spiral = GeneratedFlank(gear, "concave").angles.spiral
-    return FILLET_RADIUS_COEFFICIENT * 2.0 * pitch_radius * math.cos(spiral) / gear.teeth
+@dataclass(frozen=True)
+class FaceMilledTooth(ToothGeometry):
+    """Teeth of a face-milled gear; their root is the root cone of the blank.
+
+    Parameters
+    ----------
+    gear : FaceMilledGear
+    modifications : FlankModifications
+    exact : bool
+        Solve the generating equations at every point of a flank; otherwise its B-spline is taken.
+    """
+
+    gear: FaceMilledGear
+    modifications: FlankModifications = FlankModifications()
+    exact: bool = False
+
+    def nominal(self, side: int) -> Flank:
+        """Generated flank of a side.
+
+        Raises
+        ------
+        InputError
+            If the cutter has no blade for it.
+        GeometryError
+            If the flank is undercut or not cut at all, or meets the other one below the face cone.
+        """
+        flank = GeneratedFlank(self.gear, self.gear.flank_name(side))
+        if self.gear.cutter.concave is not None and self.gear.cutter.convex is not None:
+            self._require_tip(flank)
+        return flank if self.exact else flank.as_spline()
+
+    def _require_tip(self, flank: GeneratedFlank) -> None:
+        """Refuse a tooth whose two flanks, cut with one set of machine settings, meet below the face cone."""
+        distance = chebyshev_nodes(flank.cone_distances, TIP_POINTS)
+        angle = face_cone_angles(flank.face_cone, distance)
+        rho, z = distance * np.sin(angle), distance * np.cos(angle)
+        thickness = rho * tooth_angle(self.gear, rho, z)
+        worst = int(np.argmin(thickness))
+        if not thickness[worst] > 0.0:
+            raise GeometryError(
+                f"{self.gear.name}: pointed tooth: its flanks lie {-thickness[worst]:.3g} mm beyond each other at the "
+                f"tip, {flank.frame.place(float(rho[worst]), float(z[worst]))}; lower face_angle, or bring the point "
+                "radii of the cutter nearer to each other"
+            )
+
+    def modified(self, nominal: Flank) -> Flank:
+        """The flank with its modifications; the profile runs from the form line to the tip."""
+        generated, blank = unmodified(nominal), self.gear.blank
+        assert isinstance(generated, GeneratedFlank)
+        distance, (tip, foot) = blank.mean_cone_distance, generated.mean_cone_angles
+
+        def diameter(angle: float) -> float:
+            sine = math.sin(angle)
+            return 2.0 * distance * (sine if angle <= 0.5 * math.pi else 2.0 - sine)
+
+        def height(of: float) -> float:
+            sine = 0.5 * of / distance
+            angle = math.asin(sine) if sine <= 1.0 else math.pi - math.asin(2.0 - sine)
+            return generated.mean_height * (angle - foot) / (tip - foot)
+
+        ends = diameter(foot), diameter(tip)
+        return modified(nominal, self.modifications, blank.face_width, ends, height, owner=self.gear.name)
+
+    def form(self) -> ToothForm:
+        """Spheres about the apex, the root cone, and arcs of the larger edge radius of the blades, or what fits.
+
+        Blades without an edge radius get that of a basic rack, 0.38 mean normal modules.
+
+        Raises
+        ------
+        InputError
+            If the cutter has one blade only.
+        """
+        gear, blank = self.gear, self.gear.blank
+        rho, z = (blank.mean_cone_distance * part(blank.pitch_angle) for part in (math.sin, math.cos))
+        half_angle = 0.5 * float(tooth_angle(gear, np.array([rho]), np.array([z]))[0])
+        radius = max(gear.cutter.blade(flank).edge_radius for flank in BLADE_SIGNS)
+        if radius == 0.0:
+            spiral = GeneratedFlank(gear, "concave").angles.spiral
+            radius = FILLET_RADIUS_COEFFICIENT * 2.0 * rho * math.cos(spiral) / gear.teeth
+        root = RootCone(blank.root_angle, -blank.root_apex)
+        return ToothForm(gear.teeth, half_angle, ApexSpheres(), root, ArcFillet(radius), largest_that_fits=True)

@@ -7,9 +7,10 @@ there leads on to it, straight. The fillet of the basic rack is the curve that i
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.optimize.elementwise import find_root
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
@@ -19,7 +20,6 @@ from loaded_tca.tooth.profile import Profile, turned
 EDGE_MARGIN = 0.01
 """Part of the profile above its root edge where a straight continuation starts at the latest: at the base circle
 itself a modification of the profile, which counts by roll length, has no finite slope."""
-BISECTIONS = 60
 BLEND = 0.2
 """Part of the length of a rack's fillet over which the slope of a modification fades out."""
 
@@ -127,21 +127,17 @@ class ArcFillet(Fillet):
 
 def _touching_radius(profile: Profile, root: Array, size: Array) -> Array:
     """Radii (m,) of the image at which arcs of the radii ``size`` touch flank and root circle, on the flank."""
+
+    def height_over_root(radius: Array, coordinate: Array, root: Array, size: Array) -> Array:
+        point, tangent = replace(profile, coordinate=coordinate).point_and_tangent(radius)
+        return np.linalg.norm(point + size[:, None] * _into_space(tangent), axis=-1) - root - size
+
     low, high = profile.radius[0], profile.radius[-1]
     low = low + EDGE_MARGIN * (high - low)
-    if (_height_over_root(profile, high, root, size) <= 0.0).any():
+    found = find_root(height_over_root, (low, high), args=(profile.coordinate, root, size))
+    if (~found.success & (found.f_bracket[1] < 0.0)).any():
         raise GeometryError("fillet_radius: the fillet reaches the tip of the tooth; reduce it")
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        above = _height_over_root(profile, middle, root, size) > 0.0
-        low, high = np.where(above, low, middle), np.where(above, middle, high)
-    return high
-
-
-def _height_over_root(profile: Profile, radius: Array, root: Array, size: Array) -> Array:
-    """How far from the root circle an arc stays that touches the flank at ``radius`` [mm]."""
-    point, tangent = profile.point_and_tangent(radius)
-    return np.linalg.norm(point + size[:, None] * _into_space(tangent), axis=-1) - root - size
+    return np.where(found.success, found.x, low)  # no change of sign: the arc stays above the root all along
 
 
 def _line_and_arc(

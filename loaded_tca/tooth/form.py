@@ -1,20 +1,15 @@
-"""What shapes a tooth beside its flanks: how far apart they stand, the root surface, the fillet.
-
-``tooth_forms`` is open: a module of a new gear type registers what its mesh asks for.
-"""
+"""What shapes a tooth beside its flanks: how far apart they stand, the root surface, the fillet."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import singledispatch
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import InputError
-from loaded_tca.tooth.fillet import Fillet
+from loaded_tca.tooth.fillet import ArcFillet, Fillet
 from loaded_tca.tooth.sections import Sections
 
 
@@ -42,6 +37,17 @@ class ToothForm:
     root_radius: Callable[[Array], Array]
     fillet: Fillet
     largest_that_fits: bool = False
+
+    def with_arc(self, radius: float) -> ToothForm:
+        """The form with arcs of a radius [mm], at the mean section, instead of the fillet that belongs to the gear.
+
+        Raises
+        ------
+        InputError
+            If the radius is not positive and finite.
+        """
+        arc = replace(self.fillet, radius=radius) if isinstance(self.fillet, ArcFillet) else ArcFillet(radius)
+        return replace(self, fillet=arc, largest_that_fits=False)
 
 
 @dataclass(frozen=True)
@@ -79,37 +85,3 @@ class RootCone:
         """Radius 2 R tan(u/2) of the images (m,)."""
         cone_angle = self.angle - np.arcsin(self.apex * math.sin(self.angle) / coordinate)
         return 2.0 * coordinate * np.tan(0.5 * cone_angle)
-
-
-@singledispatch
-def tooth_forms(
-    mesh: object,
-    *,
-    fillet_radius: float | None = None,  # noqa: ARG001 (of the registered ones)
-) -> tuple[ToothForm, ToothForm]:
-    """What shapes the teeth of pinion and wheel, beside their flanks.
-
-    Parameters
-    ----------
-    mesh : CylindricalMesh, BevelMesh or FaceMilledMesh
-        Macro geometry; cylindrical gears get the fillet that their basic rack cuts, bevel gears an arc. The root of
-        face-milled gears is the root cone of their blanks.
-    fillet_radius : float [mm], optional
-        Radius of arcs, at the mean section; default: for cylindrical gears the fillet of the rack; for face-milled
-        gears the larger edge radius of their blades, the same from toe to heel; for other bevel gears, and blades
-        without an edge radius, 0.38 mean normal modules. An arc that does not fit is made as large as does.
-
-    Raises
-    ------
-    InputError
-        If the radius is not positive and finite, or nobody has said how such gears are shaped.
-
-    Examples
-    --------
-    >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
-    >>> gears = [CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)]
-    >>> pinion, wheel = tooth_forms(CylindricalMesh(*gears))
-    >>> round(pinion.half_thickness_angle * 34, 6)  # without profile shift half a tooth is a quarter of a pitch
-    1.570796
-    """
-    raise InputError(f"mesh: no complete tooth is known for a {type(mesh).__name__}")

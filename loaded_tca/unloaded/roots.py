@@ -1,4 +1,8 @@
-"""Roots of one function in many brackets at once."""
+"""Roots of one function in many brackets at once, with the values at the ends known.
+
+``scipy.optimize.elementwise.find_root`` is the same method, but computes the ends again and halves each bracket first:
+it made an ease-off map 1.7 to 2.0 times and the figures of the transmission error 1.3 to 1.4 times as slow.
+"""
 
 from __future__ import annotations
 
@@ -57,17 +61,11 @@ def find_roots(
         a, fa = x, fx
         best[rows] = np.where(np.abs(fa) < np.abs(fb), a, b)
         least = tolerance / np.maximum(np.abs(b - a), 2.0 * tolerance)
-        part = np.clip(_inverse_quadratic((a, b, c), (fa, fb, fc)), least, 1.0 - least)
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
+            fair = (phi**2 < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
+            part = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+        part = np.clip(np.where(fair, part, 0.5), least, 1.0 - least)  # where the inverse parabola through a, b, c is 0
         on = (least < 0.5) & (fa != 0.0)
         rows, part, a, b, fa, fb = rows[on], part[on], a[on], b[on], fa[on], fb[on]
     return np.asarray(best)
-
-
-def _inverse_quadratic(x: tuple[Array, Array, Array], f: tuple[Array, Array, Array]) -> Array:
-    """Part of the way from a to b where the inverse parabola through a, b, c is zero; 1/2 where it is no guide."""
-    (a, b, c), (fa, fb, fc) = x, f
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
-        fair = (phi**2 < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
-        part = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
-    return np.where(fair, part, 0.5)

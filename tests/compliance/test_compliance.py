@@ -12,12 +12,12 @@ from loaded_tca.errors import InputError
 from loaded_tca.gears import bevel_mesh
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.pairs.bevel import bevel_pair
+from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.reference.iso6336 import theoretical_single_stiffness
 from loaded_tca.reference.weber_banaschek import ring_torsion
 from loaded_tca.separation import sample_separation
-from loaded_tca.tooth import tooth_forms
 from loaded_tca.unloaded import trace_contact
-from tests.samples.bodies import both_senses, pinion, spur_mesh
+from tests.samples.bodies import pinion, spur_mesh
 
 COARSE = MeshDensity(lengthwise=4)
 PITCH = 2.0 * math.pi / 25
@@ -27,17 +27,15 @@ ROUNDING = 1e-9
 
 
 @cache
-def made(helix_angle=0.0, sense=0):
+def made(helix_angle=0.0, sense="positive"):
     mesh = spur_mesh(helix_angle=math.radians(helix_angle))
-    senses = both_senses(mesh)
-    return tooth_compliance(tooth_forms(mesh), senses[sense], senses[1 - sense], density=COARSE)
+    return tooth_compliance(cylindrical_pair(mesh, sense=sense), density=COARSE)
 
 
 @cache
 def made_of_bevels():
     mesh = bevel_mesh((20, 40), outer_module=4.0, face_width=20.0, spiral_angle=math.radians(30.0))
-    pair, backs = (bevel_pair(mesh, sense=sense) for sense in ("positive", "negative"))
-    return tooth_compliance(tooth_forms(mesh), pair, backs, density=COARSE)
+    return tooth_compliance(bevel_pair(mesh), density=COARSE)
 
 
 def grids(compliance, *parts, cells=(8, 32), length=10.0):
@@ -90,7 +88,7 @@ def test_compliance_knows_which_tooth_comes_next():
 
 
 def test_compliance_of_the_other_sense_is_the_same():
-    both = made(20.0), made(20.0, 1)
+    both = made(20.0), made(20.0, "negative")
     found = [matrix(one, dict(enumerate(grids(one, 0.4, -0.4)))) for one in both]
     assert_allclose(found[1], found[0], rtol=1e-4)  # the meshes and grids are no exact mirror images
 
@@ -111,13 +109,12 @@ def test_free_edges_leave_less_to_the_teeth():
 
 
 def test_a_smaller_bore_makes_the_pair_softer():
-    mesh = spur_mesh()
-    pair, backs = both_senses(mesh)
-    small = tooth_compliance(tooth_forms(mesh), pair, backs, bore_diameters=(15.0, None), density=COARSE)
+    mesh = spur_mesh(bore_diameters=(15.0, None))
+    small = tooth_compliance(cylindrical_pair(mesh), density=COARSE)
     grid = grids(small, 0.0)[0]
     assert small.within(0, grid).mean() > made().within(0, grid).mean()
-    assert small.bore_diameters[0] == 15.0
-    assert_allclose(made().bore_diameters, [0.55 * 2.0 * gear.root_radius for gear in (mesh.pinion, mesh.wheel)])
+    assert small.pair.rigid_bores[0] == 15.0
+    assert_allclose(made().pair.rigid_bores, [0.55 * 2.0 * gear.root_radius for gear in (mesh.pinion, mesh.wheel)])
 
 
 def test_body_torsion_is_a_part_of_the_compliance():
@@ -140,15 +137,7 @@ def test_compliance_survives_pickling():
     assert_allclose(again.within(0, grid), compliance.within(0, grid))
 
 
-def test_pairs_of_the_same_flanks_are_refused():
-    mesh = spur_mesh()
-    pair, _ = both_senses(mesh)
-    with pytest.raises(InputError, match="backs"):
-        tooth_compliance(tooth_forms(mesh), pair, pair)
-
-
 def test_a_bore_that_reaches_the_teeth_names_its_gear():
-    mesh = spur_mesh()
-    pair, backs = both_senses(mesh)
-    with pytest.raises(InputError, match="wheel: bore_diameter"):
-        tooth_compliance(tooth_forms(mesh), pair, backs, bore_diameters=(None, 110.0), density=COARSE)
+    pair = cylindrical_pair(spur_mesh(bore_diameters=(None, 103.0)))
+    with pytest.raises(InputError, match=r"wheel: bore_diameter: .* no rim is left"):
+        tooth_compliance(pair, density=COARSE)

@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 from skfem import Basis, ElementQuadS2, ElementVector, MeshQuad, MeshQuad2, asm
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
+from loaded_tca.compliance.body import gear_nodes
 from loaded_tca.compliance.finite_elements import discretise
 from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.errors import GeometryError
@@ -20,7 +21,7 @@ DENSITY = MeshDensity(2, 2, 1, 1, 2, 1, 0)
 
 
 def body():
-    nodes = pinion().nodes(DENSITY)
+    nodes = gear_nodes(pinion(), DENSITY)
     lowest = nodes.layout.elements
     return discretise(nodes.points, np.column_stack([lowest, np.zeros(len(lowest), dtype=int)]))
 
@@ -42,9 +43,10 @@ def test_energy_of_an_even_stretch_is_that_of_the_volume():
     mesh = body()
     nu, modulus = STEEL.poisson_ratio, STEEL.youngs_modulus
     per_volume = modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
-    nodes = pinion().nodes(DENSITY)
+    gear = pinion()
+    nodes = gear_nodes(gear, DENSITY)
     outline = np.concatenate([_top(nodes, sector)[:-1] for sector in nodes.layout.sectors])
-    area = 0.5 * _cross(outline, np.roll(outline, -1, axis=0)).sum() - np.pi * (0.5 * nodes.bore_diameter) ** 2
+    area = 0.5 * _cross(outline, np.roll(outline, -1, axis=0)).sum() - np.pi * (0.5 * gear.smallest_bore) ** 2
     energy = energies(mesh, np.stack([0.0 * mesh.points[:, 0]] * 2 + [mesh.points[:, 2]], axis=-1)).sum()
     assert_allclose(energy / per_volume, WIDTH * area, rtol=COARSE_OUTLINE)
 
@@ -101,7 +103,7 @@ def test_stiffness_is_that_of_the_library(rng):
 
 def test_pitches_of_a_rim_are_of_one_kind():
     """Whatever the tooth: one column of elements, in one layer of a spur gear, serves for the whole rim."""
-    nodes = pinion().nodes(replace(DENSITY, lengthwise=2))
+    nodes = gear_nodes(pinion(), replace(DENSITY, lengthwise=2))
     lowest = nodes.layout.elements
     layers = np.repeat([0, 2], len(lowest))
     mesh = discretise(nodes.points, np.column_stack([np.tile(lowest, (2, 1)), layers]), nodes.layout.turns)
@@ -111,7 +113,7 @@ def test_pitches_of_a_rim_are_of_one_kind():
 
 
 def test_energy_does_not_depend_on_the_frames(rng):
-    nodes = pinion().nodes(DENSITY)
+    nodes = gear_nodes(pinion(), DENSITY)
     lowest = nodes.layout.elements
     lowest = np.column_stack([lowest, np.zeros(len(lowest), dtype=int)])
     turned, plain = (discretise(nodes.points, lowest, turns) for turns in (nodes.layout.turns, None))

@@ -1,20 +1,22 @@
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.compliance import GearTooth, MeshDensity
-from loaded_tca.compliance.body import ToothFrame, gear_body
+from loaded_tca.compliance import MeshDensity
+from loaded_tca.compliance.body import ToothFrame, gear_body, gear_nodes
 from loaded_tca.compliance.geometry import body_nodes
 from loaded_tca.compliance.layout import RingLayout
 from loaded_tca.errors import InputError
 from loaded_tca.gears import bevel_mesh
 from loaded_tca.pairs.bevel import bevel_pair
+from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.scene import read_scene
-from loaded_tca.tooth import Resolution, build_tooth, tooth_forms
-from tests.samples.bodies import both_senses, pinion, spur_mesh
+from loaded_tca.tooth import Resolution, build_tooth
+from tests.samples.bodies import pinion, spur_mesh
 
 ON_FLANK = 2e-4
 """mm: flanks are resampled on the straight pieces of a fine outline."""
@@ -24,22 +26,21 @@ DENSITY = MeshDensity(lengthwise=2)
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
 
 
-def gears():
-    helical = both_senses(spur_mesh(helix_angle=math.radians(20.0)))
+def gears(side=1):
+    sense = "positive" if side > 0 else "negative"
     mesh = bevel_mesh((20, 40), outer_module=4.0, face_width=20.0, spiral_angle=math.radians(30.0))
-    bevel = [bevel_pair(mesh, sense=sense) for sense in ("positive", "negative")]
     return {
-        "spur": pinion(),
-        "helical": GearTooth((helical[0].pinion.flank, helical[1].pinion.flank), tooth_forms(spur_mesh())[0]),
-        "bevel": GearTooth((bevel[0].pinion.flank, bevel[1].pinion.flank), tooth_forms(mesh)[0]),
+        "spur": pinion(side=side),
+        "helical": cylindrical_pair(spur_mesh(helix_angle=math.radians(20.0)), sense=sense).pinion,
+        "bevel": bevel_pair(mesh, sense=sense).pinion,
     }
 
 
 @pytest.mark.parametrize("kind", gears())
 @pytest.mark.parametrize("side", [1, -1])
 def test_nodes_of_the_flank_lie_on_it(kind, side):
-    gear = gears()[kind]
-    frame = ToothFrame(gear, side, gear.nodes(DENSITY))
+    gear = gears(side)[kind]
+    frame = ToothFrame(gear, gear_nodes(gear, DENSITY))
     density, nodes = DENSITY, frame.nodes
     column = 2 * density.land + (2 * density.through if side > 0 else 0)
     first = 2 * (density.rim + density.fillet)
@@ -52,7 +53,7 @@ def test_nodes_of_the_flank_lie_on_it(kind, side):
 @pytest.mark.parametrize("kind", gears())
 def test_places_of_a_flank_are_found_again(kind):
     gear = gears()[kind]
-    frame = ToothFrame(gear, 1, gear.nodes(DENSITY))
+    frame = ToothFrame(gear, gear_nodes(gear, DENSITY))
     height, length = (grid.ravel() for grid in np.meshgrid([0.1, 0.5, 0.9], [0.2, 0.7]))
     places = frame.places(height, length)
     found = frame.parts(np.hypot(places.point[:, 0], places.point[:, 1]), places.point[:, 2])
@@ -67,33 +68,28 @@ def test_places_of_a_flank_are_found_again(kind):
 
 def test_bore_is_that_of_the_gear_or_the_default():
     for bore, expected in ((None, 0.55 * 67.5), (30.0, 30.0)):
-        nodes = pinion(bore).nodes(DENSITY)
-        assert_allclose(nodes.bore_diameter, expected)
+        gear = pinion(bore)
+        nodes = gear_nodes(gear, DENSITY)
+        assert_allclose(gear.smallest_bore, expected)
         assert_allclose(nodes.radius[:, 0], 0.5 * expected, rtol=1e-12)
 
 
 @pytest.mark.parametrize("bore", [67.4, 70.0])
 def test_a_bore_without_a_rim_is_refused(bore):
     with pytest.raises(InputError, match=r"bore_diameter: .* no rim is left"):
-        pinion(bore).nodes(DENSITY)
+        gear_nodes(replace(pinion(), bore_diameter=bore), DENSITY)
 
 
 def test_sections_that_do_not_fit_the_layout_are_refused():
     gear = pinion()
     tooth = build_tooth(gear.flanks, gear.form, Resolution(lengthwise=4))
     with pytest.raises(InputError, match="4 sections, 5 are needed"):
-        body_nodes(tooth, gear.form.sections, 20.0, RingLayout(25, DENSITY))
+        body_nodes(tooth, gear.form.sections, np.full(5, 20.0), RingLayout(25, DENSITY))
 
 
 def test_a_sharp_fillet_does_not_fold_the_body():
     """Edges of elements that turned by 66 deg at the foot of this pinion folded over."""
     scene = read_scene(SCENES / "face_milled_19x62_matched.toml")
-    pair, backs = scene.pair(), scene.pair("positive")
-    flanks = (
-        (backs.pinion.flank, pair.pinion.flank)
-        if pair.pinion.flank.side < 0
-        else (pair.pinion.flank, backs.pinion.flank)
-    )
-    gear = GearTooth(flanks, tooth_forms(scene.mesh())[0])
-    body = gear_body(gear.nodes(DENSITY), gear.material)
+    gear = scene.pair().pinion
+    body = gear_body(gear_nodes(gear, DENSITY), gear.material)
     assert len(body.mesh.elements) > 100

@@ -81,7 +81,7 @@ def test_thick_layers_beside_the_tooth_change_little(monkeypatch):
     for bricks in (RingLayout.bricks, property(_thin)):
         kept.forget()
         monkeypatch.setattr(RingLayout, "bricks", bricks)
-        model = gear_compliance(gear, 1, replace(COARSE, lengthwise=8))
+        model = gear_compliance(gear, replace(COARSE, lengthwise=8))
         lines = line(model, 0.3), line(model, 0.7, tooth=1)
         alone = [within(model, height, part) for height in (0.1, 0.5, 0.9) for part in (0.3, 1.0)]
         found.append([*alone, between(model, *lines)])

@@ -5,18 +5,19 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from loaded_tca.compliance import GearTooth, MeshDensity, kept
-from loaded_tca.compliance.body import ToothFrame
+from loaded_tca.compliance import MeshDensity, kept
+from loaded_tca.compliance.body import ToothFrame, gear_nodes
 from loaded_tca.compliance.kept import kept_flexibility, key_of
-from loaded_tca.flanks import FlankModifications
+from loaded_tca.flanks import FlankModifications, SplineFlank
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.material import Material
 from loaded_tca.pairs.cylindrical import cylindrical_pair
-from loaded_tca.tooth import tooth_forms
+from loaded_tca.scene import FlankForm, Measurement
+from loaded_tca.scene.build import described_gear
 from tests.samples.bodies import pinion, spur_mesh
 
 DENSITY = MeshDensity(2, 2, 1, 1, 2, 1, 1)
-CHANGES = "side density neighbours bore modulus poisson width thickness tip fillet crowning relief"
+CHANGES = "side density neighbours bore modulus poisson width thickness tip fillet"
 ARRAYS = "heights", "lengths", "displacement", "depth"
 
 
@@ -42,20 +43,16 @@ def made(monkeypatch):
     return frames
 
 
-def frame_of(gear=None, side=1, density=DENSITY):
+def frame_of(gear=None, density=DENSITY):
     gear = gear or pinion()
-    return ToothFrame(gear, side, gear.nodes(density))
+    return ToothFrame(gear, gear_nodes(gear, density))
 
 
 def gear_with(modifications=FlankModifications(), **changes):
     """Pinion of a spur pair with some of its geometry changed."""
     mesh = spur_mesh()
     mesh = replace(mesh, pinion=replace(mesh.pinion, **changes))
-    pair, backs = (
-        cylindrical_pair(mesh, modifications=(modifications, FlankModifications()), sense=sense)
-        for sense in ("positive", "negative")
-    )
-    return GearTooth((pair.pinion.flank, backs.pinion.flank), tooth_forms(mesh)[0])
+    return cylindrical_pair(mesh, modifications=(modifications, FlankModifications())).pinion
 
 
 def same(one, other):
@@ -86,7 +83,7 @@ def test_model_cannot_be_written_to():
 @pytest.mark.parametrize(
     "other",
     [
-        lambda: frame_of(side=-1),
+        lambda: frame_of(pinion(side=-1)),
         lambda: frame_of(density=replace(DENSITY, rim=3)),
         lambda: frame_of(density=replace(DENSITY, neighbours=2)),
         lambda: frame_of(pinion(bore_diameter=36.0)),
@@ -96,8 +93,6 @@ def test_model_cannot_be_written_to():
         lambda: frame_of(gear_with(profile_shift=1e-4)),
         lambda: frame_of(gear_with(tip_diameter=81.001)),
         lambda: frame_of(gear_with(root_radius_coefficient=0.379)),
-        lambda: frame_of(gear_with(FlankModifications(lead_crowning=1e-4))),
-        lambda: frame_of(gear_with(FlankModifications(tip_relief=1e-4, tip_relief_start=80.0))),
     ],
     ids=CHANGES.split(),
 )
@@ -107,19 +102,39 @@ def test_another_gear_is_another_model(other):
 
 def test_equal_gears_are_one_model():
     mesh = CylindricalMesh(*(CylindricalGear(teeth=30, normal_module=3.0, face_width=20.0) for _ in range(2)))
-    pair, backs = (cylindrical_pair(mesh, sense=sense) for sense in ("positive", "negative"))
-    flanks = (pair.pinion.flank, backs.pinion.flank), (pair.wheel.flank, backs.wheel.flank)
-    gears = [GearTooth(*parts) for parts in zip(flanks, tooth_forms(mesh), strict=True)]
-    keys = [
-        key_of(frame_of(gear, side))
-        for gear, side in zip(gears, (pair.pinion.flank.side, pair.wheel.flank.side), strict=True)
-    ]
-    assert keys[0] == keys[1]
+    pair = cylindrical_pair(mesh)
+    assert key_of(frame_of(pair.pinion)) == key_of(frame_of(pair.wheel))
 
 
-def test_a_modification_far_below_rounding_is_the_same_model():
+@pytest.mark.parametrize(
+    "modifications",
+    [
+        FlankModifications(lead_crowning=0.01),
+        FlankModifications(tip_relief=0.02, tip_relief_start=80.0, tip_relief_form="linear"),
+    ],
+    ids=["crowning", "relief"],
+)
+def test_variants_of_the_micro_geometry_share_one_model(modifications, made):
+    variant = gear_with(modifications)
+    assert kept_flexibility(frame_of(variant)) is kept_flexibility(frame_of())
+    assert len(made) == 1
+
+
+def test_fitted_and_measured_flanks_share_the_model_of_their_gear(made):
+    gear = gear_with(FlankModifications(lead_crowning=0.01))
+    rho, z = gear.flank.grid(9, 9)
+    points = {"radius_mm": rho, "axial_mm": z, "deviation_um": 0.0 * rho + 1.0}
+    measurement = Measurement(**{name: tuple(map(tuple, values.tolist())) for name, values in points.items()})
+    for form in (FlankForm(form="bspline", points=(17, 17)), FlankForm(form="measured", measurement=measurement)):
+        described = described_gear(gear, form, "pinion", measured_side=1)
+        assert isinstance(described.flank, SplineFlank)
+        assert kept_flexibility(frame_of(described)) is kept_flexibility(frame_of())
+    assert len(made) == 1
+
+
+def test_a_change_far_below_rounding_is_the_same_model():
     """A part of 1e-15 of the size of the gear, in a key that tells 1e-9 apart."""
-    found = [key_of(frame_of(gear_with(FlankModifications(lead_crowning=amount)))) for amount in (1e-4, 1e-4 + 1e-13)]
+    found = [key_of(frame_of(gear_with(tip_diameter=diameter))) for diameter in (81.001, 81.001 + 1e-13)]
     assert found[0] == found[1]
 
 

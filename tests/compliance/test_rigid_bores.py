@@ -5,7 +5,6 @@ from pathlib import Path
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.compliance.compliance import rigid_bores
 from loaded_tca.errors import InputError
 from loaded_tca.scene import read_scene
 
@@ -19,18 +18,18 @@ def bending(name="mesh_cycle_finite_elements", **bores):
 
 
 def test_bores_are_those_given_or_a_part_of_the_root():
-    assert_allclose(rigid_bores(bending()), [0.55 * root for root in ROOTS], rtol=1e-12)
-    assert rigid_bores(bending(pinion=30.0, wheel=40.0)) == (30.0, 40.0)
+    assert_allclose(bending().rigid_bores, [0.55 * root for root in ROOTS], rtol=1e-12)
+    assert bending(pinion=30.0, wheel=40.0).rigid_bores == (30.0, 40.0)
 
 
 def test_no_bore_is_held_where_the_flanks_alone_yield():
     scene = bending(pinion=67.4).with_changes({"analysis.compliance": "contact"})
-    assert rigid_bores(scene) is None
+    assert scene.rigid_bores is None
 
 
 def test_bores_of_equal_bevel_gears_are_equal():
     """The toe, where a cone is smallest: below the root there, 17/17 at a right angle."""
-    pinion, wheel = rigid_bores(bending("mesh_cycle_bevel"))
+    pinion, wheel = bending("mesh_cycle_bevel").rigid_bores
     assert_allclose(pinion, wheel, rtol=1e-9)
     outer, inner = 17.0, 17.0 * (12.02 - 4.8) / 12.02  # pitch diameters at heel and toe, R_e = 12.02 mm
     assert 0.4 * inner < pinion < 0.55 * inner < 0.55 * outer
@@ -40,6 +39,6 @@ def test_bores_of_equal_bevel_gears_are_equal():
 def test_bore_that_leaves_no_rim_is_refused_by_its_gear(names):
     given = {name: 0.99 * root for name, root in zip(("pinion", "wheel"), ROOTS, strict=True) if name in names}
     with pytest.raises(InputError) as caught:
-        rigid_bores(bending(**given))
+        _ = bending(**given).rigid_bores
     assert [problem.partition(":")[0] for problem in caught.value.problems] == list(names)
     assert all("no rim is left below the teeth" in problem for problem in caught.value.problems)

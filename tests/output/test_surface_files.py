@@ -6,8 +6,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import InputError
 from loaded_tca.output.surface_files import write_stl, write_teeth, write_vtk
-from loaded_tca.output.teeth_in_space import complete_teeth, teeth_in_space
-from loaded_tca.scene import parse_scene
+from loaded_tca.output.teeth_in_space import teeth_in_space
+from loaded_tca.pairs import mating_teeth
 from loaded_tca.tooth import Resolution, TriangleMesh
 from tests.samples.results import result
 
@@ -147,12 +147,12 @@ def test_file_that_cannot_be_written_is_told_and_nothing_is_left(tmp_path, write
 @pytest.mark.parametrize("whole", [False, True])
 def test_teeth_of_a_result_are_written(tmp_path, whole):
     cycle = result("straight_bevel", positions=3)
-    teeth = complete_teeth(parse_scene(cycle.scene_toml), Resolution(9, 5, 3, 5))
+    teeth = mating_teeth(cycle.gear_pair, Resolution(9, 5, 3, 5))
     shown = teeth_in_space(cycle, teeth)
-    files = write_teeth(shown, teeth, tmp_path, title=cycle.title, whole_gears=whole)
+    files = write_teeth(shown, teeth, tmp_path, title=cycle.scene.title, whole_gears=whole)
     assert {path.name for path in files} == {path.name for path in tmp_path.iterdir()}
     _, _, data = Reader(tmp_path / "pressure.vtk").read()
-    assert_allclose(data["CELL_DATA"]["pressure_MPa"].max(), cycle.maps[0][shown.position].pressure.max())
+    assert_allclose(data["CELL_DATA"]["pressure_MPa"].max(), cycle.maps[0][shown.position][0].pressure.max())
     points, _, data = Reader(tmp_path / "pinion.vtk").read()
     assert_array_equal(points, shown.pinion.vertices)
     assert set(data["CELL_DATA"]["patch"]) == set(range(7))

@@ -1,6 +1,6 @@
 import os
 import sys
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,16 +17,16 @@ from loaded_tca.plots import (
     save_figure,
 )
 from loaded_tca.results.key_figures import ARCSEC
-from loaded_tca.scene import parse_scene
-from tests.samples.results import result, with_a_gap
+from tests.samples.results import PER_PAIR, PER_POSITION, changed, changed_scene, result, with_a_gap
 
 PLOTS = [plot_contact_path, plot_peak_pressure, plot_pressure_map, plot_transmission_error]
 
 
 def nothing_touches():
     cycle = result()
-    nothing = {entry.name: np.full(5, np.nan) for entry in fields(cycle) if entry.metadata}
-    return replace(cycle, **nothing, maps=((None,) * 5,))
+    unknown = {name: np.full((1, 5), np.nan) for name in PER_POSITION}
+    unknown |= {name: np.full((1, 5, 1), np.nan) for name in PER_PAIR if getattr(cycle, name).dtype.kind == "f"}
+    return replace(changed(cycle, **unknown), maps=(((None,),) * 5,))
 
 
 CASES = {
@@ -39,7 +39,9 @@ CASES = {
     "spiral bevel pair": lambda: result("spiral_bevel", positions=3),
     "no load": lambda: result(torques=(0.0,), positions=2),
     "one position": lambda: result(positions=1),
-    "title with signs of TeX": lambda: replace(result(), title="$x_1 \\frac{ 100 %, " + 15 * "a long title "),
+    "title with signs of TeX": lambda: changed_scene(
+        result(), {"title": "$x_1 \\frac{ 100 %, " + 13 * "a long title "}
+    ),
 }
 
 
@@ -63,8 +65,8 @@ def test_every_case_gives_every_picture(case, tmp_path):
 
 def test_map_with_the_ellipse_is_drawn_too_where_the_highest_pressure_has_none(tmp_path):
     hertz = result().hertz_pressure.copy()
-    hertz[result().peak_position(0)] = np.nan
-    assert "pressure_map_hertz" in {path.stem for path in plot_all(replace(result(), hertz_pressure=hertz), tmp_path)}
+    hertz[0][result().peak_contact(0)] = np.nan
+    assert "pressure_map_hertz" in {path.stem for path in plot_all(changed(result(), hertz_pressure=hertz), tmp_path)}
     assert "pressure_map_hertz" not in {path.stem for path in plot_all(result(positions=1), tmp_path)}
 
 
@@ -77,12 +79,11 @@ def test_pictures_of_an_earlier_result_do_not_stay(tmp_path):
 
 def test_peak_at_a_edge_has_a_map_of_its_own(tmp_path):
     cycle = result()
-    relief_start = np.zeros(5, dtype=bool)
-    relief_start[4] = True
-    assert cycle.peak_position(0) != 4
-    assert "pressure_map_edge" in {
-        path.stem for path in plot_all(replace(cycle, at_relief_start=relief_start), tmp_path)
-    }
+    relief_start = np.zeros((1, 5, 1), dtype=bool)
+    relief_start[0, 4] = True
+    assert cycle.peak_contact(0) != (4, 0)
+    drawn = plot_all(changed(cycle, on_relief_start=relief_start), tmp_path)
+    assert "pressure_map_edge" in {path.stem for path in drawn}
 
 
 def test_map_and_flanks_of_one_torque_and_position(tmp_path):
@@ -97,7 +98,7 @@ def test_nothing_touching_gives_all_but_the_pressure_map(tmp_path):
 @pytest.mark.parametrize("plot", PLOTS)
 def test_pictures_tell_load_position_and_units(plot):
     shown = texts(plot(result()))
-    assert result().title in shown
+    assert result().scene.title in shown
     assert "pinion torque 130 N m" in shown
     assert "pinion angle -5.294" in shown
     assert "[mm]" in shown or "[deg]" in shown
@@ -108,7 +109,7 @@ def test_transmission_error_is_drawn_in_arcsec_and_micrometres():
     absolute, _ = figure.axes
     unloaded, loaded = absolute.get_lines()
     assert_allclose(loaded.get_xdata(), np.degrees(result().pinion_angle))
-    assert_allclose(loaded.get_ydata(), result().transmission_error * ARCSEC)
+    assert_allclose(loaded.get_ydata(), result().transmission_error[0] * ARCSEC)
     assert_allclose(unloaded.get_ydata(), result().path.transmission_error * ARCSEC)
     assert "[arcsec]" in texts(figure)
     assert "[µm]" in texts(figure)
@@ -124,8 +125,8 @@ def test_peak_pressure_is_drawn_beside_hertz():
     labels = axes.get_legend_handles_labels()[1]
     assert labels == ["pinion torque 20 N m", "pinion torque 50 N m", "after Hertz"]
     peak, hertz = axes.get_lines()[:2]
-    assert_allclose(peak.get_ydata(), result(torques=(20.0, 50.0)).peak_pressure[0])
-    assert_allclose(hertz.get_ydata(), result(torques=(20.0, 50.0)).hertz_pressure[0])
+    assert_allclose(peak.get_ydata(), result(torques=(20.0, 50.0)).peak_pressure[0, :, 0])
+    assert_allclose(hertz.get_ydata(), result(torques=(20.0, 50.0)).hertz_pressure[0, :, 0])
     assert hertz.get_zorder() < peak.get_zorder()
     assert hertz.get_color() == peak.get_color()
 
@@ -157,9 +158,9 @@ def test_edge_contacts_are_marked_and_no_hertz_is_drawn():
     crosses = [*drawn(axes, "x"), *drawn(axes, "^")]
     assert sum(len(line.get_xdata()) for line in crosses) == 2
     assert {line.get_linestyle() for line in crosses} == {"None"}
-    assert any("at an edge or relief start (grows with the grid)" in label for label in labels)
+    assert any("at an edge or relief start (mesh-dependent)" in label for label in labels)
     assert np.isnan(axes.get_lines()[0].get_ydata()).all()
-    assert_allclose(axes.get_lines()[1].get_ydata(), result("misaligned", positions=2).central_pressure)
+    assert_allclose(axes.get_lines()[1].get_ydata(), result("misaligned", positions=2).central_pressure[0, :, 0])
 
 
 def test_high_peaks_at_a_edge_do_not_rule_the_axis():
@@ -181,8 +182,8 @@ def test_pressure_map_draws_the_ellipse_and_tells_its_scale():
     figure = plot_pressure_map(result(), position=2)
     axes = figure.axes[0]
     (ellipse,) = axes.patches
-    assert_allclose(ellipse.width, 2.0 * result().hertz_semi_major[2])
-    assert_allclose(ellipse.height, 2.0 * result().hertz_semi_minor[2])
+    assert_allclose(ellipse.width, 2.0 * result().hertz_semi_major[0, 2, 0])
+    assert_allclose(ellipse.height, 2.0 * result().hertz_semi_minor[0, 2, 0])
     assert f"(drawn {axes.get_aspect():g} times larger)" in axes.get_ylabel()
     assert "position 3 of 5: pinion angle 0 deg" in texts(figure)
 
@@ -190,13 +191,13 @@ def test_pressure_map_draws_the_ellipse_and_tells_its_scale():
 def test_pressure_map_leaves_cells_without_material_to_the_grey_ground():
     cycle = result("misaligned", positions=2)
     axes = plot_pressure_map(cycle, position=0).axes[0]
-    ground = axes.collections[0].get_array().reshape(cycle.maps[0][0].gap.shape)
-    assert (ground.mask == np.isinf(cycle.maps[0][0].gap)).all()
+    ground = axes.collections[0].get_array().reshape(cycle.maps[0][0][0].gap.shape)
+    assert (ground.mask == np.isinf(cycle.maps[0][0][0].gap)).all()
 
 
 def test_pressure_map_tells_its_directions():
     cycle = result()
-    one = cycle.maps[0][2]
+    one = cycle.maps[0][2][0]
     shown = texts(plot_pressure_map(cycle, position=2))
     assert f"towards z > 0 on the {'right' if one.axes[1, 2] > 0 else 'left'}" in shown
     radius = np.hypot(*(one.origin + 0.1 * one.axes[0])[:2])
@@ -204,7 +205,7 @@ def test_pressure_map_tells_its_directions():
 
 
 def test_pressure_map_where_nothing_touches_is_told():
-    with pytest.raises(IndexError, match="does not touch"):
+    with pytest.raises(IndexError, match="is not in contact"):
         plot_pressure_map(with_a_gap(), position=1)
 
 
@@ -225,7 +226,7 @@ def test_contact_areas_lie_around_the_path_within_the_flank():
 def test_flanks_are_drawn_with_the_part_that_the_mate_reaches(name):
     """The outline is the edge of the flank in its frame; the tip is common, the bottom of the reached part higher."""
     cycle = result(name)
-    pair = parse_scene(cycle.scene_toml).pair()
+    pair = cycle.gear_pair
     for axes, flank in zip(plot_contact_path(cycle).axes, (pair.pinion.flank, pair.wheel.flank), strict=False):
         whole, reached = (patch.get_path() for patch in axes.patches)
         across, up = flank.frame.to_picture(*flank.grid(33, 9))
@@ -243,7 +244,7 @@ def test_pictures_of_bevel_pairs_speak_of_toe_and_heel(name):
     shown = texts(plot_pressure_map(cycle, position=0))
     assert "towards the heel on the right" in shown
     assert "pitch cone" in shown
-    one, frame = cycle.maps[0][0], parse_scene(cycle.scene_toml).pair().pinion.flank.frame
+    one, frame = cycle.maps[0][0][0], cycle.gear_pair.pinion.flank.frame
     heights = [frame.to_picture(np.hypot(*p[:2]), p[2])[1] for p in (one.origin, one.origin + 0.01 * one.axes[0])]
     assert f"pinion's {'tip' if heights[1] > heights[0] else 'root'} at the top" in shown
     flanks = plot_contact_path(cycle)
@@ -254,7 +255,7 @@ def test_pictures_of_bevel_pairs_speak_of_toe_and_heel(name):
 def test_colours_of_the_flanks_begin_at_zero():
     cycle = result()
     limits = plot_contact_path(cycle).axes[0].collections[0].get_clim()
-    assert limits == (0.0, max(one.pressure.max() for one in cycle.maps[0]))
+    assert limits == (0.0, max(one.pressure.max() for (one,) in cycle.maps[0]))
 
 
 def test_pictures_of_one_torque_say_which_of_several():
@@ -291,15 +292,15 @@ def test_colours_of_a_edge_map_do_not_follow_its_spike():
     cycle = result("fzg_c14", positions=3)
     at = cycle.edge_contact(0)
     bar = plot_pressure_map(cycle, at[0], 0, at[1]).axes[-1]
-    one = cycle.contacts.maps[0][at[0]][at[1]].pressure
-    assert np.nanmax(cycle.inner_pressure) <= bar.get_ylim()[1] < 0.9 * cycle.peak_pressure.max()
+    one = cycle.maps[0][at[0]][at[1]].pressure
+    assert np.nanmax(cycle.mesh_independent_pressure) <= bar.get_ylim()[1] < 0.9 * cycle.peak_pressure.max()
     assert (one > bar.get_ylim()[1]).sum() <= 0.05 * (one > 0.0).sum() + 1
     assert f"up to {cycle.peak_pressure.max():.0f}" in bar.get_ylabel()
 
 
 @pytest.mark.parametrize(("part", "told"), [(0.001, False), (0.1, True)])
 def test_legend_of_the_flanks_names_a_grey_area_only_where_it_is_seen(part, told, monkeypatch):
-    scene = parse_scene(result().scene_toml)
+    scene = result().scene
     pair = scene.pair()
     heights = [flank.profile_coordinate(*flank.grid(129, 33)).value for flank in (pair.pinion.flank, pair.wheel.flank)]
     starts = tuple(float(height.min() + part * np.ptp(height)) for height in heights)

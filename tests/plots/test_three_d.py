@@ -1,5 +1,4 @@
 import sys
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,7 +9,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.plots import save_figure
 from loaded_tca.plots.three_d import plot_teeth, show_teeth
-from tests.samples.results import result, with_a_gap
+from tests.samples.results import changed_scene, result, with_a_gap
 
 
 def axes_of(figure):
@@ -46,12 +45,12 @@ def test_picture_without_load_has_no_pressure():
 
 
 def test_title_is_taken_literally():
-    cycle = replace(result(positions=3), title="$x_1 \\frac{ 100 %")
+    cycle = changed_scene(result(positions=3), {"title": "$x_1 \\frac{ 100 %"})
     assert isinstance(plot_teeth(cycle), Figure)
 
 
 def test_position_without_contact_is_refused():
-    with pytest.raises(GeometryError, match="does not touch"):
+    with pytest.raises(GeometryError, match="is not in contact"):
         plot_teeth(with_a_gap(), position=1)
 
 

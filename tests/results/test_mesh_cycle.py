@@ -1,16 +1,23 @@
+import doctest
 import re
-from dataclasses import fields, replace
+import subprocess
+import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray
+from matplotlib.figure import Figure
 from numpy.testing import assert_allclose
 
 from loaded_tca.analysis import analyse
 from loaded_tca.errors import InputError
-from loaded_tca.results.files import read_netcdf, write_netcdf
-from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.files import read_dataset, write_dataset
+from loaded_tca.results.mesh_cycle import QUANTITIES, MeshCycle
 from loaded_tca.scene import read_scene
-from tests.samples.results import SCENES, assert_same, result, with_a_gap
+from tests.samples.results import PER_PAIR, PER_POSITION, SCENES, assert_same, changed, result, with_a_gap
+
+SCENE = str(SCENES / "helical.toml")
 
 
 @pytest.fixture
@@ -40,54 +47,117 @@ def test_result_survives_its_file_unchanged(path, make):
 
 
 def test_infinite_gaps_survive_padding(path):
-    small = with_a_gap().maps[0][-1]
+    small = with_a_gap().maps[0][-1][0]
     gap = small.gap.copy()
     gap[0, :3] = np.inf
-    maps = tuple((*row[:-1], replace(small, gap=gap)) for row in with_a_gap().maps)
+    maps = tuple((*row[:-1], (replace(small, gap=gap),)) for row in with_a_gap().maps)
     replace(with_a_gap(), maps=maps).save(path)
-    found = MeshCycle.load(path).maps[0][-1].gap
+    found = MeshCycle.load(path).maps[0][-1][0].gap
     assert found.shape == gap.shape
     assert np.isinf(found[0, :3]).all()
     assert np.isfinite(found[1:]).all()
 
 
 def test_result_without_any_map_survives(path):
-    empty = replace(result(), maps=((None,) * 5,))
+    empty = replace(result(), maps=(((None,),) * 5,))
     empty.save(path)
-    assert MeshCycle.load(path).maps == ((None,) * 5,)
+    assert MeshCycle.load(path).maps == (((None,),) * 5,)
 
 
 def test_every_variable_of_a_file_has_unit_and_text(path):
     result().save(path)
-    variables, attributes = read_netcdf(path)
-    assert all(variable.unit and variable.text for variable in variables.values())
-    assert variables["torque"].unit == "N mm"
-    assert attributes["scene_toml"] == result().scene_toml
+    found = read_dataset(path)
+    for variables in (found.variables, result().dataset.variables):
+        assert all(one.attrs["units"] and one.attrs["long_name"] for one in variables.values())
+        assert variables["torque"].attrs["units"] == "N mm"
+    assert found.attrs["scene_toml"] == result().scene.to_toml()
 
 
 def test_xarray_opens_the_file(path):
-    xarray = pytest.importorskip("xarray")
     result().save(path)
     with xarray.open_dataset(path, engine="scipy") as data:
         assert_allclose(data.peak_pressure, result().peak_pressure)
-        assert data.path_touches.dtype == bool
+        assert data.path_in_contact.dtype == bool
 
 
 def test_file_that_lacks_parts_is_told(path):
     result().save(path)
-    variables, attributes = read_netcdf(path)
-    del variables["approach"], variables["path_point"]
-    write_netcdf(path, variables, attributes)
+    write_dataset(path, read_dataset(path).drop_vars(["contact_deformation", "path_point"]))
     with pytest.raises(InputError) as caught:
         MeshCycle.load(path)
     assert caught.value.problems[0] == f"{path}: not the result of a mesh cycle"
-    assert "approach: missing" in caught.value.problems
+    assert caught.value.problems[1:] == ("contact_deformation: missing", "path_point: missing")
 
 
 def test_empty_file_of_this_package_is_told(path):
-    write_netcdf(path, {}, {})
+    write_dataset(path, xarray.Dataset())
     with pytest.raises(InputError, match="not the result of a mesh cycle"):
         MeshCycle.load(path)
+
+
+def test_file_with_a_dimension_of_another_length_is_told(path):
+    result().save(path)
+    write_dataset(path, read_dataset(path).isel(path=[0], vector=[0, 1]))
+    with pytest.raises(InputError) as caught:
+        MeshCycle.load(path)
+    assert caught.value.problems[1:] == ("vector: 2 long, expected 3", "path: 1 long, expected 2")
+
+
+@pytest.mark.parametrize("text", ["", "pair = ", "[pair]\ntype = 'worm'"])
+def test_file_without_a_scene_is_told(path, text):
+    result().save(path)
+    write_dataset(path, read_dataset(path).assign_attrs(scene_toml=text))
+    with pytest.raises(InputError, match="not the result of a mesh cycle"):
+        MeshCycle.load(path)
+
+
+@pytest.mark.parametrize("torques", [None, (20.0, 80.0)])
+def test_every_quantity_is_an_array_with_its_axes(torques):
+    cycle = result(torques=torques)
+    sizes = {"torque": len(torques or [0]), "position": 5, "pair": 1}
+    for name, (axes, *_) in QUANTITIES.items():
+        values = getattr(cycle, name)
+        assert name in dir(cycle)
+        if axes:
+            assert isinstance(values, np.ndarray)
+            assert values.shape == tuple(sizes[axis] for axis in axes)
+            assert cycle.dataset[name].dims == axes
+        else:
+            assert isinstance(values, float)
+
+
+def test_unknown_name_is_no_attribute():
+    with pytest.raises(AttributeError, match="'MeshCycle' object has no attribute 'peak'"):
+        result().peak  # noqa: B018
+
+
+def test_dataset_selects_tabulates_and_draws():
+    cycle = result(torques=(20.0, 80.0))
+    low = cycle.dataset.sel(torque=20e3, pair=0)
+    assert_allclose(low.peak_pressure, cycle.peak_pressure[0, :, 0])
+    table = cycle.dataset[["peak_pressure", "load_share"]].to_dataframe()
+    assert_allclose(table.loc[(80e3, slice(None), 0), "peak_pressure"], cycle.peak_pressure[1, :, 0])
+    axes = Figure().add_subplot()
+    cycle.dataset.transmission_error.plot.line(x="pinion_angle", hue="torque", ax=axes)
+    assert "[rad]" in axes.get_xlabel()
+    assert_allclose(axes.lines[1].get_ydata(), cycle.transmission_error[1])
+
+
+def test_guide_to_the_dataset_shows_what_happens(monkeypatch):
+    monkeypatch.chdir(SCENES.parents[1])
+    found = doctest.testfile(str(SCENES.parents[1] / "docs" / "results.md"), module_relative=False)
+    assert found.attempted >= 8
+    assert found.failed == 0
+
+
+@pytest.mark.parametrize(
+    "command", ["import loaded_tca", f"from loaded_tca.cli import main; main(['check', {SCENE!r}])"]
+)
+def test_xarray_is_not_imported_before_there_is_a_result(command):
+    done = subprocess.run(
+        [sys.executable, "-c", f"{command}\nimport sys; assert 'xarray' not in sys.modules"], capture_output=True
+    )
+    assert done.returncode == 0, done.stderr.decode()
 
 
 def test_figures_agree_with_the_fields():
@@ -95,8 +165,9 @@ def test_figures_agree_with_the_fields():
     low, high = cycle.key_figures()
     assert (low["pinion_torque_Nm"], high["pinion_torque_Nm"]) == (20.0, 80.0)
     assert high["peak_pressure_MPa"] == cycle.peak_pressure[1].max()  # clear of edges
-    assert_allclose(high["pinion_diameter_at_peak_mm"], 2.0 * cycle.peak_radius[1, cycle.peak_position(1)])
-    assert_allclose(high["pinion_angle_at_peak_deg"], np.degrees(cycle.pinion_angle[cycle.peak_position(1)]))
+    position, _ = cycle.peak_contact(1)
+    assert_allclose(high["pinion_diameter_at_peak_mm"], 2.0 * cycle.peak_radius[1, position, 0])
+    assert_allclose(high["pinion_angle_at_peak_deg"], np.degrees(cycle.pinion_angle[position]))
     span = np.ptp(cycle.transmission_error[1])
     assert_allclose(high["transmission_error_span_arcsec"], np.degrees(span) * 3600.0)
     assert_allclose(high["transmission_error_span_um"], span * cycle.wheel_base_radius * 1e3)
@@ -112,12 +183,19 @@ def test_figures_skip_positions_that_do_not_touch():
 
 
 def test_nothing_touching_leaves_figures_unknown():
-    cycle = result()
-    nothing = {entry.name: np.full(5, np.nan) for entry in fields(cycle) if entry.metadata}
-    cycle = replace(cycle, **nothing)
-    assert cycle.peak_position(0) is None
+    cycle = nothing_in_contact()
+    assert cycle.peak_contact(0) is None
     assert np.isnan(cycle.key_figures()[0]["peak_pressure_MPa"])
     assert "- | -" in cycle.summary()
+
+
+def nothing_in_contact():
+    """A result of which every number is unknown."""
+    cycle = result()
+    unknown = {name: np.full((1, 5), np.nan) for name in PER_POSITION}
+    unknown |= {name: np.full((1, 5, 1), np.nan) for name in PER_PAIR if getattr(cycle, name).dtype.kind == "f"}
+    none = {name: np.zeros((1, 5, 1), getattr(cycle, name).dtype) for name in PER_PAIR if name not in unknown}
+    return replace(changed(cycle, **unknown, **none), maps=(((None,),) * 5,))
 
 
 def line(text, label):
@@ -144,15 +222,15 @@ def test_summary_shows_the_pitch_point_in_engineers_units():
 
 def test_peak_where_hertz_holds_leaves_edges_out():
     hertz = result().hertz_pressure.copy()
-    highest = result().peak_position(0)
-    hertz[highest] = np.nan
-    cycle = replace(result(), hertz_pressure=hertz)
-    smooth = cycle.peak_position(0, where_hertz_holds=True)
-    assert cycle.peak_position(0) == highest != smooth
+    highest = result().peak_contact(0)
+    hertz[0][highest] = np.nan
+    cycle = changed(result(), hertz_pressure=hertz)
+    smooth = cycle.peak_contact(0, where_hertz_holds=True)
+    assert cycle.peak_contact(0) == highest != smooth
     (figures,) = cycle.key_figures()
-    assert figures["hertz_pressure_there_MPa"] == hertz[smooth]
+    assert figures["hertz_pressure_there_MPa"] == hertz[0][smooth]
     assert figures["peak_pressure_where_hertz_holds_MPa"] < figures["peak_pressure_MPa"]
-    assert edge_contact().peak_position(0, where_hertz_holds=True) is None
+    assert edge_contact().peak_contact(0, where_hertz_holds=True) is None
 
 
 def test_summary_has_a_column_per_torque():
@@ -163,44 +241,47 @@ def test_summary_has_a_column_per_torque():
 def test_summary_tells_what_limits_it():
     text = edge_contact().summary()
     assert "note: at 2 of 2 positions the contact reaches an edge of a flank" in text
-    assert "note: the contact point itself lies on an edge or relief start: the peak pressure given grows" in text
-    assert "note: at 1 of 5 positions (all torques) the tooth pair does not touch" in with_a_gap().summary()
+    assert (
+        "note: the contact point itself lies on an edge or relief start: the peak pressure given is mesh-dependent"
+        in text
+    )
+    assert "note: at 1 of 5 positions (all torques) no tooth pair is in contact" in with_a_gap().summary()
     assert "note" not in result(positions=1).summary()
 
 
 def with_a_edge_peak(at, torques=None):
     """A contact whose largest cell lies beside cells without material at one position, as of the last torque."""
     cycle = result(torques=torques)
-    one = cycle.maps[-1][at]
+    one = cycle.maps[-1][at][0]
     pressure, gap = one.pressure.copy(), one.gap.copy()
     gap[:, -1] = np.inf
     pressure[10, -2] = 2.0 * pressure.max()
     maps = [list(row) for row in cycle.maps]
-    maps[-1][at] = replace(one, pressure=pressure, gap=gap)
+    maps[-1][at] = (replace(one, pressure=pressure, gap=gap),)
     peak = cycle.peak_pressure.copy()
-    peak.reshape(-1, 5)[-1, at] = pressure.max()
+    peak[-1, at] = pressure.max()
     edge = cycle.on_edge.copy()
-    edge.reshape(-1, 5)[-1, at] = True
-    return replace(cycle, maps=tuple(map(tuple, maps)), peak_pressure=peak, on_edge=edge)
+    edge[-1, at] = True
+    return replace(changed(cycle, peak_pressure=peak, on_edge=edge), maps=tuple(map(tuple, maps)))
 
 
 def test_first_number_is_no_peak_at_a_edge():
     cycle, whole = with_a_edge_peak(4), result()
     (figures,), (before,) = cycle.key_figures(), whole.key_figures()
-    assert cycle.peak_at_edge.tolist() == [False] * 4 + [True]
+    assert cycle.peak_at_edge[0, :, 0].tolist() == [False] * 4 + [True]
     assert figures["peak_pressure_MPa"] == before["peak_pressure_MPa"]
-    assert figures["edge_pressure_MPa"] == cycle.peak_pressure[4]
+    assert figures["edge_pressure_MPa"] == cycle.peak_pressure[0, 4, 0]
     assert_allclose(figures["pinion_angle_at_edge_deg"], np.degrees(cycle.pinion_angle[4]))
-    assert_allclose(cycle.inner_pressure[4], whole.central_pressure[4])
+    assert_allclose(cycle.mesh_independent_pressure[0, 4], whole.central_pressure[0, 4])
     assert "note: at 1 of 5 positions the largest cell lies at an edge" in cycle.summary()
     assert float(line(cycle.summary(), "at an edge or relief start").split()[-3]) > figures["peak_pressure_MPa"]
 
 
 def test_contact_that_reaches_a_edge_with_its_peak_mid_flank_keeps_it():
-    cycle = replace(result(), on_edge=np.ones(5, dtype=bool))
+    cycle = changed(result(), on_edge=np.ones((1, 5, 1), dtype=bool))
     assert not cycle.peak_at_edge.any()
-    assert_allclose(cycle.inner_pressure, cycle.peak_pressure)
-    assert "grows" not in cycle.summary()
+    assert_allclose(cycle.mesh_independent_pressure, cycle.peak_pressure)
+    assert "mesh-dependent" not in cycle.summary()
     assert "at an edge or relief start" not in cycle.summary()
 
 
@@ -217,32 +298,32 @@ def test_peaks_at_every_edge_leave_the_highest_central_pressure():
 
 def test_contact_points_on_a_edge_are_told():
     (figures,) = edge_contact().key_figures()
-    assert np.isnan(edge_contact().inner_pressure).all()
+    assert np.isnan(edge_contact().mesh_independent_pressure).all()
     assert figures["contact_point_is_at_edge"]
     assert figures["peak_pressure_MPa"] == edge_contact().central_pressure.max()
 
 
 def test_relief_start_in_the_contact_makes_a_peak_doubtful():
-    relief_start = np.array([True, False, False, False, False])
-    cycle = replace(result(), at_relief_start=relief_start)
+    relief_start = np.array([True, False, False, False, False])[None, :, None]
+    cycle = changed(result(), on_relief_start=relief_start)
     assert (cycle.peak_at_edge == relief_start).all()
     assert "note: at 1 of 5 positions the start of a linear relief lies in the contact" in cycle.summary()
 
 
 def test_pressure_cap_is_told():
     peak = result().peak_pressure
-    reached = replace(result(), max_pressure=float(peak.min()), peak_pressure=np.full(5, peak.min()))
+    reached = changed(result(), max_pressure=peak.min(), peak_pressure=np.full((1, 5, 1), peak.min()))
     assert reached.capped.all()
     assert (
         f"note: at 5 of 5 positions the peak equals the cap on the pressure, {peak.min():.6g} MPa" in reached.summary()
     )
-    assert "cap on the pressure, 9000 MPa, is not reached" in replace(result(), max_pressure=9000.0).summary()
+    assert "cap on the pressure, 9000 MPa, is not reached" in changed(result(), max_pressure=9000.0).summary()
     assert not result().capped.any()
 
 
 def test_peak_that_reaches_the_cap_at_a_edge_is_not_the_first_number():
     cycle = with_a_edge_peak(4)
-    (figures,) = replace(cycle, max_pressure=float(cycle.peak_pressure[4])).key_figures()
+    (figures,) = changed(cycle, max_pressure=cycle.peak_pressure[0, 4, 0]).key_figures()
     assert figures["capped_positions"] == 1
     assert figures["peak_pressure_MPa"] == result().peak_pressure.max() < figures["edge_pressure_MPa"]
 
@@ -263,7 +344,7 @@ def test_notes_say_for_which_torques():
 
 def test_contact_is_no_longer_than_the_face():
     cycle = result("fzg_c14", positions=1)
-    assert_allclose(cycle.contact_length[0], 14.0, rtol=1e-6)
+    assert_allclose(cycle.contact_length, [[[14.0]]], rtol=1e-6)
 
 
 def test_summary_of_a_line_contact_says_so():

@@ -34,7 +34,7 @@ def test_misaligned_contact_reaches_one_side():
 def test_contact_that_comes_into_mesh_early_reaches_the_tip_of_the_wheel():
     cycle = result("mesh_cycle_helical", positions=5, torques=(260.0,))
     reached = reached_edges(cycle)[0]
-    column = {int(pair): k for k, pair in enumerate(cycle.pairs)}
+    column = {int(pair): k for k, pair in enumerate(cycle.pair)}
     tips = [NAMES.index("wheel tip"), NAMES.index("pinion tip")]
     assert reached[:, column[1], tips[0]].any()
     assert not reached[:, column[1], tips[1]].any()
@@ -53,4 +53,4 @@ def test_contact_that_comes_into_mesh_early_reaches_the_tip_of_the_wheel():
 )
 def test_edge_is_named_where_and_only_where_a_contact_reaches_one(make):
     cycle = make()
-    np.testing.assert_array_equal(reached_edges(cycle).any(axis=-1), cycle.contacts.on_edge > 0)
+    np.testing.assert_array_equal(reached_edges(cycle).any(axis=-1), cycle.on_edge)

@@ -4,39 +4,34 @@ from functools import cache
 
 import numpy as np
 
-from loaded_tca.compliance import FlankLine, GearCompliance, GearTooth, MeshDensity, gear_compliance
+from loaded_tca.compliance import FlankLine, GearCompliance, MeshDensity, gear_compliance
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
+from loaded_tca.material import Material
 from loaded_tca.pairs.cylindrical import cylindrical_pair
-from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.tooth import tooth_forms
+from loaded_tca.pairs.gear import Gear
 
 WIDTH = 20.0
 COARSE = MeshDensity(lengthwise=4)
 
 
-def spur_mesh(width=WIDTH, helix_angle=0.0) -> CylindricalMesh:
+def spur_mesh(width=WIDTH, helix_angle=0.0, bore_diameters=(None, None)) -> CylindricalMesh:
     gears = [
-        CylindricalGear(teeth=z, normal_module=3.0, face_width=width, helix_angle=beta)
-        for z, beta in ((25, helix_angle), (37, -helix_angle))
+        CylindricalGear(teeth=z, normal_module=3.0, face_width=width, helix_angle=beta, bore_diameter=bore)
+        for z, beta, bore in zip((25, 37), (helix_angle, -helix_angle), bore_diameters, strict=True)
     ]
     return CylindricalMesh(*gears)
 
 
-def both_senses(mesh: CylindricalMesh) -> tuple[GearPair, GearPair]:
-    return cylindrical_pair(mesh, sense="positive"), cylindrical_pair(mesh, sense="negative")
-
-
-def pinion(bore_diameter=None, width=WIDTH, **material) -> GearTooth:
-    mesh = spur_mesh(width)
-    pair, backs = both_senses(mesh)
-    return GearTooth(
-        (pair.pinion.flank, backs.pinion.flank), tooth_forms(mesh)[0], bore_diameter=bore_diameter, **material
-    )
+def pinion(bore_diameter=None, width=WIDTH, side=1, material=Material()) -> Gear:
+    """Of a spur pair, in contact with the flank of a side."""
+    sense = "positive" if side > 0 else "negative"
+    mesh = spur_mesh(width, bore_diameters=(bore_diameter, None))
+    return cylindrical_pair(mesh, sense=sense, materials=(material, Material())).pinion
 
 
 @cache
 def model(density: MeshDensity = COARSE, side: int = 1, bore_diameter: float | None = None) -> GearCompliance:
-    return gear_compliance(pinion(bore_diameter), side, density)
+    return gear_compliance(pinion(bore_diameter, side=side), density)
 
 
 PLACES, WEIGHTS = np.polynomial.legendre.leggauss(40)

@@ -6,13 +6,16 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+import xarray
 from numpy.testing import assert_array_equal
 
 from loaded_tca.analysis import analyse
 from loaded_tca.errors import AccuracyWarning
-from loaded_tca.scene import read_scene
+from loaded_tca.results.mesh_cycle import CYCLE, PAIRS, QUANTITIES
+from loaded_tca.scene import Scene, read_scene
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
+PER_POSITION, PER_PAIR = ([name for name, (axes, *_) in QUANTITIES.items() if axes == one] for one in (CYCLE, PAIRS))
 
 
 @cache
@@ -35,20 +38,29 @@ def result(name="helical", positions=5, torques=None, title=None):
 def with_a_gap():
     """A result whose second position does not touch, and whose last map is smaller than the others."""
     whole = result(torques=(20.0, 80.0))
-    rows = {
-        entry.name: _blanked(whole.by_torque(entry.name), (slice(None), 1)) for entry in fields(whole) if entry.metadata
-    }
+    numbers = {name: _blanked(getattr(whole, name), np.s_[:, 1]) for name in (*PER_POSITION, *PER_PAIR)}
+    numbers["unloaded_transmission_error"] = _blanked(whole.unloaded_transmission_error, 1)
     path = {
         entry.name: _blanked(getattr(whole.path, entry.name), 1)
         for entry in fields(whole.path)
         if entry.name != "pinion_angle"
     }
-    small = whole.maps[0][-1]
+    small = whole.maps[0][-1][0]
     small = replace(small, x=small.x[4:-4], pressure=small.pressure[4:-4], gap=small.gap[4:-4])
-    maps = tuple((row[0], None, *row[2:-1], small) for row in whole.maps)
-    return replace(
-        whole, **rows, path=replace(whole.path, **path), maps=maps, load_share=_blanked(whole.load_share, np.s_[:, 1])
-    )
+    maps = tuple((row[0], (None,), *row[2:-1], (small,)) for row in whole.maps)
+    path = replace(whole.path, **path)
+    return replace(changed(whole, **numbers), path=path, paths=(path,), maps=maps)
+
+
+def changed(cycle, **numbers):
+    """The result with other arrays in its dataset."""
+    variables = {name: cycle.dataset[name].copy(data=np.asarray(values)) for name, values in numbers.items()}
+    return replace(cycle, dataset=cycle.dataset.assign(variables))
+
+
+def changed_scene(cycle, changes):
+    """The result with other values in its scene."""
+    return replace(cycle, scene=cycle.scene.with_changes(changes))
 
 
 def _blanked(values, place):
@@ -59,7 +71,14 @@ def _blanked(values, place):
 
 def assert_same(first, second):
     """Equal to the last bit, arrays of the same type, NaN where NaN is."""
-    if is_dataclass(first):
+    if isinstance(first, xarray.Dataset):
+        xarray.testing.assert_identical(first, second)
+        assert {name: one.dtype for name, one in first.variables.items()} == {
+            name: one.dtype for name, one in second.variables.items()
+        }
+    elif isinstance(first, Scene):
+        assert first == second
+    elif is_dataclass(first):
         assert type(first) is type(second)
         for entry in fields(first):
             assert_same(getattr(first, entry.name), getattr(second, entry.name))

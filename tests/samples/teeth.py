@@ -8,7 +8,7 @@ from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import BevelMesh, CylindricalGear, CylindricalMesh, bevel_mesh
 from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.cylindrical import cylindrical_pair
-from loaded_tca.tooth import Resolution, build_tooth, tooth_forms
+from loaded_tca.tooth import Resolution, build_tooth
 from tests.samples.gear_pairs import NONE, cylindrical_mesh
 
 COARSE = Resolution(flank=9, fillet=7, land=3, lengthwise=5)
@@ -32,15 +32,23 @@ def pair_of(mesh, sense="positive", modifications=NONE, **changes):
     return make(mesh, sense=sense, modifications=(modifications, modifications), **changes)
 
 
+def gear_of(mesh, member=0, modifications=NONE):
+    pair = pair_of(mesh, modifications=modifications)
+    return (pair.pinion, pair.wheel)[member]
+
+
 def flanks_of(mesh, member=0, modifications=NONE):
     """Both flanks of a gear, s = +1 first."""
-    pairs = [pair_of(mesh, sense, modifications) for sense in ("positive", "negative")]
-    return tuple((pair.pinion.flank, pair.wheel.flank)[member] for pair in pairs)
+    return gear_of(mesh, member, modifications).flanks
+
+
+def form_of(mesh, member=0, fillet_radius=None):
+    form = gear_of(mesh, member).form
+    return form if fillet_radius is None else form.with_arc(fillet_radius)
 
 
 def tooth_of(mesh, member=0, modifications=NONE, resolution=COARSE, fillet_radius=None):
-    form = tooth_forms(mesh, fillet_radius=fillet_radius)[member]
-    return build_tooth(flanks_of(mesh, member, modifications), form, resolution)
+    return build_tooth(flanks_of(mesh, member, modifications), form_of(mesh, member, fillet_radius), resolution)
 
 
 def image(outline, sections):

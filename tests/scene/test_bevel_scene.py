@@ -13,7 +13,7 @@ from loaded_tca.flanks.base import outward_normal
 from loaded_tca.gears import bevel_mesh
 from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.scene import BevelScene, CylindricalScene, parse_scene, scene_from_table
-from loaded_tca.scene.bevel import Gear, Geometry, MountingErrors
+from loaded_tca.scene.bevel import GearSection, Geometry, MountingErrors
 
 ROUNDING = 1e-13  # a few multiplications by units and trigonometric functions
 
@@ -167,7 +167,7 @@ def test_straight_pair_may_say_that_its_spiral_angle_is_zero(spiral):
 
 def test_text_of_the_smallest_scene_has_every_key(spiral):
     text = spiral.to_toml()
-    for section in (Geometry, Gear, MountingErrors):
+    for section in (Geometry, GearSection, MountingErrors):
         assert all(field.name in text for field in fields(section))
     assert text.index("[pair]") < text.index("[pinion]") < text.index("[mounting]") < text.index("[analysis]")
 

@@ -19,7 +19,7 @@ from loaded_tca.output.overview import describe_scene
 from loaded_tca.pairs.bevel import BevelMounting
 from loaded_tca.pairs.face_milled import face_milled_pair
 from loaded_tca.scene import FaceMilledScene, parse_scene, read_scene, scene_from_table
-from loaded_tca.scene.face_milled import Blade, Blank, Cutter, FaceMilled, Geometry, Machine, MountingErrors
+from loaded_tca.scene.face_milled import Blade, Blank, Cutter, GearSection, Geometry, Machine, MountingErrors
 from loaded_tca.unloaded import trace_contact
 from tests.samples.face_milled import matched_pinion, published_wheel
 
@@ -229,7 +229,7 @@ CANNOT_BE = [
     (
         {"pinion.bore_diameter_mm": 60.0},
         InputError,
-        r"pinion\.bore_diameter_mm: found 60; allowed below the root diameter at the toe, 51\.49",
+        r"pinion: bore_diameter: 60 mm is not below the root diameter at the toe, 51\.49",
     ),
     (
         {"pair.pinion_flank": "convex", "pinion.cutter.convex": None},
@@ -278,7 +278,7 @@ def test_defaults_are_those_of_the_documentation(table):
 
 def test_text_of_a_scene_has_every_key(scene):
     text = scene.to_toml()
-    for section in (Geometry, FaceMilled, Blank, Machine, Cutter, Blade, MountingErrors):
+    for section in (Geometry, GearSection, Blank, Machine, Cutter, Blade, MountingErrors):
         assert all(field.name in text for field in fields(section) if field.name != "geometry")
     assert text.index("[pinion.cutter.concave]") < text.index("[wheel]") < text.index("[mounting]")
 

@@ -193,7 +193,7 @@ def test_result_of_a_measured_flank_opens_without_the_file(small, scene, tmp_pat
     first = read_scene(path).with_changes({"analysis.positions": 1, "analysis.cells": (16, 16)})
     analyse(first).save(tmp_path / "result.nc")
     (path.parent / "wheel.csv").unlink()
-    assert parse_scene(load_result(tmp_path / "result.nc").scene_toml) == first
+    assert load_result(tmp_path / "result.nc").scene == first
 
 
 def test_largest_measurement_survives_its_own_text(scene, rng):

@@ -21,7 +21,7 @@ from loaded_tca.scene import (
     scene_from_table,
 )
 from loaded_tca.scene.build import in_base_units
-from loaded_tca.scene.cylindrical import Gear, Geometry, MountingErrors
+from loaded_tca.scene.cylindrical import GearSection, Geometry, MountingErrors
 from loaded_tca.unloaded import trace_contact
 
 ROOT = Path(__file__).parents[2]
@@ -134,7 +134,7 @@ def test_own_material_overrides_the_common_one(scene):
 
 def test_text_of_the_smallest_scene_has_every_key(scene):
     text = scene.to_toml()
-    for section in (Geometry, Gear, Modifications, MountingErrors, ElasticMaterial, Load, Analysis):
+    for section in (Geometry, GearSection, Modifications, MountingErrors, ElasticMaterial, Load, Analysis):
         for field in fields(section):
             assert field.name in text
 

@@ -21,10 +21,9 @@ from loaded_tca.tooth import (
     ToothForm,
     TransversePlanes,
     build_tooth,
-    tooth_forms,
 )
 from tests.samples.gear_pairs import cylindrical_mesh, meshes
-from tests.samples.teeth import COARSE, CROWNED, MESHES, NONE, RELIEVED, crossings, flanks_of, image, tooth_of
+from tests.samples.teeth import COARSE, CROWNED, MESHES, NONE, RELIEVED, crossings, flanks_of, form_of, image, tooth_of
 
 ROUNDING = 1e-12
 
@@ -64,7 +63,7 @@ def test_tip_land_of_a_bevel_gear_lies_on_the_face_cone(name):
 @pytest.mark.parametrize("name", MESHES)
 def test_root_land_lies_on_the_root_surface(name):
     mesh = MESHES[name]
-    form = tooth_forms(mesh)[0]
+    form = form_of(mesh)
     for side in "-+":
         land = tooth_of(mesh).patch(f"root land {side}")
         rho, z = np.hypot(land[..., 0], land[..., 1]), land[..., 2]
@@ -76,7 +75,7 @@ def test_root_land_lies_on_the_root_surface(name):
 @pytest.mark.parametrize("name", MESHES)
 def test_patches_lie_on_their_flanks(name, modifications):
     mesh = MESHES[name]
-    tooth, half = tooth_of(mesh, 0, modifications), tooth_forms(mesh)[0].half_thickness_angle
+    tooth, half = tooth_of(mesh, 0, modifications), form_of(mesh).half_thickness_angle
     for flank, side in zip(flanks_of(mesh, 0, modifications), "+-", strict=True):
         x, y, z = np.moveaxis(tooth.patch(f"flank {side}"), -1, 0)
         theta = flank.theta(np.hypot(x, y), z).value + flank.side * half
@@ -105,7 +104,7 @@ def test_next_tooth_begins_where_this_one_ends(name):
 @pytest.mark.parametrize("name", MESHES)
 def test_outline_does_not_cross_itself(name):
     mesh = MESHES[name]
-    radius, angle = image(tooth_of(mesh, 0, RELIEVED).outline, tooth_forms(mesh)[0].sections)
+    radius, angle = image(tooth_of(mesh, 0, RELIEVED).outline, form_of(mesh).sections)
     for section in range(radius.shape[1]):
         middle = angle[:, section].mean()
         polar = radius[:, section], angle[:, section] - middle
@@ -142,14 +141,14 @@ def test_bevel_tooth_of_small_pitch_angle_is_the_cylindrical_one():
     plus, minus = (InvoluteFlank(spur.base_radius, 0.0, side, spur.reference_radius, edges, 1.0) for side in (1, -1))
     form = ToothForm(24, half, TransversePlanes(), RootCylinder(spur.root_radius), ArcFillet(radius))
     flat = image(build_tooth((plus, minus), form, COARSE).outline, form.sections)
-    cone = image(tooth_of(bevel, 0, fillet_radius=radius).outline, tooth_forms(bevel)[0].sections)
+    cone = image(tooth_of(bevel, 0, fillet_radius=radius).outline, form_of(bevel).sections)
     assert_allclose(cone[0][:, -1], flat[0][:, -1], rtol=4e-4)  # the square of the pitch angle
     assert_allclose(cone[1][:, -1], flat[1][:, -1], atol=4e-4)
 
 
 def test_root_cone_off_the_apex_is_met_by_every_sphere():
     cone, distance = RootCone(math.radians(30.0), apex=2.0), np.array([40.0, 50.0, 60.0])
-    rho, z = tooth_forms(MESHES["miter gear"])[0].sections.point(cone(distance), distance)
+    rho, z = form_of(MESHES["miter gear"]).sections.point(cone(distance), distance)
     assert_allclose(rho, (z - 2.0) * math.tan(math.radians(30.0)), rtol=ROUNDING)
     assert_allclose(np.hypot(rho, z), distance, rtol=ROUNDING)
 
@@ -157,7 +156,7 @@ def test_root_cone_off_the_apex_is_met_by_every_sphere():
 def test_fitted_flanks_give_the_same_tooth():
     mesh = MESHES["spiral bevel"]
     plus, minus = flanks_of(mesh, 0, CROWNED)
-    form = tooth_forms(mesh)[0]
+    form = form_of(mesh)
     exact = build_tooth((plus, minus), form, COARSE)
     splines = build_tooth((fitted(plus, (17, 17)), fitted(minus, (17, 17))), form, COARSE)
     for name in ("flank +", "flank -", "fillet +"):
@@ -194,7 +193,7 @@ def test_random_bevel_teeth_are_closed(teeth, shaft, spiral, part):
 def test_default_arc_shrinks_to_what_fits():
     """A dedendum as deep as this leaves less room than 0.38 modules need."""
     mesh = bevel_mesh((20, 30), 3.0, 12.0, profile_shifts=(-0.45, 0.45))
-    form = tooth_forms(mesh)[0]
+    form = form_of(mesh)
     wide = replace(form, fillet=ArcFillet(4.0, form.fillet.coordinate))
     tooth = build_tooth(flanks_of(mesh), wide, COARSE)
     land = tooth.patch("root land +")
@@ -216,10 +215,10 @@ def test_fillet_radius_too_large_names_the_largest(name):
 
 
 def test_teeth_without_space_are_refused():
-    form = tooth_forms(MESHES["spur"], fillet_radius=0.5)[0]
+    form = form_of(MESHES["spur"], fillet_radius=0.5)
     with pytest.raises(GeometryError, match="no space is left at the root"):
         build_tooth(flanks_of(MESHES["spur"]), replace(form, teeth=60), COARSE)
-    rack = tooth_forms(MESHES["spur"])[0]
+    rack = form_of(MESHES["spur"])
     with pytest.raises(GeometryError, match="fillets of neighbouring teeth pass each other"):
         build_tooth(flanks_of(MESHES["spur"]), replace(rack, teeth=60), COARSE)
 
@@ -245,12 +244,12 @@ def test_undercut_that_cuts_off_the_tooth_is_refused():
 def test_flanks_of_one_side_are_refused():
     plus, _ = flanks_of(MESHES["spur"])
     with pytest.raises(InputError, match="sides are 1, 1, not 1, -1"):
-        build_tooth((plus, plus), tooth_forms(MESHES["spur"])[0])
+        build_tooth((plus, plus), form_of(MESHES["spur"]))
 
 
 def test_grid_off_the_sections_is_refused():
     """Bevel flanks do not end in transverse planes."""
-    form = replace(tooth_forms(MESHES["straight bevel"])[0], sections=tooth_forms(MESHES["spur"])[0].sections)
+    form = replace(form_of(MESHES["straight bevel"]), sections=form_of(MESHES["spur"]).sections)
     with pytest.raises(GeometryError, match="do not lie on the sections"):
         build_tooth(flanks_of(MESHES["straight bevel"]), form)
 
@@ -259,8 +258,3 @@ def test_resolution_tells_every_number_that_is_too_small():
     with pytest.raises(InputError) as error:
         Resolution(flank=1, fillet=2.5, land=3, lengthwise=0)
     assert [problem.split(":")[0] for problem in error.value.problems] == ["flank", "fillet", "lengthwise"]
-
-
-def test_mesh_of_an_unknown_kind_is_refused():
-    with pytest.raises(InputError, match="no complete tooth is known for a dict"):
-        tooth_forms({})

@@ -5,9 +5,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.tooth import ArcFillet, RackFillet, tooth_forms
+from loaded_tca.tooth import ArcFillet, RackFillet
 from loaded_tca.tooth.profile import profile_of
-from tests.samples.teeth import CROWNED, MESHES, NONE, RELIEVED, flanks_of
+from tests.samples.teeth import CROWNED, MESHES, NONE, RELIEVED, flanks_of, form_of
 
 TANGENT = 1e-9
 """Angle between tangents that counts as none [rad]."""
@@ -16,7 +16,7 @@ SMOOTH = [name for name in MESHES if name != "undercut"]
 
 def drawn(name, modifications=NONE, fillet_radius=None, count=33, side=0, member=0):
     """Profile, radii of the root circles and fillets of a gear."""
-    form = tooth_forms(MESHES[name], fillet_radius=fillet_radius)[member]
+    form = form_of(MESHES[name], member, fillet_radius)
     flank = flanks_of(MESHES[name], member, modifications)[side]
     profile = profile_of(flank, form.sections, form.half_thickness_angle, (17, 5))
     root = form.root_radius(profile.coordinate)
@@ -65,7 +65,7 @@ def test_undercut_leaves_a_corner():
 def test_arc_has_one_radius_on_its_section(name):
     """On the sphere all points of the arc have one angular distance from its centre; in the plane one distance."""
     wanted = 0.2 if name == "spiral bevel" else 0.5
-    form = tooth_forms(MESHES[name], fillet_radius=wanted)[0]
+    form = form_of(MESHES[name], fillet_radius=wanted)
     profile, _, curve = drawn(name, fillet_radius=wanted, count=40)
     middle = len(profile.coordinate) // 2
     on_arc = curve.points[-12:, middle]
@@ -135,5 +135,5 @@ def test_arc_beyond_the_tip_is_refused():
 
 def test_cylindrical_gears_get_the_fillet_of_their_rack_unless_an_arc_is_asked_for():
     mesh = MESHES["spur"]
-    assert tooth_forms(mesh)[1].fillet == RackFillet(mesh.wheel)
-    assert tooth_forms(mesh, fillet_radius=0.7)[1].fillet == ArcFillet(0.7)
+    assert form_of(mesh, 1).fillet == RackFillet(mesh.wheel)
+    assert form_of(mesh, 1, 0.7).fillet == ArcFillet(0.7)

@@ -19,7 +19,6 @@ from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import parse_scene
-from loaded_tca.tooth import tooth_forms
 from loaded_tca.unloaded import trace_teeth
 from validation.calculix.case import FACE_WIDTH, POSITIONS, pinion_angle
 from validation.calculix.deck import LOAD_STEPS
@@ -240,7 +239,6 @@ def model(face_width: float, layers: int | None = None) -> Model:
     plain = scenes["unmodified"]
     density = None if layers is None else MeshDensity(lengthwise=layers)
     start = time.process_time()
-    forms, backs = tooth_forms(plain.mesh()), plain.pair("negative")
-    compliance = tooth_compliance(forms, plain.pair(), backs, neighbours=NEIGHBOURS, density=density)
+    compliance = tooth_compliance(plain.pair(), neighbours=NEIGHBOURS, density=density)
     seconds = time.process_time() - start
     return Model({variant: scene.pair() for variant, scene in scenes.items()}, compliance, face_width, seconds)

@@ -87,16 +87,16 @@ def in_space(changes: dict[str, object]) -> InSpace:
         warnings.simplefilter("ignore", AccuracyWarning)  # the flat pair carries load up to the ends of the face
         result = analyse(scene)
     seconds = time.process_time() - start
-    error = 1e3 * result.wheel_base_radius * float(result.transmission_error[0])
-    one = result.contacts.maps[0][0][0]
+    error = 1e3 * result.wheel_base_radius * result.transmission_error.item()
+    one = result.maps[0][0][0]
     assert one is not None
     force = one.pressure.sum(axis=0) * one.spacing[0] * one.spacing[1]
     ends = np.linspace(0.0, 0.5 * FACE_WIDTH, LAYERS + 1)
     carried = np.interp(ends, one.y + 0.5 * one.spacing[1], np.cumsum(force))
     return InSpace(
-        peak_line_load=float(result.line_load[0]),
+        peak_line_load=result.line_load.item(),
         line_load=tuple((np.diff(carried) / np.diff(ends)).tolist()),
-        pressure=float(result.central_pressure[0]),
+        pressure=result.central_pressure.item(),
         transmission_error=error,
         seconds=seconds,
     )

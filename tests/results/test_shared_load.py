@@ -2,7 +2,7 @@
 
 import json
 import warnings
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -11,13 +11,12 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca import AccuracyWarning, InputError, analyse, load_result, read_scene
 from loaded_tca.output.report import positions_csv, summary_json
-from loaded_tca.output.teeth_in_space import complete_teeth, teeth_in_space
+from loaded_tca.output.teeth_in_space import teeth_in_space
+from loaded_tca.pairs import mating_teeth
 from loaded_tca.plots import PICTURES, plot_all
-from loaded_tca.results.contacts import NUMBERS, ContactNumbers, _peaks_at_end
-from loaded_tca.results.files import read_netcdf, write_netcdf
+from loaded_tca.results.files import read_dataset, write_dataset
 from loaded_tca.results.key_figures import harmonic_amplitudes
-from loaded_tca.scene import parse_scene
-from tests.samples.results import SCENES, assert_same
+from tests.samples.results import PER_PAIR, SCENES, assert_same
 
 EQUILIBRIUM = 1e-8
 """Asked for: the torques of the pairs sum up to that of the pinion."""
@@ -45,8 +44,8 @@ def bevel():
 @pytest.mark.parametrize("make", [cycle, helical, bevel])
 def test_forces_of_the_pairs_balance_the_torque(make):
     result = make()
-    levers = np.stack([path.pinion_lever for path in result.contacts.paths], axis=-1)
-    torques = np.nansum(result.contacts.normal_force * levers, axis=-1)
+    levers = np.stack([path.pinion_lever for path in result.paths], axis=-1)
+    torques = np.nansum(result.normal_force * levers, axis=-1)
     assert_allclose(torques, np.broadcast_to(result.torque[:, None], torques.shape), rtol=EQUILIBRIUM)
 
 
@@ -58,12 +57,12 @@ def test_shares_sum_up_to_one(make):
 @pytest.mark.parametrize("make", [cycle, helical, bevel])
 def test_cycle_repeats_after_a_pitch(make):
     result = make()
-    error, share = result.by_torque("transmission_error"), result.load_share.reshape(len(result.torque), -1, 3)
-    lag = result.path.transmission_error - error
-    assert_allclose(lag[:, 0], lag[:, -1], rtol=PERIOD)
-    assert result.pairs.tolist() == [0, 1, -1]
-    assert_allclose(share[:, 0, 0], share[:, -1, 1], atol=PERIOD)  # pair 0 is pair +1 a pitch later
-    assert_allclose(share[:, 0, 2], share[:, -1, 0], atol=PERIOD)
+    share = result.load_share
+    added = result.path.transmission_error - result.transmission_error
+    assert_allclose(added[:, 0], added[:, -1], rtol=PERIOD)
+    assert result.pair.tolist() == [-1, 0, 1]
+    assert_allclose(share[:, 0, 1], share[:, -1, 2], atol=PERIOD)  # pair 0 is pair +1 a pitch later
+    assert_allclose(share[:, 0, 0], share[:, -1, 1], atol=PERIOD)
 
 
 def test_driving_wheel_sees_the_same_cycle_backwards():
@@ -72,8 +71,8 @@ def test_driving_wheel_sees_the_same_cycle_backwards():
         {"analysis.positions": 5, "analysis.cells": (16, 16), "analysis.torques_Nm": (40.0,)}
     )
     forwards, backwards = (analyse(scene.with_changes({"pair.driving": gear})) for gear in ("pinion", "wheel"))
-    assert_allclose(backwards.load_share[::-1, 0], forwards.load_share[:, 0], atol=PERIOD)
-    assert_allclose(backwards.transmission_error[::-1], -forwards.transmission_error, rtol=PERIOD)
+    assert_allclose(backwards.load_share[0, ::-1, 1], forwards.load_share[0, :, 1], atol=PERIOD)
+    assert_allclose(backwards.transmission_error[:, ::-1], -forwards.transmission_error, rtol=PERIOD)
     assert (backwards.transmission_error > 0.0).all()
 
 
@@ -92,25 +91,26 @@ def test_sharing_lowers_the_force_and_raises_the_stiffness():
             }
         )
     )
-    assert alone.pair_contacts is None
+    assert alone.peak_pressure.shape == (1, 5, 1)
     shared = result.loaded_pairs > 1
     assert shared.any()
     assert not shared.all()
-    assert (result.normal_force[shared] < alone.normal_force[shared]).all()
+    assert (result.at_position("normal_force")[shared] < alone.at_position("normal_force")[shared]).all()
     assert (result.mesh_stiffness[shared] > alone.mesh_stiffness[shared]).all()
 
 
 def test_zero_torque_gives_the_unloaded_transmission_error():
     result = cycle(positions=3, torques=(0.0, 40.0))
     assert_array_equal(result.transmission_error[0], result.path.transmission_error)
-    assert_allclose(result.peak_pressure[0], 0.0, atol=0)
+    assert_allclose(result.at_position("peak_pressure")[0], 0.0, atol=0)
+    assert_allclose(result.at_position("line_load")[0], 0.0, atol=0)
     assert_allclose(result.load_share.sum(axis=-1), 1.0, rtol=1e-12)
 
 
 def test_secant_stiffness_is_the_force_over_the_lag():
     result = cycle()
     lag = result.path.transmission_error - result.transmission_error
-    pair = parse_scene(result.scene_toml).pair()
+    pair = result.scene.pair()
     force = result.torque[:, None] / pair.base_radii[0] / result.face_width
     assert_allclose(result.secant_stiffness, force / (1e3 * result.wheel_base_radius * lag), rtol=1e-9)
     assert (result.mesh_stiffness > result.secant_stiffness).all()  # flanks stiffen
@@ -118,35 +118,40 @@ def test_secant_stiffness_is_the_force_over_the_lag():
 
 def test_numbers_of_the_cycle_are_those_of_the_highest_pair():
     result = cycle()
-    contacts = result.contacts
-    assert_array_equal(result.peak_pressure, np.nanmax(contacts.peak_pressure, axis=-1))
-    for torque, position in np.ndindex(result.peak_pressure.shape):
-        column = contacts.highest[torque, position]
-        assert result.maps[torque][position] is contacts.maps[torque][position][column]
-        assert result.peak_radius[torque, position] == contacts.peak_radius[torque, position, column]
+    assert_array_equal(result.at_position("peak_pressure"), np.nanmax(result.peak_pressure, axis=-1))
+    for torque, position in np.ndindex(result.transmission_error.shape):
+        column = np.nanargmax(result.peak_pressure[torque, position])
+        for name in ("peak_radius", "peak_axial", "iterations", "on_edge", "peak_at_edge"):
+            assert result.at_position(name)[torque, position] == getattr(result, name)[torque, position, column]
 
 
 def test_forces_of_the_cycle_are_those_of_the_pair_that_carries_most():
     """A tip corner may have the highest peak under next to no force."""
     result = cycle()
-    contacts = result.contacts
-    assert_array_equal(result.normal_force, np.nanmax(contacts.normal_force, axis=-1))
-    for torque, position in np.ndindex(result.peak_pressure.shape):
-        column = contacts.most_loaded[torque, position]
-        assert result.line_load[torque, position] == contacts.line_load[torque, position, column]
-        assert result.approach[torque, position] == contacts.approach[torque, position, column]
+    assert_array_equal(result.at_position("normal_force"), np.nanmax(result.normal_force, axis=-1))
+    for torque, position in np.ndindex(result.transmission_error.shape):
+        column = np.nanargmax(result.normal_force[torque, position])
+        for name in ("line_load", "contact_deformation", "contact_width"):
+            assert result.at_position(name)[torque, position] == getattr(result, name)[torque, position, column]
+
+
+def test_mesh_independent_pressure_of_a_position_is_the_highest_of_its_pairs():
+    result = helical()
+    assert_array_equal(
+        result.at_position("mesh_independent_pressure"), np.fmax.reduce(result.mesh_independent_pressure, axis=-1)
+    )
 
 
 def test_peak_at_the_end_of_a_grid_is_one_at_a_edge():
-    one = next(one for row in cycle().contacts.maps[0] for one in row if one is not None)
+    one = next(one for row in cycle().maps[0] for one in row if one is not None)
     pressure = np.zeros_like(one.pressure)
-    assert not _peaks_at_end(replace(one, pressure=one.pressure, gap=np.zeros_like(one.gap)))
+    assert not replace(one, gap=np.zeros_like(one.gap)).peak_is_at_end
     pressure[5, 0] = 1.0
-    assert _peaks_at_end(replace(one, pressure=pressure, gap=np.zeros_like(one.gap)))
+    assert replace(one, pressure=pressure, gap=np.zeros_like(one.gap)).peak_is_at_end
 
 
 def test_pair_that_is_apart_has_no_map_and_no_force():
-    contacts = cycle().contacts
+    contacts = cycle()
     apart = np.array([[[one is None for one in row] for row in rows] for rows in contacts.maps])
     assert apart.any()
     assert_array_equal(contacts.normal_force[apart], 0.0)
@@ -156,25 +161,25 @@ def test_pair_that_is_apart_has_no_map_and_no_force():
 
 def test_line_load_carries_the_force():
     """The largest line load is above the mean over the length, below twice that: an ellipse has 3/2 of it."""
-    contacts = cycle().contacts
+    contacts = cycle()
     mean = contacts.normal_force / contacts.contact_length
     loaded = contacts.normal_force > 0.0
     ratio = contacts.line_load[loaded] / mean[loaded]
     assert (ratio > 1.0).all()
     assert (ratio < 2.0).all()
-    assert (contacts.face_load_factor[loaded] > 1.0).all()
+    assert (contacts.line_load_ratio[loaded] > 1.0).all()
 
 
 def test_line_load_of_a_hertzian_ellipse_is_three_halves_of_its_mean():
     result = cycle(positions=1, torques=(40.0,))
-    mean = result.normal_force[0] / (2.0 * result.hertz_semi_major[0])
-    assert_allclose(result.line_load[0] / mean, 1.5, rtol=2e-2)  # 20 cells across a contact of 16
+    mean = result.at_position("normal_force") / (2.0 * result.at_position("hertz_semi_major"))
+    assert_allclose(result.at_position("line_load") / mean, 1.5, rtol=2e-2)  # 20 cells across a contact of 16
 
 
 def test_harmonics_make_up_the_transmission_error():
     """Parseval: the mean square about the mean is half the sum of the squared amplitudes, all orders known."""
     result = helical()
-    error = result.transmission_error[:-1]
+    error = result.transmission_error[0, :-1]
     amplitudes = result.harmonics(3)[0]
     rest = np.abs(np.fft.rfft(error)[4]) / len(error)  # the order of half the positions counts in full
     variance = float(((error - error.mean()) ** 2).mean())
@@ -201,10 +206,9 @@ def test_result_survives_its_file_unchanged(make, tmp_path):
 
 def test_file_that_lacks_parts_of_the_pairs_is_told(tmp_path):
     cycle().save(tmp_path / "result.nc")
-    variables, attributes = read_netcdf(tmp_path / "result.nc")
-    del variables["pair_approach"]
-    write_netcdf(tmp_path / "result.nc", variables, attributes)
-    with pytest.raises(InputError, match="pair_approach: missing"):
+    whole = read_dataset(tmp_path / "result.nc")
+    write_dataset(tmp_path / "result.nc", whole.drop_vars("contact_deformation"))
+    with pytest.raises(InputError, match="contact_deformation: missing"):
         load_result(tmp_path / "result.nc")
 
 
@@ -214,20 +218,20 @@ def test_figures_tell_the_pairs():
     assert figures["transmission_error_order_1_um"] > figures["transmission_error_order_3_um"] > 0.0
     assert figures["positions"] == figures["positions_in_contact"] == 9
     assert figures["edge_positions"] <= 9
-    assert figures["line_load_max_N_per_mm"] == np.nanmax(helical().contacts.line_load)
-    assert figures["unloaded_error_span_um"] > 0.0
+    assert figures["line_load_max_N_per_mm"] == np.nanmax(helical().line_load)
+    assert figures["unloaded_transmission_error_span_um"] > 0.0
 
 
-def test_peak_of_the_figures_is_the_highest_inner_pressure_of_any_pair():
+def test_peak_of_the_figures_is_the_highest_mesh_independent_pressure_of_any_pair():
     result = helical()
     (figures,) = result.key_figures()
-    assert figures["peak_pressure_MPa"] == np.nanmax(result.contacts.inner_pressure)
+    assert figures["peak_pressure_MPa"] == np.nanmax(result.mesh_independent_pressure)
     position, column = result.peak_contact(0)
-    assert figures["normal_force_at_peak_N"] == result.contacts.normal_force[0, position, column]
-    assert result.peak_position(0) == position
+    assert figures["normal_force_at_peak_N"] == result.normal_force[0, position, column]
+    assert figures["peak_pressure_MPa"] == result.mesh_independent_pressure[0, position, column]
 
 
-def test_summary_names_the_pairs_and_what_yields():
+def test_summary_names_the_pairs_and_whether_teeth_bend():
     text = helical().summary()
     assert "3 tooth pairs share the load, up to 2 at once; teeth do not bend" in text
     assert "  orders 1 | 2 | 3 of the tooth mesh [um]" in text
@@ -245,9 +249,10 @@ def test_table_has_a_share_for_every_pair():
     assert "line_load_N_per_mm" in header
 
 
-def test_numbers_of_a_contact_have_unit_and_text():
-    assert list(NUMBERS) == [entry.name for entry in fields(ContactNumbers)]
-    assert all(unit and text for unit, text in NUMBERS.values())
+def test_numbers_of_every_pair_have_the_axes_torque_position_pair():
+    for make, shape in ((cycle, (2, 5, 3)), (helical, (1, 9, 3))):
+        assert all(getattr(make(), name).shape == shape for name in PER_PAIR)
+        assert [len(make().maps), len(make().maps[0]), len(make().maps[0][0])] == list(shape)
 
 
 @pytest.mark.parametrize("make", [cycle, helical])
@@ -264,11 +269,11 @@ def test_pictures_of_a_shared_load_go_where_one_pair_carries_all(tmp_path):
 
 def test_teeth_are_placed_where_the_pair_with_the_pressure_stands():
     result = cycle(positions=9, torques=(130.0,))
-    columns = result.contacts.highest_inner[0]
-    position = int(np.flatnonzero(columns > 0)[0])
-    teeth = complete_teeth(parse_scene(result.scene_toml))
+    columns = result.peak_column[0]
+    position = int(np.flatnonzero(columns != 1)[0])
+    teeth = mating_teeth(result.gear_pair)
     shown = teeth_in_space(result, teeth, position, 0)
-    one = result.contacts.maps[0][position][columns[position]]
+    one = result.maps[0][position][columns[position]]
     cells = shown.pressure.vertices
     assert_allclose(shown.point, one.origin, atol=1e-9)
     assert np.linalg.norm(cells - one.origin, axis=1).min() < 1.0  # mm: the pressure lies on the tooth at its place
@@ -284,16 +289,15 @@ def bending(load_sharing):
 
 
 @pytest.mark.parametrize("load_sharing", [False, True])
-def test_teeth_that_bend_let_the_wheel_lag_by_their_deflection(load_sharing):
+def test_transmission_error_of_teeth_that_bend_is_their_deflection(load_sharing):
     result = bending(load_sharing)
-    lag = result.path.transmission_error - result.transmission_error
-    contacts = result.contacts
-    for column, path in enumerate(contacts.paths):
-        loaded = contacts.normal_force[0, :, column] > 0.0
-        closing = (contacts.approach + contacts.deflection)[0, loaded, column]
-        behind = (result.path.transmission_error - path.transmission_error)[loaded]
-        assert_allclose(closing / path.wheel_lever[loaded], lag[loaded] - behind, rtol=1e-4)
-    assert (contacts.deflection[contacts.normal_force > 0.0] > 0.0).all()
+    added = result.path.transmission_error - result.transmission_error[0]
+    for column, path in enumerate(result.paths):
+        loaded = result.normal_force[0, :, column] > 0.0
+        deflection = (result.contact_deformation + result.tooth_deflection)[0, loaded, column]
+        apart = (result.path.transmission_error - path.transmission_error)[loaded]
+        assert_allclose(deflection / path.wheel_lever[loaded], added[loaded] - apart, rtol=1e-4)
+    assert (result.tooth_deflection[result.normal_force > 0.0] > 0.0).all()
     assert "teeth bend" in result.summary()
 
 
@@ -317,13 +321,13 @@ def test_progress_is_told_after_every_torque_and_position():
 def test_pressure_beside_a_tip_is_none_of_the_flank():
     """The pair that leaves the mesh: its contact point comes to the tip, and the spike there to its pressure."""
     result = cycle_at_the_tip()
-    contacts, column = result.contacts, result.pairs.tolist().index(-1)
-    near = contacts.peak_at_edge[0, :, column] & ~contacts.paths[column].on_edge
-    central = np.where(near, contacts.central_pressure[0, :, column], 0.0)
+    column = result.pair.tolist().index(-1)
+    near = result.peak_at_edge[0, :, column] & ~result.paths[column].on_edge
+    central = np.where(near, result.central_pressure[0, :, column], 0.0)
     spiked = int(central.argmax())
-    smooth = np.fmax.reduce(np.where(contacts.peak_at_edge, np.nan, contacts.peak_pressure), axis=None)
+    smooth = np.fmax.reduce(np.where(result.peak_at_edge, np.nan, result.peak_pressure), axis=None)
     assert central[spiked] > smooth
-    assert np.isnan(contacts.inner_pressure[0, spiked, column])
+    assert np.isnan(result.mesh_independent_pressure[0, spiked, column])
     (figures,) = result.key_figures()
     assert figures["peak_pressure_MPa"] == smooth
 

@@ -1,0 +1,122 @@
+"""Pressure and gap of one tooth pair at one position on their grid, and how they are laid out in a file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.results.files import Part
+
+
+@dataclass(frozen=True, eq=False)
+class PressureMap:
+    """Pressure and gap of one tooth pair at one position on its grid.
+
+    Attributes
+    ----------
+    x, y : (nx,), (ny,) array [mm]
+        Cell centres across (largest relative curvature) and along the contact, from the contact point.
+    spacing : (float, float) [mm]
+        Cell sizes (dx, dy).
+    pressure : (nx, ny) array [MPa]
+    gap : (nx, ny) array [mm]
+        Deformed gap; +inf where a flank ends.
+    origin : (3,) array [mm]
+        The contact point in the fixed frame.
+    axes : (3, 3) array
+        x, y and the normal out of the pinion, in rows, in the fixed frame.
+    """
+
+    x: Array
+    y: Array
+    spacing: tuple[float, float]
+    pressure: Array
+    gap: Array
+    origin: Array
+    axes: Array
+
+    @property
+    def corners(self) -> Array:
+        """Corners (nx + 1, ny + 1, 3) of the cells in the tangent plane, in the fixed frame [mm]."""
+        x, y = (
+            np.append(centres, centres[-1] + step) - 0.5 * step
+            for centres, step in zip((self.x, self.y), self.spacing, strict=True)
+        )
+        return self.origin + x[:, None, None] * self.axes[0] + y[:, None] * self.axes[1]
+
+    @property
+    def peak_is_at_end(self) -> bool:
+        """Whether the largest cell lies beside cells without material, or at the end of the grid."""
+        across, along = np.unravel_index(int(self.pressure.argmax()), self.pressure.shape)
+        inside = 0 < across < len(self.x) - 1 and 0 < along < len(self.y) - 1
+        around = self.gap[max(across - 1, 0) : across + 2, max(along - 1, 0) : along + 2]
+        return bool(self.pressure.any() and (not inside or np.isinf(around).any()))
+
+    def flank_ends_within(self, distance: float) -> bool:
+        """Whether a cell without material, its edges counted, lies nearer to the contact point than a distance [mm]."""
+        x, y = (
+            np.maximum(np.abs(centres) - 0.5 * step, 0.0)
+            for centres, step in zip((self.x, self.y), self.spacing, strict=True)
+        )
+        return bool((np.isinf(self.gap) & (np.hypot(x[:, None], y) < distance)).any())
+
+
+Maps = tuple[tuple[tuple[PressureMap | None, ...], ...], ...]
+"""By torque, position and tooth pair; None where a pair carries nothing."""
+
+MAP_PARTS: dict[str, Part] = {
+    "x": (("across",), "mm", "cell centres across the contact, from the contact point"),
+    "y": (("along",), "mm", "cell centres along the contact, from the contact point"),
+    "spacing": (("axis",), "mm", "cell sizes across and along"),
+    "pressure": (("across", "along"), "MPa", "contact pressure, NaN beyond the grid of the position"),
+    "gap": (("across", "along"), "mm", "deformed gap, infinite where a flank ends, NaN beyond the grid"),
+    "origin": (("vector",), "mm", "contact point in the fixed frame"),
+    "axes": (("row", "vector"), "1", "directions across, along and normal out of the pinion, in rows"),
+}
+"""Parts of a pressure map; in a file each has the dimensions torque, position and pair before its own."""
+SIZES = {"axis": 2, "row": 3, "vector": 3}
+"""Lengths of dimensions that are the same in every map."""
+
+
+def stacked_maps(maps: Maps) -> dict[str, Array]:
+    """Part of a map -> array over torques, positions, pairs, padded with NaN to the largest grid."""
+    shape = len(maps), len(maps[0]), len(maps[0][0])
+    present = [one for rows in maps for row in rows for one in row if one is not None]
+    largest = {
+        "across": max((len(one.x) for one in present), default=1),
+        "along": max((len(one.y) for one in present), default=1),
+    }
+    sizes = {**SIZES, **largest}
+    stacks = {
+        name: np.full((*shape, *(sizes[axis] for axis in own)), np.nan) for name, (own, _, _) in MAP_PARTS.items()
+    }
+    for t, n, k in np.ndindex(shape):
+        one = maps[t][n][k]
+        if one is not None:
+            for name, stack in stacks.items():
+                part = np.asarray(getattr(one, name))
+                stack[(t, n, k, *map(slice, part.shape))] = part
+    return stacks
+
+
+def maps_from(stacks: Mapping[str, Array]) -> Maps:
+    """Take the maps out of what ``stacked_maps`` made of them."""
+
+    def at(*place: int) -> PressureMap | None:
+        """The map at a place without its padding; None if there is nothing else."""
+        counts = {name: int(np.isfinite(stacks[part][place]).sum()) for name, part in (("across", "x"), ("along", "y"))}
+        if not all(counts.values()):
+            return None
+        parts: dict[str, Any] = {
+            name: stacks[name][place][tuple(slice(counts.get(axis)) for axis in own)]
+            for name, (own, _, _) in MAP_PARTS.items()
+        }
+        dx, dy = parts["spacing"].tolist()
+        return PressureMap(**{**parts, "spacing": (dx, dy)})
+
+    torques, positions, pairs = (range(length) for length in stacks["x"].shape[:3])
+    return tuple(tuple(tuple(at(t, n, k) for k in pairs) for n in positions) for t in torques)
