@@ -7,6 +7,7 @@ must not lie inside the pinion once the wheel stands where the contact found put
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -145,7 +146,7 @@ def scan_pinion(pair: GearPair, phi1: Array) -> Scan:
     outside = min(float(value.min(initial=0.0)) - 1.0, -1.0) * (1.0 + lack[:, :count])
     score = np.where(lack[:, :count] <= allowed, value[:, :count], outside)
     # distances to the edges change by about a millimetre per millimetre
-    spacing = np.hypot(*(length / (count - 1) for length, count in zip(pair.pinion.extent, GRID, strict=True)))
+    spacing = math.hypot(*(length / (count - 1) for length, count in zip(pair.pinion.extent, GRID, strict=True)))
     return Scan(rho, z, height, score.reshape(len(phi1), *GRID), room >= -BETWEEN * spacing)
 
 
