@@ -134,10 +134,10 @@ def ease_off_map(pair: GearPair, gear: Gear = "pinion", grid: tuple[int, int] = 
     contact = conjugate_contact(seen, rho, z)
     if not contact.exists.all():
         first = tuple(np.argwhere(~contact.exists)[0])
+        where = flank.frame.place(float(rho[first]), float(z[first]))
         raise GeometryError(
-            f"no ease-off: at {int((~contact.exists).sum())} of {rho.size} points, first at "
-            f"{flank.frame.place(float(rho[first]), float(z[first]))}, the flank meets no flank of the mating gear at the "
-            "constant ratio; the mounting errors are too large"
+            f"no ease-off: at {int((~contact.exists).sum())} of {rho.size} points, first at {where}, the flank meets "
+            "no flank of the mating gear at the constant ratio; the mounting errors are too large"
         )
     per_lead = 1.0 / (seen.base_radii[1] * seen.ratio * flank.gradient_norm(rho, z).value)
     from_middle = (contact.lead[central(grid)].mean() - contact.lead) * per_lead
