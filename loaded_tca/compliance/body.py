@@ -118,12 +118,17 @@ class ToothFrame:
         first = layout.base_row + 2 * layout.density.fillet
         return slice(first, first + 2 * layout.density.flank + 1)
 
+    def _radii(self, where: Array) -> tuple[Array, Array]:
+        """Radii (m,) of the images of the root and the tip of the flank, in the sections at ``where`` (m,)."""
+        radii = self.nodes.radius[self._column(0.5 + 0.5 * self.side), self._flank_rows()]
+        low, high = (np.interp(where, self.nodes.coordinate, radii[end]) for end in (0, -1))
+        return low, high
+
     def parts(self, rho: Array, z: Array) -> tuple[Array, Array]:
         """Parts (m,) of the flank's height and of the face width, of points of the flank or just beyond it."""
         sections, coordinate = self.nodes.sections, self.nodes.coordinate
         where = sections.coordinate(rho, z)
-        radii = self.nodes.radius[self._column(0.5 + 0.5 * self.side), self._flank_rows()]
-        low, high = (np.interp(where, coordinate, radii[end]) for end in (0, -1))
+        low, high = self._radii(where)
         length = (where - coordinate[0]) / (coordinate[-1] - coordinate[0])
         return np.clip((sections.radius(rho, z) - low) / (high - low), 0.0, 1.0), np.clip(length, 0.0, 1.0)
 
@@ -131,8 +136,7 @@ class ToothFrame:
         """Points at parts (m,) of the flank's height and of the face width."""
         coordinate = self.nodes.coordinate
         where = coordinate[0] + length * (coordinate[-1] - coordinate[0])
-        radii = self.nodes.radius[self._column(0.5 + 0.5 * self.side), self._flank_rows()]
-        low, high = (np.interp(where, coordinate, radii[end]) for end in (0, -1))
+        low, high = self._radii(where)
         rho, z = self.nodes.sections.point(low + height * (high - low), where)
         theta = self.flank.theta(rho, z).value + self.side * self.gear.form.half_thickness_angle
         radial, hoop, axial = outward_normal(self.flank, rho, z).T
@@ -169,17 +173,12 @@ class ToothFrame:
         layer = np.interp(where, coordinate, np.arange(len(coordinate)))
         radii = self.nodes.radius[column]
         radii = radii[np.isfinite(radii[:, 0])]
-        row = _rows_at(radii, layer, sections.radius(rho, z))
+        lower = np.minimum(layer.astype(int), radii.shape[1] - 2)
+        part, rows = layer - lower, np.arange(len(radii))
+        columns = (radii[:, lower] * (1.0 - part) + radii[:, lower + 1] * part).T  # as they run below each place
+        radius = sections.radius(rho, z)
+        row = np.array([np.interp(r, column, rows) for r, column in zip(radius, columns, strict=True)])
         return _among_nodes(number[column], row, layer)
-
-
-def _rows_at(radii: Array, layer: Array, radius: Array) -> Array:
-    """Rows (m,) at which a column with the radii (rows, layers), growing, reaches ``radius`` (m,) at ``layer`` (m,)."""
-    lower = np.minimum(layer.astype(int), radii.shape[1] - 2)
-    part = layer - lower
-    columns = radii[:, lower] * (1.0 - part) + radii[:, lower + 1] * part
-    rows = np.arange(len(radii))
-    return np.array([np.interp(r, column, rows) for r, column in zip(radius, columns.T, strict=True)])
 
 
 def _among_nodes(number: Indices, row: Array, layer: Array) -> SurfacePlaces:
@@ -199,26 +198,12 @@ def _among_nodes(number: Indices, row: Array, layer: Array) -> SurfacePlaces:
     return SurfacePlaces(number[nodes[0], nodes[1]], shares)
 
 
-@dataclass(frozen=True, eq=False)
-class GearBody:
-    """The stiffness of a whole gear body in space, factorised.
-
-    Attributes
-    ----------
-    mesh : Discretisation
-    factorisation : Factorisation
-    """
-
-    mesh: Discretisation
-    factorisation: Factorisation
-
-
-def gear_body(nodes: BodyNodes, material: Material) -> GearBody:
-    """Assemble and factorise the stiffness of a ring held at its bore."""
+def gear_body(nodes: BodyNodes, material: Material) -> tuple[Discretisation, Factorisation]:
+    """Mesh of a ring held at its bore, and its stiffness, factorised."""
     layout = nodes.layout
     lowest, spans, blocks = layout.bricks
     mesh = discretise(nodes.points, lowest, layout.turns, spans)
-    return GearBody(mesh, factorised(mesh, material, blocks)[0])
+    return mesh, factorised(mesh, material, blocks)[0]
 
 
 def factorised(mesh: Discretisation, material: Material, blocks: Indices | None = None) -> tuple[Factorisation, Array]:

@@ -27,9 +27,8 @@ from numpy.polynomial.chebyshev import chebvander
 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.body import ToothFrame, gear_nodes
-from loaded_tca.compliance.flexibility import ToothFlexibility
+from loaded_tca.compliance.flexibility import ToothFlexibility, kept_flexibility
 from loaded_tca.compliance.half_space import depth_displacement
-from loaded_tca.compliance.kept import kept_flexibility
 from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.errors import InputError
 from loaded_tca.pairs.gear import Gear

@@ -26,8 +26,6 @@ from loaded_tca.pairs.gear import Gear
 DENSITY = MeshDensity(through=8, flank=12, fillet=4, land=4, rim=6, lengthwise=1, neighbours=0)
 """Of the middle section: twice as fine gives the same to 1 %. Without neighbours the cut of the half-plane's field,
 outwards from the force, meets nothing."""
-EDGES = ((0, 0), (0, 2), (1, 0), (1, 2))
-"""Edges of an element: the coordinate that does not change along it, and its value in steps between nodes."""
 SLOPE = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
 """Derivative at the middle one of five even steps."""
 
@@ -153,7 +151,11 @@ def _section(gear: Gear, density: MeshDensity) -> _Section:
 
 def _border(mesh: Discretisation) -> tuple[Array, Array, Indices, Array]:
     """Free border: points (e, q, 2), normals times weights (e, q, 2), nodes (e, 3), shape functions (q, 3)."""
-    edges, middles = _edges(mesh)
+    offsets = np.array([[(0, k) for k in range(3)], [(2, k) for k in range(3)]])
+    offsets = np.concatenate([offsets, offsets[..., ::-1]])[:, None]  # nodes along the four edges of an element
+    place = mesh.lowest[:, None] + offsets
+    edges = mesh.number[place[..., 0] % len(mesh.number), place[..., 1]].reshape(-1, 3)
+    middles = np.tile(mesh.points[mesh.elements].mean(axis=1), (len(offsets), 1))
     once = np.flatnonzero(np.bincount(edges[:, 1], minlength=len(mesh.points))[edges[:, 1]] == 1)
     free = once[~np.isin(edges[once, 1], mesh.number[:, 0])]
     nodes, inner = mesh.points[edges[free]], middles[free]
@@ -164,19 +166,6 @@ def _border(mesh: Discretisation) -> tuple[Array, Array, Indices, Array]:
     normals = np.stack([tangents[..., 1], -tangents[..., 0]], axis=-1)
     outward = np.sign(np.einsum("ea,ea->e", normals.sum(axis=1), nodes[:, 1] - inner))
     return np.einsum("qk,eka->eqa", shares, nodes), normals * outward[:, None, None], edges[free], shares
-
-
-def _edges(mesh: Discretisation) -> tuple[Indices, Array]:
-    """Edges of all elements: their nodes (e, 3) in order, and the middles of the elements (e, 2)."""
-    steps = mesh.number.shape[0]
-    found = []
-    for fixed, value in EDGES:
-        offsets = np.empty((3, 2), dtype=int)
-        offsets[:, fixed], offsets[:, 1 - fixed] = value, np.arange(3)
-        place = mesh.lowest[:, None] + offsets
-        found.append(mesh.number[place[..., 0] % steps, place[..., 1]])
-    middles = mesh.points[mesh.elements].mean(axis=1)
-    return np.concatenate(found), np.tile(middles, (len(EDGES), 1))
 
 
 def _product(matrices: Array, dofs: Indices, vectors: Array) -> Array:

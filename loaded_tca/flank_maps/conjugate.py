@@ -29,8 +29,9 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.unloaded.ease_off import EaseOff, Station
+from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.roots import find_roots
+from loaded_tca.unloaded.scan import WHEEL_EDGES
 
 SAMPLES = 16
 """Angles per pitch at which the lead of a point is sampled."""
@@ -168,7 +169,13 @@ def _highest(field: EaseOff, azimuth: Array, rho: Array, z: Array) -> ConjugateC
     first = sampled[best]
 
     def slope(angle: Array, rows: NDArray[np.int_]) -> Array:
-        return _slope(pair, field.station(angle, rho[rows], z[rows]))
+        """de/d phi1 [mm/rad] at points that stay where they are on the pinion."""
+        station = field.station(angle, rho[rows], z[rows])
+        x, y, _ = np.moveaxis(station.point, -1, 0)
+        swept = np.stack([-y, x, np.zeros_like(x)], axis=-1)
+        radial, around, axial = np.moveaxis(np.einsum("nij,nj->ni", station.wheel_basis, swept), -1, 0)
+        rate = station.wheel.rho * radial - around / station.wheel_rho + station.wheel.z * axial
+        return pair.driving * pair.base_radii[1] * (rate - pair.ratio)
 
     every = np.arange(len(rho))
     rises = slope(first, every) > 0.0
@@ -177,7 +184,7 @@ def _highest(field: EaseOff, azimuth: Array, rho: Array, z: Array) -> ConjugateC
     angle = find_roots(slope, brackets, values, ANGLE_ACCURACY)
     found = np.isfinite(lead[best]) & (values[0] >= 0.0) & (values[1] <= 0.0)
     station = field.station(angle, rho, z)
-    distances = _wheel_edges(field.heights(angle, rho, z)[1])
+    distances = field.heights(angle, rho, z)[1][..., WHEEL_EDGES]
     known = (
         angle,
         field.value(station, angle),
@@ -189,25 +196,11 @@ def _highest(field: EaseOff, azimuth: Array, rho: Array, z: Array) -> ConjugateC
     return ConjugateContact(*(np.where(found, part, np.nan) for part in known))
 
 
-def _slope(pair: GearPair, station: Station) -> Array:
-    """de/d phi1 (n,) [mm/rad] at points that stay where they are on the pinion."""
-    x, y, _ = np.moveaxis(station.point, -1, 0)
-    swept = np.stack([-y, x, np.zeros_like(x)], axis=-1)
-    radial, around, axial = np.moveaxis(np.einsum("nij,nj->ni", station.wheel_basis, swept), -1, 0)
-    rate = station.wheel.rho * radial - around / station.wheel_rho + station.wheel.z * axial
-    return pair.driving * pair.base_radii[1] * (rate - pair.ratio)
-
-
-def _wheel_edges(edges: Array) -> Array:
-    """Distances (..., 4) to the wheel's edges, of those of both flanks."""
-    return edges[..., 4:8]
-
-
 def _near(pair: GearPair, edges: Array) -> NDArray[np.bool_]:
     """Whether the wheel has a flank at the points, continued beyond its edges a little."""
     side = SIDE_SLACK * pair.face_width
     slack = np.array([SLACK[0] * pair.module, SLACK[1] * pair.module, side, side])
-    return np.asarray((_wheel_edges(edges) >= -slack).all(axis=-1))
+    return np.asarray((edges[..., WHEEL_EDGES] >= -slack).all(axis=-1))
 
 
 def _azimuths(pair: GearPair) -> Array:

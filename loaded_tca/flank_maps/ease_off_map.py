@@ -17,9 +17,7 @@ chapter 6 (conjugated surfaces).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,9 +25,8 @@ from numpy.typing import NDArray
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flank_maps.conjugate import ROUNDING, conjugate_contact, exchanged, mated_grid
-from loaded_tca.flank_maps.pattern import Gear
+from loaded_tca.flank_maps.pattern import Gear, problems_of_map
 from loaded_tca.flank_maps.second_order import SecondOrder, central, flank_lengths, second_order
-from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.pairs.gear_pair import GearPair
 
@@ -129,13 +126,19 @@ def ease_off_map(pair: GearPair, gear: Gear = "pinion", grid: tuple[int, int] = 
     >>> found.second_order
     SecondOrder(spiral angle 0 arcmin, pressure angle 0 arcmin, crownings 10 um and 0 um, twist 0 um)
     """
-    problems = _problems(gear, grid)
+    problems = problems_of_map(gear, grid, FEWEST)
     if problems:
         raise InputError(problems)
     seen = pair if gear == "pinion" else exchanged(pair)
     flank, (rho, z) = seen.pinion.flank, mated_grid(seen, *grid)
     contact = conjugate_contact(seen, rho, z)
-    _require_contact(flank, rho, z, contact.exists)
+    if not contact.exists.all():
+        first = tuple(np.argwhere(~contact.exists)[0])
+        where = flank.frame.place(float(rho[first]), float(z[first]))
+        raise GeometryError(
+            f"no ease-off: at {int((~contact.exists).sum())} of {rho.size} points, first at {where}, the flank meets "
+            "no flank of the mating gear at the constant ratio; the mounting errors are too large"
+        )
     per_lead = 1.0 / (seen.base_radii[1] * seen.ratio * flank.gradient_norm(rho, z).value)
     from_middle = (contact.lead[central(grid)].mean() - contact.lead) * per_lead
     room = np.minimum(contact.profile_room, contact.lengthwise_room)
@@ -151,23 +154,4 @@ def ease_off_map(pair: GearPair, gear: Gear = "pinion", grid: tuple[int, int] = 
         contact.angle,
         room >= -EDGE * pair.module,
         second_order(flank, rho, z, from_middle),
-    )
-
-
-def _problems(gear: Any, grid: Any) -> list[str]:
-    problems = [] if gear in ("pinion", "wheel") else [f"gear: {gear!r} is not 'pinion' or 'wheel'"]
-    counts = list(grid) if isinstance(grid, Sequence | np.ndarray) else []
-    if len(counts) != 2 or not all(isinstance(n, int | np.integer) and n >= FEWEST for n in counts):
-        problems.append(f"grid: {grid!r} are not two whole numbers >= {FEWEST}")
-    return problems
-
-
-def _require_contact(flank: Flank, rho: Array, z: Array, exists: NDArray[np.bool_]) -> None:
-    if exists.all():
-        return
-    first = tuple(np.argwhere(~exists)[0])
-    where = flank.frame.place(float(rho[first]), float(z[first]))
-    raise GeometryError(
-        f"no ease-off: at {int((~exists).sum())} of {exists.size} points, first at {where}, the flank meets no flank "
-        "of the mating gear at the constant ratio; the mounting errors are too large"
     )

@@ -337,6 +337,10 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
     wheel_radius, _, wheel_axial = pair.to_wheel(point)
     x, y = plane @ (point - contact.point).T
     sectors = _sectors(np.append(turn, turn[0]), *(np.append(part, part[0]) for part in (x, y, edge)))
+    ellipse = np.full((rays, 3), np.nan)
+    if np.isfinite(semi_axes).all():
+        angle = np.arange(rays) * (2.0 * math.pi / rays)
+        ellipse = contact.point + np.stack([np.cos(angle), np.sin(angle)], axis=-1) * semi_axes @ plane
     return ContactArea(
         compound=float(compound),
         point=point,
@@ -348,7 +352,7 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
         area=abs(float(sectors.sum())),
         semi_axes=(0.5 * float(np.ptp(x)), 0.5 * float(np.ptp(y))),
         ellipse_semi_axes=(semi_axes[0], semi_axes[1]),
-        ellipse_points=_ellipse(contact.point, plane, semi_axes, np.arange(rays) * (2.0 * math.pi / rays)),
+        ellipse_points=ellipse,
     )
 
 
@@ -385,12 +389,13 @@ def contact_pattern(
     GeometryError
         If no tooth touches at some position.
     """
-    problems = _problems_of(compound) + _problems_of_mesh(pair, mesh)
-    if gear not in ("pinion", "wheel"):
-        problems.append(f"gear: {gear!r} is not 'pinion' or 'wheel'")
-    counts = list(grid) if isinstance(grid, Sequence | np.ndarray) else []
-    if len(counts) != 2 or not all(isinstance(n, int | np.integer) and n >= 2 for n in counts):
-        problems.append(f"grid: {grid!r} are not two whole numbers >= 2")
+    problems = _problems_of(compound) + problems_of_map(gear, grid, 2)
+    if mesh is not None and not isinstance(mesh, MeshPath):
+        problems.append(f"mesh: {type(mesh).__name__} is not a MeshPath, which trace_teeth gives")
+    elif mesh is not None and mesh.pair is not pair:
+        problems.append(
+            f"mesh: it was traced for another object, {mesh.pair!r}, not for the pair given; hand over mesh.pair"
+        )
     if problems:
         raise InputError(problems)
     if mesh is None:
@@ -415,18 +420,10 @@ def _problems_of(compound: Any) -> list[str]:
     return [] if sound else [f"compound: {compound!r} mm is not a positive, finite thickness"]
 
 
-def _problems_of_mesh(pair: GearPair, mesh: Any) -> list[str]:
-    if mesh is None:
-        return []
-    if not isinstance(mesh, MeshPath):
-        return [f"mesh: {type(mesh).__name__} is not a MeshPath, which trace_teeth gives"]
-    if mesh.pair is not pair:
-        return [f"mesh: it was traced for another object, {mesh.pair!r}, not for the pair given; hand over mesh.pair"]
-    return []
-
-
-def _ellipse(centre: Array, plane: Array, semi_axes: list[float], turn: Array) -> Array:
-    """Points (m, 3) of an ellipse in the tangent plane; NaN if an axis is infinite."""
-    if not np.isfinite(semi_axes).all():
-        return np.full((len(turn), 3), np.nan)
-    return np.asarray(centre + np.stack([np.cos(turn), np.sin(turn)], axis=-1) * semi_axes @ plane)
+def problems_of_map(gear: Any, grid: Any, fewest: int) -> list[str]:
+    """What is wrong with the gear and the grid of a map over a flank."""
+    problems = [] if gear in ("pinion", "wheel") else [f"gear: {gear!r} is not 'pinion' or 'wheel'"]
+    counts = list(grid) if isinstance(grid, Sequence | np.ndarray) else []
+    if len(counts) != 2 or not all(isinstance(n, int | np.integer) and n >= fewest for n in counts):
+        problems.append(f"grid: {grid!r} are not two whole numbers >= {fewest}")
+    return problems

@@ -126,11 +126,17 @@ def second_order(flank: Flank, rho: Array, z: Array, removed: Array) -> SecondOr
     half = 0.5 * np.array(size)
     lengths = np.array([1.0, half[0], half[1], half[0] * half[1], half[0] ** 2, half[1] ** 2])
     middle = central(u.shape)
+    at = rho[middle].mean(), z[middle].mean()
+    theta, along, up = (jet(*at) for jet in (flank.theta, flank.lengthwise_coordinate, flank.profile_coordinate))
+    unit = flank.profile_unit
+    steps = np.linalg.inv(np.array([[along.rho, along.z], [unit * up.rho, unit * up.z]], dtype=float))
+    tangents = np.array([[1.0, at[0] * theta.rho, 0.0], [0.0, at[0] * theta.z, 1.0]], dtype=float)
+    arcs = np.linalg.norm(steps.T @ tangents, axis=-1)
     return SecondOrder(
         polynomial=tuple((scaled / lengths).tolist()),
         origin=origin,
         size=size,
-        arcs=_arcs(flank, rho[middle].mean(), z[middle].mean()),
+        arcs=(float(arcs[0]), float(arcs[1])),
         residual=float(np.sqrt((missed**2).mean())),
     )
 
@@ -144,13 +150,3 @@ def flank_lengths(flank: Flank, rho: Array, z: Array) -> tuple[Array, Array]:
 def central(shape: tuple[int, ...]) -> tuple[slice, ...]:
     """The middle of a grid: along each axis its central point, or the central two."""
     return tuple(slice((count - 1) // 2, count // 2 + 1) for count in shape)
-
-
-def _arcs(flank: Flank, rho: Array, z: Array) -> tuple[float, float]:
-    """Arc length on the surface, at one point, for one millimetre of each coordinate while the other stays."""
-    theta, along = flank.theta(rho, z), flank.lengthwise_coordinate(rho, z)
-    up = flank.profile_coordinate(rho, z) * flank.profile_unit
-    steps = np.linalg.inv(np.array([[along.rho, along.z], [up.rho, up.z]], dtype=float))
-    tangents = np.array([[1.0, rho * theta.rho, 0.0], [0.0, rho * theta.z, 1.0]], dtype=float)
-    first, second = np.linalg.norm(steps.T @ tangents, axis=-1)
-    return float(first), float(second)

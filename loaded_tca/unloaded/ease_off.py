@@ -234,13 +234,17 @@ class EaseOff:
 
     def edge_owner(self) -> Array:
         """0 for an edge of the pinion, 1 for one of the wheel, in the order of ``edges``."""
-        extra = (self._pinion_relief_starts, self._wheel_relief_starts) if self.beyond is not None else (0, 0)
-        return np.repeat([0, 1], [4 + extra[0], 4 + extra[1]])
+        return np.repeat([0, 1], self._edge_counts)
 
     def edge_is_relief_start(self) -> Array:
         """Whether each entry of ``edges`` is a relief start."""
-        extra = (self._pinion_relief_starts, self._wheel_relief_starts) if self.beyond is not None else (0, 0)
-        return np.concatenate([np.arange(4 + count) >= 4 for count in extra])
+        return np.concatenate([np.arange(count) >= 4 for count in self._edge_counts])
+
+    @property
+    def _edge_counts(self) -> tuple[int, int]:
+        """Entries of ``edges`` of the pinion and of the wheel."""
+        on = self.beyond is not None
+        return 4 + on * self._pinion_relief_starts, 4 + on * self._wheel_relief_starts
 
     def _lead(self, wheel_angle: Array, phi1: Array) -> Array:
         """Ease-off [mm] of a wheel angle, without the sense of rotation, that is known up to whole turns."""
@@ -252,13 +256,8 @@ class EaseOff:
         return float(self.pair.driving * self.pair.base_radii[1] * self.pair.sense)
 
     def _sides(self, member: int) -> Any:
-        if self.beyond is None:
-            return None
-        return (
-            self.beyond[..., : self._pinion_relief_starts]
-            if member == 0
-            else self.beyond[..., self._pinion_relief_starts :]
-        )
+        first = self._pinion_relief_starts
+        return None if self.beyond is None else self.beyond[..., slice(first, None) if member else slice(first)]
 
     def _edge_jets(self, rho: Array, z: Array, wheel_rho: Array, wheel_z: Array) -> tuple[list[Jet], list[Jet]]:
         pair = self.pair

@@ -163,7 +163,9 @@ class _Ridge:
     def _follow(self, points: Array, edge: Array) -> tuple[Array, Array]:
         """Newton iteration for a point on the ridge and on an edge (-1: on the normal through ``points``)."""
         x, extent = points.copy(), np.asarray(self.field.pair.pinion.flank.extent)
-        lowest, highest = self._bounds()
+        corners = np.stack(self.field.pair.pinion.flank.grid(2, 2)).reshape(2, -1)
+        lowest = corners.min(axis=1) - extent * [0.1, 0.5]
+        highest = corners.max(axis=1) + 0.5 * extent
         residual, rows = np.zeros(len(x)), np.arange(len(x))
         for _ in range(RIDGE_STEPS):
             residual[rows], step, room = self._only(rows)._newton(x[rows], points[rows], edge[rows])
@@ -176,11 +178,6 @@ class _Ridge:
         _, distances = self.field.heights(self.phi1, *x.T)
         inside = distances.min(axis=-1, initial=np.inf) >= -FEASIBLE * extent[1]
         return x, inside & (residual <= FEASIBLE * extent[1])
-
-    def _bounds(self) -> tuple[Array, Array]:
-        rho, z = self.field.pair.pinion.flank.grid(2, 2)
-        margin = 0.5 * np.asarray(self.field.pair.pinion.flank.extent)
-        return np.array([rho.min(), z.min()]) - margin * [0.2, 1.0], np.array([rho.max(), z.max()]) + margin
 
     def _only(self, rows: Array) -> _Ridge:
         """Some of the ridges, or some of them often."""

@@ -7,6 +7,7 @@ must not lie inside the pinion once the wheel stands where the contact found put
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -106,7 +107,8 @@ class Corners:
 
 def region_corners(pair: GearPair, phi1: Array, scan: Scan) -> Corners:
     """Corners between neighbouring points of an edge of which one lies in the common region, the other does not."""
-    field, chains = EaseOff(pair), _edge_chains()
+    profile, face = np.arange(2 * EDGE).reshape(EDGE, 2).T, np.arange(2 * EDGE).reshape(2, EDGE)
+    field, chains = EaseOff(pair), GRID[0] * GRID[1] + np.concatenate([profile, 2 * EDGE + face])  # along the edges
     inside = np.isfinite(scan.height)[:, chains]
     owner, edge, place = np.nonzero(inside[..., 1:] != inside[..., :-1])
     first, last = chains[edge, place], chains[edge, place + 1]
@@ -128,14 +130,6 @@ def region_corners(pair: GearPair, phi1: Array, scan: Scan) -> Corners:
     return Corners(owner, rho, z, value)
 
 
-def _edge_chains() -> NDArray[np.int_]:
-    """Numbers of the points of a scan along the edges of the pinion's flank: (4, EDGE)."""
-    count = GRID[0] * GRID[1]
-    along_profile = np.arange(2 * EDGE).reshape(EDGE, 2).T
-    along_face = 2 * EDGE + np.arange(2 * EDGE).reshape(2, EDGE)
-    return count + np.concatenate([along_profile, along_face])
-
-
 def scan_pinion(pair: GearPair, phi1: Array) -> Scan:
     """Scan of the pinion flank at each pinion angle (n,) [rad]."""
     rho, z = _points(pair.pinion.flank, GRID, EDGE)
@@ -151,7 +145,9 @@ def scan_pinion(pair: GearPair, phi1: Array) -> Scan:
     height = np.where(lack <= allowed, value, -np.inf)
     outside = min(float(value.min(initial=0.0)) - 1.0, -1.0) * (1.0 + lack[:, :count])
     score = np.where(lack[:, :count] <= allowed, value[:, :count], outside)
-    return Scan(rho, z, height, score.reshape(len(phi1), *GRID), room >= -BETWEEN * _spacing(pair.pinion.flank))
+    # distances to the edges change by about a millimetre per millimetre
+    spacing = math.hypot(*(length / (count - 1) for length, count in zip(pair.pinion.flank.extent, GRID, strict=True)))
+    return Scan(rho, z, height, score.reshape(len(phi1), *GRID), room >= -BETWEEN * spacing)
 
 
 def inside_pinion(pair: GearPair, phi1: Array, value: Array, depth: float) -> Starts:
@@ -217,9 +213,3 @@ def _points(flank: Flank, shape: tuple[int, int], edge: int) -> tuple[Array, Arr
     parts = ([grid[k].ravel(), profile[k].ravel(), lengthwise[k].ravel()] for k in (0, 1))
     rho, z = (np.concatenate(part) for part in parts)
     return rho, z
-
-
-def _spacing(flank: Flank) -> float:
-    """Spacing of the scan [mm]; distances to the edges change by about a millimetre per millimetre."""
-    height, width = flank.extent
-    return float(np.hypot(height / (GRID[0] - 1), width / (GRID[1] - 1)))

@@ -73,14 +73,10 @@ def first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
         If a position has a common region but no ascent reached the height of the scan.
     """
     blocks = [phi1[start : start + POSITIONS_AT_ONCE] for start in range(0, max(len(phi1), 1), POSITIONS_AT_ONCE)]
-    return _joined([_first_touch(pair, block) for block in blocks])
-
-
-def _joined(parts: list[FirstTouch]) -> FirstTouch:
+    parts = [_first_touch(pair, block) for block in blocks]
     if len(parts) == 1:
         return parts[0]
-    names = [field.name for field in fields(FirstTouch)]
-    return FirstTouch(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
+    return FirstTouch(*(np.concatenate([getattr(part, entry.name) for part in parts]) for entry in fields(FirstTouch)))
 
 
 def _first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
@@ -89,14 +85,14 @@ def _first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
     result, rows = _best(phi1, found), np.arange(len(phi1))
     close = _beside_corners(pair, phi1, result)
     if close[0].size:
-        found = found.joined(_ascend(pair, phi1, *close))
+        found += _ascend(pair, phi1, *close)
         result = _best(phi1, found)
     corners = region_corners(pair, phi1, scan)
     for _ in range(ROUNDS):
         owner, rho, z = _accuracy_warnings(pair, phi1, (scan, corners), result, rows)
         if not owner.size:
             return result
-        found = found.joined(_ascend(pair, phi1, owner, rho, z))
+        found += _ascend(pair, phi1, owner, rho, z)
         result, rows = _best(phi1, found), np.unique(owner)
     _certify(pair, phi1, scan, result, rows)
     return result
@@ -172,54 +168,34 @@ def _certify(pair: GearPair, phi1: Array, scan: Scan, touch: FirstTouch, rows: N
         raise ConvergenceError(message, touch)
 
 
-@dataclass(frozen=True, eq=False)
-class _Ascents:
-    """Ascents with the position each belongs to and the smooth piece it stayed on."""
-
-    owner: Array
-    beyond: Array
-    peaks: Maxima
-
-    def joined(self, other: _Ascents) -> _Ascents:
-        owner, beyond = (np.concatenate([getattr(self, n), getattr(other, n)]) for n in ("owner", "beyond"))
-        return _Ascents(owner, beyond, self.peaks.joined(other.peaks))
+Ascents = list[tuple[Array, Array, Maxima]]
+"""Ascents with the position each belongs to and the smooth piece it stayed on."""
 
 
-def _ascend(pair: GearPair, phi1: Array, owner: Array, rho: Array, z: Array) -> _Ascents:
+def _ascend(pair: GearPair, phi1: Array, owner: Array, rho: Array, z: Array) -> Ascents:
     """Climb from the starts, and on across every relief start that holds an ascent."""
-    beyond = EaseOff(pair).sides(phi1[owner], rho, z)
-    found = latest = _Ascents(owner, beyond, _climb(pair, phi1[owner], rho, z, beyond))
-    columns, last = _relief_start_columns(pair), np.full(len(owner), -1)
-    for _ in columns:
-        row, last = _crossings(latest.peaks.multipliers[:, columns], last)
-        across = latest.beyond[row]
-        across[np.arange(len(row)), last] ^= True
-        owner, start = latest.owner[row], (latest.peaks.rho[row], latest.peaks.z[row])
-        latest = _Ascents(owner, across, _climb(pair, phi1[owner], *start, across))
-        found = found.joined(latest)
+    beyond, found = EaseOff(pair).sides(phi1[owner], rho, z), []
+    columns = np.flatnonzero(EaseOff(pair, beyond[:1]).edge_is_relief_start())
+    last = np.full(len(owner), -1)
+    for _ in range(len(columns) + 1):
+        peaks = climb(EaseOff(pair, beyond if len(columns) else None), phi1[owner], rho, z)
+        found.append((owner, beyond, peaks))
+        row, last = _crossings(peaks.multipliers[:, columns], last)
+        owner, rho, z, beyond = owner[row], peaks.rho[row], peaks.z[row], beyond[row]
+        beyond[np.arange(len(row)), last] ^= True
     return found
-
-
-def _climb(pair: GearPair, phi1: Array, rho: Array, z: Array, beyond: Array) -> Maxima:
-    return climb(EaseOff(pair, beyond if beyond.shape[1] else None), phi1, rho, z)
 
 
 def _crossings(multipliers: Array, last: Array) -> tuple[Array, Array]:
     """Rows of ascents that are held by a relief start other than the last one they crossed, and that relief start."""
-    held = (multipliers > 0.0) & (np.arange(multipliers.shape[1]) != last[:, None])
-    row, relief_start = np.nonzero(held)
+    row, relief_start = np.nonzero((multipliers > 0.0) & (np.arange(multipliers.shape[1]) != last[:, None]))
     return row, relief_start
 
 
-def _relief_start_columns(pair: GearPair) -> Array:
-    """Columns of the multipliers that belong to relief starts, the pinion's first."""
-    field = EaseOff(pair)
-    return np.flatnonzero(EaseOff(pair, np.zeros((1, field.relief_starts), dtype=bool)).edge_is_relief_start())
-
-
-def _best(phi1: Array, found: _Ascents) -> FirstTouch:
+def _best(phi1: Array, found: Ascents) -> FirstTouch:
     """The highest converged ascent of each position."""
-    owner, beyond, peaks = found.owner, found.beyond, found.peaks
+    owner, beyond = (np.concatenate([one[k] for one in found]) for k in (0, 1))
+    peaks = Maxima(*(np.concatenate([getattr(one[2], entry.name) for one in found]) for entry in fields(Maxima)))
     height = np.where(peaks.converged, peaks.value, -np.inf)
     best = np.full(len(phi1), -np.inf)
     np.maximum.at(best, owner, height)

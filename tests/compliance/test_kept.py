@@ -5,9 +5,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from loaded_tca.compliance import MeshDensity, kept
+from loaded_tca.compliance import MeshDensity
+from loaded_tca.compliance import flexibility as kept
 from loaded_tca.compliance.body import ToothFrame, gear_nodes
-from loaded_tca.compliance.kept import kept_flexibility, key_of
+from loaded_tca.compliance.flexibility import kept_flexibility, key_of
 from loaded_tca.flanks import FlankModifications, SplineFlank
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.material import Material

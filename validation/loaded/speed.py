@@ -23,7 +23,7 @@ import numpy as np
 
 from loaded_tca import AccuracyWarning, analyse, read_scene
 from loaded_tca.compliance import tooth_compliance
-from loaded_tca.compliance.kept import FOLDER, forget
+from loaded_tca.compliance.flexibility import FOLDER, forget
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
 
