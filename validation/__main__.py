@@ -1,9 +1,17 @@
-"""Run every comparison and print one table: ``python -m validation``; exit code 1 if a row fails."""
+"""Run every comparison and print one table: ``python -m validation``; exit code 1 if a row fails.
 
+``--save rows.json`` keeps the numbers, ``--compare rows.json`` tells which have moved since: what a change of the code
+did to them.
+"""
+
+import argparse
+import json
 import sys
+from dataclasses import asdict
 from importlib import import_module
+from pathlib import Path
 
-from validation.table import Row, render
+from validation.table import Row, moved, render
 
 CASES = (
     "contact.sphere",
@@ -39,10 +47,18 @@ def collect() -> list[Row]:
 
 def main() -> int:
     """Print the table; 0 if every row holds."""
+    parser = argparse.ArgumentParser(prog="python -m validation", description=__doc__.partition("\n\n")[0])
+    parser.add_argument("--save", metavar="FILE", type=Path, help="keep the rows as JSON")
+    parser.add_argument("--compare", metavar="FILE", type=Path, help="list the rows that differ from kept ones")
+    options = parser.parse_args()
     rows = collect()
     print(render(rows))
     failed = sum(not row.holds for row in rows)
     print(f"\n{len(rows)} rows, {failed} beyond the tolerance")
+    if options.save:
+        options.save.write_text(json.dumps([asdict(row) for row in rows], indent=1, ensure_ascii=False) + "\n")
+    if options.compare:
+        print("\n".join(moved(rows, [Row(**row) for row in json.loads(options.compare.read_text())])))
     return 1 if failed else 0
 
 

@@ -1,7 +1,9 @@
 """One row of the validation table, and how the table is printed."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,25 @@ def render(rows: Iterable[Row]) -> str:
     widths = [max(len(line[k]) for line in lines) for k in range(len(head))]
     text = ["  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in lines]
     return "\n".join([text[0], "-" * max(map(len, text)), *text[1:]])
+
+
+ROUNDING = 1e-9
+"""Relative difference below which a number has not moved; numbers near zero: ..."""
+ABSOLUTE_ROUNDING = 1e-12
+
+
+def moved(rows: Sequence[Row], before: Sequence[Row]) -> list[str]:
+    """Lines that tell which numbers of rows, taken in their order, differ from those of an earlier run."""
+    lines = []
+    for number, (row, old) in enumerate(zip(rows, before, strict=False)):
+        for name in ("expected", "obtained"):
+            now, then = getattr(row, name), getattr(old, name)
+            if not np.isclose(now, then, rtol=ROUNDING, atol=ABSOLUTE_ROUNDING, equal_nan=True):
+                lines.append(f"row {number}: {row.case}, {row.quantity}: {name} {then:.10g} -> {now:.10g}")
+    return [
+        *lines,
+        f"{len(lines)} numbers moved by more than {ROUNDING:g}; rows: {len(before)} before, {len(rows)} now",
+    ]
 
 
 def _cells(row: Row) -> tuple[str, ...]:

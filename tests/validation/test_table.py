@@ -7,7 +7,7 @@ import pytest
 
 import validation
 from validation.__main__ import collect
-from validation.table import Row, render
+from validation.table import Row, moved, render
 
 
 @pytest.fixture(scope="module")
@@ -44,3 +44,13 @@ def test_folder_lists_what_stands_in_it(folder):
     package = importlib.import_module(f"validation.{folder}")
     for info in pkgutil.iter_modules(package.__path__):
         assert f"``{info.name}``" in package.__doc__ or info.name == "__main__"
+
+
+def test_numbers_that_have_moved_are_told():
+    before = [Row("case", "source", "angle", 1.0, 2.0, None), Row("case", "source", "length", 0.0, float("nan"), 1e-3)]
+    assert moved(before, before) == ["0 numbers moved by more than 1e-09; rows: 2 before, 2 now"]
+    now = [Row("case", "source", "angle", 1.0, 2.1, None), Row("case", "source", "length", 1e-15, 0.0, 1e-3)]
+    told = moved(now, before)
+    assert told[0] == "row 0: case, angle: obtained 2 -> 2.1"
+    assert told[1].startswith("row 1: case, length: obtained nan")
+    assert len(told) == 3
