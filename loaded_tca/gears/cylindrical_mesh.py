@@ -7,11 +7,12 @@ Lengths are in mm, angles in rad; the path of contact is that of the transverse 
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import atan, ceil, cos, degrees, isclose, pi, sin, sqrt, tan
+from math import atan, ceil, cos, degrees, inf, isclose, pi, sin, sqrt, tan
 
-from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.cylindrical import CylindricalGear, inverse_involute, involute
 
+_EQUAL = 1e-12
 # In modules: a shorter piece of undercut flank is below what gear making can hold (0.3 um at module 3).
 _NEGLIGIBLE_UNDERCUT = 1e-4
 
@@ -115,41 +116,31 @@ class CylindricalMesh:
     centre_distance: float | None = None
 
     def __post_init__(self) -> None:
-        problems = self._input_problems()
-        if problems:
-            raise InputError(problems)
+        first, second, distance = self.pinion, self.wheel, self.centre_distance
+        modules = first.normal_module, second.normal_module
+        pressure, other_pressure = degrees(first.pressure_angle), degrees(second.pressure_angle)
+        helix, other_helix = degrees(first.helix_angle), degrees(second.helix_angle)
+        require(
+            (isclose(*modules, rel_tol=_EQUAL), f"normal_module: {modules[0]} and {modules[1]} mm must be equal"),
+            (
+                isclose(pressure, other_pressure, rel_tol=_EQUAL),
+                f"pressure_angle: {pressure:.6g} and {other_pressure:.6g} deg must be equal",
+            ),
+            (
+                isclose(helix, -other_helix, rel_tol=_EQUAL),
+                f"helix_angle: {helix:.6g} and {other_helix:.6g} deg must be opposite hands of one angle",
+            ),
+            (distance is None or 0.0 < distance < inf, f"centre_distance: {distance} mm is not positive and finite"),
+        )
         self._check_centre_distance()
-        for gear, mating in self._both_ways:
-            self._check_undercut(gear, mating)
+        self._check_undercut(first, second)
+        self._check_undercut(second, first)
         if self.path_of_contact.AE <= 0.0:
             raise GeometryError(
                 f"{self.pinion.name} and {self.wheel.name}: no common flank at centre distance"
                 f" {self.working_centre_distance:.6g} mm: on the line of action the usable flanks end"
                 f" {-self.path_of_contact.AE:.4f} mm apart"
             )
-
-    @property
-    def _both_ways(
-        self,
-    ) -> tuple[tuple[CylindricalGear, CylindricalGear], tuple[CylindricalGear, CylindricalGear]]:
-        """(gear, its mating gear), from either side."""
-        return (self.pinion, self.wheel), (self.wheel, self.pinion)
-
-    def _input_problems(self) -> list[str]:
-        """Every reason why the two gears are no pair."""
-        first, second = self.pinion, self.wheel
-        problems = []
-        if not isclose(first.normal_module, second.normal_module, rel_tol=1e-12):
-            problems.append(f"normal_module: {first.normal_module} and {second.normal_module} mm must be equal")
-        if not isclose(first.pressure_angle, second.pressure_angle, rel_tol=1e-12):
-            angles = f"{degrees(first.pressure_angle):.6g} and {degrees(second.pressure_angle):.6g} deg"
-            problems.append(f"pressure_angle: {angles} must be equal")
-        if not isclose(first.helix_angle, -second.helix_angle, rel_tol=1e-12):
-            angles = f"{degrees(first.helix_angle):.6g} and {degrees(second.helix_angle):.6g} deg"
-            problems.append(f"helix_angle: {angles} must be opposite hands of one angle")
-        if self.centre_distance is not None and not 0.0 < self.centre_distance < float("inf"):
-            problems.append(f"centre_distance: {self.centre_distance} mm is not positive and finite")
-        return problems
 
     def _check_centre_distance(self) -> None:
         """Refuse base circles that overlap or only touch."""

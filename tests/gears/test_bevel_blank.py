@@ -98,8 +98,8 @@ def test_depth_of_uniform_taper_is_the_same_along_the_face():
     pair = blank(taper="uniform")
     for gear in (pair.pinion, pair.wheel):
         assert gear.face_angle == gear.pitch_angle == gear.root_angle
-        assert gear.addenda == (gear.mean_addendum,) * 3
-        assert gear.dedenda == (gear.mean_dedendum,) * 3
+        assert gear.addenda.tolist() == [gear.mean_addendum] * 3
+        assert gear.dedenda.tolist() == [gear.mean_dedendum] * 3
 
 
 def slot_growth(pair):
