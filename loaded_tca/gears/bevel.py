@@ -11,7 +11,7 @@ from functools import cached_property
 from math import acos, asin, atan, atan2, cos, degrees, isclose, log, pi, radians, sin, sqrt, tan
 
 from loaded_tca.errors import GeometryError, InputError, require
-from loaded_tca.gears.checks import LARGEST_SPIRAL_ANGLE, input_checks, teeth_checks
+from loaded_tca.gears.checks import half_turn_checks, input_checks, pair_checks, spiral_check, teeth_checks
 
 _EQUAL = 1e-9
 _DEDENDUM = 1.25
@@ -95,19 +95,11 @@ class BevelGear:
     bore_diameter: float | None = None
 
     def __post_init__(self) -> None:
-        cones = {"pitch_angle": self.pitch_angle, "face_angle": self.face_angle, "root_angle": self.root_angle}
-        given = {key: angle for key, angle in cones.items() if angle is not None}
         require(
             *teeth_checks(self.teeth),
             *input_checks(self, ("outer_module", "face_width", "bore_diameter"), ("profile_shift",)),
-            *(
-                (0.0 < angle < pi, f"{key}: {angle:.6g} rad is not between 0 and 3.142 rad (180 deg)")
-                for key, angle in given.items()
-            ),
-            (
-                abs(self.spiral_angle) < LARGEST_SPIRAL_ANGLE,
-                f"spiral_angle: {self.spiral_angle:.6g} rad is not within 1.047 rad (60 deg)",
-            ),
+            *half_turn_checks(pitch_angle=self.pitch_angle, face_angle=self.face_angle, root_angle=self.root_angle),
+            spiral_check("spiral_angle", self.spiral_angle),
             owner=self.name,
         )
         root, pitch, face = self.root_cone_angle, self.pitch_angle, self.tip_angle
@@ -282,27 +274,13 @@ class BevelMesh:
     wheel: BevelGear
 
     def __post_init__(self) -> None:
-        first, second = self.pinion, self.wheel
-        common = [
-            (
-                f"{key}: {getattr(first, key)} and {getattr(second, key)} {unit}",
-                getattr(first, key),
-                getattr(second, key),
-            )
-            for key, unit in (("outer_module", "mm"), ("face_width", "mm"), ("pressure_angle", "rad"))
-        ]
+        first, second, shaft_angle = self.pinion, self.wheel, _degrees(self.shaft_angle)
         rolls = isclose(first.outer_cone_distance, second.outer_cone_distance, rel_tol=_EQUAL)
         pitches = f"{_degrees(first.pitch_angle)} and {_degrees(second.pitch_angle)}"
-        spirals = f"{degrees(first.spiral_angle):.6g} and {degrees(second.spiral_angle):.6g} deg"
-        opposite = isclose(first.spiral_angle, -second.spiral_angle, rel_tol=_EQUAL)
         require(
-            *((isclose(one, other, rel_tol=_EQUAL), f"{values} must be equal") for values, one, other in common),
-            (opposite, f"spiral_angle: {spirals} must be opposite hands of one angle"),
+            *pair_checks(first, second, ("outer_module", "face_width"), "spiral_angle"),
             (rolls, f"pitch_angle: {pitches} do not roll on each other with {first.teeth}/{second.teeth} teeth"),
-            (
-                self.shaft_angle < pi,
-                f"pitch_angle: the shaft angle, {_degrees(self.shaft_angle)}, is not below 180 deg",
-            ),
+            (self.shaft_angle < pi, f"pitch_angle: the shaft angle, {shaft_angle}, is not below 180 deg"),
         )
 
     @property
@@ -392,21 +370,10 @@ def bevel_mesh(
     GeometryError
         If a tooth cannot exist.
     """
-    if not 0.0 < shaft_angle < pi:
-        raise InputError(f"shaft_angle: {shaft_angle:.6g} rad is not between 0 and 3.142 rad (180 deg)")
-    gears = [
-        BevelGear(
-            teeth[member],
-            outer_module,
-            face_width,
-            pitch_angles(teeth, shaft_angle)[member],
-            pressure_angle,
-            (spiral_angle, -spiral_angle)[member],
-            profile_shifts[member],
-            face_angles[member],
-            root_angles[member],
-            ("pinion", "wheel")[member],
-        )
-        for member in (0, 1)
-    ]
-    return BevelMesh(*gears)
+    require(*half_turn_checks(shaft_angle=shaft_angle))
+    pitches, spirals, names = pitch_angles(teeth, shaft_angle), (spiral_angle, -spiral_angle), ("pinion", "wheel")
+    members = zip(teeth, pitches, spirals, profile_shifts, face_angles, root_angles, names, strict=True)
+    pinion, wheel = (
+        BevelGear(count, outer_module, face_width, pitch, pressure_angle, *own) for count, pitch, *own in members
+    )
+    return BevelMesh(pinion, wheel)

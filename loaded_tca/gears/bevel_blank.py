@@ -15,7 +15,7 @@ from typing import Any, Literal, get_args
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.bevel import pitch_angles
 from loaded_tca.gears.blank_gear import SECTIONS, BlankGear, Triple, virtual_curvature
-from loaded_tca.gears.checks import LARGEST_SPIRAL_ANGLE, input_checks, teeth_checks
+from loaded_tca.gears.checks import LARGEST_SPIRAL_ANGLE, half_turn_checks, input_checks, teeth_checks
 
 Taper = Literal["standard", "uniform", "duplex", "modified"]
 
@@ -167,13 +167,13 @@ class BevelBlank:
     def _check_inputs(self) -> None:
         """Refuse values out of their own ranges, then depths and tapers that do not go together."""
         positive = "outer_module", "face_width", "cutter_radius", "addendum_factor", "dedendum_factor"
-        backlash, shaft, spiral = self.outer_normal_backlash, self.shaft_angle, self.spiral_angle
+        backlash, spiral = self.outer_normal_backlash, self.spiral_angle
         shallow = self.wheel_angles is None or all(abs(angle) < _MAX_DEPTH_ANGLE for angle in self.wheel_angles)
         require(
             *teeth_checks(*self.teeth),
             *input_checks(self, positive, ("profile_shift", "thickness_modification")),
             (0.0 <= backlash < inf, f"outer_normal_backlash: {backlash} mm is negative or not finite"),
-            (0.0 < shaft < pi, f"shaft_angle: {shaft:.6g} rad is not between 0 and 3.142 rad (180 deg)"),
+            *half_turn_checks(shaft_angle=self.shaft_angle),
             (
                 0.0 <= spiral < LARGEST_SPIRAL_ANGLE,
                 f"spiral_angle: {spiral:.6g} rad is not from 0 to below 1.047 rad (60 deg)",

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from loaded_tca.errors import GeometryError, InputError, require
-from loaded_tca.gears.checks import LARGEST_SPIRAL_ANGLE, input_checks, teeth_checks
+from loaded_tca.gears.checks import input_checks, spiral_check, teeth_checks
 
 
 def involute(angle: float) -> float:
@@ -119,10 +119,7 @@ class CylindricalGear:
         require(
             *teeth_checks(self.teeth),
             *input_checks(self, positive, finite=("profile_shift",)),
-            (
-                abs(self.helix_angle) < LARGEST_SPIRAL_ANGLE,
-                f"helix_angle: {self.helix_angle:.6g} rad is not within 1.047 rad (60 deg)",
-            ),
+            spiral_check("helix_angle", self.helix_angle),
             (0.0 <= rounding < inf, f"root_radius_coefficient: {rounding} is negative or not finite"),
             owner=self.name,
         )

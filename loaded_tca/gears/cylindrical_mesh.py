@@ -7,12 +7,12 @@ Lengths are in mm, angles in rad; the path of contact is that of the transverse 
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import atan, ceil, cos, degrees, inf, isclose, pi, sin, sqrt, tan
+from math import atan, ceil, cos, inf, pi, sin, sqrt, tan
 
 from loaded_tca.errors import GeometryError, require
+from loaded_tca.gears.checks import pair_checks
 from loaded_tca.gears.cylindrical import CylindricalGear, inverse_involute, involute
 
-_EQUAL = 1e-12
 # In modules: a shorter piece of undercut flank is below what gear making can hold (0.3 um at module 3).
 _NEGLIGIBLE_UNDERCUT = 1e-4
 
@@ -104,6 +104,7 @@ class CylindricalMesh:
 
     Examples
     --------
+    >>> from math import degrees
     >>> pinion = CylindricalGear(teeth=16, normal_module=4.5, face_width=14.0, profile_shift=0.1817)
     >>> wheel = CylindricalGear(teeth=24, normal_module=4.5, face_width=14.0, profile_shift=0.1715)
     >>> mesh = CylindricalMesh(pinion, wheel, centre_distance=91.5)
@@ -117,19 +118,8 @@ class CylindricalMesh:
 
     def __post_init__(self) -> None:
         first, second, distance = self.pinion, self.wheel, self.centre_distance
-        modules = first.normal_module, second.normal_module
-        pressure, other_pressure = degrees(first.pressure_angle), degrees(second.pressure_angle)
-        helix, other_helix = degrees(first.helix_angle), degrees(second.helix_angle)
         require(
-            (isclose(*modules, rel_tol=_EQUAL), f"normal_module: {modules[0]} and {modules[1]} mm must be equal"),
-            (
-                isclose(pressure, other_pressure, rel_tol=_EQUAL),
-                f"pressure_angle: {pressure:.6g} and {other_pressure:.6g} deg must be equal",
-            ),
-            (
-                isclose(helix, -other_helix, rel_tol=_EQUAL),
-                f"helix_angle: {helix:.6g} and {other_helix:.6g} deg must be opposite hands of one angle",
-            ),
+            *pair_checks(first, second, ("normal_module",), "helix_angle"),
             (distance is None or 0.0 < distance < inf, f"centre_distance: {distance} mm is not positive and finite"),
         )
         self._check_centre_distance()

@@ -14,6 +14,7 @@ from math import inf, isfinite, pi
 from typing import Literal, get_args
 
 from loaded_tca.errors import require
+from loaded_tca.gears.checks import half_turn_checks
 
 Generation = Literal["generated", "formate"]
 
@@ -78,13 +79,13 @@ class MachineSettings:
     generation: Generation = "generated"
 
     def __post_init__(self) -> None:
-        known, root = self.generation in get_args(Generation), self.root_angle
+        known = self.generation in get_args(Generation)
         rolls = not self.rolls or self.ratio_of_roll > 0.0
         require(
             *_finite_checks(self),
             (known, f"generation: {self.generation!r} is not 'generated' or 'formate'"),
             (self.radial > 0.0, f"radial: {self.radial} mm is not positive"),
-            (0.0 < root < pi, f"root_angle: {root:.6g} rad is not between 0 and 3.142 rad (180 deg)"),
+            *half_turn_checks(root_angle=self.root_angle),
             (abs(self.tilt) < 0.5 * pi, f"tilt: {self.tilt:.6g} rad is not within 1.571 rad (90 deg)"),
             (rolls, f"ratio_of_roll: {self.ratio_of_roll} is not positive, and the gear is generated"),
         )

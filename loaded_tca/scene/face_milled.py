@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import degrees, isclose, radians
 from typing import ClassVar
 
-from loaded_tca.errors import InputError
+from loaded_tca.errors import require
 from loaded_tca.gears import cutter
 from loaded_tca.gears.bevel import pitch_angles
 from loaded_tca.gears.face_milled import FaceMilledGear, FaceMilledMesh
@@ -15,12 +16,21 @@ from loaded_tca.gears.machine_settings import FaceMilledBlank, MachineSettings
 from loaded_tca.pairs.bevel import BevelMounting
 from loaded_tca.pairs.face_milled import face_milled_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
-from loaded_tca.scene import bevel_rows, face_milled_rows
+from loaded_tca.scene import face_milled_rows
+from loaded_tca.scene.blank import opposite_hands
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units
 from loaded_tca.scene.face_milled_keys import Blade, Blank, Cutter, GearSection, Geometry, Machine
 from loaded_tca.scene.model import Row, Scene, family
-from loaded_tca.scene.section import Rule, subsection
-from loaded_tca.scene.spiral import AXES_THAT_MEET, MountingErrors, Side, names_of, sense_for, sides_in_contact
+from loaded_tca.scene.section import Rule, rule, subsection
+from loaded_tca.scene.spiral import (
+    AXES_THAT_MEET,
+    MountingErrors,
+    Side,
+    force_rows,
+    names_of,
+    sense_for,
+    sides_in_contact,
+)
 
 __all__ = ["Blade", "Blank", "Cutter", "FaceMilledScene", "GearSection", "Geometry", "Machine", "MountingErrors"]
 
@@ -30,22 +40,10 @@ SAME_SPHERES = 1e-6
 """Relative difference of two lengths that are meant to be the same."""
 
 
-def _opposite_hands(wheel: str, pinion: str) -> str | None:
-    if wheel != pinion:
-        return None
-    other = "left" if wheel == "right" else "right"
-    return f'found "{wheel}" on both gears; allowed "{other}", the hand that the pinion does not have'
-
-
 def _same_spheres(name: str) -> Rule:
     """Rule: both gears begin or end on the same spheres about the apex."""
-
-    def complain(wheel: float, pinion: float) -> str | None:
-        if isclose(wheel, pinion, rel_tol=SAME_SPHERES):
-            return None
-        return f"found {wheel:g}; allowed pinion.blank.{name} = {pinion:g}: both gears end on the same spheres"
-
-    return Rule((f"wheel.blank.{name}", f"pinion.blank.{name}"), complain)
+    problem = f"found {{0:g}}; allowed pinion.blank.{name} = {{1:g}}: both gears end on the same spheres"
+    return rule((f"wheel.blank.{name}", f"pinion.blank.{name}"), partial(isclose, rel_tol=SAME_SPHERES), problem)
 
 
 def _pitch_cone(member: int, name: str) -> Rule:
@@ -63,7 +61,7 @@ def _pitch_cone(member: int, name: str) -> Rule:
     return Rule((f"{name}.blank.pitch_angle_deg", "pinion.teeth", "wheel.teeth", "pair.shaft_angle_deg"), complain)
 
 
-@family
+@family("face_milled")
 @dataclass(frozen=True, kw_only=True)
 class FaceMilledScene(Scene):
     """A scene of two spiral bevel gears whose flanks are cut after machine settings.
@@ -96,7 +94,7 @@ class FaceMilledScene(Scene):
 
     rules: ClassVar[tuple[Rule, ...]] = (
         *Scene.rules,
-        Rule(("wheel.blank.hand", "pinion.blank.hand"), _opposite_hands),
+        opposite_hands("blank."),
         _same_spheres("outer_cone_distance_mm"),
         _same_spheres("face_width_mm"),
         _pitch_cone(0, "pinion"),
@@ -134,15 +132,9 @@ class FaceMilledScene(Scene):
 
     def mesh(self) -> FaceMilledMesh:
         """Return blanks, machine settings and cutters of both gears."""
-        pinion, wheel = (self._gear(member) for member in (0, 1))
-        return FaceMilledMesh(pinion, wheel, radians(self.geometry.shaft_angle_deg))
-
-    def _gear(self, member: int) -> FaceMilledGear:
-        own, name = (self.pinion, self.wheel)[member], ("pinion", "wheel")[member]
-        teeth = (self.pinion.teeth, self.wheel.teeth)
-        pitch = pitch_angles(teeth, radians(self.geometry.shaft_angle_deg))[member]
-        blank, cutter = _blank(own.blank, pitch), _cutter(own.cutter)
-        return FaceMilledGear(own.teeth, blank, cutter, _machine(own), name, own.bore_diameter_mm)
+        shaft_angle = radians(self.geometry.shaft_angle_deg)
+        first, second = pitch_angles((self.pinion.teeth, self.wheel.teeth), shaft_angle)
+        return FaceMilledMesh(_gear(self.pinion, "pinion", first), _gear(self.wheel, "wheel", second), shaft_angle)
 
     def analytic_pair(self, sense: Sense) -> GearPair:
         """Return the two generated flanks in space."""
@@ -173,7 +165,7 @@ class FaceMilledScene(Scene):
         """Return the forces under pinion torques [N mm]."""
         mesh = self.mesh()
         flanks, points = face_milled_rows.flanks_and_points(mesh, self.contact_sides)
-        return bevel_rows.force_rows(flanks, points, torques)
+        return force_rows(flanks, points, torques)
 
     def notes(self) -> Sequence[str]:
         """Return what is wrong with the tooth thicknesses, which the analysis does not need."""
@@ -187,34 +179,30 @@ class FaceMilledScene(Scene):
         )
 
 
-def _blank(own: Blank, pitch_angle: float) -> FaceMilledBlank:
-    """The blank with its exact pitch angle, which rounded root and face angles of uniform teeth may not pass."""
-    values = in_base_units(own)
-    values["root_angle"] = min(values["root_angle"], pitch_angle)
-    values["face_angle"] = max(values["face_angle"], pitch_angle)
-    return FaceMilledBlank(**{**values, "pitch_angle": pitch_angle})
-
-
-def _machine(own: GearSection) -> MachineSettings:
-    values = in_base_units(own.machine)
-    values["helical_motion"] = values.pop("helical_motion_mm_per_rad")
-    return MachineSettings(**{"root_angle": radians(own.blank.root_angle_deg), **values})
-
-
-def _cutter(own: Cutter) -> cutter.Cutter:
-    return cutter.Cutter(concave=_blade(own.concave), convex=_blade(own.convex), number=own.number)
-
-
-def _blade(own: Blade | None) -> cutter.Blade | None:
-    return None if own is None else cutter.Blade(**in_base_units(own))
+def _gear(own: GearSection, name: str, pitch_angle: float) -> FaceMilledGear:
+    """A gear with its exact pitch angle, which rounded root and face angles of uniform teeth may not pass."""
+    blank = in_base_units(own.blank)
+    machine = {"root_angle": blank["root_angle"], **in_base_units(own.machine)}
+    machine["helical_motion"] = machine.pop("helical_motion_mm_per_rad")
+    blank["pitch_angle"] = pitch_angle
+    blank["root_angle"] = min(blank["root_angle"], pitch_angle)
+    blank["face_angle"] = max(blank["face_angle"], pitch_angle)
+    concave, convex = (
+        None if blade is None else cutter.Blade(**in_base_units(blade))
+        for blade in (own.cutter.concave, own.cutter.convex)
+    )
+    return FaceMilledGear(
+        teeth=own.teeth,
+        blank=FaceMilledBlank(**blank),
+        cutter=cutter.Cutter(concave, convex, own.cutter.number),
+        machine=MachineSettings(**machine),
+        name=name,
+        bore_diameter=own.bore_diameter_mm,
+    )
 
 
 def _require_blades(mesh: FaceMilledMesh, sides: tuple[Side, Side]) -> None:
     """Refuse a pair whose cutters do not cut the flanks that are asked for."""
-    missing = [
-        f"{gear.name}.cutter.{side}: missing; it cuts the {side} flank of the {gear.name}, which is asked for"
-        for gear, side in zip(mesh.gears, sides, strict=True)
-        if getattr(gear.cutter, side) is None
-    ]
-    if missing:
-        raise InputError(missing)
+    for_each = zip(mesh.gears, sides, strict=True)
+    message = "{0}.cutter.{1}: missing; it cuts the {1} flank of the {0}, which is asked for"
+    require(*((getattr(gear.cutter, side) is not None, message.format(gear.name, side)) for gear, side in for_each))

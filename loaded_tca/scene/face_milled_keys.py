@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
@@ -9,7 +10,7 @@ from loaded_tca.gears.cutter import BLADE_SIGNS, MINUTES_PER_NUMBER
 from loaded_tca.pairs.gear_pair import Driving, Sense
 from loaded_tca.scene import sections
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
-from loaded_tca.scene.section import Rule, Section, subsection
+from loaded_tca.scene.section import Rule, Section, rule, subsection
 from loaded_tca.scene.sections import DRIVING, SENSE, Pair, below
 from loaded_tca.scene.spiral import FLANK_OR_SENSE, SIDE, SHAFT_ANGLE_deg, Side
 
@@ -38,18 +39,6 @@ class Geometry(Pair):
     rules: ClassVar[tuple[Rule, ...]] = (FLANK_OR_SENSE,)
 
 
-def _root_below(root: float, pitch: float) -> str | None:
-    return None if root <= pitch else f"found {root:g}; allowed up to pitch_angle_deg = {pitch:g}"
-
-
-def _face_above(face: float, pitch: float) -> str | None:
-    return None if face >= pitch else f"found {face:g}; allowed from pitch_angle_deg = {pitch:g} on"
-
-
-def _short_of_the_apex(width: float, distance: float) -> str | None:
-    return None if width < distance else f"found {width:g}; allowed below outer_cone_distance_mm = {distance:g}"
-
-
 @dataclass(frozen=True, kw_only=True)
 class Blank(Section):
     """[pinion.blank], [wheel.blank]: where the teeth end."""
@@ -68,16 +57,16 @@ class Blank(Section):
     root_apex_mm: float = key(SETTING_mm, "likewise the apex of the root cone", 0.0)
 
     rules: ClassVar[tuple[Rule, ...]] = (
-        Rule(("root_angle_deg", "pitch_angle_deg"), _root_below),
-        Rule(("face_angle_deg", "pitch_angle_deg"), _face_above),
-        Rule(("face_width_mm", "outer_cone_distance_mm"), _short_of_the_apex),
+        rule(("root_angle_deg", "pitch_angle_deg"), operator.le, "found {0:g}; allowed up to pitch_angle_deg = {1:g}"),
+        rule(
+            ("face_angle_deg", "pitch_angle_deg"), operator.ge, "found {0:g}; allowed from pitch_angle_deg = {1:g} on"
+        ),
+        rule(
+            ("face_width_mm", "outer_cone_distance_mm"),
+            operator.lt,
+            "found {0:g}; allowed below outer_cone_distance_mm = {1:g}",
+        ),
     )
-
-
-def _roll_of_a_generated_gear(ratio: float | None, generation: str) -> str | None:
-    if ratio is not None or generation == "formate":
-        return None
-    return 'missing; generation = "generated" needs it: turn of the blank over turn of the cradle'
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,7 +97,13 @@ class Machine(Section):
         Choice(("generated", "formate")), "whether the blank rolls with the cradle, or stands still", "generated"
     )
 
-    rules: ClassVar[tuple[Rule, ...]] = (Rule(("ratio_of_roll", "generation"), _roll_of_a_generated_gear),)
+    rules: ClassVar[tuple[Rule, ...]] = (
+        rule(
+            ("ratio_of_roll", "generation"),
+            lambda ratio, generation: ratio is not None or generation == "formate",
+            'missing; generation = "generated" needs it: turn of the blank over turn of the cradle',
+        ),
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -133,12 +128,6 @@ def _in_range_with_number(flank: Literal["concave", "convex"]) -> Rule:
     return Rule(("number", f"{flank}.blade_angle_deg"), complain)
 
 
-def _a_blade(concave: object, convex: object) -> str | None:
-    if concave is not None or convex is not None:
-        return None
-    return "missing; a cutter needs a section concave or convex, for the flank in contact (both for whole teeth)"
-
-
 @dataclass(frozen=True, kw_only=True)
 class Cutter(Section):
     """[pinion.cutter], [wheel.cutter]."""
@@ -152,7 +141,11 @@ class Cutter(Section):
     convex: Blade | None = subsection(Blade, "inside blade, which cuts the convex flank", optional=True)
 
     rules: ClassVar[tuple[Rule, ...]] = (
-        Rule(("concave", "convex"), _a_blade),
+        rule(
+            ("concave", "convex"),
+            lambda *blades: any(blade is not None for blade in blades),
+            "missing; a cutter needs a section concave or convex, for the flank in contact (both for whole teeth)",
+        ),
         _in_range_with_number("concave"),
         _in_range_with_number("convex"),
     )

@@ -9,9 +9,8 @@ import numpy as np
 
 from loaded_tca.flanks.face_milled import GeneratedFlank, tooth_angle
 from loaded_tca.gears.face_milled import FaceMilledGear, FaceMilledMesh
-from loaded_tca.scene.bevel_rows import Point, pitch_point
 from loaded_tca.scene.model import Row
-from loaded_tca.scene.spiral import Side
+from loaded_tca.scene.spiral import Point, Side, pitch_point
 
 Sides = tuple[Side, Side]
 ONE_FLANK = "one flank"
