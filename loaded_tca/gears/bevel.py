@@ -237,11 +237,8 @@ class BevelGear:
     def cone_angle_at_diameter(self, diameter: float) -> float:
         """Cone angle of a diameter as :meth:`diameter_at` counts it [rad]."""
         sine = 0.5 * diameter / self.mean_cone_distance
-        if not 0.0 <= sine <= 2.0:
-            raise InputError(
-                f"{self.name}: a diameter of {diameter:.6g} mm is not between 0 and {4.0 * self.mean_cone_distance:.6g}"
-                " mm"
-            )
+        allowed = f"between 0 and {4.0 * self.mean_cone_distance:.6g} mm"
+        require((0.0 <= sine <= 2.0, f"a diameter of {diameter:.6g} mm is not {allowed}"), owner=self.name)
         return asin(sine) if sine <= 1.0 else pi - asin(2.0 - sine)
 
 

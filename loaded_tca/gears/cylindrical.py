@@ -341,9 +341,7 @@ class CylindricalGear:
         undercut is so slight that rounding hides it.
         """
         flank_end = self.pressure_angle
-        if not self.is_undercut or self._above_base(flank_end) <= 0.0:
-            return flank_end
-        if self._cut_into_flank(flank_end) >= 0.0:
+        if not self.is_undercut or self._above_base(flank_end) <= 0.0 or self._cut_into_flank(flank_end) >= 0.0:
             return flank_end
         at_base: float = brentq(self._above_base, flank_end, 0.5 * pi)
         if self._cut_into_flank(at_base) <= 0.0:

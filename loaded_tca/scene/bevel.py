@@ -11,25 +11,14 @@ from typing import ClassVar, Literal
 from loaded_tca.gears.bevel import BevelGear, BevelMesh, pitch_angles
 from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
+from loaded_tca.scene import spiral
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row, family
 from loaded_tca.scene.section import Rule, rule, subsection
 from loaded_tca.scene.sections import DRIVING, SENSE, Pair
-from loaded_tca.scene.spiral import (
-    AXES_THAT_MEET,
-    FLANK_OR_SENSE,
-    SIDE,
-    MountingErrors,
-    SHAFT_ANGLE_deg,
-    Side,
-    force_rows,
-    names_of,
-    pitch_point,
-    sense_for,
-    sides_in_contact,
-)
+from loaded_tca.scene.spiral import MountingErrors, SpiralScene
 
 SPIRAL_deg = Number(0.0, 59.0)
 CONE_deg = above_zero(179.0)
@@ -45,7 +34,7 @@ class Geometry(Pair):
         Choice(("straight_bevel", "spiral_bevel")), "kind of gear pair"
     )
     outer_module_mm: float = key(above_zero(1000.0), "outer transverse module m_et, at the heel")
-    shaft_angle_deg: float = key(SHAFT_ANGLE_deg, "shaft angle Sigma", 90.0)
+    shaft_angle_deg: float = key(spiral.SHAFT_ANGLE_deg, "shaft angle Sigma", 90.0)
     spiral_angle_deg: float | None = key(
         SPIRAL_deg,
         "mean spiral angle beta_m on the pitch cone; its sign is in `pinion.hand`",
@@ -60,8 +49,8 @@ class Geometry(Pair):
         None,
         '"positive", or what `pinion_flank` asks for',
     )
-    pinion_flank: Side | None = key(
-        SIDE, "flank of a spiral pinion that is in contact, instead of `sense`", None, "by `sense`"
+    pinion_flank: spiral.Side | None = key(
+        spiral.SIDE, "flank of a spiral pinion that is in contact, instead of `sense`", None, "by `sense`"
     )
 
     rules: ClassVar[tuple[Rule, ...]] = (
@@ -80,7 +69,7 @@ class Geometry(Pair):
             lambda flank, kind: flank is None or kind == "spiral_bevel",
             'found "{0}", but flanks of straight teeth are neither; give sense instead',
         ),
-        FLANK_OR_SENSE,
+        spiral.FLANK_OR_SENSE,
     )
 
 
@@ -94,7 +83,7 @@ class GearSection(BlankGearSection):
 
 @family("straight_bevel", "spiral_bevel")
 @dataclass(frozen=True, kw_only=True)
-class BevelScene(BlankScene):
+class BevelScene(SpiralScene, BlankScene):
     """A scene of two straight or spiral bevel gears with spherical involute flanks.
 
     Attributes
@@ -134,28 +123,13 @@ class BevelScene(BlankScene):
             operator.eq,
             "found {0:g}; allowed pinion.face_width_mm = {1:g}: both gears end on the same spheres",
         ),
-        AXES_THAT_MEET,
+        spiral.AXES_THAT_MEET,
     )
-
-    @property
-    def sense(self) -> Sense:
-        """Sense of rotation, as given, or such that the pinion touches with the flank asked for."""
-        wanted = self.geometry
-        if wanted.pinion_flank is None:
-            return wanted.sense or "positive"
-        return sense_for(wanted.pinion_flank, self.hand_signs[0], wanted.driving)
 
     @property
     def contact_sides(self) -> tuple[str, str]:
         """Sides in contact of pinion and wheel: "concave" or "convex", "straight" without a spiral."""
-        if not self.geometry.spiral_angle_deg:
-            return "straight", "straight"
-        return sides_in_contact(self.sense, self.hand_signs[0], self.geometry.driving)
-
-    @property
-    def flank_names(self) -> tuple[str, str]:
-        """Gear and side in contact."""
-        return names_of(self.contact_sides)
+        return self.sides(self.sense) if self.geometry.spiral_angle_deg else ("straight", "straight")
 
     def mesh(self) -> BevelMesh:
         """Return the macro geometry: cones, cone distances, contact ratios."""
@@ -214,8 +188,10 @@ class BevelScene(BlankScene):
         """Return the forces under pinion torques [N mm]."""
         mesh = self.mesh()
         pair = self.analytic_pair(self.sense)
-        first, second = (pitch_point(gear.mean_cone_distance, gear.pitch_angle) for gear in (mesh.pinion, mesh.wheel))
-        return force_rows((pair.pinion.nominal_flank, pair.wheel.nominal_flank), (first, second), torques)
+        first, second = (
+            spiral.pitch_point(gear.mean_cone_distance, gear.pitch_angle) for gear in (mesh.pinion, mesh.wheel)
+        )
+        return spiral.force_rows((pair.pinion.nominal_flank, pair.wheel.nominal_flank), (first, second), torques)
 
 
 def _cone_rows(mesh: BevelMesh) -> list[Row]:

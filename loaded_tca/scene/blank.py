@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import ClassVar
 
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
-from loaded_tca.scene.model import Scene
+from loaded_tca.scene.model import Hand, Scene
 from loaded_tca.scene.section import Rule, subsection
 from loaded_tca.scene.sections import GearSection, below
-
-Hand = Literal["right", "left"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,9 +56,3 @@ class BlankScene(Scene):
         """Hands of pinion and wheel: as one of them is given; where none is, the pinion is right-hand."""
         pinion = self.pinion.hand or OTHER[self.wheel.hand or "left"]
         return pinion, OTHER[pinion]
-
-    @property
-    def hand_signs(self) -> tuple[int, int]:
-        """+1 for the right hand, -1 for the left one, of pinion and wheel."""
-        sign = 1 if self.hands[0] == "right" else -1
-        return sign, -sign

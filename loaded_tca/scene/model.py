@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, TypeVar
+from typing import Any, ClassVar, Literal, TypeVar
 
 from loaded_tca.errors import InputError
 from loaded_tca.pairs.gear_pair import GearPair, Sense
@@ -26,6 +26,7 @@ from loaded_tca.scene.section import (
 from loaded_tca.scene.sections import Analysis, ElasticMaterial, GearSection, Load, Pair
 from loaded_tca.scene.text import literal
 
+Hand = Literal["right", "left"]
 Row = tuple[str, ...]
 """Label and cells of a line of an overview."""
 
@@ -87,6 +88,17 @@ class Scene(Section, ABC):
     @abstractmethod
     def sense(self) -> Sense:
         """Sense of rotation."""
+
+    @property
+    @abstractmethod
+    def hands(self) -> tuple[Hand, Hand]:
+        """Hands of pinion and wheel."""
+
+    @property
+    def hand_signs(self) -> tuple[int, int]:
+        """+1 for the right hand, -1 for the left one, of pinion and wheel."""
+        sign = 1 if self.hands[0] == "right" else -1
+        return sign, -sign
 
     @abstractmethod
     def analytic_pair(self, sense: Sense) -> GearPair:

@@ -123,11 +123,11 @@ def check(section: type[Section], found: Mapping[str, Any], place: str = "") -> 
             values[name] = entry.read(given)
         except ValueError as refused:
             problems.append(f"{place}{name}: {refused}")
-    for broken in section.rules:
-        if all(name in values for name in broken.keys):
-            complaint = broken.complain(*(values[name] for name in broken.keys))
+    for demand in section.rules:
+        if all(name in values for name in demand.keys):
+            complaint = demand.complain(*(values[name] for name in demand.keys))
             if complaint is not None:
-                problems.append(f"{place}{broken.keys[0]}: {complaint}")
+                problems.append(f"{place}{demand.keys[0]}: {complaint}")
     return values, problems
 
 

@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import cos, sin
-from typing import Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
 from loaded_tca.flanks.base import Flank, outward_normal
 from loaded_tca.pairs.gear_pair import Driving, Sense, signs_of
 from loaded_tca.scene.keys import Choice, Number, key
-from loaded_tca.scene.model import Row
+from loaded_tca.scene.model import Row, Scene
 from loaded_tca.scene.section import Section, rule
 from loaded_tca.scene.sections import ERROR_deg, ERROR_mm
 
@@ -81,9 +81,37 @@ def sides_in_contact(sense: Sense, hand: int, driving: Driving) -> tuple[Side, S
     return ("concave", "convex") if sense_for("concave", hand, driving) == sense else ("convex", "concave")
 
 
-def names_of(sides: tuple[str, str]) -> tuple[str, str]:
-    """What pictures call the two flanks in contact."""
-    return f"{sides[0]} flank of the pinion", f"{sides[1]} flank of the wheel"
+@dataclass(frozen=True, kw_only=True)
+class SpiralScene(Scene):
+    """A scene of gears on meeting axes, whose flanks in contact may be asked for by name."""
+
+    usual_flank: ClassVar[Side | None] = None
+    """Flank of the pinion in contact where neither flank nor sense is given; None: the sense is positive."""
+
+    @property
+    def sense(self) -> Sense:
+        """Sense of rotation, as given, or such that the pinion touches with the flank asked for."""
+        wanted: Any = self.geometry
+        flank = wanted.pinion_flank or self.usual_flank
+        if wanted.sense is not None or flank is None:
+            return wanted.sense or "positive"
+        return sense_for(flank, self.hand_signs[0], wanted.driving)
+
+    def sides(self, sense: Sense) -> tuple[Side, Side]:
+        """Return which flanks of pinion and wheel touch in a sense of rotation."""
+        wanted: Any = self.geometry
+        return sides_in_contact(sense, self.hand_signs[0], wanted.driving)
+
+    @property
+    def contact_sides(self) -> tuple[str, str]:
+        """Sides in contact of pinion and wheel: "concave" or "convex"."""
+        return self.sides(self.sense)
+
+    @property
+    def flank_names(self) -> tuple[str, str]:
+        """Gear and side in contact."""
+        pinion, wheel = self.contact_sides
+        return f"{pinion} flank of the pinion", f"{wheel} flank of the wheel"
 
 
 Point = tuple[float, float]
