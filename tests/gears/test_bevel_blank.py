@@ -49,7 +49,7 @@ def cones_in_axial_plane(pair):
 
 
 @given(st.integers(12, 40), st.integers(12, 70), st.floats(0.5, 2.2), st.sampled_from(TAPERS))
-def test_face_cones_are_parallel_to_the_root_cones_of_the_mate(first, second, shaft_angle, taper):
+def test_face_cones_are_parallel_to_the_root_cones_of_the_mating_gear(first, second, shaft_angle, taper):
     pair = blank(
         teeth=(first, second),
         shaft_angle=shaft_angle,
@@ -115,7 +115,7 @@ def test_slots_of_duplex_taper_have_one_width_of_the_tool():
     assert abs(slot_growth(pair)) < 2e-3 * slot_growth(even)
 
 
-def test_share_of_the_duplex_taper_is_the_addendum_of_the_mate():
+def test_share_of_the_duplex_taper_is_the_addendum_of_the_mating_gear():
     pair = blank(taper="duplex", profile_shift=0.3)
     first, second = pair.dedendum_angles
     assert_allclose(first + second, pair.constant_slot_taper, rtol=ROUNDING)
