@@ -104,10 +104,9 @@ def _told(error: Exception) -> tuple[int, list[str]]:
     """Exit code and lines of an error."""
     if isinstance(error, ConvergenceError):
         return NO_CONVERGENCE, str(error).splitlines()
-    if isinstance(error, InputError):
-        return BAD_INPUT, [" ".join(problem.split()) for problem in error.problems]
     if isinstance(error, LoadedTCAError):
-        return BAD_INPUT, [" ".join(str(error).split())]
+        problems = error.problems if isinstance(error, InputError) else (str(error),)
+        return BAD_INPUT, [" ".join(problem.split()) for problem in problems]
     if isinstance(error, MemoryError):
         return BAD_INPUT, [
             "out of memory; ask for fewer analysis.cells, a larger analysis.accuracy, or fewer positions"
@@ -136,10 +135,10 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
 
-    def command(name: str, run: Callable[[argparse.Namespace], None], text: str) -> argparse.ArgumentParser:
+    def command(
+        name: str, run: Callable[[argparse.Namespace], None], text: str, epilog: str | None = FILES
+    ) -> argparse.ArgumentParser:
         layout = argparse.RawDescriptionHelpFormatter
-        epilogs: dict[object, str | None] = {_check: None, _tooth: TEETH, _ease_off: EASE_OFF, _subsurface: SUBSURFACE}
-        epilog = epilogs.get(run, FILES)
         added = commands.add_parser(
             name, help=text, description=text, epilog=epilog, formatter_class=layout, parents=[common]
         )
@@ -151,35 +150,32 @@ def _parser() -> argparse.ArgumentParser:
     run = command("run", _run, "analyse a scene; writes result.nc, summary.json, positions.csv and pictures")
     run.add_argument("scene", metavar="SCENE.toml", help="scene file")
     run.add_argument("--out", metavar="DIR", required=True, type=Path, help="directory for the results")
-    plot = command("plot", _plot, "draw the pictures of a result again")
     own = "beside the result, with --torque or --position in a directory there that these name"
-    plot.add_argument("--out", metavar="DIR", type=Path, help=f"directory for the pictures; default: {own}")
-    plot.add_argument("--torque", metavar="NM", type=float, help="pinion torque of maps and flanks; default: largest")
-    plot.add_argument("--position", metavar="N", type=int, help="position of pressure_map.png, from 1; default: peak")
-    tooth = command("tooth", _tooth, "write the complete teeth of a result as surfaces (VTK, STL) and as a picture")
-    tooth.add_argument("--out", metavar="DIR", type=Path, help="directory for the files; default: beside the result")
-    tooth.add_argument("--torque", metavar="NM", type=float, help="pinion torque of the pressure; default: largest")
-    tooth.add_argument("--position", metavar="N", type=int, help="position of the teeth, from 1; default: peak")
+    peak = "default: that of the peak pressure of the summary"
+    plot = command("plot", _plot, "draw the pictures of a result again")
+    told = "write the complete teeth of a result as surfaces (VTK, STL) and as a picture"
+    tooth = command("tooth", _tooth, told, TEETH)
+    below = command("subsurface", _subsurface, "show the stresses below a pressure map of a result", SUBSURFACE)
+    for reader, place, of_torque, of_position in (
+        (plot, f"directory for the pictures; default: {own}", "pinion torque of maps and flanks", "pressure_map.png"),
+        (tooth, "directory for the files; default: beside the result", "pinion torque of the pressure", "the teeth"),
+        (below, "directory for the files; default: beside the result", "pinion torque", "the pressure map"),
+    ):
+        reader.add_argument("result", metavar="DIR|FILE", type=Path, help="result.nc, or the directory that holds it")
+        reader.add_argument("--out", metavar="DIR", type=Path, help=place)
+        reader.add_argument("--torque", metavar="NM", type=float, help=f"{of_torque}; default: largest")
+        reader.add_argument("--position", metavar="N", type=int, help=f"position of {of_position}, from 1; {peak}")
     tooth.add_argument("--fillet-radius", metavar="MM", type=float, help="of arcs at the root; default: by the module")
     tooth.add_argument("--whole-gears", action="store_true", help="all teeth in the STL files, not one")
-    below = command("subsurface", _subsurface, "show the stresses below a pressure map of a result")
-    below.add_argument("--out", metavar="DIR", type=Path, help="directory for the files; default: beside the result")
-    below.add_argument("--torque", metavar="NM", type=float, help="pinion torque; default: largest")
-    first = "default: that of the peak pressure of the summary"
-    below.add_argument("--position", metavar="N", type=int, help=f"position, from 1; {first}")
-    below.add_argument("--pair", metavar="K", type=int, help=f"tooth pair, as load_share.png counts; {first}")
-    ease_off = command("ease-off", _ease_off, "draw the ease-off of a scene, without load")
+    below.add_argument("--pair", metavar="K", type=int, help=f"tooth pair, as load_share.png counts; {peak}")
+    below.add_argument(
+        "--gear", choices=("pinion", "wheel"), default="pinion", help="below whose flank; default: pinion"
+    )
+    ease_off = command("ease-off", _ease_off, "draw the ease-off of a scene, without load", EASE_OFF)
     ease_off.add_argument("scene", metavar="SCENE.toml", help="scene file")
     ease_off.add_argument("--out", metavar="DIR", required=True, type=Path, help="directory for the picture")
-    for parser_of_result in (plot, tooth, below):
-        parser_of_result.add_argument(
-            "result", metavar="DIR|FILE", type=Path, help="result.nc, or the directory that holds it"
-        )
-    for parser_of_gear in (below, ease_off):
-        parser_of_gear.add_argument(
-            "--gear", choices=("pinion", "wheel"), default="pinion", help="whose flank; default: pinion"
-        )
-    check = command("check", _check, "read a scene and show its geometry, without computing a contact")
+    ease_off.add_argument("--gear", choices=("pinion", "wheel"), default="pinion", help="whose flank; default: pinion")
+    check = command("check", _check, "read a scene and show its geometry, without computing a contact", None)
     check.add_argument("scene", metavar="SCENE.toml", help="scene file")
     return parser
 
@@ -207,40 +203,37 @@ def _demo(options: argparse.Namespace) -> None:
         raise InputError(f"{scene}: has been changed, and the demo would replace it; rename it, or use {again}")
     with replacing(scene) as temporary:
         temporary.write_bytes(content)
-    _analyse_to(str(scene), directory)
+    _run(argparse.Namespace(scene=scene, out=directory))
     print(f"Next: change {scene}, for instance its lead_crowning_um, then try\n")
     print(f"  loaded-tca run {scene} --out my-pair")
 
 
 def _run(options: argparse.Namespace) -> None:
-    _analyse_to(options.scene, options.out)
-
-
-def _analyse_to(scene_file: str, directory: Path) -> None:
     """Read, analyse, write everything, and show the summary."""
     from loaded_tca.analysis import analyse
     from loaded_tca.output.report import write_report
+    from loaded_tca.plots import plot_all
     from loaded_tca.scene import read_scene
 
-    scene = read_scene(scene_file)
-    _check_place(directory)
+    scene = read_scene(options.scene)
+    _check_place(options.out)
     with _progress_bar(len(scene.torques), scene.analysis.positions) as progress:
         result = analyse(scene, progress=progress)
-    written = [*write_report(result, directory), *_draw(result, directory)]
+    written = [*write_report(result, options.out), *plot_all(result, options.out)]
     print(result.summary(), end="\n\n")
     _print_files(written)
 
 
 def _plot(options: argparse.Namespace) -> None:
     from loaded_tca.output.report import make_directory
+    from loaded_tca.plots import plot_all
 
     result, directory, torque, position = _loaded(options)
-    if options.out is None:
-        # Pictures of a torque or position would replace those of the result as a whole.
+    if options.out is None:  # pictures of one torque or position do not replace those of the result as a whole
         chosen = {"torque_{:g}_Nm": options.torque, "position_{}": options.position}
         directory /= "_".join(name.format(value) for name, value in chosen.items() if value is not None)
         make_directory(directory)
-    _print_files(_draw(result, directory, torque, position))
+    _print_files(plot_all(result, directory, torque=torque, position=position))
 
 
 def _tooth(options: argparse.Namespace) -> None:
@@ -317,14 +310,6 @@ def _check(options: argparse.Namespace) -> None:
     from loaded_tca.scene import read_scene
 
     print(describe_scene(read_scene(options.scene)))
-
-
-def _draw(
-    result: MeshCycle, directory: Path, torque: int | None = None, position: int | None = None
-) -> tuple[Path, ...]:
-    from loaded_tca.plots import plot_all
-
-    return plot_all(result, directory, torque=torque, position=position)
 
 
 def _print_files(paths: Sequence[Path]) -> None:

@@ -1,6 +1,7 @@
 """Every error and warning of the package, in one place."""
 
 from collections.abc import Iterable
+from math import inf
 from typing import Any
 
 
@@ -31,6 +32,33 @@ class InputError(LoadedTCAError, ValueError):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.problems,)
+
+
+def require(*checks: tuple[bool, str], owner: str = "") -> None:
+    """Raise one InputError that tells every check that fails.
+
+    Parameters
+    ----------
+    *checks : (bool, str)
+        What must hold, and the problem where it does not.
+    owner : str
+        Whose input it is, in front of each problem.
+
+    Examples
+    --------
+    >>> require((2 > 1, "never told"), (1 > 2, "teeth: 1 is below 2"), owner="pinion")
+    Traceback (most recent call last):
+    ...
+    loaded_tca.errors.InputError: pinion: teeth: 1 is below 2
+    """
+    problems = [f"{owner}: {problem}" if owner else problem for holds, problem in checks if not holds]
+    if problems:
+        raise InputError(problems)
+
+
+def require_positive(**values: float) -> None:
+    """Raise one InputError that names every value that is not positive and finite."""
+    require(*((0.0 < value < inf, f"{name}: {value} is not positive and finite") for name, value in values.items()))
 
 
 class GeometryError(LoadedTCAError, ValueError):

@@ -305,7 +305,7 @@ def test_progress_counts_torques_and_positions(monkeypatch):
     changes = {"positions = 21": "positions = 3\ntorques_Nm = [20.0, 40.0]"}
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
-    monkeypatch.setattr(cli, "_draw", lambda *_: ())
+    monkeypatch.setattr("loaded_tca.plots.plot_all", lambda *_: ())
     assert cli.main(["run", str(scene(**changes)), "--out", "out"]) == 0
     shown = terminal.getvalue()
     assert "2 torques x 3 positions: 100%" in shown

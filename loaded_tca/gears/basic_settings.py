@@ -26,7 +26,7 @@ from __future__ import annotations
 from math import atan2, cos, degrees, hypot, sin
 from typing import Literal
 
-from loaded_tca.errors import InputError
+from loaded_tca.errors import require
 from loaded_tca.gears.bevel_blank import BevelBlank
 from loaded_tca.gears.blank_gear import BlankGear
 from loaded_tca.gears.cutter import MINUTES_PER_NUMBER, Blade, Cutter
@@ -184,46 +184,33 @@ def point_width(gear: BlankGear) -> float:
     Where the slot tapers, a cutter that is to pass through without touching both flanks must be narrower than
     ``min(gear.slot_widths)``.
     """
-    return gear.slot_widths[1]
+    return float(gear.slot_widths[1])
 
 
 def _gears(blank: BevelBlank, pinion_hand: Hand, edge_radius: float, number: float) -> Gears:
-    problems = []
-    if blank.cutter_radius is None:
-        problems.append("cutter_radius: missing; a face-milled gear needs the radius of its cutter")
-    if pinion_hand not in ("left", "right"):
-        problems.append(f"pinion_hand: {pinion_hand!r} is not 'left' or 'right'")
-    if blank.cutter_radius is None or problems:
-        raise InputError(problems)
-    hands: tuple[Hand, Hand] = ("left", "right") if pinion_hand == "left" else ("right", "left")
     radius = blank.cutter_radius
-    pinion, wheel = (
-        FaceMilledGear(
-            teeth=gear.teeth,
-            blank=_outline(blank, gear, hand),
-            cutter=_cutter(gear, radius, edge_radius, number),
-            machine=basic_machine_settings(gear, radius),
-            name=gear.name,
+    require(
+        (radius is not None, "cutter_radius: missing; a face-milled gear needs the radius of its cutter"),
+        (pinion_hand in ("left", "right"), f"pinion_hand: {pinion_hand!r} is not 'left' or 'right'"),
+    )
+    assert radius is not None
+
+    def cut(gear: BlankGear, hand: Hand) -> FaceMilledGear:
+        outline = FaceMilledBlank(
+            outer_cone_distance=blank.outer_cone_distance,
+            face_width=blank.face_width,
+            pitch_angle=gear.pitch_angle,
+            face_angle=gear.face_angle,
+            root_angle=gear.root_angle,
+            hand=hand,
+            face_apex=gear.face_apex,
+            root_apex=gear.root_apex,
         )
-        for gear, hand in zip((blank.pinion, blank.wheel), hands, strict=True)
-    )
-    return pinion, wheel
+        outside, inside = (
+            Blade(radius + offset, gear.pressure_angle, edge_radius=edge_radius)
+            for offset in (0.5 * point_width(gear), -0.5 * point_width(gear))
+        )
+        cutter = Cutter(concave=outside, convex=inside, number=number)
+        return FaceMilledGear(gear.teeth, outline, cutter, basic_machine_settings(gear, radius), gear.name)
 
-
-def _outline(blank: BevelBlank, gear: BlankGear, hand: Hand) -> FaceMilledBlank:
-    return FaceMilledBlank(
-        outer_cone_distance=blank.outer_cone_distance,
-        face_width=blank.face_width,
-        pitch_angle=gear.pitch_angle,
-        face_angle=gear.face_angle,
-        root_angle=gear.root_angle,
-        hand=hand,
-        face_apex=gear.face_apex,
-        root_apex=gear.root_apex,
-    )
-
-
-def _cutter(gear: BlankGear, radius: float, edge_radius: float, number: float) -> Cutter:
-    half = 0.5 * point_width(gear)
-    outside, inside = (Blade(radius + offset, gear.pressure_angle, edge_radius=edge_radius) for offset in (half, -half))
-    return Cutter(concave=outside, convex=inside, number=number)
+    return cut(blank.pinion, pinion_hand), cut(blank.wheel, "right" if pinion_hand == "left" else "left")

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import acos, asin, atan, atan2, cos, degrees, isclose, log, pi, radians, sin, sqrt, tan
 
-from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.gears.checks import LARGEST_SPIRAL_ANGLE, input_problems, teeth_problems
+from loaded_tca.errors import GeometryError, InputError, require
+from loaded_tca.gears.checks import half_turn_checks, input_checks, pair_checks, spiral_check, teeth_checks
 
 _EQUAL = 1e-9
 _DEDENDUM = 1.25
@@ -95,30 +95,20 @@ class BevelGear:
     bore_diameter: float | None = None
 
     def __post_init__(self) -> None:
-        problems = self._input_problems() or self._cone_problems()
-        if problems:
-            raise InputError(f"{self.name}: {problem}" for problem in problems)
+        require(
+            *teeth_checks(self.teeth),
+            *input_checks(self, ("outer_module", "face_width", "bore_diameter"), ("profile_shift",)),
+            *half_turn_checks(pitch_angle=self.pitch_angle, face_angle=self.face_angle, root_angle=self.root_angle),
+            spiral_check("spiral_angle", self.spiral_angle),
+            owner=self.name,
+        )
+        root, pitch, face = self.root_cone_angle, self.pitch_angle, self.tip_angle
+        require(
+            (root < pitch, f"root cone, {_degrees(root)}, is not below the pitch cone, {_degrees(pitch)}"),
+            (face > pitch, f"face cone, {_degrees(face)}, is not above the pitch cone, {_degrees(pitch)}"),
+            owner=self.name,
+        )
         self._check_tooth()
-
-    def _input_problems(self) -> list[str]:
-        """Every value that is out of its own range."""
-        problems = teeth_problems(self.teeth)
-        problems += input_problems(self, ("outer_module", "face_width", "bore_diameter"), ("profile_shift",))
-        for key in ("pitch_angle", "face_angle", "root_angle"):
-            if (angle := getattr(self, key)) is not None and not 0.0 < angle < pi:
-                problems.append(f"{key}: {angle:.6g} rad is not between 0 and 3.142 rad (180 deg)")
-        if not abs(self.spiral_angle) < LARGEST_SPIRAL_ANGLE:
-            problems.append(f"spiral_angle: {self.spiral_angle:.6g} rad is not within 1.047 rad (60 deg)")
-        return problems
-
-    def _cone_problems(self) -> list[str]:
-        """Cones given or derived that are not in order."""
-        problems = []
-        if self.root_cone_angle >= self.pitch_angle:
-            problems.append(f"root cone, {_degrees(self.root_cone_angle)}, is not below the pitch cone")
-        if self.tip_angle <= self.pitch_angle:
-            problems.append(f"face cone, {_degrees(self.tip_angle)}, is not above the pitch cone")
-        return [f"{problem}, {_degrees(self.pitch_angle)}" for problem in problems]
 
     def _check_tooth(self) -> None:
         """Refuse a tooth without toe, flank or tip."""
@@ -247,11 +237,8 @@ class BevelGear:
     def cone_angle_at_diameter(self, diameter: float) -> float:
         """Cone angle of a diameter as :meth:`diameter_at` counts it [rad]."""
         sine = 0.5 * diameter / self.mean_cone_distance
-        if not 0.0 <= sine <= 2.0:
-            raise InputError(
-                f"{self.name}: a diameter of {diameter:.6g} mm is not between 0 and {4.0 * self.mean_cone_distance:.6g}"
-                " mm"
-            )
+        allowed = f"between 0 and {4.0 * self.mean_cone_distance:.6g} mm"
+        require((0.0 <= sine <= 2.0, f"a diameter of {diameter:.6g} mm is not {allowed}"), owner=self.name)
         return asin(sine) if sine <= 1.0 else pi - asin(2.0 - sine)
 
 
@@ -284,26 +271,14 @@ class BevelMesh:
     wheel: BevelGear
 
     def __post_init__(self) -> None:
-        problems = self._input_problems()
-        if problems:
-            raise InputError(problems)
-
-    def _input_problems(self) -> list[str]:
-        first, second = self.pinion, self.wheel
-        problems = []
-        for key, unit in (("outer_module", "mm"), ("face_width", "mm"), ("pressure_angle", "rad")):
-            values = getattr(first, key), getattr(second, key)
-            if not isclose(*values, rel_tol=_EQUAL):
-                problems.append(f"{key}: {values[0]} and {values[1]} {unit} must be equal")
-        if not isclose(first.spiral_angle, -second.spiral_angle, rel_tol=_EQUAL):
-            angles = f"{degrees(first.spiral_angle):.6g} and {degrees(second.spiral_angle):.6g} deg"
-            problems.append(f"spiral_angle: {angles} must be opposite hands of one angle")
-        if not isclose(first.outer_cone_distance, second.outer_cone_distance, rel_tol=_EQUAL):
-            angles = f"{_degrees(first.pitch_angle)} and {_degrees(second.pitch_angle)}"
-            problems.append(f"pitch_angle: {angles} do not roll on each other with {first.teeth}/{second.teeth} teeth")
-        if not self.shaft_angle < pi:
-            problems.append(f"pitch_angle: the shaft angle, {_degrees(self.shaft_angle)}, is not below 180 deg")
-        return problems
+        first, second, shaft_angle = self.pinion, self.wheel, _degrees(self.shaft_angle)
+        rolls = isclose(first.outer_cone_distance, second.outer_cone_distance, rel_tol=_EQUAL)
+        pitches = f"{_degrees(first.pitch_angle)} and {_degrees(second.pitch_angle)}"
+        require(
+            *pair_checks(first, second, ("outer_module", "face_width"), "spiral_angle"),
+            (rolls, f"pitch_angle: {pitches} do not roll on each other with {first.teeth}/{second.teeth} teeth"),
+            (self.shaft_angle < pi, f"pitch_angle: the shaft angle, {shaft_angle}, is not below 180 deg"),
+        )
 
     @property
     def shaft_angle(self) -> float:
@@ -317,41 +292,39 @@ class BevelMesh:
         It starts where the tip of the mating gear ends on the flank, or at the form cone if that lies higher.
         """
         pinion, wheel = self.pinion, self.wheel
+        starts = [max(arcs) for arcs in self._tip_and_form_arcs]
         return (
-            (pinion.cone_angle_at_arc(self._start_arc(pinion, wheel)), pinion.tip_angle),
-            (wheel.cone_angle_at_arc(self._start_arc(wheel, pinion)), wheel.tip_angle),
+            (pinion.cone_angle_at_arc(starts[0]), pinion.tip_angle),
+            (wheel.cone_angle_at_arc(starts[1]), wheel.tip_angle),
         )
-
-    @property
-    def _both_ways(self) -> tuple[tuple[BevelGear, BevelGear], tuple[BevelGear, BevelGear]]:
-        """(gear, its mating gear), from either side."""
-        return (self.pinion, self.wheel), (self.wheel, self.pinion)
 
     @property
     def _line_of_action(self) -> float:
         """Arc of the great circle of contact between the two base cones that it touches [rad]."""
         return sum(gear.unwound_arc(gear.pitch_angle) for gear in (self.pinion, self.wheel))
 
-    def _start_arc(self, gear: BevelGear, mating: BevelGear) -> float:
-        """Unwound arc on a gear where the active profile starts [rad]."""
-        return max(gear.unwound_arc(gear.form_angle), self._arc_at_tip_of(mating))
+    @property
+    def _tip_and_form_arcs(self) -> list[tuple[float, float]]:
+        """Unwound arcs on pinion and wheel where the mating gear's tip ends, and at their own form cones [rad].
 
-    def _arc_at_tip_of(self, mating: BevelGear) -> float:
-        """Unwound arc on a gear where the tip of its mating gear ends; negative beyond the base cone [rad]."""
-        return self._line_of_action - mating.unwound_arc(mating.tip_angle)
+        The first one is negative beyond the base cone.
+        """
+        both_ways = (self.pinion, self.wheel), (self.wheel, self.pinion)
+        return [
+            (self._line_of_action - mating.unwound_arc(mating.tip_angle), gear.unwound_arc(gear.form_angle))
+            for gear, mating in both_ways
+        ]
 
     @property
     def fillet_interference(self) -> tuple[bool, bool]:
         """Whether the mating gear's tip reaches below the form cone of pinion and wheel, into what is no involute."""
-        pinion, wheel = (
-            self._arc_at_tip_of(mating) < gear.unwound_arc(gear.form_angle) for gear, mating in self._both_ways
-        )
+        pinion, wheel = (tip < form for tip, form in self._tip_and_form_arcs)
         return pinion, wheel
 
     @property
     def transverse_contact_ratio(self) -> float:
         """eps_alpha: arc of contact over the base pitch 2 pi sin(delta_b1)/z1, on the sphere."""
-        length = self._line_of_action - sum(self._start_arc(*pair) for pair in self._both_ways)
+        length = self._line_of_action - sum(max(arcs) for arcs in self._tip_and_form_arcs)
         return length * self.pinion.teeth / (2.0 * pi * sin(self.pinion.base_angle))
 
     @property
@@ -394,21 +367,10 @@ def bevel_mesh(
     GeometryError
         If a tooth cannot exist.
     """
-    if not 0.0 < shaft_angle < pi:
-        raise InputError(f"shaft_angle: {shaft_angle:.6g} rad is not between 0 and 3.142 rad (180 deg)")
-    gears = [
-        BevelGear(
-            teeth[member],
-            outer_module,
-            face_width,
-            pitch_angles(teeth, shaft_angle)[member],
-            pressure_angle,
-            (spiral_angle, -spiral_angle)[member],
-            profile_shifts[member],
-            face_angles[member],
-            root_angles[member],
-            ("pinion", "wheel")[member],
-        )
-        for member in (0, 1)
-    ]
-    return BevelMesh(*gears)
+    require(*half_turn_checks(shaft_angle=shaft_angle))
+    pitches, spirals, names = pitch_angles(teeth, shaft_angle), (spiral_angle, -spiral_angle), ("pinion", "wheel")
+    members = zip(teeth, pitches, spirals, profile_shifts, face_angles, root_angles, names, strict=True)
+    pinion, wheel = (
+        BevelGear(count, outer_module, face_width, pitch, pressure_angle, *own) for count, pitch, *own in members
+    )
+    return BevelMesh(pinion, wheel)

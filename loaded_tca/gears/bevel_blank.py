@@ -12,10 +12,10 @@ from functools import cached_property
 from math import asin, atan, cos, degrees, inf, pi, radians, sin, tan
 from typing import Any, Literal, get_args
 
-from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.bevel import pitch_angles
-from loaded_tca.gears.blank_gear import SECTIONS, BlankGear, Triple, triple, virtual_curvature
-from loaded_tca.gears.checks import LARGEST_SPIRAL_ANGLE, input_problems, teeth_problems
+from loaded_tca.gears.blank_gear import SECTIONS, BlankGear, Triple, virtual_curvature
+from loaded_tca.gears.checks import LARGEST_SPIRAL_ANGLE, half_turn_checks, input_checks, teeth_checks
 
 Taper = Literal["standard", "uniform", "duplex", "modified"]
 
@@ -158,51 +158,43 @@ class BevelBlank:
         return cls(teeth, wheel_diameter / max(teeth[1], 1), face_width, **options)
 
     def __post_init__(self) -> None:
-        problems = self._input_problems() or self._taper_problems()
-        if problems:
-            raise InputError(problems)
+        self._check_inputs()
         self._check_face()
         self._check_cones()
         for gear in (self.pinion, self.wheel):
             gear.check(self.allow_undercut)
 
-    def _input_problems(self) -> list[str]:
-        """Every value that is out of its own range."""
+    def _check_inputs(self) -> None:
+        """Refuse values out of their own ranges, then depths and tapers that do not go together."""
         positive = "outer_module", "face_width", "cutter_radius", "addendum_factor", "dedendum_factor"
-        problems = teeth_problems(*self.teeth)
-        problems += input_problems(self, positive, ("profile_shift", "thickness_modification"))
-        if not 0.0 <= self.outer_normal_backlash < inf:
-            problems.append(f"outer_normal_backlash: {self.outer_normal_backlash} mm is negative or not finite")
-        return problems + self._angle_problems()
-
-    def _angle_problems(self) -> list[str]:
-        problems = []
-        if not 0.0 < self.shaft_angle < pi:
-            problems.append(f"shaft_angle: {self.shaft_angle:.6g} rad is not between 0 and 3.142 rad (180 deg)")
-        if not 0.0 <= self.spiral_angle < LARGEST_SPIRAL_ANGLE:
-            problems.append(f"spiral_angle: {self.spiral_angle:.6g} rad is not from 0 to below 1.047 rad (60 deg)")
-        if self.wheel_angles is not None and not all(abs(angle) < _MAX_DEPTH_ANGLE for angle in self.wheel_angles):
-            problems.append(f"wheel_angles: {self.wheel_angles} rad are not within 0.785 rad (45 deg)")
-        return problems
-
-    def _taper_problems(self) -> list[str]:
-        """Depths and tapers that do not go together."""
-        problems = []
-        if self.dedendum_factor < self.addendum_factor:
-            problems.append(
+        backlash, spiral = self.outer_normal_backlash, self.spiral_angle
+        shallow = self.wheel_angles is None or all(abs(angle) < _MAX_DEPTH_ANGLE for angle in self.wheel_angles)
+        require(
+            *teeth_checks(*self.teeth),
+            *input_checks(self, positive, ("profile_shift", "thickness_modification")),
+            (0.0 <= backlash < inf, f"outer_normal_backlash: {backlash} mm is negative or not finite"),
+            *half_turn_checks(shaft_angle=self.shaft_angle),
+            (
+                0.0 <= spiral < LARGEST_SPIRAL_ANGLE,
+                f"spiral_angle: {spiral:.6g} rad is not from 0 to below 1.047 rad (60 deg)",
+            ),
+            (shallow, f"wheel_angles: {self.wheel_angles} rad are not within 0.785 rad (45 deg)"),
+        )
+        smallest = self.mean_cone_distance * sin(spiral)
+        any_cutter = self.taper not in ("duplex", "modified") or self.wheel_angles is not None
+        require(
+            (
+                self.dedendum_factor >= self.addendum_factor,
                 f"dedendum_factor: {self.dedendum_factor} is below addendum_factor {self.addendum_factor}: tips of the"
-                " mating gear would cut into the root"
-            )
-        if self.taper not in get_args(Taper):
-            problems.append(f"taper: {self.taper!r} is not one of {', '.join(get_args(Taper))}")
-        elif self.taper in ("duplex", "modified") and self.wheel_angles is None:
-            smallest = self.mean_cone_distance * sin(self.spiral_angle)
-            if self.cutter_radius is None or self.cutter_radius < smallest:
-                problems.append(
-                    f"cutter_radius: {self.cutter_radius} mm; a {self.taper} taper needs at least R_m sin(beta_m) ="
-                    f" {smallest:.4f} mm"
-                )
-        return problems
+                " mating gear would cut into the root",
+            ),
+            (self.taper in get_args(Taper), f"taper: {self.taper!r} is not one of {', '.join(get_args(Taper))}"),
+            (
+                any_cutter or (self.cutter_radius is not None and self.cutter_radius >= smallest),
+                f"cutter_radius: {self.cutter_radius} mm; a {self.taper} taper needs at least R_m sin(beta_m) ="
+                f" {smallest:.4f} mm",
+            ),
+        )
 
     def _check_face(self) -> None:
         """Refuse faces without toe, or beyond the reach of the cutter."""
@@ -329,13 +321,6 @@ class BevelBlank:
         return module * (self.dedendum_factor - shift), module * (self.dedendum_factor + shift)
 
     @property
-    def _backlash_modification(self) -> float:
-        """What the backlash takes from the thickness modification of either gear, j_en at the heel brought to R_m."""
-        _, mean, outer = self.cone_distances
-        narrower = mean * cos(self.spiral_angle) / (outer * cos(self.spiral_angle_at(outer)))
-        return self.outer_normal_backlash * narrower / (4.0 * self.mean_normal_module * cos(self.pressure_angle))
-
-    @property
     def _apexes(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """(t_zF, t_zR) of pinion and wheel [mm].
 
@@ -366,7 +351,11 @@ class BevelBlank:
     def _gear(self, member: int) -> BlankGear:
         sign = (1.0, -1.0)[member]
         shift, module = sign * self.profile_shift, self.mean_normal_module
-        thickening = sign * self.thickness_modification - self._backlash_modification
+        toe, middle, heel = self.cone_distances
+        # What the backlash takes from the thickness modification of either gear: j_en at the heel brought to R_m.
+        narrower = middle * cos(self.spiral_angle) / (heel * cos(self.spiral_angle_at(heel)))
+        backlash = self.outer_normal_backlash * narrower / (4.0 * module * cos(self.pressure_angle))
+        thickening = sign * self.thickness_modification - backlash
         face_apex, root_apex = self._apexes[member]
         return BlankGear(
             name=("pinion", "wheel")[member],
@@ -374,7 +363,7 @@ class BevelBlank:
             pitch_angle=self.pitch_angles[member],
             pressure_angle=self.pressure_angle,
             cone_distances=self.cone_distances,
-            spiral_angles=triple(self.spiral_angle_at(distance) for distance in self.cone_distances),
+            spiral_angles=(self.spiral_angle_at(toe), self.spiral_angle_at(middle), self.spiral_angle_at(heel)),
             mean_addendum=self._mean_addenda[member],
             mean_dedendum=self._mean_dedenda[member],
             addendum_angle=self.dedendum_angles[1 - member],

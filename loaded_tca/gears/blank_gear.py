@@ -1,14 +1,16 @@
 """One gear of a pair of bevel blanks: what follows from its cones, depths and thicknesses (ISO 23509).
 
-Lengths are in mm, angles in rad; triples are values at toe, mid-face and heel. Along the face the depth follows
+Lengths are in mm, angles in rad; arrays of three are values at toe, mid-face and heel. Along the face the depth follows
 straight cones and the tooth thickness the normal pitch.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from math import acos, cos, pi, sin, tan
+
+import numpy as np
+from numpy.typing import NDArray
 
 from loaded_tca.errors import GeometryError
 from loaded_tca.gears.cylindrical import involute
@@ -19,12 +21,6 @@ SECTIONS = ("toe", "mid-face", "heel")
 
 # Height over radius, or angle, below which the virtual gear is a rack: cancellation would cost more than curvature.
 _RACK = 1e-8
-
-
-def triple(values: Iterable[float]) -> Triple:
-    """Three values at toe, mid-face and heel."""
-    toe, middle, heel = values
-    return toe, middle, heel
 
 
 def virtual_curvature(cone_distance: float, pitch_angle: float, spiral_angle: float, pressure_angle: float) -> float:
@@ -110,57 +106,48 @@ class BlankGear:
         return self.profile_shift < self.smallest_profile_shift
 
     @property
-    def pitch_diameters(self) -> Triple:
+    def pitch_diameters(self) -> NDArray[np.float64]:
         """d_i, d_m, d_e = 2 R sin(delta) [mm]."""
-        return triple(2.0 * distance * sin(self.pitch_angle) for distance in self.cone_distances)
+        return 2.0 * sin(self.pitch_angle) * np.array(self.cone_distances)
 
     @property
-    def addenda(self) -> Triple:
+    def addenda(self) -> NDArray[np.float64]:
         """h_ai, h_am, h_ae, normal to the pitch cone [mm]."""
-        return self._depths(self.mean_addendum, self.addendum_angle)
+        return self.mean_addendum + self._from_mid_face * tan(self.addendum_angle)
 
     @property
-    def dedenda(self) -> Triple:
+    def dedenda(self) -> NDArray[np.float64]:
         """h_fi, h_fm, h_fe, normal to the pitch cone [mm]."""
-        return self._depths(self.mean_dedendum, self.dedendum_angle)
-
-    def _depths(self, mean: float, angle: float) -> Triple:
-        middle = self.cone_distances[1]
-        return triple(mean + (distance - middle) * tan(angle) for distance in self.cone_distances)
+        return self.mean_dedendum + self._from_mid_face * tan(self.dedendum_angle)
 
     @property
-    def tip_diameters(self) -> Triple:
+    def _from_mid_face(self) -> NDArray[np.float64]:
+        return np.array(self.cone_distances) - self.cone_distances[1]
+
+    @property
+    def tip_diameters(self) -> NDArray[np.float64]:
         """d_ai, d_am, d_ae = d + 2 h_a cos(delta) [mm]."""
-        return self._diameters(self.addenda)
+        return self.pitch_diameters + 2.0 * cos(self.pitch_angle) * self.addenda
 
     @property
-    def root_diameters(self) -> Triple:
+    def root_diameters(self) -> NDArray[np.float64]:
         """d_fi, d_fm, d_fe = d - 2 h_f cos(delta) [mm]."""
-        return self._diameters(triple(-depth for depth in self.dedenda))
-
-    def _diameters(self, heights: Triple) -> Triple:
-        slope = 2.0 * cos(self.pitch_angle)
-        pairs = zip(self.pitch_diameters, heights, strict=True)
-        return triple(diameter + slope * height for diameter, height in pairs)
+        return self.pitch_diameters - 2.0 * cos(self.pitch_angle) * self.dedenda
 
     @property
-    def crown_to_crossing(self) -> Triple:
+    def crown_to_crossing(self) -> NDArray[np.float64]:
         """t_xi, t_xm, t_xo: tip from the crossing point of the axes, along the own axis [mm]."""
-        along, across = cos(self.pitch_angle), sin(self.pitch_angle)
-        pairs = zip(self.cone_distances, self.addenda, strict=True)
-        return triple(distance * along - height * across for distance, height in pairs)
+        return cos(self.pitch_angle) * np.array(self.cone_distances) - sin(self.pitch_angle) * self.addenda
 
     @property
-    def normal_pitches(self) -> Triple:
+    def normal_pitches(self) -> NDArray[np.float64]:
         """p_n = pi d cos(beta)/z [mm]."""
-        pairs = zip(self.pitch_diameters, self.spiral_angles, strict=True)
-        return triple(pi * diameter * cos(spiral) / self.teeth for diameter, spiral in pairs)
+        return pi * self.pitch_diameters * np.cos(self.spiral_angles) / self.teeth
 
     @property
-    def normal_thicknesses(self) -> Triple:
+    def normal_thicknesses(self) -> NDArray[np.float64]:
         """s_n on the pitch cone, in proportion to the normal pitch [mm]."""
-        share = self.mean_normal_thickness / self.normal_pitches[1]
-        return triple(share * pitch for pitch in self.normal_pitches)
+        return self.mean_normal_thickness / self.normal_pitches[1] * self.normal_pitches
 
     @property
     def mean_transverse_thickness(self) -> float:
@@ -168,24 +155,22 @@ class BlankGear:
         return self.mean_normal_thickness / cos(self.spiral_angles[1])
 
     @property
-    def virtual_curvatures(self) -> Triple:
+    def virtual_curvatures(self) -> NDArray[np.float64]:
         """1/r_n of the virtual spur gear in the normal section, not positive from a pitch angle of 90 deg on [1/mm]."""
         pairs = zip(self.cone_distances, self.spiral_angles, strict=True)
-        return triple(
-            virtual_curvature(distance, self.pitch_angle, spiral, self.pressure_angle) for distance, spiral in pairs
-        )
+        pitch, pressure = self.pitch_angle, self.pressure_angle
+        return np.array([virtual_curvature(distance, pitch, spiral, pressure) for distance, spiral in pairs])
 
     @property
-    def tip_thicknesses(self) -> Triple:
+    def tip_thicknesses(self) -> NDArray[np.float64]:
         """s_an, normal tooth thickness at the tip of the virtual spur gear; negative: pointed tooth [mm]."""
-        rows = zip(self.normal_thicknesses, self.addenda, self.virtual_curvatures, strict=True)
-        return triple(_thickness_at(height, whole, bend, self.pressure_angle) for whole, height, bend in rows)
+        rows = zip(self.addenda, self.normal_thicknesses, self.virtual_curvatures, strict=True)
+        return np.array([_thickness_at(*row, self.pressure_angle) for row in rows])
 
     @property
-    def slot_widths(self) -> Triple:
+    def slot_widths(self) -> NDArray[np.float64]:
         """Width of the slot at its bottom, p_n - s_n - 2 h_f tan(alpha_n), the widest tool that fits [mm]."""
-        rows = zip(self.normal_pitches, self.normal_thicknesses, self.dedenda, strict=True)
-        return triple(pitch - tooth - 2.0 * depth * tan(self.pressure_angle) for pitch, tooth, depth in rows)
+        return self.normal_pitches - self.normal_thicknesses - 2.0 * tan(self.pressure_angle) * self.dedenda
 
     @property
     def chordal_thickness(self) -> float:
@@ -214,12 +199,11 @@ class BlankGear:
                 f" least is {self.smallest_profile_shift:.4f} (or allow_undercut, for teeth that are not generated)"
             )
 
-    def _require(self, fault: str, lengths: Triple, remedy: str) -> None:
+    def _require(self, fault: str, lengths: NDArray[np.float64], remedy: str) -> None:
         """Refuse lengths that are not positive everywhere."""
-        worst = min(lengths)
-        if not worst > 0.0:
-            place = SECTIONS[lengths.index(worst)]
-            raise GeometryError(f"{self.name}: {fault} ({worst:.4f} mm) at the {place}; {remedy}")
+        if not lengths.min() > 0.0:
+            place = SECTIONS[int(lengths.argmin())]
+            raise GeometryError(f"{self.name}: {fault} ({lengths.min():.4f} mm) at the {place}; {remedy}")
 
 
 def _thickness_at(height: float, thickness: float, curvature: float, pressure_angle: float) -> float:

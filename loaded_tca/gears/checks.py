@@ -2,29 +2,52 @@
 
 from __future__ import annotations
 
-from math import inf, isfinite, radians
+from collections.abc import Iterator
+from math import degrees, inf, isclose, isfinite, pi, radians
 from typing import Any
 
 SMALLEST_PRESSURE_ANGLE, LARGEST_PRESSURE_ANGLE = radians(1), radians(45)
 LARGEST_SPIRAL_ANGLE = radians(60)
 """Of helices too."""
+_EQUAL = 1e-12
 
 
-def teeth_problems(*teeth: float) -> list[str]:
-    """A problem for each number of teeth that is not a whole one from 3 on."""
-    return [
-        f"teeth: {count} is not a whole number from 3 on"
-        for count in teeth
-        if not (isfinite(count) and count == int(count) and count >= 3)
-    ]
+def teeth_checks(*teeth: float) -> Iterator[tuple[bool, str]]:
+    """Checks for ``require``: every number of teeth is a whole one from 3 on."""
+    for count in teeth:
+        whole = isfinite(count) and count == int(count) and count >= 3
+        yield whole, f"teeth: {count} is not a whole number from 3 on"
 
 
-def input_problems(gear: Any, positive: tuple[str, ...], finite: tuple[str, ...]) -> list[str]:
-    """Problems of lengths that are to be positive (where they are given), of finite numbers, of the pressure angle."""
-    values, pressure_angle = vars(gear), gear.pressure_angle
-    lengths = {key: values[key] for key in positive if values[key] is not None}
-    problems = [f"{key}: {value} is not positive and finite" for key, value in lengths.items() if not 0.0 < value < inf]
-    problems += [f"{key}: {values[key]} is not finite" for key in finite if not isfinite(values[key])]
-    if not SMALLEST_PRESSURE_ANGLE <= pressure_angle <= LARGEST_PRESSURE_ANGLE:
-        problems.append(f"pressure_angle: {pressure_angle:.6g} rad is not between 0.0175 and 0.785 rad (1 to 45 deg)")
-    return problems
+def input_checks(gear: Any, positive: tuple[str, ...], finite: tuple[str, ...]) -> Iterator[tuple[bool, str]]:
+    """Checks of lengths that are to be positive (where they are given), of finite numbers, of the pressure angle."""
+    for key in positive:
+        value = getattr(gear, key)
+        yield value is None or 0.0 < value < inf, f"{key}: {value} is not positive and finite"
+    for key in finite:
+        yield isfinite(getattr(gear, key)), f"{key}: {getattr(gear, key)} is not finite"
+    angle = gear.pressure_angle
+    allowed = SMALLEST_PRESSURE_ANGLE <= angle <= LARGEST_PRESSURE_ANGLE
+    yield allowed, f"pressure_angle: {angle:.6g} rad is not between 0.0175 and 0.785 rad (1 to 45 deg)"
+
+
+def half_turn_checks(**angles: float | None) -> Iterator[tuple[bool, str]]:
+    """Checks of angles, where they are given: each lies between 0 and 180 deg."""
+    for key, angle in angles.items():
+        if angle is not None:
+            yield 0.0 < angle < pi, f"{key}: {angle:.6g} rad is not between 0 and 3.142 rad (180 deg)"
+
+
+def spiral_check(key: str, angle: float) -> tuple[bool, str]:
+    """Check of a helix or spiral angle of either hand."""
+    return abs(angle) < LARGEST_SPIRAL_ANGLE, f"{key}: {angle:.6g} rad is not within 1.047 rad (60 deg)"
+
+
+def pair_checks(pinion: Any, wheel: Any, lengths: tuple[str, ...], spiral: str) -> Iterator[tuple[bool, str]]:
+    """Checks of the lengths and the pressure angle that a pair has in common, and of its hands."""
+    for key in lengths:
+        one, other = getattr(pinion, key), getattr(wheel, key)
+        yield isclose(one, other, rel_tol=_EQUAL), f"{key}: {one} and {other} mm must be equal"
+    for key, sign, demand in (("pressure_angle", 1.0, "equal"), (spiral, -1.0, "opposite hands of one angle")):
+        one, other = degrees(getattr(pinion, key)), degrees(getattr(wheel, key))
+        yield isclose(one, sign * other, rel_tol=_EQUAL), f"{key}: {one:.6g} and {other:.6g} deg must be {demand}"

@@ -16,7 +16,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, require
 
 FlankName = Literal["concave", "convex"]
 
@@ -60,17 +60,14 @@ class Blade:
     edge_radius: float = 0.0
 
     def __post_init__(self) -> None:
-        problems = []
-        if not 0.0 < self.point_radius < inf:
-            problems.append(f"point_radius: {self.point_radius} mm is not positive and finite")
-        if not abs(self.blade_angle) < _LARGEST_BLADE_ANGLE:
-            problems.append(f"blade_angle: {self.blade_angle:.6g} rad is not within 1.047 rad (60 deg)")
-        if self.blade_radius is not None and not 0.0 < self.blade_radius < inf:
-            problems.append(f"blade_radius: {self.blade_radius} mm is not positive and finite")
-        if not 0.0 <= self.edge_radius < inf:
-            problems.append(f"edge_radius: {self.edge_radius} mm is negative or not finite")
-        if problems:
-            raise InputError(problems)
+        upright = abs(self.blade_angle) < _LARGEST_BLADE_ANGLE
+        straight_or_round = self.blade_radius is None or 0.0 < self.blade_radius < inf
+        require(
+            (0.0 < self.point_radius < inf, f"point_radius: {self.point_radius} mm is not positive and finite"),
+            (upright, f"blade_angle: {self.blade_angle:.6g} rad is not within 1.047 rad (60 deg)"),
+            (straight_or_round, f"blade_radius: {self.blade_radius} mm is not positive and finite"),
+            (0.0 <= self.edge_radius < inf, f"edge_radius: {self.edge_radius} mm is negative or not finite"),
+        )
 
     @property
     def form_height(self) -> float:
@@ -131,11 +128,11 @@ class Cutter:
     number: float = 0.0
 
     def __post_init__(self) -> None:
-        problems = [] if isfinite(self.number) else [f"number: {self.number} is not finite"]
-        if self.concave is None and self.convex is None:
-            problems.append("concave, convex: a blade is needed for at least one flank")
-        if problems:
-            raise InputError(problems)
+        some = self.concave is not None or self.convex is not None
+        require(
+            (isfinite(self.number), f"number: {self.number} is not finite"),
+            (some, "concave, convex: a blade is needed for at least one flank"),
+        )
         for name in get_args(FlankName):
             if getattr(self, name) is not None:
                 self.blade(name)

@@ -6,15 +6,15 @@ transverse section.
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import asin, atan, cos, hypot, pi, radians, sin, sqrt, tan
+from math import asin, atan, cos, hypot, inf, pi, radians, sin, sqrt, tan
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.gears.checks import LARGEST_SPIRAL_ANGLE, input_problems, teeth_problems
+from loaded_tca.errors import GeometryError, InputError, require
+from loaded_tca.gears.checks import input_checks, spiral_check, teeth_checks
 
 
 def involute(angle: float) -> float:
@@ -38,11 +38,11 @@ def inverse_involute(value: float) -> float:
     >>> round(inverse_involute(involute(0.35)), 12)
     0.35
     """
-    if not 0.0 <= value < float("inf"):
+    if not 0.0 <= value < inf:
         raise InputError(f"value: an involute function of {value} rad has no angle between 0 and 90 deg")
     if value == 0.0:
         return 0.0
-    tangent = float("inf")
+    tangent = inf
     smaller = (3.0 * value) ** (1.0 / 3.0) + value
     while smaller < tangent:
         tangent = smaller
@@ -114,40 +114,28 @@ class CylindricalGear:
     name: str = "gear"
 
     def __post_init__(self) -> None:
-        problems = self._input_problems() or self._rack_problems()
-        if problems:
-            raise InputError(f"{self.name}: {problem}" for problem in problems)
-        self._check_tooth()
-
-    def _input_problems(self) -> list[str]:
-        """Every value that is out of its own range."""
         positive = "normal_module", "face_width", "tip_diameter", "dedendum_coefficient", "bore_diameter"
-        problems = teeth_problems(self.teeth) + input_problems(self, positive, ("profile_shift",))
-        if not abs(self.helix_angle) < LARGEST_SPIRAL_ANGLE:
-            problems.append(f"helix_angle: {self.helix_angle:.6g} rad is not within 1.047 rad (60 deg)")
-        if not 0.0 <= self.root_radius_coefficient < float("inf"):
-            problems.append(f"root_radius_coefficient: {self.root_radius_coefficient} is negative or not finite")
-        return problems
-
-    def _rack_problems(self) -> list[str]:
-        """Tell what values that are fine each on its own cannot do together."""
-        problems = []
-        deepest = pi / 4.0 / tan(self.pressure_angle)
-        if self.dedendum_coefficient >= deepest:
-            problems.append(
-                f"dedendum_coefficient: {self.dedendum_coefficient:.6g} is beyond the point of the rack's"
-                f" tooth; at this pressure angle it must be below {deepest:.4f}"
-            )
-        if self.root_radius <= 0.0:
-            problems.append(
-                f"profile_shift: {self.profile_shift:.6g} makes the root diameter {2.0 * self.root_radius:.6g} mm"
-            )
-        elif self.bore_diameter is not None and self.bore_diameter >= 2.0 * self.root_radius:
-            problems.append(
-                f"bore_diameter: {self.bore_diameter:.6g} mm is not below the root diameter"
-                f" {2.0 * self.root_radius:.6g} mm"
-            )
-        return problems
+        rounding = self.root_radius_coefficient
+        require(
+            *teeth_checks(self.teeth),
+            *input_checks(self, positive, finite=("profile_shift",)),
+            spiral_check("helix_angle", self.helix_angle),
+            (0.0 <= rounding < inf, f"root_radius_coefficient: {rounding} is negative or not finite"),
+            owner=self.name,
+        )
+        dedendum, deepest = self.dedendum_coefficient, pi / 4.0 / tan(self.pressure_angle)
+        bore, root = self.bore_diameter or 0.0, 2.0 * self.root_radius
+        require(
+            (
+                dedendum < deepest,
+                f"dedendum_coefficient: {dedendum:.6g} is beyond the point of the rack's tooth;"
+                f" at this pressure angle it must be below {deepest:.4f}",
+            ),
+            (root > 0.0, f"profile_shift: {self.profile_shift:.6g} makes the root diameter {root:.6g} mm"),
+            (not 0.0 < root <= bore, f"bore_diameter: {bore:.6g} mm is not below the root diameter {root:.6g} mm"),
+            owner=self.name,
+        )
+        self._check_tooth()
 
     def _check_tooth(self) -> None:
         """Refuse a tooth without flank or without tip."""
@@ -353,9 +341,7 @@ class CylindricalGear:
         undercut is so slight that rounding hides it.
         """
         flank_end = self.pressure_angle
-        if not self.is_undercut or self._above_base(flank_end) <= 0.0:
-            return flank_end
-        if self._cut_into_flank(flank_end) >= 0.0:
+        if not self.is_undercut or self._above_base(flank_end) <= 0.0 or self._cut_into_flank(flank_end) >= 0.0:
             return flank_end
         at_base: float = brentq(self._above_base, flank_end, 0.5 * pi)
         if self._cut_into_flank(at_base) <= 0.0:

@@ -7,9 +7,10 @@ Lengths are in mm, angles in rad; the path of contact is that of the transverse 
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import atan, ceil, cos, degrees, isclose, pi, sin, sqrt, tan
+from math import atan, ceil, cos, inf, pi, sin, sqrt, tan
 
-from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.errors import GeometryError, require
+from loaded_tca.gears.checks import pair_checks
 from loaded_tca.gears.cylindrical import CylindricalGear, inverse_involute, involute
 
 # In modules: a shorter piece of undercut flank is below what gear making can hold (0.3 um at module 3).
@@ -103,6 +104,7 @@ class CylindricalMesh:
 
     Examples
     --------
+    >>> from math import degrees
     >>> pinion = CylindricalGear(teeth=16, normal_module=4.5, face_width=14.0, profile_shift=0.1817)
     >>> wheel = CylindricalGear(teeth=24, normal_module=4.5, face_width=14.0, profile_shift=0.1715)
     >>> mesh = CylindricalMesh(pinion, wheel, centre_distance=91.5)
@@ -115,41 +117,20 @@ class CylindricalMesh:
     centre_distance: float | None = None
 
     def __post_init__(self) -> None:
-        problems = self._input_problems()
-        if problems:
-            raise InputError(problems)
+        first, second, distance = self.pinion, self.wheel, self.centre_distance
+        require(
+            *pair_checks(first, second, ("normal_module",), "helix_angle"),
+            (distance is None or 0.0 < distance < inf, f"centre_distance: {distance} mm is not positive and finite"),
+        )
         self._check_centre_distance()
-        for gear, mating in self._both_ways:
-            self._check_undercut(gear, mating)
+        self._check_undercut(first, second)
+        self._check_undercut(second, first)
         if self.path_of_contact.AE <= 0.0:
             raise GeometryError(
                 f"{self.pinion.name} and {self.wheel.name}: no common flank at centre distance"
                 f" {self.working_centre_distance:.6g} mm: on the line of action the usable flanks end"
                 f" {-self.path_of_contact.AE:.4f} mm apart"
             )
-
-    @property
-    def _both_ways(
-        self,
-    ) -> tuple[tuple[CylindricalGear, CylindricalGear], tuple[CylindricalGear, CylindricalGear]]:
-        """(gear, its mating gear), from either side."""
-        return (self.pinion, self.wheel), (self.wheel, self.pinion)
-
-    def _input_problems(self) -> list[str]:
-        """Every reason why the two gears are no pair."""
-        first, second = self.pinion, self.wheel
-        problems = []
-        if not isclose(first.normal_module, second.normal_module, rel_tol=1e-12):
-            problems.append(f"normal_module: {first.normal_module} and {second.normal_module} mm must be equal")
-        if not isclose(first.pressure_angle, second.pressure_angle, rel_tol=1e-12):
-            angles = f"{degrees(first.pressure_angle):.6g} and {degrees(second.pressure_angle):.6g} deg"
-            problems.append(f"pressure_angle: {angles} must be equal")
-        if not isclose(first.helix_angle, -second.helix_angle, rel_tol=1e-12):
-            angles = f"{degrees(first.helix_angle):.6g} and {degrees(second.helix_angle):.6g} deg"
-            problems.append(f"helix_angle: {angles} must be opposite hands of one angle")
-        if self.centre_distance is not None and not 0.0 < self.centre_distance < float("inf"):
-            problems.append(f"centre_distance: {self.centre_distance} mm is not positive and finite")
-        return problems
 
     def _check_centre_distance(self) -> None:
         """Refuse base circles that overlap or only touch."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import sin
 
-from loaded_tca.errors import InputError
-from loaded_tca.gears.checks import teeth_problems
+from loaded_tca.errors import require
+from loaded_tca.gears.checks import teeth_checks
 from loaded_tca.gears.cutter import BLADE_SIGNS, Cutter, FlankName
 from loaded_tca.gears.machine_settings import FaceMilledBlank, MachineSettings
 
@@ -41,15 +41,10 @@ class FaceMilledGear:
     bore_diameter: float | None = None
 
     def __post_init__(self) -> None:
-        problems = teeth_problems(self.teeth)
-        largest = 2.0 * self.blank.cone_distances[0] * sin(self.blank.root_angle)
-        if self.bore_diameter is not None and not 0.0 < self.bore_diameter < largest:
-            problems.append(
-                f"bore_diameter: {self.bore_diameter:.6g} mm is not below the root diameter at the toe, "
-                f"{largest:.6g} mm"
-            )
-        if problems:
-            raise InputError(f"{self.name}: {problem}" for problem in problems)
+        bore, largest = self.bore_diameter, 2.0 * self.blank.cone_distances[0] * sin(self.blank.root_angle)
+        fits = bore is None or 0.0 < bore < largest
+        told = f"bore_diameter: {bore or 0.0:.6g} mm is not below the root diameter at the toe, {largest:.6g} mm"
+        require(*teeth_checks(self.teeth), (fits, told), owner=self.name)
 
     @property
     def mirror(self) -> int:

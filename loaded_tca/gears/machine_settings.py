@@ -8,11 +8,13 @@ centre) where the axis of the cradle meets the plane of the blade tips. ``docs/f
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Iterator
+from dataclasses import dataclass
 from math import inf, isfinite, pi
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
-from loaded_tca.errors import InputError
+from loaded_tca.errors import require
+from loaded_tca.gears.checks import half_turn_checks
 
 Generation = Literal["generated", "formate"]
 
@@ -77,19 +79,16 @@ class MachineSettings:
     generation: Generation = "generated"
 
     def __post_init__(self) -> None:
-        problems = _not_finite(self)
-        if self.generation not in get_args(Generation):
-            problems.append(f"generation: {self.generation!r} is not 'generated' or 'formate'")
-        if not self.radial > 0.0:
-            problems.append(f"radial: {self.radial} mm is not positive")
-        if not 0.0 < self.root_angle < pi:
-            problems.append(f"root_angle: {self.root_angle:.6g} rad is not between 0 and 3.142 rad (180 deg)")
-        if not abs(self.tilt) < 0.5 * pi:
-            problems.append(f"tilt: {self.tilt:.6g} rad is not within 1.571 rad (90 deg)")
-        if self.generation == "generated" and not self.ratio_of_roll > 0.0:
-            problems.append(f"ratio_of_roll: {self.ratio_of_roll} is not positive, and the gear is generated")
-        if problems:
-            raise InputError(problems)
+        known = self.generation in get_args(Generation)
+        rolls = not self.rolls or self.ratio_of_roll > 0.0
+        require(
+            *_finite_checks(self),
+            (known, f"generation: {self.generation!r} is not 'generated' or 'formate'"),
+            (self.radial > 0.0, f"radial: {self.radial} mm is not positive"),
+            *half_turn_checks(root_angle=self.root_angle),
+            (abs(self.tilt) < 0.5 * pi, f"tilt: {self.tilt:.6g} rad is not within 1.571 rad (90 deg)"),
+            (rolls, f"ratio_of_roll: {self.ratio_of_roll} is not positive, and the gear is generated"),
+        )
 
     @property
     def rolls(self) -> bool:
@@ -127,20 +126,15 @@ class FaceMilledBlank:
     root_apex: float = 0.0
 
     def __post_init__(self) -> None:
-        problems = _not_finite(self)
-        if self.hand not in ("right", "left"):
-            problems.append(f"hand: {self.hand!r} is not 'right' or 'left'")
-        if not 0.0 < self.face_width < self.outer_cone_distance < inf:
-            problems.append(
-                f"face_width: 0 < {self.face_width} < outer_cone_distance {self.outer_cone_distance} mm does not hold"
-            )
-        if not 0.0 < self.root_angle <= self.pitch_angle <= self.face_angle < pi:
-            problems.append(
-                f"root_angle: 0 < root {self.root_angle:.6g} <= pitch {self.pitch_angle:.6g} <= face "
-                f"{self.face_angle:.6g} < 3.142 rad (180 deg) does not hold"
-            )
-        if problems:
-            raise InputError(problems)
+        width, outer = self.face_width, self.outer_cone_distance
+        root, pitch, face = self.root_angle, self.pitch_angle, self.face_angle
+        cones = f"0 < root {root:.6g} <= pitch {pitch:.6g} <= face {face:.6g} < 3.142 rad (180 deg)"
+        require(
+            *_finite_checks(self),
+            (self.hand in ("right", "left"), f"hand: {self.hand!r} is not 'right' or 'left'"),
+            (0.0 < width < outer < inf, f"face_width: 0 < {width} < outer_cone_distance {outer} mm does not hold"),
+            (0.0 < root <= pitch <= face < pi, f"root_angle: {cones} does not hold"),
+        )
 
     @property
     def mean_cone_distance(self) -> float:
@@ -153,9 +147,7 @@ class FaceMilledBlank:
         return self.outer_cone_distance - self.face_width, self.outer_cone_distance
 
 
-def _not_finite(entries: Any) -> list[str]:
-    """A problem for each number of a dataclass that is not finite."""
-    values = ((entry.name, getattr(entries, entry.name)) for entry in fields(entries))
-    return [
-        f"{name}: {value} is not finite" for name, value in values if isinstance(value, float) and not isfinite(value)
-    ]
+def _finite_checks(values: MachineSettings | FaceMilledBlank) -> Iterator[tuple[bool, str]]:
+    """Checks for ``require``: every number of a dataclass is finite."""
+    for name, value in vars(values).items():
+        yield not isinstance(value, float) or isfinite(value), f"{name}: {value} is not finite"

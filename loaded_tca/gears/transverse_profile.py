@@ -48,7 +48,9 @@ def half_tooth(gear: CylindricalGear, points: int) -> dict[str, NDArray[np.float
         raise InputError(f"points: {points} is below 2")
     fillet_radius, fillet_angle = gear.root_fillet(points)
     roll = np.linspace(gear.roll_length(gear.tip_radius), gear.roll_length(gear.form_radius), points)
-    flank_radius, flank_angle = np.hypot(roll, gear.base_radius), _half_angle(gear, roll)
+    tangent = roll / gear.base_radius
+    flank_radius = np.hypot(roll, gear.base_radius)
+    flank_angle = gear.half_thickness_angle_at_base - (tangent - np.arctan(tangent))
     fillet_radius[0], fillet_angle[0] = flank_radius[-1], flank_angle[-1]
     even = np.linspace(0.0, 1.0, points)
     polar = {
@@ -92,22 +94,12 @@ def transverse_profile(gear: CylindricalGear, points: int, inner_radius: float |
     >>> transverse_profile(CylindricalGear(teeth=20, normal_module=3.0, face_width=25.0), 9).shape
     (43, 2)
     """
-    inner = _default_inner_radius(gear) if inner_radius is None else inner_radius
+    solid = max(gear.root_radius - RIM_MODULES * gear.normal_module, 0.5 * gear.root_radius)
+    default = solid if gear.bore_diameter is None else 0.5 * gear.bore_diameter
+    inner = default if inner_radius is None else inner_radius
     if not 0.0 < inner < gear.root_radius:
         raise InputError(f"inner_radius: {inner} mm is not between 0 and {gear.root_radius:.6g} mm, the root radius")
     parts = list(half_tooth(gear, points).values())
     angle = np.linspace(math.pi / gear.teeth, 0.0, points)
     rim = np.stack([inner * np.cos(angle), inner * np.sin(angle)], axis=-1)
     return np.concatenate([parts[0], *(part[1:] for part in parts[1:]), rim, parts[0][:1]])
-
-
-def _half_angle(gear: CylindricalGear, roll: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Half thickness angle of the involute at roll lengths [rad]."""
-    tangent = roll / gear.base_radius
-    return gear.half_thickness_angle_at_base - (tangent - np.arctan(tangent))
-
-
-def _default_inner_radius(gear: CylindricalGear) -> float:
-    if gear.bore_diameter is not None:
-        return 0.5 * gear.bore_diameter
-    return max(gear.root_radius - RIM_MODULES * gear.normal_module, 0.5 * gear.root_radius)

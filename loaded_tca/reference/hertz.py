@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq, minimize_scalar
 from scipy.special import elliprd, elliprf
 
-from loaded_tca.errors import InputError
+from loaded_tca.errors import require_positive
 
 # The greatest shear below a line contact lies where z/sqrt(a^2 + z^2) is the golden section.
 _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
@@ -199,7 +199,7 @@ def point_contact(load: float, curvatures: tuple[float, float], contact_modulus:
     1353.4
     """
     small, large = sorted(float(k) for k in curvatures)
-    _require_positive(load=load, curvature_1=small, curvature_2=large, contact_modulus=contact_modulus)
+    require_positive(load=load, curvature_1=small, curvature_2=large, contact_modulus=contact_modulus)
     q = _axis_ratio(large / small)
     semi_major = (load * float(elliprd(0.0, q * q, 1.0)) / (math.pi * contact_modulus * small)) ** (1.0 / 3.0)
     approach = 1.5 * load * float(elliprf(0.0, q * q, 1.0)) / (math.pi * contact_modulus * semi_major)
@@ -242,7 +242,7 @@ def line_contact(line_load: float, curvature: float, contact_modulus: float) -> 
     >>> round(line_contact(2000.0, 0.1, 210000.0 / (2 * 0.91)).max_pressure, 2)
     2710.28
     """
-    _require_positive(line_load=line_load, curvature=curvature, contact_modulus=contact_modulus)
+    require_positive(line_load=line_load, curvature=curvature, contact_modulus=contact_modulus)
     half_width = math.sqrt(4.0 * line_load / (math.pi * contact_modulus * curvature))
     return LineContact(line_load, contact_modulus, half_width, 2.0 * line_load / (math.pi * half_width))
 
@@ -258,12 +258,3 @@ def _axis_ratio(curvature_ratio: float) -> float:
     # The ratio of curvatures is never below a/b, so -log(ratio) bounds log(b/a) from below.
     lower = -logarithm - 1e-6
     return math.exp(float(brentq(excess, lower, 0.0, xtol=1e-15, rtol=1e-15))) if logarithm > 0.0 else 1.0
-
-
-def _require_positive(**values: float) -> None:
-    """Raise one InputError naming every value that is not positive and finite."""
-    problems = [
-        f"{name}: {value} is not positive and finite" for name, value in values.items() if not 0.0 < value < math.inf
-    ]
-    if problems:
-        raise InputError(problems)

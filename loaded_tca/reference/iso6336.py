@@ -5,9 +5,9 @@ stiffnesses in N/(mm um), that is N/um per mm of face width. Formulas as in the 
 the examples are the numbers of ISO/TR 6336-30:2017, example 1.
 """
 
-from math import asin, cos, degrees, inf, pi, radians, sin, sqrt
+from math import asin, cos, degrees, pi, radians, sin, sqrt
 
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, require_positive
 
 _STEEL = 206000.0
 _THEORETICAL_TO_REAL = 0.8  # C_M: measured single stiffness over the theoretical one, for solid discs
@@ -58,7 +58,7 @@ def elasticity_factor(contact_modulus: float) -> float:
     >>> round(elasticity_factor(206000.0 / (2.0 * (1.0 - 0.3**2))), 4)
     189.8117
     """
-    _require_positive(contact_modulus=contact_modulus)
+    require_positive(contact_modulus=contact_modulus)
     return sqrt(contact_modulus / pi)
 
 
@@ -80,7 +80,7 @@ def contact_ratio_factor(transverse_contact_ratio: float, overlap_ratio: float) 
     >>> round(contact_ratio_factor(1.549090, 1.083369), 3)
     0.803
     """
-    _require_positive(transverse_contact_ratio=transverse_contact_ratio)
+    require_positive(transverse_contact_ratio=transverse_contact_ratio)
     if not 0.0 <= overlap_ratio < float("inf"):
         raise InputError(f"overlap_ratio: {overlap_ratio} is negative or not finite")
     overlap = min(1.0, overlap_ratio)
@@ -137,7 +137,7 @@ def nominal_contact_stress(
     >>> round(nominal_contact_stress(127352.0, 141.340, 100.0, 103 / 17, factors), 1)
     1206.6
     """
-    _require_positive(
+    require_positive(
         tangential_force=tangential_force,
         pinion_reference_diameter=pinion_reference_diameter,
         face_width=face_width,
@@ -198,7 +198,7 @@ def theoretical_single_stiffness(virtual_teeth: tuple[float, float], profile_shi
     17.8558
     """
     (z1, z2), (x1, x2) = virtual_teeth, profile_shifts
-    _require_positive(pinion_virtual_teeth=z1, wheel_virtual_teeth=z2)
+    require_positive(pinion_virtual_teeth=z1, wheel_virtual_teeth=z2)
     teeth = 0.15551 / z1 + 0.25791 / z2 - 0.11654 * x1 / z1 - 0.24188 * x2 / z2
     return 1.0 / (0.04723 + teeth - 0.00635 * x1 - 0.00193 * x2 + 0.00529 * x1**2 + 0.00182 * x2**2)
 
@@ -260,7 +260,7 @@ def single_stiffness(
     >>> round(single_stiffness(17.85584, radians(15.8), basic_rack_factor=0.9), 5)
     12.37047
     """
-    _require_positive(theoretical_single_stiffness=theoretical_single_stiffness, youngs_modulus=youngs_modulus)
+    require_positive(theoretical_single_stiffness=theoretical_single_stiffness, youngs_modulus=youngs_modulus)
     solid = _THEORETICAL_TO_REAL * theoretical_single_stiffness * cos(helix_angle) * youngs_modulus / _STEEL
     return solid * gear_blank_factor * basic_rack_factor
 
@@ -281,12 +281,5 @@ def mesh_stiffness(single_stiffness: float, transverse_contact_ratio: float) -> 
     >>> round(mesh_stiffness(12.37047, 1.549090), 4)
     17.4648
     """
-    _require_positive(single_stiffness=single_stiffness, transverse_contact_ratio=transverse_contact_ratio)
+    require_positive(single_stiffness=single_stiffness, transverse_contact_ratio=transverse_contact_ratio)
     return single_stiffness * (0.75 * transverse_contact_ratio + 0.25)
-
-
-def _require_positive(**values: float) -> None:
-    """Raise one InputError naming every value that is not positive and finite."""
-    problems = [f"{key}: {value} is not positive and finite" for key, value in values.items() if not 0.0 < value < inf]
-    if problems:
-        raise InputError(problems)

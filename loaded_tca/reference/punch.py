@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from loaded_tca.errors import InputError
+from loaded_tca.errors import require_positive
 
 # F/(E* L delta) of a flat square punch of side L: pi times the electrostatic capacity of the unit square, 0.36679,
 # since a charged plate and a flat punch obey the same equations. Grids of Love's cells, extrapolated, agree to 1e-5.
@@ -68,7 +68,7 @@ def power_law(radius: float, coefficient: float, exponent: float, contact_modulu
     >>> round(cone.load / (0.01 * 115e3), 6), round(cone.approach / 0.01, 6)
     (1.570796, 1.570796)
     """
-    _require_positive(radius=radius, coefficient=coefficient, exponent=exponent, contact_modulus=contact_modulus)
+    require_positive(radius=radius, coefficient=coefficient, exponent=exponent, contact_modulus=contact_modulus)
     ratio = math.exp(math.lgamma(1.0 + exponent / 2.0) - math.lgamma((1.0 + exponent) / 2.0))
     approach = coefficient * radius**exponent * math.sqrt(math.pi) * ratio
     load = 2.0 * contact_modulus * radius * approach * exponent / (exponent + 1.0)
@@ -101,14 +101,5 @@ def flat_circular(load: float, radius: float, contact_modulus: float) -> PunchCo
     ----------
     Sneddon 1965, Int. J. Eng. Sci. 3, 47-57; Johnson 1985, Contact Mechanics, section 3.4.
     """
-    _require_positive(load=load, radius=radius, contact_modulus=contact_modulus)
+    require_positive(load=load, radius=radius, contact_modulus=contact_modulus)
     return PunchContact(load, radius, load / (2.0 * radius * contact_modulus))
-
-
-def _require_positive(**values: float) -> None:
-    """Raise one InputError naming every value that is not positive and finite."""
-    problems = [
-        f"{name}: {value} is not positive and finite" for name, value in values.items() if not 0.0 < value < math.inf
-    ]
-    if problems:
-        raise InputError(problems)

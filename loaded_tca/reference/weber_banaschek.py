@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, require
 from loaded_tca.material import Material
 
 SHEAR_FACTOR = 1.2
@@ -84,7 +84,14 @@ def tooth_deflection(
     1.0
     """
     y, s = np.asarray(height, dtype=float), np.asarray(thickness, dtype=float)
-    _require_tooth(y, s, load_height, load_angle)
+    increases = y.shape == s.shape and y.ndim == 1 and len(y) > 1 and y[0] == 0.0 and bool((np.diff(y) > 0.0).all())
+    end = float(y[-1]) if increases else math.inf
+    require(
+        (increases, "height: increasing heights from 0 on are needed, as many as there are thicknesses"),
+        (0.0 < load_height <= end, f"load_height: {load_height:g} mm is not between 0 and {end:g} mm"),
+        (bool((np.isfinite(s) & (s > 0.0)).all()), "thickness: not all are positive and finite"),
+        (abs(load_angle) < 0.5 * math.pi, f"load_angle: {load_angle:g} rad is not below 90 deg"),
+    )
     nu, root = material.poisson_ratio, float(s[0])
     scale = math.cos(load_angle) ** 2 / material.plane_strain_modulus
     steep = math.tan(load_angle) ** 2
@@ -171,18 +178,3 @@ def _gauss(heights: NDArray[np.float64], end: float) -> tuple[NDArray[np.float64
     half = 0.5 * np.diff(ends)[:, None]
     middle = 0.5 * (ends[1:] + ends[:-1])[:, None]
     return (middle + half * local).ravel(), (half * share).ravel()
-
-
-def _require_tooth(y: NDArray[np.float64], s: NDArray[np.float64], load_height: float, load_angle: float) -> None:
-    """Refuse what is no tooth, or a force that is not on it."""
-    problems = []
-    if y.shape != s.shape or y.ndim != 1 or len(y) < 2 or y[0] != 0.0 or not (np.diff(y) > 0.0).all():
-        problems.append("height: increasing heights from 0 on are needed, as many as there are thicknesses")
-    elif not 0.0 < load_height <= y[-1]:
-        problems.append(f"load_height: {load_height:g} mm is not between 0 and {y[-1]:g} mm")
-    if not (np.isfinite(s).all() and (s > 0.0).all()):
-        problems.append("thickness: not all are positive and finite")
-    if not abs(load_angle) < 0.5 * math.pi:
-        problems.append(f"load_angle: {load_angle:g} rad is not below 90 deg")
-    if problems:
-        raise InputError(problems)

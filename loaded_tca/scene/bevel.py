@@ -2,54 +2,28 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import atan, cos, degrees, radians, sin, tan
 from typing import ClassVar, Literal
 
 from loaded_tca.gears.bevel import BevelGear, BevelMesh, pitch_angles
 from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
-from loaded_tca.scene import bevel_rows
+from loaded_tca.scene import spiral
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
-from loaded_tca.scene.build import build_materials, build_modifications, in_base_units
+from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row, family
-from loaded_tca.scene.section import Rule, subsection
+from loaded_tca.scene.section import Rule, rule, subsection
 from loaded_tca.scene.sections import DRIVING, SENSE, Pair
-from loaded_tca.scene.spiral import (
-    AXES_THAT_MEET,
-    FLANK_OR_SENSE,
-    SIDE,
-    MountingErrors,
-    SHAFT_ANGLE_deg,
-    Side,
-    names_of,
-    sense_for,
-    sides_in_contact,
-)
+from loaded_tca.scene.spiral import MountingErrors, SpiralScene
 
 SPIRAL_deg = Number(0.0, 59.0)
 CONE_deg = above_zero(179.0)
-
-
-def _spiral_of_the_type(spiral: float | None, kind: str) -> str | None:
-    if kind == "straight_bevel" and spiral:
-        return f'found {spiral:g}; allowed 0 for a "straight_bevel" pair; another angle makes it a "spiral_bevel" one'
-    if kind == "spiral_bevel" and spiral is None:
-        return f'missing; a "spiral_bevel" pair needs it, {SPIRAL_deg.low:g} to {SPIRAL_deg.high:g}'
-    return None
-
-
-def _flank_of_a_spiral(flank: str | None, kind: str) -> str | None:
-    if flank is None or kind == "spiral_bevel":
-        return None
-    return f'found "{flank}", but flanks of straight teeth are neither; give sense instead'
-
-
-def _one_face_width(wheel: float, pinion: float) -> str | None:
-    if wheel == pinion:
-        return None
-    return f"found {wheel:g}; allowed pinion.face_width_mm = {pinion:g}: both gears end on the same spheres"
+ROUNDING = 1e-9
+"""Cone angles closer than this [rad] are the same."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,7 +34,7 @@ class Geometry(Pair):
         Choice(("straight_bevel", "spiral_bevel")), "kind of gear pair"
     )
     outer_module_mm: float = key(above_zero(1000.0), "outer transverse module m_et, at the heel")
-    shaft_angle_deg: float = key(SHAFT_ANGLE_deg, "shaft angle Sigma", 90.0)
+    shaft_angle_deg: float = key(spiral.SHAFT_ANGLE_deg, "shaft angle Sigma", 90.0)
     spiral_angle_deg: float | None = key(
         SPIRAL_deg,
         "mean spiral angle beta_m on the pitch cone; its sign is in `pinion.hand`",
@@ -75,17 +49,27 @@ class Geometry(Pair):
         None,
         '"positive", or what `pinion_flank` asks for',
     )
-    pinion_flank: Side | None = key(
-        SIDE,
-        "flank of a spiral pinion that is in contact, instead of `sense`",
-        None,
-        "by `sense`",
+    pinion_flank: spiral.Side | None = key(
+        spiral.SIDE, "flank of a spiral pinion that is in contact, instead of `sense`", None, "by `sense`"
     )
 
     rules: ClassVar[tuple[Rule, ...]] = (
-        Rule(("spiral_angle_deg", "type"), _spiral_of_the_type),
-        Rule(("pinion_flank", "type"), _flank_of_a_spiral),
-        FLANK_OR_SENSE,
+        rule(
+            ("spiral_angle_deg", "type"),
+            lambda spiral, kind: not spiral or kind == "spiral_bevel",
+            'found {0:g}; allowed 0 for a "straight_bevel" pair; another angle makes it a "spiral_bevel" one',
+        ),
+        rule(
+            ("spiral_angle_deg", "type"),
+            lambda spiral, kind: spiral is not None or kind == "straight_bevel",
+            f'missing; a "spiral_bevel" pair needs it, {SPIRAL_deg.low:g} to {SPIRAL_deg.high:g}',
+        ),
+        rule(
+            ("pinion_flank", "type"),
+            lambda flank, kind: flank is None or kind == "spiral_bevel",
+            'found "{0}", but flanks of straight teeth are neither; give sense instead',
+        ),
+        spiral.FLANK_OR_SENSE,
     )
 
 
@@ -97,9 +81,9 @@ class GearSection(BlankGearSection):
     root_angle_deg: float | None = key(CONE_deg, "root angle delta_f", None, "pitch angle - atan((1.25 - x) m_et/R_e)")
 
 
-@family
+@family("straight_bevel", "spiral_bevel")
 @dataclass(frozen=True, kw_only=True)
-class BevelScene(BlankScene):
+class BevelScene(SpiralScene, BlankScene):
     """A scene of two straight or spiral bevel gears with spherical involute flanks.
 
     Attributes
@@ -134,50 +118,29 @@ class BevelScene(BlankScene):
 
     rules: ClassVar[tuple[Rule, ...]] = (
         *BlankScene.rules,
-        Rule(("wheel.face_width_mm", "pinion.face_width_mm"), _one_face_width),
-        AXES_THAT_MEET,
+        rule(
+            ("wheel.face_width_mm", "pinion.face_width_mm"),
+            operator.eq,
+            "found {0:g}; allowed pinion.face_width_mm = {1:g}: both gears end on the same spheres",
+        ),
+        spiral.AXES_THAT_MEET,
     )
-
-    @property
-    def sense(self) -> Sense:
-        """Sense of rotation, as given, or such that the pinion touches with the flank asked for."""
-        wanted = self.geometry
-        if wanted.pinion_flank is None:
-            return wanted.sense or "positive"
-        return sense_for(wanted.pinion_flank, self.hand_signs[0], wanted.driving)
 
     @property
     def contact_sides(self) -> tuple[str, str]:
         """Sides in contact of pinion and wheel: "concave" or "convex", "straight" without a spiral."""
-        if not self.geometry.spiral_angle_deg:
-            return "straight", "straight"
-        return sides_in_contact(self.sense, self.hand_signs[0], self.geometry.driving)
-
-    @property
-    def flank_names(self) -> tuple[str, str]:
-        """Gear and side in contact."""
-        return names_of(self.contact_sides)
+        return self.sides(self.sense) if self.geometry.spiral_angle_deg else ("straight", "straight")
 
     def mesh(self) -> BevelMesh:
         """Return the macro geometry: cones, cone distances, contact ratios."""
-        return BevelMesh(self._gear(0), self._gear(1))
 
-    def _gear(self, member: int) -> BevelGear:
-        common, own = in_base_units(self.geometry), in_base_units((self.pinion, self.wheel)[member])
-        teeth = (self.pinion.teeth, self.wheel.teeth)
-        return BevelGear(
-            teeth=teeth[member],
-            outer_module=common["outer_module"],
-            face_width=own["face_width"],
-            pitch_angle=pitch_angles(teeth, common["shaft_angle"])[member],
-            pressure_angle=common["pressure_angle"],
-            spiral_angle=self.hand_signs[member] * common.get("spiral_angle", 0.0),
-            profile_shift=own["profile_shift"],
-            face_angle=own.get("face_angle"),
-            root_angle=own.get("root_angle"),
-            bore_diameter=own.get("bore_diameter"),
-            name=("pinion", "wheel")[member],
-        )
+        def gear(own: GearSection, pitch_angle: float, sign: int, name: str) -> BevelGear:
+            values = parameters_of(BevelGear, self.geometry, own)
+            values["spiral_angle"] = sign * values.get("spiral_angle", 0.0)
+            return BevelGear(**values, pitch_angle=pitch_angle, name=name)
+
+        pitches = pitch_angles((self.pinion.teeth, self.wheel.teeth), radians(self.geometry.shaft_angle_deg))
+        return BevelMesh(*map(gear, (self.pinion, self.wheel), pitches, self.hand_signs, ("pinion", "wheel")))
 
     def analytic_pair(self, sense: Sense) -> GearPair:
         """Return the two spherical involute flanks in space."""
@@ -198,14 +161,65 @@ class BevelScene(BlankScene):
 
     def geometry_rows(self) -> Sequence[Row]:
         """Return cones, cone distances, modules and contact ratios."""
-        return bevel_rows.geometry_rows(self.mesh(), self.hands, self.contact_sides)
+        mesh = self.mesh()
+        gear = mesh.pinion
+        distances = (gear.outer_cone_distance, gear.mean_cone_distance, gear.inner_cone_distance)
+        modules = (gear.outer_module, gear.mean_normal_module / cos(gear.spiral_angle))
+        pressures = (gear.pressure_angle, atan(tan(gear.pressure_angle) * cos(gear.spiral_angle)))
+        return [
+            ("shaft angle Sigma [deg]", f"{degrees(mesh.shaft_angle):.4f}"),
+            ("cone distances R_e, R_m, R_i [mm]", *(f"{distance:.4f}" for distance in distances)),
+            ("transverse modules m_et, m_mt [mm]", *(f"{module:.4f}" for module in modules)),
+            ("mean normal module m_mn [mm]", f"{gear.mean_normal_module:.4f}"),
+            ("mean spiral angle beta_m [deg]", f"{degrees(abs(gear.spiral_angle)):.4f}"),
+            ("pressure angles alpha_t, alpha_n [deg]", *(f"{degrees(angle):.4f}" for angle in pressures)),
+            ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:.4f}"),
+            ("overlap ratio eps_beta", f"{mesh.overlap_ratio:.4f}"),
+            ("total contact ratio eps_gamma", f"{mesh.transverse_contact_ratio + mesh.overlap_ratio:.4f}"),
+            ("face width b [mm]", f"{gear.face_width:.4f}"),
+            ("", "pinion", "wheel"),
+            ("teeth z", str(mesh.pinion.teeth), str(mesh.wheel.teeth)),
+            ("hand of the spiral", *(self.hands if gear.spiral_angle else ("none", "none"))),
+            ("flank in contact", *self.contact_sides),
+            *_cone_rows(mesh),
+        ]
 
     def force_rows(self, torques: Sequence[float]) -> Sequence[Row]:
         """Return the forces under pinion torques [N mm]."""
         mesh = self.mesh()
         pair = self.analytic_pair(self.sense)
-        points = [
-            bevel_rows.pitch_point(gear.mean_cone_distance, gear.pitch_angle) for gear in (mesh.pinion, mesh.wheel)
-        ]
-        flanks = pair.pinion.nominal_flank, pair.wheel.nominal_flank
-        return bevel_rows.force_rows(flanks, (points[0], points[1]), torques)
+        first, second = (
+            spiral.pitch_point(gear.mean_cone_distance, gear.pitch_angle) for gear in (mesh.pinion, mesh.wheel)
+        )
+        return spiral.force_rows((pair.pinion.nominal_flank, pair.wheel.nominal_flank), (first, second), torques)
+
+
+def _cone_rows(mesh: BevelMesh) -> list[Row]:
+    """Cone angles of both gears, diameters and depths at their pitch cones, and whether tips reach into fillets."""
+    gears = mesh.pinion, mesh.wheel
+    starts = [active[0] for active in mesh.active_cones]
+    angles = (
+        ("pitch angle delta [deg]", [gear.pitch_angle for gear in gears]),
+        ("face angle delta_a [deg]", [gear.tip_angle for gear in gears]),
+        ("start of active profile, cone angle [deg]", starts),
+        ("root form cone angle [deg]", [gear.form_angle for gear in gears]),
+        ("root angle delta_f [deg]", [gear.root_cone_angle for gear in gears]),
+        ("base cone angle delta_b [deg]", [gear.base_angle for gear in gears]),
+    )
+    lengths = (
+        ("outer pitch diameter d_e [mm]", [2.0 * gear.outer_cone_distance * sin(gear.pitch_angle) for gear in gears]),
+        ("mean pitch diameter d_m [mm]", [2.0 * gear.mean_cone_distance * sin(gear.pitch_angle) for gear in gears]),
+        ("mean addendum h_am [mm]", [_height(gear, gear.tip_angle) for gear in gears]),
+        ("mean dedendum h_fm [mm]", [-_height(gear, gear.root_cone_angle) for gear in gears]),
+    )
+    interference = [start - gear.form_angle < ROUNDING for start, gear in zip(starts, gears, strict=True)]
+    return [
+        *((label, *(f"{degrees(value):.4f}" for value in values)) for label, values in angles),
+        *((label, *(f"{value:.4f}" for value in values)) for label, values in lengths),
+        ("mating tip reaches below the form cone", *("yes" if below else "no" for below in interference)),
+    ]
+
+
+def _height(gear: BevelGear, cone_angle: float) -> float:
+    """Height of a cone over the pitch cone, across the pitch cone at mid-face [mm]."""
+    return gear.mean_cone_distance * tan(cone_angle - gear.pitch_angle)

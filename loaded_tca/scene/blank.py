@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import ClassVar
 
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
-from loaded_tca.scene.model import Scene
+from loaded_tca.scene.model import Hand, Scene
 from loaded_tca.scene.section import Rule, subsection
 from loaded_tca.scene.sections import GearSection, below
-
-Hand = Literal["right", "left"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,14 +27,19 @@ class BlankGearSection(GearSection):
     rules: ClassVar[tuple[Rule, ...]] = (below("modifications.end_relief_length_mm", "face_width_mm", 0.5),)
 
 
-def _opposite(hand: Hand) -> Hand:
-    return "left" if hand == "right" else "right"
+OTHER: dict[Hand, Hand] = {"right": "left", "left": "right"}
+"""Hand -> the opposite one."""
 
 
-def _opposite_hands(wheel: Hand | None, pinion: Hand | None) -> str | None:
-    if wheel is None or wheel != pinion:
-        return None
-    return f'found "{wheel}" on both gears; allowed "{_opposite(wheel)}", the hand that the pinion does not have'
+def opposite_hands(place: str = "") -> Rule:
+    """Rule: the two gears have opposite hands, where both are given."""
+
+    def complain(wheel: Hand | None, pinion: Hand | None) -> str | None:
+        if wheel is None or wheel != pinion:
+            return None
+        return f'found "{wheel}" on both gears; allowed "{OTHER[wheel]}", the hand that the pinion does not have'
+
+    return Rule((f"wheel.{place}hand", f"pinion.{place}hand"), complain)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,22 +49,10 @@ class BlankScene(Scene):
     pinion: BlankGearSection = subsection(BlankGearSection, "the gear that turns about +z")
     wheel: BlankGearSection = subsection(BlankGearSection, "its mating gear")
 
-    rules: ClassVar[tuple[Rule, ...]] = (*Scene.rules, Rule(("wheel.hand", "pinion.hand"), _opposite_hands))
-
-    @property
-    def pinion_hand(self) -> Hand:
-        """Hand of the pinion: as given, or opposite to the wheel, or right."""
-        if self.pinion.hand is not None:
-            return self.pinion.hand
-        return "right" if self.wheel.hand is None else _opposite(self.wheel.hand)
+    rules: ClassVar[tuple[Rule, ...]] = (*Scene.rules, opposite_hands())
 
     @property
     def hands(self) -> tuple[Hand, Hand]:
-        """Hands of pinion and wheel."""
-        return self.pinion_hand, _opposite(self.pinion_hand)
-
-    @property
-    def hand_signs(self) -> tuple[int, int]:
-        """+1 for the right hand, -1 for the left one, of pinion and wheel."""
-        sign = 1 if self.pinion_hand == "right" else -1
-        return sign, -sign
+        """Hands of pinion and wheel: as one of them is given; where none is, the pinion is right-hand."""
+        pinion = self.pinion.hand or OTHER[self.wheel.hand or "left"]
+        return pinion, OTHER[pinion]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -44,6 +44,12 @@ def in_base_units(section: Section) -> dict[str, Any]:
 
 def _scaled(value: Any, factor: float) -> Any:
     return tuple(_scaled(entry, factor) for entry in value) if isinstance(value, tuple) else value * factor
+
+
+def parameters_of(target: type, *sections: Section) -> dict[str, Any]:
+    """Return those values of sections that a dataclass takes, in mm, rad, MPa and N mm."""
+    names = {field.name for field in fields(target)}
+    return {name: value for each in sections for name, value in in_base_units(each).items() if name in names}
 
 
 def build_modifications(pinion: GearSection, wheel: GearSection) -> tuple[FlankModifications, FlankModifications]:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
+from loaded_tca.errors import GeometryError
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
-from loaded_tca.scene import cylindrical_rows
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
-from loaded_tca.scene.build import build_materials, build_modifications, in_base_units
+from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row, family
 from loaded_tca.scene.section import Rule, Section, subsection
@@ -69,7 +70,7 @@ class MountingErrors(Section):
     axial_offset_mm: float = key(ERROR_mm, "axial displacement of the wheel, positive towards +z", 0.0)
 
 
-@family
+@family("cylindrical")
 @dataclass(frozen=True, kw_only=True)
 class CylindricalScene(BlankScene):
     """A scene of two spur or helical gears.
@@ -106,19 +107,14 @@ class CylindricalScene(BlankScene):
 
     def mesh(self) -> CylindricalMesh:
         """Return the macro geometry: diameters, contact ratios, path of contact."""
-        pinion, wheel = self._gear(0), self._gear(1)
-        return CylindricalMesh(pinion, wheel, centre_distance=self.geometry.centre_distance_mm)
 
-    def _gear(self, member: int) -> CylindricalGear:
-        common, own = in_base_units(self.geometry), in_base_units((self.pinion, self.wheel)[member])
-        rack = ("normal_module", "pressure_angle", "dedendum_coefficient", "root_radius_coefficient")
-        sizes = ("teeth", "face_width", "profile_shift", "tip_diameter", "bore_diameter")
-        return CylindricalGear(
-            **{name: common[name] for name in rack},
-            **{name: own[name] for name in sizes if name in own},
-            helix_angle=self.hand_signs[member] * common["helix_angle"],
-            name=("pinion", "wheel")[member],
-        )
+        def gear(own: GearSection, sign: int, name: str) -> CylindricalGear:
+            values = parameters_of(CylindricalGear, self.geometry, own)
+            values["helix_angle"] *= sign
+            return CylindricalGear(**values, name=name)
+
+        pinion, wheel = map(gear, (self.pinion, self.wheel), self.hand_signs, ("pinion", "wheel"))
+        return CylindricalMesh(pinion, wheel, centre_distance=self.geometry.centre_distance_mm)
 
     @property
     def sense(self) -> Sense:
@@ -143,12 +139,80 @@ class CylindricalScene(BlankScene):
 
     def geometry_rows(self) -> Sequence[Row]:
         """Return centre distance, contact ratios and diameters."""
-        return cylindrical_rows.geometry_rows(self.mesh(), self.hands)
+        mesh = self.mesh()
+        path = mesh.path_of_contact
+        return [
+            ("working centre distance a_w [mm]", f"{mesh.working_centre_distance:.4f}"),
+            ("working pressure angle alpha_wt [deg]", f"{math.degrees(mesh.working_pressure_angle):.4f}"),
+            ("backlash j_wt at the working circles [mm]", f"{_backlash(mesh):.4f}"),
+            ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:.4f}"),
+            ("overlap ratio eps_beta", f"{mesh.overlap_ratio:.4f}"),
+            ("total contact ratio eps_gamma", f"{mesh.total_contact_ratio:.4f}"),
+            ("path of contact: length AE, approach AC [mm]", f"{path.AE:.4f}", f"{path.AC:.4f}"),
+            ("common face width b [mm]", f"{mesh.common_face_width:.4f}"),
+            ("", "pinion", "wheel"),
+            ("teeth z", f"{mesh.pinion.teeth}", f"{mesh.wheel.teeth}"),
+            ("hand of the helix", *(self.hands if mesh.pinion.helix_angle else ("none", "none"))),
+            *_diameter_rows(mesh),
+        ]
 
     def force_rows(self, torques: Sequence[float]) -> Sequence[Row]:
         """Return the forces under pinion torques [N mm]."""
-        return cylindrical_rows.force_rows(self.mesh(), torques)
+        mesh = self.mesh()
+        return [
+            ("base tangential force F_bt [N]", *(f"{mesh.base_tangential_force(torque):.1f}" for torque in torques)),
+            ("normal force F_bn [N]", *(f"{mesh.normal_force(torque):.1f}" for torque in torques)),
+        ]
 
     def notes(self) -> Sequence[str]:
-        """Return sentences on teeth that overlap."""
-        return tuple(cylindrical_rows.overlaps(self.mesh(), self.mounting.centre_distance_error_mm))
+        """Return sentences on teeth that overlap, at the nominal centre distance and with an error of it."""
+        mesh = self.mesh()
+        notes = _overlap(mesh, "centre distance")
+        distance = mesh.working_centre_distance + self.mounting.centre_distance_error_mm
+        if distance == mesh.working_centre_distance:
+            return notes
+        try:
+            return notes + _overlap(replace(mesh, centre_distance=distance), "mounted centre distance")
+        except GeometryError as problem:
+            return [*notes, f"at the mounted centre distance of {distance:.4f} mm: {problem}"]
+
+
+def _backlash(mesh: CylindricalMesh) -> float:
+    """Backlash [mm], zero where it is rounding."""
+    return mesh.backlash if abs(mesh.backlash) > 1e-9 * mesh.pinion.normal_module else 0.0
+
+
+def _overlap(mesh: CylindricalMesh, which: str) -> list[str]:
+    backlash = _backlash(mesh)
+    if backlash >= 0.0:
+        return []
+    overlap = f"teeth overlap by {-backlash:.4f} mm at the {which} of {mesh.working_centre_distance:.4f} mm"
+    return [f"{overlap}: backlash is not part of the analysis"]
+
+
+def _diameter_rows(mesh: CylindricalMesh) -> list[Row]:
+    """Diameters of both gears from the reference circle to the root circle, and whether tips reach into fillets."""
+    gears = mesh.pinion, mesh.wheel
+    active = mesh.pinion_active_profile, mesh.wheel_active_profile
+    radii = {
+        "reference diameter d [mm]": [gear.reference_radius for gear in gears],
+        "base diameter d_b [mm]": [gear.base_radius for gear in gears],
+        "working diameter d_w [mm]": [mesh.pinion_working_radius, mesh.wheel_working_radius],
+        "tip diameter d_a [mm]": [gear.tip_radius for gear in gears],
+    }
+    if 1.0 <= mesh.transverse_contact_ratio < 2.0:  # elsewhere always two tooth pairs touch, or none
+        path = mesh.path_of_contact
+        at_b, at_d = (
+            [mesh.pinion.radius_at_roll_length(point), mesh.wheel.radius_at_roll_length(path.T2 - point)]
+            for point in (path.B, path.D)
+        )
+        radii["highest single tooth contact (D | B) [mm]"] = [at_d[0], at_b[1]]
+        radii["lowest single tooth contact (B | D) [mm]"] = [at_b[0], at_d[1]]
+    radii |= {
+        "start of active profile d_Nf [mm]": [profile.start_radius for profile in active],
+        "root form diameter d_Ff [mm]": [gear.form_radius for gear in gears],
+        "root diameter d_f [mm]": [gear.root_radius for gear in gears],
+    }
+    interference = ("yes" if profile.fillet_interference else "no" for profile in active)
+    rows = [(label, *(f"{2.0 * radius:.4f}" for radius in both)) for label, both in radii.items()]
+    return [*rows, ("mating tip reaches below d_Ff", *interference)]

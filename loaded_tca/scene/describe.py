@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from loaded_tca.scene.keys import Key
-from loaded_tca.scene.model import FAMILIES, types_of
+from loaded_tca.scene.model import FAMILIES
 from loaded_tca.scene.section import Section, Subsection, entries
 from loaded_tca.scene.text import literal
 
@@ -28,7 +28,7 @@ def describe_keys() -> str:
     shared = {path: found for path, found in tables[0].items() if all(_same(path, found, table) for table in tables)}
     lines = list(_section_lines("", *shared.pop("")))
     for scene, table in zip(families, tables, strict=True):
-        kinds = ", ".join(f"`{name}`" for name in types_of(scene))
+        kinds = ", ".join(f"`{name}`" for name, known in FAMILIES.items() if known is scene)
         for path, (section, about) in table.items():
             if path and path not in shared:
                 lines += _section_lines(path, section, f"{about} ({kinds})")

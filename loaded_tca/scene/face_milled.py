@@ -2,50 +2,186 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import degrees, isclose, radians
-from typing import ClassVar
+from typing import ClassVar, Literal
 
-from loaded_tca.errors import InputError
+from loaded_tca.errors import require
 from loaded_tca.gears import cutter
 from loaded_tca.gears.bevel import pitch_angles
 from loaded_tca.gears.face_milled import FaceMilledGear, FaceMilledMesh
 from loaded_tca.gears.machine_settings import FaceMilledBlank, MachineSettings
 from loaded_tca.pairs.bevel import BevelMounting
 from loaded_tca.pairs.face_milled import face_milled_pair
-from loaded_tca.pairs.gear_pair import GearPair, Sense
-from loaded_tca.scene import bevel_rows, face_milled_rows
+from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
+from loaded_tca.scene import face_milled_rows, sections, spiral
+from loaded_tca.scene.blank import opposite_hands
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units
-from loaded_tca.scene.face_milled_keys import Blade, Blank, Cutter, GearSection, Geometry, Machine
-from loaded_tca.scene.model import Row, Scene, family
-from loaded_tca.scene.section import Rule, subsection
-from loaded_tca.scene.spiral import AXES_THAT_MEET, MountingErrors, Side, names_of, sense_for, sides_in_contact
+from loaded_tca.scene.keys import Choice, Number, above_zero, key
+from loaded_tca.scene.model import Hand, Row, Scene, family
+from loaded_tca.scene.section import Rule, Section, rule, subsection
+from loaded_tca.scene.sections import DRIVING, SENSE, Pair, below
+from loaded_tca.scene.spiral import MountingErrors, SpiralScene
 
-__all__ = ["Blade", "Blank", "Cutter", "FaceMilledScene", "GearSection", "Geometry", "Machine", "MountingErrors"]
-
+LENGTH_mm = above_zero(10000.0)
+SETTING_mm = Number(-10000.0, 10000.0)
+CONE_deg = above_zero(179.0)
+TURN_deg = Number(-360.0, 360.0)
+STEEPEST_deg = 59.0
+"""Largest blade angle, corrected by the number of the blade group."""
+BLADE_deg = Number(-STEEPEST_deg, STEEPEST_deg)
+NUMBER = Number(-200.0, 200.0)
 ROUNDED_deg = 0.01
 """By how much a pitch angle may miss the one of teeth and shaft angle: half a minute of arc, as summaries round it."""
 SAME_SPHERES = 1e-6
 """Relative difference of two lengths that are meant to be the same."""
 
 
-def _opposite_hands(wheel: str, pinion: str) -> str | None:
-    if wheel != pinion:
-        return None
-    other = "left" if wheel == "right" else "right"
-    return f'found "{wheel}" on both gears; allowed "{other}", the hand that the pinion does not have'
+@dataclass(frozen=True, kw_only=True)
+class Geometry(Pair):
+    """[pair] of face-milled gears."""
+
+    type: Literal["face_milled"] = key(Choice(("face_milled",)), "kind of gear pair")
+    shaft_angle_deg: float = key(spiral.SHAFT_ANGLE_deg, "shaft angle Sigma", 90.0)
+    driving: Driving = key(DRIVING, "the gear that drives", "pinion")
+    pinion_flank: spiral.Side | None = key(
+        spiral.SIDE, "flank of the pinion that is in contact (drive side: concave)", None, '"concave", or by `sense`'
+    )
+    sense: Sense | None = key(SENSE, "sense of rotation, instead of `pinion_flank`", None, "by `pinion_flank`")
+
+    rules: ClassVar[tuple[Rule, ...]] = (spiral.FLANK_OR_SENSE,)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Blank(Section):
+    """[pinion.blank], [wheel.blank]: where the teeth end."""
+
+    hand: Literal["right", "left"] = key(Choice(("right", "left")), "hand of the spiral")
+    outer_cone_distance_mm: float = key(LENGTH_mm, "outer cone distance R_e")
+    face_width_mm: float = key(LENGTH_mm, "face width b")
+    pitch_angle_deg: float = key(
+        CONE_deg, "pitch angle delta, as teeth and shaft angle ask for; its last digits are taken from them"
+    )
+    face_angle_deg: float = key(CONE_deg, "face angle delta_a")
+    root_angle_deg: float = key(CONE_deg, "root angle delta_f")
+    face_apex_mm: float = key(
+        SETTING_mm, "how far the apex of the face cone lies beyond the pitch apex, away from the teeth", 0.0
+    )
+    root_apex_mm: float = key(SETTING_mm, "likewise the apex of the root cone", 0.0)
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        rule(("root_angle_deg", "pitch_angle_deg"), operator.le, "found {0:g}; allowed up to pitch_angle_deg = {1:g}"),
+        rule(
+            ("face_angle_deg", "pitch_angle_deg"), operator.ge, "found {0:g}; allowed from pitch_angle_deg = {1:g} on"
+        ),
+        rule(
+            ("face_width_mm", "outer_cone_distance_mm"),
+            operator.lt,
+            "found {0:g}; allowed below outer_cone_distance_mm = {1:g}",
+        ),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Machine(Section):
+    """[pinion.machine], [wheel.machine]: machine settings; both flanks of a gear are cut with them."""
+
+    radial_mm: float = key(LENGTH_mm, "radial setting S_r: cradle axis to cutter centre")
+    cradle_angle_deg: float = key(TURN_deg, "cradle angle q at the centre of roll")
+    root_angle_deg: float | None = key(CONE_deg, "machine root angle gamma_m", None, "that of the blank")
+    machine_centre_to_back_mm: float = key(
+        SETTING_mm, "machine centre to back, Delta X_D; positive withdraws the blank along its axis", 0.0
+    )
+    sliding_base_mm: float = key(
+        SETTING_mm, "sliding base Delta X_B; positive moves the blank away from the blade tips", 0.0
+    )
+    blank_offset_mm: float = key(SETTING_mm, "blank offset Delta E_m; positive upwards", 0.0)
+    tilt_deg: float = key(Number(-89.0, 89.0), "cutter tilt i", 0.0)
+    swivel_deg: float = key(TURN_deg, "swivel j of the tilt", 0.0)
+    ratio_of_roll: float | None = key(
+        above_zero(1000.0), "ratio of roll m: turn of the blank over turn of the cradle", None, "required if generated"
+    )
+    modified_roll_2c: float = key(Number(-100.0, 100.0), "modified roll 2C, per rad", 0.0)
+    modified_roll_6d: float = key(Number(-100.0, 100.0), "modified roll 6D, per square rad", 0.0)
+    helical_motion_mm_per_rad: float = key(
+        SETTING_mm, "helical motion: growth of the sliding base with the turn of the cradle", 0.0
+    )
+    generation: Literal["generated", "formate"] = key(
+        Choice(("generated", "formate")), "whether the blank rolls with the cradle, or stands still", "generated"
+    )
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        rule(
+            ("ratio_of_roll", "generation"),
+            lambda ratio, generation: ratio is not None or generation == "formate",
+            'missing; generation = "generated" needs it: turn of the blank over turn of the cradle',
+        ),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Blade(Section):
+    """[pinion.cutter.concave], [pinion.cutter.convex], and of the wheel."""
+
+    point_radius_mm: float = key(LENGTH_mm, "point radius r_p of the sharp blade tip")
+    blade_angle_deg: float = key(BLADE_deg, "blade angle alpha at the tip, before the cutter number corrects it")
+    blade_radius_mm: float | None = key(
+        above_zero(1e6), "radius of a hollow blade, which crowns the profile of the flank", None, "a straight blade"
+    )
+    edge_radius_mm: float = key(Number(0.0, 1000.0), "radius of the rounded tip; above it the flank begins", 0.0)
+
+
+def _in_range_with_number(flank: Literal["concave", "convex"]) -> Rule:
+    def complain(number: float, angle: float) -> str | None:
+        steep = angle - cutter.BLADE_SIGNS[flank] * number * cutter.MINUTES_PER_NUMBER / 60.0
+        if abs(steep) <= STEEPEST_deg:
+            return None
+        return f"found {number:g}, which turns {flank}.blade_angle_deg to {steep:g}; allowed up to {STEEPEST_deg:g}"
+
+    return Rule(("number", f"{flank}.blade_angle_deg"), complain)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cutter(Section):
+    """[pinion.cutter], [wheel.cutter]."""
+
+    number: float = key(
+        NUMBER,
+        "number of the blade group: 10 minutes of blade angle each, less on the outside and more on the inside blade",
+        0.0,
+    )
+    concave: Blade | None = subsection(Blade, "outside blade, which cuts the concave flank", optional=True)
+    convex: Blade | None = subsection(Blade, "inside blade, which cuts the convex flank", optional=True)
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        rule(
+            ("concave", "convex"),
+            lambda *blades: any(blade is not None for blade in blades),
+            "missing; a cutter needs a section concave or convex, for the flank in contact (both for whole teeth)",
+        ),
+        _in_range_with_number("concave"),
+        _in_range_with_number("convex"),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class GearSection(sections.GearSection):
+    """[pinion], [wheel] of face-milled gears."""
+
+    blank: Blank = subsection(Blank, "outline of the blank")
+    machine: Machine = subsection(Machine, "machine settings, with the signs of a right-hand gear")
+    cutter: Cutter = subsection(Cutter, "the blades, and the number of their group")
+
+    rules: ClassVar[tuple[Rule, ...]] = (below("modifications.end_relief_length_mm", "blank.face_width_mm", 0.5),)
 
 
 def _same_spheres(name: str) -> Rule:
     """Rule: both gears begin or end on the same spheres about the apex."""
-
-    def complain(wheel: float, pinion: float) -> str | None:
-        if isclose(wheel, pinion, rel_tol=SAME_SPHERES):
-            return None
-        return f"found {wheel:g}; allowed pinion.blank.{name} = {pinion:g}: both gears end on the same spheres"
-
-    return Rule((f"wheel.blank.{name}", f"pinion.blank.{name}"), complain)
+    problem = f"found {{0:g}}; allowed pinion.blank.{name} = {{1:g}}: both gears end on the same spheres"
+    return rule((f"wheel.blank.{name}", f"pinion.blank.{name}"), partial(isclose, rel_tol=SAME_SPHERES), problem)
 
 
 def _pitch_cone(member: int, name: str) -> Rule:
@@ -63,9 +199,9 @@ def _pitch_cone(member: int, name: str) -> Rule:
     return Rule((f"{name}.blank.pitch_angle_deg", "pinion.teeth", "wheel.teeth", "pair.shaft_angle_deg"), complain)
 
 
-@family
+@family("face_milled")
 @dataclass(frozen=True, kw_only=True)
-class FaceMilledScene(Scene):
+class FaceMilledScene(SpiralScene):
     """A scene of two spiral bevel gears whose flanks are cut after machine settings.
 
     Attributes
@@ -96,57 +232,30 @@ class FaceMilledScene(Scene):
 
     rules: ClassVar[tuple[Rule, ...]] = (
         *Scene.rules,
-        Rule(("wheel.blank.hand", "pinion.blank.hand"), _opposite_hands),
+        opposite_hands("blank."),
         _same_spheres("outer_cone_distance_mm"),
         _same_spheres("face_width_mm"),
         _pitch_cone(0, "pinion"),
         _pitch_cone(1, "wheel"),
-        AXES_THAT_MEET,
+        spiral.AXES_THAT_MEET,
     )
 
+    usual_flank = "concave"
+
     @property
-    def hands(self) -> tuple[str, str]:
+    def hands(self) -> tuple[Hand, Hand]:
         """Hands of pinion and wheel."""
         return self.pinion.blank.hand, self.wheel.blank.hand
 
-    @property
-    def _hand_sign(self) -> int:
-        return 1 if self.pinion.blank.hand == "right" else -1
-
-    @property
-    def sense(self) -> Sense:
-        """Sense of rotation, as given, or such that the pinion touches with the flank asked for."""
-        wanted = self.geometry
-        return wanted.sense or sense_for(wanted.pinion_flank or "concave", self._hand_sign, wanted.driving)
-
-    @property
-    def contact_sides(self) -> tuple[Side, Side]:
-        """Sides in contact of pinion and wheel: "concave" or "convex"."""
-        return self._sides(self.sense)
-
-    def _sides(self, sense: Sense) -> tuple[Side, Side]:
-        return sides_in_contact(sense, self._hand_sign, self.geometry.driving)
-
-    @property
-    def flank_names(self) -> tuple[str, str]:
-        """Gear and side in contact."""
-        return names_of(self.contact_sides)
-
     def mesh(self) -> FaceMilledMesh:
         """Return blanks, machine settings and cutters of both gears."""
-        pinion, wheel = (self._gear(member) for member in (0, 1))
-        return FaceMilledMesh(pinion, wheel, radians(self.geometry.shaft_angle_deg))
-
-    def _gear(self, member: int) -> FaceMilledGear:
-        own, name = (self.pinion, self.wheel)[member], ("pinion", "wheel")[member]
-        teeth = (self.pinion.teeth, self.wheel.teeth)
-        pitch = pitch_angles(teeth, radians(self.geometry.shaft_angle_deg))[member]
-        blank, cutter = _blank(own.blank, pitch), _cutter(own.cutter)
-        return FaceMilledGear(own.teeth, blank, cutter, _machine(own), name, own.bore_diameter_mm)
+        shaft_angle = radians(self.geometry.shaft_angle_deg)
+        first, second = pitch_angles((self.pinion.teeth, self.wheel.teeth), shaft_angle)
+        return FaceMilledMesh(_gear(self.pinion, "pinion", first), _gear(self.wheel, "wheel", second), shaft_angle)
 
     def analytic_pair(self, sense: Sense) -> GearPair:
         """Return the two generated flanks in space."""
-        sides, mesh = self._sides(sense), self.mesh()
+        sides, mesh = self.sides(sense), self.mesh()
         _require_blades(mesh, sides)
         return face_milled_pair(
             mesh.pinion,
@@ -165,21 +274,20 @@ class FaceMilledScene(Scene):
 
     def geometry_rows(self) -> Sequence[Row]:
         """Return cones, angles of the flanks in contact, machine settings and cutters."""
-        mesh = self.mesh()
-        _require_blades(mesh, self.contact_sides)
-        return face_milled_rows.geometry_rows(mesh, self.contact_sides)
+        mesh, sides = self.mesh(), self.sides(self.sense)
+        _require_blades(mesh, sides)
+        return face_milled_rows.geometry_rows(mesh, sides)
 
     def force_rows(self, torques: Sequence[float]) -> Sequence[Row]:
         """Return the forces under pinion torques [N mm]."""
-        mesh = self.mesh()
-        flanks, points = face_milled_rows.flanks_and_points(mesh, self.contact_sides)
-        return bevel_rows.force_rows(flanks, points, torques)
+        flanks, points = face_milled_rows.flanks_and_points(self.mesh(), self.sides(self.sense))
+        return spiral.force_rows(flanks, points, torques)
 
     def notes(self) -> Sequence[str]:
         """Return what is wrong with the tooth thicknesses, which the analysis does not need."""
-        flanks, _ = face_milled_rows.flanks_and_points(self.mesh(), self.contact_sides)
+        flanks, _ = face_milled_rows.flanks_and_points(self.mesh(), self.sides(self.sense))
         backlash = face_milled_rows.mean_backlash(flanks)
-        if backlash is None or backlash >= 0.0:
+        if not backlash < 0.0:
             return ()
         return (
             f"at mid-face the teeth are {-backlash:.3f} mm thicker than the spaces, so that whole gears would jam; "
@@ -187,34 +295,30 @@ class FaceMilledScene(Scene):
         )
 
 
-def _blank(own: Blank, pitch_angle: float) -> FaceMilledBlank:
-    """The blank with its exact pitch angle, which rounded root and face angles of uniform teeth may not pass."""
-    values = in_base_units(own)
-    values["root_angle"] = min(values["root_angle"], pitch_angle)
-    values["face_angle"] = max(values["face_angle"], pitch_angle)
-    return FaceMilledBlank(**{**values, "pitch_angle": pitch_angle})
+def _gear(own: GearSection, name: str, pitch_angle: float) -> FaceMilledGear:
+    """A gear with its exact pitch angle, which rounded root and face angles of uniform teeth may not pass."""
+    blank = in_base_units(own.blank)
+    machine = {"root_angle": blank["root_angle"], **in_base_units(own.machine)}
+    machine["helical_motion"] = machine.pop("helical_motion_mm_per_rad")
+    blank["pitch_angle"] = pitch_angle
+    blank["root_angle"] = min(blank["root_angle"], pitch_angle)
+    blank["face_angle"] = max(blank["face_angle"], pitch_angle)
+    concave, convex = (
+        None if blade is None else cutter.Blade(**in_base_units(blade))
+        for blade in (own.cutter.concave, own.cutter.convex)
+    )
+    return FaceMilledGear(
+        teeth=own.teeth,
+        blank=FaceMilledBlank(**blank),
+        cutter=cutter.Cutter(concave, convex, own.cutter.number),
+        machine=MachineSettings(**machine),
+        name=name,
+        bore_diameter=own.bore_diameter_mm,
+    )
 
 
-def _machine(own: GearSection) -> MachineSettings:
-    values = in_base_units(own.machine)
-    values["helical_motion"] = values.pop("helical_motion_mm_per_rad")
-    return MachineSettings(**{"root_angle": radians(own.blank.root_angle_deg), **values})
-
-
-def _cutter(own: Cutter) -> cutter.Cutter:
-    return cutter.Cutter(concave=_blade(own.concave), convex=_blade(own.convex), number=own.number)
-
-
-def _blade(own: Blade | None) -> cutter.Blade | None:
-    return None if own is None else cutter.Blade(**in_base_units(own))
-
-
-def _require_blades(mesh: FaceMilledMesh, sides: tuple[Side, Side]) -> None:
+def _require_blades(mesh: FaceMilledMesh, sides: tuple[spiral.Side, spiral.Side]) -> None:
     """Refuse a pair whose cutters do not cut the flanks that are asked for."""
-    missing = [
-        f"{gear.name}.cutter.{side}: missing; it cuts the {side} flank of the {gear.name}, which is asked for"
-        for gear, side in zip(mesh.gears, sides, strict=True)
-        if getattr(gear.cutter, side) is None
-    ]
-    if missing:
-        raise InputError(missing)
+    for_each = zip(mesh.gears, sides, strict=True)
+    message = "{0}.cutter.{1}: missing; it cuts the {1} flank of the {0}, which is asked for"
+    require(*((getattr(gear.cutter, side) is not None, message.format(gear.name, side)) for gear, side in for_each))

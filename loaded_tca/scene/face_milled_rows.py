@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import cos, degrees, pi, sin
+from math import cos, degrees, isnan, nan, pi, sin
 
 import numpy as np
 
 from loaded_tca.flanks.face_milled import GeneratedFlank, tooth_angle
 from loaded_tca.gears.face_milled import FaceMilledGear, FaceMilledMesh
-from loaded_tca.scene.bevel_rows import Point, pitch_point
 from loaded_tca.scene.model import Row
-from loaded_tca.scene.spiral import Side
+from loaded_tca.scene.spiral import Point, Side, pitch_point
 
 Sides = tuple[Side, Side]
 ONE_FLANK = "one flank"
@@ -92,20 +91,16 @@ def _flank_rows(mesh: FaceMilledMesh, flanks: tuple[GeneratedFlank, GeneratedFla
     ]
 
 
-def mean_backlash(flanks: tuple[GeneratedFlank, GeneratedFlank]) -> float | None:
-    """Normal pitch less both tooth thicknesses on the pitch cones at mid-face [mm]; None: a flank is not cut."""
-    thicknesses = [_thickness(flank) for flank in flanks]
-    pitches = [_normal_arc(flank, 2.0 * pi / flank.gear.teeth) for flank in flanks]
-    if thicknesses[0] is None or thicknesses[1] is None:
-        return None
-    return 0.5 * (pitches[0] + pitches[1]) - thicknesses[0] - thicknesses[1]
+def mean_backlash(flanks: tuple[GeneratedFlank, GeneratedFlank]) -> float:
+    """Normal pitch less both tooth thicknesses on the pitch cones at mid-face [mm]; NaN: a flank is not cut."""
+    return sum(_normal_arc(flank, pi / flank.gear.teeth) - _thickness(flank) for flank in flanks)
 
 
-def _thickness(flank: GeneratedFlank) -> float | None:
-    """Thickness across the teeth on the pitch cone at mid-face [mm]; None: only one flank is cut."""
+def _thickness(flank: GeneratedFlank) -> float:
+    """Thickness across the teeth on the pitch cone at mid-face [mm]; NaN: only one flank is cut."""
     gear = flank.gear
     if gear.cutter.concave is None or gear.cutter.convex is None:
-        return None
+        return nan
     rho, z = (np.array([part]) for part in pitch_point(gear.blank.mean_cone_distance, gear.blank.pitch_angle))
     return _normal_arc(flank, float(tooth_angle(gear, rho, z)[0]))
 
@@ -116,8 +111,8 @@ def _normal_arc(flank: GeneratedFlank, angle: float) -> float:
     return blank.mean_cone_distance * sin(blank.pitch_angle) * angle * cos(flank.angles.spiral)
 
 
-def _shown(length: float | None) -> str:
-    return ONE_FLANK if length is None else f"{length:.4f}"
+def _shown(length: float) -> str:
+    return ONE_FLANK if isnan(length) else f"{length:.4f}"
 
 
 def _machine_rows(mesh: FaceMilledMesh) -> list[Row]:

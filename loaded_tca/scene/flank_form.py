@@ -13,7 +13,7 @@ from loaded_tca.flanks.structured_grid import FEWEST_POINTS
 from loaded_tca.flanks.topography import MeasuredPoints
 from loaded_tca.flanks.topography_file import read_topography
 from loaded_tca.scene.keys import Choice, Grid, Line, List, Number, Whole, above_zero, key
-from loaded_tca.scene.section import Rule, Section, subsection
+from loaded_tca.scene.section import Rule, Section, rule, subsection
 from loaded_tca.scene.text import shown
 
 FARTHEST_mm = 100000.0
@@ -32,6 +32,11 @@ def _grid(number: Number) -> Grid:
     return Grid(number, COUNT.low, MOST_POINTS)
 
 
+COORDINATES_mm = _grid(Number(-FARTHEST_mm, FARTHEST_mm))
+Points = tuple[tuple[float, ...], ...]
+"""A value of each point: lines along the profile, entries lengthwise."""
+
+
 def _one_set_of_columns(*columns: object) -> str | None:
     given = tuple(name for name, values in zip(ALL_COLUMNS, columns, strict=True) if values is not None)
     if given in COLUMNS:
@@ -40,7 +45,7 @@ def _one_set_of_columns(*columns: object) -> str | None:
     return f"given are {', '.join(given) or 'no points'}; allowed {sets}"
 
 
-def _one_shape(*columns: tuple[tuple[float, ...], ...] | None) -> str | None:
+def _one_shape(*columns: Points | None) -> str | None:
     shapes = {(len(values), len(values[0])) for values in columns if values is not None}
     if len(shapes) < 2:
         return None
@@ -51,33 +56,29 @@ def _one_shape(*columns: tuple[tuple[float, ...], ...] | None) -> str | None:
 class Measurement(Section):
     """[pinion.flank.measurement]: points of a measured flank; lines along the profile, entries lengthwise."""
 
-    radius_mm: tuple[tuple[float, ...], ...] | None = key(
+    radius_mm: Points | None = key(
         _grid(above_zero(FARTHEST_mm)), "distances of the points from the axis", None, "`x_mm`, `y_mm`, `z_mm` are"
     )
-    axial_mm: tuple[tuple[float, ...], ...] | None = key(
-        _grid(Number(-FARTHEST_mm, FARTHEST_mm)),
+    axial_mm: Points | None = key(
+        COORDINATES_mm,
         "their axial coordinates, from mid-face (bevel gears: from the apex)",
         None,
         "as `radius_mm`",
     )
-    deviation_um: tuple[tuple[float, ...], ...] | None = key(
+    deviation_um: Points | None = key(
         _grid(Number(-1e5, 1e5)),
         "deviations along the normal from the flank with its modifications; positive: more material",
         None,
         "as `radius_mm`",
     )
-    x_mm: tuple[tuple[float, ...], ...] | None = key(
-        _grid(Number(-FARTHEST_mm, FARTHEST_mm)),
+    x_mm: Points | None = key(
+        COORDINATES_mm,
         "points in the gear's own frame, z along its axis; the tooth stands at any azimuth",
         None,
         "`radius_mm`, `axial_mm`, `deviation_um` are",
     )
-    y_mm: tuple[tuple[float, ...], ...] | None = key(
-        _grid(Number(-FARTHEST_mm, FARTHEST_mm)), "likewise", None, "as `x_mm`"
-    )
-    z_mm: tuple[tuple[float, ...], ...] | None = key(
-        _grid(Number(-FARTHEST_mm, FARTHEST_mm)), "likewise", None, "as `x_mm`"
-    )
+    y_mm: Points | None = key(COORDINATES_mm, "likewise", None, "as `x_mm`")
+    z_mm: Points | None = key(COORDINATES_mm, "likewise", None, "as `x_mm`")
     source: str = key(Line(), "where the points come from", "")
 
     rules: ClassVar[tuple[Rule, ...]] = (
@@ -95,13 +96,9 @@ class Measurement(Section):
 
 def _only_for(name: str, *forms: str) -> Rule:
     """Rule: a key belongs to some forms of flanks only."""
-
-    def complain(value: object, form: str) -> str | None:
-        if value is None or form in forms:
-            return None
-        return f'does not apply to form = "{form}"; allowed with {" or ".join(shown(known) for known in forms)}'
-
-    return Rule((name, "form"), complain)
+    allowed = " or ".join(shown(form) for form in forms)
+    problem = f'does not apply to form = "{{1}}"; allowed with {allowed}'
+    return rule((name, "form"), lambda value, form: value is None or form in forms, problem)
 
 
 def _enough_points(points: tuple[int, int] | None, degree: int | None) -> str | None:
@@ -196,12 +193,11 @@ def read_measurement(file: str) -> Measurement:
         names, columns = COLUMNS[1], tuple(topography.points[..., part] for part in range(3))  # type: ignore[index,call-overload]
     else:
         names, columns = COLUMNS[0], (topography.radius, topography.axial, 1e3 * topography.excess)  # type: ignore[attr-defined]
-    lines = {name: _rounded(values) for name, values in zip(names, columns, strict=True)}
+    lines = {
+        name: tuple(tuple(float(f"{value:.{DIGITS}g}") for value in line) for line in values)
+        for name, values in zip(names, columns, strict=True)
+    }
     try:
         return Measurement(**lines, source=Path(file).name[: Line().longest])
     except InputError as error:
         raise InputError(f"file: {file}: {problem}" for problem in error.problems) from None
-
-
-def _rounded(values: Any) -> tuple[tuple[float, ...], ...]:
-    return tuple(tuple(float(f"{value:.{DIGITS}g}") for value in line) for line in values)

@@ -93,11 +93,8 @@ class Choice:
         for option in self.options:
             if type(value) is type(option) and value == option:
                 return option
-        raise _refusal(self, value, self._hint(value))
-
-    def _hint(self, value: Any) -> str:
         words = [option for option in self.options if isinstance(option, str)]
-        return did_you_mean(nearest(value, words)) if isinstance(value, str) else ""
+        raise _refusal(self, value, did_you_mean(nearest(value, words)) if isinstance(value, str) else "")
 
 
 @dataclass(frozen=True)
@@ -197,6 +194,14 @@ class Key:
     def required(self) -> bool:
         """Whether a scene must give it."""
         return self.default is REQUIRED
+
+    def read(self, value: Any) -> Any:
+        """Return the value of a scene, the default for None; ValueError: the rest of a message."""
+        if value is not None:
+            return self.kind.read(value)
+        if self.required:
+            raise ValueError(f"missing; allowed {self.kind.allowed}")
+        return self.default
 
 
 def key(kind: Kind, about: str, default: Any = REQUIRED, absent: str = "") -> Any:

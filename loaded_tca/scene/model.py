@@ -3,26 +3,32 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, TypeVar
+from typing import Any, ClassVar, Literal, TypeVar
 
 from loaded_tca.errors import InputError
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene.build import described_gear, in_base_units
-from loaded_tca.scene.keys import Choice, Key, Line, key
-from loaded_tca.scene.section import Rule, Section, Subsection, as_table, check, contents, entries, made, subsection
+from loaded_tca.scene.keys import Choice, Line, key
+from loaded_tca.scene.section import (
+    Rule,
+    Section,
+    Subsection,
+    as_table,
+    check,
+    contents,
+    entries,
+    made,
+    rule,
+    subsection,
+)
 from loaded_tca.scene.sections import Analysis, ElasticMaterial, GearSection, Load, Pair
 from loaded_tca.scene.text import literal
 
+Hand = Literal["right", "left"]
 Row = tuple[str, ...]
 """Label and cells of a line of an overview."""
-
-
-def _material_of_each(common: object, pinion: object, wheel: object) -> str | None:
-    if common is not None or (pinion is not None and wheel is not None):
-        return None
-    return "missing; give [material] for both gears, or [pinion.material] and [wheel.material]"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +64,13 @@ class Scene(Section, ABC):
     load: Load = subsection(Load, "what the pair carries")
     analysis: Analysis = subsection(Analysis, "how finely it is computed")
 
-    rules: ClassVar[tuple[Rule, ...]] = (Rule(("material", "pinion.material", "wheel.material"), _material_of_each),)
+    rules: ClassVar[tuple[Rule, ...]] = (
+        rule(
+            ("material", "pinion.material", "wheel.material"),
+            lambda common, pinion, wheel: common is not None or None not in (pinion, wheel),
+            "missing; give [material] for both gears, or [pinion.material] and [wheel.material]",
+        ),
+    )
 
     @abstractmethod
     def mesh(self) -> Any:
@@ -76,6 +88,17 @@ class Scene(Section, ABC):
     @abstractmethod
     def sense(self) -> Sense:
         """Sense of rotation."""
+
+    @property
+    @abstractmethod
+    def hands(self) -> tuple[Hand, Hand]:
+        """Hands of pinion and wheel."""
+
+    @property
+    def hand_signs(self) -> tuple[int, int]:
+        """+1 for the right hand, -1 for the left one, of pinion and wheel."""
+        sign = 1 if self.hands[0] == "right" else -1
+        return sign, -sign
 
     @abstractmethod
     def analytic_pair(self, sense: Sense) -> GearPair:
@@ -193,21 +216,14 @@ FAMILIES: dict[str, type[Scene]] = {}
 SceneType = TypeVar("SceneType", bound=type[Scene])
 
 
-def family(scene: SceneType) -> SceneType:
-    """Make a class of scenes known to scene files, under every type that its section [pair] allows."""
-    for option in types_of(scene):
-        FAMILIES[option] = scene
-    return scene
+def family(*types: str) -> Callable[[SceneType], SceneType]:
+    """Make a class of scenes known to scene files, under the types of gear pairs of its section [pair]."""
 
+    def known(scene: SceneType) -> SceneType:
+        FAMILIES.update(dict.fromkeys(types, scene))
+        return scene
 
-def types_of(scene: type[Scene]) -> tuple[str, ...]:
-    """Return the types of gear pairs of a family."""
-    _, pair = entries(scene)["pair"]
-    assert isinstance(pair, Subsection)
-    _, entry = entries(pair.section)["type"]
-    assert isinstance(entry, Key)
-    assert isinstance(entry.kind, Choice)
-    return tuple(str(option) for option in entry.kind.options)
+    return known
 
 
 def scene_from_table(table: Mapping[str, Any]) -> Scene:

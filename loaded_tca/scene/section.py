@@ -42,6 +42,11 @@ class Rule:
     complain: Callable[..., str | None]
 
 
+def rule(keys: tuple[str, ...], holds: Callable[..., bool], problem: str) -> Rule:
+    """Return the rule that values fulfil where ``holds``; ``problem`` is a format of them, ``{0}`` the first."""
+    return Rule(keys, lambda *values: None if holds(*values) else problem.format(*values))
+
+
 @dataclass(frozen=True, kw_only=True)
 class Section:
     """What all sections share: every way to make one checks all its values, every problem is told."""
@@ -109,24 +114,21 @@ def check(section: type[Section], found: Mapping[str, Any], place: str = "") -> 
     problems = list(_unknown(section, found, place))
     for name, (_, entry) in entries(section).items():
         given = found.get(name)
-        if isinstance(entry, Key):
-            new_values, new_problems = _check_key(name, entry, given, place)
-        else:
-            new_values, new_problems = _check_subsection(name, entry, given, place)
-        values |= new_values
-        problems += new_problems
-    return values, problems + list(_broken(section.rules, values, place))
-
-
-def _check_key(name: str, entry: Key, given: Any, place: str) -> tuple[dict[str, Any], list[str]]:
-    if given is None and entry.required:
-        return {}, [f"{place}{name}: missing; allowed {entry.kind.allowed}"]
-    if given is None:
-        return {name: entry.default}, []
-    try:
-        return {name: entry.kind.read(given)}, []
-    except ValueError as refused:
-        return {}, [f"{place}{name}: {refused}"]
+        if isinstance(entry, Subsection):
+            inner, inner_problems = _check_subsection(name, entry, given, place)
+            values |= inner
+            problems += inner_problems
+            continue
+        try:
+            values[name] = entry.read(given)
+        except ValueError as refused:
+            problems.append(f"{place}{name}: {refused}")
+    for demand in section.rules:
+        if all(name in values for name in demand.keys):
+            complaint = demand.complain(*(values[name] for name in demand.keys))
+            if complaint is not None:
+                problems.append(f"{place}{demand.keys[0]}: {complaint}")
+    return values, problems
 
 
 def _check_subsection(name: str, entry: Subsection, given: Any, place: str) -> tuple[dict[str, Any], list[str]]:
@@ -150,14 +152,6 @@ def _check_subsection(name: str, entry: Subsection, given: Any, place: str) -> t
 def made(section: type[SectionType], values: Mapping[str, Any]) -> SectionType:
     """Return the section that holds checked values."""
     return section(**{attribute: values[name] for name, (attribute, _) in entries(section).items()})
-
-
-def _broken(rules: tuple[Rule, ...], values: Mapping[str, Any], place: str) -> Iterator[str]:
-    for rule in rules:
-        if all(name in values for name in rule.keys):
-            complaint = rule.complain(*(values[name] for name in rule.keys))
-            if complaint is not None:
-                yield f"{place}{rule.keys[0]}: {complaint}"
 
 
 def _unknown(section: type[Section], found: Mapping[str, Any], place: str) -> Iterator[str]:

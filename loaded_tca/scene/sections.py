@@ -10,7 +10,7 @@ from typing import ClassVar
 from loaded_tca.flanks.modification import NO_POLYNOMIAL
 from loaded_tca.scene.flank_form import FlankForm
 from loaded_tca.scene.keys import Choice, Line, List, Number, Whole, above_zero, key
-from loaded_tca.scene.section import Rule, Section, subsection
+from loaded_tca.scene.section import Rule, Section, rule, subsection
 
 AMOUNT_um = Number(0.0, 10000.0)
 SLOPE_um = Number(-10000.0, 10000.0)
@@ -25,13 +25,8 @@ SENSE = Choice(("positive", "negative"))
 
 def needs(amount_key: str, companion_key: str) -> Rule:
     """Rule: an amount above zero needs its companion above zero."""
-
-    def complain(companion: float, amount: float) -> str | None:
-        if amount > 0.0 and companion == 0.0:
-            return f"missing or 0; {amount_key} = {amount:g} needs a value above 0"
-        return None
-
-    return Rule((companion_key, amount_key), complain)
+    problem = f"missing or 0; {amount_key} = {{1:g}} needs a value above 0"
+    return rule((companion_key, amount_key), lambda companion, amount: amount == 0.0 or companion > 0.0, problem)
 
 
 def below(smaller_key: str, larger_key: str, factor: float = 1.0) -> Rule:

@@ -6,12 +6,18 @@ contact has s = +1 where the pinion drives and turns about +z, or the wheel driv
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from math import cos, sin
+from typing import Any, ClassVar, Literal
 
+import numpy as np
+
+from loaded_tca.flanks.base import Flank, outward_normal
 from loaded_tca.pairs.gear_pair import Driving, Sense, signs_of
 from loaded_tca.scene.keys import Choice, Number, key
-from loaded_tca.scene.section import Rule, Section
+from loaded_tca.scene.model import Row, Scene
+from loaded_tca.scene.section import Section, rule
 from loaded_tca.scene.sections import ERROR_deg, ERROR_mm
 
 Side = Literal["concave", "convex"]
@@ -19,21 +25,15 @@ SIDE = Choice(("concave", "convex"))
 SHAFT_ANGLE_deg = Number(1.0, 179.0)
 
 
-def _flank_or_sense(flank: str | None, sense: str | None) -> str | None:
-    if flank is None or sense is None:
-        return None
-    return f'found "{flank}" beside sense = "{sense}"; give one of the two'
-
-
-def _axes_that_meet(error: float, shaft_angle: float) -> str | None:
-    if 0.0 < shaft_angle + error < 180.0:
-        return None
-    return f"found {error:g}; with pair.shaft_angle_deg = {shaft_angle:g} it must stay between 0 and 180"
-
-
-FLANK_OR_SENSE = Rule(("pinion_flank", "sense"), _flank_or_sense)
+FLANK_OR_SENSE = rule(
+    ("pinion_flank", "sense"), lambda *both: None in both, 'found "{0}" beside sense = "{1}"; give one of the two'
+)
 """Of [pair]."""
-AXES_THAT_MEET = Rule(("mounting.shaft_angle_error_deg", "pair.shaft_angle_deg"), _axes_that_meet)
+AXES_THAT_MEET = rule(
+    ("mounting.shaft_angle_error_deg", "pair.shaft_angle_deg"),
+    lambda error, shaft_angle: 0.0 < shaft_angle + error < 180.0,
+    "found {0:g}; with pair.shaft_angle_deg = {1:g} it must stay between 0 and 180",
+)
 """Of a scene."""
 
 
@@ -81,6 +81,65 @@ def sides_in_contact(sense: Sense, hand: int, driving: Driving) -> tuple[Side, S
     return ("concave", "convex") if sense_for("concave", hand, driving) == sense else ("convex", "concave")
 
 
-def names_of(sides: tuple[str, str]) -> tuple[str, str]:
-    """What pictures call the two flanks in contact."""
-    return f"{sides[0]} flank of the pinion", f"{sides[1]} flank of the wheel"
+@dataclass(frozen=True, kw_only=True)
+class SpiralScene(Scene):
+    """A scene of gears on meeting axes, whose flanks in contact may be asked for by name."""
+
+    usual_flank: ClassVar[Side | None] = None
+    """Flank of the pinion in contact where neither flank nor sense is given; None: the sense is positive."""
+
+    @property
+    def sense(self) -> Sense:
+        """Sense of rotation, as given, or such that the pinion touches with the flank asked for."""
+        wanted: Any = self.geometry
+        flank = wanted.pinion_flank or self.usual_flank
+        if wanted.sense is not None or flank is None:
+            return wanted.sense or "positive"
+        return sense_for(flank, self.hand_signs[0], wanted.driving)
+
+    def sides(self, sense: Sense) -> tuple[Side, Side]:
+        """Return which flanks of pinion and wheel touch in a sense of rotation."""
+        wanted: Any = self.geometry
+        return sides_in_contact(sense, self.hand_signs[0], wanted.driving)
+
+    @property
+    def contact_sides(self) -> tuple[str, str]:
+        """Sides in contact of pinion and wheel: "concave" or "convex"."""
+        return self.sides(self.sense)
+
+    @property
+    def flank_names(self) -> tuple[str, str]:
+        """Gear and side in contact."""
+        pinion, wheel = self.contact_sides
+        return f"{pinion} flank of the pinion", f"{wheel} flank of the wheel"
+
+
+Point = tuple[float, float]
+"""(rho, z) [mm]."""
+
+
+def pitch_point(cone_distance: float, pitch_angle: float) -> Point:
+    """Point of the pitch cone at a cone distance."""
+    return cone_distance * sin(pitch_angle), cone_distance * cos(pitch_angle)
+
+
+def force_rows(flanks: tuple[Flank, Flank], points: tuple[Point, Point], torques: Sequence[float]) -> list[Row]:
+    """Forces at the mean pitch points of pinion and wheel under pinion torques [N mm], a cell for each.
+
+    One tooth pair carries all.
+    """
+    # Unit normals out of the flanks: radial, tangential and axial parts.
+    pinion, wheel = (
+        outward_normal(flank, np.array(rho), np.array(z)) for flank, (rho, z) in zip(flanks, points, strict=True)
+    )
+    tangential = abs(float(pinion[1]))
+    rows = (
+        ("mean tangential force F_mt [N]", tangential),
+        ("normal force F_n [N]", 1.0),
+        ("axial force on the pinion, from its apex [N]", -pinion[2]),
+        ("radial force on the pinion, to its axis [N]", pinion[0]),
+        ("axial force on the wheel, from its apex [N]", -wheel[2]),
+        ("radial force on the wheel, to its axis [N]", wheel[0]),
+    )
+    normal_forces = [torque / (points[0][0] * tangential) for torque in torques]
+    return [(label, *(f"{part * force:.1f}" for force in normal_forces)) for label, part in rows]

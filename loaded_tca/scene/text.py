@@ -39,7 +39,8 @@ def shown(value: Any) -> str:
     if isinstance(value, dict):
         return "a table"
     if isinstance(value, list | tuple):
-        return _shown_list(value)
+        first = ["a list" if isinstance(entry, list | tuple) else shown(entry) for entry in value[:4]]
+        return "[" + ", ".join(first + ["..."] * (len(value) > 4)) + "]"
     if isinstance(value, int) and value.bit_length() > 100:
         return f"a whole number of {value.bit_length()} bits"
     if isinstance(value, bool | str):
@@ -50,12 +51,6 @@ def shown(value: Any) -> str:
 def shown_key(name: str) -> str:
     """Return a key of a file as it may be written, quoted where it must be."""
     return _shortened(name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else literal(name))
-
-
-def _shown_list(values: list[Any] | tuple[Any, ...]) -> str:
-    first = ["a list" if isinstance(entry, list | tuple) else shown(entry) for entry in values[:4]]
-    rest = ["..."] if len(values) > 4 else []
-    return "[" + ", ".join(first + rest) + "]"
 
 
 def _shortened(text: str) -> str:

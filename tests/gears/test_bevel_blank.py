@@ -49,7 +49,7 @@ def cones_in_axial_plane(pair):
 
 
 @given(st.integers(12, 40), st.integers(12, 70), st.floats(0.5, 2.2), st.sampled_from(TAPERS))
-def test_face_cones_are_parallel_to_the_root_cones_of_the_mate(first, second, shaft_angle, taper):
+def test_face_cones_are_parallel_to_the_root_cones_of_the_mating_gear(first, second, shaft_angle, taper):
     pair = blank(
         teeth=(first, second),
         shaft_angle=shaft_angle,
@@ -98,8 +98,8 @@ def test_depth_of_uniform_taper_is_the_same_along_the_face():
     pair = blank(taper="uniform")
     for gear in (pair.pinion, pair.wheel):
         assert gear.face_angle == gear.pitch_angle == gear.root_angle
-        assert gear.addenda == (gear.mean_addendum,) * 3
-        assert gear.dedenda == (gear.mean_dedendum,) * 3
+        assert gear.addenda.tolist() == [gear.mean_addendum] * 3
+        assert gear.dedenda.tolist() == [gear.mean_dedendum] * 3
 
 
 def slot_growth(pair):
@@ -115,7 +115,7 @@ def test_slots_of_duplex_taper_have_one_width_of_the_tool():
     assert abs(slot_growth(pair)) < 2e-3 * slot_growth(even)
 
 
-def test_share_of_the_duplex_taper_is_the_addendum_of_the_mate():
+def test_share_of_the_duplex_taper_is_the_addendum_of_the_mating_gear():
     pair = blank(taper="duplex", profile_shift=0.3)
     first, second = pair.dedendum_angles
     assert_allclose(first + second, pair.constant_slot_taper, rtol=ROUNDING)

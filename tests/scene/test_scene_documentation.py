@@ -22,7 +22,7 @@ def test_reference_of_the_keys_is_up_to_date():
 
 def test_shortest_scenes_are_scenes():
     cylindrical, bevel, face_milled = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
-    assert parse_scene(cylindrical).pinion_hand == "right"
+    assert parse_scene(cylindrical).hands[0] == "right"
     assert parse_scene(bevel).contact_sides == ("concave", "convex")
     assert parse_scene(face_milled).pair().teeth == (19, 62)
 

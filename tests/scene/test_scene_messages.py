@@ -112,7 +112,7 @@ ONE_PROBLEM = [
     ({"pair.type": 3}, f"pair.type: found 3; allowed {TYPES}"),
     ({"pair.type": ["cylindrical"]}, f'pair.type: found ["cylindrical"]; allowed {TYPES}'),
     ({"pair.type": "cylindical"}, f'pair.type: found "cylindical"; allowed {TYPES}; did you mean "cylindrical"?'),
-    # what shares and yields
+    # how teeth share the load and bend
     ({"analysis.load_sharing": 0}, "analysis.load_sharing: found 0; allowed false or true"),
     (
         {"analysis.compliance": "contact+teeth"},

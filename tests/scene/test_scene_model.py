@@ -113,10 +113,10 @@ def test_torques_are_the_one_of_the_load_unless_listed(scene):
 
 
 def test_hands_are_opposite(scene):
-    assert scene.pinion_hand == "right"
-    assert scene.with_changes({"pinion.hand": "left"}).pinion_hand == "left"
-    assert scene.with_changes({"wheel.hand": "right"}).pinion_hand == "left"
-    assert scene.with_changes({"wheel.hand": "left"}).pinion_hand == "right"
+    assert scene.hands[0] == "right"
+    assert scene.with_changes({"pinion.hand": "left"}).hands[0] == "left"
+    assert scene.with_changes({"wheel.hand": "right"}).hands[0] == "left"
+    assert scene.with_changes({"wheel.hand": "left"}).hands[0] == "right"
 
 
 def test_hand_of_a_spur_gear_has_no_meaning(scene):
