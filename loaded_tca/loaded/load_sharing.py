@@ -36,7 +36,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError, InputError
-from loaded_tca.loaded.balance import PowerLaw, balance
+from loaded_tca.loaded.balance import EXPONENTS, PowerLaw, balance
 from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, solve_under_load
 from loaded_tca.pairs.gear_pair import GearPair
@@ -109,7 +109,8 @@ class Share:
     def law(self) -> PowerLaw:
         """Contact deformation near its force, which must not be zero."""
         slope = 1.0 / self.loaded.stiffness - self.loaded.own_tooth_deflection / self.force
-        return PowerLaw.along(self.force, self.loaded.contact_deformation, slope)
+        deformation = self.loaded.contact_deformation
+        return PowerLaw(self.force, deformation, float(np.clip(slope * self.force / deformation, *EXPONENTS)))
 
     @property
     def rotation(self) -> float:
