@@ -224,13 +224,11 @@ class Convolution:
         rows = (last[0] - first[0], target[0])
         self.target = target
         self.corner = first
-        self.count = 0
         self._symbol = _cache.get(("love", box, aspect, dtype), lambda: _kernel(box, aspect, dtype))
         self._transform = _cache.get((rows, box, dtype, threads), lambda: _Transform(rows, box, dtype, threads))
 
     def __call__(self, pressure: Array, out: Array) -> Array:
         """Write the displacement into ``out`` and return it."""
-        self.count += 1
         self._transform.filter(pressure, self.corner, self._symbol, out)
         return out
 

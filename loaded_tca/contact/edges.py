@@ -339,11 +339,6 @@ class MirroredConvolution:
         self._whole = np.zeros(target if self._oblique else (0, 0), dtype=dtype)
         self._window = (slice(starts[0], stops[0]), slice(starts[1], stops[1]))
 
-    @property
-    def count(self) -> int:
-        """Convolutions so far."""
-        return self._convolve.count
-
     def __call__(self, pressure: Array, out: Array) -> Array:
         """Write the displacement into ``out`` and return it."""
         self._loaded[:] = 0.0
