@@ -144,7 +144,7 @@ class Grid:
         return window_around(loaded if loaded.any() else self.reachable)
 
     def operator(self, window: Window | None = None, dtype: str = "float64", threads: int = 2) -> Operator:
-        """K for pressures on a window of the grid, or on all of it, as a function of the pressure and the array to fill."""
+        """K for pressures on a window of the grid, or on all of it; it fills its second argument and returns it."""
         convolve: Convolution | MirroredConvolution
         if self.free_edges:
             edges = mirrors(self.free_edges, self.spacing, self.start)
