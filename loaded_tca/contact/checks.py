@@ -16,8 +16,6 @@ def check_grid(gap: Array, spacing: tuple[float, float], contact_modulus: float)
         return [f"gap: an array of shape {gap.shape} is not a grid of cells (nx, ny)"]
     if (memory := memory_problem(gap.shape)) is not None:
         return [f"gap: {memory}"]
-    if np.shape(spacing) != (2,):
-        return check_spacing(spacing)
     problems = check_spacing(spacing)
     if not 0.0 < contact_modulus < math.inf:
         problems.append(f"contact_modulus: {contact_modulus} is not positive and finite")

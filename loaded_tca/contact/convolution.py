@@ -224,13 +224,11 @@ class Convolution:
         rows = (last[0] - first[0], target[0])
         self.target = target
         self.corner = first
-        self.count = 0
         self._symbol = _cache.get(("love", box, aspect, dtype), lambda: _kernel(box, aspect, dtype))
         self._transform = _cache.get((rows, box, dtype, threads), lambda: _Transform(rows, box, dtype, threads))
 
     def __call__(self, pressure: Array, out: Array) -> Array:
         """Write the displacement into ``out`` and return it."""
-        self.count += 1
         self._transform.filter(pressure, self.corner, self._symbol, out)
         return out
 
@@ -258,29 +256,21 @@ def useful_threads(box: tuple[int, int], wanted: int) -> int:
     return 1 if worker or box[0] * box[1] < THREADED_POINTS else min(wanted, os.cpu_count() or 1)
 
 
-def _laid_out(quadrant: Array, dtype: str) -> Array:
-    """A quadrant of the real, even transform of a kernel, as the kept spectrum is laid out."""
-    return np.ascontiguousarray(quadrant.T, dtype=dtype)
+def _kernel(box: tuple[int, int], aspect: float, dtype: str = "float64") -> Array:
+    """Transform of Love's coefficients wrapped into the box, over its points, a quadrant as the kept spectrum lies.
 
-
-def _love_symbol(box: tuple[int, int], aspect: float) -> Array:
-    """Transform of Love's coefficients wrapped into the box, over the number of points of the box."""
-    quadrant = influence_coefficients((box[0] // 2 + 1, box[1] // 2 + 1), aspect)
-    symbol = dctn(quadrant, type=1, overwrite_x=True)
+    In single precision the kept one rounded.
+    """
+    if dtype != "float64":
+        exact = _cache.get(("love", box, aspect, "float64"), lambda: _kernel(box, aspect))
+        return np.asarray(exact.astype(dtype))
+    symbol = dctn(influence_coefficients((box[0] // 2 + 1, box[1] // 2 + 1), aspect), type=1, overwrite_x=True)
     symbol /= box[0] * box[1]
-    return np.asarray(symbol)
-
-
-def _kernel(box: tuple[int, int], aspect: float, dtype: str) -> Array:
-    """Love's kernel in a box; in single precision the kept one rounded."""
-    if dtype == "float64":
-        return _laid_out(_love_symbol(box, aspect), dtype)
-    exact = _cache.get(("love", box, aspect, "float64"), lambda: _kernel(box, aspect, "float64"))
-    return np.asarray(exact.astype(dtype))
+    return np.ascontiguousarray(symbol.T)
 
 
 def _inverse_kernel(box: tuple[int, int], aspect: float) -> Array:
     """Reciprocal of the transform of the wrapped coefficients, over the number of points of the box."""
-    transformed = _love_symbol(box, aspect) * (box[0] * box[1])
+    transformed = _kernel(box, aspect) * (box[0] * box[1])
     floor = transformed.max() * np.finfo(np.float32).eps
-    return _laid_out(1.0 / (np.maximum(transformed, floor) * (box[0] * box[1])), "float32")
+    return np.asarray(1.0 / (np.maximum(transformed, floor) * (box[0] * box[1])), dtype=np.float32)

@@ -120,22 +120,16 @@ class Descent:
         shape = pressure.shape
         self.grid = grid
         self.pressure = pressure
-        self.iterations = 0
+        self.iterations = self.convolutions = 0
         self._threads = threads
         self._fast = grid.operator(dtype="float32", threads=threads)
         self._precondition = Preconditioner(shape, grid.aspect, threads)
-        self._refreshed = 0
         self._displacement = displacement if displacement is not None else self._displaced(exact)
         self._excess = np.empty(shape)
         self._scale = 0.0
         self._direction = np.zeros(shape, dtype=np.float32)
         self._image = np.empty(shape, dtype=np.float32)
         self._last: tuple[Single, float] | None = None
-
-    @property
-    def convolutions(self) -> int:
-        """Convolutions so far."""
-        return self._refreshed + self._fast.count
 
     def run(self, tolerance: float, limit: int) -> Judgement:
         """Iterate until the residual is below the tolerance or ``limit`` iterations are done."""
@@ -154,11 +148,14 @@ class Descent:
 
     def _displaced(self, exact: bool) -> Array:
         """Displacement of the pressure, in double precision or in single."""
-        shape = self.pressure.shape
-        if not exact:
-            return self._fast(self.pressure, np.empty(shape))
-        self._refreshed += 1
-        return self.grid.operator(threads=self._threads)(self.pressure, np.empty(shape))
+        self.convolutions += 1
+        operator = self.grid.operator(threads=self._threads) if exact else self._fast
+        return operator(self.pressure, np.empty(self.pressure.shape))
+
+    def _convolved(self, values: Single) -> Array:
+        """Displacement of values in single precision; it stands until the next is asked for."""
+        self.convolutions += 1
+        return self._fast(values, self._image)
 
     def settle(self) -> Array:
         """Take the rounding errors of the steps off the sum of the pressures; return these."""
@@ -169,7 +166,7 @@ class Descent:
         """One step along the conjugate direction, projected where it leaves the bounds."""
         residual = (self._excess * (1.0 / self._scale)).astype(np.float32)
         direction = self._conjugate(self._level(residual, free), free)
-        image = self._fast(direction, self._image)
+        image = self._convolved(direction)
         curvature = dot(direction, image)
         if not curvature > 0.0:
             self._last = None
@@ -213,7 +210,7 @@ class Descent:
     def _move(self, target: Array) -> bool:
         """Go towards a pressure within the bounds as far as the energy falls; False if it does not fall at all."""
         step = ((target - self.pressure) / self._scale).astype(np.float32)
-        image = self._fast(step, self._image)
+        image = self._convolved(step)
         slope = dot(step, self._excess) / self._scale
         curvature = dot(step, image)
         if not (slope < 0.0 < curvature):
@@ -238,7 +235,7 @@ class Descent:
 
     def _project_gradient(self, residual: Single, free: Mask) -> None:
         """One projected step down the plain gradient, which always descends."""
-        image = self._fast(residual, self._image)
+        image = self._convolved(residual)
         curvature = dot(residual, image)
         if curvature > 0.0:
             length = self._scale * dot(residual, residual) / curvature

@@ -272,22 +272,16 @@ def mirrors(
     for edge in edges:
         across, start = spacing[edge.axis], starts[edge.axis]
         if edge.slope == 0.0:
-            found += _straight_mirrors(edge, 2.0 * edge.position / across - 2 * start)
-            continue
-        slope = edge.slope * spacing[1 - edge.axis] / across
-        first = edge.position / across - start + slope * starts[1 - edge.axis]
-        found.append(ObliqueMirror(edge.axis, first, slope, edge.material == "below", edge.factor))
+            double = 2.0 * edge.position / across - 2 * start
+            first = math.floor(double + WHOLE)
+            part = double - first
+            shares = (1.0,) if part <= WHOLE else (1.0 - part, part)  # between half cells: those at either side
+            found += [Mirror(edge.axis, first + n, share * edge.factor) for n, share in enumerate(shares)]
+        else:
+            slope = edge.slope * spacing[1 - edge.axis] / across
+            place = edge.position / across - start + slope * starts[1 - edge.axis]
+            found.append(ObliqueMirror(edge.axis, place, slope, edge.material == "below", edge.factor))
     return tuple(found)
-
-
-def _straight_mirrors(edge: FreeEdge, double: float) -> list[AnyMirror]:
-    """The mirror at a place, twice which is given in cells; between half cells, parts of those at either side."""
-    first = math.floor(double + WHOLE)
-    part = double - first
-    if part <= WHOLE:
-        return [Mirror(edge.axis, first, edge.factor)]
-    shares = (1.0 - part, part)
-    return [Mirror(edge.axis, first + n, share * edge.factor) for n, share in enumerate(shares)]
 
 
 def edge_images(edges: Sequence[Edge]) -> list[tuple[Edge, ...]]:
@@ -344,11 +338,6 @@ class MirroredConvolution:
         self._oblique = [ObliqueImage(target, aspect, edge, dtype, threads) for edge in oblique]
         self._whole = np.zeros(target if self._oblique else (0, 0), dtype=dtype)
         self._window = (slice(starts[0], stops[0]), slice(starts[1], stops[1]))
-
-    @property
-    def count(self) -> int:
-        """Convolutions so far."""
-        return self._convolve.count
 
     def __call__(self, pressure: Array, out: Array) -> Array:
         """Write the displacement into ``out`` and return it."""

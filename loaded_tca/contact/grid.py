@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -14,7 +15,9 @@ from loaded_tca.contact.edges import FreeEdge, MirroredConvolution, amplificatio
 from loaded_tca.contact.levels import coarsen, window_around
 from loaded_tca.contact.love import influence_coefficients
 from loaded_tca.contact.problem import ContactProblem, Spacing
-from loaded_tca.contact.slices import ConvolutionOverSlices, merge_slices
+from loaded_tca.contact.slices import merge_slices
+
+Operator = Callable[[Array, Array], Array]
 
 # Gaps are cut at this multiple of the largest that could close, to stay far from the limits of single precision.
 OUT_OF_REACH = 2.0
@@ -140,10 +143,8 @@ class Grid:
         loaded = pressure > 0.0
         return window_around(loaded if loaded.any() else self.reachable)
 
-    def operator(
-        self, window: Window | None = None, dtype: str = "float64", threads: int = 2
-    ) -> Convolution | MirroredConvolution | ConvolutionOverSlices:
-        """K for pressures on a window of the grid, or on all of it."""
+    def operator(self, window: Window | None = None, dtype: str = "float64", threads: int = 2) -> Operator:
+        """K for pressures on a window of the grid, or on all of it; it fills its second argument and returns it."""
         convolve: Convolution | MirroredConvolution
         if self.free_edges:
             edges = mirrors(self.free_edges, self.spacing, self.start)
@@ -152,7 +153,14 @@ class Grid:
             convolve = Convolution(self.shape, self.aspect, window, dtype, threads)
         if self.slices is None:
             return convolve
-        return ConvolutionOverSlices(convolve, self.slices if window is None else self.slices[:, window[1]], dtype)
+        compliance = (self.slices if window is None else self.slices[:, window[1]]).astype(dtype)
+
+        def over_slices(pressure: Array, out: Array) -> Array:
+            convolve(pressure, out)
+            out += compliance @ pressure.sum(axis=0, dtype=compliance.dtype)
+            return out
+
+        return over_slices
 
     def fitted(self, pressure: Array) -> Array:
         """Return a pressure within the bounds and with the right sum, zero where no contact is possible."""

@@ -8,38 +8,9 @@ from __future__ import annotations
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.contact.convolution import Convolution
-from loaded_tca.contact.edges import MirroredConvolution
 
 # A compliance is symmetric; the rounding of how it was computed is not.
 SYMMETRY = 1e-9
-
-
-class ConvolutionOverSlices:
-    """Displacement by a convolution, and of whole slices under the forces on slices.
-
-    Parameters
-    ----------
-    convolve : Convolution or MirroredConvolution
-        Of the half-spaces.
-    compliance : (target slices, loaded slices) array
-        Displacement of a slice under a unit sum of pressures on another, in the units of the convolution.
-    dtype : {"float64", "float32"}
-    """
-
-    def __init__(self, convolve: Convolution | MirroredConvolution, compliance: Array, dtype: str = "float64") -> None:
-        self._convolve, self._compliance = convolve, compliance.astype(dtype)
-
-    @property
-    def count(self) -> int:
-        """Convolutions so far."""
-        return self._convolve.count
-
-    def __call__(self, pressure: Array, out: Array) -> Array:
-        """Write the displacement into ``out`` and return it."""
-        self._convolve(pressure, out)
-        out += self._compliance @ pressure.sum(axis=0, dtype=self._compliance.dtype)
-        return out
 
 
 def merge_slices(compliance: Array) -> Array:

@@ -289,13 +289,12 @@ def _solve_on_finest(
     iterations = convolutions = 0
     for _ in range(MOST_CHECKS):
         descent.run(RESERVE * tolerance, MOST_ITERATIONS - iterations)
-        check = whole.operator(window, threads=threads)
-        displacement = check(descent.settle(), np.empty(grid.shape))
+        displacement = whole.operator(window, threads=threads)(descent.settle(), np.empty(grid.shape))
         pressure = np.zeros(grid.shape)
         pressure[window] = descent.pressure
         state = judge(whole, pressure, displacement + whole.gap)
         iterations += descent.iterations
-        convolutions += descent.convolutions + check.count
+        convolutions += descent.convolutions + 1
         if state.residual <= tolerance or iterations >= MOST_ITERATIONS:
             break
         window = window_around(state.free | (pressure > 0.0))

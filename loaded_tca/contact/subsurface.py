@@ -77,9 +77,12 @@ class SubsurfaceStress:
         .. math:: \tau_{max} = \sqrt{J_2} \sin(\theta + \pi/3),\qquad
             \cos 3 \theta = \frac{3 \sqrt 3}{2} \frac{J_3}{J_2^{3/2}},\quad 0 \le \theta \le \pi/3
         """
-        second = self._second_invariant
+        second, mean = self._second_invariant, (self.sigma_x + self.sigma_y + self.sigma_z) / 3.0
+        x, y, z = self.sigma_x - mean, self.sigma_y - mean, self.sigma_z - mean
+        third = x * (y * z - self.tau_yz**2) - self.tau_xy * (self.tau_xy * z - self.tau_yz * self.tau_xz)
+        third += self.tau_xz * (self.tau_xy * self.tau_yz - y * self.tau_xz)
         cubed = second * np.sqrt(second)
-        ratio = np.divide(1.5 * SQRT3 * self._third_invariant, cubed, out=np.zeros_like(cubed), where=cubed > 0.0)
+        ratio = np.divide(1.5 * SQRT3 * third, cubed, out=np.zeros_like(cubed), where=cubed > 0.0)
         angle = np.arccos(np.clip(ratio, -1.0, 1.0)) / 3.0
         return np.asarray(np.sqrt(second) * np.sin(angle + math.pi / 3.0))
 
@@ -93,24 +96,12 @@ class SubsurfaceStress:
         """Indices (depth, x, y) of the largest value of ``von_mises``."""
         return _place_of_largest(self.von_mises)
 
-    @property
-    def _mean(self) -> Array:
-        return np.asarray((self.sigma_x + self.sigma_y + self.sigma_z) / 3.0)
-
     @cached_property
     def _second_invariant(self) -> Array:
         """J2 of the stress deviator."""
         normal = (self.sigma_x - self.sigma_y) ** 2 + (self.sigma_y - self.sigma_z) ** 2
         normal += (self.sigma_z - self.sigma_x) ** 2
         return np.asarray(normal / 6.0 + self.tau_xy**2 + self.tau_xz**2 + self.tau_yz**2)
-
-    @property
-    def _third_invariant(self) -> Array:
-        """J3, the determinant of the stress deviator."""
-        mean = self._mean
-        x, y, z = self.sigma_x - mean, self.sigma_y - mean, self.sigma_z - mean
-        minors = x * (y * z - self.tau_yz**2) - self.tau_xy * (self.tau_xy * z - self.tau_yz * self.tau_xz)
-        return np.asarray(minors + self.tau_xz * (self.tau_xy * self.tau_yz - y * self.tau_xz))
 
 
 def subsurface_stress(

@@ -53,11 +53,6 @@ class PowerLaw:
     deformation: float
     exponent: float = POINT_EXPONENT
 
-    @classmethod
-    def along(cls, load: float, deformation: float, slope: float) -> PowerLaw:
-        """Return the law through a contact whose deformation grows by ``slope`` [mm/N] with the load."""
-        return cls(load, deformation, float(np.clip(slope * load / deformation, *EXPONENTS)))
-
     def deformation_under(self, force: float) -> float:
         """Contact deformation [mm] under a force >= 0 [N]."""
         return self.deformation * (force / self.load) ** self.exponent

@@ -127,12 +127,23 @@ def carried_by_all(
         shared[t].append(found)
     carrying = {0} | {share.tooth_pair.pair for row in shared for one in row for share in one.shares}
     columns = [column for column, number in enumerate(mesh.pairs.tolist()) if number in carrying]
-    contacts, share, deflection = _by_column(shared, mesh.pairs[columns].tolist())
+    pairs = mesh.pairs[columns].tolist()
+    contacts: Contacts = [[[None] * len(pairs) for _ in tooth_pairs] for _ in torques]
+    share, deflection = np.zeros((2, *shape, len(pairs)))
+    for t, n in np.ndindex(shape):
+        for part in shared[t][n].shares:
+            place = t, n, pairs.index(part.tooth_pair.pair)
+            contacts[t][n][place[2]], deflection[place] = part.loaded, part.tooth_deflection
+            share[place] = part.torque / torques[t] if torques[t] > 0.0 else 1.0
+    in_gear_angles = []
+    for path in (mesh.paths[column] for column in columns):
+        turned = pair.ratio * (angles - path.pinion_angle)
+        in_gear_angles.append(replace(path, pinion_angle=angles, wheel_angle=path.wheel_angle + turned))
     return Carried(
         path=replace(mesh.leading_contact, pinion_angle=angles, wheel_angle=mesh.wheel_angle),
         torque=torques,
         pairs=mesh.pairs[columns],
-        paths=tuple(_in_gear_angles(pair, mesh, column) for column in columns),
+        paths=tuple(in_gear_angles),
         contacts=contacts,
         rotation=np.array([[one.rotation for one in row] for row in shared]),
         torque_rate=np.array([[one.torque_rate for one in row] for row in shared]),
@@ -165,24 +176,3 @@ def farthest_apart(mesh: MeshPath) -> int:
     near = np.isfinite(mesh.initial_separation)
     spans = [int(np.ptp(mesh.pairs[column])) for column in near.T]
     return max(spans, default=0)
-
-
-def _by_column(shared: list[list[SharedLoad]], pairs: list[int]) -> tuple[Contacts, Array, Array]:
-    """Contacts, shares and deflections by torque, position and pair."""
-    shape = len(shared), len(shared[0]), len(pairs)
-    contacts: Contacts = [[[None] * shape[2] for _ in range(shape[1])] for _ in range(shape[0])]
-    share, deflection = np.zeros((2, *shape))
-    for t, row in enumerate(shared):
-        for n, one in enumerate(row):
-            for part in one.shares:
-                place = t, n, pairs.index(part.tooth_pair.pair)
-                contacts[t][n][place[2]], deflection[place] = part.loaded, part.tooth_deflection
-                share[place] = part.torque / one.torque if one.torque > 0.0 else 1.0
-    return contacts, share, deflection
-
-
-def _in_gear_angles(pair: GearPair, mesh: MeshPath, column: int) -> ContactPath:
-    """Path of one of the pairs, in the angles of the gears instead of its own."""
-    path = mesh.paths[column]
-    turned = pair.ratio * (mesh.pinion_angle - path.pinion_angle)
-    return replace(path, pinion_angle=mesh.pinion_angle, wheel_angle=path.wheel_angle + turned)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -122,21 +123,18 @@ class _End:
 
 
 def _ends(pair: GearPair, contact: ContactPoint, separation: Separation) -> list[_End]:
-    """Tip edges and face ends of both gears."""
-    return [_end(pair, contact.point, separation, (member, edge)) for member in (0, 1) for edge in ENDS]
-
-
-def _end(pair: GearPair, origin: Array, separation: Separation, place: tuple[int, int]) -> _End:
-    """One edge of one gear: the tangent plane of its surface where it crosses the long axis of the contact."""
-    point = origin
-    for _ in range(STEPS):
-        end = _crossing(pair, separation, _plane(pair, origin, point, place))
-        if end.straight:
-            break
-        _, along = separation.half_lengths
-        there = end.distance / float(separation.axes[1] @ end.normal)
-        point = origin + min(max(there, -along), along) * separation.axes[1]
-    return end
+    """Tip edges and face ends of both gears, each where its surface crosses the long axis of the contact."""
+    found, (_, reach) = [], separation.half_lengths
+    for place in product((0, 1), ENDS):
+        point = contact.point
+        for _ in range(STEPS):
+            end = _crossing(pair, separation, _plane(pair, contact.point, point, place))
+            if end.straight:
+                break
+            along = min(max(end.distance / float(separation.axes[1] @ end.normal), -reach), reach)
+            point = contact.point + along * separation.axes[1]
+        found.append(end)
+    return found
 
 
 def _plane(pair: GearPair, origin: Array, point: Array, place: tuple[int, int]) -> _End:
@@ -165,18 +163,14 @@ def _crossing(pair: GearPair, separation: Separation, end: _End) -> _End:
     across, along = separation.half_lengths
     flattest, steepest = sorted((abs(x), abs(y)))
     oblique = not flattest <= math.tan(MOST_OBLIQUE) * steepest > 0.0
-    if abs(x) <= abs(y):
-        return replace(end, weight=_faded(end.distance, REACH_ALONG * abs(y) * along), oblique=oblique)
-    aside = abs(y) * along
-    straight = aside <= STRAIGHT_WITHIN * abs(x) * across
-    nearest = end.distance - (0.0 if straight else aside)
-    reach = min(0.5 * REACH_BESIDE * pair.module, FARTHEST * across)
-    return replace(end, weight=_faded(nearest, abs(x) * reach), oblique=oblique, straight=straight)
-
-
-def _faded(distance: float, reach: float) -> float:
-    """Weight of an edge: 1 up to its reach, none from twice that on."""
-    return min(max(2.0 - distance / reach, 0.0), 1.0)
+    nearest, straight, reach = end.distance, True, REACH_ALONG * abs(y) * along
+    if abs(x) > abs(y):
+        aside = abs(y) * along
+        straight = aside <= STRAIGHT_WITHIN * abs(x) * across
+        nearest -= 0.0 if straight else aside
+        reach = abs(x) * min(0.5 * REACH_BESIDE * pair.module, FARTHEST * across)
+    weight = min(max(2.0 - nearest / reach, 0.0), 1.0)  # 1 up to its reach, none from twice that on
+    return replace(end, weight=weight, oblique=oblique, straight=straight)
 
 
 def _factor(pair: GearPair, end: _End) -> float:

@@ -29,16 +29,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache, partial
 from itertools import combinations, product
 
 import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError, InputError
-from loaded_tca.loaded.balance import PowerLaw, balance
-from loaded_tca.loaded.pair_coupling import BendingModel, KeptCouplings, SliceForces, coupling_deflection
+from loaded_tca.loaded.balance import EXPONENTS, PowerLaw, balance
+from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, solve_under_load
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.separation import Separation
 from loaded_tca.unloaded import ContactPoint, MeshPath
 
 MOST_BALANCES = 40
@@ -107,7 +109,8 @@ class Share:
     def law(self) -> PowerLaw:
         """Contact deformation near its force, which must not be zero."""
         slope = 1.0 / self.loaded.stiffness - self.loaded.own_tooth_deflection / self.force
-        return PowerLaw.along(self.force, self.loaded.contact_deformation, slope)
+        deformation = self.loaded.contact_deformation
+        return PowerLaw(self.force, deformation, float(np.clip(slope * self.force / deformation, *EXPONENTS)))
 
     @property
     def rotation(self) -> float:
@@ -264,7 +267,8 @@ class _Balance:
         start: Laws,
     ) -> None:
         self.pair, self.tooth_pairs, self.torque, self.grid = pair, tuple(tooth_pairs), torque, grid
-        self.bending = None if bending is None else KeptCouplings(bending)
+        self.bending = bending
+        self.between = None if bending is None else cache(bending.between)  # for grids that stay the same
         self.separations = np.array([tooth_pair.initial_separation for tooth_pair in tooth_pairs])
         contacts = [tooth_pair.contact for tooth_pair in tooth_pairs]
         self.levers = np.array([(contact.pinion_lever, contact.wheel_lever) for contact in contacts]).T
@@ -290,8 +294,7 @@ class _Balance:
                 forces = 0.5 * (before + forces)
             for index in np.flatnonzero(forces).tolist():
                 self._solve(index, forces)
-            if self.bending is not None:
-                self.compliance = self._corrected(self.compliance, self.bending)
+            self.compliance = self._corrected()
             shared = self._shared(forces, count)
             residual = shared.residual
             if residual <= self.agreement and self._settled(forces, shared.rotation):
@@ -307,13 +310,13 @@ class _Balance:
     def _solve(self, index: int, forces: Array) -> None:
         """Solve a pair under its force, on the grid it has if that still fits, and correct its law."""
         force, before, law = float(forces[index]), self.solved[index], self.laws[index]
-        tooth_pair, others = self.tooth_pairs[index], [] if self.bending is None else self._others(index, forces)
+        tooth_pair, coupling = self.tooth_pairs[index], partial(self._coupling, index, forces)
         try:
             if before is not None and SAME_BOX[0] * before.solution.load <= force <= SAME_BOX[1] * before.solution.load:
-                loaded = before.under(force, self._coupling(index, before, others))
+                loaded = before.under(force, coupling(before.separation))
             else:
                 contact, number = tooth_pair.contact, tooth_pair.pair
-                loaded = solve_under_load(self.pair, contact, force, self.grid, self.bending, number, others)
+                loaded = solve_under_load(self.pair, contact, force, self.grid, self.bending, number, coupling)
         except ConvergenceError as error:
             raise ConvergenceError(f"tooth pair {tooth_pair.pair:+d}: {error}", error.last) from error
         self.solved[index] = loaded
@@ -326,28 +329,30 @@ class _Balance:
         """Place and contact of the pairs that were solved under a load."""
         return ((n, loaded) for n, loaded in enumerate(self.solved) if loaded is not None and loaded.solution.load > 0)
 
-    def _others(self, index: int, forces: Array) -> list[SliceForces]:
-        """What the other pairs carry: their forces, spread over the slices as in their last solution."""
-        return [
-            SliceForces(self.tooth_pairs[n].pair, other.separation, forces[n] * other.slice_shares)
-            for n, other in self._loaded()
-            if n != index and forces[n] > 0.0
-        ]
+    def _coupling(self, index: int, forces: Array, separation: Separation) -> Array | None:
+        """Displacement of a pair's slices (ny,) [mm] by the forces of the others; None if nothing bends.
 
-    def _coupling(self, index: int, loaded: LoadedContact, others: Sequence[SliceForces]) -> Array | None:
-        """Displacement of a pair's slices (ny,) [mm] by what the others carry; None if nothing bends."""
-        if self.bending is None:
+        The force of another pair is spread over its slices as in its last solution.
+        """
+        if self.between is None:
             return None
-        return coupling_deflection(self.bending, self.tooth_pairs[index].pair, loaded.separation, others)
+        own, found = (self.tooth_pairs[index].pair, separation), np.zeros(len(separation.y))
+        for n, other in self._loaded():
+            if n != index and forces[n] > 0.0:
+                matrix = self.between(own, (self.tooth_pairs[n].pair, other.separation))
+                found += matrix @ (forces[n] * other.slice_shares)
+        return found
 
-    def _corrected(self, compliance: Array, bending: BendingModel) -> Array:
+    def _corrected(self) -> Array:
         """Compliance (k, k) [mm/N], that of the pairs solved so far the mean over the forces on their slices."""
-        compliance = compliance.copy()
+        compliance = self.compliance.copy()
+        if self.between is None:
+            return compliance
         for index, loaded in self._loaded():
             compliance[index, index] = loaded.own_tooth_deflection / loaded.solution.load
         for (index, one), (other, two) in combinations(self._loaded(), 2):
             numbers = self.tooth_pairs[index].pair, self.tooth_pairs[other].pair
-            matrix = bending.between((numbers[0], one.separation), (numbers[1], two.separation))
+            matrix = self.between((numbers[0], one.separation), (numbers[1], two.separation))
             compliance[index, other] = compliance[other, index] = one.slice_shares @ matrix @ two.slice_shares
         return compliance
 
@@ -362,7 +367,7 @@ class _Balance:
             return False
         for index, loaded in self._loaded():
             if forces[index] > 0.0 and loaded.coupling_deflection is not None:
-                now = self._coupling(index, loaded, self._others(index, forces))
+                now = self._coupling(index, forces, loaded.separation)
                 moved = (now - loaded.coupling_deflection)[loaded.slice_force > 0.0]
                 if np.ptp(moved) > SETTLED * allowed[index]:
                     return False

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from typing import Protocol
-
-import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.contact import FreeEdge
@@ -34,49 +31,5 @@ class BendingModel(Protocol):
         """
 
 
-@dataclass(frozen=True, eq=False)
-class SliceForces:
-    """Forces of a tooth pair on the slices of its grid.
-
-    Attributes
-    ----------
-    number : int
-        Of the tooth pair.
-    separation : Separation
-    force : (ny,) array [N]
-    """
-
-    number: int
-    separation: Separation
-    force: Array
-
-
-def coupling_deflection(
-    bending: BendingModel, number: int, separation: Separation, others: Iterable[SliceForces]
-) -> Array:
-    """Displacement of the slices of a tooth pair's grid (ny,) [mm] by what other pairs carry."""
-    found = np.zeros(len(separation.y))
-    for other in others:
-        found += bending.between((number, separation), (other.number, other.separation)) @ other.force
-    return found
-
-
-class KeptCouplings:
-    """A bending model that keeps the coupling of two tooth pairs for as long as their grids stay the same.
-
-    Parameters
-    ----------
-    bending : BendingModel
-    """
-
-    def __init__(self, bending: BendingModel) -> None:
-        self.within = bending.within
-        self._between = bending.between
-        self._kept: dict[tuple[int, int], tuple[Separation, Separation, Array]] = {}
-
-    def between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
-        """Deflections of one contact's slices under forces on another's, as the model has them."""
-        kept = self._kept.get((at[0], under[0]))
-        if kept is None or kept[0] is not at[1] or kept[1] is not under[1]:
-            kept = self._kept[at[0], under[0]] = at[1], under[1], self._between(at, under)
-        return kept[2]
+Coupling = Callable[[Separation], Array | None]
+"""Displacement of the slices of a tooth pair's grid (ny,) [mm] by what the other pairs carry; None if nothing bends."""

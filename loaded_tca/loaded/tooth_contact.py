@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
@@ -17,7 +16,7 @@ from loaded_tca.contact.levels import under_other_load
 from loaded_tca.contact.solution import CoarserGrid
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.free_edges import tooth_edges
-from loaded_tca.loaded.pair_coupling import BendingModel, SliceForces, coupling_deflection
+from loaded_tca.loaded.pair_coupling import BendingModel, Coupling
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import PointContact, point_contact
 from loaded_tca.separation import Separation, sample_separation
@@ -72,7 +71,7 @@ class LoadedContact:
     tolerance : float
         To which the solver kept the contact conditions.
     coupling_deflection : (ny,) array or None [mm]
-        Displacement of the slices under the load of other tooth pairs; None if nothing bends.
+        Displacement of the slices under the load of other tooth pairs, if there are any.
     """
 
     contact: ContactPoint
@@ -173,10 +172,10 @@ class LoadedContact:
     @property
     def contact_deformation(self) -> float:
         """Contact deformation [mm]: total deflection less bending, the mean over the force."""
-        force, deflection = self.slice_force, self.solution.approach
+        force, deflection = self.slice_force, self.solution.approach - self.own_tooth_deflection
         if self.coupling_deflection is None or not force.any():
             return deflection
-        return float(deflection - self.own_tooth_deflection - self.coupling_deflection @ force / force.sum())
+        return float(deflection - self.coupling_deflection @ force / force.sum())
 
     @cached_property
     def stiffness(self) -> float:
@@ -225,7 +224,7 @@ def solve_under_load(
     grid: GridChoice,
     bending: BendingModel | None = None,
     number: int = 0,
-    others: Sequence[SliceForces] = (),
+    coupling: Coupling | None = None,
 ) -> LoadedContact:
     """Contact of one tooth pair at one position under a normal force.
 
@@ -242,8 +241,8 @@ def solve_under_load(
         Of the teeth beneath the half-spaces; default: none.
     number : int
         Of the tooth pair, as the bending model counts.
-    others : sequence of SliceForces
-        What other tooth pairs carry at the same time.
+    coupling : callable, optional
+        Displacement of the slices of a grid by what other tooth pairs carry at the same time; default: none.
 
     Returns
     -------
@@ -262,7 +261,7 @@ def solve_under_load(
     load = 0.0 if 0.0 < load <= SMALLEST_LOAD * pair.contact_modulus * pair.module**2 else load
     separation = _box_for_cap(pair, contact, load, sample_separation(pair, contact, cells=cells, load=load))
     for _ in range(MOST_BOXES):
-        loaded = _solve_in_box(pair, contact, load, grid, separation, bending, number, others)
+        loaded = _solve_in_box(pair, contact, load, grid, separation, bending, number, coupling)
         pressure = loaded.solution.pressure
         filled = [bool((np.take(pressure, [0, -1], axis=axis) > 0.0).any()) for axis in (0, 1)]
         if not any(filled):
@@ -297,7 +296,7 @@ def _solve_in_box(
     first: Separation,
     bending: BendingModel | None,
     number: int,
-    others: Sequence[SliceForces],
+    coupling: Coupling | None,
 ) -> LoadedContact:
     """Solve in the box of ``first``, on its grid if cells were given, else on finer and finer ones."""
     edges = tooth_edges(pair, contact, first) if grid.free_edges else ()
@@ -306,12 +305,12 @@ def _solve_in_box(
     def sampled(cells: tuple[int, int]) -> tuple[Separation, Array | None]:
         box, given = first.half_lengths, first.gap.shape == cells
         separation = first if given else sample_separation(pair, contact, cells=cells, box=box)
-        return separation, None if bending is None else coupling_deflection(bending, number, separation, others)
+        return separation, None if coupling is None else coupling(separation)
 
     def problem(cells: tuple[int, int]) -> ContactProblem:
-        separation, coupling = sampled(cells)
+        separation, displaced = sampled(cells)
         return ContactProblem(
-            separation.gap if coupling is None else separation.gap + coupling,
+            separation.gap if displaced is None else separation.gap + displaced,
             separation.spacing,
             pair.contact_modulus,
             load=load,
@@ -334,9 +333,9 @@ def _solve_in_box(
             initial_pressure=expected,
             warn=False,
         )
-    separation, coupling = sampled(solution.problem.cells)
+    separation, displaced = sampled(solution.problem.cells)
     at_relief_start = _crosses_relief_start(pair, contact, separation, solution.in_contact)
-    return LoadedContact(contact, separation, solution, at_relief_start, tolerance, coupling)
+    return LoadedContact(contact, separation, solution, at_relief_start, tolerance, displaced)
 
 
 def _crosses_relief_start(pair: GearPair, contact: ContactPoint, separation: Separation, where: Array) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
 from loaded_tca.pairs.gear_pair import GearPair
@@ -24,24 +24,20 @@ def describe_scene(scene: Scene) -> str:
         If the gears of the scene cannot exist or cannot mesh.
     """
     pair = scene.pair()
-    cap = [] if pair.max_pressure is None else [("cap on the pressure [MPa]", f"{pair.max_pressure:g}")]
-    asked = [*_load_rows(scene), *cap, *_analysis_rows(scene, pair)]
-    rows = [*scene.geometry_rows(), *asked, *_departures(scene), *_spline_rows(scene, pair)]
+    rows = [*scene.geometry_rows(), *_asked_rows(scene, pair), *_departures(scene), *_spline_rows(scene, pair)]
     lines = [f"{label:<{LABEL}}" + "".join(f"{cell:>14}" for cell in cells) for label, *cells in rows]
     return "\n".join([scene.title or "Scene", *lines, *(f"note: {note}" for note in scene.notes())])
 
 
-def _load_rows(scene: Scene) -> list[Row]:
-    torques: Sequence[float] = scene.torques
+def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
+    """The load, what the analysis is asked to do, and the bores that it holds where teeth bend."""
+    torques, label, wanted = scene.torques, "pinion torque [N m]", scene.analysis
     if len(torques) > MOST_TORQUES:
-        torques = (min(torques), max(torques))
-    label = "pinion torque" if len(torques) == len(scene.torques) else f"{len(scene.torques)} pinion torques from, to"
-    return [(f"{label} [N m]", *(f"{1e-3 * torque:g}" for torque in torques)), *scene.force_rows(torques)]
-
-
-def _analysis_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
-    """What the analysis is asked to do, and the bores that it holds where teeth bend."""
-    wanted = scene.analysis
+        torques, label = (min(torques), max(torques)), f"{len(torques)} pinion torques from, to [N m]"
+    yield label, *(f"{1e-3 * torque:g}" for torque in torques)
+    yield from scene.force_rows(torques)
+    if pair.max_pressure is not None:
+        yield "cap on the pressure [MPa]", f"{pair.max_pressure:g}"
     switches = ("on" if switch else "off" for switch in (wanted.load_sharing, wanted.free_edges))
     yield "load sharing, free edges, compliance", *switches, wanted.compliance
     yield "positions, torques", f"{wanted.positions}", f"{len(scene.torques)}"

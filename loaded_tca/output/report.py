@@ -6,13 +6,12 @@ import csv
 import io
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.results.files import FilePath, Part, remove, replacing
 from loaded_tca.results.key_figures import ARCSEC
@@ -140,7 +139,7 @@ def positions_csv(result: MeshCycle) -> str:
     columns["peak_at_edge"] = result.at_position("peak_at_edge")
     columns["transmission_error_um"] = result.transmission_error * result.wheel_base_radius * 1e3
     columns |= {f"load_share_pair_{number}": result.load_share[..., k] for k, number in enumerate(result.pair)}
-    return _table({name: np.broadcast_to(values, shape).ravel() for name, values in columns.items()})
+    return csv_table({name: np.broadcast_to(values, shape).ravel() for name, values in columns.items()})
 
 
 def contacts_csv(result: MeshCycle) -> str:
@@ -168,11 +167,11 @@ def contacts_csv(result: MeshCycle) -> str:
     reached = reached_edges(result)[rows]
     words = [" + ".join(name for name, one in zip(EDGES, row, strict=True) if one) for row in reached]
     under_load = {name: np.broadcast_to(values, rows.shape)[rows] for name, values in columns.items()}
-    return _table({**under_load, "edges": np.array(words, dtype=object)})
+    return csv_table({**under_load, "edges": np.array(words, dtype=object)})
 
 
-def _table(columns: Mapping[str, Array]) -> str:
-    """Columns (n,) as CSV."""
+def csv_table(columns: Mapping[str, Iterable[Any]]) -> str:
+    """Return columns of one length as CSV, numbers as :func:`write_report` writes them, words as they are."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(columns)

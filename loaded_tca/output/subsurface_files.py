@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from pathlib import Path
 from typing import Any
 
+from loaded_tca.output.report import csv_table
 from loaded_tca.results.files import FilePath, Part, replacing, variables_of, write_dataset
 from loaded_tca.results.mesh_cycle import QUANTITIES
 from loaded_tca.results.pressure_map import MAP_PARTS
@@ -79,8 +78,4 @@ def subsurface_csv(below: StressBelow) -> str:
     columns = {"depth_mm": stress.depths}
     columns |= {f"{name}_MPa": getattr(stress, name)[:, row, column] for name in STRESSES}
     columns |= {f"largest_{name}_MPa": getattr(stress, name).max(axis=(1, 2)) for name in ("von_mises", "max_shear")}
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows([f"{value:.9g}" for value in values] for values in zip(*columns.values(), strict=True))
-    return text.getvalue()
+    return csv_table({name: [f"{value:.9g}" for value in values] for name, values in columns.items()})

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,7 +12,6 @@ from loaded_tca.pairs import MatingTeeth
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.tooth import TriangleMesh
-from loaded_tca.unloaded import ContactPoint
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,8 +83,10 @@ def teeth_in_space(
     if place is None or one is None:
         raise GeometryError("no teeth in contact: the tooth pair is not in contact at this position")
     position, column = place
-    contact, path = _of_own_teeth(result, teeth.pair, position, column), result.path[result.path.in_contact]
-    pinion, wheel = teeth.in_mesh(contact.pinion_angle, contact.wheel_angle)
+    contact, path = result.paths[column][position], result.path[result.path.in_contact]
+    pitches = float(result.pair[column]) * teeth.pair.pitch  # teeth are placed as if they met at the pitch point
+    pinion_angle = contact.pinion_angle - pitches
+    pinion, wheel = teeth.in_mesh(pinion_angle, contact.wheel_angle - teeth.pair.ratio * pitches)
     return TeethInSpace(
         teeth.pair,
         position,
@@ -93,19 +94,8 @@ def teeth_in_space(
         torque,
         pinion,
         wheel,
-        teeth.on_pinion(path.pinion_radius, path.pinion_axial, contact.pinion_angle),
-        teeth.pressure_on_pinion(one.corners, one.pressure, contact.pinion_angle),
+        teeth.on_pinion(path.pinion_radius, path.pinion_axial, pinion_angle),
+        teeth.pressure_on_pinion(one.corners, one.pressure, pinion_angle),
         contact.point,
         contact.normal,
-    )
-
-
-def _of_own_teeth(result: MeshCycle, pair: GearPair, position: int, column: int) -> ContactPoint:
-    """Unloaded contact of a tooth pair, in the angles of its own teeth, as if it were the pair at the pitch point."""
-    contact = result.paths[column][position]
-    pitches = float(result.pair[column]) * pair.pitch
-    return replace(
-        contact,
-        pinion_angle=contact.pinion_angle - pitches,
-        wheel_angle=contact.wheel_angle - pair.ratio * pitches,
     )

@@ -7,17 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from loaded_tca.arrays import Array
-from loaded_tca.plots.style import (
-    HEADROOM,
-    HERTZ,
-    from_zero,
-    loads,
-    range_of_positions,
-    set_title,
-    tell_no_load,
-    torque_styles,
-    widen,
-)
+from loaded_tca.plots import style
+from loaded_tca.plots.style import HEADROOM, HERTZ, loads, range_of_positions, torque_styles
 from loaded_tca.results.key_figures import ARCSEC, mean_over_a_pitch
 from loaded_tca.results.mesh_cycle import MeshCycle
 
@@ -54,11 +45,11 @@ def plot_transmission_error(result: MeshCycle) -> Figure:
     figure.legend(*absolute.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize="small")
     factor = result.wheel_base_radius * 1e3 / ARCSEC  # um per arcsec
     for axes in (absolute, about_mean):
-        widen(axes, SMALLEST_SPAN_ARCSEC)
+        style.widen(axes, SMALLEST_SPAN_ARCSEC)
         right = axes.secondary_yaxis("right", functions=(lambda arcsec: arcsec * factor, lambda um: um / factor))
         right.set_ylabel("at the wheel's base circle [µm]")
         axes.grid(alpha=0.3)
-    set_title(figure, result, f"transmission error, {loads(result)}", range_of_positions(result))
+    style.set_title(figure, result, f"transmission error, {loads(result)}", range_of_positions(result))
     return figure
 
 
@@ -77,8 +68,7 @@ def plot_peak_pressure(result: MeshCycle) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    figure = Figure(figsize=(8.0, 5.5), layout="constrained")
-    axes = figure.add_subplot()
+    figure, axes = style.one_panel(5.5)
     angle = np.degrees(result.pinion_angle)
     peak, at_edge = result.at_position("peak_pressure"), result.at_position("peak_at_edge")
     central = np.where(at_edge, result.at_position("central_pressure"), np.nan)
@@ -96,17 +86,14 @@ def plot_peak_pressure(result: MeshCycle) -> Figure:
         axes.plot([], [], color="black", marker=".", markersize=3.0, linestyle=":", label=BESIDE)
     if np.isfinite(hertz).any():
         axes.plot([], [], color="black", label="after Hertz", **HERTZ)
-    from_zero(axes)
+    style.from_zero(axes)
     if at_edge.any():
         _draw_edge_peaks(axes, result, angle, np.where(at_edge, peak, np.nan))
     if not (peak > 0.0).any():
-        tell_no_load(axes)
-    axes.set_xlabel("pinion angle [deg]")
+        style.tell_no_load(axes)
     axes.set_ylabel("contact pressure [MPa]")
-    axes.grid(alpha=0.3)
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2, fontsize="small")
-    set_title(figure, result, f"peak contact pressure, {loads(result)}", range_of_positions(result))
-    return figure
+    about = f"peak contact pressure, {loads(result)}", range_of_positions(result)
+    return style.finished(figure, axes, result, *about, columns=2)
 
 
 def _draw_edge_peaks(axes: Axes, result: MeshCycle, angle: Array, peak: Array) -> None:

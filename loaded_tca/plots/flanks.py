@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -15,7 +15,6 @@ from matplotlib.patches import Patch, Polygon
 
 from loaded_tca.arrays import Array
 from loaded_tca.flanks.base import Flank
-from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.plots.style import ACCENT, COLOURS, NOT_REACHED, highest_torque, load, range_of_positions, set_title
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
@@ -44,37 +43,33 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     matplotlib.figure.Figure
     """
     torque = highest_torque(result) if torque is None else torque
-    figure = Figure(figsize=(11.0, 5.5), layout="constrained")
-    panels = figure.subplots(1, 2)
-    scene, pair, paths = result.scene, result.gear_pair, result.paths
-    starts = scene.active_starts()
-    sides = (
-        (pair.pinion.flank, starts[0], [(path.pinion_radius, path.pinion_axial) for path in paths]),
-        (pair.wheel.flank, starts[1], [(path.wheel_radius, path.wheel_axial) for path in paths]),
-    )
+    scene, pair = result.scene, result.gear_pair
     last = len(result.path) - 1
     positions = sorted({round(last * part / (MOST_AREAS - 1)) for part in range(MOST_AREAS)})
     drawn = [row for row in (loaded_maps(result, torque, [position]) for position in positions) if row]
     maps = [one for row in drawn for one in row]
     scale = Normalize(0.0, highest_mesh_independent_pressure(result, torque, maps))
-    unreached = False
-    for axes, name, (flank, start, points) in zip(panels, scene.flank_names, sides, strict=True):
-        outline = draw_flank(axes, name, flank, start)
+
+    def draw(axes: Axes, to_picture: Callable[[Array], Array]) -> list[Artist]:
+        areas: list[Artist] = []
         for one in maps:
-            corners = flank.frame.to_picture(*on_gear(pair, flank, one.corners))
+            x, y = np.moveaxis(to_picture(one.corners), -1, 0)
             loaded = np.where(one.pressure > 0.0, one.pressure, np.nan)
-            area = axes.pcolormesh(*corners, loaded, cmap=COLOURS, norm=scale, rasterized=True)
-            area.set_clip_path(outline)
-        for point in points:
-            axes.plot(*flank.frame.to_picture(*point), ".", color=ACCENT, markersize=4.0)
-        height = flank.profile_coordinate(*flank.grid(*FINENESS)).value
-        unreached = unreached or start - float(height.min()) > LEAST_SEEN * float(np.ptp(height))
+            areas.append(axes.pcolormesh(x, y, loaded, cmap=COLOURS, norm=scale, rasterized=True))
+        for path in result.paths:
+            axes.plot(*to_picture(path.point).T, ".", color=ACCENT, markersize=4.0)
+        return areas
+
+    figure, panels = both_flanks(result, draw)
     if maps:
         beyond = any(one.pressure.max() > scale.vmax for one in maps)
         bar = ScalarMappable(scale, COLOURS)
         figure.colorbar(bar, ax=panels, label="contact pressure [MPa]", extend="max" if beyond else "neither")
     handles: list[Artist] = [Line2D([], [], color=ACCENT, marker=".", linestyle="", label=CONTACT_POINTS)]
-    if unreached:
+    flanks = pair.pinion.flank, pair.wheel.flank
+    heights = [flank.profile_coordinate(*flank.grid(*FINENESS)).value for flank in flanks]
+    below = [start - float(height.min()) for start, height in zip(scene.active_starts(), heights, strict=True)]
+    if any(part > LEAST_SEEN * float(np.ptp(height)) for part, height in zip(below, heights, strict=True)):
         not_reached = "flank that the mating gear does not reach"
         handles.append(Patch(facecolor=NOT_REACHED, edgecolor="black", label=not_reached))
     pressure = f"pressure drawn at {len(drawn)} of {len(result.path)} positions"
@@ -100,7 +95,35 @@ def highest_mesh_independent_pressure(result: MeshCycle, torque: int, maps: list
     return max((float(one.pressure.max()) for one in maps), default=1.0)
 
 
-def draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:
+def both_flanks(
+    result: MeshCycle, draw: Callable[[Axes, Callable[[Array], Array]], Sequence[Artist]]
+) -> tuple[Figure, list[Axes]]:
+    """A panel for each flank, with what is drawn on it cut off at its outline.
+
+    ``draw`` is called with the axes and a function that takes points (..., 3) of the fixed frame to their places
+    (..., 2) in the picture of the flank; it returns what is to be cut off.
+    """
+    figure = Figure(figsize=(11.0, 5.5), layout="constrained")
+    scene, pair, panels = result.scene, result.gear_pair, list(figure.subplots(1, 2))
+
+    def on_pinion(points: Array) -> Array:
+        radius = np.hypot(points[..., 0], points[..., 1])
+        return np.stack(pair.pinion.flank.frame.to_picture(radius, points[..., 2]), axis=-1)
+
+    def on_wheel(points: Array) -> Array:
+        radius, _, axial = pair.to_wheel(points)
+        return np.stack(pair.wheel.flank.frame.to_picture(radius, axial), axis=-1)
+
+    sides = ((pair.pinion.flank, on_pinion), (pair.wheel.flank, on_wheel))
+    described = zip(panels, scene.flank_names, scene.active_starts(), sides, strict=True)
+    for axes, name, start, (flank, to_picture) in described:
+        outline = _draw_flank(axes, name, flank, start)
+        for drawn in draw(axes, to_picture):
+            drawn.set_clip_path(outline)
+    return figure, panels
+
+
+def _draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:
     """The flank from root to tip, with the part from profile coordinate ``start`` on in white; returns its outline."""
     rho, z = flank.grid(*FINENESS)
     along = flank.profile_coordinate(rho, z).value
@@ -121,11 +144,3 @@ def draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:
     axes.set_xlabel(flank.frame.labels[0])
     axes.set_ylabel(flank.frame.labels[1])
     return regions[0]
-
-
-def on_gear(pair: GearPair, flank: Flank, point: Array) -> tuple[Array, Array]:
-    """Radius and axial coordinate (...) of points (..., 3) on the gear of a flank."""
-    if flank is pair.pinion.flank:
-        return np.hypot(point[..., 0], point[..., 1]), point[..., 2]
-    radius, _, axial = pair.to_wheel(point)
-    return radius, axial

@@ -10,7 +10,6 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
-from loaded_tca.arrays import Array
 from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.plots.flanks import highest_mesh_independent_pressure
 from loaded_tca.plots.style import ACCENT, COLOURS, NO_MATERIAL, highest_torque, load, place, set_title, tell_no_load
@@ -81,10 +80,9 @@ def plot_pressure_map(
 
 def _label_axes(axes: Axes, one: PressureMap, scale: float, frame: FlankFrame) -> None:
     """Names of the axes, with the sides on which the heel (or z > 0) and the pinion's tip lie."""
-    (here, level), (right, _), (_, above) = (
-        _on_pinion(frame, point)
-        for point in (one.origin, one.origin + one.spacing[1] * one.axes[1], one.origin + one.spacing[0] * one.axes[0])
-    )
+    dx, dy = one.spacing
+    points = one.origin + np.stack([np.zeros(3), dy * one.axes[1], dx * one.axes[0]])
+    (here, right, _), (level, _, above) = frame.to_picture(np.hypot(points[:, 0], points[:, 1]), points[:, 2])
     axes.set_xlabel(f"along the contact [mm], towards {frame.heelwards} on the {'right' if right > here else 'left'}")
     axes.set_ylabel(
         f"across the contact [mm]\n(pinion's {'tip' if above > level else 'root'} at the top)"
@@ -92,14 +90,9 @@ def _label_axes(axes: Axes, one: PressureMap, scale: float, frame: FlankFrame) -
     )
 
 
-def _on_pinion(frame: FlankFrame, point: Array) -> tuple[Array, Array]:
-    """Lengthwise place and height of a point (3,) of the fixed frame on the pinion's flank."""
-    return frame.to_picture(np.hypot(point[0], point[1]), point[2])
-
-
 def _draw_pressure(figure: Figure, axes: Axes, one: PressureMap, highest: float) -> None:
     """Pressure of each cell, in colours up to the highest; white without pressure, grey without material."""
-    y, x = (cell_limits(centres, step) for centres, step in ((one.y, one.spacing[1]), (one.x, one.spacing[0])))
+    x, y = one.borders
     void = np.isinf(one.gap)
     axes.set_facecolor(NO_MATERIAL)
     axes.pcolormesh(y, x, np.where(void, np.nan, 0.0), cmap="Greys", vmin=0.0, vmax=1.0)
@@ -115,11 +108,6 @@ def _draw_pressure(figure: Figure, axes: Axes, one: PressureMap, highest: float)
     if highest < peak:
         label += f"\n(few cells at the edge: up to {peak:.0f})"
     figure.colorbar(mesh, ax=axes, label=label, extend="max" if highest < peak else "neither")
-
-
-def cell_limits(centres: Array, step: float) -> Array:
-    """Edges (n + 1,) of cells of one size."""
-    return np.append(centres, centres[-1] + step) - 0.5 * step
 
 
 def _scale_factor(one: PressureMap) -> tuple[float, float]:

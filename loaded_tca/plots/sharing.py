@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PolyCollection
@@ -14,25 +16,20 @@ from matplotlib.figure import Figure
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError
-from loaded_tca.flanks.base import Flank
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.plots.flanks import draw_flank, highest_mesh_independent_pressure, loaded_maps, on_gear
+from loaded_tca.plots import style
+from loaded_tca.plots.flanks import both_flanks, highest_mesh_independent_pressure, loaded_maps
 from loaded_tca.plots.style import (
     COLOURS,
     HERTZ,
     MARKERS,
-    from_zero,
     highest_torque,
     load,
     loads,
     range_of_positions,
-    set_title,
-    signed,
     torque_styles,
-    widen,
 )
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.unloaded import trace_contact
 
 EDGE = "contact at an edge (its peak is mesh-dependent)"
@@ -71,9 +68,9 @@ def plot_load_share(result: MeshCycle, torque: int | None = None) -> Figure:
     angle = np.degrees(result.pinion_angle)
     styles = {index: style for index, *style in torque_styles(result)}
     for axes, index in zip(panels, shown, strict=True):
-        for number, share in zip(result.pair, result.load_share[index].T, strict=True):
-            marker = MARKERS[int(number) % len(MARKERS)]
-            axes.plot(angle, 100.0 * share, marker=marker, markersize=4.0, label=f"tooth pair {signed(int(number))}")
+        for number, share in zip(result.pair.tolist(), result.load_share[index].T, strict=True):
+            marker = MARKERS[number % len(MARKERS)]
+            axes.plot(angle, 100.0 * share, marker=marker, markersize=4.0, label=f"tooth pair {style.signed(number)}")
         axes.set_ylabel("share of\nthe torque [%]")
         axes.set_ylim(-4.0, 106.0)
         axes.grid(alpha=0.3)
@@ -90,7 +87,7 @@ def plot_load_share(result: MeshCycle, torque: int | None = None) -> Figure:
     below.grid(alpha=0.3)
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=5, fontsize="small")
     about = load(result, shown[0]) if len(shown) == 1 else loads(result)
-    set_title(figure, result, f"load sharing, {about}", range_of_positions(result))
+    style.set_title(figure, result, f"load sharing, {about}", range_of_positions(result))
     return figure
 
 
@@ -105,15 +102,16 @@ def plot_mesh_stiffness(result: MeshCycle) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _one_panel()
+    figure, axes = style.one_panel()
     for torque, label, colour, marker in torque_styles(result):
         angle = np.degrees(result.pinion_angle)
         axes.plot(angle, result.mesh_stiffness[torque], color=colour, marker=marker, markersize=4.0, label=label)
         axes.plot(angle, result.secant_stiffness[torque], color=colour, marker=".", markersize=3.0, linestyle=":")
     axes.plot([], [], color="black", linestyle=":", label="secant, from no load")
     axes.set_ylabel("mesh stiffness [N/(mm µm)]")
-    from_zero(axes)
-    return _finished(figure, axes, result, f"mesh stiffness, {result.bending}, {loads(result)}")
+    style.from_zero(axes)
+    about = f"mesh stiffness, {result.bending}, {loads(result)}", range_of_positions(result)
+    return style.finished(figure, axes, result, *about)
 
 
 def plot_line_load(result: MeshCycle) -> Figure:
@@ -127,20 +125,14 @@ def plot_line_load(result: MeshCycle) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _one_panel()
+    figure, axes = style.one_panel()
     angle, line_load = np.degrees(result.pinion_angle), result.at_position("line_load")
     for torque, label, colour, marker in torque_styles(result):
         axes.plot(angle, line_load[torque], color=colour, marker=marker, markersize=4.0, label=label)
     axes.set_ylabel("line load of the most loaded pair [N/mm]")
-    from_zero(axes)
-    return _finished(figure, axes, result, f"line load along the contact, {loads(result)}")
-
-
-def _finished(figure: Figure, axes: Axes, result: MeshCycle, what: str) -> Figure:
-    """The figure with its legend and title."""
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
-    set_title(figure, result, what, range_of_positions(result))
-    return figure
+    style.from_zero(axes)
+    about = f"line load along the contact, {loads(result)}", range_of_positions(result)
+    return style.finished(figure, axes, result, *about)
 
 
 def plot_harmonics(result: MeshCycle) -> Figure:
@@ -154,7 +146,7 @@ def plot_harmonics(result: MeshCycle) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _one_panel()
+    figure, axes = style.one_panel()
     amplitudes = 1e3 * result.wheel_base_radius * result.harmonics(MOST_ORDERS)
     orders, width = np.arange(1, MOST_ORDERS + 1), 0.8 / len(result.torque)
     for torque, label, colour, _ in torque_styles(result):
@@ -162,9 +154,10 @@ def plot_harmonics(result: MeshCycle) -> Figure:
         axes.bar(place, amplitudes[torque], width, color=colour, label=label)
     axes.set_xlabel("order of the tooth mesh")
     axes.set_ylabel("amplitude at the wheel's base circle [µm]")
-    widen(axes, SMALLEST_AMPLITUDE_UM)
+    style.widen(axes, SMALLEST_AMPLITUDE_UM)
     axes.grid(visible=False, axis="x")
-    return _finished(figure, axes, result, f"harmonics of the transmission error, {loads(result)}")
+    about = f"harmonics of the transmission error, {loads(result)}", range_of_positions(result)
+    return style.finished(figure, axes, result, *about)
 
 
 def plot_pressure_envelope(result: MeshCycle, torque: int | None = None) -> Figure:
@@ -183,24 +176,19 @@ def plot_pressure_envelope(result: MeshCycle, torque: int | None = None) -> Figu
     torque = highest_torque(result) if torque is None else torque
     maps = loaded_maps(result, torque)
     scale = Normalize(0.0, highest_mesh_independent_pressure(result, torque, maps))
-
-    def draw(axes: Axes, pair: GearPair, flank: Flank) -> PolyCollection:
-        cells, pressures = [np.zeros((0, 4, 2))], [np.zeros(0)]
-        for one in maps:
-            at = np.stack(flank.frame.to_picture(*on_gear(pair, flank, one.corners)), axis=-1)
-            around = np.stack([at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]], axis=2)
-            cells.append(around[one.pressure > 0.0])
-            pressures.append(one.pressure[one.pressure > 0.0])
-        pressure = np.concatenate(pressures)
-        highest_last = np.argsort(pressure, kind="stable")
-        drawn = PolyCollection(list(np.concatenate(cells)[highest_last]), cmap=COLOURS, norm=scale, edgecolors="face")
-        drawn.set(array=pressure[highest_last], linewidths=0.3)
-        axes.add_collection(drawn, autolim=False)
-        return drawn
-
-    figure, panels = _both_flanks(result, draw)
+    cells, pressures = [np.zeros((0, 4, 3))], [np.zeros(0)]
+    for one in maps:
+        at, loaded = one.corners, one.pressure > 0.0
+        cells.append(np.stack([at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]], axis=2)[loaded])
+        pressures.append(one.pressure[loaded])
+    pressure = np.concatenate(pressures)
+    highest_last = np.argsort(pressure, kind="stable")
+    drawn = {"edgecolors": "face", "linewidths": 0.3}
+    figure, panels = _coloured(
+        result, PolyCollection, np.concatenate(cells)[highest_last], pressure[highest_last], scale, drawn
+    )
     figure.colorbar(ScalarMappable(scale, COLOURS), ax=panels, label="highest contact pressure [MPa]", extend="max")
-    set_title(figure, result, f"pressure envelope, {load(result, torque)}", range_of_positions(result))
+    style.set_title(figure, result, f"pressure envelope, {load(result, torque)}", range_of_positions(result))
     return figure
 
 
@@ -220,48 +208,41 @@ def plot_line_load_distribution(result: MeshCycle, torque: int | None = None) ->
     matplotlib.figure.Figure
     """
     torque = highest_torque(result) if torque is None else torque
-    lines = [_line_load(one) for one in loaded_maps(result, torque)]
-    scale = Normalize(0.0, max((float(line_load.max()) for _, line_load in lines), default=1.0))
-
-    def draw(axes: Axes, pair: GearPair, flank: Flank) -> LineCollection:
-        segments, values = [np.zeros((0, 2, 2))], [np.zeros(0)]
-        for points, line_load in lines:
-            at = np.stack(flank.frame.to_picture(*on_gear(pair, flank, points)), axis=-1)
-            segments.append(np.stack([at[:-1], at[1:]], axis=1))
-            values.append(0.5 * (line_load[:-1] + line_load[1:]))
-        drawn = LineCollection(list(np.concatenate(segments)), cmap=COLOURS, norm=scale, linewidths=2.0)
-        drawn.set_array(np.concatenate(values))
-        axes.add_collection(drawn, autolim=False)
-        return drawn
-
-    figure, panels = _both_flanks(result, draw)
+    segments, values, highest = [np.zeros((0, 2, 3))], [np.zeros(0)], 0.0
+    for one in loaded_maps(result, torque):
+        sums = one.pressure.sum(axis=0)
+        loaded = sums > 0.0
+        across = one.x @ one.pressure[:, loaded] / sums[loaded]
+        points = one.origin + across[:, None] * one.axes[0] + one.y[loaded, None] * one.axes[1]
+        line_load = sums[loaded] * one.spacing[0]
+        segments.append(np.stack([points[:-1], points[1:]], axis=1))
+        values.append(0.5 * (line_load[:-1] + line_load[1:]))
+        highest = max(highest, float(line_load.max()))
+    scale = Normalize(0.0, highest or 1.0)
+    lines = np.concatenate(segments), np.concatenate(values)
+    figure, panels = _coloured(result, LineCollection, *lines, scale, {"linewidths": 2.0})
     figure.colorbar(ScalarMappable(scale, COLOURS), ax=panels, label="line load [N/mm]")
-    set_title(figure, result, f"line load along the contacts, {load(result, torque)}", range_of_positions(result))
+    style.set_title(figure, result, f"line load along the contacts, {load(result, torque)}", range_of_positions(result))
     return figure
 
 
-def _both_flanks(
-    result: MeshCycle, draw: Callable[[Axes, GearPair, Flank], PolyCollection | LineCollection]
+def _coloured(
+    result: MeshCycle,
+    kind: type[PolyCollection] | type[LineCollection],
+    shapes: Array,
+    values: Array,
+    scale: Normalize,
+    drawn: Mapping[str, Any],
 ) -> tuple[Figure, list[Axes]]:
-    """A panel for each flank, with what is drawn cut off at its outline."""
-    figure = Figure(figsize=(11.0, 5.5), layout="constrained")
-    scene, pair, panels = result.scene, result.gear_pair, list(figure.subplots(1, 2))
-    sides = zip(panels, scene.flank_names, (pair.pinion.flank, pair.wheel.flank), scene.active_starts(), strict=True)
-    for axes, name, flank, start in sides:
-        outline = draw_flank(axes, name, flank, start)
-        drawn = draw(axes, pair, flank)
-        drawn.set_rasterized(True)
-        drawn.set_clip_path(outline)
-    return figure, panels
+    """Polygons or lines (k, corners, 3) of the fixed frame on both flanks, coloured by values (k,)."""
 
+    def draw(axes: Axes, to_picture: Callable[[Array], Array]) -> list[Artist]:
+        collection = kind(list(to_picture(shapes)), cmap=COLOURS, norm=scale, rasterized=True, **drawn)
+        collection.set_array(values)
+        axes.add_collection(collection, autolim=False)
+        return [collection]
 
-def _line_load(one: PressureMap) -> tuple[Array, Array]:
-    """Middles (k, 3) of the pressure of the loaded slices of a map, in the fixed frame, and line load (k,) [N/mm]."""
-    sums = one.pressure.sum(axis=0)
-    loaded = sums > 0.0
-    across = one.x @ one.pressure[:, loaded] / sums[loaded]
-    points = one.origin + across[:, None] * one.axes[0] + one.y[loaded, None] * one.axes[1]
-    return points, sums[loaded] * one.spacing[0]
+    return both_flanks(result, draw)
 
 
 def plot_path_pressure(result: MeshCycle) -> Figure:
@@ -279,7 +260,7 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = _one_panel()
+    figure, axes = style.one_panel()
     pair, hertz = result.gear_pair, result.hertz_pressure
     angle = np.degrees(result.pinion_angle[:, None] - pair.pitch * result.pair).ravel()
     order, ends = np.argsort(angle, kind="stable"), []
@@ -297,9 +278,7 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
     axes.set_ylabel("contact pressure [MPa]")
     _draw_ends(axes, ends)
     _mark_points(axes, pair, float(np.abs(np.radians(angle)).max()))
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
-    set_title(figure, result, f"pressure over the path of contact, {loads(result)}")
-    return figure
+    return style.finished(figure, axes, result, f"pressure over the path of contact, {loads(result)}")
 
 
 def _mark_points(axes: Axes, pair: GearPair, reach: float) -> None:
@@ -340,17 +319,9 @@ def _leaves_flanks(pair: GearPair, farthest: float) -> float:
 def _draw_ends(axes: Axes, ends: list[tuple[Array, str]]) -> None:
     """Arrows above the curves, a row for each torque, where a contact lies on an edge: its peak is mesh-dependent."""
     rows = [(angles, colour) for angles, colour in ends if angles.size]
-    from_zero(axes, 1.0 - ROW_OF_ENDS * (min(len(rows), MOST_ROWS) + 1.0) if rows else 1.0)
+    style.from_zero(axes, 1.0 - ROW_OF_ENDS * (min(len(rows), MOST_ROWS) + 1.0) if rows else 1.0)
     for row, (angles, colour) in enumerate(reversed(rows)):
         height = np.full(angles.size, 1.0 - ROW_OF_ENDS * (min(row, MOST_ROWS - 1) + 1.0))
         axes.plot(angles, height, "^", color=colour, markersize=4.0, transform=axes.get_xaxis_transform())
     if rows:
         axes.plot([], [], "^", color="black", markersize=4.0, linestyle="", label=EDGE)
-
-
-def _one_panel() -> tuple[Figure, Axes]:
-    figure = Figure(figsize=(8.0, 5.0), layout="constrained")
-    axes = figure.add_subplot()
-    axes.set_xlabel("pinion angle [deg]")
-    axes.grid(alpha=0.3)
-    return figure, axes

@@ -37,6 +37,22 @@ def save_figure(figure: Figure, path: FilePath) -> None:
         figure.savefig(temporary, format="png", dpi=DOTS_PER_INCH)
 
 
+def one_panel(height: float = 5.0) -> tuple[Figure, Axes]:
+    """Return a figure of so many inches with one panel for curves over the pinion angle."""
+    figure = Figure(figsize=(8.0, height), layout="constrained")
+    axes = figure.add_subplot()
+    axes.set_xlabel("pinion angle [deg]")
+    axes.grid(alpha=0.3)
+    return figure, axes
+
+
+def finished(figure: Figure, axes: Axes, result: MeshCycle, *about: str, columns: int = 3) -> Figure:
+    """Return the figure with the legend of its panel below and its title, by default of all positions."""
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=columns, fontsize="small")
+    set_title(figure, result, *about)
+    return figure
+
+
 def torque_styles(result: MeshCycle) -> Iterator[tuple[int, str, str, str]]:
     """Index, label, colour and marker of each torque; of many torques only some have a label."""
     count = len(result.torque)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -42,7 +41,8 @@ def plot_vh_check(check: VHCheck, names: tuple[str, str] = ("V [mm]", "H [mm]"),
     matplotlib.figure.Figure
     """
     rows, columns = len(check.v), len(check.h)
-    figure = Figure(figsize=(_width(columns), MARGIN + CELL[1] * rows), layout="constrained")
+    width = MARGIN + CELL[0] * columns
+    figure = Figure(figsize=(width, MARGIN + CELL[1] * rows), layout="constrained")
     panels = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
     upwards, onwards = np.argsort(-check.v), np.argsort(check.h)
     first = check.patterns[0][0]
@@ -52,14 +52,20 @@ def plot_vh_check(check: VHCheck, names: tuple[str, str] = ("V [mm]", "H [mm]"),
             cell = (int(row), int(column))
             drawn = _draw_cell(panels[i, j], check.patterns[row][column], check.frame, levels)
             panels[i, j].plot(*check.centre[cell], "o", color=ACCENT, markeredgecolor="white", markersize=5.0)
-            _frame_cell(panels[i, j], edge=check.edge_share[cell] > 0.0)
+            on_edge = check.edge_share[cell] > 0.0
+            panels[i, j].set(xticks=[], yticks=[])
+            for spine in panels[i, j].spines.values():
+                spine.set(color=ACCENT if on_edge else "0.6", linewidth=2.0 if on_edge else 0.8)
         panels[i, 0].set_ylabel(f"{check.v[row]:.4g}", rotation=0, ha="right", va="center")
     for j, column in enumerate(onwards):
         panels[-1, j].set_xlabel(f"{check.h[column]:.4g}")
     figure.supylabel(names[0])
     figure.supxlabel(names[1])
     figure.colorbar(drawn, ax=panels, label="smallest gap over the passage [µm]", format="%.3g")
-    figure.suptitle("\n".join(_title(check, title, columns)), fontsize="medium", parse_math=False)
+    what = f"contact pattern on the {first.gear}, marking compound {1e3 * first.compound:.4g} µm, no load"
+    inside = f"dot: its centre; in each cell the tip is on top, {check.frame.heelwards} on the right; {EDGE}"
+    lines = [part for line in (title, what, inside) for part in textwrap.wrap(line, int(CHARACTERS * width))]
+    figure.suptitle("\n".join(lines), fontsize="medium", parse_math=False)
     return figure
 
 
@@ -70,24 +76,3 @@ def _draw_cell(axes: Axes, pattern: ContactPattern, frame: FlankFrame, levels: A
     axes.fill(*outline, color=NOT_REACHED, zorder=0)
     gap = 1e3 * np.clip(pattern.gap, 0.0, BEYOND * pattern.compound)
     return axes.contourf(x, y, gap, levels, cmap=COLOURS)
-
-
-def _frame_cell(axes: Axes, *, edge: bool) -> None:
-    """No ticks; a thick frame where a contact runs onto an edge."""
-    axes.set(xticks=[], yticks=[])
-    for spine in axes.spines.values():
-        spine.set(color=ACCENT if edge else "0.6", linewidth=2.0 if edge else 0.8)
-
-
-def _title(check: VHCheck, title: str, columns: int) -> Iterator[str]:
-    """Lines no longer than the picture is wide."""
-    first = check.patterns[0][0]
-    what = f"contact pattern on the {first.gear}, marking compound {1e3 * first.compound:.4g} µm, no load"
-    inside = f"dot: its centre; in each cell the tip is on top, {check.frame.heelwards} on the right; {EDGE}"
-    for line in (title, what, inside):
-        yield from textwrap.wrap(line, int(CHARACTERS * _width(columns)))
-
-
-def _width(columns: int) -> float:
-    """Width of the picture [inch]."""
-    return MARGIN + CELL[0] * columns

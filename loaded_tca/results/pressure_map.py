@@ -40,12 +40,15 @@ class PressureMap:
     axes: Array
 
     @property
+    def borders(self) -> tuple[Array, Array]:
+        """Borders of the cells across (nx + 1,) and along the contact (ny + 1,), from the contact point [mm]."""
+        dx, dy = self.spacing
+        return np.append(self.x, self.x[-1] + dx) - 0.5 * dx, np.append(self.y, self.y[-1] + dy) - 0.5 * dy
+
+    @property
     def corners(self) -> Array:
         """Corners (nx + 1, ny + 1, 3) of the cells in the tangent plane, in the fixed frame [mm]."""
-        x, y = (
-            np.append(centres, centres[-1] + step) - 0.5 * step
-            for centres, step in zip((self.x, self.y), self.spacing, strict=True)
-        )
+        x, y = self.borders
         return self.origin + x[:, None, None] * self.axes[0] + y[:, None] * self.axes[1]
 
     @property

@@ -7,9 +7,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
 
 from loaded_tca.flanks.base import EDGE_NAMES
-from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.results.pressure_map import PressureMap
 
 NAMES = tuple(f"{gear} {edge}" for gear in ("pinion", "wheel") for edge in EDGE_NAMES)
 """Edges in the order of ``ContactPath.edges``."""
@@ -28,22 +26,19 @@ def reached_edges(result: MeshCycle) -> NDArray[np.bool_]:
         Over torques, positions, pairs, and ``NAMES``: those that hold the unloaded contact point of a pair under load,
         and those beyond which the cells beside its pressure lie.
     """
+    pair = result.gear_pair
     held = np.stack([path.edges for path in result.paths], axis=1)
     reached = held & (result.normal_force > 0.0)[..., None]
     for t, n, k in np.argwhere(result.on_edge):
         one = result.maps[t][n][k]
-        if one is not None:
-            reached[t, n, k] |= _beside_pressure(result.gear_pair, one)
+        if one is None:
+            continue
+        row, column = np.nonzero(binary_dilation(one.pressure > 0.0) & np.isinf(one.gap))
+        points = one.origin + one.x[row, None] * one.axes[0] + one.y[column, None] * one.axes[1]
+        radius, _, axial = pair.to_wheel(points)
+        edges = [
+            *pair.pinion.flank.edges(np.hypot(points[:, 0], points[:, 1]), points[:, 2]),
+            *pair.wheel.flank.edges(radius, axial),
+        ]
+        reached[t, n, k] |= [bool((np.broadcast_to(edge.value, row.shape) < 0.0).any()) for edge in edges]
     return reached
-
-
-def _beside_pressure(pair: GearPair, one: PressureMap) -> NDArray[np.bool_]:
-    """Edges (8,) beyond which cells without material lie that touch cells under pressure."""
-    row, column = np.nonzero(binary_dilation(one.pressure > 0.0) & np.isinf(one.gap))
-    points = one.origin + one.x[row, None] * one.axes[0] + one.y[column, None] * one.axes[1]
-    radius, _, axial = pair.to_wheel(points)
-    edges = [
-        *pair.pinion.flank.edges(np.hypot(points[:, 0], points[:, 1]), points[:, 2]),
-        *pair.wheel.flank.edges(radius, axial),
-    ]
-    return np.array([bool((np.broadcast_to(edge.value, row.shape) < 0.0).any()) for edge in edges])

@@ -70,7 +70,7 @@ def test_edge_of_the_material_asks_for_the_approach_and_stops_at_64_cells():
     assert solution.approach > contact.approach
 
 
-def test_doubts_warn_unless_left_to_the_caller():
+def test_accuracy_warnings_are_given_unless_left_to_the_caller():
     sample, _ = paraboloid((0.1, 0.1), box=0.8)
     with pytest.warns(AccuracyWarning, match="reaches the box"):
         solve_to_accuracy(sample, accuracy=1e-2)

@@ -50,13 +50,12 @@ def test_single_precision_agrees_to_its_digits(rng):
     assert_allclose(found, summed(pressure.astype(float), 2.0), rtol=SINGLE)
 
 
-def test_convolution_counts_and_leaves_its_input_alone(rng):
+def test_convolution_leaves_its_input_alone(rng):
     pressure = rng.random((8, 8))
     before = pressure.copy()
     convolve = Convolution((8, 8), 1.0)
     first = convolve(pressure, np.empty((8, 8)))
     second = convolve(pressure, np.empty((8, 8)))
-    assert convolve.count == 2
     assert np.array_equal(pressure, before)
     assert np.array_equal(first, second)
 

@@ -89,10 +89,12 @@ def test_displacement_of_a_window_is_that_of_the_whole_pressure(edges):
     pressure, window = np.zeros((6, 7)), (slice(1, 4), slice(2, 6))
     pressure[window] = np.random.default_rng(2).random((3, 4))
     whole = MirroredConvolution((6, 7), 0.6, edges)(pressure, np.empty((6, 7)))
-    convolve = MirroredConvolution((6, 7), 0.6, edges, window)
+    convolve, calls = MirroredConvolution((6, 7), 0.6, edges, window), []
+    once = convolve._convolve
+    convolve._convolve = lambda *given: calls.append(given) or once(*given)
     part = convolve(np.ascontiguousarray(pressure[window]), np.empty((6, 7)))
     assert_allclose(part, whole, atol=ROUNDING * whole.max())
-    assert convolve.count == 1
+    assert len(calls) == 1
 
 
 @pytest.mark.parametrize("edges", EDGES[:3] + EDGES[4:5])

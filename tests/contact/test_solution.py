@@ -54,7 +54,7 @@ def test_peak_of_a_capped_contact_is_the_cap():
     assert ball(max_pressure=500.0).peak_pressure == pytest.approx(500.0, rel=1e-12)
 
 
-def test_doubts_name_both_reasons():
+def test_accuracy_warnings_name_both_reasons():
     narrow = solve_contact(np.zeros((3, 30)), (0.1, 0.1), E_STAR, load=1.0, warn=False)
     assert len(narrow.accuracy_warnings) == 2
     assert "reaches the box" in narrow.accuracy_warnings[0]

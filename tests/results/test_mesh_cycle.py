@@ -303,7 +303,7 @@ def test_contact_points_on_a_edge_are_told():
     assert figures["peak_pressure_MPa"] == edge_contact().central_pressure.max()
 
 
-def test_relief_start_in_the_contact_makes_a_peak_doubtful():
+def test_relief_start_in_the_contact_makes_a_peak_mesh_dependent():
     relief_start = np.array([True, False, False, False, False])[None, :, None]
     cycle = changed(result(), on_relief_start=relief_start)
     assert (cycle.peak_at_edge == relief_start).all()

@@ -28,7 +28,6 @@ from loaded_tca.flanks import FlankModifications
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, solve_under_load
 from loaded_tca.pairs.bevel import BevelMounting
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.plots.pressure_map import cell_limits
 from loaded_tca.reference.hertz import PointContact, point_contact
 from loaded_tca.unloaded import trace_contact
 from validation.bevel.pairs import SPIRAL, STRAIGHT, BevelGears
@@ -217,7 +216,8 @@ def _corners(case: Case, one: Pressed) -> tuple[Array, Array]:
     """Corners of the cells on the pinion."""
     separation = one.loaded.separation
     x, y = (
-        cell_limits(part, step) for part, step in zip((separation.x, separation.y), separation.spacing, strict=True)
+        np.append(part, part[-1] + step) - 0.5 * step
+        for part, step in zip((separation.x, separation.y), separation.spacing, strict=True)
     )
     return _on_pinion(case, one, x[:, None], y)
 
