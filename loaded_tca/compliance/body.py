@@ -118,12 +118,16 @@ class ToothFrame:
         first = layout.base_row + 2 * layout.density.fillet
         return slice(first, first + 2 * layout.density.flank + 1)
 
+    def _flank_ends(self, where: Array) -> list[Array]:
+        """Radii (m,) of the images of root and tip of the flank, at coordinates (m,) of sections."""
+        radii = self.nodes.radius[self._column(0.5 + 0.5 * self.side), self._flank_rows()]
+        return [np.interp(where, self.nodes.coordinate, radii[end]) for end in (0, -1)]
+
     def parts(self, rho: Array, z: Array) -> tuple[Array, Array]:
         """Parts (m,) of the flank's height and of the face width, of points of the flank or just beyond it."""
         sections, coordinate = self.nodes.sections, self.nodes.coordinate
         where = sections.coordinate(rho, z)
-        radii = self.nodes.radius[self._column(0.5 + 0.5 * self.side), self._flank_rows()]
-        low, high = (np.interp(where, coordinate, radii[end]) for end in (0, -1))
+        low, high = self._flank_ends(where)
         length = (where - coordinate[0]) / (coordinate[-1] - coordinate[0])
         return np.clip((sections.radius(rho, z) - low) / (high - low), 0.0, 1.0), np.clip(length, 0.0, 1.0)
 
@@ -131,8 +135,7 @@ class ToothFrame:
         """Points at parts (m,) of the flank's height and of the face width."""
         coordinate = self.nodes.coordinate
         where = coordinate[0] + length * (coordinate[-1] - coordinate[0])
-        radii = self.nodes.radius[self._column(0.5 + 0.5 * self.side), self._flank_rows()]
-        low, high = (np.interp(where, coordinate, radii[end]) for end in (0, -1))
+        low, high = self._flank_ends(where)
         rho, z = self.nodes.sections.point(low + height * (high - low), where)
         theta = self.flank.theta(rho, z).value + self.side * self.gear.form.half_thickness_angle
         radial, hoop, axial = outward_normal(self.flank, rho, z).T
@@ -199,26 +202,11 @@ def _among_nodes(number: Indices, row: Array, layer: Array) -> SurfacePlaces:
     return SurfacePlaces(number[nodes[0], nodes[1]], shares)
 
 
-@dataclass(frozen=True, eq=False)
-class GearBody:
-    """The stiffness of a whole gear body in space, factorised.
-
-    Attributes
-    ----------
-    mesh : Discretisation
-    factorisation : Factorisation
-    """
-
-    mesh: Discretisation
-    factorisation: Factorisation
-
-
-def gear_body(nodes: BodyNodes, material: Material) -> GearBody:
-    """Assemble and factorise the stiffness of a ring held at its bore."""
-    layout = nodes.layout
-    lowest, spans, blocks = layout.bricks
-    mesh = discretise(nodes.points, lowest, layout.turns, spans)
-    return GearBody(mesh, factorised(mesh, material, blocks)[0])
+def gear_body(nodes: BodyNodes, material: Material) -> tuple[Discretisation, Factorisation]:
+    """Mesh of a ring held at its bore, and the factor of its stiffness."""
+    lowest, spans, blocks = nodes.layout.bricks
+    mesh = discretise(nodes.points, lowest, nodes.layout.turns, spans)
+    return mesh, factorised(mesh, material, blocks)[0]
 
 
 def factorised(mesh: Discretisation, material: Material, blocks: Indices | None = None) -> tuple[Factorisation, Array]:

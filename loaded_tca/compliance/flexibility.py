@@ -11,7 +11,7 @@ from scipy.sparse import vstack
 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.body import FlankPlaces, ToothFrame, gear_body
-from loaded_tca.compliance.local_term import LocalFlexibility, local_flexibility
+from loaded_tca.compliance.local_term import local_flexibility
 
 HEIGHTS = 6
 """Places along the profile between which the displacements are interpolated."""
@@ -32,14 +32,16 @@ class ToothFlexibility:
         Of the teeth ``-neighbours`` to ``+neighbours``: at the second place under a force at the third on tooth 0.
     depth : (a, b) array [mm]
         From there along the normal to the middle of the tooth.
-    local : LocalFlexibility
+    local_height, local_value : (n,) array
+        Parts of the flank's height, increasing, and the local term there [mm per N/mm].
     """
 
     heights: Array
     lengths: Array
     displacement: Array
     depth: Array
-    local: LocalFlexibility
+    local_height: Array
+    local_value: Array
 
 
 def grid_of_places(frame: ToothFrame) -> tuple[Array, Array, FlankPlaces]:
@@ -64,11 +66,11 @@ def tooth_flexibility(frame: ToothFrame) -> ToothFlexibility:
         If the mesh is turned inside out.
     """
     heights, lengths, places = grid_of_places(frame)
-    body, near = gear_body(frame.nodes, frame.gear.material), frame.nodes.layout.neighbours
-    number, size = body.mesh.number, len(body.mesh.points)
+    mesh, factor = gear_body(frame.nodes, frame.gear.material)
+    number, size, near = mesh.number, len(mesh.points), frame.nodes.layout.neighbours
     forces = frame.on_flank(places, number).along(-places.normal, size)
     teeth = [frame.on_middle(places, tooth, number) for tooth in range(-near, near + 1)]
     readings = vstack([middle.along(-places.normal, size) for middle in teeth], format="csr")
-    displacement = body.factorisation.flexibility(forces, readings).reshape(len(teeth), len(places.height), -1)
+    displacement = factor.flexibility(forces, readings).reshape(len(teeth), len(places.height), -1)
     depth = places.depth.reshape(len(heights), len(lengths))
-    return ToothFlexibility(heights, lengths, displacement, depth, local_flexibility(frame.gear))
+    return ToothFlexibility(heights, lengths, displacement, depth, *local_flexibility(frame.gear))

@@ -21,14 +21,12 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from threading import Lock
-from typing import Any
 
 import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.body import ToothFrame
 from loaded_tca.compliance.flexibility import ToothFlexibility, grid_of_places, tooth_flexibility
-from loaded_tca.compliance.local_term import LocalFlexibility
 
 FOLDER = "LOADED_TCA_CACHE"
 """Environment variable: where to keep models on disk, or "off"."""
@@ -62,7 +60,7 @@ def kept_flexibility(frame: ToothFrame) -> ToothFlexibility:
         _recent.move_to_end(key)
         while len(_recent) > MOST_IN_MEMORY:
             _recent.popitem(last=False)
-    for values in _arrays(found).values():
+    for values in vars(found).values():
         values.setflags(write=False)
     return found
 
@@ -112,36 +110,27 @@ def _folder() -> Path | None:
     return None
 
 
-def _arrays(flexibility: ToothFlexibility) -> dict[str, Array]:
-    """All numbers of a flexibility by name."""
-    names = "heights", "lengths", "displacement", "depth"
-    local = {"local_height": flexibility.local.height, "local_value": flexibility.local.value}
-    return {name: getattr(flexibility, name) for name in names} | local
-
-
 def _read(path: Path, key: str) -> ToothFlexibility | None:
     """Return what a file keeps under a key; None if it is not there, damaged, or another's."""
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             own = str(file["key"]) == key
             values = {name: np.asarray(file[name], dtype=float) for name in file.files if name != "key"}
-        local = LocalFlexibility(values.pop("local_height"), values.pop("local_value"))
-        found = ToothFlexibility(**values, local=local)
+        found = ToothFlexibility(**values)
         fits = found.displacement.shape[1:] == (found.depth.size,) * 2
     except (*UNREADABLE, TypeError):
         return None
-    return found if own and fits and all(np.isfinite(array).all() for array in _arrays(found).values()) else None
+    return found if own and fits and all(np.isfinite(array).all() for array in values.values()) else None
 
 
 def _write(folder: Path, key: str, flexibility: ToothFlexibility) -> None:
     """Write a file as a whole or not at all, and remove the oldest beyond the most."""
-    values: dict[str, Any] = {"key": key, **_arrays(flexibility)}
     with contextlib.suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
         descriptor, unfinished = tempfile.mkstemp(dir=folder, suffix=".unfinished")
         try:
             with os.fdopen(descriptor, "wb") as file:
-                np.savez(file, **values)
+                np.savez(file, key=np.array(key), **vars(flexibility))
             os.replace(unfinished, folder / f"{key}.npz")
         finally:
             Path(unfinished).unlink(missing_ok=True)

@@ -14,11 +14,12 @@ SMALLEST_DISTANCE = 1e-3
 """Cone distances are kept above this fraction of R_m: at the apex there is no flank."""
 
 
-@dataclass(frozen=True)
+@dataclass(slots=True)
 class Jet:
     """Value, gradient and Hessian of a function of (rho, z); arrays that broadcast against each other.
 
-    Plain floats stand for constants, and a derivative that is the number zero costs nothing.
+    Plain floats stand for constants, and a derivative that is the number zero costs nothing. Never changed once made
+    (not ``frozen``, which would double the time to make one).
     """
 
     value: Any
