@@ -10,7 +10,7 @@ from scipy.sparse import csr_array
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.dissection import Factorisation, factorise
-from loaded_tca.compliance.finite_elements import Discretisation, discretise
+from loaded_tca.compliance.finite_elements import Discretisation, discretise, node_offsets
 from loaded_tca.compliance.geometry import BodyNodes, body_nodes
 from loaded_tca.compliance.layout import MeshDensity, RingLayout
 from loaded_tca.flanks.base import Flank, outward_normal
@@ -196,7 +196,7 @@ def _among_nodes(number: Indices, row: Array, layer: Array) -> SurfacePlaces:
     span = np.where(number[2 * lowest[0], 2 * lowest[1] + 1] < 0, 2, 1)  # a middle that is missing: a thick element
     lowest[1] -= lowest[1] % span
     local = np.stack([0.5 * row - lowest[0], (0.5 * layer - lowest[1]) / span])
-    offsets = np.rint(2.0 * np.asarray(element.doflocs)).astype(int).T[:, None]
+    offsets = node_offsets(element).T[:, None]
     nodes = 2 * lowest[0, :, None] + offsets[0], 2 * lowest[1, :, None] + offsets[1] * span[:, None]
     shares = np.stack([element.lbasis(local, i)[0] for i in range(offsets.shape[-1])], axis=-1)
     return SurfacePlaces(number[nodes[0], nodes[1]], shares)

@@ -118,9 +118,7 @@ class GearCompliance:
         places = _Places.of(self, line)
         depth = np.einsum("ma,ab,mb->m", places.across, self.table.depth, places.along)[:, None]
         width = float(np.ptp(self.frame.nodes.coordinate))
-        from_start = width * (
-            places.length[:, None] + places.length
-        )  # of mirror images beyond the ends of the face
+        from_start = width * (places.length[:, None] + places.length)  # of mirror images beyond the ends of the face
         spread = sum(_spread(depth, away) for away in (distance, from_start, 2.0 * width - from_start))
         material = self.frame.gear.material
         half_space = depth_displacement(depth, distance, material)
