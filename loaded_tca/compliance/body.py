@@ -10,7 +10,7 @@ from scipy.sparse import csr_array
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.dissection import Factorisation, factorise
-from loaded_tca.compliance.finite_elements import Discretisation, discretise
+from loaded_tca.compliance.finite_elements import Discretisation, discretise, node_offsets
 from loaded_tca.compliance.geometry import BodyNodes, body_nodes
 from loaded_tca.compliance.layout import MeshDensity, RingLayout
 from loaded_tca.flanks.base import Flank, outward_normal
@@ -118,17 +118,16 @@ class ToothFrame:
         first = layout.base_row + 2 * layout.density.fillet
         return slice(first, first + 2 * layout.density.flank + 1)
 
-    def _radii(self, where: Array) -> tuple[Array, Array]:
-        """Radii (m,) of the images of the root and the tip of the flank, in the sections at ``where`` (m,)."""
+    def _flank_ends(self, where: Array) -> list[Array]:
+        """Radii (m,) of the images of root and tip of the flank, at coordinates (m,) of sections."""
         radii = self.nodes.radius[self._column(0.5 + 0.5 * self.side), self._flank_rows()]
-        low, high = (np.interp(where, self.nodes.coordinate, radii[end]) for end in (0, -1))
-        return low, high
+        return [np.interp(where, self.nodes.coordinate, radii[end]) for end in (0, -1)]
 
     def parts(self, rho: Array, z: Array) -> tuple[Array, Array]:
         """Parts (m,) of the flank's height and of the face width, of points of the flank or just beyond it."""
         sections, coordinate = self.nodes.sections, self.nodes.coordinate
         where = sections.coordinate(rho, z)
-        low, high = self._radii(where)
+        low, high = self._flank_ends(where)
         length = (where - coordinate[0]) / (coordinate[-1] - coordinate[0])
         return np.clip((sections.radius(rho, z) - low) / (high - low), 0.0, 1.0), np.clip(length, 0.0, 1.0)
 
@@ -136,7 +135,7 @@ class ToothFrame:
         """Points at parts (m,) of the flank's height and of the face width."""
         coordinate = self.nodes.coordinate
         where = coordinate[0] + length * (coordinate[-1] - coordinate[0])
-        low, high = self._radii(where)
+        low, high = self._flank_ends(where)
         rho, z = self.nodes.sections.point(low + height * (high - low), where)
         theta = self.flank.theta(rho, z).value + self.side * self.gear.form.half_thickness_angle
         radial, hoop, axial = outward_normal(self.flank, rho, z).T
@@ -192,17 +191,16 @@ def _among_nodes(number: Indices, row: Array, layer: Array) -> SurfacePlaces:
     span = np.where(number[2 * lowest[0], 2 * lowest[1] + 1] < 0, 2, 1)  # a middle that is missing: a thick element
     lowest[1] -= lowest[1] % span
     local = np.stack([0.5 * row - lowest[0], (0.5 * layer - lowest[1]) / span])
-    offsets = np.rint(2.0 * np.asarray(element.doflocs)).astype(int).T[:, None]
+    offsets = node_offsets(element).T[:, None]
     nodes = 2 * lowest[0, :, None] + offsets[0], 2 * lowest[1, :, None] + offsets[1] * span[:, None]
     shares = np.stack([element.lbasis(local, i)[0] for i in range(offsets.shape[-1])], axis=-1)
     return SurfacePlaces(number[nodes[0], nodes[1]], shares)
 
 
 def gear_body(nodes: BodyNodes, material: Material) -> tuple[Discretisation, Factorisation]:
-    """Mesh of a ring held at its bore, and its stiffness, factorised."""
-    layout = nodes.layout
-    lowest, spans, blocks = layout.bricks
-    mesh = discretise(nodes.points, lowest, layout.turns, spans)
+    """Mesh of a ring held at its bore, and the factor of its stiffness."""
+    lowest, spans, blocks = nodes.layout.bricks
+    mesh = discretise(nodes.points, lowest, nodes.layout.turns, spans)
     return mesh, factorised(mesh, material, blocks)[0]
 
 

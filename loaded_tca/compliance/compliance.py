@@ -42,8 +42,14 @@ class ToothCompliance:
 
         It is a part of :meth:`within`, told to show what a bore diameter does; of bevel gears that of the mean section.
         """
-        gears = zip((self.pinion, self.wheel), self.pair.base_radii, strict=True)
-        return tuple(_body_torsion(gear, base_radius) for gear, base_radius in gears)  # type: ignore[return-value]
+        found = []
+        for gear, base_radius in zip((self.pinion, self.wheel), self.pair.base_radii, strict=True):
+            nodes, middle = gear.frame.nodes, len(gear.frame.nodes.coordinate) // 2
+            images = nodes.radius[0, [0, nodes.layout.base_row], middle]
+            radii, _ = nodes.sections.point(images, nodes.coordinate[middle])
+            twist = ring_torsion(float(radii[0]), float(radii[1]), gear.frame.gear.material)
+            found.append(base_radius**2 * twist / float(np.ptp(nodes.coordinate)))
+        return found[0], found[1]
 
     def within(self, number: int, separation: Separation, edges: Sequence[FreeEdge] = ()) -> Array:
         """Deflection of every slice of a contact's grid per force on each, both gears together.
@@ -64,11 +70,9 @@ class ToothCompliance:
         (ny, ny) array [mm/N]
             Symmetric.
         """
-        along = separation.y
-        distance, images = np.abs(along[:, None] - along), _images(separation, edges)
-        lines = zip((self.pinion, self.wheel), self._lines(number, separation), strict=True)
-        pinion, wheel = (gear.within(line, distance, images) for gear, line in lines)
-        return np.asarray(pinion + wheel)
+        distance, images = np.abs(separation.y[:, None] - separation.y), _images(separation, edges)
+        on_pinion, on_wheel = self._lines(number, separation)
+        return self.pinion.within(on_pinion, distance, images) + self.wheel.within(on_wheel, distance, images)
 
     def between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
         """Deflection of every slice of one contact's grid per force on each slice of another's.
@@ -154,14 +158,6 @@ def tooth_compliance(pair: GearPair, *, neighbours: int = 1, density: MeshDensit
         with named(name):
             found.append(gear_compliance(gear, replace(density or default_density(gear), neighbours=neighbours)))
     return ToothCompliance(pair, *found)
-
-
-def _body_torsion(gear: GearCompliance, base_radius: float) -> float:
-    """Displacement along the line of action per force [mm/N] by the twist of the ring."""
-    nodes = gear.frame.nodes
-    middle, width = len(nodes.coordinate) // 2, float(np.ptp(nodes.coordinate))
-    radii, _ = nodes.sections.point(nodes.radius[0, [0, nodes.layout.base_row], middle], nodes.coordinate[middle])
-    return base_radius**2 * ring_torsion(float(radii[0]), float(radii[1]), gear.frame.gear.material) / width
 
 
 def default_density(gear: Gear) -> MeshDensity:

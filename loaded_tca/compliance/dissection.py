@@ -14,7 +14,6 @@ multifrontal solution of indefinite sparse symmetric linear equations, ACM Trans
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -89,7 +88,7 @@ class Factorisation:
 
 def _substitute(down: Sequence[_Front], up: Sequence[_Front], found: Array) -> None:
     """Forward and backward substitution through fronts in the order of elimination, in place."""
-    with _one_thread():
+    with threadpool_limits(1, user_api="blas"):  # the fronts are small: threads waiting for each other cost far more
         for front in down:
             part = solve_triangular(front.factor, found[front.inside], lower=True, check_finite=False)
             found[front.inside] = part
@@ -135,7 +134,7 @@ def factorise(
     places = np.column_stack([np.zeros(n, dtype=int) if blocks is None else blocks, places])
     touching = np.bincount(dofs.ravel(), minlength=size)
     work = _Elimination(matrices, kinds, np.where(free[dofs], dofs, size), places, touching)
-    with _one_thread():
+    with threadpool_limits(1, user_api="blas"):
         unknowns, whole = work.eliminate(np.arange(n))
     return Factorisation(tuple(front.renumbered(unknowns) for front in whole.fronts), size)
 
@@ -165,7 +164,12 @@ class _Elimination:
 
     def eliminate(self, elements: Indices) -> tuple[Indices, _Part]:
         """Eliminate what lies inside some elements: their unknowns, and the part in numbers among these."""
-        unknowns, dofs = self._numbered(elements)
+        flat, held = self.dofs[elements].ravel(), len(self.touching)
+        order, place = np.arange(len(flat)), np.empty(held + 1, dtype=int)
+        place[flat[::-1]] = order[::-1]
+        unknowns = flat[(place[flat] == order) & (flat != held)]  # in the order in which they first occur
+        place[unknowns], place[held] = order[: len(unknowns)], len(unknowns)
+        dofs = place[flat].reshape(len(elements), -1)
         count = np.bincount(dofs.ravel(), minlength=len(unknowns))[: len(unknowns)]
         inner = count == self.touching[unknowns]
         key = self.kinds[elements].tobytes(), dofs.tobytes(), inner.tobytes()
@@ -173,22 +177,18 @@ class _Elimination:
             self.known[key] = self._part(elements, unknowns, dofs, inner)
         return unknowns, self.known[key]
 
-    def _numbered(self, elements: Indices) -> tuple[Indices, Indices]:
-        """Unknowns in the order in which they first occur, and the elements' unknowns by their numbers in it."""
-        flat, held = self.dofs[elements].ravel(), len(self.touching)
-        order, place = np.arange(len(flat)), np.empty(held + 1, dtype=int)
-        place[flat[::-1]] = order[::-1]
-        unknowns = flat[(place[flat] == order) & (flat != held)]
-        place[unknowns], place[held] = order[: len(unknowns)], len(unknowns)
-        return unknowns, place[flat].reshape(len(elements), -1)
-
     def _part(self, elements: Indices, unknowns: Indices, dofs: Indices, inner: Flags) -> _Part:
         """Sum up the elements or both halves, and eliminate the unknowns that are told to be inside."""
         if len(elements) <= LEAF:
             order = np.concatenate([np.flatnonzero(inner), np.flatnonzero(~inner)])
             fronts, matrix = [], _assembled(dofs, self.matrices[self.kinds[elements]], order)
         else:
-            halves = [self._among(unknowns, half) for half in self._halves(elements)]
+            place, halves = np.empty(len(self.touching), dtype=int), []
+            place[unknowns] = np.arange(len(unknowns))
+            for half in self._halves(elements):
+                own, part = self.eliminate(half)
+                fronts = [front.renumbered(place[own]) for front in part.fronts]
+                halves.append(_Part(fronts, place[own][part.border], part.matrix))
             left = np.zeros(len(unknowns), dtype=bool)
             left[np.concatenate([half.border for half in halves])] = True
             order = np.concatenate([np.flatnonzero(inner & left), np.flatnonzero(~inner)])
@@ -197,14 +197,6 @@ class _Elimination:
         factor, coupling, rest = _eliminated(matrix, count)
         fronts.append(_Front(order[:count], order[count:], factor, coupling))
         return _Part(fronts, order[count:], rest)
-
-    def _among(self, unknowns: Indices, elements: Indices) -> _Part:
-        """Eliminate what lies inside some elements; numbers are places among unknowns of more elements."""
-        own, part = self.eliminate(elements)
-        place = np.empty(len(self.touching), dtype=int)
-        place[unknowns] = np.arange(len(unknowns))
-        number = place[own]
-        return _Part([front.renumbered(number) for front in part.fronts], number[part.border], part.matrix)
 
     def _halves(self, elements: Indices) -> tuple[Indices, Indices]:
         """Both halves: of several blocks in a row, else cut across the direction with most elements."""
@@ -249,9 +241,3 @@ def _eliminated(matrix: Array, count: int) -> tuple[Array, Array, Array]:
     rest = np.zeros((len(matrix) - count + 1,) * 2)
     np.subtract(matrix[count:, count:], coupling @ coupling.T, out=rest[:-1, :-1])
     return factor, coupling, rest
-
-
-def _one_thread() -> AbstractContextManager[object]:
-    """One thread for linear algebra: the fronts are small, and threads waiting for each other cost many times more."""
-    limits: AbstractContextManager[object] = threadpool_limits(1, user_api="blas")
-    return limits

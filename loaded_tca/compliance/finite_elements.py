@@ -49,8 +49,12 @@ def nodes_of(lowest: Indices, spans: Indices, offsets: Indices, columns: int) ->
         For each of ``FACES`` 0, or 1 and 2 for a thin element on the first and second half of a thick face.
     """
     nodes = lowest[:, None] + offsets * np.column_stack([np.ones((len(spans), 2), dtype=int), spans])[:, None]
-    faces = np.stack([_face(lowest, axis, value, columns) for axis, value in FACES], axis=1)
-    thick = spans == 2
+    limits, numbers = lowest.max(axis=0) + 3, []
+    for axis, value in FACES:  # a number for the face of a thick element, or for that of which a thin one's is a half
+        middle = lowest[:, :2] + 1
+        middle[:, axis] += value - 1
+        numbers.append((middle[:, 0] % columns * limits[1] + middle[:, 1]) * limits[2] + lowest[:, 2] // 4)
+    faces, thick = np.stack(numbers, axis=1), spans == 2
     shared = np.isin(faces, faces[thick]) & ~thick[:, None]
     hanging = np.where(shared, 1 + lowest[:, 2:] // 2 % 2, 0)
     for n, (axis, value) in enumerate(FACES):
@@ -59,15 +63,6 @@ def nodes_of(lowest: Indices, spans: Indices, offsets: Indices, columns: int) ->
         nodes[np.ix_(shared[:, n], on_face, [2])] = (start + 2 * offsets[on_face, 2])[..., None]
     nodes[..., 0] %= columns
     return nodes, hanging
-
-
-def _face(lowest: Indices, axis: int, value: int, columns: int) -> Indices:
-    """A number (n,) for the face of a thick element, or the one of which the face of a thin one is a half."""
-    middle = lowest[:, :2] + 1
-    middle[:, axis] += value - 1
-    middle[:, 0] %= columns
-    limits = lowest.max(axis=0) + 3
-    return np.asarray((middle[:, 0] * limits[1] + middle[:, 1]) * limits[2] + lowest[:, 2] // 4)
 
 
 def following(hanging: Indices, offsets: Indices, quad: Any) -> Array:
@@ -83,7 +78,7 @@ def following(hanging: Indices, offsets: Indices, quad: Any) -> Array:
     """
     codes, which = np.unique(hanging, axis=0, return_inverse=True)
     found = np.tile(np.eye(len(offsets)), (len(codes), 1, 1))
-    order = np.rint(2.0 * np.asarray(quad.doflocs)).astype(int)
+    order = node_offsets(quad)
     for share, code in zip(found, codes, strict=True):
         for (axis, value), half in zip(FACES, code, strict=True):
             if half:
@@ -185,7 +180,8 @@ def discretise(
         If an element is turned inside out.
     """
     shape, d = points.shape[:-1], points.shape[-1]
-    element, offsets = _element(d), _offsets(d)
+    element = _element(d)
+    offsets = node_offsets(element)
     if spans is None:
         nodes, hanging = offsets + lowest[:, None], np.zeros((len(lowest), len(FACES)), dtype=int)
         nodes[..., 0] %= shape[0]
@@ -232,9 +228,9 @@ def _element(dimension: int) -> Any:
     return {2: ElementQuadS2, 3: ElementHexS2}[dimension]()
 
 
-def _offsets(dimension: int) -> Indices:
-    """Nodes (k, d) of an element, 0 to 2 from the lowest."""
-    return np.rint(2.0 * np.asarray(_element(dimension).doflocs)).astype(int)
+def node_offsets(element: Any) -> Indices:
+    """Nodes (k, d) of an element of scikit-fem, 0 to 2 from the lowest."""
+    return np.rint(2.0 * np.asarray(element.doflocs)).astype(int)
 
 
 def _products(element: Any, corners: Array) -> Array:

@@ -26,7 +26,6 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from threading import Lock
-from typing import Any
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebpts2
@@ -34,7 +33,7 @@ from scipy.sparse import vstack
 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.body import FlankPlaces, ToothFrame, gear_body
-from loaded_tca.compliance.local_term import LocalFlexibility, local_flexibility
+from loaded_tca.compliance.local_term import local_flexibility
 
 HEIGHTS = 6
 """Places along the profile between which the displacements are interpolated."""
@@ -65,14 +64,16 @@ class ToothFlexibility:
         Of the teeth ``-neighbours`` to ``+neighbours``: at the second place under a force at the third on tooth 0.
     depth : (a, b) array [mm]
         From there along the normal to the middle of the tooth.
-    local : LocalFlexibility
+    local_height, local_value : (n,) array
+        Parts of the flank's height, increasing, and the local term there [mm per N/mm].
     """
 
     heights: Array
     lengths: Array
     displacement: Array
     depth: Array
-    local: LocalFlexibility
+    local_height: Array
+    local_value: Array
 
 
 def grid_of_places(frame: ToothFrame) -> tuple[Array, Array, FlankPlaces]:
@@ -97,14 +98,14 @@ def tooth_flexibility(frame: ToothFrame) -> ToothFlexibility:
         If the mesh is turned inside out.
     """
     heights, lengths, places = grid_of_places(frame)
-    (mesh, factor), near = gear_body(frame.nodes, frame.gear.material), frame.nodes.layout.neighbours
-    number, size = mesh.number, len(mesh.points)
+    mesh, factor = gear_body(frame.nodes, frame.gear.material)
+    number, size, near = mesh.number, len(mesh.points), frame.nodes.layout.neighbours
     forces = frame.on_flank(places, number).along(-places.normal, size)
     teeth = [frame.on_middle(places, tooth, number) for tooth in range(-near, near + 1)]
     readings = vstack([middle.along(-places.normal, size) for middle in teeth], format="csr")
     displacement = factor.flexibility(forces, readings).reshape(len(teeth), len(places.height), -1)
     depth = places.depth.reshape(len(heights), len(lengths))
-    return ToothFlexibility(heights, lengths, displacement, depth, local_flexibility(frame.gear))
+    return ToothFlexibility(heights, lengths, displacement, depth, *local_flexibility(frame.gear))
 
 
 def kept_flexibility(frame: ToothFrame) -> ToothFlexibility:
@@ -126,7 +127,7 @@ def kept_flexibility(frame: ToothFrame) -> ToothFlexibility:
         _recent.move_to_end(key)
         while len(_recent) > MOST_IN_MEMORY:
             _recent.popitem(last=False)
-    for values in _arrays(found).values():
+    for values in vars(found).values():
         values.setflags(write=False)
     return found
 
@@ -176,36 +177,27 @@ def _folder() -> Path | None:
     return None
 
 
-def _arrays(flexibility: ToothFlexibility) -> dict[str, Array]:
-    """All numbers of a flexibility by name."""
-    names = "heights", "lengths", "displacement", "depth"
-    local = {"local_height": flexibility.local.height, "local_value": flexibility.local.value}
-    return {name: getattr(flexibility, name) for name in names} | local
-
-
 def _read(path: Path, key: str) -> ToothFlexibility | None:
     """Return what a file keeps under a key; None if it is not there, damaged, or another's."""
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             own = str(file["key"]) == key
             values = {name: np.asarray(file[name], dtype=float) for name in file.files if name != "key"}
-        local = LocalFlexibility(values.pop("local_height"), values.pop("local_value"))
-        found = ToothFlexibility(**values, local=local)
+        found = ToothFlexibility(**values)
         fits = found.displacement.shape[1:] == (found.depth.size,) * 2
     except (*UNREADABLE, TypeError):
         return None
-    return found if own and fits and all(np.isfinite(array).all() for array in _arrays(found).values()) else None
+    return found if own and fits and all(np.isfinite(array).all() for array in values.values()) else None
 
 
 def _write(folder: Path, key: str, flexibility: ToothFlexibility) -> None:
     """Write a file as a whole or not at all, and remove the oldest beyond the most."""
-    values: dict[str, Any] = {"key": key, **_arrays(flexibility)}
     with contextlib.suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
         descriptor, unfinished = tempfile.mkstemp(dir=folder, suffix=".unfinished")
         try:
             with os.fdopen(descriptor, "wb") as file:
-                np.savez(file, **values)
+                np.savez(file, key=np.array(key), **vars(flexibility))
             os.replace(unfinished, folder / f"{key}.npz")
         finally:
             Path(unfinished).unlink(missing_ok=True)

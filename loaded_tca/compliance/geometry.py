@@ -16,6 +16,7 @@ from scipy.optimize.elementwise import find_root
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.layout import MeshDensity, RingLayout, SectorLayout
 from loaded_tca.errors import InputError
+from loaded_tca.tooth.profile import lengths_along, polar
 from loaded_tca.tooth.sections import Sections
 from loaded_tca.tooth.surface import ToothSurface
 
@@ -112,16 +113,16 @@ def body_nodes(tooth: ToothSurface, sections: Sections, bore_radius: Array, layo
         raise InputError(f"tooth: {outline.shape[1]} sections, {wanted} are needed")
     rho, z = np.hypot(outline[..., 0], outline[..., 1]), outline[..., 2]
     coordinate = sections.coordinate(rho[0], z[0])
-    polar = sections.radius(rho, z), np.unwrap(np.arctan2(outline[..., 1], outline[..., 0]), axis=0)
-    lowest = polar[0].min(axis=0)
+    images = sections.radius(rho, z), np.unwrap(np.arctan2(outline[..., 1], outline[..., 0]), axis=0)
+    lowest = images[0].min(axis=0)
 
     def beyond_bore(image: Array, section: Array, rho: Array) -> Array:
         return sections.point(image, section)[0] - rho
 
     circles = coordinate, np.broadcast_to(bore_radius, lowest.shape)
     bore = find_root(beyond_bore, (0.0 * lowest, lowest), args=circles).x
-    sides = _side(tooth, polar, 1), _side(tooth, polar, -1)
-    radius, angle = (np.full((*layout.shape, len(coordinate)), np.nan) for _ in range(2))
+    sides = _side(tooth, images, 1), _side(tooth, images, -1)
+    radius, angle = np.full((2, *layout.shape, len(coordinate)), np.nan)
     for sector in layout.sectors:
         turn = 2.0 * math.pi / tooth.teeth * sector.number
         columns = slice(sector.first, sector.first + 2 * sector.columns)
@@ -130,26 +131,20 @@ def body_nodes(tooth: ToothSurface, sections: Sections, bore_radius: Array, layo
     return BodyNodes(layout, sections, coordinate, radius, angle, outline)
 
 
-def _side(tooth: ToothSurface, polar: tuple[Array, Array], sign: int) -> _Side:
+def _side(tooth: ToothSurface, outline: tuple[Array, Array], sign: int) -> _Side:
     """One side of the outline, from the root of its flank up and down."""
     joints = tooth.joints if sign > 0 else tuple(len(tooth.outline) - 1 - joint for joint in tooth.joints[::-1])
-    radius, angle = polar if sign > 0 else (polar[0][::-1], polar[1][::-1])
+    radius, angle = outline if sign > 0 else (outline[0][::-1], outline[1][::-1])
     flank, foot = slice(joints[4], joints[5] + 1), slice(joints[5], None)
-    points = np.stack([radius[foot] * np.cos(angle[foot]), radius[foot] * np.sin(angle[foot])])
-    steps = np.linalg.norm(np.diff(points, axis=1), axis=0)
-    length = np.concatenate([np.zeros_like(steps[:1]), np.cumsum(steps, axis=0)])
-    return _Side(
-        (radius[flank][::-1], angle[flank][::-1]),
-        (radius[foot], angle[foot]),
-        length,
-        length[joints[6] - joints[5]],
-    )
+    length = lengths_along(polar(radius[foot], angle[foot]))
+    ends = (radius[flank][::-1], angle[flank][::-1]), (radius[foot], angle[foot])
+    return _Side(*ends, length, length[joints[6] - joints[5]])
 
 
 def _sector(sector: SectorLayout, layout: RingLayout, sides: tuple[_Side, _Side], bore: Array) -> tuple[Array, Array]:
     """Radius and angle (columns, rows, k) of one pitch, both ends included."""
     density, rows = sector.density, layout.shape[1]
-    radius, angle = (np.full((2 * sector.columns + 1, rows, len(bore)), np.nan) for _ in range(2))
+    radius, angle = np.full((2, 2 * sector.columns + 1, rows, len(bore)), np.nan)
     if density is None:
         ends = [side.on_foot(np.array([2.0])) for side in sides]
         part = np.array([0.0, 0.5, 1.0])[:, None]

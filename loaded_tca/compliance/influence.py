@@ -89,18 +89,18 @@ class GearCompliance:
         InputError
             If the two are further apart than the teeth of the model.
         """
-        return self._displaced((at, _Places.of(self, at)), (under, _Places.of(self, under)))
-
-    def _displaced(self, at: tuple[FlankLine, _Places], under: tuple[FlankLine, _Places]) -> Array:
-        """As :meth:`between`, of lines whose places are known."""
         teeth = self.frame.gear.form.teeth
-        away = (at[0].tooth - under[0].tooth + teeth // 2) % teeth - teeth // 2
+        away = (at.tooth - under.tooth + teeth // 2) % teeth - teeth // 2
         if abs(away) > self.neighbours:
             raise InputError(
                 f"tooth: two loaded teeth are {abs(away)} pitches apart, the model has {self.neighbours} neighbours of "
                 "a loaded tooth; ask for more neighbours"
             )
-        return np.asarray(at[1].shares @ self._mutual[self.neighbours + away] @ under[1].shares.T)
+        return self._displaced(away, _Places.of(self, at), _Places.of(self, under))
+
+    def _displaced(self, away: int, at: _Places, under: _Places) -> Array:
+        """Displacements at places of a tooth under forces at places of the one that stands so many pitches before."""
+        return np.asarray(at.shares @ self._mutual[self.neighbours + away] @ under.shares.T)
 
     def within(self, line: FlankLine, distance: Array, images: Sequence[Image] = ()) -> Array:
         """Displacements (m, m) of places of one tooth per force at each [mm/N], on top of those of a half-space.
@@ -114,14 +114,17 @@ class GearCompliance:
         images : sequence of Image
             Of free edges for which the half-space was corrected: their displacements in the middle go off as well.
         """
-        own = line, (places := _Places.of(self, line))
+        places = _Places.of(self, line)
         depth = np.einsum("ma,ab,mb->m", places.across, self.table.depth, places.along)[:, None]
-        spread = _spread(depth, distance) + sum(_spread(depth, image) for image in self._beyond_ends(places.length))
+        width = float(np.ptp(self.frame.nodes.coordinate))
+        from_start = width * (places.length[:, None] + places.length)  # of mirror images beyond the ends of the face
+        spread = sum(_spread(depth, away) for away in (distance, from_start, 2.0 * width - from_start))
         material = self.frame.gear.material
         half_space = depth_displacement(depth, distance, material)
         half_space = half_space + sum(factor * depth_displacement(depth, image, material) for image, factor in images)
-        found = self.table.local.at(places.height)[:, None] * spread - half_space
-        return self._displaced(own, own) + 0.5 * (found + found.T)
+        local = np.interp(places.height, self.table.local_height, self.table.local_value)
+        found = local[:, None] * spread - half_space
+        return self._displaced(0, places, places) + 0.5 * (found + found.T)
 
     @cached_property
     def _mutual(self) -> Array:
@@ -134,12 +137,6 @@ class GearCompliance:
         nodes = self.table.heights, self.table.lengths
         across, along = (np.linalg.inv(chebvander(2.0 * part - 1.0, len(part) - 1)) for part in nodes)
         return across, along
-
-    def _beyond_ends(self, length: Array) -> tuple[Array, Array]:
-        """Distances (m, m) from the mirror images beyond both ends of the face [mm]."""
-        width = float(np.ptp(self.frame.nodes.coordinate))
-        from_start = width * (length[:, None] + length)
-        return from_start, 2.0 * width - from_start
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,7 +26,6 @@ from loaded_tca.flanks.tensor_spline import TensorSpline, fit
 from loaded_tca.flanks.tooth_region import NODES, ToothRegion, chebyshev_nodes, face_cone_angles
 from loaded_tca.gears.cutter import FlankName
 from loaded_tca.gears.face_milled import FaceMilledGear
-from loaded_tca.gears.machine_settings import FaceMilledBlank
 
 SPLINE_POINTS = (41, 33)
 """Chebyshev-Lobatto points of the B-spline along the profile and lengthwise: it is within 1e-7 mm of usual flanks. The
@@ -110,13 +109,13 @@ class GeneratedFlank(ToothRegion):
         """Theta of the generated flank; beyond its edges that of the B-spline."""
         rho, z = np.broadcast_arrays(np.asarray(rho, dtype=float), np.asarray(z, dtype=float))
         flat = rho.ravel(), z.ravel()
-        on = self._on_flank(*flat)
-        if on.all():
-            return _shaped(self._exact(*flat), rho.shape)
-        parts = _stack(self._spline_flank.theta(*flat))
+        on = self.inside(*flat, ON_EDGE * min(self.extent))
+        parts = np.empty((6, rho.size))
         if on.any():
             parts[:, on] = _stack(self._exact(flat[0][on], flat[1][on]))
-        return _shaped(Jet(*parts), rho.shape)
+        if not on.all():
+            parts[:, ~on] = _stack(self._spline_flank.theta(flat[0][~on], flat[1][~on]))
+        return Jet(*parts.reshape(6, *rho.shape))
 
     def gradient_norm(self, rho: Array, z: Array) -> Jet:
         """|grad F| [1/mm]: its B-spline over the flank's coordinates."""
@@ -131,10 +130,15 @@ class GeneratedFlank(ToothRegion):
         SplineFlank
             ``check_error``: how far it is from the exact flank midway between the points [mm].
         """
-        places = self._nodes(points), self._between(points)
-        exact = [self._exact(rho.ravel(), z.ravel()) for rho, z in places]
+        lines = self._lines(points)
+        midway = [0.5 * (line[1:] + line[:-1]) for line in lines]  # where the B-spline is furthest from the flank
+        places = [tuple(part.ravel() for part in self.places(*grid)) for grid in (lines, midway)]
+        exact = [self._exact(rho, z) for rho, z in places]
         bare = SplineFlank(Region(self), self._fitted(exact[0].value.reshape(points)), FitError(0.0, 0.0))
-        errors = [self._missed(bare, *at, jet) for at, jet in zip(places, exact, strict=True)]
+        errors = [
+            FitError.of((bare.theta(rho, z).value - jet.value) / _gradient(rho, jet))
+            for (rho, z), jet in zip(places, exact, strict=True)
+        ]
         return SplineFlank(Region(self), bare.spline, *errors)
 
     @cached_property
@@ -157,7 +161,7 @@ class GeneratedFlank(ToothRegion):
         tips = face_cone_angles((blank.face_angle, blank.face_apex), distance)
         if not (angles < tips).all():
             worst = int(np.argmax(angles - tips))
-            place = self._place(distance[worst] * np.sin(tips[worst]), distance[worst] * np.cos(tips[worst]))
+            place = self._place(distance[worst], tips[worst])
             raise GeometryError(f"{self.owner}: no flank is left: the form line lies above the face cone {place}")
         if not points.found.all():
             raise self._undercut(float(distance[np.argmin(points.sharpness)]))
@@ -170,8 +174,7 @@ class GeneratedFlank(ToothRegion):
         cuts = [self.generation.at_height(form + depth, np.array([distance])) for depth in depths]
         turned = np.array([points.converged[0] and points.sharpness[0] <= 0.0 for _, points in cuts])
         last = max(0, int(np.argmin(turned)) - 1)
-        angle = float(cuts[last][0][0])
-        place = self._place(distance * math.sin(angle), distance * math.cos(angle))
+        place = self._place(distance, cuts[last][0][0])
         return GeometryError(
             f"{self.owner}: undercut: the generated surface turns back in an edge {place}, on the blade at least "
             f"{depths[last]:.2g} mm above its rounded tip; cut less deep (sliding_base), or use a larger blade_angle "
@@ -181,15 +184,16 @@ class GeneratedFlank(ToothRegion):
     def _not_cut(self, distance: Array, angle: Array, found: Array) -> GeometryError:
         """What to say of points that the cutter does not reach."""
         worst = int(np.argmin(found))
-        place = self._place(distance[worst] * np.sin(angle[worst]), distance[worst] * np.cos(angle[worst]))
+        missing = f"{int((~found).sum())} of {found.size} points of the flank"
         return GeometryError(
-            f"{self.owner}: the cutter does not cut {int((~found).sum())} of {found.size} points of the flank, first "
-            f"{place}; do radial, cradle_angle, root_angle and point_radius belong to this blank?"
+            f"{self.owner}: the cutter does not cut {missing}, first {self._place(distance[worst], angle[worst])}; do "
+            "radial, cradle_angle, root_angle and point_radius belong to this blank?"
         )
 
-    def _place(self, rho: Any, z: Any) -> str:
-        blank: FaceMilledBlank = self.gear.blank
-        return ConeFrame(blank.pitch_angle, blank.mean_cone_distance).place(float(rho), float(z))
+    def _place(self, distance: float, angle: float) -> str:
+        """A cone distance and a cone angle in words, before this flank has its frame."""
+        frame = ConeFrame(self.gear.blank.pitch_angle, self.gear.blank.mean_cone_distance)
+        return frame.place(distance * math.sin(angle), distance * math.cos(angle))
 
     def _require(self, rho: Array, z: Array) -> GeneratedPoints:
         """Points of the right-hand member; GeometryError if one is missing."""
@@ -202,11 +206,6 @@ class GeneratedFlank(ToothRegion):
         """Theta of points (n,) on the flank, of this hand and turned to the pitch point."""
         return (self._require(rho, z).theta + Jet(-self._zero)) * self._mirror
 
-    def _on_flank(self, rho: Array, z: Array) -> Array:
-        """Whether points lie in the region, edges included."""
-        tolerance = ON_EDGE * min(self.extent)
-        return self.inside(rho, z, tolerance)
-
     @property
     def _pitch_point(self) -> tuple[Array, Array]:
         distance, delta = self.mean_cone_distance, self.gear.blank.pitch_angle
@@ -218,32 +217,18 @@ class GeneratedFlank(ToothRegion):
 
     @cached_property
     def _gradient_spline(self) -> TensorSpline:
-        rho, z = self._nodes(SPLINE_POINTS)
-        jet = self._exact(rho.ravel(), z.ravel())
-        return self._fitted(_gradient(rho.ravel(), jet).reshape(rho.shape))
+        rho, z = (part.ravel() for part in self.places(*self._lines(SPLINE_POINTS)))
+        return self._fitted(_gradient(rho, self._exact(rho, z)).reshape(SPLINE_POINTS))
 
     def _lines(self, points: tuple[int, int]) -> tuple[Array, Array]:
         """Profile coordinates and cone distances of the grid lines."""
         return chebyshev_nodes((0.0, self.mean_height), points[0]), chebyshev_nodes(self.cone_distances, points[1])
-
-    def _nodes(self, points: tuple[int, int]) -> tuple[Array, Array]:
-        return self.places(*self._lines(points))
-
-    def _between(self, points: tuple[int, int]) -> tuple[Array, Array]:
-        """Midway between the nodes, where the B-spline is furthest from the flank."""
-        profile, distance = (0.5 * (line[1:] + line[:-1]) for line in self._lines(points))
-        return self.places(profile, distance)
 
     def _fitted(self, values: Array) -> TensorSpline:
         """B-spline through values at the nodes."""
         profile, distance = self._lines((values.shape[0], values.shape[1]))
         grid = np.meshgrid(profile, distance - self.mean_cone_distance, indexing="ij")
         return fit(grid[0], grid[1], values, (SPLINE_DEGREE, SPLINE_DEGREE))
-
-    def _missed(self, spline: SplineFlank, rho: Array, z: Array, exact: Jet) -> FitError:
-        """Distance along the normal of a B-spline from this flank [mm]."""
-        rho, z = rho.ravel(), z.ravel()
-        return FitError.of((spline.theta(rho, z).value - exact.value) / _gradient(rho, exact))
 
     def __repr__(self) -> str:
         return f"GeneratedFlank({self.owner})"
@@ -267,8 +252,4 @@ def _gradient(rho: Array, theta: Jet) -> Array:
 
 def _stack(jet: Jet) -> Array:
     """The six parts of a jet (6, n)."""
-    return np.stack([jet.value, jet.rho, jet.z, jet.rho_rho, jet.rho_z, jet.z_z])
-
-
-def _shaped(jet: Jet, shape: tuple[int, ...]) -> Jet:
-    return Jet(*(part.reshape(shape) for part in _stack(jet)))
+    return np.stack([jet.value, *jet.derivatives])

@@ -201,7 +201,9 @@ class FlankModifications:
         for name, value in ((entry.name, getattr(self, entry.name)) for entry in fields(self)):
             forms = _FORMS.get(name)
             if name == "polynomial":
-                problems += _problems_of_polynomial(value)
+                values = np.asarray(value)
+                if not (values.shape == (6,) and values.dtype.kind in "if" and np.isfinite(values).all()):
+                    problems.append(f"polynomial: {value!r:.100} is not six finite numbers, a1 to a6")
             elif forms is None and not math.isfinite(value):
                 problems.append(f"{name}: {value} mm is not finite")
             elif forms is not None and value not in forms:
@@ -235,14 +237,17 @@ class FlankModifications:
             If a relief starts off the active profile, or is longer than half the face.
         """
         start, tip = (coordinate(diameter) for diameter in diameters)
+        middle, length = 0.5 * (start + tip), tip - start
         candidates = (
             *self._lengthwise(face_width),
-            *self._profile(start, tip),
+            Term("profile", self.profile_crowning, middle, 0.5 * length, parabola),
+            Term("profile", self.profile_slope, start, length, linear),
             *self._reliefs(diameters, coordinate),
         )
         terms = tuple(term for term in candidates if term.amount != 0.0)
-        polynomial = self._polynomial(face_width, start, tip, profile_unit)
-        return (*terms, polynomial) if any(polynomial.coefficients) else terms
+        a1, a2, a3, a4, a5, a6 = self.polynomial
+        coefficients = a1, a2, a3, a4 + self.twist / (face_width * length * profile_unit), a5, a6
+        return (*terms, Polynomial(coefficients, middle, profile_unit)) if any(coefficients) else terms
 
     def _lengthwise(self, width: float) -> list[Term]:
         half, crowning = 0.5 * width, self.lead_crowning
@@ -253,30 +258,15 @@ class FlankModifications:
                 raise InputError(message)
             shapes["circular"] = CircularArc(abs(crowning), half)
         shape = shapes.get(self.lead_crowning_form, parabola)
-        terms = [
+        relief, length = self.end_relief, self.end_relief_length
+        if relief != 0.0:
+            _require_between("end_relief_length", length, 0.0, half * (1.0 + 1e-12))
+        return [
             Term("lengthwise", crowning, 0.0, half, shape),
             Term("lengthwise", self.helix_slope, -half, width, linear),
+            Term("lengthwise", relief, half - length, length, one_sided_parabola),
+            Term("lengthwise", relief, length - half, -length, one_sided_parabola),
         ]
-        if self.end_relief != 0.0:
-            _require_between("end_relief_length", self.end_relief_length, 0.0, half * (1.0 + 1e-12))
-            start = half - self.end_relief_length
-            for end in (1.0, -1.0):
-                length = end * self.end_relief_length
-                terms.append(Term("lengthwise", self.end_relief, end * start, length, one_sided_parabola))
-        return terms
-
-    def _profile(self, start: float, tip: float) -> list[Term]:
-        middle = 0.5 * (start + tip)
-        return [
-            Term("profile", self.profile_crowning, middle, tip - middle, parabola),
-            Term("profile", self.profile_slope, start, tip - start, linear),
-        ]
-
-    def _polynomial(self, width: float, start: float, tip: float, unit: float) -> Polynomial:
-        """The polynomial, with the twist added to its product of both coordinates."""
-        twist = self.twist / (width * (tip - start) * unit)
-        a1, a2, a3, a4, a5, a6 = self.polynomial
-        return Polynomial((a1, a2, a3, a4 + twist, a5, a6), 0.5 * (start + tip), unit)
 
     def _reliefs(self, diameters: tuple[float, float], coordinate: Callable[[float], float]) -> list[Term]:
         reliefs = (
@@ -290,13 +280,6 @@ class FlankModifications:
                 origin, shape = coordinate(diameter), one_sided_parabola if form == "parabolic" else None
                 terms.append(Term("profile", amount, origin, coordinate(end) - origin, shape))
         return terms
-
-
-def _problems_of_polynomial(coefficients: Any) -> list[str]:
-    values = np.asarray(coefficients)
-    if values.shape == (6,) and values.dtype.kind in "if" and np.isfinite(values).all():
-        return []
-    return [f"polynomial: {coefficients!r:.100} is not six finite numbers, a1 to a6"]
 
 
 def _require_between(name: str, value: float, low: float, high: float) -> None:

@@ -208,8 +208,7 @@ def measured(
     0.01
     """
     data = StructuredGrid.of(nominal, topography.radius, topography.axial)
-    degrees = data.degrees(degree)
-    counts = coefficients or (topography.radius.shape[0], topography.radius.shape[1])
+    degrees, counts = data.degrees(degree), coefficients or (data.radius.shape[0], data.radius.shape[1])
     problems = data.problems(nominal, degrees, counts)
     if problems:
         raise InputError(problems)
@@ -223,7 +222,8 @@ def measured(
     spline = fit(data.profile, data.lengthwise, wanted, degrees, counts)
     missed = (spline(data.profile, data.lengthwise).value - wanted) / data.ordered(angles)
     if turned:
-        spline = spline.shifted(-_azimuth_of_pitch_point(SplineFlank(nominal, spline, FitError(0.0, 0.0))))
+        bare = SplineFlank(nominal, spline, FitError(0.0, 0.0))
+        spline = spline.shifted(-float(bare.theta(*pitch_point(bare)).value))
     return SplineFlank(nominal, spline, FitError.of(missed))
 
 
@@ -247,8 +247,3 @@ def pitch_point(flank: Flank) -> tuple[Array, Array]:
             return np.array(place[0]), np.array(place[1])
     where = flank.frame.place(*middle)
     raise GeometryError(f"the flank around {where} has no pitch point (theta = 0 in the middle of the face)")
-
-
-def _azimuth_of_pitch_point(flank: Flank) -> float:
-    """Theta where the unmodified flank has theta = 0 [rad]."""
-    return float(flank.theta(*pitch_point(flank)).value)

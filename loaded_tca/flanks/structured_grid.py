@@ -56,20 +56,15 @@ class StructuredGrid:
 
     def degrees(self, wanted: int | None) -> tuple[int, int]:
         """Degrees along the profile and lengthwise; default: the highest that the points allow."""
-        first, second = (
-            max((d for d, least in FEWEST_POINTS.items() if count >= least), default=min(FEWEST_POINTS))
-            if wanted is None
-            else wanted
-            for count in self.radius.shape
-        )
-        return first, second
+        first, second = (5 if count >= FEWEST_POINTS[5] else 3 for count in self.radius.shape)
+        return (first, second) if wanted is None else (wanted, wanted)
 
     def problems(self, flank: Flank, degrees: tuple[int, int], counts: tuple[int, int]) -> list[str]:
         """Everything that keeps the points from being fitted, a sentence each."""
-        coarse = self._too_coarse(degrees, counts)
-        if coarse:
-            return coarse
-        return self._off_the_flank(flank) + (self._disorder() or self._too_small(flank))
+        return self._too_coarse(degrees, counts) or [
+            *self._off_the_flank(flank),
+            *(self._disorder() or self._folds() or self._too_small(flank)),
+        ]
 
     def warn_if_uncovered(self, flank: Flank) -> None:
         """Warn where the fit is continued far beyond the points."""
@@ -79,11 +74,10 @@ class StructuredGrid:
                 left = " and ".join(
                     f"{100.0 * max(end, 0.0):.0f} % at the {edge}" for end, edge in zip(ends, names, strict=True)
                 )
-                warnings.warn(
-                    f"{name}: the points leave {left} of the flank uncovered; there the deviation is a continuation",
-                    AccuracyWarning,
-                    stacklevel=3,
+                message = (
+                    f"{name}: the points leave {left} of the flank uncovered; there the deviation is a continuation"
                 )
+                warnings.warn(message, AccuracyWarning, stacklevel=3)
 
     def _too_coarse(self, degrees: tuple[int, int], counts: tuple[int, int]) -> list[str]:
         problems = []
@@ -105,14 +99,12 @@ class StructuredGrid:
             beyond = -np.broadcast_to(edge.value, self.radius.shape)
             count = int((beyond > OFF_FLANK * min(flank.extent)).sum())
             if count:
-                where = f"up to {beyond.max():.4g} mm beyond the {name}"
-                problems.append(
-                    f"{count} of {beyond.size} points lie off the flank, {where}: wrong gear, frame or unit?"
-                )
+                points = f"{count} of {beyond.size} points lie off the flank, up to {beyond.max():.4g} mm"
+                problems.append(f"{points} beyond the {name}: wrong gear, frame or unit?")
         return problems
 
     def _disorder(self) -> list[str]:
-        """Lines out of order; if they are in order, cells that are turned over."""
+        """Lines out of order."""
         problems = []
         for axis, (name, at) in enumerate(zip(DIRECTIONS, (self.profile, self.lengthwise), strict=True)):
             steps = np.diff(at.mean(axis=1 - axis))
@@ -122,9 +114,10 @@ class StructuredGrid:
                     f"points are out of order: the {name} coordinate does not grow, or fall, all along axis {axis} "
                     f"(lines {line} and {line + 1}); axes are (profile, lengthwise)"
                 )
-        return problems or self._folds()
+        return problems
 
     def _folds(self) -> list[str]:
+        """Cells that are turned over."""
         u, v = (at / np.ptp(at) for at in (self.profile, self.lengthwise))
         along, across = (np.diff(u, axis=0), np.diff(v, axis=0)), (np.diff(u, axis=1), np.diff(v, axis=1))
         # the four corners of each cell

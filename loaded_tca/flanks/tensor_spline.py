@@ -16,6 +16,7 @@ Comput. 33.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -104,25 +105,26 @@ class TensorSpline:
         parts = np.empty((len(SplineDerivatives._fields), flat_u.size))
         for start in range(0, flat_u.size, POINTS_AT_ONCE):
             block = slice(start, start + POINTS_AT_ONCE)
-            self._evaluate(flat_u[block], flat_v[block], parts[:, block])
+            cell_u = np.searchsorted(self._breaks[0], flat_u[block], side="right")
+            cell_v = np.searchsorted(self._breaks[1], flat_v[block], side="right")
+            x, y = flat_u[block] - self._origins[0][cell_u], flat_v[block] - self._origins[1][cell_v]
+            rows = polynomial(np.take(self._table, cell_u * self._cells_v + cell_v, axis=2), y, 2)
+            out = parts[:, block]
+            out[0], out[1], out[3] = polynomial(rows[0], x, 2)
+            out[2], out[4] = polynomial(rows[1], x, 1)
+            (out[5],) = polynomial(rows[2], x, 0)
         return SplineDerivatives(*parts.reshape(len(parts), *u.shape))
 
     def shifted(self, amount: float) -> TensorSpline:
         """The same spline with a constant added: the basis functions sum to one."""
         return TensorSpline(self.knots, self.coefficients + amount, self.degrees)
 
-    def _evaluate(self, u: Array, v: Array, out: Array) -> None:
-        cell_u = np.searchsorted(self._breaks[0], u, side="right")
-        cell_v = np.searchsorted(self._breaks[1], v, side="right")
-        x, y = u - self._origins[0][cell_u], v - self._origins[1][cell_v]
-        rows = _horner(np.take(self._table, cell_u * self._cells_v + cell_v, axis=2), y, 2)
-        out[0], out[1], out[3] = _horner(rows[0], x, 2)
-        out[2], out[4] = _horner(rows[1], x, 1)
-        (out[5],) = _horner(rows[2], x, 0)
 
+def polynomial(coefficients: Sequence[Any] | Array, x: Array, derivatives: int) -> list[Array]:
+    """Sum of coefficients[k] x^k and its derivatives up to the second, by synthetic division.
 
-def _horner(coefficients: Array, x: Array, derivatives: int) -> list[Array]:
-    """Sum of coefficients[k] x^k and its derivatives up to the second, by synthetic division; overwrites the last."""
+    The last coefficient has the shape of x, and is overwritten.
+    """
     parts = [coefficients[-1]]
     for coefficient in coefficients[-2::-1]:
         if len(parts) <= derivatives:
@@ -182,8 +184,8 @@ def fit(
     """
     counts = u.shape if coefficients is None else coefficients
     first, second = (
-        _Direction.along(axis, at, count, degree)
-        for axis, at, count, degree in zip((0, 1), (u, v), counts, degrees, strict=True)
+        _Direction.along(lines, at, count, degree)
+        for lines, at, count, degree in zip((u, v.T), (u, v), counts, degrees, strict=True)
     )
     found = _least_squares(first, second, values.ravel())
     return TensorSpline((first.knots, second.knots), found, degrees)
@@ -198,30 +200,21 @@ class _Direction:
     inverse: Array
 
     @classmethod
-    def along(cls, axis: int, at: Array, count: int, degree: int) -> _Direction:
-        """For coordinates (n, m) that grow along an axis."""
-        positions = _line_positions(at, axis)
-        knots = _knots(positions, count, degree)
-        lines = BSpline.design_matrix(positions, knots, degree).toarray()
-        triangle = np.asarray(np.linalg.qr(lines, mode="r"))
+    def along(cls, lines: Array, at: Array, count: int, degree: int) -> _Direction:
+        """For coordinates ``at`` (n, m), which are nearly the same along each of their ``lines``.
+
+        The not-a-knot knots of ``count`` coefficients are spread as the means of the lines are, but for the first and
+        the last, which reach to the outermost points.
+        """
+        positions = lines.mean(axis=1)
+        positions[0], positions[-1] = lines.min(), lines.max()
+        places = np.interp(np.linspace(0.0, len(positions) - 1.0, count), np.arange(len(positions)), positions)
+        skipped = (degree + 1) // 2
+        inner = places[skipped : count - skipped]
+        knots = np.concatenate([np.full(degree + 1, places[0]), inner, np.full(degree + 1, places[-1])])
+        triangle = np.linalg.qr(BSpline.design_matrix(positions, knots, degree).toarray(), mode="r")
         inverse = np.asarray(solve_triangular(triangle, np.eye(len(triangle))))
         return cls(knots, BSpline.design_matrix(at.ravel(), knots, degree), inverse)
-
-
-def _line_positions(at: Array, axis: int) -> Array:
-    """Mean of each grid line; the first and the last are moved to the outermost points."""
-    lines = at if axis == 0 else at.T
-    positions = lines.mean(axis=1)
-    positions[0], positions[-1] = lines.min(), lines.max()
-    return positions
-
-
-def _knots(positions: Array, count: int, degree: int) -> Array:
-    """Not-a-knot knots of ``count`` coefficients, spread as the positions are."""
-    places = np.interp(np.linspace(0.0, len(positions) - 1.0, count), np.arange(len(positions)), positions)
-    skipped = (degree + 1) // 2
-    inner = places[skipped : count - skipped]
-    return np.concatenate([np.full(degree + 1, places[0]), inner, np.full(degree + 1, places[-1])])
 
 
 def _least_squares(first: _Direction, second: _Direction, values: Array) -> Array:

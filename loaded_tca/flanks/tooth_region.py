@@ -16,8 +16,6 @@ heel and go on beyond as parabolas.
 from __future__ import annotations
 
 import math
-from abc import abstractmethod
-from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -26,6 +24,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.frame import ConeFrame
 from loaded_tca.flanks.jet import Jet, cone_angle, cone_distance
+from loaded_tca.flanks.tensor_spline import polynomial
 
 NODES = 11
 """Cone distances at which a curve over R is known; they resolve it to the last digits."""
@@ -52,30 +51,20 @@ class DistanceCurve:
     def __init__(self, interval: tuple[float, float], values: Array) -> None:
         self.middle, self.half = 0.5 * (interval[0] + interval[1]), 0.5 * (interval[1] - interval[0])
         nodes = chebyshev_nodes((-1.0, 1.0), len(values))
-        first = chebyshev.cheb2poly(chebyshev.chebfit(nodes, values, len(values) - 1))
-        derivatives = [np.polynomial.polynomial.polyder(first, order) for order in range(3)]
-        self._powers = [tuple(float(part) for part in reversed(row)) for row in derivatives]
+        self._powers = chebyshev.cheb2poly(chebyshev.chebfit(nodes, values, len(values) - 1)).tolist()
 
     def __call__(self, distance: Jet) -> Jet:
         """Value and derivatives at a cone distance R(rho, z)."""
         at = (distance.value - self.middle) / self.half
         inner = np.clip(at, -1.0, 1.0)
         beyond = at - inner
-        value, slope, bend = (_horner(powers, inner) for powers in self._powers)
+        value, slope, bend = polynomial([*self._powers[:-1], np.full_like(inner, self._powers[-1])], inner, 2)
         value, slope = value + beyond * (slope + 0.5 * beyond * bend), slope + beyond * bend
         return distance.compose(value, slope / self.half, bend / self.half**2)
 
     def at(self, distance: Array) -> Array:
         """Value alone."""
         return self(Jet(distance)).value
-
-
-def _horner(powers: tuple[float, ...], at: Array) -> Array:
-    """Polynomial with its highest power first."""
-    total = np.full(np.shape(at), powers[0])
-    for power in powers[1:]:
-        total = total * at + power
-    return total
 
 
 class ToothRegion(Flank):
@@ -117,10 +106,6 @@ class ToothRegion(Flank):
         rho, z = self.grid(9, 3)
         self.extent = (float(np.ptp(rho)), float(np.ptp(z)))
         self.frame = ConeFrame(pitch_angle, self.mean_cone_distance)
-
-    @abstractmethod
-    def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:
-        """Theta [rad] with its derivatives."""
 
     def edges(self, rho: Array, z: Array) -> tuple[Jet, ...]:
         """Face cone, form line (R times the angle to it), toe and heel sphere."""

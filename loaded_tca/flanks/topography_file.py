@@ -21,7 +21,6 @@ from __future__ import annotations
 import difflib
 import os
 import re
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -90,40 +89,29 @@ def read_topography(path: str | os.PathLike[str]) -> Topography:
 
 def parse_topography(text: str) -> Topography:
     """Topography of the text of a file; see ``read_topography``."""
-    lines = _Lines.of(text)
-    factors = _factors(lines.header)
-    table = {name: lines.values[:, k] * factor for k, (name, factor) in enumerate(factors)}
-    order, shape = _grid_order(table, lines)
-    grids = {name: table[name][order].reshape(shape) for name in table if name not in INDICES}
+    numbered = [(number, line.strip()) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
+    comments = [line[1:].split("=", 1) for _, line in numbered if line.startswith("#")]
+    notes = {part[0].strip(): part[1].strip() for part in comments if len(part) == 2}
+    body = [(number, line) for number, line in numbered if not line.startswith("#")]
+    if len(body) < 2:
+        raise InputError("no points: a line with the names of the columns, and one line per point, are asked for")
+    separator = next((mark for mark in (";", "\t") if mark in body[0][1]), ",")
+    header = [name.strip() for name in body[0][1].split(separator)]
+    values = _numbers(body[1:], header, separator)
+    table = {name: values[:, k] * factor for k, (name, factor) in enumerate(_factors(header))}
+    if INDICES[0] in table:
+        shape, order = _order_by_indices(*(table[name] for name in INDICES))
+    else:
+        shape, order = _given_order(len(values), notes.get("points", ""))
+    grids = {name: column[order].reshape(shape) for name, column in table.items() if name not in INDICES}
     if "x" in grids:
-        return MeasuredPoints(np.stack([grids[name] for name in ("x", "y", "z")], axis=-1), lines.notes)
+        return MeasuredPoints(np.stack([grids[name] for name in ("x", "y", "z")], axis=-1), notes)
     excess = grids["deviation"] if "deviation" in grids else -grids["removed"]
-    return MeasuredDeviations(grids["radius"], grids["axial"], excess, lines.notes)
-
-
-@dataclass(frozen=True, eq=False)
-class _Lines:
-    """Comments, header and numbers of a file."""
-
-    notes: dict[str, str]
-    header: list[str]
-    values: Array
-
-    @classmethod
-    def of(cls, text: str) -> _Lines:
-        """Take a text apart; InputError with every line that is no row of numbers."""
-        numbered = [(number, line.strip()) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
-        comments = [line[1:].split("=", 1) for _, line in numbered if line.startswith("#")]
-        notes = {part[0].strip(): part[1].strip() for part in comments if len(part) == 2}
-        body = [(number, line) for number, line in numbered if not line.startswith("#")]
-        if len(body) < 2:
-            raise InputError("no points: a line with the names of the columns, and one line per point, are asked for")
-        separator = next((mark for mark in (";", "\t") if mark in body[0][1]), ",")
-        header = [name.strip() for name in body[0][1].split(separator)]
-        return cls(notes, header, _numbers(body[1:], header, separator))
+    return MeasuredDeviations(grids["radius"], grids["axial"], excess, notes)
 
 
 def _numbers(body: list[tuple[int, str]], header: list[str], separator: str) -> Array:
+    """Rows of numbers (points, columns); InputError with every line that is none."""
     rows, problems = [], []
     for number, line in body:
         cells = line.split(separator)
@@ -178,33 +166,24 @@ def _factors(header: list[str]) -> list[tuple[str, float]]:
     return found
 
 
-def _grid_order(table: dict[str, Array], lines: _Lines) -> tuple[Array, tuple[int, int]]:
-    """Order of the rows in which they fill a grid (profile, lengthwise), and its shape."""
-    if INDICES[0] in table:
-        _require_whole_indices(table)
-        return _order_by_indices(*(table[name] for name in INDICES))
-    count, found = len(lines.values), re.fullmatch(r"(\d+)\s*x\s*(\d+)", lines.notes.get("points", ""))
+def _given_order(count: int, points: str) -> tuple[tuple[int, int], Array]:
+    """Shape (profile, lengthwise) of a grid that a comment tells, and the order in which ``count`` rows fill it."""
+    found = re.fullmatch(r"(\d+)\s*x\s*(\d+)", points)
     if found is None:
         columns = " and ".join(INDICES)
         raise InputError(f"the shape of the grid is missing: columns {columns}, or a comment '# points = 5 x 9'")
     shape = int(found[1]), int(found[2])
     if shape[0] * shape[1] != count:
         raise InputError(f"points = {shape[0]} x {shape[1]} are {shape[0] * shape[1]}, but there are {count} rows")
-    return np.arange(count).reshape(shape[::-1]).T.ravel(), shape
+    return shape, np.arange(count).reshape(shape[::-1]).T.ravel()
 
 
-def _require_whole_indices(table: dict[str, Array]) -> None:
-    """Refuse indices between whole numbers: each would be a line of the grid of its own."""
-    problems = []
-    for name in INDICES:
-        fractions = table[name][table[name] != np.round(table[name])]
-        if fractions.size:
-            problems.append(f"{name}: {fractions[0]:g} is not a whole number ({fractions.size} such rows)")
-    if problems:
+def _order_by_indices(profile: Array, lengthwise: Array) -> tuple[tuple[int, int], Array]:
+    """Shape (profile, lengthwise) of a grid with these indices, and the order of the rows in which they fill it."""
+    fractions = [(name, at[at != np.round(at)]) for name, at in zip(INDICES, (profile, lengthwise), strict=True)]
+    problems = [f"{name}: {at[0]:g} is not a whole number ({at.size} such rows)" for name, at in fractions if at.size]
+    if problems:  # each would be a line of the grid of its own
         raise InputError(problems)
-
-
-def _order_by_indices(profile: Array, lengthwise: Array) -> tuple[Array, tuple[int, int]]:
     (rows, row), (columns, column) = (np.unique(index, return_inverse=True) for index in (profile, lengthwise))
     shape, place = (len(rows), len(columns)), row * len(columns) + column
     taken, times = np.unique(place, return_counts=True)
@@ -220,4 +199,4 @@ def _order_by_indices(profile: Array, lengthwise: Array) -> tuple[Array, tuple[i
     ]
     if problems:
         raise InputError(problems)
-    return np.argsort(place), shape
+    return shape, np.argsort(place)

@@ -15,7 +15,7 @@ from scipy.optimize.elementwise import find_root
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.gears.cylindrical import CylindricalGear
-from loaded_tca.tooth.profile import Profile, turned
+from loaded_tca.tooth.profile import Profile, lengths_along, polar, turned
 
 EDGE_MARGIN = 0.01
 """Part of the profile above its root edge where a straight continuation starts at the latest: at the base circle
@@ -108,21 +108,16 @@ class ArcFillet(Fillet):
         size = 0.5 * (outer - root_radius)  # the arc touches the root circle: its meridian runs from there
         start = _touching_radius(profile, root_radius, size)
         point, tangent = profile.point_and_tangent(start)
-        line, centre = self._line_to_arc(point, tangent, root_radius, size)
-        return FilletCurve(start, *_line_and_arc(point, tangent, line, centre, size, count))
-
-    def _line_to_arc(self, point: Array, tangent: Array, root: Array, size: Array) -> tuple[Array, Array]:
-        """Length (m,) of the straight piece before the arc, and the centre (m, 2) of the arc."""
         centre = point + size[:, None] * _into_space(tangent)
-        over = (centre**2).sum(axis=-1) - (root + size) ** 2
         along = -(centre * tangent).sum(axis=-1)
-        square = along**2 - over
+        square = along**2 - (centre**2).sum(axis=-1) + (root_radius + size) ** 2
         if square.min() < 0.0:
             raise GeometryError(
                 f"fillet_radius: an arc of {self.radius:.6g} mm cannot touch both the end of the flank and the root"
             )
         line = np.maximum(along - np.sqrt(square), 0.0)
-        return line, centre + line[:, None] * tangent
+        centre += line[:, None] * tangent
+        return FilletCurve(start, *_line_and_arc(point, tangent, line, centre, size, count))
 
 
 def _touching_radius(profile: Profile, root: Array, size: Array) -> Array:
@@ -186,7 +181,7 @@ class RackFillet(Fillet):
         top, slope = profile.point_and_tangent(start)
         turn = angle[:, None] + (np.arctan2(top[:, 1], top[:, 0]) - angle[0])
         tangents = turned(np.stack(self.gear.root_fillet_tangent(count), axis=-1)[:, None], turn)
-        points = np.stack([radius[:, None] * np.cos(turn), radius[:, None] * np.sin(turn)], axis=-1)
+        points = polar(radius[:, None], turn)
         if not self.gear.is_undercut:
             points, tangents = _with_slope(points, tangents, slope)
         points[0] = top
@@ -195,8 +190,7 @@ class RackFillet(Fillet):
 
 def _with_slope(points: Array, tangents: Array, slope: Array) -> tuple[Array, Array]:
     """Curves that start with the tangents ``slope`` (m, 2), and are the old ones from a fifth of their length on."""
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=-1)
-    length = np.concatenate([np.zeros_like(steps[:1]), np.cumsum(steps, axis=0)])[..., None]
+    length = lengths_along(points)[..., None]
     blend = BLEND * length[-1]
     rest = np.maximum(1.0 - length / blend, 0.0)
     change = slope - tangents[0]

@@ -82,6 +82,12 @@ def polar(radius: Array, angle: Array) -> Array:
     return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
 
 
+def lengths_along(points: Array) -> Array:
+    """Lengths (n, m) along m polygons through points (n, m, 2), from their first points."""
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=-1)
+    return np.concatenate([np.zeros_like(steps[:1]), np.cumsum(steps, axis=0)])
+
+
 def turned(vector: Array, angle: Array) -> Array:
     """Vectors (..., 2) turned by angles (...) [rad]."""
     cosine, sine = np.cos(angle), np.sin(angle)
