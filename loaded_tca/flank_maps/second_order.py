@@ -78,18 +78,13 @@ class SecondOrder:
         return self.polynomial[5] * (0.5 * self.size[1]) ** 2
 
     def __repr__(self) -> str:
+        angles = [60.0 * math.degrees(angle) for angle in (self.spiral_angle, self.pressure_angle)]
+        lengths = [1e3 * length for length in (self.lengthwise_crowning, self.profile_crowning, self.twist)]
+        spiral, pressure, beta, alpha, twist = (f"{round(value, 4) + 0.0:.3g}" for value in (*angles, *lengths))
         return (
-            f"SecondOrder(spiral angle {_arcmin(self.spiral_angle)}, pressure angle {_arcmin(self.pressure_angle)}, "
-            f"crownings {_um(self.lengthwise_crowning)} and {_um(self.profile_crowning)}, twist {_um(self.twist)})"
+            f"SecondOrder(spiral angle {spiral} arcmin, pressure angle {pressure} arcmin, "
+            f"crownings {beta} um and {alpha} um, twist {twist} um)"
         )
-
-
-def _arcmin(angle: float) -> str:
-    return f"{round(60.0 * math.degrees(angle), 4) + 0.0:.3g} arcmin"
-
-
-def _um(length: float) -> str:
-    return f"{round(1e3 * length, 4) + 0.0:.3g} um"
 
 
 def second_order(flank: Flank, rho: Array, z: Array, removed: Array) -> SecondOrder:

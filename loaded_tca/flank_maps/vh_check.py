@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,7 +17,8 @@ from scipy.ndimage import zoom
 
 from loaded_tca.arrays import Array, finite_row
 from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.flank_maps.pattern import COMPOUND, ContactPattern, Gear, contact_pattern
+from loaded_tca.flank_maps.conjugate import GearName
+from loaded_tca.flank_maps.pattern import COMPOUND, ContactPattern, contact_pattern
 from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.teeth import trace_teeth
@@ -80,7 +81,7 @@ def vh_check(
     v: ArrayLike,
     h: ArrayLike,
     *,
-    gear: Gear = "pinion",
+    gear: GearName = "pinion",
     compound: float = COMPOUND,
     grid: tuple[int, int] = GRID,
     positions: int = POSITIONS,
@@ -129,57 +130,28 @@ def vh_check(
     rows, columns = finite_row("v", v), finite_row("h", h)
     if not isinstance(positions, int | np.integer) or positions < 2:
         raise InputError(f"positions: {positions!r} is not a whole number >= 2")
-    cells = [
-        [
-            _cell(build, first, second, positions, {"gear": gear, "compound": compound, "grid": grid})
-            for second in columns
-        ]
-        for first in rows
-    ]
-    return VHCheck(
-        rows,
-        columns,
-        tuple(tuple(cell.pattern for cell in line) for line in cells),
-        cells[0][0].frame,
-        np.array([[pattern_centre(cell.pattern, cell.frame) for cell in line] for line in cells]),
-        np.array([[cell.edge_share for cell in line] for line in cells]),
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class _Cell:
-    """One cell of the grid."""
-
-    pattern: ContactPattern
-    frame: FlankFrame
-    edge_share: float
-
-
-def _cell(build: Build, v: float, h: float, positions: int, asked: dict[str, Any]) -> _Cell:
-    """The pattern under two errors, ``asked`` for as ``contact_pattern`` is."""
-    try:
-        pair = build(float(v), float(h))
-        mesh = trace_teeth(pair, np.linspace(-0.5, 0.5, positions) * pair.pitch)
-        pattern = contact_pattern(pair, mesh, **asked)
-    except GeometryError as error:
-        raise GeometryError(f"v = {v:.6g}, h = {h:.6g}: {error}") from error
-    frame = (pair.pinion.flank if pattern.gear == "pinion" else pair.wheel.flank).frame
-    return _Cell(pattern, frame, float(mesh.leading_contact.on_edge.mean()))
+    patterns, edge_share, shape = [], [], (len(rows), len(columns))
+    for first, second in product(rows.tolist(), columns.tolist()):
+        try:
+            pair = build(first, second)
+            mesh = trace_teeth(pair, np.linspace(-0.5, 0.5, positions) * pair.pitch)
+            patterns.append(contact_pattern(pair, mesh, gear=gear, compound=compound, grid=grid))
+        except GeometryError as error:
+            raise GeometryError(f"v = {first:.6g}, h = {second:.6g}: {error}") from error
+        edge_share.append(mesh.leading_contact.on_edge.mean())
+    frame = (pair.pinion if gear == "pinion" else pair.wheel).flank.frame
+    centre = np.array([pattern_centre(pattern, frame) for pattern in patterns]).reshape(*shape, 2)
+    lines = tuple(tuple(patterns[k : k + shape[1]]) for k in range(0, len(patterns), shape[1]))
+    return VHCheck(rows, columns, lines, frame, centre, np.reshape(edge_share, shape))
 
 
 def pattern_centre(pattern: ContactPattern, frame: FlankFrame) -> Array:
     """Centre of area (2,) [mm] of a contact pattern as a frame shows the flank; NaN if no point of its grid touches."""
     gap = np.minimum(pattern.gap, BEYOND * pattern.compound)
     x, y, gap = (zoom(part, FINER, order=1) for part in (*frame.to_picture(pattern.radius, pattern.axial), gap))
-    weight = (gap <= pattern.compound) * _cell_areas(x, y)
+    (x_up, x_along), (y_up, y_along) = np.gradient(x), np.gradient(y)
+    weight = (gap <= pattern.compound) * np.abs(x_along * y_up - x_up * y_along)
+    weight[[0, -1]] *= 0.5
+    weight[:, [0, -1]] *= 0.5
     total = weight.sum()
     return np.array([(weight * x).sum(), (weight * y).sum()]) / total if total > 0.0 else np.full(2, np.nan)
-
-
-def _cell_areas(x: Array, y: Array) -> Array:
-    """Area that each point of a grid (n, m) stands for."""
-    (x_up, x_along), (y_up, y_along) = np.gradient(x), np.gradient(y)
-    area = np.abs(x_along * y_up - x_up * y_along)
-    area[[0, -1]] *= 0.5
-    area[:, [0, -1]] *= 0.5
-    return np.asarray(area)

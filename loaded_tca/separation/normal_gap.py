@@ -9,9 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.flanks.base import Flank
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded import ContactPoint
@@ -49,7 +48,7 @@ class _Meeting:
     rho: Array
     z: Array
     step: Array
-    settled: NDArray[np.bool_]
+    settled: Mask
 
 
 class NormalGap:
@@ -77,15 +76,10 @@ class NormalGap:
 
     def __init__(self, pair: GearPair, contact: ContactPoint, axes: Array) -> None:
         self.pair = pair
-        in_wheel = pair.wheel_axes.T
+        in_wheel, origin = pair.wheel_axes.T, (contact.point - pair.wheel_origin) @ pair.wheel_axes.T
         self._views = (
             (pair.pinion.flank, contact.point, axes, pair.sense * contact.pinion_angle),
-            (
-                pair.wheel.flank,
-                (contact.point - pair.wheel_origin) @ in_wheel,
-                axes @ in_wheel,
-                -pair.sense * contact.wheel_angle,
-            ),
+            (pair.wheel.flank, origin, axes @ in_wheel, -pair.sense * contact.wheel_angle),
         )
         self._size = sum(pair.base_radii)
         self._rounding = STEP_ROUNDING * self._size

@@ -11,7 +11,7 @@ ascent that creeps outside the region (below a base cone the field has no meanin
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
@@ -195,10 +195,6 @@ class Maxima:
     multipliers: Array
     iterations: Array
     converged: Array
-
-    def joined(self, other: Maxima) -> Maxima:
-        """These ascents and some more."""
-        return Maxima(*(np.concatenate([getattr(self, f.name), getattr(other, f.name)]) for f in fields(self)))
 
 
 @dataclass(frozen=True, eq=False)
