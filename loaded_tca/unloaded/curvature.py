@@ -54,10 +54,19 @@ def relative_curvature(pair: GearPair, contact: ContactPoint) -> RelativeCurvatu
 
 def _curvature(pair: GearPair, contact: ContactPoint) -> RelativeCurvature:
     lengthwise = heelwards(pair, contact)
-    tangent_plane = _tangent_plane(contact.normal, lengthwise)
-    tensor = _tensor(pair, contact, tangent_plane)
+    second = lengthwise - (contact.normal @ lengthwise) * contact.normal
+    second /= np.linalg.norm(second)
+    plane = np.stack([_cross(second, contact.normal), second])
+    field = EaseOff(pair)
+    angle, rho, z = (np.atleast_1d(v) for v in (contact.pinion_angle, contact.pinion_radius, contact.pinion_axial))
+    station = field.station(angle, rho, z)
+    in_wheel = plane @ station.wheel_basis[0].T
+    inverse, drifts = np.linalg.inv(in_wheel @ station.slopes[..., 0]), in_wheel @ station.bends[..., 0]
+    drift = inverse.T @ field.gradient(station)[0] @ drifts
+    bend = field.hessian(station)[0] - np.array([[drift[0], drift[1]], [drift[1], drift[2]]])
+    tensor = -(contact.wheel_lever / pair.base_radii[1]) * (inverse.T @ bend @ inverse)
     values, vectors = np.linalg.eigh(0.5 * (tensor + tensor.T))
-    along = vectors[:, 0] @ tangent_plane
+    along = vectors[:, 0] @ plane
     along = along if along @ lengthwise >= 0.0 else -along
     axes = np.stack([_cross(along, contact.normal), along, contact.normal])
     axes.flags.writeable = False  # every grid of the contact shares them
@@ -69,25 +78,6 @@ def heelwards(pair: GearPair, contact: ContactPoint) -> Array:
     basis = cylindrical_basis(np.arctan2(contact.point[1], contact.point[0]))
     rho, z = np.array(contact.pinion_radius), np.array(contact.pinion_axial)
     return lengthwise_direction(pair.pinion.flank, rho, z) @ basis
-
-
-def _tangent_plane(normal: Array, lengthwise: Array) -> Array:
-    """Two orthonormal directions (2, 3) across a unit normal; the second as near to ``lengthwise`` as can be."""
-    lengthwise = lengthwise - (normal @ lengthwise) * normal
-    lengthwise /= np.linalg.norm(lengthwise)
-    return np.stack([_cross(lengthwise, normal), lengthwise])
-
-
-def _tensor(pair: GearPair, contact: ContactPoint, plane: Array) -> Array:
-    """Relative curvature tensor B (2, 2) in the basis ``plane`` [1/mm]."""
-    field = EaseOff(pair)
-    angle, rho, z = (np.atleast_1d(v) for v in (contact.pinion_angle, contact.pinion_radius, contact.pinion_axial))
-    station = field.station(angle, rho, z)
-    in_wheel = plane @ station.wheel_basis[0].T
-    inverse, drifts = np.linalg.inv(in_wheel @ station.slopes[..., 0]), in_wheel @ station.bends[..., 0]
-    drift = inverse.T @ field.gradient(station)[0] @ drifts
-    bend = field.hessian(station)[0] - np.array([[drift[0], drift[1]], [drift[1], drift[2]]])
-    return -(contact.wheel_lever / pair.base_radii[1]) * (inverse.T @ bend @ inverse)
 
 
 def _cross(a: Array, b: Array) -> Array:

@@ -7,13 +7,13 @@ must not lie inside the pinion once the wheel stands where the contact found put
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.flanks.base import Flank
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.ease_off import EaseOff
@@ -36,7 +36,7 @@ LEVEL = 1e-11
 BETWEEN = 2.0
 """Spacings of the scan by which every point may miss the common region if there is one between them."""
 
-Starts = tuple[NDArray[np.int_], Array, Array]
+Starts = tuple[Indices, Array, Array]
 """Position each start belongs to, and its place (rho, z) on the pinion flank [mm]."""
 
 
@@ -59,7 +59,7 @@ class Scan:
     z: Array
     height: Array
     score: Array
-    reach: NDArray[np.bool_]
+    reach: Mask
 
     def hills(self) -> Starts:
         """Starts, one or more for each basin: the summits of the ridges along the face and along the profile."""
@@ -70,7 +70,7 @@ class Scan:
         owner, point = np.nonzero(hills.reshape(len(hills), GRID[0] * GRID[1]))
         return owner, self.rho[point], self.z[point]
 
-    def higher(self, rows: NDArray[np.int_], value: Array) -> Starts:
+    def higher(self, rows: Indices, value: Array) -> Starts:
         """The highest point of each of some positions, where it is higher than ``value`` (rows,) [mm]."""
         height = self.height[rows]
         best = height.argmax(axis=1)
@@ -91,12 +91,12 @@ class Corners:
         Ease-off; the corner is placed to about 1e-9 of a spacing.
     """
 
-    owner: NDArray[np.int_]
+    owner: Indices
     rho: Array
     z: Array
     height: Array
 
-    def higher(self, rows: NDArray[np.int_], value: Array) -> Starts:
+    def higher(self, rows: Indices, value: Array) -> Starts:
         """Corners of some positions that are higher than ``value`` (rows,) [mm]."""
         level = np.full(max(self.owner.max(initial=-1), rows.max(initial=-1)) + 1, np.inf)
         level[rows] = value
@@ -106,7 +106,9 @@ class Corners:
 
 def region_corners(pair: GearPair, phi1: Array, scan: Scan) -> Corners:
     """Corners between neighbouring points of an edge of which one lies in the common region, the other does not."""
-    field, chains = EaseOff(pair), _edge_chains()
+    field, numbers = EaseOff(pair), np.arange(2 * EDGE)
+    # points of the scan along each of the four edges, (4, EDGE)
+    chains = np.concatenate([numbers.reshape(EDGE, 2).T, 2 * EDGE + numbers.reshape(2, EDGE)]) + GRID[0] * GRID[1]
     inside = np.isfinite(scan.height)[:, chains]
     owner, edge, place = np.nonzero(inside[..., 1:] != inside[..., :-1])
     first, last = chains[edge, place], chains[edge, place + 1]
@@ -128,14 +130,6 @@ def region_corners(pair: GearPair, phi1: Array, scan: Scan) -> Corners:
     return Corners(owner, rho, z, value)
 
 
-def _edge_chains() -> NDArray[np.int_]:
-    """Numbers of the points of a scan along the edges of the pinion's flank: (4, EDGE)."""
-    count = GRID[0] * GRID[1]
-    along_profile = np.arange(2 * EDGE).reshape(EDGE, 2).T
-    along_face = 2 * EDGE + np.arange(2 * EDGE).reshape(2, EDGE)
-    return count + np.concatenate([along_profile, along_face])
-
-
 def scan_pinion(pair: GearPair, phi1: Array) -> Scan:
     """Scan of the pinion flank at each pinion angle (n,) [rad]."""
     rho, z = _points(pair.pinion.flank, GRID, EDGE)
@@ -151,7 +145,11 @@ def scan_pinion(pair: GearPair, phi1: Array) -> Scan:
     height = np.where(lack <= allowed, value, -np.inf)
     outside = min(float(value.min(initial=0.0)) - 1.0, -1.0) * (1.0 + lack[:, :count])
     score = np.where(lack[:, :count] <= allowed, value[:, :count], outside)
-    return Scan(rho, z, height, score.reshape(len(phi1), *GRID), room >= -BETWEEN * _spacing(pair.pinion.flank))
+    # distances to the edges change by about a millimetre per millimetre
+    spacing = math.hypot(
+        *(length / (number - 1) for length, number in zip(pair.pinion.flank.extent, GRID, strict=True))
+    )
+    return Scan(rho, z, height, score.reshape(len(phi1), *GRID), room >= -BETWEEN * spacing)
 
 
 def inside_pinion(pair: GearPair, phi1: Array, value: Array, depth: float) -> Starts:
@@ -191,7 +189,7 @@ def _in_blocks(look: Callable[..., tuple[Array, ...]], *columns: Array) -> list[
     return [np.concatenate(part) for part in zip(*parts, strict=True)]
 
 
-def _summits(score: Array, inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _summits(score: Array, inside: Mask) -> Mask:
     """Summits along the last axis (n, i, j) of the ridge that the highest points across it make.
 
     A ridge seen on a grid is a chain of false summits; the parabola through three points across it tells its height.
@@ -212,14 +210,6 @@ def _summits(score: Array, inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 def _points(flank: Flank, shape: tuple[int, int], edge: int) -> tuple[Array, Array]:
     """(rho, z) of a grid over the flank and of dense points on its four edges [mm]."""
-    profile, lengthwise = flank.grid(edge, 2), flank.grid(2, edge)
-    grid = flank.grid(*shape)
-    parts = ([grid[k].ravel(), profile[k].ravel(), lengthwise[k].ravel()] for k in (0, 1))
-    rho, z = (np.concatenate(part) for part in parts)
+    grids = (flank.grid(*shape), flank.grid(edge, 2), flank.grid(2, edge))
+    rho, z = (np.concatenate([grid[k].ravel() for grid in grids]) for k in (0, 1))
     return rho, z
-
-
-def _spacing(flank: Flank) -> float:
-    """Spacing of the scan [mm]; distances to the edges change by about a millimetre per millimetre."""
-    height, width = flank.extent
-    return float(np.hypot(height / (GRID[0] - 1), width / (GRID[1] - 1)))
