@@ -141,13 +141,11 @@ class BidirectionalStart:
             If a generating line does not reach the mean cone distance, the normal does not come into mesh, or the
             mating gear's generating line has no such normal; the message says by how much it is missed.
         """
-        wheel, turn, pinion, mating_turn = self._from(1, wheel_azimuth)
-        return StartValues(wheel, pinion, turn, mating_turn)
+        return self._from(1, wheel_azimuth)
 
     def reverse(self, pinion_azimuth: float | None = None) -> StartValues:
         """From the pinion; parameters and errors as those of :meth:`forward`."""
-        pinion, turn, wheel, mating_turn = self._from(0, pinion_azimuth)
-        return StartValues(wheel, pinion, mating_turn, turn)
+        return self._from(0, pinion_azimuth)
 
     def mean(self) -> StartValues:
         """The start of the source: mean of forward and reverse."""
@@ -167,8 +165,7 @@ class BidirectionalStart:
         pinion_angle, wheel_angle = self._pair.sense * angles[0], -self._pair.sense * angles[1]
         return Guess(pinion_angle, np.array([*places, wheel_angle]), float(np.linalg.norm(points[0] - points[1])))
 
-    def _from(self, member: int, azimuth: float | None) -> tuple[float, float, float, float]:
-        """Azimuth and turn of one gear, azimuth and turn of its mating gear."""
+    def _from(self, member: int, azimuth: float | None) -> StartValues:
         line, mating_line = self._lines[member], self._lines[1 - member]
 
         def longer(angle: Array) -> Array:
@@ -186,7 +183,10 @@ class BidirectionalStart:
 
         mating = self._root(1 - member, steeper, "axial part of the normal {:.4g} off that of its mating gear")
         own = mating_line.at(mating).normal[0]
-        return azimuth, turn, mating, _half_turn(math.atan2(normal[1], normal[0]) - math.atan2(own[1], own[0]))
+        mating_turn = _half_turn(math.atan2(normal[1], normal[0]) - math.atan2(own[1], own[0]))
+        if member == 1:
+            return StartValues(azimuth, mating, turn, mating_turn)
+        return StartValues(mating, azimuth, mating_turn, turn)
 
     def _meshing_turn(self, member: int, normal: Array, moment: Array) -> float:
         """Turn (step 2) of a gear that brings a normal into mesh: the smallest root of n . v12 = 0."""

@@ -243,10 +243,9 @@ def _surface(flank: Flank, rho: Array, z: Array, turn: Array) -> tuple[Array, Ar
     def turned(parts: Array) -> Array:
         return np.einsum("nk,nkj->nj", parts, basis)
 
-    slopes = [
-        np.concatenate([turned(move), turned(tilt)], axis=-1) for move, tilt in zip(moves, (*tilts, swing), strict=True)
-    ]
-    return np.concatenate([turned(_stack(rho, zero, z)), turned(normal)], axis=-1), np.stack(slopes, axis=-1)
+    points, normals = (_stack(rho, zero, z), *moves), (normal, *tilts, swing)
+    both = [np.concatenate([turned(one), turned(other)], axis=-1) for one, other in zip(points, normals, strict=True)]
+    return both[0], np.stack(both[1:], axis=-1)
 
 
 def _stack(*parts: Array) -> Array:

@@ -195,15 +195,9 @@ def _highest(field: EaseOff, azimuth: Array, rho: Array, z: Array) -> ConjugateC
     angle = find_roots(slope, brackets, values, ANGLE_ACCURACY)
     found = np.isfinite(lead[best]) & (values[0] >= 0.0) & (values[1] <= 0.0)
     station = field.station(angle, rho, z)
-    distances = field.heights(angle, rho, z)[1][..., WHEEL_EDGES]
-    known = (
-        angle,
-        field.value(station, angle),
-        station.wheel_rho,
-        station.wheel_z,
-        distances[..., :2].min(axis=-1),
-        distances[..., 2:].min(axis=-1),
-    )
+    value, distances = field.heights(angle, rho, z)
+    rooms = distances[:, WHEEL_EDGES].reshape(-1, 2, 2).min(axis=-1).T
+    known = (angle, value, station.wheel_rho, station.wheel_z, *rooms)
     return ConjugateContact(*(np.where(found, part, np.nan) for part in known))
 
 

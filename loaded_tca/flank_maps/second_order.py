@@ -120,12 +120,17 @@ def second_order(flank: Flank, rho: Array, z: Array, removed: Array) -> SecondOr
     missed = removed.ravel() - terms @ scaled
     half = 0.5 * np.array(size)
     lengths = np.array([1.0, half[0], half[1], half[0] * half[1], half[0] ** 2, half[1] ** 2])
-    middle = central(u.shape)
+    middle_rho, middle_z = (part[central(u.shape)].mean() for part in (rho, z))
+    theta, along = flank.theta(middle_rho, middle_z), flank.lengthwise_coordinate(middle_rho, middle_z)
+    up = flank.profile_coordinate(middle_rho, middle_z) * flank.profile_unit
+    steps = np.linalg.inv(np.array([[along.rho, along.z], [up.rho, up.z]], dtype=float))
+    tangents = np.array([[1.0, middle_rho * theta.rho, 0.0], [0.0, middle_rho * theta.z, 1.0]], dtype=float)
+    arcs = np.linalg.norm(steps.T @ tangents, axis=-1).tolist()
     return SecondOrder(
         polynomial=tuple((scaled / lengths).tolist()),
         origin=origin,
         size=size,
-        arcs=_arcs(flank, rho[middle].mean(), z[middle].mean()),
+        arcs=(arcs[0], arcs[1]),
         residual=float(np.sqrt((missed**2).mean())),
     )
 
@@ -139,13 +144,3 @@ def flank_lengths(flank: Flank, rho: Array, z: Array) -> tuple[Array, Array]:
 def central(shape: tuple[int, ...]) -> tuple[slice, ...]:
     """The middle of a grid: along each axis its central point, or the central two."""
     return tuple(slice((count - 1) // 2, count // 2 + 1) for count in shape)
-
-
-def _arcs(flank: Flank, rho: Array, z: Array) -> tuple[float, float]:
-    """Arc length on the surface, at one point, for one millimetre of each coordinate while the other stays."""
-    theta, along = flank.theta(rho, z), flank.lengthwise_coordinate(rho, z)
-    up = flank.profile_coordinate(rho, z) * flank.profile_unit
-    steps = np.linalg.inv(np.array([[along.rho, along.z], [up.rho, up.z]], dtype=float))
-    tangents = np.array([[1.0, rho * theta.rho, 0.0], [0.0, rho * theta.z, 1.0]], dtype=float)
-    first, second = np.linalg.norm(steps.T @ tangents, axis=-1)
-    return float(first), float(second)

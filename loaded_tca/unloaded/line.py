@@ -15,7 +15,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.unloaded.ease_off import EaseOff
-from loaded_tca.unloaded.reduced import FEASIBLE
+from loaded_tca.unloaded.reduced import FEASIBLE, solve_pairs
 
 FLATNESS = 1e-9
 """Fall of the ease-off towards the edges, relative to the module, below which a contact is called a line."""
@@ -183,14 +183,4 @@ class _Ridge:
         free = edge < 0
         target = np.where(free, ((x - points) * self.along).sum(axis=-1), distances[rows, edge])
         target_row = np.where(free[:, None], self.along, slopes[rows, edge])
-        return np.abs(target), -_solve_pair(row, target_row, value, target), distances.min(axis=-1)
-
-
-def _solve_pair(first: Array, second: Array, one: Array, two: Array) -> Array:
-    """Solutions (m, 2) of [first; second] x = [one, two]; parallel rows give a far point, not an error."""
-    size = np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1)
-    determinant = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
-    determinant = np.where(np.abs(determinant) > 1e-9 * size, determinant, 1e-9 * size + 1e-300)
-    x = (one * second[:, 1] - two * first[:, 1]) / determinant
-    y = (first[:, 0] * two - second[:, 0] * one) / determinant
-    return np.stack([x, y], axis=-1)
+        return np.abs(target), -solve_pairs(row, target_row, value, target)[0], distances.min(axis=-1)

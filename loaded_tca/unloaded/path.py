@@ -1,4 +1,4 @@
-"""The contact path: where one tooth pair touches over the rotation, and what the wheel stays behind."""
+"""The contact path: where one tooth pair touches over the rotation, and the unloaded transmission error."""
 
 from __future__ import annotations
 

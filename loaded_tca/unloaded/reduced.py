@@ -137,7 +137,8 @@ def _on_one_edge(problem: Quadratic) -> tuple[Array, Array]:
 def _in_a_corner(problem: Quadratic, singles: Array, tolerance: float) -> tuple[Array, Array]:
     """Best feasible corner; if there is none, the corner or single-edge step that violates the edges least."""
     pairs = np.array(list(combinations(range(problem.edges.shape[-1]), 2)))
-    corners, parallel = _corners(problem, pairs)
+    slopes, edges = problem.slopes[:, pairs], -problem.edges[:, pairs]
+    corners, parallel = solve_pairs(slopes[:, :, 0], slopes[:, :, 1], edges[..., 0], edges[..., 1])
     room = np.where(parallel, -np.inf, problem.room(corners))
     rise = (corners * (problem.gradient[:, None, :] + problem.rest(corners))).sum(axis=-1)
     rows, best = np.arange(len(room)), np.where(room >= -tolerance, rise, -np.inf).argmax(axis=1)
@@ -155,15 +156,14 @@ def _in_a_corner(problem: Quadratic, singles: Array, tolerance: float) -> tuple[
     return step, multipliers
 
 
-def _corners(problem: Quadratic, pairs: Array) -> tuple[Array, Array]:
-    """Steps to the crossings of two edges: (n, pairs, 2), and which pairs are parallel."""
-    first, second = problem.slopes[:, pairs[:, 0]], problem.slopes[:, pairs[:, 1]]
-    c1, c2 = -problem.edges[:, pairs[:, 0]], -problem.edges[:, pairs[:, 1]]
-    cross = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
-    parallel = np.abs(cross) <= PARALLEL * np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1)
-    cross = np.where(parallel, 1.0, cross)
-    x = (c1 * second[..., 1] - c2 * first[..., 1]) / cross
-    y = (first[..., 0] * c2 - second[..., 0] * c1) / cross
+def solve_pairs(first: Array, second: Array, one: Array, two: Array) -> tuple[Array, Array]:
+    """Solutions (..., 2) of [first; second] x = [one, two], a far point for parallel rows, and which are parallel."""
+    determinant = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
+    least = PARALLEL * np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1) + TINY
+    parallel = np.abs(determinant) <= least
+    determinant = np.where(parallel, least, determinant)
+    x = (one * second[..., 1] - two * first[..., 1]) / determinant
+    y = (first[..., 0] * two - second[..., 0] * one) / determinant
     return np.stack([x, y], axis=-1), parallel
 
 

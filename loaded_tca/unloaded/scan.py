@@ -1,4 +1,4 @@
-"""Points of both flanks that see what an ascent may have missed: where to start, and where to doubt a contact.
+"""Points of both flanks that see what an ascent may have missed: where to start, and which contacts to search again.
 
 The pinion's flank is seen by a grid and by dense points on its edges, which tell heights of the ease-off, and where
 its edges leave the wheel's flank, in the corners of the common region; the wheel's by its own grid and edges, which

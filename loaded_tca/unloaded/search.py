@@ -22,7 +22,7 @@ from loaded_tca.unloaded.scan import Scan, Starts, inside_pinion, region_corners
 POSITIONS_AT_ONCE = 1024
 """Positions searched together: some 0.2 GB."""
 ROUNDS = 5
-"""Times that a contact is doubted, and points that it missed are climbed from."""
+"""Times that a contact is checked, and points that it missed are climbed from."""
 CERTIFICATE = 1e-13
 """How far, relative to r_b2, a scanned point may rise above the maximum found: rounding."""
 PIERCED = 1e-9
@@ -95,11 +95,10 @@ def _first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
             return result
         found += _ascend(pair, phi1, owner, rho, z)
         result, rows = _best(phi1, found), np.unique(owner)
-    doubtful = np.concatenate([owner for owner, *_ in _missed(pair, phi1, scan, result, rows)])
-    if doubtful.size:
-        message = (
-            f"unloaded contact: no ascent reached the height of the scan at pinion angle {phi1[doubtful.min()]:.6g} rad"
-        )
+    missed = np.concatenate([owner for owner, *_ in _missed(pair, phi1, scan, result, rows)])
+    if missed.size:
+        angle = phi1[missed.min()]
+        message = f"unloaded contact: no ascent reached the height of the scan at pinion angle {angle:.6g} rad"
         raise ConvergenceError(message, result)
     return result
 

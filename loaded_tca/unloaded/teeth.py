@@ -75,7 +75,7 @@ class MeshPath:
         Tooth pairs: 0 is the one that touches at the pitch point at phi1 = 0, +1 comes into mesh after it.
     paths : tuple of m ContactPath
         Of each tooth pair, in its own angles: pinion angle phi1 - k pitch, as if it were pair 0. NaN where it is apart:
-        no common region, or a lag of more than 0.05 modules.
+        no common region, or an initial separation of more than 0.05 modules.
     leading_pair : (n,) int array
         The pair that touches. Of curves that coincide, the one nearer to its pitch point.
     transmission_error : (n,) array [rad]
@@ -159,7 +159,8 @@ class MeshPath:
         Parameters
         ----------
         tolerance : float [mm]
-            Lag as a length at the wheel's base circle up to which a pair counts as touching, at most 0.05 modules.
+            Initial separation at the wheel's base circle up to which a pair counts as in contact, at most 0.05
+            modules.
             Flanks that leave each other one by one (profile crowning, misalignment) have a ratio of 1 for no
             tolerance, which grows with it. Unmodified, aligned ones give eps_gamma, and a little more by the corner
             contact that follows.

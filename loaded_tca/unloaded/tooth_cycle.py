@@ -27,8 +27,8 @@ from loaded_tca.unloaded.roots import find_roots
 from loaded_tca.unloaded.search import first_touch
 
 REACH = 0.05
-"""Lag behind the leading pair, as a length at r_b2 over the module, beyond which a tooth pair counts as apart: no load
-that gears bear closes it."""
+"""Initial separation, as a length at r_b2 over the module, beyond which a tooth pair counts as apart: no load that
+gears bear closes it."""
 COINCIDE = 1e-13
 """Difference of transmission errors [rad] that is rounding: the pair nearer to its pitch point then leads."""
 SAMPLES = 32
@@ -92,7 +92,7 @@ class ToothCycle:
         own = angle - teeth[:, None] * self.pair.pitch
         found = np.full(own.shape, -np.inf)
         rows = (own >= self.own[0]) & (own <= self.own[-1])
-        found[rows] = height_and_slope(self.pair, own[rows])[0]
+        found[rows] = first_touch(self.pair, own[rows]).value
         return found
 
     def sampled(self, index: Indices, teeth: Indices) -> Array:
@@ -117,15 +117,15 @@ class ToothCycle:
         top = self.heights(angle[(angle > low) & (angle < high)], teeth).max(axis=0)
         return top[np.isfinite(top)]
 
-    def share_in_contact(self, lag: float) -> float:
-        """Pitches over which the initial separation of a tooth pair from the best other one is at most ``lag`` [mm]."""
+    def share_in_contact(self, separation: float) -> float:
+        """Pitches over which the initial separation of a tooth pair from the best other one is no larger [mm]."""
         count, most = len(self.height) // SAMPLES + 1, 2.0 * REACH * self.pair.module
         teeth = np.concatenate([[0], np.arange(-count, 0), np.arange(1, count + 1)])
 
         def excess(heights: Array) -> Array:
-            """Lag less what is allowed, kept within bounds; out of reach it is too much."""
+            """Separation less what is allowed, kept within bounds; out of reach it is too much."""
             own, best = np.maximum(heights[0], -self._far), np.maximum(heights[1:].max(axis=0), -self._far)
-            return np.where(own > -self._far, np.clip(best - own, -most, most), most) - lag
+            return np.where(own > -self._far, np.clip(best - own, -most, most), most) - separation
 
         index = self.first + np.arange(-1, len(self.height) + 1)
         sample = excess(self.sampled(index, teeth))
@@ -145,9 +145,9 @@ class ToothCycle:
         old_new, brackets = np.stack([lead[rows], lead[rows + 1]]), np.stack([angle[rows], angle[rows + 1]])
 
         def difference(at: Array, which: Indices) -> Array:
-            own = at - old_new[:, which] * self.pair.pitch
-            heights = np.maximum(height_and_slope(self.pair, own.ravel())[0], -self._far).reshape(own.shape)
-            return heights[0] - heights[1]
+            own = (at - old_new[:, which] * self.pair.pitch).ravel()
+            before, after = np.maximum(first_touch(self.pair, own).value, -self._far).reshape(2, -1)
+            return before - after
 
         every = np.arange(len(rows))
         values = np.stack([difference(side, every) for side in brackets])
