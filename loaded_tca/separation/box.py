@@ -11,7 +11,7 @@ from loaded_tca.errors import GeometryError
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import line_contact, point_contact
 from loaded_tca.separation.normal_gap import NormalGap
-from loaded_tca.unloaded import ContactPoint, RelativeCurvature
+from loaded_tca.unloaded import ContactPoint, RelativeCurvature, relative_curvature
 from loaded_tca.unloaded.roots import find_roots
 
 MARGIN = 1.25
@@ -38,12 +38,7 @@ an eighth of that, of the distance of the rows."""
 
 
 def estimate_box(
-    gap: NormalGap,
-    curvature: RelativeCurvature,
-    contact: ContactPoint,
-    load: float,
-    guess: tuple[float, float] | None,
-    cells: int,
+    gap: NormalGap, contact: ContactPoint, load: float, guess: tuple[float, float] | None, cells: int
 ) -> tuple[float, float]:
     """Half lengths across and along [mm] of a box that holds the contact under a load > 0 [N].
 
@@ -56,7 +51,7 @@ def estimate_box(
     if guess is not None and contact.on_edge:  # a window that a contact with this box fills to two thirds
         window = ROOM / EDGE_MARGIN * guess[0], ROOM / MARGIN * guess[1]
     else:
-        window = _first_window(curvature, load, pair)
+        window = _first_window(relative_curvature(pair, contact), load, pair)
     window = (window[0], min(window[1], longest))
     for _ in range(MOST_PROBES):
         x, y = (np.linspace(-half, half, count) for half, count in zip(window, PROBE, strict=True))

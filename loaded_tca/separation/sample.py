@@ -150,7 +150,7 @@ def sample_separation(
     gap = NormalGap(pair, contact, curvature.axes)
     shape = (int(cells[0]), int(cells[1])) if cells is not None else (cells_for_accuracy(accuracy),) * 2
     if box is None:
-        box = estimate_box(gap, curvature, contact, load or LOAD_OF_UNLOADED_BOX, guess, shape[1])
+        box = estimate_box(gap, contact, load or LOAD_OF_UNLOADED_BOX, guess, shape[1])
     spacing = (2.0 * box[0] / shape[0], 2.0 * box[1] / shape[1])
     x, y = ((np.arange(n) - 0.5 * (n - 1)) * step for n, step in zip(shape, spacing, strict=True))
     curvatures = (curvature.across, curvature.along)

@@ -78,34 +78,12 @@ class Scan:
         return rows[above], self.rho[best[above]], self.z[best[above]]
 
 
-@dataclass(frozen=True, eq=False)
-class Corners:
-    """Where the pinion's edges cross those of the wheel, m corners of the common regions of all positions.
+def region_corners(pair: GearPair, phi1: Array, scan: Scan) -> tuple[Starts, Array]:
+    """Corners of the common regions, and their ease-off [mm]: where the pinion's edges cross those of the wheel.
 
-    Attributes
-    ----------
-    owner : (m,) int array
-        Position.
-    rho, z : (m,) array [mm]
-    height : (m,) array [mm]
-        Ease-off; the corner is placed to about 1e-9 of a spacing.
+    They lie between neighbouring points of an edge of which one is in the common region, the other is not, and are
+    placed to about 1e-9 of that spacing.
     """
-
-    owner: Indices
-    rho: Array
-    z: Array
-    height: Array
-
-    def higher(self, rows: Indices, value: Array) -> Starts:
-        """Corners of some positions that are higher than ``value`` (rows,) [mm]."""
-        level = np.full(max(self.owner.max(initial=-1), rows.max(initial=-1)) + 1, np.inf)
-        level[rows] = value
-        above = self.height > level[self.owner]
-        return self.owner[above], self.rho[above], self.z[above]
-
-
-def region_corners(pair: GearPair, phi1: Array, scan: Scan) -> Corners:
-    """Corners between neighbouring points of an edge of which one lies in the common region, the other does not."""
     field, numbers = EaseOff(pair), np.arange(2 * EDGE)
     # points of the scan along each of the four edges, (4, EDGE)
     chains = np.concatenate([numbers.reshape(EDGE, 2).T, 2 * EDGE + numbers.reshape(2, EDGE)]) + GRID[0] * GRID[1]
@@ -127,7 +105,7 @@ def region_corners(pair: GearPair, phi1: Array, scan: Scan) -> Corners:
         rho, z, value, here = look(share)
         side = (np.sign(here) != np.sign(room[0])).astype(int)
         ends[side, np.arange(len(owner))], room[side, np.arange(len(owner))] = share, here
-    return Corners(owner, rho, z, value)
+    return (owner, rho, z), value
 
 
 def scan_pinion(pair: GearPair, phi1: Array) -> Scan:

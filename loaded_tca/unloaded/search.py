@@ -85,11 +85,16 @@ def _first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
     if close[0].size:
         found += _ascend(pair, phi1, *close)
         result = _best(phi1, found)
-    corners = region_corners(pair, phi1, scan)
+    corners, corner_height = region_corners(pair, phi1, scan)
     for _ in range(ROUNDS):
-        proofs = _missed(pair, phi1, scan, result, rows)
-        cut = corners.higher(rows, result.value[rows] + PIERCED * pair.module)
-        parts = (*proofs, cut, _beside_saddles(pair, phi1, result, rows[result.in_contact[rows]]))
+        level = np.full(len(phi1), np.inf)
+        level[rows] = result.value[rows] + PIERCED * pair.module
+        above = corner_height > level[corners[0]]
+        parts = (
+            *_missed(pair, phi1, scan, result, rows),
+            [part[above] for part in corners],
+            _beside_saddles(pair, phi1, result, rows[result.in_contact[rows]]),
+        )
         owner, rho, z = (np.concatenate(part) for part in zip(*parts, strict=True))
         if not owner.size:
             return result

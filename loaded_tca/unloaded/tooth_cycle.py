@@ -12,6 +12,7 @@ finding, so that no result depends on the positions that a user asks for.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -186,16 +187,15 @@ def reach(pair: GearPair) -> tuple[float, float]:
         If the flanks of no tooth pair share a region.
     """
     step, first, last = pair.pitch / SCANS, -2, 2
-    scans = [_scan(pair, step * (k * SCANS + np.arange(SCANS))) for k in range(first, last + 1)]
+    height, common = _scan(pair, range(first, last + 1))
     while True:
-        height, common = (np.stack(part) for part in zip(*scans, strict=True))
         best = height.max(axis=0)
         near = (np.isfinite(height) if np.isfinite(best).any() else common) & (height >= best - REACH * pair.module)
         if not near[[0, -1]].any():
             break
         first, last = first - 1, last + 1
-        below, above = (_scan(pair, step * (k * SCANS + np.arange(SCANS))) for k in (first, last))
-        scans = [below, *scans, above]
+        parts = zip((height, common), _scan(pair, (first, last)), strict=True)
+        height, common = (np.concatenate([more[:1], known, more[1:]]) for known, more in parts)
     if not near.any():
         raise GeometryError(
             "no common flank: the flanks of no tooth pair cover a common region; check the tips of the "
@@ -205,14 +205,17 @@ def reach(pair: GearPair) -> tuple[float, float]:
     return float(within[0]) - step, float(within[-1]) + step
 
 
-def _scan(pair: GearPair, own: Array) -> tuple[Array, Array]:
-    """Highest point of a coarse grid (n,) [mm], -inf if none is common; whether one is within a spacing of it."""
-    flank = pair.pinion.flank
-    value, edges = EaseOff(pair).heights(*np.broadcast_arrays(own[:, None, None], *flank.grid(*SCAN)))
+def _scan(pair: GearPair, pitches: Sequence[int]) -> tuple[Array, Array]:
+    """Highest point of a coarse grid over some pitches [mm], -inf if none is common; whether one nearly is.
+
+    Both are (pitches, SCANS); nearly means within two spacings of the grid.
+    """
+    flank, own = pair.pinion.flank, pair.pitch * np.add.outer(pitches, np.arange(SCANS) / SCANS)
+    value, edges = EaseOff(pair).heights(*np.broadcast_arrays(own[..., None, None], *flank.grid(*SCAN)))
     inside = edges.min(axis=-1)
-    height = np.where(inside >= 0.0, value, -np.inf).max(axis=(1, 2))
+    height = np.where(inside >= 0.0, value, -np.inf).max(axis=(-2, -1))
     spacing = math.hypot(flank.extent[0] / (SCAN[0] - 1), flank.extent[1] / (SCAN[1] - 1))
-    return height, inside.max(axis=(1, 2)) >= -2.0 * spacing
+    return height, inside.max(axis=(-2, -1)) >= -2.0 * spacing
 
 
 def teeth_between(low: float, high: float, window: tuple[float, float], pitch: float) -> Indices:
