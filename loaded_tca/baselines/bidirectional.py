@@ -25,7 +25,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 from scipy.optimize import brentq
@@ -33,7 +33,6 @@ from scipy.optimize import brentq
 from loaded_tca.arrays import Array
 from loaded_tca.baselines.generating_line import GeneratingLine
 from loaded_tca.errors import GeometryError
-from loaded_tca.flanks.base import Flank
 from loaded_tca.gears.face_milled import FaceMilledGear
 from loaded_tca.pairs.gear_pair import GearPair
 
@@ -63,12 +62,7 @@ class StartValues:
 
     def mean(self, other: StartValues) -> StartValues:
         """Arithmetic mean, value by value."""
-        return StartValues(
-            0.5 * (self.wheel_azimuth + other.wheel_azimuth),
-            0.5 * (self.pinion_azimuth + other.pinion_azimuth),
-            0.5 * (self.wheel_turn + other.wheel_turn),
-            0.5 * (self.pinion_turn + other.pinion_turn),
-        )
+        return StartValues(*np.mean([astuple(self), astuple(other)], axis=0).tolist())
 
 
 @dataclass(frozen=True)
@@ -147,13 +141,11 @@ class BidirectionalStart:
             If a generating line does not reach the mean cone distance, the normal does not come into mesh, or the
             mating gear's generating line has no such normal; the message says by how much it is missed.
         """
-        wheel, turn, pinion, mating_turn = self._from(1, wheel_azimuth)
-        return StartValues(wheel, pinion, turn, mating_turn)
+        return self._from(1, wheel_azimuth)
 
     def reverse(self, pinion_azimuth: float | None = None) -> StartValues:
         """From the pinion; parameters and errors as those of :meth:`forward`."""
-        pinion, turn, wheel, mating_turn = self._from(0, pinion_azimuth)
-        return StartValues(wheel, pinion, mating_turn, turn)
+        return self._from(0, pinion_azimuth)
 
     def mean(self) -> StartValues:
         """The start of the source: mean of forward and reverse."""
@@ -166,30 +158,35 @@ class BidirectionalStart:
         for member, flank in enumerate(self._flanks):
             found = self._lines[member].at(azimuths[member])
             standing = found.azimuth[0] + turns[member]
-            angles.append(_half_turn(standing - _theta(flank, found.rho, found.z)))
+            angles.append(_half_turn(standing - float(flank.theta(found.rho, found.z).value[0])))
             places += [found.rho[0], found.z[0]]
             own = np.array([found.rho[0] * math.cos(standing), found.rho[0] * math.sin(standing), found.z[0]])
             points.append(own @ self._axes[member] + self._origins[member])
         pinion_angle, wheel_angle = self._pair.sense * angles[0], -self._pair.sense * angles[1]
         return Guess(pinion_angle, np.array([*places, wheel_angle]), float(np.linalg.norm(points[0] - points[1])))
 
-    def _from(self, member: int, azimuth: float | None) -> tuple[float, float, float, float]:
-        """Azimuth and turn of one gear, azimuth and turn of its mating gear."""
-        azimuth = self._calculation_azimuth(member) if azimuth is None else azimuth
-        found = self._lines[member].at(azimuth)
+    def _from(self, member: int, azimuth: float | None) -> StartValues:
+        line, mating_line = self._lines[member], self._lines[1 - member]
+
+        def longer(angle: Array) -> Array:
+            found = line.at(angle)
+            return np.hypot(found.rho, found.z) - self._gears[member].blank.mean_cone_distance
+
+        if azimuth is None:
+            azimuth = self._root(member, longer, "cone distance {:.4g} mm off the mean one")
+        found = line.at(azimuth)
         turn = self._meshing_turn(member, found.normal[0], found.moment[0])
-        normal = -_turned(found.normal[0], turn) @ self._axes[member]
-        return azimuth, turn, *self._mate(1 - member, self._axes[1 - member] @ normal)
+        normal = -(_turned(found.normal[0], turn) @ self._axes[member]) @ self._axes[1 - member].T
 
-    def _calculation_azimuth(self, member: int) -> float:
-        """Azimuth (step 1) where the generating line has the mean cone distance."""
-        line, wanted = self._lines[member], self._gears[member].blank.mean_cone_distance
+        def steeper(angle: Array) -> Array:
+            return mating_line.at(angle).normal[:, 2] - normal[2]
 
-        def excess(azimuth: Array) -> Array:
-            found = line.at(azimuth)
-            return np.hypot(found.rho, found.z) - wanted
-
-        return self._root(member, excess, "cone distance {:.4g} mm off the mean one")
+        mating = self._root(1 - member, steeper, "axial part of the normal {:.4g} off that of its mating gear")
+        own = mating_line.at(mating).normal[0]
+        mating_turn = _half_turn(math.atan2(normal[1], normal[0]) - math.atan2(own[1], own[0]))
+        if member == 1:
+            return StartValues(azimuth, mating, turn, mating_turn)
+        return StartValues(mating, azimuth, mating_turn, turn)
 
     def _meshing_turn(self, member: int, normal: Array, moment: Array) -> float:
         """Turn (step 2) of a gear that brings a normal into mesh: the smallest root of n . v12 = 0."""
@@ -214,20 +211,13 @@ class BidirectionalStart:
         phase, spread = math.atan2(sine, cosine), math.acos(-middle / size)
         return min((_half_turn(phase + spread), _half_turn(phase - spread)), key=abs)
 
-    def _mate(self, member: int, normal: Array) -> tuple[float, float]:
-        """Azimuth and turn (step 3) at which the generating line of a gear has a normal, given in its own frame."""
-        line = self._lines[member]
-
-        def excess(azimuth: Array) -> Array:
-            return line.at(azimuth).normal[:, 2] - normal[2]
-
-        azimuth = self._root(member, excess, "axial part of the normal {:.4g} off that of its mating gear")
-        own = line.at(azimuth).normal[0]
-        return azimuth, _half_turn(math.atan2(normal[1], normal[0]) - math.atan2(own[1], own[0]))
-
     def _root(self, member: int, excess: Callable[[Array], Array], missed: str) -> float:
-        """Root of a function of the azimuth nearest to that of the mean point."""
-        middle = self._mean_azimuth(member)
+        """Root of a function of the azimuth nearest to that of the mean point's foot on the root line."""
+        gear = self._gears[member]
+        machine, blank = gear.machine, gear.blank
+        along = blank.mean_cone_distance * math.cos(blank.pitch_angle - blank.root_angle)
+        ahead = along - machine.radial * math.cos(machine.cradle_angle)
+        middle = gear.mirror * math.atan2(-machine.radial * math.sin(machine.cradle_angle), ahead) % (2.0 * math.pi)
         azimuths = np.linspace(middle - REACH, middle + REACH, SAMPLES)
         values = excess(azimuths)
         changes = np.flatnonzero(np.signbit(values[1:]) != np.signbit(values[:-1]))
@@ -239,19 +229,6 @@ class BidirectionalStart:
         first = changes[np.argmin(np.abs(changes + 0.5 - 0.5 * (SAMPLES - 1)))]
         root = brentq(lambda x: float(excess(np.array([x]))[0]), azimuths[first], azimuths[first + 1], xtol=ROUNDING)
         return float(root)
-
-    def _mean_azimuth(self, member: int) -> float:
-        """Azimuth about the cutter of the mean point's foot on the root line."""
-        gear = self._gears[member]
-        machine, blank = gear.machine, gear.blank
-        along = blank.mean_cone_distance * math.cos(blank.pitch_angle - blank.root_angle)
-        ahead = along - machine.radial * math.cos(machine.cradle_angle)
-        azimuth = math.atan2(-machine.radial * math.sin(machine.cradle_angle), ahead)
-        return gear.mirror * azimuth % (2.0 * math.pi)
-
-
-def _theta(flank: Flank, rho: Array, z: Array) -> float:
-    return float(flank.theta(rho, z).value[0])
 
 
 def _turned(vector: Array, angle: float) -> Array:

@@ -26,10 +26,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import root
 
-from loaded_tca.arrays import Array, numbers
+from loaded_tca.arrays import Array, Indices, Mask, numbers
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
@@ -74,29 +74,19 @@ class ConventionalResult:
     unknowns: Array
     wheel_angle: Array
     residual: Array
-    iterations: NDArray[np.int_]
-    converged: NDArray[np.bool_]
-    tangent: NDArray[np.bool_]
-    inside: NDArray[np.bool_]
+    iterations: Indices
+    converged: Mask
+    tangent: Mask
+    inside: Mask
 
     @property
-    def is_contact(self) -> NDArray[np.bool_]:
+    def is_contact(self) -> Mask:
         """Converged, tangent, and on both flanks: (n,) bool array."""
         return self.converged & self.tangent & self.inside
 
     def __repr__(self) -> str:
         solved, contacts = int(self.converged.sum()), int(self.is_contact.sum())
         return f"ConventionalResult({len(self.converged)} starts, {solved} converged, {contacts} of them to a contact)"
-
-
-@dataclass(frozen=True, eq=False)
-class _Surface:
-    """Points and outward normals (n, 3) of one flank in the fixed frame, with their derivatives (n, 3, k)."""
-
-    point: Array
-    normal: Array
-    point_slopes: Array
-    normal_slopes: Array
 
 
 def solve_conventional(
@@ -213,32 +203,28 @@ def contact_equations(
     jacobian : (n, 5, 5) array [1/mm; last column 1/rad]
     """
     values, jacobian = _six_equations(pair, phi1, unknowns)
-    chosen = _chosen(normal_components)
+    chosen = np.r_[:3, np.add(3, normal_components)]
     return values[:, chosen], jacobian[:, chosen]
-
-
-def _chosen(normal_components: tuple[int, int]) -> list[int]:
-    """Five of the six equations."""
-    return [0, 1, 2, *(3 + component for component in normal_components)]
 
 
 def _six_equations(pair: GearPair, phi1: Array, unknowns: Array) -> tuple[Array, Array]:
     """(P1 - P2)/r_b2 and all components of n1 + n2 (n, 6), and their Jacobian (n, 6, 5)."""
     pinion_radius, pinion_axial, wheel_radius, wheel_axial, phi2 = unknowns.T
-    one = _surface(pair.pinion.flank, pinion_radius, pinion_axial, pair.sense * phi1)
-    other = _surface(pair.wheel.flank, wheel_radius, wheel_axial, -pair.sense * phi2)
-    axes, length = pair.wheel_axes, pair.base_radii[1]
-    gap = one.point - other.point @ axes - pair.wheel_origin
-    mismatch = one.normal + other.normal @ axes
-    to_unknowns = np.array([1.0, 1.0, -pair.sense])
-    moved, tilted = (axes.T @ slopes * to_unknowns for slopes in (other.point_slopes, other.normal_slopes))
-    upper = np.concatenate([one.point_slopes[..., :2], -moved], axis=-1) / length
-    lower = np.concatenate([one.normal_slopes[..., :2], tilted], axis=-1)
-    return np.concatenate([gap / length, mismatch], axis=-1), np.concatenate([upper, lower], axis=-2)
+    one, slopes = _surface(pair.pinion.flank, pinion_radius, pinion_axial, pair.sense * phi1)
+    other, mating_slopes = _surface(pair.wheel.flank, wheel_radius, wheel_axial, -pair.sense * phi2)
+    to_fixed = np.kron(np.eye(2), pair.wheel_axes)
+    other, mating_slopes = other @ to_fixed, to_fixed.T @ mating_slopes * np.array([1.0, 1.0, -pair.sense])
+    other[:, :3] += pair.wheel_origin
+    signs, scale = np.repeat([-1.0, 1.0], 3), np.repeat([pair.base_radii[1], 1.0], 3)
+    jacobian = np.concatenate([slopes[..., :2], signs[:, None] * mating_slopes], axis=-1)
+    return (one + signs * other) / scale, jacobian / scale[:, None]
 
 
-def _surface(flank: Flank, rho: Array, z: Array, turn: Array) -> _Surface:
-    """A flank turned by an angle about its own axis, in its gear's frame; slopes to rho, z and the angle."""
+def _surface(flank: Flank, rho: Array, z: Array, turn: Array) -> tuple[Array, Array]:
+    """Point and outward normal (n, 6) of a flank turned by an angle, in its gear's frame; their derivatives (n, 6, 3).
+
+    The derivatives are by rho, z and the angle.
+    """
     jet = flank.theta(rho, z)
     basis = cylindrical_basis(jet.value + turn)
     zero, unit = np.zeros_like(rho), np.ones_like(rho)
@@ -257,19 +243,16 @@ def _surface(flank: Flank, rho: Array, z: Array, turn: Array) -> _Surface:
     def turned(parts: Array) -> Array:
         return np.einsum("nk,nkj->nj", parts, basis)
 
-    return _Surface(
-        turned(_stack(rho, zero, z)),
-        turned(normal),
-        np.stack([turned(part) for part in moves], axis=-1),
-        np.stack([turned(part) for part in (*tilts, swing)], axis=-1),
-    )
+    points, normals = (_stack(rho, zero, z), *moves), (normal, *tilts, swing)
+    both = [np.concatenate([turned(one), turned(other)], axis=-1) for one, other in zip(points, normals, strict=True)]
+    return both[0], np.stack(both[1:], axis=-1)
 
 
 def _stack(*parts: Array) -> Array:
     return np.stack(np.broadcast_arrays(*parts), axis=-1)
 
 
-def _newton_step(values: Array, jacobian: Array) -> tuple[Array, NDArray[np.bool_]]:
+def _newton_step(values: Array, jacobian: Array) -> tuple[Array, Mask]:
     """Newton step (n, 5), zero where the Jacobian is singular or not finite, and where it is neither (n,)."""
     sound = np.asarray(np.isfinite(values).all(axis=-1) & np.isfinite(jacobian).all(axis=(-2, -1)))
     sound[sound] = np.abs(np.linalg.det(jacobian[sound])) > 0.0
@@ -278,18 +261,18 @@ def _newton_step(values: Array, jacobian: Array) -> tuple[Array, NDArray[np.bool
     return step, sound
 
 
-def _near(pair: GearPair, unknowns: Array) -> NDArray[np.bool_]:
+def _near(pair: GearPair, unknowns: Array) -> Mask:
     """Whether iterates are finite and within reach: (n,)."""
     reach = ASTRAY * np.array([pair.base_radii[1]] * 4 + [1.0])
     return (np.abs(unknowns) <= reach).all(axis=-1) & (unknowns[:, [0, 2]] != 0.0).all(axis=-1)
 
 
 def _result(
-    pair: GearPair, phi1: Array, unknowns: Array, iterations: NDArray[np.int_], normal_components: tuple[int, int]
+    pair: GearPair, phi1: Array, unknowns: Array, iterations: Indices, normal_components: tuple[int, int]
 ) -> ConventionalResult:
     with np.errstate(all="ignore"):
         misfit = np.abs(_six_equations(pair, phi1, unknowns)[0])
-        residual = misfit[:, _chosen(normal_components)].max(axis=-1)
+        residual = misfit[:, np.r_[:3, np.add(3, normal_components)]].max(axis=-1)
         tangent = np.asarray(misfit[:, 3:].max(axis=-1) <= SAME_NORMAL)
         inside = np.ones(len(unknowns), dtype=bool)
         for flank, first in ((pair.pinion.flank, 0), (pair.wheel.flank, 2)):

@@ -29,9 +29,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from loaded_tca.arrays import Array, finite_row
+from loaded_tca.arrays import Array, Mask, finite_row
 from loaded_tca.errors import ConvergenceError, GeometryError, InputError
 from loaded_tca.pairs.gear_pair import GearPair
 
@@ -48,8 +48,6 @@ COVERED = 1e-9
 """Distance beyond an edge, relative to the flank's height, that counts as rounding."""
 
 FULL_TURN = 2.0 * math.pi
-
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +76,7 @@ class GoldenSectionResult:
     pinion_radius: Array
     pinion_axial: Array
     gap: Array
-    in_contact: Bools
+    in_contact: Mask
     evaluations: int
 
     def __repr__(self) -> str:
@@ -146,8 +144,6 @@ class _Search:
     def __init__(self, pair: GearPair, phi1: Array, sections: int) -> None:
         self.pair, self.phi1, self.sections = pair, phi1, sections
         self.evaluations = 0
-        corners = pair.pinion.flank.grid(2, 2)
-        self._box = [(float(part.min()), float(part.max())) for part in corners]
 
     def points(self, rows: Array, rho: Array, z: Array) -> Array:
         """Points of the pinion flank in the fixed frame (k, 3) [mm]."""
@@ -165,7 +161,7 @@ class _Search:
         distance = flank.side * behind / np.sqrt(radius**-2.0 + jet.rho**2 + jet.z**2)
         return distance + PENALTY * self._beyond(rho, z, radius, axial)
 
-    def covered(self) -> Bools:
+    def covered(self) -> Mask:
         """Whether both flanks cover a common region at each position (n,): it does not depend on phi2."""
         rows = np.arange(len(self.phi1))
 
@@ -186,12 +182,13 @@ class _Search:
 
     def _lowest(self, rows: Array, function: Callable[[Array, Array], Array]) -> tuple[Array, Array, Array]:
         """Minimum over the flank, and rho, z: sections along the profile inside one along the face."""
-        lower, upper = ([np.full(len(rows), ends[k]) for ends in self._box] for k in (0, 1))
+        corners = [np.full((len(rows), part.size), part.ravel()) for part in self.pair.pinion.flank.grid(2, 2)]
+        ends = [(part.min(axis=1), part.max(axis=1)) for part in corners]
 
         def across(z: Array) -> tuple[Array, Array]:
-            return _golden(lambda rho: function(rho, z), lower[0], upper[0], self.sections)
+            return _golden(lambda rho: function(rho, z), *ends[0], self.sections)
 
-        z, value = _golden(lambda z: across(z)[1], lower[1], upper[1], self.sections)
+        z, value = _golden(lambda z: across(z)[1], *ends[1], self.sections)
         return value, across(z)[0], z
 
 

@@ -18,20 +18,19 @@ Litvin & Fuentes 2004, Gear Geometry and Applied Theory, chapter 6 (conjugated s
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.roots import find_roots
-from loaded_tca.unloaded.scan import WHEEL_EDGES
 
 SAMPLES = 16
 """Angles per pitch at which the lead of a point is sampled."""
@@ -59,7 +58,10 @@ ROUNDING = 1e-5
 """Distance beyond an edge [modules] that still counts as on the flank: places are interpolated so closely."""
 NOWHERE = -1.0
 """Room [modules] where there is no contact at all: beyond any edge."""
-Edge = Callable[[Array, NDArray[np.int_]], Array]
+WHEEL_EDGES = slice(4, 8)
+"""Columns of the edges of the wheel's flank."""
+GearName = Literal["pinion", "wheel"]
+Edge = Callable[[Array, Indices], Array]
 """Room [modules] at shares along a line, of the lines named by the second argument."""
 
 
@@ -88,9 +90,18 @@ class ConjugateContact:
     lengthwise_room: Array
 
     @property
-    def exists(self) -> NDArray[np.bool_]:
+    def exists(self) -> Mask:
         """Whether there is such a contact."""
         return np.isfinite(self.lead)
+
+
+def problems_of_map(gear: Any, grid: Any, fewest: int) -> list[str]:
+    """What is wrong with the gear and the grid that a map of a flank is asked for."""
+    problems = [] if gear in ("pinion", "wheel") else [f"gear: {gear!r} is not 'pinion' or 'wheel'"]
+    counts = list(grid) if isinstance(grid, Sequence | np.ndarray) else []
+    if len(counts) != 2 or not all(isinstance(n, int | np.integer) and n >= fewest for n in counts):
+        problems.append(f"grid: {grid!r} are not two whole numbers >= {fewest}")
+    return problems
 
 
 def exchanged(pair: GearPair) -> GearPair:
@@ -168,12 +179,12 @@ def _highest(field: EaseOff, azimuth: Array, rho: Array, z: Array) -> ConjugateC
     best = (lead.argmax(axis=0), np.arange(len(rho)))
     first = sampled[best]
 
-    def slope(angle: Array, rows: NDArray[np.int_]) -> Array:
+    def slope(angle: Array, rows: Indices) -> Array:
         """de/d phi1 [mm/rad] at points that stay where they are on the pinion."""
         station = field.station(angle, rho[rows], z[rows])
-        x, y, _ = np.moveaxis(station.point, -1, 0)
+        x, y, _ = station.point.T
         swept = np.stack([-y, x, np.zeros_like(x)], axis=-1)
-        radial, around, axial = np.moveaxis(np.einsum("nij,nj->ni", station.wheel_basis, swept), -1, 0)
+        radial, around, axial = np.einsum("nij,nj->in", station.wheel_basis, swept)
         rate = station.wheel.rho * radial - around / station.wheel_rho + station.wheel.z * axial
         return pair.driving * pair.base_radii[1] * (rate - pair.ratio)
 
@@ -184,19 +195,13 @@ def _highest(field: EaseOff, azimuth: Array, rho: Array, z: Array) -> ConjugateC
     angle = find_roots(slope, brackets, values, ANGLE_ACCURACY)
     found = np.isfinite(lead[best]) & (values[0] >= 0.0) & (values[1] <= 0.0)
     station = field.station(angle, rho, z)
-    distances = field.heights(angle, rho, z)[1][..., WHEEL_EDGES]
-    known = (
-        angle,
-        field.value(station, angle),
-        station.wheel_rho,
-        station.wheel_z,
-        distances[..., :2].min(axis=-1),
-        distances[..., 2:].min(axis=-1),
-    )
+    value, distances = field.heights(angle, rho, z)
+    rooms = distances[:, WHEEL_EDGES].reshape(-1, 2, 2).min(axis=-1).T
+    known = (angle, value, station.wheel_rho, station.wheel_z, *rooms)
     return ConjugateContact(*(np.where(found, part, np.nan) for part in known))
 
 
-def _near(pair: GearPair, edges: Array) -> NDArray[np.bool_]:
+def _near(pair: GearPair, edges: Array) -> Mask:
     """Whether the wheel has a flank at the points, continued beyond its edges a little."""
     side = SIDE_SLACK * pair.face_width
     slack = np.array([SLACK[0] * pair.module, SLACK[1] * pair.module, side, side])
@@ -254,8 +259,8 @@ def mated_grid(pair: GearPair, profile: int, lengthwise: int) -> tuple[Array, Ar
 def _rooms(pair: GearPair, u: Array, v: Array) -> tuple[Array, Array]:
     """Room [modules] along the profile, and to the nearest edge of all, at shares (...) of the pinion's flank."""
     contact = conjugate_contact(pair, *_places(pair.pinion.flank, u, v))
-    along = np.where(contact.exists, contact.profile_room / pair.module, NOWHERE)
-    side = np.where(contact.exists, contact.lengthwise_room / pair.module, NOWHERE)
+    rooms = np.stack([contact.profile_room, contact.lengthwise_room])
+    along, side = np.where(contact.exists, rooms / pair.module, NOWHERE)
     return along, np.minimum(along, side)
 
 

@@ -5,9 +5,8 @@ r"""The ease-off topography: how much a flank lacks of the conjugate of its mati
 with the largest lead E of :mod:`loaded_tca.flank_maps.conjugate`, E_0 its highest value on the map and \|grad F\| of
 the unmodified flank: material removed along the normal, counted as ``FlankModifications`` count it. Zero where the
 flanks are nearest, and everywhere for conjugate flanks; a modified pinion with an unmodified wheel shows its
-modification, and to first order the modifications of both gears and the mounting errors add up. It does not depend on
-the position, nor
-on the number of teeth in contact: it is what the pair is made of.
+modification, and to first order the modifications of both gears and the mounting errors add up. It depends neither on
+the position nor on the number of teeth in contact.
 
 References
 ----------
@@ -20,12 +19,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.flank_maps.conjugate import ROUNDING, conjugate_contact, exchanged, mated_grid
-from loaded_tca.flank_maps.pattern import Gear, problems_of_map
+from loaded_tca.flank_maps.conjugate import (
+    ROUNDING,
+    GearName,
+    conjugate_contact,
+    exchanged,
+    mated_grid,
+    problems_of_map,
+)
 from loaded_tca.flank_maps.second_order import SecondOrder, central, flank_lengths, second_order
 from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.pairs.gear_pair import GearPair
@@ -62,7 +66,7 @@ class EaseOffMap:
         what is off a bevel gear's flank when it is turned grows with the cone distance.
     """
 
-    gear: Gear
+    gear: GearName
     frame: FlankFrame
     radius: Array
     axial: Array
@@ -72,7 +76,7 @@ class EaseOffMap:
     mating_radius: Array
     mating_axial: Array
     angle: Array
-    covered: NDArray[np.bool_]
+    covered: Mask
     second_order: SecondOrder
 
     @property
@@ -85,7 +89,7 @@ class EaseOffMap:
         return f"EaseOffMap({self.gear}, {shape} points, up to {1e3 * float(self.ease_off.max()):.4g} um)"
 
 
-def ease_off_map(pair: GearPair, gear: Gear = "pinion", grid: tuple[int, int] = GRID) -> EaseOffMap:
+def ease_off_map(pair: GearPair, gear: GearName = "pinion", grid: tuple[int, int] = GRID) -> EaseOffMap:
     """Ease-off of a flank against the conjugate of its mating flank.
 
     The map covers the part of the flank that the mating gear reaches: along the profile from where the mating gear's
@@ -133,11 +137,11 @@ def ease_off_map(pair: GearPair, gear: Gear = "pinion", grid: tuple[int, int] = 
     flank, (rho, z) = seen.pinion.flank, mated_grid(seen, *grid)
     contact = conjugate_contact(seen, rho, z)
     if not contact.exists.all():
-        first = tuple(np.argwhere(~contact.exists)[0])
-        where = flank.frame.place(float(rho[first]), float(z[first]))
+        lacking = np.argwhere(~contact.exists)
+        where = flank.frame.place(float(rho[*lacking[0]]), float(z[*lacking[0]]))
         raise GeometryError(
-            f"no ease-off: at {int((~contact.exists).sum())} of {rho.size} points, first at {where}, the flank meets "
-            "no flank of the mating gear at the constant ratio; the mounting errors are too large"
+            f"no ease-off: at {len(lacking)} of {rho.size} points, first at {where}, the flank meets no flank of the "
+            "mating gear at the constant ratio; the mounting errors are too large"
         )
     per_lead = 1.0 / (seen.base_radii[1] * seen.ratio * flank.gradient_norm(rho, z).value)
     from_middle = (contact.lead[central(grid)].mean() - contact.lead) * per_lead

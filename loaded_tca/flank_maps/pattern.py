@@ -17,24 +17,20 @@ Litvin & Fuentes 2004, Gear Geometry and Applied Theory, 9.3 (the ellipse of the
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loaded_tca.arrays import Array
-from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.flank_maps.conjugate import exchanged
+from loaded_tca.arrays import Array, Indices, Mask
+from loaded_tca.errors import InputError
+from loaded_tca.flank_maps.conjugate import GearName, exchanged, problems_of_map
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.curvature import relative_curvature
 from loaded_tca.unloaded.ease_off import EaseOff
-from loaded_tca.unloaded.path import ContactPoint
+from loaded_tca.unloaded.path import ContactPoint, require_contact
 from loaded_tca.unloaded.roots import find_roots
 from loaded_tca.unloaded.teeth import MeshPath, trace_teeth
-
-Gear = Literal["pinion", "wheel"]
 
 COMPOUND = 6.35e-3
 """Thickness of the usual marking compound [mm]."""
@@ -85,7 +81,7 @@ class ContactArea:
     pinion_axial: Array
     wheel_radius: Array
     wheel_axial: Array
-    on_edge: NDArray[np.bool_]
+    on_edge: Mask
     area: float
     semi_axes: tuple[float, float]
     ellipse_semi_axes: tuple[float, float]
@@ -120,7 +116,7 @@ class ContactPattern:
         Smallest gap over positions and teeth; +inf where the mating gear never comes.
     """
 
-    gear: Gear
+    gear: GearName
     compound: float
     radius: Array
     axial: Array
@@ -133,7 +129,7 @@ class ContactPattern:
         return 2.0 * self.radius
 
     @property
-    def touched(self) -> NDArray[np.bool_]:
+    def touched(self) -> Mask:
         """Where the compound is squeezed out."""
         return np.asarray(self.gap <= self.compound)
 
@@ -142,7 +138,7 @@ class ContactPattern:
 
 
 def flank_gap(
-    pair: GearPair, gear: Gear, angles: tuple[Any, Any], place: tuple[Array, Array]
+    pair: GearPair, gear: GearName, angles: tuple[Any, Any], place: tuple[Array, Array]
 ) -> tuple[Array, Array, Array]:
     """Gap at points of one flank, to first order, and the same points on the mating gear.
 
@@ -194,7 +190,7 @@ class _Rays:
     size: float
     compound: float
 
-    def contour(self, rays: int) -> tuple[Array, Array, Array, NDArray[np.int_]]:
+    def contour(self, rays: int) -> tuple[Array, Array, Array, Indices]:
         """Angle, rho, z and edge (m,) of the ends of rays at even angles, and of those between that the area needs.
 
         Edges are counted from 1, the pinion's first; 0: the compound.
@@ -297,7 +293,7 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
         If the contact is not one position of a path, the compound is not positive and finite, or there are fewer than 8
         rays.
     GeometryError
-        If the tooth pair does not touch at this position.
+        If the tooth pair is not in contact at this position.
 
     Examples
     --------
@@ -311,20 +307,17 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
     >>> [round(length, 3) for length in (*area.semi_axes, *area.ellipse_semi_axes)]
     [0.372, 4.455, 0.373, 4.455]
     """
+    require_contact(contact)
     problems = _problems_of(compound)
-    if not isinstance(contact, ContactPoint):
-        problems.append(f"contact: {type(contact).__name__} is not a ContactPoint; take one position, path[i]")
     if not isinstance(rays, int | np.integer) or rays < 8:
         problems.append(f"rays: {rays!r} is not a whole number >= 8")
     if problems:
         raise InputError(problems)
-    if not contact.in_contact:
-        raise GeometryError(
-            f"no common flank: the tooth pair does not touch at pinion angle {contact.pinion_angle} rad"
-        )
     curvature = relative_curvature(pair, contact)
     bends = (curvature.across, 0.0 if contact.on_line else curvature.along)
     semi_axes = [math.sqrt(2.0 * compound / k) if k > 0.0 else math.inf for k in bends]
+    even = np.arange(rays) * (2.0 * math.pi / rays)
+    around = np.stack([np.cos(even), np.sin(even)], axis=-1) * (1.0 if np.isfinite(semi_axes).all() else math.nan)
     longest = math.hypot(*pair.pinion.flank.extent)
     drawn = [min(LONGEST * axis, longest) for axis in semi_axes]
     plane = curvature.axes[:2]
@@ -337,10 +330,6 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
     wheel_radius, _, wheel_axial = pair.to_wheel(point)
     x, y = plane @ (point - contact.point).T
     sectors = _sectors(np.append(turn, turn[0]), *(np.append(part, part[0]) for part in (x, y, edge)))
-    ellipse = np.full((rays, 3), np.nan)
-    if np.isfinite(semi_axes).all():
-        angle = np.arange(rays) * (2.0 * math.pi / rays)
-        ellipse = contact.point + np.stack([np.cos(angle), np.sin(angle)], axis=-1) * semi_axes @ plane
     return ContactArea(
         compound=float(compound),
         point=point,
@@ -352,7 +341,7 @@ def contact_area(pair: GearPair, contact: ContactPoint, compound: float = COMPOU
         area=abs(float(sectors.sum())),
         semi_axes=(0.5 * float(np.ptp(x)), 0.5 * float(np.ptp(y))),
         ellipse_semi_axes=(semi_axes[0], semi_axes[1]),
-        ellipse_points=ellipse,
+        ellipse_points=contact.point + (around * semi_axes) @ plane,
     )
 
 
@@ -360,7 +349,7 @@ def contact_pattern(
     pair: GearPair,
     mesh: MeshPath | None = None,
     *,
-    gear: Gear = "pinion",
+    gear: GearName = "pinion",
     compound: float = COMPOUND,
     grid: tuple[int, int] = GRID,
 ) -> ContactPattern:
@@ -393,9 +382,7 @@ def contact_pattern(
     if mesh is not None and not isinstance(mesh, MeshPath):
         problems.append(f"mesh: {type(mesh).__name__} is not a MeshPath, which trace_teeth gives")
     elif mesh is not None and mesh.pair is not pair:
-        problems.append(
-            f"mesh: it was traced for another object, {mesh.pair!r}, not for the pair given; hand over mesh.pair"
-        )
+        problems.append(f"mesh: it was traced for another object, {mesh.pair!r}, not this pair; hand over mesh.pair")
     if problems:
         raise InputError(problems)
     if mesh is None:
@@ -404,12 +391,8 @@ def contact_pattern(
     rho, z = flank.grid(*grid)
     smallest = np.full(rho.shape, np.inf)
     for tooth, path in zip(mesh.pairs, mesh.paths, strict=True):
-        near = np.flatnonzero(path.in_contact)
-        angles = (
-            path.pinion_angle[near, None, None],
-            (mesh.wheel_angle[near] - tooth * pair.ratio * pair.pitch)[:, None, None],
-        )
-        gap, _, _ = flank_gap(pair, gear, angles, (rho, z))
+        own = np.stack([path.pinion_angle, mesh.wheel_angle - tooth * pair.ratio * pair.pitch])[:, path.in_contact]
+        gap, _, _ = flank_gap(pair, gear, (own[0, :, None, None], own[1, :, None, None]), (rho, z))
         smallest = np.minimum(smallest, gap.min(axis=0, initial=np.inf))
     roll_length = np.broadcast_to(flank.profile_coordinate(rho, z).value, rho.shape)
     return ContactPattern(gear, float(compound), rho, z, roll_length, smallest)
@@ -418,12 +401,3 @@ def contact_pattern(
 def _problems_of(compound: Any) -> list[str]:
     sound = isinstance(compound, int | float | np.number) and 0.0 < compound < math.inf
     return [] if sound else [f"compound: {compound!r} mm is not a positive, finite thickness"]
-
-
-def problems_of_map(gear: Any, grid: Any, fewest: int) -> list[str]:
-    """What is wrong with the gear and the grid of a map over a flank."""
-    problems = [] if gear in ("pinion", "wheel") else [f"gear: {gear!r} is not 'pinion' or 'wheel'"]
-    counts = list(grid) if isinstance(grid, Sequence | np.ndarray) else []
-    if len(counts) != 2 or not all(isinstance(n, int | np.integer) and n >= fewest for n in counts):
-        problems.append(f"grid: {grid!r} are not two whole numbers >= {fewest}")
-    return problems

@@ -78,18 +78,13 @@ class SecondOrder:
         return self.polynomial[5] * (0.5 * self.size[1]) ** 2
 
     def __repr__(self) -> str:
+        angles = [60.0 * math.degrees(angle) for angle in (self.spiral_angle, self.pressure_angle)]
+        lengths = [1e3 * length for length in (self.lengthwise_crowning, self.profile_crowning, self.twist)]
+        spiral, pressure, beta, alpha, twist = (f"{round(value, 4) + 0.0:.3g}" for value in (*angles, *lengths))
         return (
-            f"SecondOrder(spiral angle {_arcmin(self.spiral_angle)}, pressure angle {_arcmin(self.pressure_angle)}, "
-            f"crownings {_um(self.lengthwise_crowning)} and {_um(self.profile_crowning)}, twist {_um(self.twist)})"
+            f"SecondOrder(spiral angle {spiral} arcmin, pressure angle {pressure} arcmin, "
+            f"crownings {beta} um and {alpha} um, twist {twist} um)"
         )
-
-
-def _arcmin(angle: float) -> str:
-    return f"{round(60.0 * math.degrees(angle), 4) + 0.0:.3g} arcmin"
-
-
-def _um(length: float) -> str:
-    return f"{round(1e3 * length, 4) + 0.0:.3g} um"
 
 
 def second_order(flank: Flank, rho: Array, z: Array, removed: Array) -> SecondOrder:
@@ -125,18 +120,17 @@ def second_order(flank: Flank, rho: Array, z: Array, removed: Array) -> SecondOr
     missed = removed.ravel() - terms @ scaled
     half = 0.5 * np.array(size)
     lengths = np.array([1.0, half[0], half[1], half[0] * half[1], half[0] ** 2, half[1] ** 2])
-    middle = central(u.shape)
-    at = rho[middle].mean(), z[middle].mean()
-    theta, along, up = (jet(*at) for jet in (flank.theta, flank.lengthwise_coordinate, flank.profile_coordinate))
-    unit = flank.profile_unit
-    steps = np.linalg.inv(np.array([[along.rho, along.z], [unit * up.rho, unit * up.z]], dtype=float))
-    tangents = np.array([[1.0, at[0] * theta.rho, 0.0], [0.0, at[0] * theta.z, 1.0]], dtype=float)
-    arcs = np.linalg.norm(steps.T @ tangents, axis=-1)
+    middle_rho, middle_z = (part[central(u.shape)].mean() for part in (rho, z))
+    theta, along = flank.theta(middle_rho, middle_z), flank.lengthwise_coordinate(middle_rho, middle_z)
+    up = flank.profile_coordinate(middle_rho, middle_z) * flank.profile_unit
+    steps = np.linalg.inv(np.array([[along.rho, along.z], [up.rho, up.z]], dtype=float))
+    tangents = np.array([[1.0, middle_rho * theta.rho, 0.0], [0.0, middle_rho * theta.z, 1.0]], dtype=float)
+    arcs = np.linalg.norm(steps.T @ tangents, axis=-1).tolist()
     return SecondOrder(
         polynomial=tuple((scaled / lengths).tolist()),
         origin=origin,
         size=size,
-        arcs=(float(arcs[0]), float(arcs[1])),
+        arcs=(arcs[0], arcs[1]),
         residual=float(np.sqrt((missed**2).mean())),
     )
 

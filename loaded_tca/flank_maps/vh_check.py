@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,7 +17,8 @@ from scipy.ndimage import zoom
 
 from loaded_tca.arrays import Array, finite_row
 from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.flank_maps.pattern import COMPOUND, ContactPattern, Gear, contact_pattern
+from loaded_tca.flank_maps.conjugate import GearName
+from loaded_tca.flank_maps.pattern import COMPOUND, ContactPattern, contact_pattern
 from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.teeth import trace_teeth
@@ -79,7 +81,7 @@ def vh_check(
     v: ArrayLike,
     h: ArrayLike,
     *,
-    gear: Gear = "pinion",
+    gear: GearName = "pinion",
     compound: float = COMPOUND,
     grid: tuple[int, int] = GRID,
     positions: int = POSITIONS,
@@ -128,23 +130,19 @@ def vh_check(
     rows, columns = finite_row("v", v), finite_row("h", h)
     if not isinstance(positions, int | np.integer) or positions < 2:
         raise InputError(f"positions: {positions!r} is not a whole number >= 2")
-    patterns, centres, edge_shares = [], [], []
-    for first in rows:
-        for second in columns:
-            try:
-                pair = build(float(first), float(second))
-                mesh = trace_teeth(pair, np.linspace(-0.5, 0.5, positions) * pair.pitch)
-                pattern = contact_pattern(pair, mesh, gear=gear, compound=compound, grid=grid)
-            except GeometryError as error:
-                raise GeometryError(f"v = {first:.6g}, h = {second:.6g}: {error}") from error
-            frame = (pair.pinion.flank if gear == "pinion" else pair.wheel.flank).frame
-            patterns.append(pattern)
-            centres.append(pattern_centre(pattern, frame))
-            edge_shares.append(mesh.leading_contact.on_edge.mean())
-    shape, count = (len(rows), len(columns)), len(columns)
-    lines = tuple(tuple(patterns[k * count : (k + 1) * count]) for k in range(len(rows)))
-    centre, edge_share = np.reshape(centres, (*shape, 2)), np.reshape(edge_shares, shape)
-    return VHCheck(rows, columns, lines, frame, centre, edge_share)
+    patterns, edge_share, shape = [], [], (len(rows), len(columns))
+    for first, second in product(rows.tolist(), columns.tolist()):
+        try:
+            pair = build(first, second)
+            mesh = trace_teeth(pair, np.linspace(-0.5, 0.5, positions) * pair.pitch)
+            patterns.append(contact_pattern(pair, mesh, gear=gear, compound=compound, grid=grid))
+        except GeometryError as error:
+            raise GeometryError(f"v = {first:.6g}, h = {second:.6g}: {error}") from error
+        edge_share.append(mesh.leading_contact.on_edge.mean())
+    frame = (pair.pinion if gear == "pinion" else pair.wheel).flank.frame
+    centre = np.array([pattern_centre(pattern, frame) for pattern in patterns]).reshape(*shape, 2)
+    lines = tuple(tuple(patterns[k : k + shape[1]]) for k in range(0, len(patterns), shape[1]))
+    return VHCheck(rows, columns, lines, frame, centre, np.reshape(edge_share, shape))
 
 
 def pattern_centre(pattern: ContactPattern, frame: FlankFrame) -> Array:
@@ -153,7 +151,7 @@ def pattern_centre(pattern: ContactPattern, frame: FlankFrame) -> Array:
     x, y, gap = (zoom(part, FINER, order=1) for part in (*frame.to_picture(pattern.radius, pattern.axial), gap))
     (x_up, x_along), (y_up, y_along) = np.gradient(x), np.gradient(y)
     weight = (gap <= pattern.compound) * np.abs(x_along * y_up - x_up * y_along)
-    weight[[0, -1]] *= 0.5  # points on the edges of the grid stand for half as much
+    weight[[0, -1]] *= 0.5
     weight[:, [0, -1]] *= 0.5
     total = weight.sum()
     return np.array([(weight * x).sum(), (weight * y).sum()]) / total if total > 0.0 else np.full(2, np.nan)

@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices
 from loaded_tca.errors import GeometryError
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import line_contact, point_contact
 from loaded_tca.separation.normal_gap import NormalGap
-from loaded_tca.unloaded import ContactPoint, RelativeCurvature
+from loaded_tca.unloaded import ContactPoint, RelativeCurvature, relative_curvature
 from loaded_tca.unloaded.roots import find_roots
 
 MARGIN = 1.25
@@ -38,25 +37,21 @@ STRAIGHT_CHORD = 5e-5
 an eighth of that, of the distance of the rows."""
 
 
-def _box_of_whole_cells(half: tuple[float, float], material: float, cells: int) -> tuple[float, float]:
-    """Box that ends a cell beyond the end of the material where it lies inside, so that whole cells end there."""
-    if material >= half[1]:
-        return half
-    return half[0], material * (cells / (cells - 2) if cells > 2 else 1.0)
+def estimate_box(
+    gap: NormalGap, contact: ContactPoint, load: float, guess: tuple[float, float] | None, cells: int
+) -> tuple[float, float]:
+    """Half lengths across and along [mm] of a box that holds the contact under a load > 0 [N].
 
-
-def _estimate_box(
-    gap: NormalGap, curvature: RelativeCurvature, contact: ContactPoint, load: float, guess: tuple[float, float] | None
-) -> tuple[tuple[float, float], float]:
-    """Half lengths across and along of a box that holds the contact under a load > 0 [N], and the end of the material.
-
-    The end of the material is the distance along the second axis to the farthest point that both flanks still cover,
-    within the box.
+    Where the material ends inside the box, the box ends a cell (of ``cells`` along) beyond it, so that whole cells end
+    there.
     """
     pair = gap.pair
     modulus = pair.contact_modulus
     longest = math.hypot(pair.face_width, *(flank.extent[0] for flank in (pair.pinion.flank, pair.wheel.flank)))
-    window = _window_in(guess) if guess is not None and contact.on_edge else _first_window(curvature, load, pair)
+    if guess is not None and contact.on_edge:  # a window that a contact with this box fills to two thirds
+        window = ROOM / EDGE_MARGIN * guess[0], ROOM / MARGIN * guess[1]
+    else:
+        window = _first_window(relative_curvature(pair, contact), load, pair)
     window = (window[0], min(window[1], longest))
     for _ in range(MOST_PROBES):
         x, y = (np.linspace(-half, half, count) for half, count in zip(window, PROBE, strict=True))
@@ -76,7 +71,10 @@ def _estimate_box(
     material = _material_length(gap, room, x, y, MARGIN * needed[1])
     spiked = end > CERTAINLY_INSIDE * material
     margin = EDGE_MARGIN if contact.on_edge else SPIKE_MARGIN if spiked else MARGIN
-    return (margin * needed[0], MARGIN * needed[1]), material
+    along = MARGIN * needed[1]
+    if material < along:
+        along = material * (cells / (cells - 2) if cells > 2 else 1.0)
+    return margin * needed[0], along
 
 
 def _first_window(curvature: RelativeCurvature, load: float, pair: GearPair) -> tuple[float, float]:
@@ -86,11 +84,6 @@ def _first_window(curvature: RelativeCurvature, load: float, pair: GearPair) -> 
     ellipse = point_contact(load, (across, along), pair.contact_modulus)
     line = line_contact(load / pair.face_width, across, pair.contact_modulus)
     return ROOM * max(ellipse.semi_minor, line.half_width), ROOM * ellipse.semi_major
-
-
-def _window_in(box: tuple[float, float]) -> tuple[float, float]:
-    """A window that a contact on an edge with this box would fill to two thirds."""
-    return ROOM / EDGE_MARGIN * box[0], ROOM / MARGIN * box[1]
 
 
 def _resized(needed: float, window: float, growth: float) -> float:
@@ -120,7 +113,7 @@ def _strip_extent(gap: Array, x: Array, y: Array, load: float, modulus: float) -
         width = float(across[loaded.any(axis=1)].max()) + 0.5 * dx
         length = float(reach[closed].max()) + 0.5 * dy
     rise = float(np.ptp(gap[np.isfinite(gap)]))
-    growth = (float(penetration.max()) / rise) ** (1.0 / 3.0) if rise > 0.0 else 0.0
+    growth = math.cbrt(float(penetration.max()) / rise) if rise > 0.0 else 0.0
     growth = min(max(growth, LEAST_GROWTH), MOST_GROWTH)
     return width, length, _end_of_parabola(reach[closed], penetration[closed]), growth
 
@@ -162,7 +155,7 @@ def _material_length(gap: NormalGap, room: Array, x: Array, y: Array, reach: flo
         return min(float(np.abs(y[inner] + room[inner] / fall * (y[outer] - y[inner])).max()), reach)
     tolerance = END_OF_MATERIAL * reach
 
-    def room_at(place: Array, _: NDArray[np.int_] | None = None) -> Array:
+    def room_at(place: Array, _: Indices | None = None) -> Array:
         return np.maximum(gap.at(x[:, None], place)[1].max(axis=0), lowest)
 
     if last + 2 <= middle:  # in a corner the other edge rules inside, but seldom outside

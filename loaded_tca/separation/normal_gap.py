@@ -9,9 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.flanks.base import Flank
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded import ContactPoint
@@ -49,7 +48,7 @@ class _Meeting:
     rho: Array
     z: Array
     step: Array
-    settled: NDArray[np.bool_]
+    settled: Mask
 
 
 class NormalGap:
@@ -77,15 +76,10 @@ class NormalGap:
 
     def __init__(self, pair: GearPair, contact: ContactPoint, axes: Array) -> None:
         self.pair = pair
-        in_wheel = pair.wheel_axes.T
+        in_wheel, origin = pair.wheel_axes.T, (contact.point - pair.wheel_origin) @ pair.wheel_axes.T
         self._views = (
             (pair.pinion.flank, contact.point, axes, pair.sense * contact.pinion_angle),
-            (
-                pair.wheel.flank,
-                (contact.point - pair.wheel_origin) @ in_wheel,
-                axes @ in_wheel,
-                -pair.sense * contact.wheel_angle,
-            ),
+            (pair.wheel.flank, origin, axes @ in_wheel, -pair.sense * contact.wheel_angle),
         )
         self._size = sum(pair.base_radii)
         self._rounding = STEP_ROUNDING * self._size
@@ -100,18 +94,17 @@ class NormalGap:
 
         The distance is negative where a flank has ended, and -inf where the normal does not meet it.
         """
-        rays = [self._rays(x, y, *view) for view in self._views]
+        rays = []
+        for flank, origin, axes, turn in self._views:
+            across, along, normal = axes.tolist()
+            start = tuple(o + (x * a + y * b) for o, a, b in zip(origin.tolist(), across, along, strict=True))
+            rays.append(_Rays(flank, start, tuple(normal), turn))
         met = [self._meet(ray, np.zeros(ray.start[0].shape)) for ray in rays]
         rooms = [ray.flank.room(one.rho, one.z) for ray, one in zip(rays, met, strict=True)]
         if not (met[0].settled & met[1].settled).all():
             for own in (0, 1):
                 self._meet_rest(rays[own], met[own], rooms[own], met[1 - own])
         return met[1].height - met[0].height, np.minimum(*rooms) + ON_EDGE * self.pair.module
-
-    def _rays(self, x: Array, y: Array, flank: Flank, origin: Array, axes: Array, turn: float) -> _Rays:
-        across, along, normal = axes.tolist()
-        start = tuple(o + (x * a + y * b) for o, a, b in zip(origin.tolist(), across, along, strict=True))
-        return _Rays(flank, start, tuple(normal), turn)
 
     def _meet_rest(self, rays: _Rays, met: _Meeting, room: Array, mating: _Meeting) -> None:
         """Take further steps as long as they shrink, where the mating gear is met; elsewhere ``room`` becomes -inf."""

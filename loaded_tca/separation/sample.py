@@ -25,15 +25,12 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.contact.checks import memory_problem
-from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.errors import InputError
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.separation.box import (
-    MARGIN,
-    _box_of_whole_cells,
-    _estimate_box,
-)
+from loaded_tca.separation.box import MARGIN, estimate_box
 from loaded_tca.separation.normal_gap import NormalGap
-from loaded_tca.unloaded import ContactPoint, relative_curvature
+from loaded_tca.unloaded.curvature import relative_curvature
+from loaded_tca.unloaded.path import ContactPoint, require_contact
 
 PEAK_ERROR = 0.26
 """Relative error of the peak pressure times the square of the number of cells across a smooth contact (measured on
@@ -147,34 +144,24 @@ def sample_separation(
     >>> [round(k, 6) for k in separation.curvatures]
     [0.091526, 6.4e-05]
     """
-    _check(contact, cells, load, accuracy, {"box": box, "guess": guess})
+    require_contact(contact)
+    _check(cells, load, accuracy, {"box": box, "guess": guess})
     curvature = relative_curvature(pair, contact)
     gap = NormalGap(pair, contact, curvature.axes)
     shape = (int(cells[0]), int(cells[1])) if cells is not None else (cells_for_accuracy(accuracy),) * 2
-    half = (
-        box
-        if box is not None
-        else _box_of_whole_cells(
-            *_estimate_box(gap, curvature, contact, load if load else LOAD_OF_UNLOADED_BOX, guess), shape[1]
-        )
-    )
-    spacing = (2.0 * half[0] / shape[0], 2.0 * half[1] / shape[1])
+    if box is None:
+        box = estimate_box(gap, contact, load or LOAD_OF_UNLOADED_BOX, guess, shape[1])
+    spacing = (2.0 * box[0] / shape[0], 2.0 * box[1] / shape[1])
     x, y = ((np.arange(n) - 0.5 * (n - 1)) * step for n, step in zip(shape, spacing, strict=True))
     curvatures = (curvature.across, curvature.along)
     return Separation(gap(x, y), x, y, spacing, contact.point.copy(), curvature.axes, curvatures)
 
 
 def _check(
-    contact: ContactPoint,
-    cells: tuple[int, int] | None,
-    load: float | None,
-    accuracy: float,
-    boxes: dict[str, tuple[float, float] | None],
+    cells: tuple[int, int] | None, load: float | None, accuracy: float, boxes: dict[str, tuple[float, float] | None]
 ) -> None:
-    if not isinstance(contact, ContactPoint):
-        raise InputError(f"contact: {contact!r} is not one position of a path; take path[i]")
     problems = []
-    if cells is not None and not (_two_numbers(cells) and all(n == n // 1 and 1 <= n < math.inf for n in cells)):
+    if cells is not None and not (_two_positive(cells) and all(n == n // 1 for n in cells)):
         problems.append(f"cells: {cells} are not two whole numbers >= 1")
     elif cells is not None and (memory := memory_problem(tuple(cells))) is not None:
         problems.append(memory)
@@ -182,21 +169,15 @@ def _check(
         problems.append("load: none given; a load [N] or a box [mm] is needed to size the grid")
     if load is not None and not 0.0 <= load < math.inf:
         problems.append(f"load: {load} N is not a finite number >= 0")
-    problems += [f"{name}: {box} are not two positive lengths [mm]" for name, box in boxes.items() if not _is_box(box)]
+    for name, box in boxes.items():
+        if box is not None and not _two_positive(box):
+            problems.append(f"{name}: {box} are not two positive lengths [mm]")
     if not 1e-8 <= accuracy < 1.0:
         problems.append(f"accuracy: {accuracy} is not between 1e-8 and 1")
     if problems:
         raise InputError(problems)
-    if not contact.in_contact:
-        raise GeometryError(
-            f"no common flank: the tooth pair does not touch at pinion angle {contact.pinion_angle} rad"
-        )
 
 
-def _is_box(box: tuple[float, float] | None) -> bool:
-    return box is None or (_two_numbers(box) and all(0.0 < length < math.inf for length in box))
-
-
-def _two_numbers(values: object) -> bool:
+def _two_positive(values: object) -> bool:
     array = np.asarray(values)
-    return array.shape == (2,) and array.dtype.kind in "iuf" and not np.isnan(array.astype(float)).any()
+    return array.shape == (2,) and array.dtype.kind in "iuf" and bool(((array > 0) & (array < math.inf)).all())

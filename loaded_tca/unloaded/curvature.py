@@ -53,14 +53,13 @@ def relative_curvature(pair: GearPair, contact: ContactPoint) -> RelativeCurvatu
 
 
 def _curvature(pair: GearPair, contact: ContactPoint) -> RelativeCurvature:
-    lengthwise, normal = heelwards(pair, contact), contact.normal
-    second = lengthwise - (normal @ lengthwise) * normal
+    lengthwise = heelwards(pair, contact)
+    second = lengthwise - (contact.normal @ lengthwise) * contact.normal
     second /= np.linalg.norm(second)
-    plane = np.stack([_cross(second, normal), second])  # across the normal, the second as near to lengthwise as can be
+    plane = np.stack([_cross(second, contact.normal), second])
     field = EaseOff(pair)
-    station = field.station(
-        *(np.atleast_1d(v) for v in (contact.pinion_angle, contact.pinion_radius, contact.pinion_axial))
-    )
+    angle, rho, z = (np.atleast_1d(v) for v in (contact.pinion_angle, contact.pinion_radius, contact.pinion_axial))
+    station = field.station(angle, rho, z)
     in_wheel = plane @ station.wheel_basis[0].T
     inverse, drifts = np.linalg.inv(in_wheel @ station.slopes[..., 0]), in_wheel @ station.bends[..., 0]
     drift = inverse.T @ field.gradient(station)[0] @ drifts
@@ -69,7 +68,7 @@ def _curvature(pair: GearPair, contact: ContactPoint) -> RelativeCurvature:
     values, vectors = np.linalg.eigh(0.5 * (tensor + tensor.T))
     along = vectors[:, 0] @ plane
     along = along if along @ lengthwise >= 0.0 else -along
-    axes = np.stack([_cross(along, normal), along, normal])
+    axes = np.stack([_cross(along, contact.normal), along, contact.normal])
     axes.flags.writeable = False  # every grid of the contact shares them
     return RelativeCurvature(float(values[1]), float(values[0]), axes)
 

@@ -77,11 +77,6 @@ class Station:
         """dP/d rho and dP/d z in the fixed frame: (..., 2, 3)."""
         return np.einsum("ik...,...ij->...kj", self.slopes, self.wheel_basis)
 
-    @property
-    def second(self) -> Array:
-        """Second derivatives of P in the order rho rho, rho z, z z, in the fixed frame: (..., 3, 3)."""
-        return np.einsum("ik...,...ij->...kj", self.bends, self.wheel_basis)
-
     def gradient(self, jet: Jet, turn: float = 0.0) -> Array:
         """d/d(rho, z) of ``jet(rho2, z2) + turn * theta2``: (..., 2)."""
         return np.moveaxis(_dot(self._slope(jet, turn), self.slopes), 0, -1)
@@ -129,20 +124,17 @@ class EaseOff:
     """
 
     def __init__(self, pair: GearPair, beyond: Array | None = None) -> None:
-        self.pair, self.beyond = pair, beyond
+        self.pair = pair
+        self.beyond = beyond if beyond is not None and beyond.shape[-1] else None
 
     @cached_property
-    def _pinion_relief_starts(self) -> int:
-        return len(self.pair.pinion.flank.relief_starts(*self.pair.pinion.flank.grid(2, 2)))
-
-    @cached_property
-    def _wheel_relief_starts(self) -> int:
-        return len(self.pair.wheel.flank.relief_starts(*self.pair.wheel.flank.grid(2, 2)))
-
-    @property
-    def relief_starts(self) -> int:
-        """Number of relief starts of both flanks."""
-        return self._pinion_relief_starts + self._wheel_relief_starts
+    def _relief_starts(self) -> tuple[int, int]:
+        """Relief starts of each flank whose sides were given."""
+        if self.beyond is None:
+            return 0, 0
+        flank = self.pair.pinion.flank
+        own = len(flank.relief_starts(*flank.grid(2, 2)))
+        return own, self.beyond.shape[-1] - own
 
     def sides(self, phi1: Array, rho: Array, z: Array) -> Array:
         """On which side of each relief start the points (n,) lie: (n, relief starts) bool, the pinion's first."""
@@ -234,17 +226,11 @@ class EaseOff:
 
     def edge_owner(self) -> Array:
         """0 for an edge of the pinion, 1 for one of the wheel, in the order of ``edges``."""
-        return np.repeat([0, 1], self._edge_counts)
+        return np.repeat([0, 1], [4 + count for count in self._relief_starts])
 
     def edge_is_relief_start(self) -> Array:
         """Whether each entry of ``edges`` is a relief start."""
-        return np.concatenate([np.arange(count) >= 4 for count in self._edge_counts])
-
-    @property
-    def _edge_counts(self) -> tuple[int, int]:
-        """Entries of ``edges`` of the pinion and of the wheel."""
-        on = self.beyond is not None
-        return 4 + on * self._pinion_relief_starts, 4 + on * self._wheel_relief_starts
+        return np.concatenate([np.arange(4 + count) >= 4 for count in self._relief_starts])
 
     def _lead(self, wheel_angle: Array, phi1: Array) -> Array:
         """Ease-off [mm] of a wheel angle, without the sense of rotation, that is known up to whole turns."""
@@ -256,17 +242,17 @@ class EaseOff:
         return float(self.pair.driving * self.pair.base_radii[1] * self.pair.sense)
 
     def _sides(self, member: int) -> Any:
-        first = self._pinion_relief_starts
-        return None if self.beyond is None else self.beyond[..., slice(first, None) if member else slice(first)]
+        if self.beyond is None:
+            return None
+        own = self._relief_starts[0]
+        return self.beyond[..., own:] if member else self.beyond[..., :own]
 
     def _edge_jets(self, rho: Array, z: Array, wheel_rho: Array, wheel_z: Array) -> tuple[list[Jet], list[Jet]]:
-        pair = self.pair
-        pinion = [*pair.pinion.flank.edges(rho, z)]
-        wheel = [*pair.wheel.flank.edges(wheel_rho, wheel_z)]
+        pinion_flank, wheel_flank = self.pair.pinion.flank, self.pair.wheel.flank
+        pinion, wheel = [*pinion_flank.edges(rho, z)], [*wheel_flank.edges(wheel_rho, wheel_z)]
         if self.beyond is not None:
             signs = np.where(self.beyond, 1.0, -1.0)
-            own = pair.pinion.flank.relief_starts(rho, z)
-            other = pair.wheel.flank.relief_starts(wheel_rho, wheel_z)
+            own, other = pinion_flank.relief_starts(rho, z), wheel_flank.relief_starts(wheel_rho, wheel_z)
             pinion += [jet * signs[..., k] for k, jet in enumerate(own)]
             wheel += [jet * signs[..., len(own) + k] for k, jet in enumerate(other)]
         return pinion, wheel

@@ -15,7 +15,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.unloaded.ease_off import EaseOff
-from loaded_tca.unloaded.reduced import FEASIBLE
+from loaded_tca.unloaded.reduced import FEASIBLE, solve_pairs
 
 FLATNESS = 1e-9
 """Fall of the ease-off towards the edges, relative to the module, below which a contact is called a line."""
@@ -62,7 +62,12 @@ class Lines:
 
 def find_lines(field: EaseOff, phi1: Array, rho: Array, z: Array, multipliers: Array) -> Lines:
     """Lines among the first touches (n,); ``multipliers`` (n, edges) tell the edges they rest on."""
-    along, fall = _softest_direction(field, phi1, rho, z, multipliers)
+    along, fall = _soft_direction(field, phi1, rho, z, multipliers)
+    step = NEARBY * field.pair.pinion.flank.extent[1] * along
+    for beside in (step, -step):  # at the start of an end relief the curvature jumps
+        other, lower = _soft_direction(field, phi1, rho + beside[:, 0], z + beside[:, 1], multipliers)
+        flat = (lower < fall) & (lower <= WORTH_FOLLOWING * field.pair.module)
+        along, fall = np.where(flat[:, None], other, along), np.where(flat, lower, fall)
     corner = (multipliers > 0.0).sum(axis=-1) > 1
     rows = np.flatnonzero((fall <= WORTH_FOLLOWING * field.pair.module) & ~corner)
     if not rows.size:
@@ -75,37 +80,25 @@ def find_lines(field: EaseOff, phi1: Array, rho: Array, z: Array, multipliers: A
     keep = found & (ridge.fall(first) <= limit) & (ridge.fall(second) <= limit)
     if (found & ~keep).any():
         first, second = (np.where(keep[:, None], end, ridge.flat_part(end)) for end in (first, second))
-    points = np.stack([ridge.in_space(end) for end in (first, second)], axis=1)
+    points = np.stack([ridge.field.station(ridge.phi1, *end.T).point for end in (first, second)], axis=1)
     points = np.take_along_axis(points, np.argsort(points[..., 2:], axis=1), axis=1)
     x, y, z_middle = points.mean(axis=1).T
     middle = ridge.nearest(np.stack([np.hypot(x, y), z_middle], axis=-1))[found]
     return Lines(rows[keep], rows[found], middle[:, 0], middle[:, 1], points[keep])
 
 
-def _softest_direction(field: EaseOff, phi1: Array, rho: Array, z: Array, multipliers: Array) -> tuple[Array, Array]:
-    """Soft direction at the points or just beside them: at the start of an end relief the curvature jumps."""
-    along, fall = _soft_direction(field, phi1, rho, z, multipliers)
-    step = NEARBY * field.pair.pinion.flank.extent[1] * along
-    for sign in (1.0, -1.0):
-        other, lower = _soft_direction(field, phi1, rho + sign * step[:, 0], z + sign * step[:, 1], multipliers)
-        flat = (lower < fall) & (lower <= WORTH_FOLLOWING * field.pair.module)
-        along, fall = np.where(flat[:, None], other, along), np.where(flat, lower, fall)
-    return along, fall
-
-
 def _soft_direction(field: EaseOff, phi1: Array, rho: Array, z: Array, multipliers: Array) -> tuple[Array, Array]:
     """Direction of least curvature in (rho, z), (n, 2), and the fall [mm] it promises over half the flank."""
     station = field.station(phi1, rho, z)
     bend = field.hessian(station) + field.edge_hessian(station, multipliers)
-    height, width = field.pair.pinion.flank.extent
-    scale = np.array([height, width])
+    scale = np.array(field.pair.pinion.flank.extent)
     values, vectors = np.linalg.eigh(bend * np.outer(scale, scale))
     rows, soft = np.arange(len(rho)), np.argmin(np.abs(values), axis=-1)
     along = vectors[rows, :, soft] * scale
     held = np.flatnonzero((multipliers > 0.0).any(axis=-1))
     _, slopes = field.edges(station)
     edge = slopes[held, multipliers[held].argmax(axis=-1)]
-    along[held] = np.stack([-edge[:, 1], edge[:, 0]], axis=-1) * width
+    along[held] = np.stack([-edge[:, 1], edge[:, 0]], axis=-1) * scale[1]
     fall = np.abs(np.einsum("ni,nij,nj->n", along, bend, along)) / 8.0
     return along / np.linalg.norm(along, axis=-1, keepdims=True), fall
 
@@ -125,10 +118,6 @@ class _Ridge:
         heights = [self.field.heights(self.phi1, *where.T)[0] for where in (self.start, points)]
         return heights[0] - heights[1]
 
-    def in_space(self, points: Array) -> Array:
-        """The points in the fixed frame (m, 3) [mm]."""
-        return self.field.station(self.phi1, *points.T).point
-
     def ends(self) -> tuple[Array, Array, Array]:
         """Where the ridge leaves the region on either side, (m, 2) each, and whether both ends were found."""
         count, edges = len(self.phi1), len(self.field.edge_owner())
@@ -145,16 +134,12 @@ class _Ridge:
 
     def flat_part(self, end: Array) -> Array:
         """The farthest point of the ridge towards an end, (m, 2), to which the ease-off falls by rounding only."""
-        limit = ROUNDING * self.field.pair.base_radii[1]
-        low, high = np.zeros(len(end)), np.ones(len(end))
+        low, high = self.start, end
         for _ in range(BISECTIONS):
-            share = 0.5 * (low + high)
-            level = self.fall(self.nearest(self._between(end, share))) <= limit
-            low, high = np.where(level, share, low), np.where(level, high, share)
-        return self.nearest(self._between(end, low))
-
-    def _between(self, end: Array, share: Array) -> Array:
-        return self.start + share[:, None] * (end - self.start)
+            middle = 0.5 * (low + high)
+            level = self.fall(self.nearest(middle)) <= ROUNDING * self.field.pair.base_radii[1]
+            low, high = np.where(level[:, None], middle, low), np.where(level[:, None], high, middle)
+        return self.nearest(low)
 
     def nearest(self, points: Array) -> Array:
         """Points of the ridge beside the given ones, moved across the ridge only."""
@@ -162,10 +147,10 @@ class _Ridge:
 
     def _follow(self, points: Array, edge: Array) -> tuple[Array, Array]:
         """Newton iteration for a point on the ridge and on an edge (-1: on the normal through ``points``)."""
-        x, extent = points.copy(), np.asarray(self.field.pair.pinion.flank.extent)
-        corners = np.stack(self.field.pair.pinion.flank.grid(2, 2)).reshape(2, -1)
-        lowest = corners.min(axis=1) - extent * [0.1, 0.5]
-        highest = corners.max(axis=1) + 0.5 * extent
+        flank = self.field.pair.pinion.flank
+        x, extent, corners = points.copy(), np.asarray(flank.extent), np.stack(flank.grid(2, 2))
+        lowest = corners.min(axis=(1, 2)) - 0.5 * extent * [0.2, 1.0]
+        highest = corners.max(axis=(1, 2)) + 0.5 * extent
         residual, rows = np.zeros(len(x)), np.arange(len(x))
         for _ in range(RIDGE_STEPS):
             residual[rows], step, room = self._only(rows)._newton(x[rows], points[rows], edge[rows])
@@ -198,14 +183,4 @@ class _Ridge:
         free = edge < 0
         target = np.where(free, ((x - points) * self.along).sum(axis=-1), distances[rows, edge])
         target_row = np.where(free[:, None], self.along, slopes[rows, edge])
-        return np.abs(target), -_solve_pair(row, target_row, value, target), distances.min(axis=-1)
-
-
-def _solve_pair(first: Array, second: Array, one: Array, two: Array) -> Array:
-    """Solutions (m, 2) of [first; second] x = [one, two]; parallel rows give a far point, not an error."""
-    size = np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1)
-    determinant = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
-    determinant = np.where(np.abs(determinant) > 1e-9 * size, determinant, 1e-9 * size + 1e-300)
-    x = (one * second[:, 1] - two * first[:, 1]) / determinant
-    y = (first[:, 0] * two - second[:, 0] * one) / determinant
-    return np.stack([x, y], axis=-1)
+        return np.abs(target), -solve_pairs(row, target_row, value, target)[0], distances.min(axis=-1)

@@ -1,4 +1,4 @@
-"""The contact path: where one tooth pair touches over the rotation, and what the wheel stays behind."""
+"""The contact path: where one tooth pair touches over the rotation, and the unloaded transmission error."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
 from loaded_tca.unloaded.ease_off import EaseOff, Station
 from loaded_tca.unloaded.line import find_lines
 from loaded_tca.unloaded.reduced import FEASIBLE
-from loaded_tca.unloaded.search import FirstTouch, first_touch
+from loaded_tca.unloaded.search import FirstTouch, first_touch, spread
 
 POSITIONS = 21
 """Positions over a pitch if none are asked for."""
@@ -167,6 +167,16 @@ def trace_contact(pair: GearPair, pinion_angles: ArrayLike | None = None, *, war
     return path
 
 
+def require_contact(contact: ContactPoint) -> None:
+    """Refuse what is not one position of a path (InputError), or a tooth pair that is apart there (GeometryError)."""
+    if not isinstance(contact, ContactPoint):
+        raise InputError(f"contact: {contact!r:.60} is not one position of a path; take path[i]")
+    if not contact.in_contact:
+        raise GeometryError(
+            f"no common flank: the tooth pair is not in contact at pinion angle {contact.pinion_angle} rad"
+        )
+
+
 def warn_of_fillets(pair: GearPair, path: ContactPath, what: str) -> None:
     """Warn, for the caller's caller, where ``what`` lies on the root edge of a flank."""
     root = EDGE_NAMES.index("root")
@@ -188,7 +198,7 @@ def _path(pair: GearPair, phi1: Array, touch: FirstTouch) -> ContactPath:
     """Contact path of first touches; lines are represented by their middles."""
     rows = np.flatnonzero(touch.in_contact)
     angle, rho, z = phi1[rows], touch.rho[rows].copy(), touch.z[rows].copy()
-    field = EaseOff(pair, touch.beyond[rows] if touch.beyond.shape[1] else None)
+    field = EaseOff(pair, touch.beyond[rows])
     multipliers = np.where(touch.multipliers[rows] > EDGE_SLOPE, touch.multipliers[rows], 0.0)
     lines = find_lines(field, angle, rho, z, multipliers)
     rho[lines.flat], z[lines.flat] = lines.rho, lines.z
@@ -210,13 +220,6 @@ def _path(pair: GearPair, phi1: Array, touch: FirstTouch) -> ContactPath:
         "iterations": touch.iterations[rows],
     }
     return ContactPath(pinion_angle=phi1, **{name: spread(part, rows, len(phi1)) for name, part in known.items()})
-
-
-def spread(part: Array, rows: Array, count: int) -> Array:
-    """Rows of an array of ``count`` rows; the others NaN, False or zero."""
-    full = np.full((count, *part.shape[1:]), np.nan if part.dtype.kind == "f" else 0, dtype=part.dtype)
-    full[rows] = part
-    return full
 
 
 def _contact(pair: GearPair, field: EaseOff, station: Station, held: Mask) -> dict[str, Any]:

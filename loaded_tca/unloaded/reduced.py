@@ -137,7 +137,8 @@ def _on_one_edge(problem: Quadratic) -> tuple[Array, Array]:
 def _in_a_corner(problem: Quadratic, singles: Array, tolerance: float) -> tuple[Array, Array]:
     """Best feasible corner; if there is none, the corner or single-edge step that violates the edges least."""
     pairs = np.array(list(combinations(range(problem.edges.shape[-1]), 2)))
-    corners, parallel = _corners(problem, pairs)
+    slopes, edges = problem.slopes[:, pairs], -problem.edges[:, pairs]
+    corners, parallel = solve_pairs(slopes[:, :, 0], slopes[:, :, 1], edges[..., 0], edges[..., 1])
     room = np.where(parallel, -np.inf, problem.room(corners))
     rise = (corners * (problem.gradient[:, None, :] + problem.rest(corners))).sum(axis=-1)
     rows, best = np.arange(len(room)), np.where(room >= -tolerance, rise, -np.inf).argmax(axis=1)
@@ -146,30 +147,24 @@ def _in_a_corner(problem: Quadratic, singles: Array, tolerance: float) -> tuple[
     everything = np.concatenate([singles[lost], corners[lost]], axis=1)
     least = np.concatenate([problem.only(lost).room(singles[lost]), room[lost]], axis=1).argmax(axis=1)
     step[lost] = everything[np.arange(len(lost)), least]
-    return step, _corner_forces(problem, step, pairs[best], feasible)
+    # multipliers of the two edges of a corner, from rest + J^T lambda = 0; zero where there is none
+    multipliers, held = np.zeros_like(problem.edges), np.flatnonzero(feasible)
+    two = held[:, None], pairs[best[held]]
+    rest = problem.only(held).rest(step[held, None, :])[:, 0]
+    forces = np.linalg.solve(np.swapaxes(problem.slopes[two], -1, -2), -rest[..., None])[..., 0]
+    multipliers[two] = np.maximum(forces, 0.0)
+    return step, multipliers
 
 
-def _corners(problem: Quadratic, pairs: Array) -> tuple[Array, Array]:
-    """Steps to the crossings of two edges: (n, pairs, 2), and which pairs are parallel."""
-    first, second = problem.slopes[:, pairs[:, 0]], problem.slopes[:, pairs[:, 1]]
-    c1, c2 = -problem.edges[:, pairs[:, 0]], -problem.edges[:, pairs[:, 1]]
-    cross = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
-    parallel = np.abs(cross) <= PARALLEL * np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1)
-    cross = np.where(parallel, 1.0, cross)
-    x = (c1 * second[..., 1] - c2 * first[..., 1]) / cross
-    y = (first[..., 0] * c2 - second[..., 0] * c1) / cross
+def solve_pairs(first: Array, second: Array, one: Array, two: Array) -> tuple[Array, Array]:
+    """Solutions (..., 2) of [first; second] x = [one, two], a far point for parallel rows, and which are parallel."""
+    determinant = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
+    least = PARALLEL * np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1) + TINY
+    parallel = np.abs(determinant) <= least
+    determinant = np.where(parallel, least, determinant)
+    x = (one * second[..., 1] - two * first[..., 1]) / determinant
+    y = (first[..., 0] * two - second[..., 0] * one) / determinant
     return np.stack([x, y], axis=-1), parallel
-
-
-def _corner_forces(problem: Quadratic, step: Array, chosen: Array, feasible: Array) -> Array:
-    """Multipliers >= 0 of the two edges of each corner, from rest + J^T lambda = 0; zero where there is no corner."""
-    multipliers = np.zeros_like(problem.edges)
-    rows = np.flatnonzero(feasible)
-    matrix = problem.slopes[rows[:, None], chosen[rows]]
-    rest = problem.only(rows).rest(step[rows, None, :])[:, 0]
-    forces = np.linalg.solve(np.swapaxes(matrix, -1, -2), -rest[..., None])[..., 0]
-    multipliers[rows[:, None], chosen[rows]] = np.maximum(forces, 0.0)
-    return multipliers
 
 
 @dataclass(frozen=True, eq=False)
@@ -229,20 +224,19 @@ def climb(field: EaseOff, phi1: Array, rho: Array, z: Array) -> Maxima:
     for number in range(1, MOST_STEPS + 1):
         part, angle = field.restricted(rows), phi1[rows]
         here = _look(part, angle, points[rows], scale)
-        outside = _violation(here.edges) > FEASIBLE * scale[0]
+        outside = here.edges.min(axis=-1) < -FEASIBLE * scale[0]
         lost[rows] &= outside
         step, multipliers[rows] = _propose(part, here, multipliers[rows], scale, (lost[rows], stuck[rows]))
-        penalty[rows] = np.maximum.reduce(
-            [np.ones(len(rows)), FORGOTTEN * penalty[rows], 2.0 * multipliers[rows].max(axis=-1)]
-        )
-        settled = _settled(part, here, step)
+        penalty[rows] = np.maximum(np.maximum(1.0, FORGOTTEN * penalty[rows]), 2.0 * multipliers[rows].max(axis=-1))
+        gain, longest = np.abs((here.gradient * step).sum(axis=-1)), np.abs(step).max(axis=-1)
+        settled = ((gain <= SMALLEST_GAIN * field.pair.base_radii[1]) | (longest <= SHORT_STEP)) & ~outside
         iterations[rows] = number
         weight = np.where(lost[rows], INWARDS, penalty[rows])
         ahead, share = _advance(part, angle, points[rows], step, here, multipliers[rows], weight)
         stays = (ahead == points[rows]).all(axis=-1)
         points[rows] = ahead
         converged[rows] = settled
-        creeps = outside & ((share < CREEPING) | (np.abs(step).max(axis=-1) <= SHORT_STEP))
+        creeps = outside & ((share < CREEPING) | (longest <= SHORT_STEP))
         ended = settled | (stays & stuck[rows]) | (creeps & lost[rows])
         lost[rows] |= creeps & ~stays
         stuck[rows] = stays
@@ -250,7 +244,7 @@ def climb(field: EaseOff, phi1: Array, rho: Array, z: Array) -> Maxima:
         if not rows.size:
             break
     value, distances = field.heights(phi1, *(points * scale).T)
-    converged &= _violation(distances) <= FEASIBLE * scale[0]
+    converged &= distances.min(axis=-1) >= -FEASIBLE * scale[0]
     rho, z = (points * scale).T
     return Maxima(rho, z, value, multipliers, iterations, converged)
 
@@ -259,17 +253,6 @@ def _look(field: EaseOff, phi1: Array, points: Array, scale: Array) -> _Local:
     station = field.station(phi1, *(points * scale).T)
     edges, slopes = field.edges(station)
     return _Local(station, field.gradient(station) * scale, edges, slopes * scale)
-
-
-def _violation(edges: Array) -> Array:
-    return np.maximum(0.0, -edges.min(axis=-1))
-
-
-def _settled(field: EaseOff, here: _Local, step: Array) -> Array:
-    """Whether the step is the last: no rise left, or too short to matter, and the edges kept."""
-    gain = np.abs((here.gradient * step).sum(axis=-1))
-    small = (gain <= SMALLEST_GAIN * field.pair.base_radii[1]) | (np.abs(step).max(axis=-1) <= SHORT_STEP)
-    return small & (_violation(here.edges) <= FEASIBLE * field.pair.pinion.flank.extent[0])
 
 
 def _advance(

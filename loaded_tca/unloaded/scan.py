@@ -1,4 +1,4 @@
-"""Points of both flanks that see what an ascent may have missed: where to start, and where to doubt a contact.
+"""Points of both flanks that see what an ascent may have missed: where to start, and which contacts to search again.
 
 The pinion's flank is seen by a grid and by dense points on its edges, which tell heights of the ease-off, and where
 its edges leave the wheel's flank, in the corners of the common region; the wheel's by its own grid and edges, which
@@ -12,9 +12,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.flanks.base import Flank
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.ease_off import EaseOff
@@ -37,7 +36,7 @@ LEVEL = 1e-11
 BETWEEN = 2.0
 """Spacings of the scan by which every point may miss the common region if there is one between them."""
 
-Starts = tuple[NDArray[np.int_], Array, Array]
+Starts = tuple[Indices, Array, Array]
 """Position each start belongs to, and its place (rho, z) on the pinion flank [mm]."""
 
 
@@ -60,7 +59,7 @@ class Scan:
     z: Array
     height: Array
     score: Array
-    reach: NDArray[np.bool_]
+    reach: Mask
 
     def hills(self) -> Starts:
         """Starts, one or more for each basin: the summits of the ridges along the face and along the profile."""
@@ -71,7 +70,7 @@ class Scan:
         owner, point = np.nonzero(hills.reshape(len(hills), GRID[0] * GRID[1]))
         return owner, self.rho[point], self.z[point]
 
-    def higher(self, rows: NDArray[np.int_], value: Array) -> Starts:
+    def higher(self, rows: Indices, value: Array) -> Starts:
         """The highest point of each of some positions, where it is higher than ``value`` (rows,) [mm]."""
         height = self.height[rows]
         best = height.argmax(axis=1)
@@ -79,36 +78,15 @@ class Scan:
         return rows[above], self.rho[best[above]], self.z[best[above]]
 
 
-@dataclass(frozen=True, eq=False)
-class Corners:
-    """Where the pinion's edges cross those of the wheel, m corners of the common regions of all positions.
+def region_corners(pair: GearPair, phi1: Array, scan: Scan) -> tuple[Starts, Array]:
+    """Corners of the common regions, and their ease-off [mm]: where the pinion's edges cross those of the wheel.
 
-    Attributes
-    ----------
-    owner : (m,) int array
-        Position.
-    rho, z : (m,) array [mm]
-    height : (m,) array [mm]
-        Ease-off; the corner is placed to about 1e-9 of a spacing.
+    They lie between neighbouring points of an edge of which one is in the common region, the other is not, and are
+    placed to about 1e-9 of that spacing.
     """
-
-    owner: NDArray[np.int_]
-    rho: Array
-    z: Array
-    height: Array
-
-    def higher(self, rows: NDArray[np.int_], value: Array) -> Starts:
-        """Corners of some positions that are higher than ``value`` (rows,) [mm]."""
-        level = np.full(max(self.owner.max(initial=-1), rows.max(initial=-1)) + 1, np.inf)
-        level[rows] = value
-        above = self.height > level[self.owner]
-        return self.owner[above], self.rho[above], self.z[above]
-
-
-def region_corners(pair: GearPair, phi1: Array, scan: Scan) -> Corners:
-    """Corners between neighbouring points of an edge of which one lies in the common region, the other does not."""
-    profile, face = np.arange(2 * EDGE).reshape(EDGE, 2).T, np.arange(2 * EDGE).reshape(2, EDGE)
-    field, chains = EaseOff(pair), GRID[0] * GRID[1] + np.concatenate([profile, 2 * EDGE + face])  # along the edges
+    field, numbers = EaseOff(pair), np.arange(2 * EDGE)
+    # points of the scan along each of the four edges, (4, EDGE)
+    chains = np.concatenate([numbers.reshape(EDGE, 2).T, 2 * EDGE + numbers.reshape(2, EDGE)]) + GRID[0] * GRID[1]
     inside = np.isfinite(scan.height)[:, chains]
     owner, edge, place = np.nonzero(inside[..., 1:] != inside[..., :-1])
     first, last = chains[edge, place], chains[edge, place + 1]
@@ -127,7 +105,7 @@ def region_corners(pair: GearPair, phi1: Array, scan: Scan) -> Corners:
         rho, z, value, here = look(share)
         side = (np.sign(here) != np.sign(room[0])).astype(int)
         ends[side, np.arange(len(owner))], room[side, np.arange(len(owner))] = share, here
-    return Corners(owner, rho, z, value)
+    return (owner, rho, z), value
 
 
 def scan_pinion(pair: GearPair, phi1: Array) -> Scan:
@@ -146,7 +124,9 @@ def scan_pinion(pair: GearPair, phi1: Array) -> Scan:
     outside = min(float(value.min(initial=0.0)) - 1.0, -1.0) * (1.0 + lack[:, :count])
     score = np.where(lack[:, :count] <= allowed, value[:, :count], outside)
     # distances to the edges change by about a millimetre per millimetre
-    spacing = math.hypot(*(length / (count - 1) for length, count in zip(pair.pinion.flank.extent, GRID, strict=True)))
+    spacing = math.hypot(
+        *(length / (number - 1) for length, number in zip(pair.pinion.flank.extent, GRID, strict=True))
+    )
     return Scan(rho, z, height, score.reshape(len(phi1), *GRID), room >= -BETWEEN * spacing)
 
 
@@ -187,7 +167,7 @@ def _in_blocks(look: Callable[..., tuple[Array, ...]], *columns: Array) -> list[
     return [np.concatenate(part) for part in zip(*parts, strict=True)]
 
 
-def _summits(score: Array, inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _summits(score: Array, inside: Mask) -> Mask:
     """Summits along the last axis (n, i, j) of the ridge that the highest points across it make.
 
     A ridge seen on a grid is a chain of false summits; the parabola through three points across it tells its height.
@@ -208,8 +188,6 @@ def _summits(score: Array, inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 def _points(flank: Flank, shape: tuple[int, int], edge: int) -> tuple[Array, Array]:
     """(rho, z) of a grid over the flank and of dense points on its four edges [mm]."""
-    profile, lengthwise = flank.grid(edge, 2), flank.grid(2, edge)
-    grid = flank.grid(*shape)
-    parts = ([grid[k].ravel(), profile[k].ravel(), lengthwise[k].ravel()] for k in (0, 1))
-    rho, z = (np.concatenate(part) for part in parts)
+    grids = (flank.grid(*shape), flank.grid(edge, 2), flank.grid(2, edge))
+    rho, z = (np.concatenate([grid[k].ravel() for grid in grids]) for k in (0, 1))
     return rho, z

@@ -8,21 +8,21 @@ from piece to piece. A contact that rests on a relief start is thus found like o
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import Maxima, climb
-from loaded_tca.unloaded.scan import Corners, Scan, Starts, inside_pinion, region_corners, scan_pinion
+from loaded_tca.unloaded.scan import Scan, Starts, inside_pinion, region_corners, scan_pinion
 
 POSITIONS_AT_ONCE = 1024
 """Positions searched together: some 0.2 GB."""
 ROUNDS = 5
-"""Times that a contact is doubted, and points that it missed are climbed from."""
+"""Times that a contact is checked, and points that it missed are climbed from."""
 CERTIFICATE = 1e-13
 """How far, relative to r_b2, a scanned point may rise above the maximum found: rounding."""
 PIERCED = 1e-9
@@ -72,11 +72,9 @@ def first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
     ConvergenceError
         If a position has a common region but no ascent reached the height of the scan.
     """
-    blocks = [phi1[start : start + POSITIONS_AT_ONCE] for start in range(0, max(len(phi1), 1), POSITIONS_AT_ONCE)]
-    parts = [_first_touch(pair, block) for block in blocks]
-    if len(parts) == 1:
-        return parts[0]
-    return FirstTouch(*(np.concatenate([getattr(part, entry.name) for part in parts]) for entry in fields(FirstTouch)))
+    starts = range(0, max(len(phi1), 1), POSITIONS_AT_ONCE)
+    parts = [_first_touch(pair, phi1[start : start + POSITIONS_AT_ONCE]) for start in starts]
+    return FirstTouch(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(FirstTouch)))
 
 
 def _first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
@@ -87,34 +85,40 @@ def _first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
     if close[0].size:
         found += _ascend(pair, phi1, *close)
         result = _best(phi1, found)
-    corners = region_corners(pair, phi1, scan)
+    corners, corner_height = region_corners(pair, phi1, scan)
     for _ in range(ROUNDS):
-        owner, rho, z = _accuracy_warnings(pair, phi1, (scan, corners), result, rows)
+        level = np.full(len(phi1), np.inf)
+        level[rows] = result.value[rows] + PIERCED * pair.module
+        above = corner_height > level[corners[0]]
+        parts = (
+            *_missed(pair, phi1, scan, result, rows),
+            [part[above] for part in corners],
+            _beside_saddles(pair, phi1, result, rows[result.in_contact[rows]]),
+        )
+        owner, rho, z = (np.concatenate(part) for part in zip(*parts, strict=True))
         if not owner.size:
             return result
         found += _ascend(pair, phi1, owner, rho, z)
         result, rows = _best(phi1, found), np.unique(owner)
-    _certify(pair, phi1, scan, result, rows)
+    missed = np.concatenate([owner for owner, *_ in _missed(pair, phi1, scan, result, rows)])
+    if missed.size:
+        angle = phi1[missed.min()]
+        message = f"unloaded contact: no ascent reached the height of the scan at pinion angle {angle:.6g} rad"
+        raise ConvergenceError(message, result)
     return result
 
 
-def _accuracy_warnings(
-    pair: GearPair, phi1: Array, seen: tuple[Scan, Corners], touch: FirstTouch, rows: NDArray[np.int_]
-) -> Starts:
-    """Points from which some positions are to be searched again."""
-    scan, corners = seen
-    missed = scan.higher(rows, touch.value[rows] + CERTIFICATE * pair.base_radii[1])
-    cut = corners.higher(rows, touch.value[rows] + PIERCED * pair.module)
+def _missed(pair: GearPair, phi1: Array, scan: Scan, touch: FirstTouch, rows: Indices) -> tuple[Starts, Starts]:
+    """Scanned points that are higher than the contacts found, and points of the wheel inside the pinion."""
+    higher = scan.higher(rows, touch.value[rows] + CERTIFICATE * pair.base_radii[1])
     rows = rows[touch.in_contact[rows]]
     pierced, *place = inside_pinion(pair, phi1[rows], touch.value[rows], PIERCED * pair.module)
-    parts = (missed, cut, (rows[pierced], *place), _beside_saddles(pair, phi1, touch, rows))
-    owner, rho, z = (np.concatenate(part) for part in zip(*parts, strict=True))
-    return owner, rho, z
+    return higher, (rows[pierced], place[0], place[1])
 
 
-def _beside_saddles(pair: GearPair, phi1: Array, touch: FirstTouch, rows: NDArray[np.int_]) -> Starts:
+def _beside_saddles(pair: GearPair, phi1: Array, touch: FirstTouch, rows: Indices) -> Starts:
     """Starts on either side of contacts from which the ease-off rises both ways by its second derivatives."""
-    field = EaseOff(pair, touch.beyond[rows] if touch.beyond.shape[1] else None)
+    field = EaseOff(pair, touch.beyond[rows])
     held, scale = touch.multipliers[rows], np.asarray(pair.pinion.flank.extent)
     station = field.station(phi1[rows], touch.rho[rows], touch.z[rows])
     bend = (field.hessian(station) + field.edge_hessian(station, held)) * np.outer(scale, scale)
@@ -138,7 +142,7 @@ def _beside_corners(pair: GearPair, phi1: Array, touch: FirstTouch) -> Starts:
     Towards a base cone a modification falls like the root of the distance, so that the corner itself may be a maximum.
     """
     rows = np.flatnonzero(touch.in_contact & ((touch.multipliers > 0.0).sum(axis=1) > 1))
-    field = EaseOff(pair, touch.beyond[rows] if touch.beyond.shape[1] else None)
+    field = EaseOff(pair, touch.beyond[rows])
     scale = np.asarray(pair.pinion.flank.extent)
     station = field.station(phi1[rows], touch.rho[rows], touch.z[rows])
     two = np.argsort(touch.multipliers[rows], axis=1)[:, -2:]
@@ -155,65 +159,57 @@ def _beside_corners(pair: GearPair, phi1: Array, touch: FirstTouch) -> Starts:
     return rows[row[higher]], rho[higher], z[higher]
 
 
-def _certify(pair: GearPair, phi1: Array, scan: Scan, touch: FirstTouch, rows: NDArray[np.int_]) -> None:
-    """Raise unless no scanned point is higher and none of the wheel's lies inside the pinion."""
-    short, *_ = scan.higher(rows, touch.value[rows] + CERTIFICATE * pair.base_radii[1])
-    rows = rows[touch.in_contact[rows]]
-    pierced, *_ = inside_pinion(pair, phi1[rows], touch.value[rows], PIERCED * pair.module)
-    doubtful = np.union1d(short, rows[pierced])
-    if doubtful.size:
-        message = (
-            f"unloaded contact: no ascent reached the height of the scan at pinion angle {phi1[doubtful[0]]:.6g} rad"
-        )
-        raise ConvergenceError(message, touch)
+class _Ascents(NamedTuple):
+    """Ascents with the position each belongs to and the smooth piece it stayed on."""
+
+    owner: Indices
+    beyond: Array
+    peaks: Maxima
 
 
-Ascents = list[tuple[Array, Array, Maxima]]
-"""Ascents with the position each belongs to and the smooth piece it stayed on."""
-
-
-def _ascend(pair: GearPair, phi1: Array, owner: Array, rho: Array, z: Array) -> Ascents:
+def _ascend(pair: GearPair, phi1: Array, owner: Indices, rho: Array, z: Array) -> list[_Ascents]:
     """Climb from the starts, and on across every relief start that holds an ascent."""
-    beyond, found = EaseOff(pair).sides(phi1[owner], rho, z), []
-    columns = np.flatnonzero(EaseOff(pair, beyond[:1]).edge_is_relief_start())
-    last = np.full(len(owner), -1)
+    beyond = EaseOff(pair).sides(phi1[owner], rho, z)
+    columns = np.flatnonzero(EaseOff(pair, beyond).edge_is_relief_start())
+    found, last = [], np.full(len(owner), -1)
     for _ in range(len(columns) + 1):
-        peaks = climb(EaseOff(pair, beyond if len(columns) else None), phi1[owner], rho, z)
-        found.append((owner, beyond, peaks))
+        peaks = climb(EaseOff(pair, beyond), phi1[owner], rho, z)
+        found.append(_Ascents(owner, beyond, peaks))
         row, last = _crossings(peaks.multipliers[:, columns], last)
-        owner, rho, z, beyond = owner[row], peaks.rho[row], peaks.z[row], beyond[row]
+        if not row.size:
+            break
+        owner, beyond, rho, z = owner[row], beyond[row], peaks.rho[row], peaks.z[row]
         beyond[np.arange(len(row)), last] ^= True
     return found
 
 
 def _crossings(multipliers: Array, last: Array) -> tuple[Array, Array]:
     """Rows of ascents that are held by a relief start other than the last one they crossed, and that relief start."""
-    row, relief_start = np.nonzero((multipliers > 0.0) & (np.arange(multipliers.shape[1]) != last[:, None]))
+    held = (multipliers > 0.0) & (np.arange(multipliers.shape[1]) != last[:, None])
+    row, relief_start = np.nonzero(held)
     return row, relief_start
 
 
-def _best(phi1: Array, found: Ascents) -> FirstTouch:
+def _best(phi1: Array, found: list[_Ascents]) -> FirstTouch:
     """The highest converged ascent of each position."""
-    owner, beyond = (np.concatenate([one[k] for one in found]) for k in (0, 1))
-    peaks = Maxima(*(np.concatenate([getattr(one[2], entry.name) for one in found]) for entry in fields(Maxima)))
-    height = np.where(peaks.converged, peaks.value, -np.inf)
+    owner = np.concatenate([ascents.owner for ascents in found])
+
+    def every(name: str) -> Array:
+        return np.concatenate([getattr(ascents.peaks, name) for ascents in found])
+
+    height = np.where(every("converged"), every("value"), -np.inf)
     best = np.full(len(phi1), -np.inf)
     np.maximum.at(best, owner, height)
     winners = np.flatnonzero((height == best[owner]) & np.isfinite(height))
     rows, first = np.unique(owner[winners], return_index=True)
     winner = winners[first]
+    parts = {name: spread(every(name)[winner], rows, len(phi1)) for name in ("rho", "z", "multipliers", "iterations")}
+    beyond = spread(np.concatenate([ascents.beyond for ascents in found])[winner], rows, len(phi1))
+    return FirstTouch(**parts, value=best, beyond=beyond, in_contact=np.isfinite(best))
 
-    def spread(part: Array, empty: float = 0.0) -> Array:
-        full = np.full((len(phi1), *part.shape[1:]), empty, dtype=part.dtype)
-        full[rows] = part[winner]
-        return full
 
-    return FirstTouch(
-        rho=spread(peaks.rho),
-        z=spread(peaks.z),
-        value=spread(peaks.value, -np.inf),
-        multipliers=spread(peaks.multipliers),
-        beyond=spread(beyond),
-        iterations=spread(peaks.iterations),
-        in_contact=np.isfinite(best),
-    )
+def spread(part: Array, rows: Indices, count: int) -> Array:
+    """Rows of an array of ``count`` rows; the others NaN, False or zero."""
+    full = np.full((count, *part.shape[1:]), np.nan if part.dtype.kind == "f" else 0, dtype=part.dtype)
+    full[rows] = part
+    return full

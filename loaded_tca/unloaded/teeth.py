@@ -22,12 +22,13 @@ from functools import cached_property
 from numbers import Real
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices, finite_row
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.unloaded.path import ContactPath, default_angles, spread, trace_contact, warn_of_fillets
+from loaded_tca.unloaded.path import ContactPath, default_angles, trace_contact, warn_of_fillets
+from loaded_tca.unloaded.search import spread
 from loaded_tca.unloaded.tooth_cycle import (
     COINCIDE,
     REACH,
@@ -56,7 +57,7 @@ class Harmonics:
     amplitude, phase : (count,) array [rad]
     """
 
-    order: NDArray[np.int_]
+    order: Indices
     amplitude: Array
     phase: Array
 
@@ -74,7 +75,7 @@ class MeshPath:
         Tooth pairs: 0 is the one that touches at the pitch point at phi1 = 0, +1 comes into mesh after it.
     paths : tuple of m ContactPath
         Of each tooth pair, in its own angles: pinion angle phi1 - k pitch, as if it were pair 0. NaN where it is apart:
-        no common region, or a lag of more than 0.05 modules.
+        no common region, or an initial separation of more than 0.05 modules.
     leading_pair : (n,) int array
         The pair that touches. Of curves that coincide, the one nearer to its pitch point.
     transmission_error : (n,) array [rad]
@@ -83,9 +84,9 @@ class MeshPath:
 
     pair: GearPair
     pinion_angle: Array
-    pairs: NDArray[np.int_]
+    pairs: Indices
     paths: tuple[ContactPath, ...]
-    leading_pair: NDArray[np.int_]
+    leading_pair: Indices
     transmission_error: Array
 
     def __len__(self) -> int:
@@ -158,7 +159,8 @@ class MeshPath:
         Parameters
         ----------
         tolerance : float [mm]
-            Lag as a length at the wheel's base circle up to which a pair counts as touching, at most 0.05 modules.
+            Initial separation at the wheel's base circle up to which a pair counts as in contact, at most 0.05
+            modules.
             Flanks that leave each other one by one (profile crowning, misalignment) have a ratio of 1 for no
             tolerance, which grows with it. Unmodified, aligned ones give eps_gamma, and a little more by the corner
             contact that follows.
@@ -197,8 +199,8 @@ class MeshPath:
 
         It belongs to the gear pair: all of its teeth over a whole pitch, whatever the positions.
         """
-        half = 0.5 * self.pair.pitch
-        teeth = self._cycle.teeth_between(-half, half)
+        half, own = 0.5 * self.pair.pitch, self._cycle.own
+        teeth = teeth_between(-half, half, (float(own[0]), float(own[-1])), self.pair.pitch)
         return all(transfer.is_continuous for transfer in find_transfers(self._cycle, -half, half, teeth))
 
     @cached_property
@@ -256,7 +258,9 @@ def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: I
     >>> mesh.peak_to_peak < 1e-14, mesh.is_continuous
     (True, True)
     """
-    phi1 = _checked_angles(pair, pinion_angles)
+    phi1 = default_angles(pair) if pinion_angles is None else finite_row("pinion_angles", pinion_angles)
+    if (np.diff(phi1) <= 0.0).any():
+        raise InputError("pinion_angles: increasing angles are asked for")
     chosen = None if teeth is None else _checked_teeth(teeth)  # before the reach is looked for
     low, high = reach(pair)
     pairs = teeth_between(phi1[0], phi1[-1], (low, high), pair.pitch) if chosen is None else chosen
@@ -265,16 +269,16 @@ def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: I
     if not rows.size:
         raise GeometryError(f"no common flank: none of the tooth pairs {pairs.tolist()} comes into reach")
     path = trace_contact(pair, own.ravel()[rows], warn=False)
-    heights = np.full(own.size, -np.inf)
-    heights[rows] = np.where(path.in_contact, pair.driving * path.transmission_error * pair.base_radii[1], -np.inf)
-    column = leading(pair, heights.reshape(own.shape), phi1, pairs)
-    top = heights.reshape(own.shape)[column, np.arange(len(phi1))]
+    heights = np.full(own.shape, -np.inf)
+    heights.flat[rows] = np.where(path.in_contact, pair.driving * path.transmission_error * pair.base_radii[1], -np.inf)
+    column = leading(pair, heights, phi1, pairs)
+    top = heights[column, np.arange(len(phi1))]
     if (apart := np.isinf(top)).any():
         raise GeometryError(
             f"none of the tooth pairs {pairs.tolist()} touches at {int(apart.sum())} of {len(phi1)} positions, first "
             f"at pinion angle {phi1[apart][0]:.6g} rad"
         )
-    near = np.flatnonzero(heights >= np.tile(top, len(pairs)) - REACH * pair.module)
+    near = np.flatnonzero(heights >= top - REACH * pair.module)
     found = path[np.searchsorted(rows, near)]
     parts = {entry.name: spread(getattr(found, entry.name), near, own.size) for entry in fields(ContactPath)}
     parts["pinion_angle"] = own.ravel()
@@ -285,20 +289,7 @@ def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: I
     return mesh
 
 
-def _checked_angles(pair: GearPair, pinion_angles: ArrayLike | None) -> Array:
-    if pinion_angles is None:
-        return default_angles(pair)
-    wanted = "finite, increasing numbers in one dimension are asked for"
-    try:
-        phi1 = np.asarray(pinion_angles, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(f"pinion_angles: {wanted}") from None
-    if phi1.ndim != 1 or not phi1.size or not np.isfinite(phi1).all() or (np.diff(phi1) <= 0.0).any():
-        raise InputError(f"pinion_angles: shape {phi1.shape}; {wanted}")
-    return phi1
-
-
-def _checked_teeth(teeth: Iterable[int]) -> NDArray[np.int_]:
+def _checked_teeth(teeth: Iterable[int]) -> Indices:
     chosen = list(teeth) if isinstance(teeth, Iterable) else [teeth]
     whole = all(isinstance(k, int | np.integer) and not isinstance(k, bool) and abs(k) < MOST_TEETH for k in chosen)
     if not whole or not chosen or len(set(chosen)) < len(chosen):

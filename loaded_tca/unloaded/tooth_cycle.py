@@ -12,13 +12,13 @@ finding, so that no result depends on the positions that a user asks for.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.pairs.gear_pair import GearPair
@@ -28,8 +28,8 @@ from loaded_tca.unloaded.roots import find_roots
 from loaded_tca.unloaded.search import first_touch
 
 REACH = 0.05
-"""Lag behind the leading pair, as a length at r_b2 over the module, beyond which a tooth pair counts as apart: no load
-that gears bear closes it."""
+"""Initial separation, as a length at r_b2 over the module, beyond which a tooth pair counts as apart: no load that
+gears bear closes it."""
 COINCIDE = 1e-13
 """Difference of transmission errors [rad] that is rounding: the pair nearer to its pitch point then leads."""
 SAMPLES = 32
@@ -52,12 +52,10 @@ height. Closer to a crest where two edges meet the ascents may fail."""
 NEARER = 1e-6
 """Part of a pitch by which the later pair counts as farther, so that no two are equally far from their pitch points."""
 
-Integers = NDArray[np.int_]
 SECTIONS, SECTION_PASSES = 16, 4
 """The end of a surface contact is found by cutting a pitch into 16 parts, four times over."""
 ENDS = 4
 """The tips and roots of both gears come first in the order of ``_edges_held``, before the sides."""
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,24 +83,20 @@ class ToothCycle:
         """Between two samples [rad]."""
         return self.pair.pitch / SAMPLES
 
-    @property
+    @cached_property
     def own(self) -> Array:
         """Own pinion angles of the samples [rad]."""
         return self.step * (self.first + np.arange(len(self.height)))
 
-    def teeth_between(self, low: float, high: float) -> Integers:
-        """Tooth pairs within reach between two pinion angles, in the order 0, +1, -1, ..."""
-        return teeth_between(low, high, (float(self.own[0]), float(self.own[-1])), self.pair.pitch)
-
-    def heights(self, angle: Array, teeth: Integers) -> Array:
+    def heights(self, angle: Array, teeth: Indices) -> Array:
         """Heights (m, n) [mm] of the tooth pairs (m,) at pinion angles (n,); -inf out of reach."""
         own = angle - teeth[:, None] * self.pair.pitch
         found = np.full(own.shape, -np.inf)
         rows = (own >= self.own[0]) & (own <= self.own[-1])
-        found[rows] = height_and_slope(self.pair, own[rows])[0]
+        found[rows] = first_touch(self.pair, own[rows]).value
         return found
 
-    def sampled(self, index: Integers, teeth: Integers) -> Array:
+    def sampled(self, index: Indices, teeth: Indices) -> Array:
         """The same heights at the pinion angles index * step, from the samples."""
         place = index - teeth[:, None] * SAMPLES - self.first
         inside = (place >= 0) & (place < len(self.height))
@@ -118,34 +112,30 @@ class ToothCycle:
         brackets = np.stack([self.own[rows], self.own[rows + 1]])
         return find_roots(lambda own, _: height_and_slope(self.pair, own)[1], brackets, ends[:, rows], SUMMIT)
 
-    def peaks(self, low: float, high: float, teeth: Integers) -> Array:
+    def peaks(self, low: float, high: float, teeth: Indices) -> Array:
         """Envelope [mm] of the tooth pairs (m,) wherever one of them is level between two pinion angles."""
         angle = (self.extrema + teeth[:, None] * self.pair.pitch).ravel()
         top = self.heights(angle[(angle > low) & (angle < high)], teeth).max(axis=0)
         return top[np.isfinite(top)]
 
-    def share_in_contact(self, lag: float) -> float:
-        """Pitches over which a tooth pair lags behind the best of the others by no more than a length [mm]."""
+    def share_in_contact(self, separation: float) -> float:
+        """Pitches over which the initial separation of a tooth pair from the best other one is no larger [mm]."""
         count, most = len(self.height) // SAMPLES + 1, 2.0 * REACH * self.pair.module
-        others = np.concatenate([np.arange(-count, 0), np.arange(1, count + 1)])
+        teeth = np.concatenate([[0], np.arange(-count, 0), np.arange(1, count + 1)])
 
-        def excess(own: Array, rivals: Array) -> Array:
-            """Lag less what is allowed, kept within bounds; out of reach it is too much."""
-            own, best = np.maximum(own, -self._far), np.maximum(rivals.max(axis=0), -self._far)
-            return np.where(own > -self._far, np.clip(best - own, -most, most), most) - lag
-
-        def excess_at(own: Array, _: Integers) -> Array:
-            heights = self.heights(own, np.concatenate([[0], others]))
-            return excess(heights[0], heights[1:])
+        def excess(heights: Array) -> Array:
+            """Separation less what is allowed, kept within bounds; out of reach it is too much."""
+            own, best = np.maximum(heights[0], -self._far), np.maximum(heights[1:].max(axis=0), -self._far)
+            return np.where(own > -self._far, np.clip(best - own, -most, most), most) - separation
 
         index = self.first + np.arange(-1, len(self.height) + 1)
-        sample = excess(self.sampled(index, np.array([0]))[0], self.sampled(index, others))
+        sample = excess(self.sampled(index, teeth))
         rows = np.flatnonzero(np.diff(sample <= 0.0))
         rows = np.stack([rows, rows + 1])
-        found = find_roots(excess_at, self.step * index[rows], sample[rows], EDGE)
+        found = find_roots(lambda own, _: excess(self.heights(own, teeth)), self.step * index[rows], sample[rows], EDGE)
         return float((found[1::2] - found[::2]).sum()) / self.pair.pitch
 
-    def changes(self, low: float, high: float, teeth: Integers) -> tuple[Array, Integers]:
+    def changes(self, low: float, high: float, teeth: Indices) -> tuple[Array, Indices]:
         """Pinion angles (n,) between two others at which the lead changes, and the pairs before and after (2, n)."""
         index = np.arange(math.floor(low / self.step) + 1, math.ceil(high / self.step))
         ends = self.heights(np.array([low, high]), teeth)
@@ -155,10 +145,10 @@ class ToothCycle:
         rows = np.flatnonzero(np.diff(lead))
         old_new, brackets = np.stack([lead[rows], lead[rows + 1]]), np.stack([angle[rows], angle[rows + 1]])
 
-        def difference(at: Array, which: Integers) -> Array:
-            own = at - old_new[:, which] * self.pair.pitch
-            heights = np.maximum(height_and_slope(self.pair, own.ravel())[0], -self._far).reshape(own.shape)
-            return heights[0] - heights[1]
+        def difference(at: Array, which: Indices) -> Array:
+            own = (at - old_new[:, which] * self.pair.pitch).ravel()
+            before, after = np.maximum(first_touch(self.pair, own).value, -self._far).reshape(2, -1)
+            return before - after
 
         every = np.arange(len(rows))
         values = np.stack([difference(side, every) for side in brackets])
@@ -196,51 +186,45 @@ def reach(pair: GearPair) -> tuple[float, float]:
     GeometryError
         If the flanks of no tooth pair share a region.
     """
-    step, first, last = pair.pitch / SCANS, -2, 3
-    height, common = _scan(pair, step * np.arange(first * SCANS, last * SCANS))
+    step, first, last = pair.pitch / SCANS, -2, 2
+    height, common = _scan(pair, range(first, last + 1))
     while True:
-        shape = (last - first, SCANS)
-        best = height.reshape(shape).max(axis=0)
-        near = common if not np.isfinite(best).any() else np.isfinite(height)
-        near = near & (height >= np.tile(best, shape[0]) - REACH * pair.module)
-        if not near[:SCANS].any() and not near[-SCANS:].any():
+        best = height.max(axis=0)
+        near = (np.isfinite(height) if np.isfinite(best).any() else common) & (height >= best - REACH * pair.module)
+        if not near[[0, -1]].any():
             break
-        more = [step * np.arange(k * SCANS, (k + 1) * SCANS) for k in (first - 1, last)]
-        (below, common_below), (above, common_above) = (_scan(pair, own) for own in more)
-        height = np.concatenate([below, height, above])
-        common = np.concatenate([common_below, common, common_above])
         first, last = first - 1, last + 1
+        parts = zip((height, common), _scan(pair, (first, last)), strict=True)
+        height, common = (np.concatenate([more[:1], known, more[1:]]) for known, more in parts)
     if not near.any():
         raise GeometryError(
             "no common flank: the flanks of no tooth pair cover a common region; check the tips of the "
             "teeth and how the gears are mounted"
         )
-    touching = step * (first * SCANS + np.flatnonzero(near))
-    return float(touching[0]) - step, float(touching[-1]) + step
+    within = step * (first * SCANS + np.flatnonzero(near))
+    return float(within[0]) - step, float(within[-1]) + step
 
 
-def _scan(pair: GearPair, own: Array) -> tuple[Array, Array]:
-    """Highest point of a coarse grid (n,) [mm], -inf if none is common; whether one is within a spacing of it."""
-    rho, z = pair.pinion.flank.grid(*SCAN)
-    shape = (len(own), *SCAN)
-    value, edges = EaseOff(pair).heights(
-        np.broadcast_to(own[:, None, None], shape), np.broadcast_to(rho, shape), np.broadcast_to(z, shape)
-    )
+def _scan(pair: GearPair, pitches: Sequence[int]) -> tuple[Array, Array]:
+    """Highest point of a coarse grid over some pitches [mm], -inf if none is common; whether one nearly is.
+
+    Both are (pitches, SCANS); nearly means within two spacings of the grid.
+    """
+    flank, own = pair.pinion.flank, pair.pitch * np.add.outer(pitches, np.arange(SCANS) / SCANS)
+    value, edges = EaseOff(pair).heights(*np.broadcast_arrays(own[..., None, None], *flank.grid(*SCAN)))
     inside = edges.min(axis=-1)
-    height_step, width_step = (
-        length / (count - 1) for length, count in zip(pair.pinion.flank.extent, SCAN, strict=True)
-    )
-    height = np.where(inside >= 0.0, value, -np.inf).max(axis=(1, 2))
-    return height, inside.max(axis=(1, 2)) >= -2.0 * math.hypot(height_step, width_step)
+    height = np.where(inside >= 0.0, value, -np.inf).max(axis=(-2, -1))
+    spacing = math.hypot(flank.extent[0] / (SCAN[0] - 1), flank.extent[1] / (SCAN[1] - 1))
+    return height, inside.max(axis=(-2, -1)) >= -2.0 * spacing
 
 
-def teeth_between(low: float, high: float, window: tuple[float, float], pitch: float) -> Integers:
+def teeth_between(low: float, high: float, window: tuple[float, float], pitch: float) -> Indices:
     """Tooth pairs whose own angle comes into the window between two pinion angles, in the order 0, +1, -1, ..."""
     first, last = math.ceil((low - window[1]) / pitch), math.floor((high - window[0]) / pitch)
     return np.array(sorted(range(first, last + 1), key=lambda k: (abs(k), -k)), dtype=int)
 
 
-def leading(pair: GearPair, heights: Array, phi1: Array, teeth: Integers) -> Integers:
+def leading(pair: GearPair, heights: Array, phi1: Array, teeth: Indices) -> Indices:
     """Row of the leading pair (n,) for heights (m, n) [mm]; of equals, the one nearer to its pitch point."""
     distance = np.abs(phi1 / pair.pitch - teeth[:, None]) + NEARER * teeth[:, None]
     tie = heights >= heights.max(axis=0) - COINCIDE * pair.base_radii[1]
@@ -254,19 +238,15 @@ def height_and_slope(pair: GearPair, own: Array) -> tuple[Array, Array]:
     :math:`\lambda_b` of the edges c_b that hold it, :math:`h' = \partial e/\partial\varphi_1 + \sum_b \lambda_b\,
     \partial c_b/\partial\varphi_1`.
     """
-    height, slope = np.full(len(own), -np.inf), np.zeros(len(own))
-    if not len(own):
-        return height, slope
-    touch = first_touch(pair, own)
+    touch, slope = first_touch(pair, own), np.zeros(len(own))
     rows = np.flatnonzero(touch.in_contact)
-    height[rows] = touch.value[rows]
     if rows.size:
-        field = EaseOff(pair, touch.beyond[rows] if touch.beyond.shape[1] else None)
+        field = EaseOff(pair, touch.beyond[rows])
         (after, on), (before, back) = (
             field.heights(own[rows] + way * NUDGE, touch.rho[rows], touch.z[rows]) for way in (1.0, -1.0)
         )
         slope[rows] = (after - before + (touch.multipliers[rows] * (on - back)).sum(axis=-1)) / (2.0 * NUDGE)
-    return height, slope
+    return touch.value, slope
 
 
 @dataclass(frozen=True, eq=False)
@@ -296,21 +276,25 @@ class Transfer:
         along their sides all the way (misaligned, without lead crowning) have curves of their own, which may cross; a
         side that only one of the two contacts rests on is an end like a tip.
         """
-        first, second = (_edges_held(contact.edges) for contact in self.contacts)
+        first, second = self._edges
         return not first[:ENDS].any() and bool((first == second).all())
 
     def jump(self, pair: GearPair) -> float:
         """Change of the transmission error over the edge contact [rad]; NaN if none but that within a pitch."""
         if self.is_continuous:
             return 0.0
-        first, second = (_edges_held(contact.edges) for contact in self.contacts)
-        common = first & second
+        common = self._edges[0] & self._edges[1]
         common[:ENDS] = False
         before, after = (_end_of(pair, one, common, way) for one, way in zip(self.contacts, (-1.0, 1.0), strict=True))
         return after - before
 
+    @property
+    def _edges(self) -> tuple[Mask, Mask]:
+        first, second = (_edges_held(contact.edges) for contact in self.contacts)
+        return first, second
 
-def find_transfers(cycle: ToothCycle, low: float, high: float, teeth: NDArray[np.int_]) -> tuple[Transfer, ...]:
+
+def find_transfers(cycle: ToothCycle, low: float, high: float, teeth: Indices) -> tuple[Transfer, ...]:
     """Transfers among tooth pairs between two pinion angles, in their order."""
     angles, pairs = cycle.changes(low, high, teeth)
     if not len(angles):
@@ -324,13 +308,13 @@ def find_transfers(cycle: ToothCycle, low: float, high: float, teeth: NDArray[np
     )
 
 
-def _edges_held(edges: Bools) -> Bools:
+def _edges_held(edges: Mask) -> Mask:
     """Tips and roots of both gears, then the sides of either: where two faces end together, their edges alternate."""
     pinion, wheel = edges[..., : len(EDGE_NAMES)], edges[..., len(EDGE_NAMES) :]
     return np.concatenate([pinion[..., :2], wheel[..., :2], pinion[..., 2:] | wheel[..., 2:]], axis=-1)
 
 
-def _end_of(pair: GearPair, contact: ContactPoint, edges: Bools, way: float) -> float:
+def _end_of(pair: GearPair, contact: ContactPoint, edges: Mask, way: float) -> float:
     """Transmission error where a contact rests on ``edges`` alone again, going one way; NaN if not within a pitch."""
     start, length = contact.pinion_angle, way * pair.pitch
     for _ in range(SECTION_PASSES):

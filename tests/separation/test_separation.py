@@ -280,7 +280,7 @@ def test_argument_out_of_its_range_is_refused(options, problem):
 def test_position_that_does_not_touch_is_refused():
     pair = sam_paper()
     contact = trace_contact(pair, [0.0, 1.5])[1]
-    with pytest.raises(GeometryError, match=r"no common flank: the tooth pair does not touch at pinion angle 1.5 rad"):
+    with pytest.raises(GeometryError, match=r"no common flank: .* is not in contact at pinion angle 1.5 rad"):
         sample_separation(pair, contact, load=1.0)
 
 
