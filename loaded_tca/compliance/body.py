@@ -172,17 +172,12 @@ class ToothFrame:
         layer = np.interp(where, coordinate, np.arange(len(coordinate)))
         radii = self.nodes.radius[column]
         radii = radii[np.isfinite(radii[:, 0])]
-        row = _rows_at(radii, layer, sections.radius(rho, z))
+        lower = np.minimum(layer.astype(int), len(coordinate) - 2)
+        part, rows = layer - lower, np.arange(len(radii))
+        growing = (radii[:, lower] * (1.0 - part) + radii[:, lower + 1] * part).T  # radii of the rows at each place
+        images = zip(sections.radius(rho, z), growing, strict=True)
+        row = np.array([np.interp(image, column_radii, rows) for image, column_radii in images])
         return _among_nodes(number[column], row, layer)
-
-
-def _rows_at(radii: Array, layer: Array, radius: Array) -> Array:
-    """Rows (m,) at which a column with the radii (rows, layers), growing, reaches ``radius`` (m,) at ``layer`` (m,)."""
-    lower = np.minimum(layer.astype(int), radii.shape[1] - 2)
-    part = layer - lower
-    columns = radii[:, lower] * (1.0 - part) + radii[:, lower + 1] * part
-    rows = np.arange(len(radii))
-    return np.array([np.interp(r, column, rows) for r, column in zip(radius, columns.T, strict=True)])
 
 
 def _among_nodes(number: Indices, row: Array, layer: Array) -> SurfacePlaces:
