@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,15 @@ def numbers(name: str, values: ArrayLike) -> Array:
         return np.asarray(values, dtype=float)
     except (TypeError, ValueError):
         raise InputError(f"{name}: an array of finite numbers is asked for, not {values!r:.60}") from None
+
+
+def count_problems(counts: Mapping[str, object], least: int) -> list[str]:
+    """A problem for each count, by name, that is not a whole number from ``least`` on."""
+    return [
+        f"{name}: {count!r} is not a whole number from {least} on"
+        for name, count in counts.items()
+        if not (isinstance(count, int | np.integer) and count >= least)
+    ]
 
 
 def finite_row(name: str, values: ArrayLike) -> Array:

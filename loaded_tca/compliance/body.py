@@ -172,11 +172,11 @@ class ToothFrame:
         layer = np.interp(where, coordinate, np.arange(len(coordinate)))
         radii = self.nodes.radius[column]
         radii = radii[np.isfinite(radii[:, 0])]
-        lower = np.minimum(layer.astype(int), radii.shape[1] - 2)
+        lower = np.minimum(layer.astype(int), len(coordinate) - 2)
         part, rows = layer - lower, np.arange(len(radii))
-        columns = (radii[:, lower] * (1.0 - part) + radii[:, lower + 1] * part).T  # as they run below each place
-        radius = sections.radius(rho, z)
-        row = np.array([np.interp(r, column, rows) for r, column in zip(radius, columns, strict=True)])
+        growing = (radii[:, lower] * (1.0 - part) + radii[:, lower + 1] * part).T  # radii of the rows at each place
+        images = zip(sections.radius(rho, z), growing, strict=True)
+        row = np.array([np.interp(image, column_radii, rows) for image, column_radii in images])
         return _among_nodes(number[column], row, layer)
 
 

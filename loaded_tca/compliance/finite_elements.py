@@ -196,20 +196,15 @@ def discretise(
     first = frames[lowest[:, 0] % shape[0]]
     corners = np.einsum("nba,nkb->nka", _turn(first, d), found[elements])
     onwards = np.remainder(frames[nodes[..., 0]] - first[:, None], 2.0 * math.pi)
-    one, kinds = _kinds(corners, onwards, hanging)
-    shares = following(hanging[one], offsets, _element(2))
-    products = _products(element, shares @ corners[one])
-    return Discretisation(number, found, elements, lowest, kinds, products, onwards[one], shares)
-
-
-def _kinds(corners: Array, turns: Array, hanging: Indices) -> tuple[Indices, Indices]:
-    """One element of each kind, and the kind of each element: the same form but for where it lies along the axis."""
-    size, along = np.abs(corners).max(), corners - corners[:, :1] * (np.arange(corners.shape[-1]) == 2)
-    form = np.concatenate([along / size, turns[..., None]], axis=-1).reshape(len(corners), -1)
+    form = (corners - corners[:, :1] * (np.arange(d) == 2)) / np.abs(corners).max()  # wherever it lies along the axis
+    form = np.concatenate([form, onwards[..., None]], axis=-1).reshape(len(form), -1)
     rounded = np.concatenate([np.rint(form / SAME_FORM).astype(int), hanging], axis=1)
     seen: dict[bytes, int] = {}
     kinds = np.array([seen.setdefault(row.tobytes(), len(seen)) for row in rounded])
-    return np.unique(kinds, return_index=True)[1], kinds
+    one = np.unique(kinds, return_index=True)[1]
+    shares = following(hanging[one], offsets, _element(2))
+    products = _products(element, shares @ corners[one])
+    return Discretisation(number, found, elements, lowest, kinds, products, onwards[one], shares)
 
 
 def _turn(angle: Array, dimension: int) -> Array:

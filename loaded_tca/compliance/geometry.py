@@ -17,7 +17,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.compliance.layout import MeshDensity, RingLayout, SectorLayout
 from loaded_tca.errors import InputError
 from loaded_tca.tooth.profile import lengths_along, polar
-from loaded_tca.tooth.sections import Sections
+from loaded_tca.tooth.sections import Sections, in_space
 from loaded_tca.tooth.surface import ToothSurface
 
 FILLET_SHARE = 0.5
@@ -58,8 +58,7 @@ class BodyNodes:
     @property
     def points(self) -> Array:
         """Nodes (columns, rows, k, 3) in the gear's frame [mm]."""
-        rho, z = self.sections.point(self.radius, self.coordinate)
-        return np.stack([rho * np.cos(self.angle), rho * np.sin(self.angle), z], axis=-1)
+        return in_space(self.sections, self.radius, self.angle, self.coordinate)
 
 
 @dataclass(frozen=True, eq=False)

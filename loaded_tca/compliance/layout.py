@@ -7,12 +7,12 @@ neighbours coarsely, and the rest of the ring is a rim without teeth, one elemen
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Indices
+from loaded_tca.arrays import Array, Indices, count_problems
 from loaded_tca.errors import InputError
 
 
@@ -50,13 +50,8 @@ class MeshDensity:
     neighbours: int = 1
 
     def __post_init__(self) -> None:
-        counts = {entry.name: getattr(self, entry.name) for entry in fields(self)}
-        least = {"neighbours": 0}
-        problems = [
-            f"{name}: {count!r} is not a whole number from {least.get(name, 1)} on"
-            for name, count in counts.items()
-            if not (isinstance(count, int | np.integer) and count >= least.get(name, 1))
-        ]
+        elements = {name: count for name, count in vars(self).items() if name != "neighbours"}
+        problems = count_problems(elements, 1) + count_problems({"neighbours": self.neighbours}, 0)
         if not problems and self.through % 2:
             problems.append(f"through: {self.through} is not even: the middle of the tooth must be a line of nodes")
         if problems:

@@ -210,23 +210,15 @@ class CradleGeneration:
             self.sign * products / distance - steepness * along_bends - bend * squares,
             height,
             along,
-            *self._roll_slopes(phi),
+            *self.roll(phi)[1:],
         )
 
-    def roll(self, phi: Array) -> Array:
-        """Turn of the blank, psi(phi) [rad]."""
+    def roll(self, phi: Array) -> tuple[Array, Array, Array]:
+        """Turn of the blank psi(phi) [rad], psi' and psi''."""
         machine = self.machine
-        return (
-            machine.ratio_of_roll
-            * phi
-            * (1.0 - phi * (machine.modified_roll_2c / 2.0 + phi * machine.modified_roll_6d / 6.0))
-        )
-
-    def _roll_slopes(self, phi: Array) -> tuple[Array, Array]:
-        machine = self.machine
-        second, third = machine.modified_roll_2c, machine.modified_roll_6d
-        slope = machine.ratio_of_roll * (1.0 - phi * (second + 0.5 * phi * third))
-        return slope, -machine.ratio_of_roll * (second + phi * third)
+        ratio, second, third = machine.ratio_of_roll, machine.modified_roll_2c, machine.modified_roll_6d
+        turn = ratio * phi * (1.0 - phi * (second / 2.0 + phi * third / 6.0))
+        return turn, ratio * (1.0 - phi * (second + 0.5 * phi * third)), -ratio * (second + phi * third)
 
     def _seen_from_cutter(self, rho: Array, alpha: Array, z: Array, phi: Array) -> tuple[Array, Array, Array]:
         """Place (3, n) from the cutter's centre along e_r, e_t, z; its slopes (4, 3, n) and bends (4, 4, 3, n)."""
@@ -313,7 +305,7 @@ class CradleGeneration:
             if self.machine.rolls:
                 bend -= turned[i] * turned[j] / np.where(turns_back, 1.0, sharpness)
             parts.append(-bend / lead)
-        jet = Jet(alpha - self.roll(phi), *theta, *parts)
+        jet = Jet(alpha - self.roll(phi)[0], *theta, *parts)
         return GeneratedPoints(jet, phi, cut.height, sharpness / np.abs(lead), converged)
 
 

@@ -187,8 +187,7 @@ def fit(
         _Direction.along(lines, at, count, degree)
         for lines, at, count, degree in zip((u, v.T), (u, v), counts, degrees, strict=True)
     )
-    found = _least_squares(first, second, values.ravel())
-    return TensorSpline((first.knots, second.knots), found, degrees)
+    return TensorSpline((first.knots, second.knots), _least_squares(first, second, values.ravel()), degrees)
 
 
 @dataclass(frozen=True, eq=False)

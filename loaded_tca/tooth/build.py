@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, count_problems
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.tooth.fillet import ArcFillet, Fillet, FilletCurve
 from loaded_tca.tooth.form import ToothForm
 from loaded_tca.tooth.profile import Profile, profile_of
-from loaded_tca.tooth.sections import Sections
+from loaded_tca.tooth.sections import in_space
 from loaded_tca.tooth.surface import ToothSurface
 
 OVERLAP = 1e-3
@@ -47,12 +48,7 @@ class Resolution:
     lengthwise: int = 33
 
     def __post_init__(self) -> None:
-        counts = {entry.name: getattr(self, entry.name) for entry in fields(self)}
-        problems = [
-            f"{name}: {count} is not a whole number from 2 on"
-            for name, count in counts.items()
-            if not (isinstance(count, int | np.integer) and count >= 2)
-        ]
+        problems = count_problems(vars(self), 2)
         if problems:
             raise InputError(problems)
 
@@ -86,50 +82,58 @@ def build_tooth(flanks: tuple[Flank, Flank], form: ToothForm, resolution: Resolu
     if tuple(flank.side for flank in flanks) != (1, -1):
         raise InputError(f"flanks: their sides are {', '.join(str(flank.side) for flank in flanks)}, not 1, -1")
     counts = resolution.flank, resolution.lengthwise
-    plus, minus = (profile_of(flank, form.sections, form.half_thickness_angle, counts) for flank in flanks)
-    pitch = 2.0 * math.pi / form.teeth
-    sides = _Sides(plus, minus, form.root_radius(plus.coordinate), pitch, resolution)
-    halves = sides.with_fillet(_fitting(sides, form))
-    _check_thickness(halves, plus.coordinate, resolution)
-    return _assembled(sides, halves, form, resolution)
+    sides = [profile_of(flank, form.sections, form.half_thickness_angle, counts) for flank in flanks]
+    coordinate, land = sides[0].coordinate, resolution.land
+    space = _Space(sides, form.root_radius(coordinate), 2.0 * math.pi / form.teeth, resolution.fillet)
+    (plus_radius, plus), (minus_radius, minus) = space.halves(_fitting(space, form))
+    _check_thickness(plus + minus, coordinate, resolution)
+    right = 0.5 * (space.pitch + plus[-1] - minus[-1])
+    left = right - space.pitch
+    root, tip = (np.broadcast_to(radius, (land, len(coordinate))) for radius in (space.root, plus_radius[0]))
+    azimuths = [
+        np.linspace(left, -minus[-1], land),
+        -minus[::-1],
+        np.linspace(-minus[0], plus[0], land),
+        plus,
+        np.linspace(plus[-1], right, land),
+    ]
+    radii = [root, minus_radius[::-1], tip, plus_radius, root]
+    theta, radius = (np.concatenate([rows[0], *(row[1:] for row in rows[1:])]) for rows in (azimuths, radii))
+    height = sides[0].radius[-1] - space.root
+    foot = np.tile(np.maximum(space.root - RIM * height, 0.5 * space.root), (2, 1))  # never beyond the axis
+    steps = [land, resolution.fillet, resolution.flank]
+    return ToothSurface(
+        in_space(form.sections, radius, theta, coordinate),
+        in_space(form.sections, foot, np.stack([left, right]), coordinate),
+        tuple(np.cumsum([0, *(count - 1 for count in (*steps, land, *steps[::-1]))]).tolist()),
+        form.teeth,
+        form.half_thickness_angle,
+    )
 
 
 @dataclass(frozen=True, eq=False)
-class _Half:
-    """Outline (k, m) of one side from tip to root in the images: radius [mm], angle from the middle [rad]."""
+class _Space:
+    """The space between two teeth before its fillets are known: its sides, root circles, pitch, points of a fillet."""
 
-    radius: Array
-    angle: Array
-
-
-@dataclass(frozen=True, eq=False)
-class _Sides:
-    """Both sides of a tooth before their fillets are known."""
-
-    plus: Profile
-    minus: Profile
+    sides: Sequence[Profile]
     root: Array
     pitch: float
-    resolution: Resolution
+    points: int
 
-    def with_fillet(self, fillet: Fillet) -> tuple[_Half, _Half]:
-        """Outlines of both sides, to the end of the fillet."""
-        curves = [fillet.curve(side, self.root, self.resolution.fillet) for side in (self.plus, self.minus)]
-        return _outline(self.plus, curves[0], self.root), _outline(self.minus, curves[1], self.root)
-
-    def room(self, halves: tuple[_Half, _Half]) -> Array:
-        """Angle (m,) of root circle left between two fillets [rad]."""
-        return self.pitch - halves[0].angle[-1] - halves[1].angle[-1]
+    def halves(self, fillet: Fillet) -> list[tuple[Array, Array]]:
+        """Radius [mm] and angle from the middle [rad] (k, m) of both sides of a tooth, from the tip to the root."""
+        return [_outline(side, fillet.curve(side, self.root, self.points), self.root) for side in self.sides]
 
     def has_room(self, fillet: Fillet) -> bool:
         """Whether the fillets of a space leave each other room."""
         try:
-            return bool((self.room(self.with_fillet(fillet)) >= -OVERLAP * self.pitch).all())
+            (_, plus), (_, minus) = self.halves(fillet)
         except GeometryError:
             return False
+        return bool((self.pitch - plus[-1] - minus[-1] >= -OVERLAP * self.pitch).all())
 
 
-def _outline(profile: Profile, curve: FilletCurve, root: Array) -> _Half:
+def _outline(profile: Profile, curve: FilletCurve, root: Array) -> tuple[Array, Array]:
     """Flank from the tip down to where the fillet starts, then the fillet."""
     low, high = profile.radius[0], profile.radius[-1]
     flank = high - (high - profile.radius[::-1]) * (high - curve.start) / (high - low)
@@ -139,23 +143,23 @@ def _outline(profile: Profile, curve: FilletCurve, root: Array) -> _Half:
     fillet[-1] = root
     azimuth = np.arctan2(curve.points[..., 1], curve.points[..., 0])
     turn = np.remainder(azimuth - angle[-1] + math.pi, 2.0 * math.pi) - math.pi
-    return _Half(np.concatenate([flank, fillet[1:]]), np.concatenate([angle, (angle[-1] + turn)[1:]]))
+    return np.concatenate([flank, fillet[1:]]), np.concatenate([angle, (angle[-1] + turn)[1:]])
 
 
-def _fitting(sides: _Sides, form: ToothForm) -> Fillet:
+def _fitting(space: _Space, form: ToothForm) -> Fillet:
     """The fillet of the form, or the largest arc that fits where that is allowed."""
     fillet = form.fillet
-    if sides.has_room(fillet):
+    if space.has_room(fillet):
         return fillet
     if not isinstance(fillet, ArcFillet):
         raise GeometryError("the fillets of neighbouring teeth pass each other: no space is left at the root")
     small, large = 0.0, fillet.radius
     for _ in range(HALVINGS):
         middle = 0.5 * (small + large)
-        fits = sides.has_room(replace(fillet, radius=middle))
+        fits = space.has_room(replace(fillet, radius=middle))
         small, large = (middle, large) if fits else (small, middle)
     if small == 0.0:
-        sides.with_fillet(replace(fillet, radius=large))
+        space.halves(replace(fillet, radius=large))
         raise GeometryError("no fillet fits between neighbouring teeth: no space is left at the root")
     if not form.largest_that_fits:
         raise InputError(
@@ -165,9 +169,8 @@ def _fitting(sides: _Sides, form: ToothForm) -> Fillet:
     return replace(fillet, radius=small)
 
 
-def _check_thickness(halves: tuple[_Half, _Half], coordinate: Array, resolution: Resolution) -> None:
-    """Refuse a tooth that has no thickness somewhere."""
-    thickness = halves[0].angle + halves[1].angle
+def _check_thickness(thickness: Array, coordinate: Array, resolution: Resolution) -> None:
+    """Refuse a tooth that has no thickness (k, m) somewhere."""
     place, section = np.unravel_index(int(thickness.argmin()), thickness.shape)
     if thickness[place, section] > 0.0:
         return
@@ -175,45 +178,3 @@ def _check_thickness(halves: tuple[_Half, _Half], coordinate: Array, resolution:
     if place < resolution.flank:
         raise GeometryError(f"pointed tooth: its two flanks meet below the tip, {where}")
     raise GeometryError(f"the undercut of both sides cuts off the tooth, {where}")
-
-
-def _assembled(sides: _Sides, halves: tuple[_Half, _Half], form: ToothForm, resolution: Resolution) -> ToothSurface:
-    """The outline from space to space in the gear's frame."""
-    plus, minus = halves
-    coordinate, land = sides.plus.coordinate, resolution.land
-    right = 0.5 * (sides.pitch + plus.angle[-1] - minus.angle[-1])
-    left = right - sides.pitch
-    root = np.broadcast_to(sides.root, (land, len(coordinate)))
-    tip = np.broadcast_to(plus.radius[0], (land, len(coordinate)))
-    azimuths = [
-        np.linspace(left, -minus.angle[-1], land),
-        -minus.angle[::-1],
-        np.linspace(-minus.angle[0], plus.angle[0], land),
-        plus.angle,
-        np.linspace(plus.angle[-1], right, land),
-    ]
-    radii = [root, minus.radius[::-1], tip, plus.radius, root]
-    first = slice(1, None)
-    theta, radius = (np.concatenate([rows[0], *(row[first] for row in rows[1:])]) for rows in (azimuths, radii))
-    foot = np.broadcast_to(_foot(sides), (2, len(coordinate)))
-    steps = [land, resolution.fillet, resolution.flank]
-    lengths = [*steps, land, *steps[::-1]]
-    joints = (0, *(int(joint) for joint in np.cumsum([length - 1 for length in lengths])))
-    return ToothSurface(
-        _in_space(form.sections, radius, theta, coordinate),
-        _in_space(form.sections, foot, np.stack([left, right]), coordinate),
-        joints,
-        form.teeth,
-        form.half_thickness_angle,
-    )
-
-
-def _foot(sides: _Sides) -> Array:
-    """Radius (m,) of the images below the root, where the rim of a closed tooth ends; never beyond the axis."""
-    return np.maximum(sides.root - RIM * (sides.plus.radius[-1] - sides.root), 0.5 * sides.root)
-
-
-def _in_space(sections: Sections, radius: Array, theta: Array, coordinate: Array) -> Array:
-    """Points (..., 3) in the gear's frame from polar coordinates in the images."""
-    rho, z = sections.point(radius, coordinate)
-    return np.stack([rho * np.cos(theta), rho * np.sin(theta), z], axis=-1)

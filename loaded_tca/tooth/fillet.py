@@ -117,7 +117,15 @@ class ArcFillet(Fillet):
             )
         line = np.maximum(along - np.sqrt(square), 0.0)
         centre += line[:, None] * tangent
-        return FilletCurve(start, *_line_and_arc(point, tangent, line, centre, size, count))
+        inward = -centre / np.linalg.norm(centre, axis=-1, keepdims=True)
+        first = -_into_space(tangent)
+        sweep = np.arctan2(first[:, 0] * inward[:, 1] - first[:, 1] * inward[:, 0], (first * inward).sum(axis=-1))
+        length = np.linspace(0.0, 1.0, count)[:, None] * (line + size * np.abs(sweep))
+        swept = np.sign(sweep) * np.maximum(length - line, 0.0) / size
+        on_arc = centre + size[:, None] * turned(first, swept)
+        points = np.where((length < line)[..., None], point + length[..., None] * tangent, on_arc)
+        points[0] = point
+        return FilletCurve(start, points, turned(tangent, swept))
 
 
 def _touching_radius(profile: Profile, root: Array, size: Array) -> Array:
@@ -133,22 +141,6 @@ def _touching_radius(profile: Profile, root: Array, size: Array) -> Array:
     if (~found.success & (found.f_bracket[1] < 0.0)).any():
         raise GeometryError("fillet_radius: the fillet reaches the tip of the tooth; reduce it")
     return np.where(found.success, found.x, low)  # no change of sign: the arc stays above the root all along
-
-
-def _line_and_arc(
-    point: Array, tangent: Array, line: Array, centre: Array, size: Array, count: int
-) -> tuple[Array, Array]:
-    """Points and tangents (count, m, 2) of a straight piece and the arc after it, down to the root circle."""
-    inward = -centre / np.linalg.norm(centre, axis=-1, keepdims=True)
-    start = -_into_space(tangent)
-    sweep = np.arctan2(start[:, 0] * inward[:, 1] - start[:, 1] * inward[:, 0], (start * inward).sum(axis=-1))
-    length = np.linspace(0.0, 1.0, count)[:, None] * (line + size * np.abs(sweep))
-    swept = np.sign(sweep) * np.maximum(length - line, 0.0) / size
-    on_arc = centre + size[:, None] * turned(start, swept)
-    on_line = point + length[..., None] * tangent
-    points = np.where((length < line)[..., None], on_line, on_arc)
-    points[0] = point
-    return points, turned(tangent, swept)
 
 
 def _into_space(tangent: Array) -> Array:

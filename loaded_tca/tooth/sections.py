@@ -46,6 +46,12 @@ class Sections(ABC):
         """Radius of the image after a distance along the meridian, away from the axis [mm]."""
 
 
+def in_space(sections: Sections, radius: Array, angle: Array, coordinate: Array) -> Array:
+    """Points (..., 3) in the gear's frame [mm], from polar coordinates in the images of sections."""
+    rho, z = sections.point(radius, coordinate)
+    return np.stack([rho * np.cos(angle), rho * np.sin(angle), z], axis=-1)
+
+
 class TransversePlanes(Sections):
     """Planes z = const, told apart by z.
 

@@ -87,7 +87,8 @@ class ToothSurface:
             parts += [(grid_triangles(tooth[a : b + 1]), number) for number, (a, b) in enumerate(ends)]
             parts += _closing(tooth, foot[copy : copy + 2]) if closed else []
         if closed and copies < self.teeth:
-            parts += _cuts(outline, foot)
+            cuts = np.stack([foot[0], outline[0]]), np.stack([outline[-1], foot[-1]])
+            parts += [(grid_triangles(index), CLOSING["cut"]) for index in cuts]
         used, triangles = np.unique(np.concatenate([found for found, _ in parts]), return_inverse=True)
         patch = np.concatenate([np.full(len(found), number) for found, number in parts])
         return TriangleMesh(vertices[used], triangles.reshape(-1, 3), cell_data={"patch": patch})
@@ -120,15 +121,5 @@ def _closing(tooth: Indices, foot: Indices) -> list[tuple[Indices, int]]:
     """Triangles of both ends of the face, in strips from side to side, and of the foot of one tooth."""
     half = (len(tooth) + 1) // 2
     across = np.concatenate([foot[None], np.stack([tooth[:half], tooth[::-1][:half]], axis=1)])
-    found = {
-        "lower side": across[:, ::-1, 0],
-        "upper side": across[:, :, -1],
-        "foot": foot[::-1],
-    }
+    found = {"lower side": across[:, ::-1, 0], "upper side": across[:, :, -1], "foot": foot[::-1]}
     return [(grid_triangles(index), CLOSING[name]) for name, index in found.items()]
-
-
-def _cuts(outline: Indices, foot: Indices) -> list[tuple[Indices, int]]:
-    """Triangles of the cuts at the first and the last border."""
-    first, last = np.stack([foot[0], outline[0]]), np.stack([outline[-1], foot[-1]])
-    return [(grid_triangles(index), CLOSING["cut"]) for index in (first, last)]

@@ -127,7 +127,7 @@ def test_no_other_turn_of_the_cradle_cuts_into_the_flank(flank):
     points = generation.solve(rho, z)
     for turn in (-0.1, -0.01, 0.01, 0.1):
         phi = points.cradle + turn
-        assert (generation.cut(rho, points.theta.value + generation.roll(phi), z, phi).value > 0.0).all()
+        assert (generation.cut(rho, points.theta.value + generation.roll(phi)[0], z, phi).value > 0.0).all()
 
 
 def test_formate_flank_is_the_surface_of_the_cutter():
