@@ -25,7 +25,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 from scipy.optimize import brentq
@@ -33,7 +33,6 @@ from scipy.optimize import brentq
 from loaded_tca.arrays import Array
 from loaded_tca.baselines.generating_line import GeneratingLine
 from loaded_tca.errors import GeometryError
-from loaded_tca.flanks.base import Flank
 from loaded_tca.gears.face_milled import FaceMilledGear
 from loaded_tca.pairs.gear_pair import GearPair
 
@@ -63,12 +62,7 @@ class StartValues:
 
     def mean(self, other: StartValues) -> StartValues:
         """Arithmetic mean, value by value."""
-        return StartValues(
-            0.5 * (self.wheel_azimuth + other.wheel_azimuth),
-            0.5 * (self.pinion_azimuth + other.pinion_azimuth),
-            0.5 * (self.wheel_turn + other.wheel_turn),
-            0.5 * (self.pinion_turn + other.pinion_turn),
-        )
+        return StartValues(*(0.5 * (own + its) for own, its in zip(astuple(self), astuple(other), strict=True)))
 
 
 @dataclass(frozen=True)
@@ -166,7 +160,7 @@ class BidirectionalStart:
         for member, flank in enumerate(self._flanks):
             found = self._lines[member].at(azimuths[member])
             standing = found.azimuth[0] + turns[member]
-            angles.append(_half_turn(standing - _theta(flank, found.rho, found.z)))
+            angles.append(_half_turn(standing - float(flank.theta(found.rho, found.z).value[0])))
             places += [found.rho[0], found.z[0]]
             own = np.array([found.rho[0] * math.cos(standing), found.rho[0] * math.sin(standing), found.z[0]])
             points.append(own @ self._axes[member] + self._origins[member])
@@ -248,10 +242,6 @@ class BidirectionalStart:
         ahead = along - machine.radial * math.cos(machine.cradle_angle)
         azimuth = math.atan2(-machine.radial * math.sin(machine.cradle_angle), ahead)
         return gear.mirror * azimuth % (2.0 * math.pi)
-
-
-def _theta(flank: Flank, rho: Array, z: Array) -> float:
-    return float(flank.theta(rho, z).value[0])
 
 
 def _turned(vector: Array, angle: float) -> Array:

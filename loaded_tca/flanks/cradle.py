@@ -204,13 +204,15 @@ class CradleGeneration:
         squares = along[:, None] * along[None]
         products -= squares + outward[:, None] * outward[None]
         widening, steepness, bend = self.blade.widening(height)
+        ratio, second, third = self.machine.ratio_of_roll, self.machine.modified_roll_2c, self.machine.modified_roll_6d
         return Cut(
             self.sign * (distance - self.blade.point_radius) - widening,
             self.sign * outward - steepness * along,
             self.sign * products / distance - steepness * along_bends - bend * squares,
             height,
             along,
-            *self._roll_slopes(phi),
+            ratio * (1.0 - phi * (second + 0.5 * phi * third)),
+            -ratio * (second + phi * third),
         )
 
     def roll(self, phi: Array) -> Array:
@@ -221,12 +223,6 @@ class CradleGeneration:
             * phi
             * (1.0 - phi * (machine.modified_roll_2c / 2.0 + phi * machine.modified_roll_6d / 6.0))
         )
-
-    def _roll_slopes(self, phi: Array) -> tuple[Array, Array]:
-        machine = self.machine
-        second, third = machine.modified_roll_2c, machine.modified_roll_6d
-        slope = machine.ratio_of_roll * (1.0 - phi * (second + 0.5 * phi * third))
-        return slope, -machine.ratio_of_roll * (second + phi * third)
 
     def _seen_from_cutter(self, rho: Array, alpha: Array, z: Array, phi: Array) -> tuple[Array, Array, Array]:
         """Place (3, n) from the cutter's centre along e_r, e_t, z; its slopes (4, 3, n) and bends (4, 4, 3, n)."""

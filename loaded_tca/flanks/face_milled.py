@@ -110,7 +110,7 @@ class GeneratedFlank(ToothRegion):
         """Theta of the generated flank; beyond its edges that of the B-spline."""
         rho, z = np.broadcast_arrays(np.asarray(rho, dtype=float), np.asarray(z, dtype=float))
         flat = rho.ravel(), z.ravel()
-        on = self._on_flank(*flat)
+        on = self.inside(*flat, ON_EDGE * min(self.extent))
         if on.all():
             return _shaped(self._exact(*flat), rho.shape)
         parts = _stack(self._spline_flank.theta(*flat))
@@ -134,7 +134,10 @@ class GeneratedFlank(ToothRegion):
         places = self._nodes(points), self._between(points)
         exact = [self._exact(rho.ravel(), z.ravel()) for rho, z in places]
         bare = SplineFlank(Region(self), self._fitted(exact[0].value.reshape(points)), FitError(0.0, 0.0))
-        errors = [self._missed(bare, *at, jet) for at, jet in zip(places, exact, strict=True)]
+        errors = []
+        for at, jet in zip(places, exact, strict=True):
+            rho, z = (part.ravel() for part in at)
+            errors.append(FitError.of((bare.theta(rho, z).value - jet.value) / _gradient(rho, jet)))
         return SplineFlank(Region(self), bare.spline, *errors)
 
     @cached_property
@@ -202,11 +205,6 @@ class GeneratedFlank(ToothRegion):
         """Theta of points (n,) on the flank, of this hand and turned to the pitch point."""
         return (self._require(rho, z).theta + Jet(-self._zero)) * self._mirror
 
-    def _on_flank(self, rho: Array, z: Array) -> Array:
-        """Whether points lie in the region, edges included."""
-        tolerance = ON_EDGE * min(self.extent)
-        return self.inside(rho, z, tolerance)
-
     @property
     def _pitch_point(self) -> tuple[Array, Array]:
         distance, delta = self.mean_cone_distance, self.gear.blank.pitch_angle
@@ -239,11 +237,6 @@ class GeneratedFlank(ToothRegion):
         profile, distance = self._lines((values.shape[0], values.shape[1]))
         grid = np.meshgrid(profile, distance - self.mean_cone_distance, indexing="ij")
         return fit(grid[0], grid[1], values, (SPLINE_DEGREE, SPLINE_DEGREE))
-
-    def _missed(self, spline: SplineFlank, rho: Array, z: Array, exact: Jet) -> FitError:
-        """Distance along the normal of a B-spline from this flank [mm]."""
-        rho, z = rho.ravel(), z.ravel()
-        return FitError.of((spline.theta(rho, z).value - exact.value) / _gradient(rho, exact))
 
     def __repr__(self) -> str:
         return f"GeneratedFlank({self.owner})"

@@ -31,7 +31,8 @@ class Jet:
     @property
     def is_constant(self) -> bool:
         """Whether all derivatives are the number zero."""
-        return all(_is_zero(part) for part in (self.rho, self.z, self.rho_rho, self.rho_z, self.z_z))
+        parts = self.rho, self.z, self.rho_rho, self.rho_z, self.z_z
+        return all(type(part) is float and part == 0.0 for part in parts)
 
     def __add__(self, other: Jet) -> Jet:
         return Jet(
@@ -86,10 +87,6 @@ class Jet:
     def shifted_scaled(self, origin: float, length: float) -> Jet:
         """(self - origin)/length."""
         return Jet(self.value - origin, self.rho, self.z, self.rho_rho, self.rho_z, self.z_z) * (1.0 / length)
-
-
-def _is_zero(part: Any) -> bool:
-    return type(part) is float and part == 0.0
 
 
 def _product(part: Any, factor: Any) -> Any:

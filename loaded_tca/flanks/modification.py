@@ -235,14 +235,17 @@ class FlankModifications:
             If a relief starts off the active profile, or is longer than half the face.
         """
         start, tip = (coordinate(diameter) for diameter in diameters)
+        middle = 0.5 * (start + tip)
         candidates = (
             *self._lengthwise(face_width),
-            *self._profile(start, tip),
+            Term("profile", self.profile_crowning, middle, tip - middle, parabola),
+            Term("profile", self.profile_slope, start, tip - start, linear),
             *self._reliefs(diameters, coordinate),
         )
         terms = tuple(term for term in candidates if term.amount != 0.0)
-        polynomial = self._polynomial(face_width, start, tip, profile_unit)
-        return (*terms, polynomial) if any(polynomial.coefficients) else terms
+        a1, a2, a3, a4, a5, a6 = self.polynomial
+        twisted = (a1, a2, a3, a4 + self.twist / (face_width * (tip - start) * profile_unit), a5, a6)
+        return (*terms, Polynomial(twisted, middle, profile_unit)) if any(twisted) else terms
 
     def _lengthwise(self, width: float) -> list[Term]:
         half, crowning = 0.5 * width, self.lead_crowning
@@ -264,19 +267,6 @@ class FlankModifications:
                 length = end * self.end_relief_length
                 terms.append(Term("lengthwise", self.end_relief, end * start, length, one_sided_parabola))
         return terms
-
-    def _profile(self, start: float, tip: float) -> list[Term]:
-        middle = 0.5 * (start + tip)
-        return [
-            Term("profile", self.profile_crowning, middle, tip - middle, parabola),
-            Term("profile", self.profile_slope, start, tip - start, linear),
-        ]
-
-    def _polynomial(self, width: float, start: float, tip: float, unit: float) -> Polynomial:
-        """The polynomial, with the twist added to its product of both coordinates."""
-        twist = self.twist / (width * (tip - start) * unit)
-        a1, a2, a3, a4, a5, a6 = self.polynomial
-        return Polynomial((a1, a2, a3, a4 + twist, a5, a6), 0.5 * (start + tip), unit)
 
     def _reliefs(self, diameters: tuple[float, float], coordinate: Callable[[float], float]) -> list[Term]:
         reliefs = (

@@ -223,7 +223,8 @@ def measured(
     spline = fit(data.profile, data.lengthwise, wanted, degrees, counts)
     missed = (spline(data.profile, data.lengthwise).value - wanted) / data.ordered(angles)
     if turned:
-        spline = spline.shifted(-_azimuth_of_pitch_point(SplineFlank(nominal, spline, FitError(0.0, 0.0))))
+        made = SplineFlank(nominal, spline, FitError(0.0, 0.0))
+        spline = spline.shifted(-float(made.theta(*pitch_point(made)).value))
     return SplineFlank(nominal, spline, FitError.of(missed))
 
 
@@ -247,8 +248,3 @@ def pitch_point(flank: Flank) -> tuple[Array, Array]:
             return np.array(place[0]), np.array(place[1])
     where = flank.frame.place(*middle)
     raise GeometryError(f"the flank around {where} has no pitch point (theta = 0 in the middle of the face)")
-
-
-def _azimuth_of_pitch_point(flank: Flank) -> float:
-    """Theta where the unmodified flank has theta = 0 [rad]."""
-    return float(flank.theta(*pitch_point(flank)).value)

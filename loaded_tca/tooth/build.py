@@ -118,14 +118,11 @@ class _Sides:
         curves = [fillet.curve(side, self.root, self.resolution.fillet) for side in (self.plus, self.minus)]
         return _outline(self.plus, curves[0], self.root), _outline(self.minus, curves[1], self.root)
 
-    def room(self, halves: tuple[_Half, _Half]) -> Array:
-        """Angle (m,) of root circle left between two fillets [rad]."""
-        return self.pitch - halves[0].angle[-1] - halves[1].angle[-1]
-
     def has_room(self, fillet: Fillet) -> bool:
         """Whether the fillets of a space leave each other room."""
         try:
-            return bool((self.room(self.with_fillet(fillet)) >= -OVERLAP * self.pitch).all())
+            ends = [half.angle[-1] for half in self.with_fillet(fillet)]
+            return bool((self.pitch - ends[0] - ends[1] >= -OVERLAP * self.pitch).all())
         except GeometryError:
             return False
 
@@ -196,7 +193,9 @@ def _assembled(sides: _Sides, halves: tuple[_Half, _Half], form: ToothForm, reso
     radii = [root, minus.radius[::-1], tip, plus.radius, root]
     first = slice(1, None)
     theta, radius = (np.concatenate([rows[0], *(row[first] for row in rows[1:])]) for rows in (azimuths, radii))
-    foot = np.broadcast_to(_foot(sides), (2, len(coordinate)))
+    # below the root, where the rim of a closed tooth ends, never beyond the axis
+    foot = np.maximum(sides.root - RIM * (sides.plus.radius[-1] - sides.root), 0.5 * sides.root)
+    foot = np.broadcast_to(foot, (2, len(coordinate)))
     steps = [land, resolution.fillet, resolution.flank]
     lengths = [*steps, land, *steps[::-1]]
     joints = (0, *(int(joint) for joint in np.cumsum([length - 1 for length in lengths])))
@@ -207,11 +206,6 @@ def _assembled(sides: _Sides, halves: tuple[_Half, _Half], form: ToothForm, reso
         form.teeth,
         form.half_thickness_angle,
     )
-
-
-def _foot(sides: _Sides) -> Array:
-    """Radius (m,) of the images below the root, where the rim of a closed tooth ends; never beyond the axis."""
-    return np.maximum(sides.root - RIM * (sides.plus.radius[-1] - sides.root), 0.5 * sides.root)
 
 
 def _in_space(sections: Sections, radius: Array, theta: Array, coordinate: Array) -> Array:
