@@ -91,8 +91,13 @@ class GeneratingLine:
                 f"{gear.name}: generation: 'formate'; without rolling the cutter touches the flank all over"
             )
         self._generation, self._hand = CradleGeneration(gear.cutter.blade(flank), flank, machine), gear.mirror
-        self._centre = machine.radial * np.array([np.cos(machine.cradle_angle), np.sin(machine.cradle_angle), 0.0])
-        self._axes = _upright_turned_to(self._cutter_axis(machine.cradle_angle))
+        q = machine.cradle_angle
+        self._centre = machine.radial * np.array([np.cos(q), np.sin(q), 0.0])
+        radial, across, along = self._generation.axis
+        axis = np.array([radial * np.cos(q) - across * np.sin(q), radial * np.sin(q) + across * np.cos(q), along])
+        # the axes x, y, z, in rows, turned the shortest way until z is the axis of the cutter
+        self._axes = np.eye(3) - np.outer(axis, axis + np.eye(3)[2]) / (1.0 + along)
+        self._axes[2] = axis
 
     def at(self, angle: ArrayLike) -> LinePoints:
         """Points of the line at azimuths (n,) about the cutter, from 0 to 2 pi, seen on the gear's own hand [rad].
@@ -114,11 +119,6 @@ class GeneratingLine:
             f"{np.abs(step).max():.3g} mm, with {np.abs(lack).max():.3g} mm/rad left",
             last=height,
         )
-
-    def _cutter_axis(self, q: float) -> Array:
-        """Axis of the cutter in the machine, at the centre of roll."""
-        radial, across, along = self._generation.axis
-        return np.array([radial * np.cos(q) - across * np.sin(q), radial * np.sin(q) + across * np.cos(q), along])
 
     def _step(self, angle: Array, height: Array) -> tuple[Array, Array]:
         """Newton step of the heights (n,) [mm], and what is left of the equation of meshing [mm/rad].
@@ -168,14 +168,3 @@ class GeneratingLine:
         origin = np.array([0.0, machine.blank_offset, machine.sliding_base])
         across, upwards, along = ((place - origin) @ self._blank_axes.T).T
         return np.hypot(across, upwards), np.arctan2(upwards, across), along - machine.machine_centre_to_back
-
-
-def _upright_turned_to(axis: Array) -> Array:
-    """The axes x, y, z, in rows, turned the shortest way until z is the given unit vector."""
-    upright = np.eye(3)
-    return np.array(
-        [
-            *(upright[k] - (axis + upright[2]) * axis[k] / (1.0 + axis[2]) for k in (0, 1)),
-            axis,
-        ]
-    )

@@ -20,7 +20,6 @@ from loaded_tca.compliance.body import GearTooth, factorised
 from loaded_tca.compliance.finite_elements import Discretisation, discretise
 from loaded_tca.compliance.half_space import line_force
 from loaded_tca.compliance.layout import MeshDensity
-from loaded_tca.material import Material
 
 DENSITY = MeshDensity(through=8, flank=12, fillet=4, land=4, rim=6, lengthwise=1, neighbours=0)
 """Of the middle section: twice as fine gives the same to 1 %. Without neighbours the cut of the half-plane's field,
@@ -59,95 +58,45 @@ def local_flexibility(gear: GearTooth, side: int, density: MeshDensity = DENSITY
     density : MeshDensity
         Lengthwise elements are of no account.
     """
-    section = _section(gear, side, density)
-    forces = [section.force_at(row) for row in section.rows]
-    loads = np.stack([section.rest_loads(force) for force in forces], axis=-1)
-    lift = np.stack([section.lift(force) for force in forces], axis=-1)
-    factor, matrices = factorised(section.mesh, gear.material)
-    loads -= _product(matrices[section.mesh.kinds], section.mesh.dofs, lift)
-    rest = (factor.solve(loads) + lift).reshape(-1, 2, len(forces))
-    value = [section.between(force, rest[..., n]) for n, force in enumerate(forces)]
-    return LocalFlexibility((section.rows - section.first) / (2.0 * density.flank), np.array(value))
-
-
-@dataclass(frozen=True, eq=False)
-class _Force:
-    """A line force on a node of the flank."""
-
-    node: int
-    point: Array
-    direction: Array
-
-    def field(self, points: Array, material: Material) -> tuple[Array, Array]:
-        """Displacement (..., 2) and stress (..., 2, 2) of the half-plane at points (..., 2)."""
-        across = np.array([-self.direction[1], self.direction[0]])
-        axes = np.stack([self.direction, across])
-        displacement, stress = line_force((points - self.point) @ axes.T, material)
-        return displacement @ axes, axes.T @ stress @ axes
-
-
-@dataclass(frozen=True, eq=False)
-class _Section:
-    """The middle section of a gear, its mesh, the nodes of the flank and of the middle of the tooth."""
-
-    mesh: Discretisation
-    material: Material
-    flank: Indices
-    middle: Indices
-    first: int
-    rows: Indices
-    border: tuple[Array, Array, Indices, Array]
-
-    def force_at(self, row: int) -> _Force:
-        """Force normal to the flank at a row of nodes."""
-        points = self.mesh.points[self.flank[row - 2 : row + 3]]
-        tangent = SLOPE @ points
-        normal = np.array([tangent[1], -tangent[0]]) / np.hypot(*tangent)
-        towards = self.mesh.points[self.middle[row]] - points[2]
-        return _Force(int(self.flank[row]), points[2], normal * np.sign(normal @ towards))
-
-    def rest_loads(self, force: _Force) -> Array:
-        """Load vector of the rest on the free border: what takes the stress of the half-plane off it."""
-        points, normals, nodes, shares = self.border
-        traction = -np.einsum("eqab,eqb->eqa", force.field(points, self.material)[1], normals)
-        loads = np.zeros_like(self.mesh.points)
-        np.add.at(loads, nodes, np.einsum("qk,eqa->eka", shares, traction))
-        return loads.ravel()
-
-    def lift(self, force: _Force) -> Array:
-        """Displacements of the rest in the bore, zero elsewhere."""
-        held = self.mesh.number[:, 0]
-        found = np.zeros_like(self.mesh.points)
-        found[held] = -force.field(self.mesh.points[held], self.material)[0]
-        return found.ravel()
-
-    def between(self, force: _Force, rest: Array) -> float:
-        """Displacement of the rest (nodes, 2) along the force, at it less in the middle of the tooth."""
-        line = self.mesh.points[self.middle]
-        radius = np.hypot(line[:, 0], line[:, 1])
-        along = line[-1] / radius[-1]
-        depth = -_cross(force.point, along) / _cross(force.direction, along)
-        place = float(np.hypot(*(force.point + depth * force.direction)))
-        deep = [np.interp(place, radius, rest[self.middle, a]) for a in range(2)]
-        return float(force.direction @ (rest[force.node] - deep))
-
-
-def _cross(a: Array, b: Array) -> float:
-    return float(a[0] * b[1] - a[1] * b[0])
-
-
-def _section(gear: GearTooth, side: int, density: MeshDensity) -> _Section:
-    """Mesh of the middle section."""
-    nodes = gear.nodes(density)
+    nodes, material = gear.nodes(density), gear.material
     radius, angle = (values[:, :, density.lengthwise] for values in (nodes.radius, nodes.angle))
     points = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
     mesh = discretise(points, nodes.layout.elements)
     left = nodes.layout.sector(0).first + 2 * density.land
+    flank = mesh.number[left + (2 * density.through if side > 0 else 0)]
+    middle, held = mesh.number[left + density.through], mesh.number[:, 0]
     first = nodes.layout.base_row + 2 * density.fillet
     rows = first + np.arange(2, 2 * density.flank - 1, 2)
-    flank = mesh.number[left + (2 * density.through if side > 0 else 0)]
-    border = _border(mesh)
-    return _Section(mesh, gear.material, flank, mesh.number[left + density.through], first, rows, border)
+    border, normals, edges, shares = _border(mesh)
+    loads, lift = np.zeros((2, *mesh.points.shape, len(rows)))
+    forces = []
+    for n, row in enumerate(rows):  # a unit force normal to the flank at each
+        near = mesh.points[flank[row - 2 : row + 3]]
+        tangent = SLOPE @ near
+        normal = np.array([tangent[1], -tangent[0]]) / np.hypot(*tangent)
+        normal *= np.sign(normal @ (mesh.points[middle[row]] - near[2]))
+        axes = np.stack([normal, [-normal[1], normal[0]]])
+        stress = axes.T @ line_force((border - near[2]) @ axes.T, material)[1] @ axes
+        traction = -np.einsum("eqab,eqb->eqa", stress, normals)
+        np.add.at(loads[..., n], edges, np.einsum("qk,eqa->eka", shares, traction))
+        lift[held, :, n] = -line_force((mesh.points[held] - near[2]) @ axes.T, material)[0] @ axes
+        forces.append((flank[row], near[2], normal))
+    loads, lift = loads.reshape(-1, len(rows)), lift.reshape(-1, len(rows))
+    factor, matrices = factorised(mesh, material)
+    np.subtract.at(loads, mesh.dofs, matrices[mesh.kinds] @ lift[mesh.dofs])
+    rest = (factor.solve(loads) + lift).reshape(-1, 2, len(rows))
+    line = mesh.points[middle]
+    radius = np.hypot(line[:, 0], line[:, 1])
+    along, value = line[-1] / radius[-1], np.empty(len(rows))
+    for n, (node, point, normal) in enumerate(forces):  # at the force, less below it in the middle of the tooth
+        depth = -_cross(point, along) / _cross(normal, along)
+        place = float(np.hypot(*(point + depth * normal)))
+        value[n] = normal @ (rest[node, :, n] - [np.interp(place, radius, rest[middle, a, n]) for a in range(2)])
+    return LocalFlexibility((rows - first) / (2.0 * density.flank), value)
+
+
+def _cross(a: Array, b: Array) -> float:
+    return float(a[0] * b[1] - a[1] * b[0])
 
 
 def _border(mesh: Discretisation) -> tuple[Array, Array, Indices, Array]:
@@ -167,10 +116,3 @@ def _border(mesh: Discretisation) -> tuple[Array, Array, Indices, Array]:
     normals = np.stack([tangents[..., 1], -tangents[..., 0]], axis=-1)
     outward = np.sign(np.einsum("ea,ea->e", normals.sum(axis=1), nodes[:, 1] - inner))
     return np.einsum("qk,eka->eqa", shares, nodes), normals * outward[:, None, None], edges[free], shares
-
-
-def _product(matrices: Array, dofs: Indices, vectors: Array) -> Array:
-    """Product of the sum of element matrices and vectors (size, m)."""
-    found = np.zeros_like(vectors)
-    np.add.at(found, dofs, matrices @ vectors[dofs])
-    return found
