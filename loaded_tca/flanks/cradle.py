@@ -204,7 +204,6 @@ class CradleGeneration:
         squares = along[:, None] * along[None]
         products -= squares + outward[:, None] * outward[None]
         widening, steepness, bend = self.blade.widening(height)
-        ratio, second, third = self.machine.ratio_of_roll, self.machine.modified_roll_2c, self.machine.modified_roll_6d
         return Cut(
             self.sign * (distance - self.blade.point_radius) - widening,
             self.sign * outward - steepness * along,
