@@ -1,5 +1,6 @@
 """Every error and warning of the package, in one place."""
 
+import os
 from collections.abc import Iterable
 from math import inf
 from typing import Any
@@ -59,6 +60,35 @@ def require(*checks: tuple[bool, str], owner: str = "") -> None:
 def require_positive(**values: float) -> None:
     """Raise one InputError that names every value that is not positive and finite."""
     require(*((0.0 < value < inf, f"{name}: {value} is not positive and finite") for name, value in values.items()))
+
+
+def reason_of(error: Exception) -> str:
+    """What the system says of a file that cannot be read or written."""
+    return getattr(error, "strerror", None) or str(error)
+
+
+def read_text(path: str | os.PathLike[str], largest: int) -> str:
+    """Text of a file in UTF-8 of no more than so many bytes.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is longer, or is no such text.
+    """
+    name = os.fspath(path)
+    try:
+        with open(path, "rb") as file:
+            content = file.read(largest + 1)
+        if len(content) > largest:
+            raise InputError(f"{name}: more than {largest} bytes; no scene and no flank is so long")
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise InputError(f"{name}: not a text file in UTF-8 (line {line})") from None
+    except InputError:
+        raise
+    except (OSError, ValueError) as error:
+        raise InputError(f"{name}: cannot be read: {reason_of(error)}") from None
 
 
 class GeometryError(LoadedTCAError, ValueError):

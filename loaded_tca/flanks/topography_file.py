@@ -21,12 +21,11 @@ from __future__ import annotations
 import difflib
 import os
 import re
-from pathlib import Path
 
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, read_text
 from loaded_tca.flanks.topography import MeasuredDeviations, MeasuredPoints, Topography
 
 LARGEST_FILE = 2**23
@@ -70,19 +69,9 @@ def read_topography(path: str | os.PathLike[str]) -> Topography:
     ((5, 4), 0.003)
     """
     name = os.fspath(path)
+    text = read_text(path, LARGEST_FILE)
     try:
-        with Path(path).open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(f"{name}: cannot be read: {reason}") from None
-    if len(content) > LARGEST_FILE:
-        raise InputError(f"{name}: more than {LARGEST_FILE} bytes; allowed: the points of one flank")
-    try:
-        return parse_topography(content.decode("utf-8-sig"))
-    except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
-        raise InputError(f"{name}: not a text file in UTF-8 (line {line})") from None
+        return parse_topography(text)
     except InputError as error:
         raise InputError(f"{name}: {problem}" for problem in error.problems) from None
 

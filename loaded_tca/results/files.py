@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, reason_of
 
 if TYPE_CHECKING:  # xarray takes a third of a second to import: only what makes or reads a result needs it
     import xarray
@@ -120,7 +120,7 @@ def read_bytes(path: FilePath) -> bytes:
     try:
         return Path(path).read_bytes()
     except (OSError, ValueError) as error:
-        raise InputError(f"{path}: cannot be read: {_reason(error)}") from error
+        raise InputError(f"{path}: cannot be read: {reason_of(error)}") from error
 
 
 @contextmanager
@@ -149,7 +149,7 @@ def replacing(path: FilePath) -> Iterator[Path]:
         yield temporary
         temporary.replace(target)
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {_reason(error)}") from error
+        raise InputError(f"{path}: cannot be written: {reason_of(error)}") from error
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -159,8 +159,4 @@ def remove(path: FilePath) -> None:
     try:
         Path(path).unlink(missing_ok=True)
     except OSError as error:
-        raise InputError(f"{path}: cannot be removed: {_reason(error)}") from error
-
-
-def _reason(error: Exception) -> str:
-    return getattr(error, "strerror", None) or str(error)
+        raise InputError(f"{path}: cannot be removed: {reason_of(error)}") from error

@@ -153,7 +153,7 @@ class MeshCycle:
         return [*super().__dir__(), *QUANTITIES]
 
     def __repr__(self) -> str:
-        peak = np.nanmax(self.peak_pressure, initial=0.0)
+        peak = np.nanmax(self.mesh_independent_pressure, initial=0.0)
         torques = f"{len(self.torque)} torque" + "s" * (len(self.torque) > 1)
         return f"MeshCycle({len(self.path)} positions, {torques}, peak {peak:.6g} MPa)"
 

@@ -7,7 +7,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, read_text
 from loaded_tca.scene.model import Scene, scene_from_table
 
 LARGEST_FILE = 2**21
@@ -37,18 +37,7 @@ def read_scene(path: str | os.PathLike[str]) -> Scene:
     InputError
         If the file cannot be read, or with every problem that it holds, one per line.
     """
-    name = os.fspath(path)
-    try:
-        with Path(path).open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(f"{name}: cannot be read: {reason}") from None
-    try:
-        return parse_scene(content.decode("utf-8-sig"), source=name, folder=Path(path).parent)
-    except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
-        raise InputError(f"{name}: not a text file in UTF-8 (line {line})") from None
+    return parse_scene(read_text(path, LARGEST_FILE), source=os.fspath(path), folder=Path(path).parent)
 
 
 def parse_scene(text: str, source: str = "scene", folder: str | os.PathLike[str] = ".") -> Scene:

@@ -58,7 +58,7 @@ def test_file_that_is_not_toml_is_told_with_its_line(tmp_path):
 def test_file_that_is_too_long_is_told(tmp_path):
     path = tmp_path / "scene.toml"
     path.write_bytes(b"#" * 3 * 10**6)
-    assert refusal(read_scene, path) == f"{path}: too long for a scene; allowed up to 2097152 characters"
+    assert refusal(read_scene, path) == f"{path}: more than 2097152 bytes; no scene and no flank is so long"
 
 
 def test_empty_text_misses_every_required_key():
