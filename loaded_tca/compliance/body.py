@@ -25,8 +25,9 @@ FIRST_CHORD = 0.25
 def gear_nodes(gear: Gear, density: MeshDensity) -> BodyNodes:
     """Nodes of the whole ring of a gear.
 
-    They follow the flanks without modifications: microns of material make no difference to the bending of teeth, and
-    variants of the micro-geometry share one model.
+    They follow the flanks without modifications, so that variants of the micro-geometry share one model. Bending grows
+    with about the third power of the thickness: modifications of 0.2 % of the module change a transmission error by
+    0.03 %, of 1 % by 1 to 3 %.
 
     Raises
     ------

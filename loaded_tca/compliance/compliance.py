@@ -16,10 +16,13 @@ from loaded_tca.pairs.gear import Gear, named
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.weber_banaschek import ring_torsion
 from loaded_tca.separation import Separation
+from loaded_tca.tooth.build import Resolution, build_tooth
 
 LAYERS_PER_HEIGHT = 2.5
 """Layers of elements across a face as wide as the teeth are high; between the two numbers below."""
 FEWEST_LAYERS, MOST_LAYERS = 6, 24
+CHECKED = Resolution(flank=9, fillet=5, land=3, lengthwise=5)
+"""Points of a tooth with its modifications, which must exist though the finite elements follow the one without."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,6 +159,8 @@ def tooth_compliance(pair: GearPair, *, neighbours: int = 1, density: MeshDensit
     found = []
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         with named(name):
+            if gear.flank is not gear.nominal_flank:  # modifications may leave a pointed tooth, or none
+                build_tooth(gear.flanks, gear.form, CHECKED)
             found.append(gear_compliance(gear, replace(density or default_density(gear), neighbours=neighbours)))
     return ToothCompliance(pair, *found)
 

@@ -164,13 +164,14 @@ class Grid:
 
     def fitted(self, pressure: Array) -> Array:
         """Return a pressure within the bounds and with the right sum, zero where no contact is possible."""
-        pressure = np.where(self.reachable, np.minimum(pressure, self.cap), 0.0)
+        bounded = not math.isinf(self.cap)
+        pressure = np.where(self.reachable, np.minimum(pressure, self.cap) if bounded else pressure, 0.0)
         if self.total is None:
             return pressure
         if not pressure.any():
             pressure = self.reachable.astype(np.float64)
         pressure *= self.total / float(pressure.sum())
-        return self.project(pressure, self.reachable) if pressure.max() > self.cap else pressure
+        return self.project(pressure, self.reachable) if bounded and pressure.max() > self.cap else pressure
 
     def clip(self, pressure: Array, movable: Mask) -> Array:
         """Pressure within the bounds and with the right sum: scaled where there is no cap, projected otherwise."""

@@ -287,12 +287,13 @@ def _solve_on_finest(
     whole = grid.part((slice(0, grid.shape[0]), slice(0, grid.shape[1])))
     descent = Descent(grid.part(window), start[window], threads=threads, exact=tolerance < SINGLE_PRECISION)
     iterations = convolutions = 0
+    excess = np.empty(grid.shape)
     for _ in range(MOST_CHECKS):
         descent.run(RESERVE * tolerance, MOST_ITERATIONS - iterations)
         displacement = whole.operator(window, threads=threads)(descent.settle(), np.empty(grid.shape))
         pressure = np.zeros(grid.shape)
         pressure[window] = descent.pressure
-        state = judge(whole, pressure, displacement + whole.gap)
+        state = judge(whole, pressure, np.add(displacement, whole.gap, out=excess))
         iterations += descent.iterations
         convolutions += descent.convolutions + 1
         if state.residual <= tolerance or iterations >= MOST_ITERATIONS:
@@ -302,7 +303,7 @@ def _solve_on_finest(
         descent = Descent(grid.part(window), pressure[window], part, threads)
     displacement += grid.gap
     displacement -= state.approach
-    pressure /= _unit(problem)
+    pressure[window] /= _unit(problem)
     if problem.max_pressure is not None:  # what is at the cap but for rounding is exactly at it from here on
         pressure = np.where(pressure >= (1.0 - AT_BOUND) * problem.cap, problem.cap, pressure)
     return ContactSolution(

@@ -104,7 +104,7 @@ def read_dataset(path: FilePath) -> xarray.Dataset:
         kind = "damaged" if content.startswith(b"CDF") else "not a NetCDF-3 file"
         raise InputError(f"{path}: {kind}; expected a result file written by loaded_tca") from error
     version = str(dataset.attrs.pop("format_version", ""))
-    if dataset.attrs.pop("format", "") != FORMAT or not version.isdecimal():
+    if dataset.attrs.pop("format", "") != FORMAT or not (version.isdecimal() and len(version) < 9):
         raise InputError(f"{path}: a NetCDF-3 file, but not a result of loaded_tca")
     if int(version) != FORMAT_VERSION:
         age = "a later" if int(version) > FORMAT_VERSION else "an earlier"

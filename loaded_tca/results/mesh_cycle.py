@@ -144,7 +144,7 @@ class MeshCycle:
     maps: Maps
 
     def __getattr__(self, name: str) -> Any:
-        if name not in QUANTITIES:
+        if name not in QUANTITIES or name not in self.dataset:
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
         values = self.dataset[name].values
         return values if values.ndim else values.item()
