@@ -83,7 +83,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         The exit code.
     """
     arguments = list(sys.argv[1:] if arguments is None else arguments)
-    _print_any_character()
+    if isinstance(sys.stdout, io.TextIOWrapper):  # titles may hold characters that the terminal does not know
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
         with _warnings_in_one_line_each():
             options = _parser().parse_args(arguments)
@@ -357,9 +358,3 @@ def _warnings_in_one_line_each() -> Iterator[None]:
         finally:
             for message, count in Counter(" ".join(str(entry.message).split()) for entry in caught).items():
                 print(f"warning: {message}" + (f" ({count} times)" if count > 1 else ""), file=sys.stderr)
-
-
-def _print_any_character() -> None:
-    """Titles may hold characters that the terminal does not know: show their codes instead of failing."""
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="backslashreplace")

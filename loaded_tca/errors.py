@@ -1,7 +1,8 @@
 """Every error and warning of the package, in one place."""
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from math import inf
 from typing import Any
 
@@ -93,6 +94,17 @@ def read_text(path: str | os.PathLike[str], largest: int) -> str:
 
 class GeometryError(LoadedTCAError, ValueError):
     """Gears or flanks that cannot exist or cannot touch; says which flank, and where."""
+
+
+@contextmanager
+def named(owner: str) -> Iterator[None]:
+    """Say whose input it is, or which gear, before every problem that is found inside."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"{owner}: {problem}" for problem in error.problems) from None
+    except GeometryError as error:
+        raise GeometryError(f"{owner}: {error}") from None
 
 
 class ConvergenceError(LoadedTCAError, RuntimeError):

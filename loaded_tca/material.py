@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from loaded_tca.errors import InputError
+from loaded_tca.errors import require
 
 
 @dataclass(frozen=True)
@@ -29,15 +29,12 @@ class Material:
     max_pressure: float | None = None
 
     def __post_init__(self) -> None:
-        problems = []
-        if not 0.0 < self.youngs_modulus < float("inf"):
-            problems.append(f"youngs_modulus: {self.youngs_modulus} MPa is not positive and finite")
-        if not 0.0 <= self.poisson_ratio <= 0.5:
-            problems.append(f"poisson_ratio: {self.poisson_ratio} is not between 0 and 0.5")
-        if self.max_pressure is not None and not self.max_pressure > 0.0:
-            problems.append(f"max_pressure: {self.max_pressure} MPa is not positive")
-        if problems:
-            raise InputError(problems)
+        modulus, ratio, cap = self.youngs_modulus, self.poisson_ratio, self.max_pressure
+        require(
+            (0.0 < modulus < float("inf"), f"youngs_modulus: {modulus} MPa is not positive and finite"),
+            (0.0 <= ratio <= 0.5, f"poisson_ratio: {ratio} is not between 0 and 0.5"),
+            (cap is None or cap > 0.0, f"max_pressure: {cap} MPa is not positive"),
+        )
 
     @property
     def plane_strain_modulus(self) -> float:

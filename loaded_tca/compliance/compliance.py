@@ -12,7 +12,8 @@ from loaded_tca.arrays import Array
 from loaded_tca.compliance.influence import FlankLine, GearCompliance, Image, gear_compliance
 from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.contact.edges import FreeEdge, edge_images
-from loaded_tca.pairs.gear import Gear, named
+from loaded_tca.errors import named
+from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.weber_banaschek import ring_torsion
 from loaded_tca.separation import Separation

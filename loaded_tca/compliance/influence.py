@@ -118,7 +118,9 @@ class GearCompliance:
         depth = np.einsum("ma,ab,mb->m", places.across, self.table.depth, places.along)[:, None]
         width = float(np.ptp(self.frame.nodes.coordinate))
         from_start = width * (places.length[:, None] + places.length)  # of mirror images beyond the ends of the face
-        spread = sum(_spread(depth, away) for away in (distance, from_start, 2.0 * width - from_start))
+        # Line density [1/mm] at a depth below a point force: its integral over the distances of a line is 1.
+        aside = (distance, from_start, 2.0 * width - from_start)
+        spread = sum(0.5 * depth**2 / (depth**2 + away**2) ** 1.5 for away in aside)
         material = self.frame.gear.material
         half_space = depth_displacement(depth, distance, material)
         half_space = half_space + sum(factor * depth_displacement(depth, image, material) for image, factor in images)
@@ -179,8 +181,3 @@ def gear_compliance(gear: Gear, density: MeshDensity = MeshDensity()) -> GearCom
     """
     frame = ToothFrame(gear, gear_nodes(gear, density))
     return GearCompliance(frame, kept_flexibility(frame))
-
-
-def _spread(depth: Array, distance: Array) -> Array:
-    """Line density [1/mm] at a depth below a point force: its integral over the distances of a line is 1."""
-    return 0.5 * depth**2 / (depth**2 + distance**2) ** 1.5

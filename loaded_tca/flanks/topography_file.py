@@ -25,7 +25,7 @@ import re
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import InputError, read_text
+from loaded_tca.errors import InputError, named, read_text
 from loaded_tca.flanks.topography import MeasuredDeviations, MeasuredPoints, Topography
 
 LARGEST_FILE = 2**23
@@ -68,12 +68,9 @@ def read_topography(path: str | os.PathLike[str]) -> Topography:
     >>> topography.radius.shape, float(topography.excess[4, 1])
     ((5, 4), 0.003)
     """
-    name = os.fspath(path)
     text = read_text(path, LARGEST_FILE)
-    try:
+    with named(os.fspath(path)):
         return parse_topography(text)
-    except InputError as error:
-        raise InputError(f"{name}: {problem}" for problem in error.problems) from None
 
 
 def parse_topography(text: str) -> Topography:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.material import Material
 from loaded_tca.tooth.form import ToothForm
@@ -109,14 +107,3 @@ class Gear:
         """
         ends = self.form.sections.coordinate(*self.nominal_flank.grid(2, 2))[-1]
         return 2.0 * float(self.bore_radius(ends).min())
-
-
-@contextmanager
-def named(gear: str) -> Iterator[None]:
-    """Say the gear before every problem that its teeth have."""
-    try:
-        yield
-    except InputError as error:
-        raise InputError(f"{gear}: {problem}" for problem in error.problems) from None
-    except GeometryError as error:
-        raise GeometryError(f"{gear}: {error}") from None

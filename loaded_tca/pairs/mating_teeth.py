@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import InputError
-from loaded_tca.pairs.gear import named
+from loaded_tca.errors import InputError, named
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.tooth.build import Resolution, build_tooth
 from loaded_tca.tooth.surface import ToothSurface

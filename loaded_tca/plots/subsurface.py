@@ -7,7 +7,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from loaded_tca.contact import SubsurfaceStress
-from loaded_tca.errors import InputError
+from loaded_tca.errors import require
 from loaded_tca.plots.style import ACCENT, COLOURS, set_title
 from loaded_tca.results.stress_below import NAMES, Quantity, StressBelow, depth_of_largest
 
@@ -92,12 +92,9 @@ def plot_stress_below(below: StressBelow, quantity: Quantity = "max_shear") -> F
 
 
 def _check(stress: SubsurfaceStress, quantity: str) -> None:
-    problems = []
-    if quantity not in NAMES:
-        problems.append(f"quantity: {quantity!r} is none of {', '.join(NAMES)}")
-    if np.unique(stress.depths).size < 2 or stress.sigma_z.shape[1] < 2:
-        problems.append("stress: a section needs two depths and two cells across")
-    if not stress.max_shear.any():
-        problems.append("stress: there is none anywhere, nothing to draw")
-    if problems:
-        raise InputError(problems)
+    deep = np.unique(stress.depths).size >= 2 and stress.sigma_z.shape[1] >= 2
+    require(
+        (quantity in NAMES, f"quantity: {quantity!r} is none of {', '.join(NAMES)}"),
+        (deep, "stress: a section needs two depths and two cells across"),
+        (bool(stress.max_shear.any()), "stress: there is none anywhere, nothing to draw"),
+    )

@@ -96,7 +96,10 @@ def read_dataset(path: FilePath) -> xarray.Dataset:
     """
     import xarray
 
-    content = read_bytes(path)
+    try:
+        content = Path(path).read_bytes()
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: cannot be read: {reason_of(error)}") from error
     try:
         with xarray.open_dataset(io.BytesIO(content), engine="scipy", decode_times=False) as file:
             dataset = file.load()
@@ -113,14 +116,6 @@ def read_dataset(path: FilePath) -> xarray.Dataset:
             "run the scene again, its text is the attribute scene_toml of the file"
         )
     return dataset
-
-
-def read_bytes(path: FilePath) -> bytes:
-    """Return the content of a file; InputError if it cannot be read."""
-    try:
-        return Path(path).read_bytes()
-    except (OSError, ValueError) as error:
-        raise InputError(f"{path}: cannot be read: {reason_of(error)}") from error
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from loaded_tca.errors import InputError
+from loaded_tca.errors import named
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.modification import FlankModifications
 from loaded_tca.flanks.spline import DEFAULT_POINTS, fitted, measured
@@ -113,14 +113,12 @@ class DescribedTooth(ToothGeometry):
     def described(self, flank: Flank) -> Flank:
         """An analytic flank, fitted, or replaced by the measured one."""
         wanted = self.description
-        try:
+        with named(f"{self.owner}.flank"):
             if wanted.form == "bspline":
                 return fitted(flank, wanted.points or DEFAULT_POINTS, wanted.degree or FITTED_DEGREE)
             if wanted.measurement is not None and flank.side == self.measured_side:
                 data = build_topography(wanted.measurement)
                 return measured(flank, data, degree=wanted.degree, coefficients=wanted.coefficients)
-        except InputError as error:
-            raise InputError(f"{self.owner}.flank: {problem}" for problem in error.problems) from None
         return flank
 
 

@@ -25,7 +25,11 @@ def describe_keys() -> str:
     """
     families = list(dict.fromkeys(FAMILIES.values()))
     tables = [dict(_sections(scene, "")) for scene in families]
-    shared = {path: found for path, found in tables[0].items() if all(_same(path, found, table) for table in tables)}
+    shared = {  # sections described under another name, and the top, are the same in every family
+        path: found
+        for path, found in tables[0].items()
+        if all(path in table and (table[path] == found or path in SAME_AS or not path) for table in tables)
+    }
     lines = list(_section_lines("", *shared.pop("")))
     for scene, table in zip(families, tables, strict=True):
         kinds = ", ".join(f"`{name}`" for name, known in FAMILIES.items() if known is scene)
@@ -51,11 +55,6 @@ def _sections(section: type[Section], path: str) -> Iterator[tuple[str, Found]]:
             yield inner, (entry.section, entry.about)
             if inner not in SAME_AS:
                 yield from _sections(entry.section, inner)
-
-
-def _same(path: str, found: Found, table: dict[str, Found]) -> bool:
-    """Whether a family has the same keys there; sections described under another name, and the top, always have."""
-    return path in table and (table[path] == found or path in SAME_AS or not path)
 
 
 def _section_lines(path: str, section: type[Section], about: str) -> Iterator[str]:

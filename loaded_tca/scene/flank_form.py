@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, named
 from loaded_tca.flanks.spline import DEFAULT_POINTS
 from loaded_tca.flanks.structured_grid import FEWEST_POINTS
 from loaded_tca.flanks.topography import MeasuredPoints
@@ -184,10 +184,8 @@ def read_measurement(file: str) -> Measurement:
     """
     if os.path.exists(file) and not os.path.isfile(file):  # a pipe would be waited for
         raise InputError(f"file: {file}: is not a file")
-    try:
+    with named("file"):
         topography = read_topography(file)
-    except InputError as error:
-        raise InputError(f"file: {problem}" for problem in error.problems) from None
     columns: tuple[Any, ...]
     if isinstance(topography, MeasuredPoints):
         names, columns = COLUMNS[1], tuple(topography.points[..., part] for part in range(3))  # type: ignore[index,call-overload]
@@ -197,7 +195,5 @@ def read_measurement(file: str) -> Measurement:
         name: tuple(tuple(float(f"{value:.{DIGITS}g}") for value in line) for line in values)
         for name, values in zip(names, columns, strict=True)
     }
-    try:
+    with named(f"file: {file}"):
         return Measurement(**lines, source=Path(file).name[: Line().longest])
-    except InputError as error:
-        raise InputError(f"file: {file}: {problem}" for problem in error.problems) from None
