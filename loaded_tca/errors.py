@@ -80,16 +80,15 @@ def read_text(path: str | os.PathLike[str], largest: int) -> str:
     try:
         with open(path, "rb") as file:
             content = file.read(largest + 1)
-        if len(content) > largest:
-            raise InputError(f"{name}: more than {largest} bytes; no scene and no flank is so long")
+    except (OSError, ValueError) as error:
+        raise InputError(f"{name}: cannot be read: {reason_of(error)}") from None
+    if len(content) > largest:
+        raise InputError(f"{name}: more than {largest} bytes; no scene and no flank is so long")
+    try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         raise InputError(f"{name}: not a text file in UTF-8 (line {line})") from None
-    except InputError:
-        raise
-    except (OSError, ValueError) as error:
-        raise InputError(f"{name}: cannot be read: {reason_of(error)}") from None
 
 
 class GeometryError(LoadedTCAError, ValueError):
