@@ -54,7 +54,8 @@ def main() -> int:
     rows = collect()
     print(render(rows))
     failed = sum(not row.holds for row in rows)
-    print(f"\n{len(rows)} rows, {failed} beyond the tolerance")
+    shown = sum(row.tolerance is None for row in rows)
+    print(f"\n{len(rows)} rows, {shown} of them shown without a verdict, {failed} beyond the tolerance")
     if options.save:
         options.save.write_text(json.dumps([asdict(row) for row in rows], indent=1, ensure_ascii=False) + "\n")
     if options.compare:

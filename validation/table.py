@@ -1,5 +1,6 @@
 """One row of the validation table, and how the table is printed."""
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -11,7 +12,8 @@ class Row:
     """A quantity of one case beside the number it is compared with.
 
     ``tolerance`` is relative (absolute where ``expected`` is zero); None where a difference is expected and
-    only shown. ``assumed`` names every input that the source does not print.
+    only shown, without a verdict. ``assumed`` names every input that the source does not print, ``note`` says what else
+    a reader of the row must know.
     """
 
     case: str
@@ -21,6 +23,7 @@ class Row:
     obtained: float
     tolerance: float | None
     assumed: str = ""
+    note: str = ""
 
     @property
     def error(self) -> float:
@@ -49,23 +52,42 @@ ABSOLUTE_ROUNDING = 1e-12
 
 
 def moved(rows: Sequence[Row], before: Sequence[Row]) -> list[str]:
-    """Lines that tell which numbers of rows, taken in their order, differ from those of an earlier run."""
+    """Lines that tell which numbers of rows differ from those of an earlier run, and which rows came or went.
+
+    A row is known by case, source and quantity; among equal ones by its order.
+    """
+    now, then = _by_name(rows), _by_name(before)
     lines = []
-    for number, (row, old) in enumerate(zip(rows, before, strict=False)):
-        for name in ("expected", "obtained"):
-            now, then = getattr(row, name), getattr(old, name)
-            if not np.isclose(now, then, rtol=ROUNDING, atol=ABSOLUTE_ROUNDING, equal_nan=True):
-                lines.append(f"row {number}: {row.case}, {row.quantity}: {name} {then:.10g} -> {now:.10g}")
+    for number, (name, row) in enumerate(now.items()):
+        for part in ("expected", "obtained") if name in then else ():
+            new, old = getattr(row, part), getattr(then[name], part)
+            if not np.isclose(new, old, rtol=ROUNDING, atol=ABSOLUTE_ROUNDING, equal_nan=True):
+                lines.append(f"row {number}: {row.case}, {row.quantity}: {part} {old:.10g} -> {new:.10g}")
+    count = len(lines)
+    for sign, some, others in (("-", then, now), ("+", now, then)):
+        lines += [f"{sign} {row.case}, {row.quantity} ({row.source})" for name, row in some.items() if name not in others]
     return [
         *lines,
-        f"{len(lines)} numbers moved by more than {ROUNDING:g}; rows: {len(before)} before, {len(rows)} now",
+        f"{count} numbers moved by more than {ROUNDING:g}; rows: {len(before)} before, {len(rows)} now",
     ]
 
 
+def _by_name(rows: Iterable[Row]) -> dict[tuple[str, str, str, int], Row]:
+    """Rows by case, source, quantity and how many rows of that name stand above."""
+    named: dict[tuple[str, str, str, int], Row] = {}
+    above: Counter[tuple[str, str, str]] = Counter()
+    for row in rows:
+        name = (row.case, row.source, row.quantity)
+        named[*name, above[name]] = row
+        above[name] += 1
+    return named
+
+
 def _cells(row: Row) -> tuple[str, ...]:
-    allowed = "shown" if row.tolerance is None else f"{row.tolerance:.0e}"
-    verdict = "ok" if row.holds else "FAILS"
-    remark = f"{verdict}; assumed: {row.assumed}" if row.assumed else verdict
+    allowed, verdict = "-", "shown"
+    if row.tolerance is not None:
+        allowed, verdict = f"{row.tolerance:.1e}", "ok" if row.holds else "FAILS"
+    remarks = (verdict, row.note, row.assumed and f"assumed: {row.assumed}")
     return (
         row.case,
         row.quantity,
@@ -74,5 +96,5 @@ def _cells(row: Row) -> tuple[str, ...]:
         f"{row.obtained:.8g}",
         f"{row.error:+.1e}",
         allowed,
-        remark,
+        "; ".join(filter(None, remarks)),
     )

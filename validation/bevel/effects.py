@@ -83,18 +83,30 @@ def effect(gears: BevelGears, pair: GearPair) -> Effect:
 
 
 def first_order_error(gears: BevelGears, mounting: BevelMounting) -> float:
-    """Transmission error at the pitch point [rad] of small displacements d of the wheel: it follows the flank.
+    """Transmission error at the pitch point [rad] of small mounting errors, by virtual work.
 
-    The normal out of the pinion is n = e_y + tan(alpha) e_u - tan(beta) e_R, the lever of its y component the pitch
-    radius of the wheel: -(n . d)/(R_m sin(delta_2)). A larger shaft angle takes the wheel outwards by R_m times it.
+    An error opens the contact by its way along the tooth force, and the wheel lags by that much over r_m2. Over the
+    tangential force, the tooth force has the textbook components of a right-hand pinion that turns counter-clockwise,
+    seen from its heel, and drives:
+
+    - E moves the wheel the way the tangential force pushes it: 1;
+    - P and G move pinion and wheel from the apex towards their heels, as their axial forces do:
+      tan(alpha) sin(delta_1) + tan(beta) cos(delta_1), and tan(alpha) sin(delta_2) - tan(beta) cos(delta_2);
+    - a larger shaft angle lifts the wheel's mean point off the pitch plane by R_m times the error, as the separating
+      force does: tan(alpha).
+
+    alpha is the pressure angle of the transverse section, the normal one being given by tan(alpha_n) = tan(alpha)
+    cos(beta). Source: Niemann & Winter 1983, Maschinenelemente III, tooth forces of spiral bevel gears.
     """
-    gear = gears.mesh.pinion
-    sine, cosine = sin(gear.pitch_angle), cos(gear.pitch_angle)
-    outwards, heelwards = np.array([cosine, 0.0, -sine]), np.array([sine, 0.0, cosine])
-    normal = [0.0, 1.0, 0.0] + tan(gear.pressure_angle) * outwards - tan(gear.spiral_angle) * heelwards
-    origin, _ = mounting.place(gears.mesh.shaft_angle)
-    displacement = origin + gear.mean_cone_distance * mounting.shaft_angle_error * outwards
-    return -float(normal @ displacement) / (gear.mean_cone_distance * sin(gears.mesh.wheel.pitch_angle))
+    pinion, wheel = gears.mesh.pinion, gears.mesh.wheel
+    separating, along = tan(pinion.pressure_angle), tan(pinion.spiral_angle)
+    opening = (
+        mounting.offset
+        + mounting.pinion_axial * (separating * sin(pinion.pitch_angle) + along * cos(pinion.pitch_angle))
+        + mounting.wheel_axial * (separating * sin(wheel.pitch_angle) - along * cos(wheel.pitch_angle))
+        + mounting.shaft_angle_error * pinion.mean_cone_distance * separating
+    )
+    return -opening / (pinion.mean_cone_distance * sin(wheel.pitch_angle))
 
 
 def spiral_mounting(e: float = 0.0, h: float = 0.0, gamma_deg: float = 0.0) -> BevelMounting:

@@ -56,8 +56,8 @@ BESIDE = BevelMounting(offset=0.1)
 """E at which the contact area reaches the heel."""
 PRINTED = {"Litvin's method": -12.5, "the source's method": -12.7}
 """Largest transmission error [arcsec]."""
-SAME_POINT, SAME_CURVATURE, SLOWER = 1e-6, 1e-4, 3.0
-"""What B-spline flanks must keep: contact point [mm], curvatures (relative); and how much slower they may be."""
+SAME_POINT, SAME_CURVATURE = 1e-6, 1e-4
+"""What B-spline flanks must keep: contact point [mm], curvatures (relative)."""
 RUNS = 5
 
 
@@ -221,7 +221,6 @@ def _spline_rows() -> list[Row]:
     return [
         _row("exact flanks", "B-spline flanks: contact point, largest distance [mm]", 0.0, away, SAME_POINT),
         _row("exact flanks", "B-spline flanks: relative curvatures, change", 0.0, change, SAME_CURVATURE),
-        _row("exact flanks", "B-spline flanks: time of a path", SLOWER, slowness(), None),
     ]
 
 

@@ -22,6 +22,7 @@ from loaded_tca.plots import save_figure
 from loaded_tca.unloaded import trace_contact
 from validation.face_milled.duplex_paper import (
     COMPONENTS,
+    GIVEN,
     MISPRINTS,
     PRINTED,
     Study,
@@ -140,7 +141,7 @@ def _values() -> str:
     lines = ["| quantity | printed | computed | |", "|---|---|---|---|"]
     for quantity, printed in PRINTED.items():
         shown, mended = MISPRINTS.get(quantity, (printed, printed))
-        remark = f"misprint, read {mended}" if quantity in MISPRINTS else ""
+        remark = f"misprint, read {mended}" if quantity in MISPRINTS else "given" if quantity in GIVEN else ""
         lines.append(f"| {quantity} | {shown:.7g} | {values[quantity]:.7g} | {remark} |")
     return "\n".join(lines)
 

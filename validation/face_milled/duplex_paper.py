@@ -38,7 +38,7 @@ from validation.face_milled.pairs import (
 )
 from validation.table import Row
 
-CASE, SOURCE, COMPUTED = "duplex paper, 20 x 30", "duplex paper", "REFERENCES, computed"
+CASE, SOURCE, COMPUTED = "duplex paper, 20 x 30", "duplex paper", "computed independently"
 MENDED = "duplex paper, mended pair D"
 FORWARD_PINION_AZIMUTH, REVERSE_AZIMUTH = 0.896671, 0.979223
 MISPRINTS = {"forward theta_g": (5.349393, 5.346931), "mean theta_g": (5.310104, 5.309104)}
@@ -57,6 +57,8 @@ PRINTED = {
     "mean phi2'": 2.611e-3,
     "mean phi1'": 1.090e-3,
 }
+GIVEN = ("forward theta_p", "reverse theta_p", "mean theta_p")
+"""What the calculations begin with, and its mean: shown on the page, no rows."""
 AZIMUTH_DIGIT = 1e-6
 TURN_DIGITS = {"forward phi2'": 1e-6, "reverse phi1'": 1e-5, "reverse phi2'": 1e-5, "mean phi1'": 1e-5}
 """Unit of the last printed digit of the turns, where it is not 1e-6; the paper cuts digits off instead of rounding."""
@@ -182,6 +184,8 @@ def _start_rows() -> list[Row]:
     values = start_values()
     lines = []
     for quantity, printed in PRINTED.items():
+        if quantity in GIVEN:
+            continue
         digit = AZIMUTH_DIGIT if "theta" in quantity else TURN_DIGITS.get(quantity, 1e-6)
         remark = f"printed {MISPRINTS[quantity][0]}, a misprint" if quantity in MISPRINTS else ""
         lines.append(Row(CASE, SOURCE, f"{quantity} [rad]", printed, values[quantity], digit / abs(printed), remark))

@@ -80,14 +80,14 @@ def rows() -> list[Row]:
         for name, c1 in (("in_plane", 0.0051), ("out_of_plane", 0.00143))
     )
     base_helix = mesh.pinion.base_helix_angle
-    laws = (sin(alpha) / 0.0051, cos(alpha) / 0.00143)
+    laws = (-sin(alpha) / 0.0051, cos(alpha) / 0.00143)
     for name, law, printed, obtained in zip(
         ("in-plane", "out-of-plane"), laws, (1.3, 5.0), (inward, across), strict=True
     ):
         expected = radians(0.2) * law / (2.0 * cos(base_helix))
         label = f"{name} 0.2 deg: shift of the contact [mm]"
-        found.append(Row(CASE, "f/(2 c1 cos(beta_b)), first order", label, expected, abs(obtained), 2e-3))
-        found.append(Row(CASE, "as printed (does not follow)", label, printed, abs(obtained), None))
+        found.append(Row(CASE, "f/(2 c1 cos(beta_b)), first order", label, expected, obtained, 2e-3))
+        found.append(Row(CASE, "as printed without sign (does not follow)", label, printed, abs(obtained), None))
     small = radians(0.001)
     slopes = [_slope(Mounting(**{name: small})) for name in ("in_plane", "out_of_plane")]
     label = "TE slope, in-plane over out-of-plane"
