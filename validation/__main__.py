@@ -55,7 +55,7 @@ def main() -> int:
     print(render(rows))
     failed = sum(not row.holds for row in rows)
     shown = sum(row.tolerance is None for row in rows)
-    print(f"\n{len(rows)} rows, {shown} of them shown without a verdict, {failed} beyond the tolerance")
+    print(f"\n{len(rows)} rows, {failed} beyond the tolerance; {shown} shown without a verdict")
     if options.save:
         options.save.write_text(json.dumps([asdict(row) for row in rows], indent=1, ensure_ascii=False) + "\n")
     if options.compare:

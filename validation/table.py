@@ -65,7 +65,9 @@ def moved(rows: Sequence[Row], before: Sequence[Row]) -> list[str]:
                 lines.append(f"row {number}: {row.case}, {row.quantity}: {part} {old:.10g} -> {new:.10g}")
     count = len(lines)
     for sign, some, others in (("-", then, now), ("+", now, then)):
-        lines += [f"{sign} {row.case}, {row.quantity} ({row.source})" for name, row in some.items() if name not in others]
+        lines += [
+            f"{sign} {row.case}, {row.quantity} ({row.source})" for name, row in some.items() if name not in others
+        ]
     return [
         *lines,
         f"{count} numbers moved by more than {ROUNDING:g}; rows: {len(before)} before, {len(rows)} now",

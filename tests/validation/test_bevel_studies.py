@@ -1,6 +1,7 @@
 """The studies of bevel pairs: starts on the flanks, laws of small errors, statements of the source, pictures."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from loaded_tca import trace_contact
 from loaded_tca.pairs.bevel import BevelMounting
 from validation.bevel.convergence import cases
 from validation.bevel.effects import effect, first_order_error, spiral_curve, spiral_effect, spiral_mounting
+from validation.bevel.mounting_errors import rows as error_rows
 from validation.bevel.pairs import SPIRAL, STRAIGHT, TABLE_6, spiral_modifications, straight_modifications
 from validation.bevel.pictures import draw_error_map
 from validation.bevel.spiral_trends import error_map
@@ -99,6 +101,18 @@ def test_lag_of_a_small_error_is_the_gap_along_the_normal_at_the_pitch_point(gea
     mounting = BevelMounting(**{name: 1e-5})
     found = trace_contact(gears.pair(mounting, pinion), [0.0]).transmission_error[0]
     assert_allclose(found, first_order_error(gears, mounting), rtol=NOT_STEEPER)
+
+
+@pytest.mark.parametrize("name", ["offset", "pinion_axial", "wheel_axial", "shaft_angle_error"])
+def test_error_placed_with_the_wrong_sign_fails_its_rows(monkeypatch, name):
+    place = BevelMounting.place
+
+    def wrong(mounting, shaft_angle):
+        return place(replace(mounting, **{name: -getattr(mounting, name)}), shaft_angle)
+
+    monkeypatch.setattr(BevelMounting, "place", wrong)
+    failed = [row.quantity for row in error_rows() if not row.holds]
+    assert [name in quantity for quantity in failed] == [True, True]  # of the straight and of the spiral pair
 
 
 def test_shaft_angle_leaves_the_motion_of_the_spiral_pair_even():

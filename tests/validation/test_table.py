@@ -2,12 +2,18 @@
 
 import importlib
 import pkgutil
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 import validation
+from loaded_tca.flanks import modification
 from validation.__main__ import collect
+from validation.face_milled import duplex_paper
+from validation.loaded import limits
 from validation.table import Row, moved, render
+from validation.unloaded import reduced_tca_tables
 
 
 @pytest.fixture(scope="module")
@@ -44,6 +50,58 @@ def test_folder_lists_what_stands_in_it(folder):
     package = importlib.import_module(f"validation.{folder}")
     for info in pkgutil.iter_modules(package.__path__):
         assert f"``{info.name}``" in package.__doc__ or info.name == "__main__"
+
+
+def test_line_of_a_row_tells_its_tolerance_in_two_digits_its_note_and_what_is_assumed():
+    line = render([Row("case", "source", "angle", 2.0, 2.03, 0.025, "a load", "sign ignored")]).splitlines()[-1]
+    assert line.endswith("2.5e-02  ok; sign ignored; assumed: a load")
+
+
+def test_row_without_tolerance_is_shown_without_a_verdict():
+    (line,) = render([Row("case", "source", "angle", 1.0, 2.0, None)]).splitlines()[2:]
+    assert line.endswith("-        shown")
+    assert "ok" not in line
+
+
+def test_rows_are_known_by_their_names_where_others_came_or_went():
+    angle, length = (Row("case", "source", name, 1.0, 2.0, None) for name in ("angle", "length"))
+    told = moved([length, length], [angle, length])
+    assert told == [
+        "- case, angle (source)",
+        "+ case, length (source)",
+        "0 numbers moved by more than 1e-09; rows: 2 before, 2 now",
+    ]
+
+
+def test_logarithmic_steepness_is_judged(monkeypatch):
+    monkeypatch.setattr(modification, "LOGARITHMIC_STEEPNESS", 0.97)
+    reduced_tca_tables.pair.cache_clear()
+    row = reduced_tca_tables._logarithmic_shift(reduced_tca_tables.LINES[9])
+    reduced_tca_tables.pair.cache_clear()
+    assert not row.holds
+
+
+def test_maxima_of_tables_3_and_4_say_what_they_judge():
+    rows = [row for row in reduced_tca_tables.rows() if "TE(0)" in row.quantity]
+    judged = [row for row in rows if row.tolerance is not None]
+    assert (len(rows), len(judged)) == (54, 48)
+    for row in judged:
+        assert row.tolerance == 0.03
+        assert row.note == "48 rows, six slopes; sign ignored"
+        assert "(inferred)" in row.assumed
+
+
+def test_start_values_that_are_given_are_not_judged():
+    assert not any("theta_p" in row.quantity for row in duplex_paper.rows())
+
+
+def test_torque_of_the_pressures_is_their_moment_about_the_axis_of_the_pinion():
+    points, axes = np.array([[[30.0, 4.0, 1.0]], [[50.0, 4.0, 9.0]]]), np.array([[1.0, 0, 0], [0, 0, 1.0], [0, 1.0, 0]])
+    loaded = SimpleNamespace(
+        separation=SimpleNamespace(points=points, axes=axes),
+        solution=SimpleNamespace(pressure=np.array([[100.0], [200.0]]), cell_area=0.1),
+    )
+    np.testing.assert_allclose(limits._torque(loaded), 0.1 * (100.0 * 30.0 + 200.0 * 50.0))
 
 
 def test_numbers_that_have_moved_are_told():

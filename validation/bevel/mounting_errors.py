@@ -39,7 +39,9 @@ def rows() -> list[Row]:
             contact = trace_contact(gears.pair(mounting, pinion), [0.0])[0]
             label = f"{gears.name}, {name} {amount:.3g}: transmission error [arcsec]"
             expected = first_order_error(gears, mounting) * ARCSEC
-            found.append(Row(CASE, "tooth forces, virtual work", label, expected, contact.transmission_error * ARCSEC, 1e-3))
+            found.append(
+                Row(CASE, "tooth forces, virtual work", label, expected, contact.transmission_error * ARCSEC, 1e-3)
+            )
     label = f"{SPIRAL.name}, shaft angle 0.2 deg off: peak to peak [arcsec]"
     angular = spiral_effect(0.002, 0.0, gamma_deg=0.2).peak_to_peak
     return [*found, Row(CASE, "as printed", label, 0.0, angular, 1e-8), *_printed_amplitudes(SPIRAL)]

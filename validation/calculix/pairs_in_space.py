@@ -19,7 +19,7 @@ from loaded_tca.scene import parse_scene
 from validation.calculix.case import FACE_WIDTH
 from validation.calculix.comparison import SCENE
 from validation.calculix.crowned import LAYERS
-from validation.calculix.tables import CROWNED_FILE, FLAT_FILE
+from validation.calculix.tables import CROWNED_FILE, FLAT_FILE, MESH_FILE, read_table
 from validation.table import Row
 
 SOURCE = "finite elements in space (CalculiX)"
@@ -71,6 +71,16 @@ def read_in_space(path: Path) -> InSpace | None:
     kept = json.loads(path.read_text())
     numbers = (kept[name] for name in ("mid_pressure", "transmission_error", "seconds"))
     return InSpace(kept["peak_line_load"], tuple(kept["line_load"]), *numbers)
+
+
+def softness_of_free_ends() -> float:
+    """Transmission error of the kept flat pair over that of its elements in plane strain."""
+    flat = read_in_space(FLAT_FILE)
+    (plane,) = (
+        row for row in read_table(MESH_FILE) if (row["variant"], row["way"]) == ("unmodified", "of_the_crowned_pair")
+    )
+    assert flat is not None
+    return flat.transmission_error / float(plane["transmission_error_um"])
 
 
 def in_space(changes: dict[str, object]) -> InSpace:

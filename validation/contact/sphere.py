@@ -1,7 +1,6 @@
 """Two steel spheres of radius 20 mm under 100 N: the closed form and the pressure map against Hertz.
 
-p0 = 1353.415 MPa and a = 0.187826 mm were computed independently from Johnson 1985, eqs. 4.22 to 4.24; the approach is
-a^2/R.
+p0 = 1353.415 MPa and a = 0.187826 mm were computed independently from Johnson 1985, eqs. 4.22 to 4.24.
 """
 
 import numpy as np
@@ -13,7 +12,6 @@ from validation.table import Row
 
 CASE, SOURCE = "spheres R 20/20, 100 N", "Hertz; Johnson 1985"
 LOAD, CURVATURE = 100.0, 2.0 / 20.0
-PRESSURE, RADIUS = 1353.415, 0.187826
 CELLS = 64
 
 
@@ -25,11 +23,11 @@ def rows() -> list[Row]:
     x = (np.arange(CELLS) - 0.5 * (CELLS - 1)) * step
     gap = 0.5 * CURVATURE * (x[:, None] ** 2 + x[None, :] ** 2)
     solution = solve_contact(gap, (step, step), modulus, load=LOAD)
-    approach = RADIUS**2 * CURVATURE
     return [
-        Row(CASE, SOURCE, "closed form p0 [MPa]", PRESSURE, hertz.max_pressure, 4e-7),
-        Row(CASE, SOURCE, "closed form a [mm]", RADIUS, hertz.semi_major, 3e-6),
-        Row(CASE, SOURCE, "closed form approach [mm]", approach, hertz.approach, 6e-6),
-        Row(CASE, SOURCE, "map p0 [MPa]", PRESSURE, solution.peak_pressure, 5e-4),
-        Row(CASE, SOURCE, "map approach [mm]", approach, solution.approach, 5e-4),
+        Row(CASE, SOURCE, "closed form p0 [MPa]", 1353.415, hertz.max_pressure, 4e-7),
+        Row(CASE, SOURCE, "closed form a [mm]", 0.187826, hertz.semi_major, 3e-6),
+        Row(CASE, SOURCE, "map p0 [MPa]", 1353.415, solution.peak_pressure, 5e-4),
+        Row(
+            CASE, "Johnson 1985, eq. 4.23: a^2/R", "map approach [mm]", 0.187826**2 * CURVATURE, solution.approach, 5e-4
+        ),
     ]
