@@ -28,7 +28,7 @@ CONSTRUCTED = 714.93
 
 
 def rows() -> list[Row]:
-    """Hertz within 0.1 %, the pressure map within 0.5 %, the printed values and the torques they ask for beside them."""
+    """Hertz within 0.1 %, the pressure map within 0.5 %; the printed values and the torques that they ask for."""
     return [*_pair("spur"), *_pair("helical"), *_construction()]
 
 
