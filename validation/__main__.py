@@ -36,6 +36,7 @@ CASES = (
     "cylindrical.fzg_c14_geometry",
     "bevel.iso_23509_sample",
     "face_milled.settings",
+    "face_milled.swept_cutter",
     "face_milled.duplex_paper",
     "cylindrical.iso_tr_6336_30",
     "loaded.limits",
