@@ -9,8 +9,9 @@ from numpy.testing import assert_allclose
 from loaded_tca.compliance import MeshDensity, default_density, tooth_compliance
 from loaded_tca.contact.edges import FreeEdge
 from loaded_tca.errors import InputError
-from loaded_tca.gears import bevel_mesh
+from loaded_tca.gears import CylindricalGear, CylindricalMesh, bevel_mesh
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
+from loaded_tca.material import Material
 from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.reference.iso6336 import theoretical_single_stiffness
@@ -123,6 +124,23 @@ def test_body_torsion_is_a_part_of_the_compliance():
     pinion_radius = spur_mesh().pinion.root_radius
     expected = ring_torsion(0.55 * pinion_radius, pinion_radius) * spur_mesh().pinion.base_radius ** 2 / 20.0
     assert_allclose(compliance.body_torsion[0], expected)
+
+
+@pytest.mark.parametrize("soft", [0, 1])
+def test_each_gear_bends_with_its_own_modulus(soft):
+    """Of two equal gears at the pitch point each gives half of the compliance; half the modulus doubles its part."""
+    mesh = CylindricalMesh(*(CylindricalGear(25, 3.0, 20.0) for _ in range(2)))
+    moduli = np.array([[206000.0, 206000.0], [206000.0, 206000.0]])
+    moduli[1, soft] *= 0.5
+    plain, mixed = (
+        tooth_compliance(cylindrical_pair(mesh, materials=(Material(first), Material(second))), density=COARSE)
+        for first, second in moduli
+    )
+    before, after = (one.within(0, grids(one, 0.0)[0]) for one in (plain, mixed))
+    assert_allclose(after, 1.5 * before, rtol=1e-4)  # the meshes of two flanks of one gear are no mirror images
+    torsion = np.array(plain.body_torsion)
+    torsion[soft] *= 2.0
+    assert_allclose(mixed.body_torsion, torsion, rtol=ROUNDING)
 
 
 def test_layers_follow_the_face_width():

@@ -15,6 +15,7 @@ from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, bevel_mesh
 from loaded_tca.loaded.free_edges import oblique_ends, tooth_edges
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
+from loaded_tca.material import Material
 from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.cylindrical import cylindrical_pair
 from tests.samples.gear_pairs import gear_pair
@@ -44,6 +45,21 @@ def test_side_of_one_gear_alone_counts_with_its_share_of_the_compliance():
     edges, _ = edges_of(cylindrical_pair(CylindricalMesh(*gears)))
     assert_allclose([edge.factor for edge in edges], 0.5 * quarter_space_factor(0.3))
     assert len(edges) == 4  # the pinion's two, and the wheel's two 1.5 mm farther out
+
+
+@pytest.mark.parametrize("narrower", [0, 1])
+def test_side_of_the_narrower_gear_counts_with_its_own_material(narrower):
+    """Its share of the compliance is (1 - nu^2)/E over the sum of both; the free end follows its own nu."""
+    widths = (12.0, 15.0) if narrower == 0 else (15.0, 12.0)
+    gears = [CylindricalGear(z, 3.0, width) for z, width in zip((34, 57), widths, strict=True)]
+    constants = (206000.0, 0.3), (110000.0, 0.34)
+    materials = tuple(Material(*one) for one in constants)
+    edges, separation = edges_of(cylindrical_pair(CylindricalMesh(*gears), materials=materials))
+    middle = 0.5 * separation.gap.shape[1] * separation.spacing[1]
+    inner = sorted(edges, key=lambda edge: abs(edge.position - middle))[:2]
+    yielding = [(1.0 - nu**2) / modulus for modulus, nu in constants]
+    share, nu = yielding[narrower] / sum(yielding), constants[narrower][1]
+    assert_allclose([edge.factor for edge in inner], share * quarter_space_factor(nu))
 
 
 def test_sides_out_of_reach_of_the_contact_are_left_out():

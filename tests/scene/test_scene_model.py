@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import InputError
+from loaded_tca.material import Material
 from loaded_tca.scene import (
     Analysis,
     CylindricalScene,
@@ -130,6 +131,13 @@ def test_own_material_overrides_the_common_one(scene):
     assert changed.materials == (scene.material, brass)
     each = replace(changed, pinion=replace(scene.pinion, material=brass), material=None)
     assert each.materials == (brass, brass)
+
+
+@pytest.mark.parametrize("name", ["helical", "straight_bevel", "face_milled_19x62"])
+def test_each_gear_of_a_pair_has_the_material_of_its_section(name):
+    brass = {"youngs_modulus_MPa": 1e5, "poisson_ratio": 0.35}
+    pair = read_scene(SCENES / f"{name}.toml").with_changes({"wheel.material": brass}).pair()
+    assert (pair.pinion.material, pair.wheel.material) == (Material(206000.0, 0.3), Material(1e5, 0.35))
 
 
 def test_text_of_the_smallest_scene_has_every_key(scene):

@@ -9,16 +9,21 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
+from scipy.optimize import root
 
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import bevel_mesh
-from loaded_tca.pairs.bevel import bevel_pair
+from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
+from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.pairs.gear_pair import cylindrical_basis
 from loaded_tca.unloaded import heelwards, relative_curvature, trace_contact
+from loaded_tca.unloaded.ease_off import EaseOff
 from tests.samples.gear_pairs import cylindrical_mesh, gear_pair, pairs, sam_paper
 
 RELATIVE = 1e-9  # two chains of some hundred operations each, cancelling by a factor of up to 1e4
 CLOSED_FORM = 1e-9
+DIFFERENCE = 0.02  # mm
+DIFFERENCES = 2e-5  # of the largest curvature, of order DIFFERENCE^2
 
 
 def shape_operator(flank, rho, z, turn, axes):
@@ -59,6 +64,51 @@ def test_relative_curvature_is_the_sum_of_the_curvatures_of_both_flanks(pair, tu
     tensor = tensor_of_both_flanks(pair, contact, found.axes)
     scale = abs(tensor).max()
     assert_allclose(tensor, np.diag([found.across, found.along]), rtol=0, atol=RELATIVE * scale)
+
+
+def gap_tensor(pair, contact, axes):
+    """Second derivatives (2, 2) of the gap in the tangent plane [1/mm], by central differences of the ease-off alone.
+
+    The points of the pinion above a cross of nine places in the plane are found by Newton's method with differences.
+    """
+    field, start = EaseOff(pair), np.array([contact.pinion_radius, contact.pinion_axial])
+    flank = pair.pinion.flank
+
+    def place(where):
+        rho, z = where
+        azimuth = float(flank.theta(np.array(rho), np.array(z)).value) + pair.sense * contact.pinion_angle
+        point = np.array([rho * math.cos(azimuth), rho * math.sin(azimuth), z])
+        return axes[:2] @ (point - contact.point)
+
+    def height(x, y):
+        rho, z = root(lambda where: place(where) - (x, y), start, tol=1e-13).x
+        return float(field.heights(*(np.array([value]) for value in (contact.pinion_angle, rho, z)))[0][0])
+
+    middle = height(0.0, 0.0)
+    diagonal = [(height(x, y) + height(-x, -y) - 2.0 * middle) / DIFFERENCE**2 for x, y in DIFFERENCE * np.eye(2)]
+    corners = [i * j * height(i * DIFFERENCE, j * DIFFERENCE) for i in (-1, 1) for j in (-1, 1)]
+    cross = sum(corners) / (4.0 * DIFFERENCE**2)
+    lever = contact.wheel_lever / pair.base_radii[1]
+    return -lever * np.array([[diagonal[0], cross], [cross, diagonal[1]]])
+
+
+CROWNED = FlankModifications(lead_crowning=0.02)
+ON_EDGES = {  # pair, part of a pitch, edge that holds the contact
+    "tip of the pinion": (gear_pair(CROWNED, helix_deg=25.0), 0.8, 0),
+    "tip of the wheel": (gear_pair(CROWNED, helix_deg=25.0), -0.8, 4),
+    "face end": (gear_pair(helix_deg=30.0, mounting=Mounting(out_of_plane=0.01)), 0.0, 3),
+    "heel": (bevel_pair(bevel_mesh((20, 40), 4.0, 20.0, spiral_angle=0.6), mounting=BevelMounting(offset=0.3)), 0.1, 3),
+}
+
+
+@pytest.mark.parametrize(("pair", "turn", "edge"), ON_EDGES.values(), ids=ON_EDGES)
+def test_curvature_at_an_edge_contact_is_that_of_the_gap_over_the_tangent_plane(pair, turn, edge):
+    """There the ease-off has a slope, so that the curvature of the coordinates themselves enters."""
+    contact = trace_contact(pair, [turn * pair.pitch], warn=False)[0]
+    assert np.flatnonzero(contact.edges).tolist() == [edge]
+    found = relative_curvature(pair, contact)
+    expected, atol = gap_tensor(pair, contact, found.axes), DIFFERENCES * found.across
+    assert_allclose(np.diag([found.across, found.along]), expected, rtol=0, atol=atol)
 
 
 @pytest.mark.parametrize("helix_deg", [0.0, 15.0])

@@ -1,6 +1,7 @@
 """The comparison of the mesh cycle with finite elements: what it reads, and a position of it."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -109,6 +110,18 @@ def test_pressure_at_mid_face_is_below_that_of_the_mean_line_load(narrow):
     (ours,) = narrow.cycle("unmodified", 20.0, [0.0])
     assert ours.pairs[0].pressed < ours.pairs[0].pressure
     assert ours.pairs[0].pressure == pytest.approx(PITCH_POINT.pairs[0].pressure, rel=ENDS)
+
+
+def test_pair_whose_middle_carries_nothing_has_no_pressure_there(narrow):
+    """A pair in contact at the ends of its face alone, as wrong stiffnesses may give it."""
+    pressure = np.zeros((4, 6))
+    pressure[:, [0, -1]] = 100.0
+    loaded = SimpleNamespace(
+        solution=SimpleNamespace(pressure=pressure, load=10.0),
+        separation=SimpleNamespace(spacing=(0.01, 3.0)),
+        contact=SimpleNamespace(on_edge=False),
+    )
+    assert narrow._pair(loaded, 0.01) == PairLoad(0.01, 0.0, 0.0, False)
 
 
 def test_relief_lets_the_wheel_lag_by_no_less(narrow):

@@ -2,6 +2,7 @@
 
 import importlib
 import pkgutil
+import sys
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 import validation
 from loaded_tca.flanks import modification
+from validation import __main__ as programme
 from validation.__main__ import collect
 from validation.face_milled import duplex_paper
 from validation.loaded import limits
@@ -28,6 +30,24 @@ def test_validation_rows_hold(rows):
 
 def test_validation_table_has_a_line_for_every_row(rows):
     assert len(render(rows).splitlines()) == len(rows) + 2
+
+
+def test_case_that_raises_is_a_row_that_fails_and_the_others_are_run(monkeypatch, capsys):
+    def no_rows():
+        raise ValueError("f(a) and f(b) must have different signs")
+
+    good = Row("case", "source", "angle", 1.0, 1.0, 1e-3)
+    monkeypatch.setitem(sys.modules, "validation.raises", SimpleNamespace(rows=no_rows))
+    monkeypatch.setitem(sys.modules, "validation.good", SimpleNamespace(rows=lambda: [good]))
+    monkeypatch.setattr(programme, "CASES", ("good", "raises", "no_such_case", "good"))
+    monkeypatch.setattr(sys, "argv", ["validation"])
+    assert programme.main() == 1
+    table, told = capsys.readouterr()
+    assert "raised ValueError: f(a) and f(b) must have different signs" in table
+    assert "raised ModuleNotFoundError: No module named 'validation.no_such_case'" in table
+    assert table.count("FAILS") == 2
+    assert "4 rows, 2 beyond the tolerance" in table
+    assert "Traceback" in told
 
 
 @pytest.mark.parametrize(

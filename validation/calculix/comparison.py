@@ -214,13 +214,17 @@ class Model:
         )
 
     def _pair(self, loaded: LoadedContact, share: float) -> PairLoad:
-        """Pressure of the middle slice; by Hertz it goes with the root of the line load."""
+        """Pressure of the middle slice; by Hertz it goes with the root of the line load.
+
+        A pair that is hardly in contact may leave the middle free of load: no pressure.
+        """
         pressure = loaded.solution.pressure
         middle = pressure[:, pressure.shape[1] // 2]
         line_load = float(middle.sum()) * loaded.separation.spacing[0]
         mean = loaded.solution.load / self.face_width
         highest = float(middle.max())
-        return PairLoad(share, highest * float(np.sqrt(mean / line_load)), highest, bool(loaded.contact.on_edge))
+        even = highest * float(np.sqrt(mean / line_load)) if line_load else 0.0
+        return PairLoad(share, even, highest, bool(loaded.contact.on_edge))
 
 
 def model(face_width: float, layers: int | None = None) -> Model:

@@ -1,6 +1,7 @@
 """Face-milled pairs.
 
 - ``settings``: basic machine settings and the contact of the 19 x 62 pair of SpyGO;
+- ``swept_cutter``: flanks cut with tilt, swivel, blank offset, helical motion and modified roll;
 - ``duplex_paper``: the bidirectional start of the duplex paper; ``duplex_document`` writes the page;
 - ``pairs``: the pairs that both share.
 """

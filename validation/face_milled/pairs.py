@@ -135,7 +135,8 @@ def _on_pitch_plane(gear: FaceMilledGear, flank: FlankName, depth: float) -> Bla
 def error_from_top(pair: GearPair, parts: tuple[float, ...]) -> tuple[float, NDArray[np.float64], ContactPath]:
     """Top of the transmission error of one tooth pair, and the fall from there.
 
-    The top is where the levers of the normal have the ratio of the teeth, d phi2/d phi1 = z1/z2.
+    The top is where the levers of the normal have the ratio of the teeth, d phi2/d phi1 = z1/z2. Levers that have it
+    nowhere beside the largest of a coarse row of errors are wrong; then the numbers are those of a place beside it.
 
     Parameters
     ----------
@@ -157,6 +158,8 @@ def error_from_top(pair: GearPair, parts: tuple[float, ...]) -> tuple[float, NDA
 
     angles = np.linspace(-1.5, 1.5, 31) * pair.pitch
     coarse = int(np.nanargmax(trace_contact(pair, angles, warn=False).transmission_error))
-    top = brentq(excess, angles[coarse - 1], angles[coarse + 1], xtol=1e-12)
+    beside = angles[max(coarse - 1, 0)], angles[min(coarse + 1, len(angles) - 1)]
+    changes = excess(beside[0]) * excess(beside[1]) < 0.0
+    top = brentq(excess, *beside, xtol=1e-12) if changes else min(beside, key=lambda angle: abs(excess(angle)))
     error = trace_contact(pair, [top, *(top + part * pair.pitch for part in parts)], warn=False).transmission_error
     return top, (error[1:] - error[0]) * ARCSEC, trace_contact(pair, [top], warn=False)
