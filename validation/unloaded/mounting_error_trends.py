@@ -1,13 +1,15 @@
-"""What the reduced-TCA dissertation says of its Figures 17 to 30, and whether a computation agrees."""
+"""What the reduced-TCA dissertation says of its Figures 10 to 30, and whether a computation agrees."""
 
-from dataclasses import dataclass
-from math import degrees, radians
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from math import degrees, hypot, log, radians
 
 import numpy as np
 
+from loaded_tca.flanks.modification import LOGARITHMIC_STEEPNESS
 from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.unloaded import trace_contact
-from loaded_tca.unloaded.teeth import trace_teeth
+from loaded_tca.unloaded.teeth import MeshPath, trace_teeth
 from validation.unloaded.mounting_error_pairs import (
     ARCSEC,
     ERRORS,
@@ -21,9 +23,20 @@ from validation.unloaded.mounting_error_pairs import (
     hertz_pressure,
     shift,
 )
+from validation.unloaded.reduced_tca_tables import LINES, amount
 
 ALIKE = 0.1
 """Relative difference of two heights up to which "similar" and "not significantly different" are said to hold."""
+SIDES = [2, 3, 6, 7]
+"""Columns of a contact's edges: the sides of pinion and wheel."""
+STEEPER = -log(1.0 - LOGARITHMIC_STEEPNESS) / LOGARITHMIC_STEEPNESS
+"""Amount at which a logarithmic crowning is as curved in the middle of the face as a parabola of amount 1."""
+RELIEF = {
+    f"{end}_relief{what}": value
+    for end, start in (("tip", 25.6), ("root", 24.6))
+    for what, value in (("", 0.02), ("_start", start))
+}
+"""Parabolic tip and root relief of the spur pair [mm], starts as diameters: assumed, the source's are not lengths."""
 
 
 @dataclass(frozen=True)
@@ -36,33 +49,114 @@ class Trend:
     because: str
 
 
-def trends() -> list[Trend]:
-    """Every statement on the figures of cylindrical gears that a computation can judge."""
+def verdicts(trends: Iterable[Trend]) -> list[str]:
+    """One line of a Markdown table a statement."""
     return [
-        *_trends_of_spur_pair(),
-        _crowning_for_continuity(),
-        *_trends_of_paths(),
-        _area_of_forms(),
-        _onset_of_edge_contact(),
-        *_trends_of_pressure(),
+        f"| {one.figure} | {one.statement} | {'holds' if one.holds else '**does not hold**'} | {one.because} |"
+        for one in trends
     ]
 
 
-def _trends_of_spur_pair() -> list[Trend]:
-    relief = {
-        f"{end}_relief{what}": value
-        for end, start in (("tip", 25.6), ("root", 24.6))
-        for what, value in (("", 0.02), ("_start", start))
+def trends() -> list[Trend]:
+    """Every statement on the figures of cylindrical gears that a computation can judge, in the figures' order."""
+    return [
+        *trends_without_relief(),
+        *_trends_of_spur_pair(),
+        *trends_of_spur_pressure(),
+        _crowning_for_continuity(),
+        _area_of_forms(),
+        *trends_of_forms(),
+        *_trends_of_paths(),
+        _onset_of_edge_contact(),
+        *trends_of_helical_pressure(),
+    ]
+
+
+def equally_curved(form: str, parabola: float, face_width: float) -> float:
+    """Amount [mm] at which a form is as curved in the middle of the face as a parabola of another amount [mm]."""
+    if form == "logarithmic":
+        return STEEPER * parabola
+    if form == "circular":
+        radius = (0.5 * face_width) ** 2 / (2.0 * parabola)
+        return radius - (radius**2 - (0.5 * face_width) ** 2) ** 0.5
+    return parabola
+
+
+def trends_without_relief() -> list[Trend]:
+    """Figures 10, 11, 15 and 16: the spur pair under an in-plane error, unmodified and with parabolas alone."""
+    mounting = Mounting(in_plane=LARGEST[SPUR]["in_plane"])
+    bare = trace_teeth(SPUR.pair(mounting, lead_crowning=0.0))
+    across = trace_teeth(SPUR.pair(Mounting(out_of_plane=LARGEST[SPUR]["out_of_plane"]), lead_crowning=0.0))
+    sides = bare.leading_contact.edges[:, SIDES].any(axis=-1)
+    profile = SPUR.mesh.pinion_active_profile
+    halves = {
+        "lead_crowning": 0.5 * SPUR.face_width,
+        "profile_crowning": 0.5 * (profile.end_roll_length - profile.start_roll_length),
     }
+    along = {
+        (a1, name): trace_teeth(SPUR.pair(mounting, **{name: a1 * half**2}))
+        for a1 in (0.00125, 0.01675)
+        for name, half in halves.items()
+    }
+    listed = {
+        a1: "; ".join(
+            f"as {name.replace('_', ' ')} {1e3 * a1 * half**2:.0f} um: {_motion(along[a1, name])}"
+            for name, half in halves.items()
+        )
+        for a1 in (0.00125, 0.01675)
+    }
+    return [
+        Trend(
+            "10",
+            "spur: an angular error of unmodified gears makes the transmission discontinuous",
+            not bare.is_continuous,
+            f"in-plane: {_motion(bare)}; not so out-of-plane: {_motion(across)}",
+        ),
+        Trend(
+            "11",
+            "spur: and puts the path on the edge of the flank, in-plane",
+            bool(sides.all()),
+            f"on a side for {sides.mean():.0%} of the pitch, z = "
+            f"{bare.leading_contact.pinion_axial[POSITIONS // 2]:+.2f} mm of ±{0.5 * SPUR.face_width:g}",
+        ),
+        Trend(
+            "15",
+            "spur: a parabola a1 = 0.00125/mm is not enough: the transmission is discontinuous",
+            not along[0.00125, "lead_crowning"].is_continuous,
+            listed[0.00125],
+        ),
+        Trend(
+            "16",
+            "spur: a1 = 0.01675/mm is enough: the transmission is continuous",
+            along[0.01675, "lead_crowning"].is_continuous,
+            f"{listed[0.01675]}. Lead crowning alone is never enough; along the profile the amount of Figure 15 is",
+        ),
+    ]
+
+
+def _motion(mesh: MeshPath) -> str:
+    return f"{'' if mesh.is_continuous else 'dis'}continuous, {mesh.peak_to_peak * ARCSEC:.2g} arcsec"
+
+
+def _trends_of_spur_pair() -> list[Trend]:
     plain = {error: trace_teeth(SPUR.pair(Mounting(**{error: LARGEST[SPUR][error]}))) for error in ERRORS}
+    aligned, across = SPUR.pair(), LARGEST[SPUR]["axial_offset"]
+    plain["y offset"] = trace_teeth(replace(aligned, wheel_origin=aligned.wheel_origin + [0.0, across, 0.0]))
     mounts = {"in": Mounting(in_plane=0.0175), "out": Mounting(out_of_plane=0.0175), "both": Mounting(0.0175, 0.0175)}
-    meshes = {name: trace_teeth(SPUR.pair(mounting, **relief)) for name, mounting in mounts.items()}
-    sides = [bool(mesh.leading_contact.edges[:, [2, 3, 6, 7]].any()) for mesh in plain.values()]
+    meshes = {name: trace_teeth(SPUR.pair(mounting, **RELIEF)) for name, mounting in mounts.items()}
+    sides = [bool(mesh.leading_contact.edges[:, SIDES].any()) for mesh in plain.values()]
     heights = {name: mesh.peak_to_peak * ARCSEC for name, mesh in meshes.items()}
     shifts = ", ".join(f"{e} {m.leading_contact.pinion_axial[POSITIONS // 2]:+.2f} mm" for e, m in plain.items())
-    size = ", ".join(f"{error} {mesh.peak_to_peak * ARCSEC:.2g}" for error, mesh in plain.items())
+    size = {error: f"{error} {mesh.peak_to_peak * ARCSEC:.2g}" for error, mesh in plain.items()}
     unlike = {name: heights[name] / heights["out"] - 1.0 for name in ("in", "both")}
     relieved = f"parabolic reliefs of 20 um (assumed): {heights['out']:.4g} arcsec out-of-plane,"
+    turned = plain["y offset"].mean * ARCSEC
+    both = (
+        "the source calls ΔH an axial offset (along z), out of plane, along y: along z it moves the wheel under the "
+        f"crowning of the pinion; along y it turns the line of centres, a constant {turned:.0f} arcsec, and opens the "
+        f"centre distance by {1e3 * (hypot(aligned.wheel_origin[0], across) - aligned.wheel_origin[0]):.2g} um: "
+        "neither disturbs the motion"
+    )
     return [
         Trend("17", "spur: lead crowning keeps every misaligned contact off the sides", not any(sides), shifts),
         *(
@@ -70,9 +164,9 @@ def _trends_of_spur_pair() -> list[Trend]:
                 "17",
                 f"spur: but leads to a discontinuous transmission under {kind} errors",
                 not any(plain[error].is_continuous for error in errors),
-                f"peak to peak {size} arcsec",
+                f"peak to peak {', '.join(size[error] for error in errors)} arcsec{more}",
             )
-            for kind, errors in (("angular", ERRORS[:2]), ("linear", ERRORS[2:]))
+            for kind, errors, more in (("angular", ERRORS[:2], ""), ("linear", (*ERRORS[2:], "y offset"), f"; {both}"))
         ),
         Trend(
             "18, 19",
@@ -93,6 +187,23 @@ def _trends_of_spur_pair() -> list[Trend]:
             f"{relieved} {unlike['both']:+.1%} with both",
         ),
     ]
+
+
+def trends_of_spur_pressure() -> list[Trend]:
+    """Figures 21 and 22: pressure along the path under an in-plane error, without and with tip and root relief."""
+    found = []
+    for figure, what, modifications in (("21", "lead crowning", {}), ("22", "lead crowning and relief", RELIEF)):
+        pressure = _pressures(SPUR, Mounting(in_plane=0.0175), **modifications)
+        foot, head = (float(pressure[k] / pressure[len(pressure) // 2] - 1.0) for k in (0, -1))
+        found.append(
+            Trend(
+                figure,
+                f"spur, {what}: the pressure is highest at the top and the bottom of the tooth",
+                min(foot, head) > 0.0,
+                f"{foot:+.1%} towards the root, {head:+.1%} towards the tip of the pinion, against the pitch point",
+            )
+        )
+    return found
 
 
 def _smallest_profile_crowning(error_deg: float) -> float:
@@ -131,21 +242,12 @@ def _trends_of_paths() -> list[Trend]:
         for form in FORMS
     }
     grows = all((np.diff(np.abs(row)) > 0.0).all() for row in table.values())
-    circle = abs(table["in_plane", "circular"][2] / table["in_plane", "parabolic"][2] - 1.0)
-    logarithmic = table["in_plane", "logarithmic"][2] / table["in_plane", "parabolic"][2]
     ratio = abs(table["out_of_plane", "parabolic"][2] / table["in_plane", "parabolic"][2])
     spur = Gears("spur", HELICAL.teeth, 0.0, HELICAL.face_width, HELICAL.crowning, HELICAL.load, HELICAL.material)
     mounting = Mounting(out_of_plane=radians(0.2))
     larger = shift(HELICAL, mounting) / shift(spur, mounting)
     return [
         Trend("25, 27", "helical: the path moves away from the middle as the angle grows", grows, "all three forms"),
-        Trend(
-            "25",
-            "helical: the forms give similar paths",
-            circle < 0.01 and logarithmic < 1.1,
-            f"circular within {circle:.1e} of parabolic; logarithmic {logarithmic:.2f} times as far, being flatter in "
-            "the middle for the same amount at the ends",
-        ),
         Trend(
             "25, 27",
             "helical: out-of-plane errors move the path more than in-plane ones",
@@ -161,20 +263,70 @@ def _trends_of_paths() -> list[Trend]:
     ]
 
 
+def trends_of_forms() -> list[Trend]:
+    """Figure 25: shift of the path by in-plane errors with the three forms, and with the constants of Table 3."""
+    mounting = Mounting(in_plane=radians(0.2))
+    amounts = {
+        "equal": dict.fromkeys(FORMS, HELICAL.crowning),
+        "curved": {form: equally_curved(form, HELICAL.crowning, HELICAL.face_width) for form in FORMS},
+    }
+    away = {}
+    for name, chosen in amounts.items():
+        shifts = {
+            form: shift(HELICAL, mounting, lead_crowning=value, lead_crowning_form=form)
+            for form, value in chosen.items()
+        }
+        away[name] = {form: value / shifts["parabolic"] - 1.0 for form, value in shifts.items()}
+    listed = {
+        name: ", ".join(f"{form} {100.0 * part[form]:+.2g} %" for form in ("circular", "logarithmic"))
+        for name, part in away.items()
+    }
+    nearer = {}
+    for line in (LINES[0], LINES[3], LINES[6]):
+        turned = Mounting(in_plane=radians(line.angle))
+        circular, parabolic = (
+            abs(shift(HELICAL, turned, lead_crowning=amount(line, form), lead_crowning_form=form))
+            for form in ("circular", "parabolic")
+        )
+        nearer[abs(line.angle)] = circular / parabolic - 1.0
+    constants = ", ".join(f"{angle:g} deg {value:+.2%}" for angle, value in nearer.items())
+    against = "shift against that of the parabola at 0.2 deg:"
+    return [
+        Trend(
+            "25",
+            "helical: the forms give similar paths, if they remove the same at the ends of the face",
+            max(map(abs, away["equal"].values())) < ALIKE,
+            f"{against} {listed['equal']}, being flatter in the middle",
+        ),
+        Trend(
+            "25",
+            "helical: the forms give similar paths, if they are equally curved in the middle of the face",
+            max(map(abs, away["curved"].values())) < ALIKE,
+            f"{against} {listed['curved']}; logarithmic {STEEPER:.2f} times as much at the ends",
+        ),
+        Trend(
+            "25",
+            "helical: the path with a circle is nearer to the middle at 0.1 and 0.2 deg",
+            max(nearer[0.1], nearer[0.2]) < 0.0,
+            f"against the parabola, with the first constants of Table 3: {constants}; the constants decide, and of the "
+            "logarithm one is not printed",
+        ),
+    ]
+
+
 def _area_of_forms() -> Trend:
     mounting = Mounting(out_of_plane=radians(0.2))
-    steps = np.linspace(0.0, 0.01, 2)
     lines = [
-        trace_contact(HELICAL.pair(mounting, lead_crowning_form=form), steps).transmission_error * ARCSEC
-        for form in FORMS
+        trace_contact(HELICAL.pair(mounting, lead_crowning_form=form), [0.0, 0.01]).transmission_error for form in FORMS
     ]
-    triangle = [0.5 * float(line[1] - line[0]) * 0.01 for line in lines]
-    spread = (max(triangle) - min(triangle)) / max(triangle)
+    areas = [0.5 * float(line[1] - line[0]) for line in lines]
+    spread = (max(areas) - min(areas)) / max(areas)
     return Trend(
         "24, 26",
         "helical: logarithmic crowning has the smallest area S of the transmission function",
         spread > 0.01,
-        f"the function is one straight line whatever the crowning: areas over 0.01 rad differ by {spread:.1e}",
+        f"the function is one straight line whatever the crowning: areas differ by {spread:.1e}, the printed ones, "
+        "below, by 2 and 21 %",
     )
 
 
@@ -198,43 +350,59 @@ def _onset_of_edge_contact() -> Trend:
     )
 
 
-def _pressures(gears: Gears, mounting: Mounting, form: str, points: int = 7) -> Array:
+def _pressures(gears: Gears, mounting: Mounting, points: int = 7, **modifications: float | str) -> Array:
     """Hertz pressure along the surface contact of one tooth pair [MPa]."""
-    pair = gears.pair(mounting, lead_crowning_form=form)
+    pair = gears.pair(mounting, **modifications)
     path = trace_contact(pair, np.linspace(-0.7, 0.7, points) * pair.pitch)
     return np.array([hertz_pressure(pair, path[i], gears.load) for i in range(points)])
 
 
-def _trends_of_pressure() -> list[Trend]:
-    spur = _pressures(SPUR, Mounting(in_plane=0.0175), "parabolic")
-    helical = _pressures(HELICAL, Mounting(out_of_plane=radians(0.2)), "circular")
-    table = {
-        form: [_pressures(HELICAL, Mounting(out_of_plane=radians(a)), form, 3)[1] for a in (0.01, 0.05, 0.2)]
+def trends_of_helical_pressure() -> list[Trend]:
+    """Figures 29 and 30: pressure over the out-of-plane error with the three forms, and along the path."""
+    amounts = {
+        "removing the same at the ends of the face": dict.fromkeys(FORMS, HELICAL.crowning),
+        "equally curved": {form: equally_curved(form, HELICAL.crowning, HELICAL.face_width) for form in FORMS},
+        "with the first constants of Table 4": {form: amount(LINES[15], form) for form in FORMS},
+    }
+    at_last = {name: {form: _pitch_point(0.2, form, part[form]) for form in FORMS} for name, part in amounts.items()}
+    highest = [part["logarithmic"] > 1.01 * max(part["circular"], part["parabolic"]) for part in at_last.values()]
+    listed = "; ".join(
+        f"{name}: {', '.join(f'{form} {value:.0f}' for form, value in part.items())}" for name, part in at_last.items()
+    )
+    table = [{form: _pitch_point(line.angle, form, amount(line, form)) for form in FORMS} for line in LINES[9::3]]
+    falls = all(table[0][form] > table[1][form] > table[2][form] for form in FORMS)
+    change = {
+        form: at_last["removing the same at the ends of the face"][form]
+        / _pitch_point(0.01, form, HELICAL.crowning)
+        - 1.0
         for form in FORMS
     }
-    change = {form: row[-1] / row[0] - 1.0 for form, row in table.items()}
-    listed = ", ".join(f"{form} {value:+.1%}" for form, value in change.items())
-    ends = [float(row[0] / row[len(row) // 2] - 1.0) for row in (spur, spur[::-1])]
+    alone = ", ".join(f"{form} {value:+.1%}" for form, value in change.items())
+    lowest = [min(part, key=part.__getitem__) for part in table]
+    close = max(abs(part["circular"] / part["parabolic"] - 1.0) for part in table)
+    helical = _pressures(HELICAL, Mounting(out_of_plane=radians(0.2)), lead_crowning_form="circular")
     foot, head = (float(helical[k] / helical[len(helical) // 2] - 1.0) for k in (0, -1))
     along = f"{head:+.1%} towards the tip, {foot:+.1%} towards the root of the pinion, against the pitch point"
     return [
         Trend(
-            "21, 22",
-            "spur: the pressure is highest at the top and the bottom of the tooth",
-            min(ends) > 0.0,
-            f"{ends[0]:+.1%} towards the root, {ends[1]:+.1%} towards the tip of the pinion, against the pitch point",
+            "29",
+            "helical: the pressure falls as the angle grows",
+            falls,
+            f"{'; '.join(_listed(part) for part in table)} MPa at 0.05, 0.1, 0.2 deg with the first constants of Table "
+            f"4, which shrink; at one crowning, from 0.01 to 0.2 deg: {alone}",
         ),
         Trend(
             "29",
-            "helical: the pressure falls with the angle from 0.01 deg on",
-            max(change.values()) < 0.0,
-            f"from 0.01 to 0.2 deg at one crowning: {listed}; in the source the crowning shrinks as the angle grows",
+            "helical: the pressure is lowest with the parabola at 0.05, the circle at 0.1, the parabola at 0.2 deg",
+            lowest == ["parabolic", "circular", "parabolic"],
+            f"with the first constants of Table 4: {', '.join(lowest)}; circle and parabola are at most {close:.2%} "
+            "apart, which the rounding of the constants decides",
         ),
         Trend(
             "29",
-            "helical: at 0.2 deg the logarithmic crowning has a distinctly higher pressure for its curvature",
-            change["logarithmic"] > 2.0 * max(change["circular"], change["parabolic"], 0.0),
-            listed,
+            "helical: at 0.2 deg the logarithmic crowning has a significantly higher pressure than the others",
+            any(highest),
+            f"MPa, {listed}: lower or the same, whatever is kept equal",
         ),
         Trend("30", "helical: the pressure is higher in the upper part of the tooth", head > foot, along),
         Trend(
@@ -244,3 +412,13 @@ def _trends_of_pressure() -> list[Trend]:
             f"{along}: lowest between them" if min(head, foot) > 0.0 else along,
         ),
     ]
+
+
+def _pitch_point(angle_deg: float, form: str, crowning: float) -> float:
+    """Hertz pressure of the helical pair [MPa] at phi1 = 0 under an out-of-plane error."""
+    pair = HELICAL.pair(Mounting(out_of_plane=radians(angle_deg)), lead_crowning=crowning, lead_crowning_form=form)
+    return hertz_pressure(pair, trace_contact(pair, [0.0])[0], HELICAL.load)
+
+
+def _listed(pressures: dict[str, float]) -> str:
+    return ", ".join(f"{form} {value:.0f}" for form, value in pressures.items())
