@@ -56,10 +56,10 @@ def _printed_amplitudes(gears: BevelGears) -> list[Row]:
 
 
 def _line(name: str, one: Effect) -> str:
-    lengthwise, height = one.place
-    edge = "yes" if one.continuous else "no"
+    lengthwise, height = (round(value, 2) + 0.0 for value in one.place)  # no -0.00 where rounding decides the sign
+    mean, edge = round(one.mean, 1) + 0.0, "yes" if one.continuous else "no"
     return (
-        f"| {name} | {one.mean:.1f} | {max(one.peak_to_peak, 0.0):.1f} | {edge} | {lengthwise:+.2f} | {height:+.2f} "
+        f"| {name} | {mean:.1f} | {max(one.peak_to_peak, 0.0):.1f} | {edge} | {lengthwise:+.2f} | {height:+.2f} "
         f"| {_pressure(one)} |"
     )
 
@@ -135,8 +135,8 @@ Lead crowning {lead:g} um, all forms removing the same at the ends of the face:
 |---|---|---|---|
 {spiral_trends}
 
-One set of signs does not do for all. Read on the pinion, as the paths of this page are, 45, 47 and 53 hold together
-with {on_pinion}; read on the wheel with {on_wheel}; and 51, too, with {with_amplitude}:
+One set of signs does not do for all. Sets (ΔE, ΔH) with which 45, 47 and 53 hold together: {on_pinion} if 47 is read on
+the pinion, as the paths of this page are; {on_wheel} if it is read on the wheel; and with 51 as well: {with_amplitude}.
 
 | ΔE, ΔH | {signs} |
 |---|---|---|---|---|

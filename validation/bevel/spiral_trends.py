@@ -96,14 +96,14 @@ def _angular() -> list[Trend]:
             "Δγ leaves the path where it is, but for a small move to the tip",
             bool(0.0 < abs(up) < 0.05 and abs(along) < 1e-6),
             f"shaft angle 0.2 deg less: {up:+.3f} mm in height, to the tip of the wheel, the root of the pinion; more: "
-            f"the other way; {abs(along):.0e} mm lengthwise",
+            f"the other way; {abs(along):.3f} mm lengthwise",
         ),
         Trend(
             "42",
             "Δγ gives no transmission error, from peak to peak",
             worst < 1e-6,
-            f"0.2 deg, c1 = 0.002 and 0.02: {worst:.0e} arcsec, but a constant {constant:.0f}: spherical involutes "
-            "stay conjugate about one apex",
+            f"0.2 deg, c1 = 0.002 and 0.02: {abs(worst):.1f} arcsec, but a constant {constant:.0f}: spherical "
+            "involutes stay conjugate about one apex",
         ),
         Trend(
             "43",
@@ -227,8 +227,8 @@ def _pressure_along_the_path() -> list[Trend]:
         share = (pressure[1] / pressure[[0, 2]]) ** 3
         reason = (
             f"the profiles fit each other best next to the pitch cone: relative curvature {across[2]:.2f} at the top, "
-            f"{across[1]:.2f} at {height[1]:+.2f} mm, {across[0]:.2f} 1/mm at the bottom of the whole path of one tooth "
-            f"pair ({name} +0.08), so that the one load of the source presses least there; highest there needs less "
+            f"{across[1]:.2f} at {height[1]:+.2f} mm, {across[0]:.2f} 1/mm at the bottom of one tooth pair's whole "
+            f"path ({name} +0.08), so that the one load of the source presses least there; highest there needs less "
             f"than {share[1]:.0%} of the load at the top and {share[0]:.0%} at the bottom"
         )
         found.append(
@@ -249,9 +249,7 @@ def sign_table(errors: ErrorMap) -> dict[str, dict[tuple[float, float], bool]]:
     smooth = {s: [step for step in STEPS if spiral_effect(*FULL, e=s * step).continuous] for s in SIGNS}
     aligned = spiral_effect(*FULL).place[1]
     rootwards = {s: spiral_effect(*FULL, h=s * 0.04).place[1] < aligned for s in SIGNS}
-    alone = {
-        (key, s): spiral_effect(*FULL, **{key: s * 0.04}).peak_to_peak for key in ("e", "h") for s in SIGNS
-    }
+    alone = {(key, s): spiral_effect(*FULL, **{key: s * 0.04}).peak_to_peak for key in ("e", "h") for s in SIGNS}
     raised = {
         (e, h): spiral_effect(*FULL, e=e * 0.04, h=h * 0.04).peak_to_peak > max(alone["e", e], alone["h", h])
         for e, h in both

@@ -33,7 +33,7 @@ def straight_effect(error: str, lead: float, form: str = "parabolic", relieved: 
 
 def trends() -> list[Trend]:
     """Every statement on the straight pair that a computation can judge."""
-    return [*_slight_crowning(), *_relief(), _one_crowning_for_all(), *_strong_crowning(), *_forms()]
+    return [*_slight_crowning(), *_relief(), _one_crowning_for_all(), *trends_of_strong_crowning(), *_forms()]
 
 
 def _slight_crowning() -> list[Trend]:
@@ -70,7 +70,7 @@ def _relief() -> list[Trend]:
             "35",
             "lengthwise crowning without tip relief: intermittent transmission error",
             not any(one.continuous for one in found["none"].values()),
-            f"lead {LEAD:g} um: {heights['none']} arcsec; not so under Δγ: {angular.peak_to_peak:.1e} arcsec",
+            f"lead {LEAD:g} um: {heights['none']} arcsec; not so under Δγ: {abs(angular.peak_to_peak):.1f} arcsec",
         ),
         Trend(
             "35",
@@ -108,7 +108,8 @@ def _ellipse(lead: float) -> tuple[float, float]:
     return found.max_pressure, found.semi_major
 
 
-def _strong_crowning() -> list[Trend]:
+def trends_of_strong_crowning() -> list[Trend]:
+    """Figure 37: path, ellipse and pressure under Delta E with ten times the lead crowning."""
     weak, strong = (straight_effect("ΔE", lead, relieved="both") for lead in (LEAD, STRONG))
     (low, long), (high, short) = _ellipse(LEAD), _ellipse(STRONG)
     factors = np.geomspace(1.0, 100.0, 15)
@@ -142,7 +143,7 @@ def _forms() -> list[Trend]:
         curves = [straight_effect(error, LEAD, form, "both").transmission_error for form in FORMS]
         shapes = [curve - curve.max() for curve in curves]
         away[error] = max(float(np.abs(shape - shapes[0]).max()) for shape in shapes)
-    listed = ", ".join(f"{error} {value:.2g}" for error, value in away.items())
+    listed = ", ".join(f"{error} {round(value, 6):.2g}" for error, value in away.items())
     equal = {form: _pressures(form, LEAD) for form in FORMS}
     matched = equal | {"logarithmic": _pressures("logarithmic", STEEPER * LEAD)}
     spread = {

@@ -57,7 +57,7 @@ def areas() -> list[Printed]:
         for form in FORMS:
             error = path(line, form).transmission_error
             area = 0.5 * abs(float(error[1] - error[0])) * ARCSEC * degrees(TURN)
-            quantity = f"{line.error} {line.angle:+.1f} deg, {form}: area S [arcsec deg]"
+            quantity = f"{line.error.replace('_', '-')} {line.angle:+.1f} deg, {form}: area S [arcsec deg]"
             found.append(Printed(figure, quantity, numbers[form], area, f"over {TURN:g} rad, as {line.table}"))
     return found
 
@@ -82,7 +82,7 @@ def stress_ratios() -> list[Printed]:
         pressure = hertz_pressure(pair, trace_contact(pair, [0.0])[0], HELICAL.load)
         known = angle == SMALLEST.angle
         assumed = "crowning of Table 4" if known else "crowning of Table 4 at 0.05 deg, inversely as the angle"
-        quantity = f"out_of_plane {angle:g} deg, {form}: SR"
+        quantity = f"out-of-plane {angle:g} deg, {form}: SR"
         found.append(Printed("29", quantity, printed, pressure / unmodified_pressure(), f"{assumed}; p_0 of a line"))
     return found
 

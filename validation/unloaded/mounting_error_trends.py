@@ -135,22 +135,28 @@ def trends_without_relief() -> list[Trend]:
 
 
 def _motion(mesh: MeshPath) -> str:
-    return f"{'' if mesh.is_continuous else 'dis'}continuous, {mesh.peak_to_peak * ARCSEC:.2g} arcsec"
+    return f"{'' if mesh.is_continuous else 'dis'}continuous, {mesh.peak_to_peak * ARCSEC:.3g} arcsec"
 
 
 def _trends_of_spur_pair() -> list[Trend]:
     plain = {error: trace_teeth(SPUR.pair(Mounting(**{error: LARGEST[SPUR][error]}))) for error in ERRORS}
     aligned, across = SPUR.pair(), LARGEST[SPUR]["axial_offset"]
-    plain["y offset"] = trace_teeth(replace(aligned, wheel_origin=aligned.wheel_origin + [0.0, across, 0.0]))
+    plain["offset_along_y"] = trace_teeth(replace(aligned, wheel_origin=aligned.wheel_origin + across * np.eye(3)[1]))
     mounts = {"in": Mounting(in_plane=0.0175), "out": Mounting(out_of_plane=0.0175), "both": Mounting(0.0175, 0.0175)}
     meshes = {name: trace_teeth(SPUR.pair(mounting, **RELIEF)) for name, mounting in mounts.items()}
     sides = [bool(mesh.leading_contact.edges[:, SIDES].any()) for mesh in plain.values()]
     heights = {name: mesh.peak_to_peak * ARCSEC for name, mesh in meshes.items()}
-    shifts = ", ".join(f"{e} {m.leading_contact.pinion_axial[POSITIONS // 2]:+.2f} mm" for e, m in plain.items())
-    size = {error: f"{error} {mesh.peak_to_peak * ARCSEC:.2g}" for error, mesh in plain.items()}
+    shifts = ", ".join(
+        f"{error.replace('_', ' ')} {round(mesh.leading_contact.pinion_axial[POSITIONS // 2], 2) + 0.0:+.2f}"
+        for error, mesh in plain.items()
+    )
+    linear = (*ERRORS[2:], "offset_along_y")
+    size = {
+        error: f"{error.replace('_', ' ')} {round(mesh.peak_to_peak * ARCSEC, 6):.2g}" for error, mesh in plain.items()
+    }
     unlike = {name: heights[name] / heights["out"] - 1.0 for name in ("in", "both")}
     relieved = f"parabolic reliefs of 20 um (assumed): {heights['out']:.4g} arcsec out-of-plane,"
-    turned = plain["y offset"].mean * ARCSEC
+    turned = plain["offset_along_y"].mean * ARCSEC
     both = (
         "the source calls ΔH an axial offset (along z), out of plane, along y: along z it moves the wheel under the "
         f"crowning of the pinion; along y it turns the line of centres, a constant {turned:.0f} arcsec, and opens the "
@@ -158,7 +164,9 @@ def _trends_of_spur_pair() -> list[Trend]:
         "neither disturbs the motion"
     )
     return [
-        Trend("17", "spur: lead crowning keeps every misaligned contact off the sides", not any(sides), shifts),
+        Trend(
+            "17", "spur: lead crowning keeps every misaligned contact off the sides", not any(sides), f"z = {shifts} mm"
+        ),
         *(
             Trend(
                 "17",
@@ -166,7 +174,10 @@ def _trends_of_spur_pair() -> list[Trend]:
                 not any(plain[error].is_continuous for error in errors),
                 f"peak to peak {', '.join(size[error] for error in errors)} arcsec{more}",
             )
-            for kind, errors, more in (("angular", ERRORS[:2], ""), ("linear", (*ERRORS[2:], "y offset"), f"; {both}"))
+            for kind, errors, more in (
+                ("angular", ERRORS[:2], ""),
+                ("linear", linear, f"; {both}"),
+            )
         ),
         Trend(
             "18, 19",
@@ -264,7 +275,7 @@ def _trends_of_paths() -> list[Trend]:
 
 
 def trends_of_forms() -> list[Trend]:
-    """Figure 25: shift of the path by in-plane errors with the three forms, and with the constants of Table 3."""
+    """Figures 25 and 27: shift of the path with the three forms, and with the first constants of Tables 3 and 4."""
     mounting = Mounting(in_plane=radians(0.2))
     amounts = {
         "equal": dict.fromkeys(FORMS, HELICAL.crowning),
@@ -278,18 +289,36 @@ def trends_of_forms() -> list[Trend]:
         }
         away[name] = {form: value / shifts["parabolic"] - 1.0 for form, value in shifts.items()}
     listed = {
-        name: ", ".join(f"{form} {100.0 * part[form]:+.2g} %" for form in ("circular", "logarithmic"))
+        name: ", ".join(f"{form} {100.0 * part[form]:+.3g} %" for form in ("circular", "logarithmic"))
         for name, part in away.items()
     }
-    nearer = {}
-    for line in (LINES[0], LINES[3], LINES[6]):
-        turned = Mounting(in_plane=radians(line.angle))
-        circular, parabolic = (
-            abs(shift(HELICAL, turned, lead_crowning=amount(line, form), lead_crowning_form=form))
-            for form in ("circular", "parabolic")
-        )
-        nearer[abs(line.angle)] = circular / parabolic - 1.0
-    constants = ", ".join(f"{angle:g} deg {value:+.2%}" for angle, value in nearer.items())
+    printed = {
+        (line.error, abs(line.angle)): {
+            form: abs(
+                shift(
+                    HELICAL,
+                    Mounting(**{line.error: radians(line.angle)}),
+                    lead_crowning=amount(line, form),
+                    lead_crowning_form=form,
+                )
+            )
+            for form in FORMS
+        }
+        for line in LINES[::3]
+    }
+    nearer = {
+        angle: part["circular"] / part["parabolic"] - 1.0
+        for (error, angle), part in printed.items()
+        if error == "in_plane"
+    }
+    farther = {
+        angle: part["logarithmic"] / part["parabolic"] - 1.0
+        for (error, angle), part in printed.items()
+        if error == "out_of_plane"
+    }
+    constants, logarithms = (
+        ", ".join(f"{angle:g} deg {value:+.2%}" for angle, value in part.items()) for part in (nearer, farther)
+    )
     against = "shift against that of the parabola at 0.2 deg:"
     return [
         Trend(
@@ -310,6 +339,13 @@ def trends_of_forms() -> list[Trend]:
             max(nearer[0.1], nearer[0.2]) < 0.0,
             f"against the parabola, with the first constants of Table 3: {constants}; the constants decide, and of the "
             "logarithm one is not printed",
+        ),
+        Trend(
+            "27",
+            "helical: the logarithmic path is noticeably farther from the middle at 0.2 deg, but not at 0.05 and 0.1",
+            farther[0.2] > ALIKE > max(abs(farther[0.05]), abs(farther[0.1])),
+            f"against the parabola, with the first constants of Table 4: {logarithms}; at 0.2 deg its a1 is too "
+            "small for any a2 to give the curvature of the parabola",
         ),
     ]
 
@@ -372,8 +408,7 @@ def trends_of_helical_pressure() -> list[Trend]:
     table = [{form: _pitch_point(line.angle, form, amount(line, form)) for form in FORMS} for line in LINES[9::3]]
     falls = all(table[0][form] > table[1][form] > table[2][form] for form in FORMS)
     change = {
-        form: at_last["removing the same at the ends of the face"][form]
-        / _pitch_point(0.01, form, HELICAL.crowning)
+        form: at_last["removing the same at the ends of the face"][form] / _pitch_point(0.01, form, HELICAL.crowning)
         - 1.0
         for form in FORMS
     }
