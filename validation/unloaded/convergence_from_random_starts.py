@@ -37,6 +37,7 @@ CHOICES = ("y, z", "x, z")
 """Components of the normals; x and y are singular together for parallel axes."""
 STATED_STARTS = 1000
 _SPUR, _HELICAL = Draw("-0.1 to 0.6 rad", -0.1, 0.6, True), Draw("-0.065 to 0.335 rad", -0.065, 0.335, True)
+_WHOLE_TURN = Draw("within pi (not stated)", -math.pi, math.pi, True)
 STATED: dict[str, tuple[tuple[Draw, float], ...]] = {
     "spur 25/25": (
         (Draw("1.6 rad", 1.6, 1.6, True), 0.0),
@@ -46,13 +47,13 @@ STATED: dict[str, tuple[tuple[Draw, float], ...]] = {
         (_SPUR, 81.8),
     ),
     "spur 25/25, 0.1 deg in plane": ((_SPUR, 80.0),),
-    "helical 25/77": ((_HELICAL, 13.5),),
-    "helical 25/77, -3 arcmin in plane": ((_HELICAL, 14.2),),
+    "helical 25/77": ((_HELICAL, 13.5), (_WHOLE_TURN, 13.5)),
+    "helical 25/77, -3 arcmin in plane": ((_HELICAL, 14.2), (_WHOLE_TURN, 14.2)),
 }
 """Pair -> draws that the source states, the start on the wheel in the middle of its flank, and the share it prints [%].
 
 It counts angles from an axis of its own, so that either side of the answer may be meant. The middle of the flank is
-said of the spur pairs alone.
+said of the spur pairs alone; "almost all" is 100 here, "hardly any" 0. The whole turn is no draw of the source.
 """
 
 
@@ -195,9 +196,10 @@ software are not named: compare percentages and steps, not times.
 
 ## The draws that the source states
 
-{stated_starts} starts each, (rho1, z1) at random, (rho2, z2) in the middle of the wheel's flank, phi2 at or between the
-given distances from the answer; printed and computed shares [%]. It is not said which side of the answer is meant in
-the frame of this page (greater or smaller phi2), nor which components of the normals are set equal:
+{stated_starts} starts each, (rho1, z1) at random, (rho2, z2) in the middle of the wheel's flank (said of the spur
+pairs), phi2 at or between the given distances from the answer; printed and computed shares [%]. It is not said which
+side of the answer is meant in the frame of this page (greater or smaller phi2), nor which components of the normals are
+set equal:
 
 | pair | phi2 from the answer | printed | y, z, greater | y, z, smaller | x, z, greater | x, z, smaller |
 |---|---|---|---|---|---|---|
@@ -206,8 +208,8 @@ the frame of this page (greater or smaller phi2), nor which components of the no
 Near 0.4 rad the share falls steeply with the distance, for each choice at another place. The printed 48, 67 and nearly
 100 % (shown as 100) lie on such a slope; no choice gives all three. From the band the spur pairs converge about as
 often as printed. The helical pair's 13.5 and 14.2 % are not reproduced: from the band that is stated, every start
-converges, whatever the choice. One difference is known: the helical flank of the source is no helicoid (its twist is
-asin(v sin(beta)/r_b)).
+converges, whatever the choice; shares of that size belong to starts over the whole turn. One difference is known: the
+helical flank of the source is no helicoid (its twist is asin(v sin(beta)/r_b)).
 
 ## Assumed, where the source says nothing
 
