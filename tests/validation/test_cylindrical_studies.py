@@ -10,18 +10,12 @@ from numpy.testing import assert_allclose
 from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.unloaded.teeth import trace_teeth
 from validation.unloaded.convergence_from_random_starts import STATED, cases, stated_table
+from validation.unloaded.helical_trends import equally_curved, trends_of_forms, trends_of_helical_pressure
 from validation.unloaded.mounting_error_figures import areas, lines, stress_ratios, unmodified_pressure
 from validation.unloaded.mounting_error_pairs import FORMS, HELICAL, SPUR, hertz_pressure
-from validation.unloaded.mounting_error_trends import (
-    Trend,
-    equally_curved,
-    trends_of_forms,
-    trends_of_helical_pressure,
-    trends_of_spur_pressure,
-    trends_without_relief,
-    verdicts,
-)
+from validation.unloaded.mounting_error_trends import Trend, verdicts
 from validation.unloaded.random_starts import SPREADS, Draw, conventional
+from validation.unloaded.spur_trends import trends_of_spur_pressure, trends_without_relief
 
 STEP = 0.01  # mm; of the differences in the middle of the face
 SAME_CURVATURE = 1e-4  # of those differences: the fourth derivatives of the circle and of the logarithm

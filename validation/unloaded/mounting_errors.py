@@ -19,6 +19,7 @@ from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.unloaded import trace_contact
 from loaded_tca.unloaded.teeth import trace_teeth
 from validation.table import Row
+from validation.unloaded.helical_trends import trends as helical_trends
 from validation.unloaded.mounting_error_figures import lines as printed_lines
 from validation.unloaded.mounting_error_figures import rows as printed_rows
 from validation.unloaded.mounting_error_figures import unmodified_pressure
@@ -35,7 +36,8 @@ from validation.unloaded.mounting_error_pairs import (
     hertz_pressure,
     shift,
 )
-from validation.unloaded.mounting_error_trends import trends, verdicts
+from validation.unloaded.mounting_error_trends import verdicts
+from validation.unloaded.spur_trends import trends as spur_trends
 
 
 @dataclass(frozen=True)
@@ -218,7 +220,7 @@ def document() -> str:
         helical=1e3 * HELICAL.crowning,
         angle=degrees(LARGEST[SPUR]["in_plane"]),
         length=LARGEST[SPUR]["axial_offset"],
-        trends="\n".join(verdicts(trends())),
+        trends="\n".join(verdicts([*spur_trends(), *helical_trends()])),
         p0=unmodified_pressure(),
         printed="\n".join(printed_lines()),
         effects="\n".join(_line(one) for one in effects()),
