@@ -15,6 +15,7 @@ from validation.unloaded.mounting_error_figures import areas, lines, stress_rati
 from validation.unloaded.mounting_error_pairs import FORMS, HELICAL, SPUR, hertz_pressure
 from validation.unloaded.mounting_error_trends import Trend, verdicts
 from validation.unloaded.random_starts import SPREADS, Draw, conventional
+from validation.unloaded.reduced_tca_tables import TURN
 from validation.unloaded.spur_trends import trends_of_spur_pressure, trends_without_relief
 
 STEP = 0.01  # mm; of the differences in the middle of the face
@@ -138,9 +139,9 @@ def test_areas_of_one_figure_are_those_of_a_straight_line_whatever_the_form():
     for part in (found[:3], found[3:]):
         assert np.ptp([one.computed for one in part]) < 1e-3 * part[0].computed  # the line is straight to first order
         assert np.ptp([one.printed for one in part]) > 0.02 * part[0].printed
-    # slopes that were computed twice independently [arcsec/rad], at 0.1 deg, doubled; over 0.01 rad
+    # slopes that were computed twice independently [arcsec/rad], at 0.1 deg, doubled; over the turn of Tables 3 and 4
     for one, slope in ((found[0], 31.866), (found[3], 84.768)):
-        assert_allclose(one.computed, 0.5 * 2.0 * slope * 0.01 * math.degrees(0.01), rtol=0.01)
+        assert_allclose(one.computed, 0.5 * 2.0 * slope * TURN * math.degrees(TURN), rtol=0.01)
 
 
 def test_pressure_of_the_unmodified_pair_is_that_of_a_line_over_the_face():

@@ -2,7 +2,7 @@
 
 None can be judged, only shown: window and units of the areas S are not said, nor the crowning at the two smallest
 angles of Figure 29, nor the pressure p_0 of the aligned, unmodified pair to which its SR = p/p_0 refer. Taken here: the
-areas of Tables 3 and 4, from the pitch point to 0.01 rad, in arcsec times deg; the first constants of Table 4 at
+areas of Tables 3 and 4, over the turn of these tables, in arcsec times deg; the first constants of Table 4 at
 0.05 deg, multiplied by 0.05 deg over the angle; p_0 of the contact line through the pitch point, over the whole face
 and under the whole load.
 """
