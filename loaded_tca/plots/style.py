@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.results.files import FilePath, replacing
 from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.summary import signed
 
 COLOURS = "viridis"
 """Even in lightness, and told apart by colour-blind readers and in grey."""
@@ -112,11 +113,6 @@ def place(result: MeshCycle, position: int, frame: FlankFrame, column: int) -> t
         f"position {position + 1} of {len(result.path)}{which}: pinion angle {_degrees(where.pinion_angle)} deg",
         f"contact point on the pinion: {frame.place(where.pinion_radius, where.pinion_axial)}",
     )
-
-
-def signed(number: int) -> str:
-    """Return the number of a tooth pair as pictures show it: 0, +1, -1."""
-    return f"{number:+d}" if number else "0"
 
 
 def range_of_positions(result: MeshCycle) -> str:
