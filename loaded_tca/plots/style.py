@@ -24,11 +24,12 @@ ACCENT, NO_MATERIAL, NOT_REACHED = "#d55e00", "0.8", "0.9"
 MARKERS = "osD^vP*X"
 HERTZ: dict[str, Any] = {"linestyle": "--", "linewidth": 4.0, "alpha": 0.4, "zorder": 1.0}
 """How a curve after Hertz is drawn: broad, below the curve that it is compared with, in the colour of its torque."""
+NO_LOAD = "no load, no pressure"
 MOST_LABELS = 8
 HEADROOM = 0.08
 """Part of an axis above the highest curve."""
-LONGEST_LINE = 100
-"""Characters of a title in one line."""
+LONGEST_LINE = 95
+"""Characters of a title in one line, as many as the narrowest picture holds."""
 DOTS_PER_INCH = 120
 
 
@@ -82,9 +83,9 @@ def from_zero(axes: Axes, part: float = 1.0) -> None:
         axes.set_ylim(bottom=0.0)
 
 
-def tell_no_load(axes: Axes) -> None:
+def tell(axes: Axes, why: str) -> None:
     """Say in a picture why it is empty."""
-    axes.text(0.5, 0.65, "no load, no pressure", transform=axes.transAxes, ha="center", va="center", fontsize="large")
+    axes.text(0.5, 0.65, why, transform=axes.transAxes, ha="center", va="center", wrap=True)
 
 
 def highest_torque(result: MeshCycle) -> int:
@@ -126,8 +127,9 @@ def range_of_positions(result: MeshCycle) -> str:
 def set_title(figure: Figure, result: MeshCycle, *about: str) -> None:
     """Write the title of the scene and what is shown; taken literally, signs of TeX too."""
     joined = ", ".join(about)
-    lines = [*textwrap.wrap(result.scene.title, 90), *([joined] if len(joined) <= LONGEST_LINE else about)]
-    figure.suptitle("\n".join(lines), fontsize="medium", parse_math=False)
+    lines = [result.scene.title, *([joined] if len(joined) <= LONGEST_LINE else about)]
+    wrapped = [part for line in lines for part in textwrap.wrap(line, LONGEST_LINE)]
+    figure.suptitle("\n".join(wrapped), fontsize="medium", parse_math=False)
 
 
 def _in_newton_metres(result: MeshCycle, torque: int) -> str:
