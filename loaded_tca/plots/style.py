@@ -128,8 +128,14 @@ def set_title(figure: Figure, result: MeshCycle, *about: str) -> None:
     """Write the title of the scene and what is shown; taken literally, signs of TeX too."""
     joined = ", ".join(about)
     lines = [result.scene.title, *([joined] if len(joined) <= LONGEST_LINE else about)]
-    wrapped = [part for line in lines for part in textwrap.wrap(line, LONGEST_LINE)]
+    wrapped = [part for line in lines for part in _parts_of(line)]
     figure.suptitle("\n".join(wrapped), fontsize="medium", parse_math=False)
+
+
+def _parts_of(line: str) -> list[str]:
+    """A line, or as many of even length as it takes, so that no short end is left over."""
+    count = math.ceil(len(line) / LONGEST_LINE)
+    return textwrap.wrap(line, min(LONGEST_LINE, len(line) // max(1, count) + 10))
 
 
 def _in_newton_metres(result: MeshCycle, torque: int) -> str:

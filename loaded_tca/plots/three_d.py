@@ -34,7 +34,8 @@ SEAMS = "0.35"
 LIFT, AMBIENT = 3e-3, 0.4
 """How far pressure and path are lifted off the facets of the flank, over the length of the tooth, so that these do not
 hide them; light from everywhere."""
-MOST_TICKS = 5
+MOST_TICKS, LABEL_PAD = 5, 10.0
+"""Ticks of an axis, and the distance [points] of its name, at which neither covers the other."""
 DRAWN = Resolution(flank=25, fillet=9, land=3, lengthwise=25)
 EXTRA = "pyvista is not installed; install it with: pip install 'loaded_tca[three-d]'"
 
@@ -88,6 +89,7 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
         axis.set_major_locator(MaxNLocator(MOST_TICKS))
         axis.set_rotate_label(False)  # matplotlib would turn them along the axes, that of z upside down
         axis.set_label_text(f"{name} [mm]", rotation=90.0 if name == "z" else 0.0)
+        axis.labelpad = LABEL_PAD
     x, y, z = shown.eye
     axes.view_init(elev=math.degrees(math.asin(z)), azim=math.degrees(math.atan2(y, x)))
     side = shown.pair.pinion.flank.side

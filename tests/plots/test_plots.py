@@ -277,6 +277,20 @@ def test_pictures_without_load_say_so():
     assert flanks.legends[0].get_title().get_text() == "pressure drawn at 0 of 2 positions"
 
 
+@pytest.mark.parametrize("plot", PLOTS)
+def test_lines_of_a_title_are_no_wider_than_the_picture(plot):
+    figure = plot(changed_scene(result(), {"title": 12 * "a long title "}))
+    figure.draw_without_rendering()
+    (title,) = [text for text in figure.texts if text.get_text() == figure.get_suptitle()]
+    assert title.get_window_extent().width < figure.bbox.width
+    assert min(len(line) for line in title.get_text().splitlines()) > 10
+
+
+def test_pressure_beside_an_edge_says_where_it_is():
+    labels = plot_peak_pressure(result("misaligned", positions=2)).axes[0].get_legend_handles_labels()[1]
+    assert "at the contact point, where the peak lies at an edge" in labels
+
+
 def test_pictures_touch_no_global_state():
     before = sys.modules.get("matplotlib.pyplot")
     plot_peak_pressure(result())
