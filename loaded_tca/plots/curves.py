@@ -14,7 +14,7 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 
 SMALLEST_SPAN_ARCSEC = 0.02
 """Height of a transmission error axis below which a curve would be rounding."""
-BESIDE = "at the contact point, where the peak lies at an edge"
+BESIDE = "at the contact point, where the peak is mesh-dependent"
 EDGE_HEADROOM = 1.15
 """How far above the curves a peak at an edge may draw the axis: how high it is depends on the mesh."""
 

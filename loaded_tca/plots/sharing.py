@@ -33,7 +33,7 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.summary import signed
 from loaded_tca.unloaded import trace_contact
 
-EDGE = "contact at an edge: its pressure is mesh-dependent and not drawn"
+EDGE = "at an edge or relief start: pressure mesh-dependent, not drawn"
 WHAT_LETTERS_ARE = "A, E: the unloaded contact of these flanks begins, ends; B, D: a pitch from E, A; C: pitch point"
 NEAR_LETTERS = 0.03
 """Part of the axis below which two letters stand to either side of their lines."""
@@ -248,11 +248,12 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
     style.from_zero(axes)
     if not np.isfinite(pressure).any():
         axes.set_yticks([])
-        style.tell(axes, "every contact lies at an edge: its pressure is mesh-dependent")
+        style.tell(axes, "every contact lies at an edge or relief start: its pressure is mesh-dependent")
     elif not (pressure > 0.0).any():
         style.tell(axes, NO_LOAD)
     _mark_points(axes, pair, float(np.abs(np.radians(angle)).max()))
-    return style.finished(figure, axes, result, f"pressure over the path of contact, {loads(result)}")
+    about, columns = f"pressure over the path of contact, {loads(result)}", 2 if at_edge.any() else 3
+    return style.finished(figure, axes, result, about, columns=columns)
 
 
 def _draw_edge_contacts(figure: Figure, axes: Axes, result: MeshCycle, angles: list[Array]) -> Axes:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import to_rgb
+from matplotlib.colors import Normalize, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -19,7 +19,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.output.teeth_in_space import TeethInSpace, teeth_in_space
 from loaded_tca.pairs import mating_teeth
-from loaded_tca.plots.flanks import colour_scale
+from loaded_tca.plots.flanks import highest_of_scale
 from loaded_tca.plots.style import ACCENT, COLOURS, load, place, set_title
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.tooth import PATCHES, Resolution, TriangleMesh
@@ -84,7 +84,7 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
     points = np.concatenate([shown.pinion.vertices, shown.wheel.vertices])
     low, high = points.min(axis=0), points.max(axis=0)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set_box_aspect(high - low, zoom=0.9)
+    axes.set_box_aspect(high - low, zoom=0.85)
     for axis, name in zip((axes.xaxis, axes.yaxis, axes.zaxis), "xyz", strict=True):
         axis.set_major_locator(MaxNLocator(MOST_TICKS))
         axis.set_rotate_label(False)  # matplotlib would turn them along the axes, that of z upside down
@@ -97,7 +97,8 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
     axes.add_collection3d(_lines(shown.pinion, side))
     one = result.maps[shown.torque][shown.position][shown.column]
     if one is not None and shown.highest_pressure > 0.0:
-        norm, extend = colour_scale(result, shown.torque, [one])
+        highest = min(shown.highest_pressure, highest_of_scale(result, shown.torque, [one]))
+        norm, extend = Normalize(0.0, highest), "max" if shown.highest_pressure > highest else "neither"
         faces = colormaps[COLOURS](norm(shown.pressure.cell_data["pressure_MPa"]))
         corners = shown.pressure.corners
         axes.add_collection3d(Poly3DCollection(corners, facecolors=faces, edgecolors=faces, linewidths=0.2))

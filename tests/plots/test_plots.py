@@ -289,7 +289,7 @@ def test_lines_of_a_title_are_no_wider_than_the_picture_and_none_is_a_mere_end()
 
 def test_pressure_beside_an_edge_says_where_it_is():
     labels = plot_peak_pressure(result("misaligned", positions=2)).axes[0].get_legend_handles_labels()[1]
-    assert "at the contact point, where the peak lies at an edge" in labels
+    assert "at the contact point, where the peak is mesh-dependent" in labels
 
 
 def test_pictures_touch_no_global_state():

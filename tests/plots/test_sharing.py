@@ -16,6 +16,7 @@ from loaded_tca.plots import (
     plot_line_load_distribution,
     plot_load_share,
     plot_path_pressure,
+    plot_peak_pressure,
     plot_pressure_envelope,
     sharing,
 )
@@ -125,6 +126,16 @@ def test_contacts_at_an_edge_have_a_panel_of_their_own_without_a_pressure():
     assert below.get_xlim() == axes.get_xlim()
 
 
+@pytest.mark.parametrize(
+    "plot", [plot_harmonics, plot_load_share, plot_path_pressure, sharing.plot_mesh_stiffness, plot_peak_pressure]
+)
+def test_legends_are_no_wider_than_the_picture(plot):
+    figure = plot(shared(torques=(40.0, 130.0, 260.0)))
+    figure.draw_without_rendering()
+    legend = figure.legends[0].get_window_extent()
+    assert figure.bbox.x0 <= legend.x0 < legend.x1 <= figure.bbox.x1
+
+
 def test_path_without_contacts_at_edges_has_one_panel():
     assert len(plot_path_pressure(shared("mesh_cycle_spur", torques=(40.0,))).axes) == 1
 
@@ -134,7 +145,9 @@ def test_path_whose_every_contact_lies_at_an_edge_says_so():
     held = changed(cycle, on_relief_start=np.ones(cycle.load_share.shape, dtype=bool))
     paths = tuple(replace(path, on_relief_start=np.ones(len(path), dtype=bool)) for path in cycle.paths)
     axes, _ = plot_path_pressure(replace(held, paths=paths)).axes
-    assert "every contact lies at an edge: its pressure is mesh-dependent" in [text.get_text() for text in axes.texts]
+    assert "every contact lies at an edge or relief start: its pressure is mesh-dependent" in [
+        text.get_text() for text in axes.texts
+    ]
     assert not axes.get_yticks().size
 
 

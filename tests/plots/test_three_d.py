@@ -40,7 +40,7 @@ def test_scales_of_the_three_axes_are_equal():
 
 
 def test_names_of_the_axes_are_upright_and_clear_of_the_numbers():
-    for name in ("helical", "spiral_bevel"):
+    for name in ("helical", "spiral_bevel", "misaligned", "fzg_c14"):
         figure = plot_teeth(result(name, positions=3))
         figure.draw_without_rendering()
         axes = axes_of(figure)
@@ -59,6 +59,15 @@ def test_colours_of_the_teeth_do_not_follow_the_spike_of_an_edge():
     bar = plot_teeth(cycle).axes[1]
     assert cycle.peak_at_edge.all()
     assert_allclose(bar.get_ylim()[1], np.nanmax(cycle.mesh_independent_pressure), rtol=1e-12)
+    assert bar._colorbar.extend == "max"
+
+
+def test_colours_of_the_teeth_end_at_the_highest_pressure_of_their_position():
+    cycle = result()
+    lowest = int(cycle.peak_pressure[0, :, 0].argmin())
+    bar = plot_teeth(cycle, position=lowest).axes[1]
+    assert_allclose(bar.get_ylim()[1], cycle.maps[0][lowest][0].pressure.max(), rtol=1e-12)
+    assert bar._colorbar.extend == "neither"
 
 
 def test_picture_without_load_has_no_pressure():
