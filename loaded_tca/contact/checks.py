@@ -28,6 +28,16 @@ def check_grid(gap: Array, spacing: tuple[float, float], contact_modulus: float)
     return problems
 
 
+def check_cover(cover: Array | None, gap: Array) -> list[str]:
+    """Problems of the parts of the cells that have material."""
+    if cover is None:
+        return []
+    if cover.shape != gap.shape:
+        return [f"cover: its shape {cover.shape} is not that of the gap, {gap.shape}"]
+    wrong = int(np.count_nonzero(~((cover > 0.0) & (cover <= 1.0))[np.isfinite(gap)]))
+    return [f"cover: {wrong} cells with a finite gap are not above 0 and at most 1"] if wrong else []
+
+
 def check_spacing(spacing: tuple[float, float]) -> list[str]:
     """Problems of the widths of a cell."""
     if np.shape(spacing) != (2,):

@@ -57,7 +57,7 @@ def judge(grid: Grid, pressure: Array, excess: Array) -> Judgement:
     inner = loaded = pressure > grid.slack
     capped: Mask | None = None
     if not math.isinf(grid.cap):
-        capped = pressure >= grid.cap - grid.slack
+        capped = pressure >= grid.limit - grid.slack
         inner = loaded & ~capped
     approach = grid.approach if grid.total is None else _mean_level(excess, loaded, inner, capped)
     excess -= approach
@@ -124,6 +124,7 @@ class Descent:
         self._threads = threads
         self._fast = grid.operator(dtype="float32", threads=threads)
         self._precondition = Preconditioner(shape, grid.aspect, threads)
+        self._cover_root = None if grid.cover is None else np.sqrt(grid.cover).astype(np.float32)
         self._displacement = displacement if displacement is not None else self._displaced(exact)
         self._excess = np.empty(shape)
         self._scale = 0.0
@@ -159,7 +160,7 @@ class Descent:
 
     def settle(self) -> Array:
         """Take the rounding errors of the steps off the sum of the pressures; return these."""
-        self.pressure = self.grid.clip(self.pressure, (self.pressure > 0.0) & (self.pressure < self.grid.cap))
+        self.pressure = self.grid.clip(self.pressure, (self.pressure > 0.0) & (self.pressure < self.grid.limit))
         return self.pressure
 
     def _iterate(self, free: Mask) -> None:
@@ -173,7 +174,7 @@ class Descent:
             return
         length = self._scale * dot(direction, residual) / curvature
         trial = self.pressure - length * direction
-        if float(trial.min()) >= 0.0 and (math.isinf(self.grid.cap) or float(trial.max()) <= self.grid.cap):
+        if float(trial.min()) >= 0.0 and (math.isinf(self.grid.cap) or bool((trial <= self.grid.limit).all())):
             self.pressure = trial
             self._displacement -= length * image
         elif not self._move(self.grid.clip(trial, free)):
@@ -183,7 +184,10 @@ class Descent:
 
     def _conjugate(self, residual: Single, free: Mask) -> Single:
         """Direction of Polak and Ribiere from the preconditioned residual; a restart where it does not descend."""
-        preconditioned = self._precondition(residual, np.empty_like(residual))
+        root = self._cover_root  # cut cells are about so much stiffer, the part being its square
+        preconditioned = self._precondition(residual if root is None else root * residual, np.empty_like(residual))
+        if root is not None:
+            preconditioned *= root
         self._level(preconditioned, free)
         descent = dot(preconditioned, residual)
         direction = self._direction

@@ -11,6 +11,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.convolution import Convolution, Window
+from loaded_tca.contact.cuts import CutCells, limits, merged_cover
 from loaded_tca.contact.edges import FreeEdge, MirroredConvolution, amplification, mirrors
 from loaded_tca.contact.levels import coarsen, window_around
 from loaded_tca.contact.love import influence_coefficients
@@ -24,6 +25,8 @@ OUT_OF_REACH = 2.0
 MOST_PROJECTIONS = 100
 # Relative error of the sum of some thousand pressures.
 SUMMED = 1e-15
+# Parts of cells without material, which divide here, are at least this.
+LEAST_COVER = 1e-6
 # Part of the cap by which a pressure at a bound may be off it by rounding.
 AT_BOUND = 1e-12
 
@@ -45,13 +48,15 @@ class Grid:
     approach : float [mm]
         Prescribed approach, counted as ``gap`` is; of no meaning if the total is given.
     cap : float [mm]
-        Largest pressure, infinity if there is none.
+        Largest pressure, infinity if there is none; of the material of a cut cell, see ``limit``.
     free_edges : tuple of FreeEdge
         Where the bodies end; K holds their images of the pressure too.
     slices : (ny, ny) array, optional
         Displacement of every slice under a unit sum of pressures on each, a part of K too.
     start : (int, int)
         First cell on the grid that the free edges are counted on.
+    cover : (nx, ny) array, optional
+        Part of every cell that has material; None: all of it.
     """
 
     gap: Array
@@ -62,6 +67,7 @@ class Grid:
     free_edges: tuple[FreeEdge, ...] = ()
     slices: Array | None = None
     start: tuple[int, int] = (0, 0)
+    cover: Array | None = None
 
     @classmethod
     def of(cls, problem: ContactProblem) -> Grid:
@@ -72,9 +78,10 @@ class Grid:
             spacing=problem.spacing,
             total=None if problem.load is None else problem.load / (dy * modulus),
             approach=0.0 if problem.approach is None else problem.approach - problem.first_contact,
-            cap=problem.cap * (dx / modulus),
+            cap=math.inf if problem.max_pressure is None else problem.max_pressure * (dx / modulus),
             free_edges=tuple(problem.free_edges),
             slices=None if slices is None else slices * (dy * modulus),
+            cover=problem.cover,
         )
 
     @property
@@ -93,21 +100,29 @@ class Grid:
         return 0.0 if math.isinf(self.cap) else AT_BOUND * self.cap
 
     @cached_property
+    def limit(self) -> float | Array:
+        """Largest pressure of the cells."""
+        return self.cap if self.cover is None or math.isinf(self.cap) else limits(self.cap, self.cover)
+
+    @cached_property
     def reach(self) -> float:
         """Gap beyond which no cell can come into contact [mm].
 
-        No displacement exceeds that of the whole load on one cell, and some cell below the cap has a gap of at
-        most the (k + 1)-th smallest, k the number of cells that the load could fill to the cap: the approach is
-        at most the sum of both.
+        No displacement of a cell exceeds that of the whole load on it. The approach is at most the sum of its gap and
+        that displacement for some cell below the cap: one of the lowest sums, as many as the load fills to the cap and
+        one more.
         """
         if self.total is None:
             return self.approach
         own = amplification(self.free_edges) * float(influence_coefficients((1, 1), self.aspect)[0, 0])
         most = self.total * (own + (0.0 if self.slices is None else float(np.abs(self.slices).max())))
-        if not (full := int(self.total / self.cap)):
-            return most + float(self.gap.min())
-        rank = min(full, int(np.isfinite(self.gap).sum()) - 1)
-        return most + float(np.partition(self.gap.ravel(), rank)[rank])
+        sums = self.gap + (most if self.cover is None else most / np.maximum(self.cover, LEAST_COVER))
+        if math.isinf(self.cap):
+            return float(sums.min())
+        order = np.argsort(sums, axis=None)
+        held = np.cumsum(np.broadcast_to(self.limit, self.shape).ravel()[order])
+        rank = min(int(np.searchsorted(held, self.total, side="right")), int(np.isfinite(sums).sum()) - 1)
+        return float(sums.ravel()[order[rank]])
 
     @cached_property
     def reachable(self) -> Mask:
@@ -122,6 +137,7 @@ class Grid:
             gap=np.minimum(self.gap[window], OUT_OF_REACH * self.reach),
             slices=None if self.slices is None else self.slices[columns, columns],
             start=(rows.start, columns.start),
+            cover=None if self.cover is None else self.cover[window],
         )
 
     def coarser(self, merge: tuple[int, int]) -> Grid:
@@ -136,6 +152,7 @@ class Grid:
             total=None if self.total is None else self.total / merge[1],
             cap=self.cap * merge[0],
             slices=slices,
+            cover=None if self.cover is None else merged_cover(self.cover, merge),
         )
 
     def window(self, pressure: Array) -> Window:
@@ -151,27 +168,33 @@ class Grid:
             convolve = MirroredConvolution(self.shape, self.aspect, edges, window, dtype, threads)
         else:
             convolve = Convolution(self.shape, self.aspect, window, dtype, threads)
-        if self.slices is None:
+        if self.slices is None and self.cover is None:
             return convolve
-        compliance = (self.slices if window is None else self.slices[:, window[1]]).astype(dtype)
+        cuts = None if self.cover is None else CutCells(self.cover, self.aspect, window, dtype)
+        slices = self.slices
+        if slices is not None:
+            slices = (slices if window is None else slices[:, window[1]]).astype(dtype)
 
-        def over_slices(pressure: Array, out: Array) -> Array:
+        def displaced(pressure: Array, out: Array) -> Array:
             convolve(pressure, out)
-            out += compliance @ pressure.sum(axis=0, dtype=compliance.dtype)
+            if slices is not None:
+                out += slices @ pressure.sum(axis=0, dtype=slices.dtype)
+            if cuts is not None:
+                cuts.add(pressure, out)
             return out
 
-        return over_slices
+        return displaced
 
     def fitted(self, pressure: Array) -> Array:
         """Return a pressure within the bounds and with the right sum, zero where no contact is possible."""
         bounded = not math.isinf(self.cap)
-        pressure = np.where(self.reachable, np.minimum(pressure, self.cap) if bounded else pressure, 0.0)
+        pressure = np.where(self.reachable, np.minimum(pressure, self.limit) if bounded else pressure, 0.0)
         if self.total is None:
             return pressure
         if not pressure.any():
             pressure = self.reachable.astype(np.float64)
         pressure *= self.total / float(pressure.sum())
-        return self.project(pressure, self.reachable) if bounded and pressure.max() > self.cap else pressure
+        return self.project(pressure, self.reachable) if bounded and (pressure > self.limit).any() else pressure
 
     def clip(self, pressure: Array, movable: Mask) -> Array:
         """Pressure within the bounds and with the right sum: scaled where there is no cap, projected otherwise."""
@@ -183,16 +206,17 @@ class Grid:
 
     def project(self, pressure: Array, movable: Mask) -> Array:
         """Nearest pressure within the bounds and with the right sum that moves only the movable cells."""
-        projected = np.clip(pressure, 0.0, self.cap)
+        projected = np.clip(pressure, 0.0, self.limit)
         if self.total is not None and movable.any():
             rest = self.total - float(projected[~movable].sum())
-            projected[movable] = shifted_to_sum(pressure[movable], rest, min(self.cap, self.total))
+            limit = np.broadcast_to(np.minimum(self.limit, self.total), self.shape)[movable]
+            projected[movable] = shifted_to_sum(pressure[movable], rest, limit)
         return projected
 
 
-def shifted_to_sum(values: Array, total: float, cap: float) -> Array:
+def shifted_to_sum(values: Array, total: float, cap: float | Array) -> Array:
     """Project onto 0 <= p <= cap, sum p = total: p = clip(values - shift), the shift by safeguarded Newton steps."""
-    low, high = float(values.min()) - cap, float(values.max())
+    low, high = float((values - cap).min()), float(values.max())
     shift = 0.0
     for _ in range(MOST_PROJECTIONS):
         projected = np.clip(values - shift, 0.0, cap)

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from loaded_tca.arrays import Array
 from loaded_tca.contact import checks
+from loaded_tca.contact.cuts import limits
 from loaded_tca.contact.edges import FreeEdge, check_edges, without_material_beyond
 from loaded_tca.contact.slices import check_slices
 
@@ -43,6 +44,9 @@ class ContactProblem:
     slice_compliance : (ny, ny) array_like [mm/N], optional
         Displacement of every slice (cells of one place along the second axis) under a unit force on each of them, on
         top of that of the half-spaces.
+    cover : (nx, ny) array_like, optional
+        Part of every cell that has material, above 0 and at most 1 where the gap is finite; default: whole cells. The
+        pressure of a cell is the mean over the whole of it.
 
     Raises
     ------
@@ -64,24 +68,29 @@ class ContactProblem:
     max_pressure: float | None = None
     free_edges: Sequence[FreeEdge] = ()
     slice_compliance: Array | None = None
+    cover: Array | None = None
 
     def __post_init__(self) -> None:
         gap, slices, edges = _numbers(self.gap), self.slice_compliance, tuple(self.free_edges)
         slices = None if slices is None else _numbers(slices).copy()
+        cover = None if self.cover is None else _numbers(self.cover).copy()
         checks.raise_if(
             checks.check_grid(gap, self.spacing, self.contact_modulus)
             + check_edges(edges)
             + check_slices(slices, gap.shape)
+            + checks.check_cover(cover, gap)
         )
         spacing = float(self.spacing[0]), float(self.spacing[1])
         gap = without_material_beyond(gap.copy(), spacing, edges)
-        area = np.count_nonzero(np.isfinite(gap)) * spacing[0] * spacing[1]
+        there = np.isfinite(gap)
+        cover = None if cover is None or (cover[there] == 1.0).all() else np.where(there, cover, 0.0)
+        area = float(np.count_nonzero(there) if cover is None else cover.sum()) * spacing[0] * spacing[1]
         checks.raise_if([] if area else ["free_edges: no cell within them holds material"])
         checks.raise_if(checks.check_demand(self.load, self.approach, self.max_pressure, area))
-        for array in (gap, slices):
+        for array in (gap, slices, cover):
             if array is not None:
                 array.flags.writeable = False
-        own = {"gap": gap, "spacing": spacing, "free_edges": edges, "slice_compliance": slices}
+        own = {"gap": gap, "spacing": spacing, "free_edges": edges, "slice_compliance": slices, "cover": cover}
         for name, value in own.items():
             object.__setattr__(self, name, value)
 
@@ -90,10 +99,12 @@ class ContactProblem:
         """Smallest gap [mm]: the approach at which the load begins."""
         return float(self.gap.min())
 
-    @property
-    def cap(self) -> float:
-        """Largest pressure [MPa], infinity if there is none."""
-        return math.inf if self.max_pressure is None else self.max_pressure
+    @cached_property
+    def cap(self) -> float | Array:
+        """Largest pressure [MPa], infinity if there is none; of every cell, (nx, ny), where edges cut some."""
+        if self.max_pressure is None:
+            return math.inf
+        return self.max_pressure if self.cover is None else limits(self.max_pressure, self.cover)
 
     @property
     def cells(self) -> tuple[int, int]:

@@ -15,10 +15,14 @@ SYMMETRY = 1e-9
 
 def merge_slices(compliance: Array) -> Array:
     """Compliance where pairs of slices are one: the mean over both; an odd last one stays alone."""
-    starts = np.arange(0, len(compliance), 2)
-    sizes = np.diff(np.append(starts, len(compliance)))
-    summed = np.add.reduceat(np.add.reduceat(compliance, starts, axis=0), starts, axis=1)
-    return np.asarray(summed / (sizes[:, None] * sizes))
+    return merged(merged(compliance, 0), 1)
+
+
+def merged(values: Array, axis: int) -> Array:
+    """Means over pairs along an axis; an odd last one stays alone."""
+    starts = np.arange(0, values.shape[axis], 2)
+    sizes = np.diff(np.append(starts, values.shape[axis]))
+    return np.asarray(np.add.reduceat(values, starts, axis=axis) / (sizes[:, None] if axis == 0 else sizes))
 
 
 def check_slices(compliance: Array | None, shape: tuple[int, ...]) -> list[str]:

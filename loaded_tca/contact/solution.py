@@ -68,7 +68,7 @@ class ContactSolution:
     Parameters
     ----------
     pressure : (nx, ny) array [MPa]
-        Contact pressure, zero where the surfaces part.
+        Contact pressure, zero where the surfaces part; the mean over the whole cell where an edge cuts it.
     gap : (nx, ny) array [mm]
         Gap after loading: as given + displacement - approach; infinite where there is no material.
     approach : float [mm]
@@ -111,6 +111,12 @@ class ContactSolution:
         if self.problem.max_pressure is not None or self.bounded:
             return float(self.pressure.max())
         return patch.peak_pressure(self.pressure)
+
+    @property
+    def pressure_on_material(self) -> Array:
+        """Mean pressure over the material of every cell (nx, ny) [MPa]."""
+        cover = self.problem.cover
+        return self.pressure if cover is None else self.pressure / np.where(cover > 0.0, cover, 1.0)
 
     @property
     def in_contact(self) -> Mask:
@@ -157,7 +163,7 @@ class ContactSolution:
     @cached_property
     def reaches_material_edge(self) -> bool:
         """Whether the end of the material ends the contact, told within the last cell (see ``patch``)."""
-        return patch.ends_at_material(self.pressure, np.isinf(self.gap))
+        return patch.ends_at_material(self.pressure_on_material, np.isinf(self.gap))
 
     @cached_property
     def bounded(self) -> bool:

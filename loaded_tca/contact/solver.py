@@ -305,7 +305,8 @@ def _solve_on_finest(
     displacement -= state.approach
     pressure[window] /= _unit(problem)
     if problem.max_pressure is not None:  # what is at the cap but for rounding is exactly at it from here on
-        pressure = np.where(pressure >= (1.0 - AT_BOUND) * problem.cap, problem.cap, pressure)
+        near = (pressure > 0.0) & (pressure >= (1.0 - AT_BOUND) * problem.cap)
+        pressure = np.where(near, problem.cap, pressure)
     return ContactSolution(
         pressure=pressure,
         gap=displacement,

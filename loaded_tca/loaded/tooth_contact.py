@@ -200,7 +200,7 @@ class LoadedContact:
 
         The estimated error is that of the grid: its share of the peak and of the approach is kept.
         """
-        gap, before = self.separation.gap, self.solution
+        gap, before = self.separation.cut_gap, self.solution
         problem = replace(before.problem, load=load, gap=gap if coupling is None else gap + coupling)
         solution, coarser = self._solved(problem, self.tolerance), before.coarser
         if coarser is not None:
@@ -310,13 +310,14 @@ def _solve_in_box(
     def problem(cells: tuple[int, int]) -> ContactProblem:
         separation, displaced = sampled(cells)
         return ContactProblem(
-            separation.gap if displaced is None else separation.gap + displaced,
+            separation.cut_gap if displaced is None else separation.cut_gap + displaced,
             separation.spacing,
             pair.contact_modulus,
             load=load,
             max_pressure=pair.max_pressure,
             free_edges=edges,
             slice_compliance=None if bending is None else bending.within(number, separation, edges),
+            cover=separation.cover,
         )
 
     if grid.cells is not None:

@@ -7,6 +7,7 @@ of the flank. Two steps are the rule: the third is known beforehand, since the s
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import reduce
 
 import numpy as np
 
@@ -84,40 +85,45 @@ class NormalGap:
         self._size = sum(pair.base_radii)
         self._rounding = STEP_ROUNDING * self._size
 
-    def __call__(self, x: Array, y: Array) -> Array:
-        """Gap (nx, ny) [mm] over the grid of x (nx,) and y (ny,); +inf where a flank ends or bends away."""
-        gap, room = self.at(x[:, None], y)
-        return np.where(room >= 0.0, gap, np.inf)
-
     def at(self, x: Array, y: Array) -> tuple[Array, Array]:
         """Gap [mm], and distance to the nearest edge of either flank [mm], at points that broadcast.
 
         The distance is negative where a flank has ended, and -inf where the normal does not meet it.
         """
+        gap, distances = self.with_edges(x, y)
+        return gap, reduce(np.minimum, distances)
+
+    def with_edges(self, x: Array, y: Array) -> tuple[Array, list[Array]]:
+        """Gap [mm], and distances to each edge of both flanks [mm], at points that broadcast; signed as of ``at``."""
         rays = []
         for flank, origin, axes, turn in self._views:
             across, along, normal = axes.tolist()
             start = tuple(o + (x * a + y * b) for o, a, b in zip(origin.tolist(), across, along, strict=True))
             rays.append(_Rays(flank, start, tuple(normal), turn))
         met = [self._meet(ray, np.zeros(ray.start[0].shape)) for ray in rays]
-        rooms = [ray.flank.room(one.rho, one.z) for ray, one in zip(rays, met, strict=True)]
+        missed = np.zeros(met[0].height.shape, dtype=bool)
         if not (met[0].settled & met[1].settled).all():
             for own in (0, 1):
-                self._meet_rest(rays[own], met[own], rooms[own], met[1 - own])
-        return met[1].height - met[0].height, np.minimum(*rooms) + ON_EDGE * self.pair.module
+                missed |= self._meet_rest(rays[own], met[own], met[1 - own])
+        beside = ON_EDGE * self.pair.module
+        edges = [jet.value for ray, one in zip(rays, met, strict=True) for jet in ray.flank.edges(one.rho, one.z)]
+        return met[1].height - met[0].height, [np.where(missed, -np.inf, edge + beside) for edge in edges]
 
-    def _meet_rest(self, rays: _Rays, met: _Meeting, room: Array, mating: _Meeting) -> None:
-        """Take further steps as long as they shrink, where the mating gear is met; elsewhere ``room`` becomes -inf."""
+    def _meet_rest(self, rays: _Rays, met: _Meeting, mating: _Meeting) -> Mask:
+        """Take further steps as long as they shrink, where the mating gear is met; return where that is in vain."""
+        room = rays.flank.room(met.rho, met.z)
         rest = np.nonzero(~met.settled & (mating.settled | (room > -2.0 * met.step)))
-        room[~met.settled] = -np.inf
+        missed = ~met.settled
         height, step = np.where(mating.settled, mating.height, met.height)[rest], np.full(rest[0].shape, np.inf)
         while step.size:
             late = self._meet(replace(rays, start=tuple(part[rest] for part in rays.start)), height)
             place = rays.flank.room(late.rho, late.z)
-            met.height[rest] = late.height
-            room[rest] = np.where(late.settled, place, -np.inf)
+            for part, later in ((met.height, late.height), (met.rho, late.rho), (met.z, late.z)):
+                part[rest] = later
+            missed[rest] = ~late.settled
             on = ~late.settled & (place > -2.0 * late.step) & (late.step < 0.5 * step)
             rest, height, step = tuple(part[on] for part in rest), late.height[on], late.step[on]
+        return missed
 
     def _meet(self, rays: _Rays, height: Array) -> _Meeting:
         """Newton steps from ``height``, until the longest is rounding or the next one would be."""
