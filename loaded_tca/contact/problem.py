@@ -40,7 +40,7 @@ class ContactProblem:
     max_pressure : float, optional [MPa]
         Cap on the pressure: elastic, perfectly plastic surface.
     free_edges : sequence of FreeEdge
-        Where the bodies end beside the contact.
+        Where the bodies end beside the contact. Without ``cover`` cells whose middle lies beyond carry nothing.
     slice_compliance : (ny, ny) array_like [mm/N], optional
         Displacement of every slice (cells of one place along the second axis) under a unit force on each of them, on
         top of that of the half-spaces.
@@ -81,7 +81,7 @@ class ContactProblem:
             + checks.check_cover(cover, gap)
         )
         spacing = float(self.spacing[0]), float(self.spacing[1])
-        gap = without_material_beyond(gap.copy(), spacing, edges)
+        gap = without_material_beyond(gap.copy(), spacing, edges if cover is None else ())
         there = np.isfinite(gap)
         cover = None if cover is None or (cover[there] == 1.0).all() else np.where(there, cover, 0.0)
         area = float(np.count_nonzero(there) if cover is None else cover.sum()) * spacing[0] * spacing[1]

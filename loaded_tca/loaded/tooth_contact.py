@@ -96,8 +96,8 @@ class LoadedContact:
     def central_pressure(self) -> float:
         """Pressure beside the contact point [MPa]: what is left of the peak where that sits at an edge."""
         middle = tuple(slice((n - 1) // 2, n // 2 + 1) for n in self.solution.pressure.shape)
-        there = np.isfinite(self.separation.gap[middle])
-        return float(self.solution.pressure[middle][there].mean()) if there.any() else 0.0
+        there = np.isfinite(self.separation.cut_gap[middle])
+        return float(self.solution.pressure_on_material[middle][there].mean()) if there.any() else 0.0
 
     @property
     def line_load(self) -> float:
@@ -144,12 +144,13 @@ class LoadedContact:
 
     @property
     def extent(self) -> tuple[float, float]:
-        """Width across and length along [mm]: of the contact ellipse, at an edge of the cells under pressure."""
+        """Width across and length along [mm]: of the contact ellipse, at an edge of the material under pressure."""
         if not self.at_edge:
             minor, major = self.solution.semi_axes
             return 2.0 * minor, 2.0 * major
-        (nx, ny), (dx, dy) = self.solution.cells_across, self.separation.spacing
-        return nx * dx, ny * dy
+        parts = np.where(self.solution.in_contact, self.separation.cover, 0.0)
+        across, along = (float(parts.max(axis=axis).sum()) for axis in (1, 0))
+        return across * self.separation.spacing[0], along * self.separation.spacing[1]
 
     @cached_property
     def slice_force(self) -> Array:
@@ -354,4 +355,4 @@ def _expected(separation: Separation) -> Array:
     """Pressure over the ellipse that the contact is expected to fill, (nx, ny), the highest one 1."""
     across, along = (MARGIN_LEFT * length for length in separation.half_lengths)
     square = 1.0 - (separation.x[:, None] / across) ** 2 - (separation.y / along) ** 2
-    return np.where(np.isfinite(separation.gap), np.sqrt(np.maximum(square, 0.0)), 0.0)
+    return np.sqrt(np.maximum(square, 0.0)) * separation.cover

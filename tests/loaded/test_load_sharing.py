@@ -110,7 +110,7 @@ def elastic_energy(found):
     for share in found.shares:
         solution = share.loaded.solution
         loaded = solution.in_contact
-        displacement = solution.approach + solution.gap[loaded] - share.loaded.separation.gap[loaded]
+        displacement = solution.approach + solution.gap[loaded] - solution.problem.gap[loaded]
         energy += 0.5 * float(solution.pressure[loaded] @ displacement) * solution.cell_area
     return energy
 

@@ -26,8 +26,8 @@ def gap_of(pair, turn=0.0):
 def test_gap_on_a_grid_is_the_gap_at_each_of_its_points():
     gap = gap_of(sam_paper(15.0), 0.1)
     x, y = np.linspace(-0.3, 0.3, 4), np.linspace(-14.0, 14.0, 7)
-    one_by_one = [[gap(x[i : i + 1], y[j : j + 1])[0, 0] for j in range(len(y))] for i in range(len(x))]
-    assert_allclose(gap(x, y), one_by_one, rtol=0, atol=GAP)
+    one_by_one = [[gap.at(x[i : i + 1], y[j : j + 1])[0][0] for j in range(len(y))] for i in range(len(x))]
+    assert_allclose(gap.at(x[:, None], y)[0], one_by_one, rtol=0, atol=GAP)
 
 
 def test_room_of_a_spur_pair_along_the_face_is_the_distance_to_its_side():

@@ -106,9 +106,9 @@ def _elastic_energy(shared: SharedLoad) -> float:
     """Half the work of the pressures over the displacements [N mm]."""
     energy = 0.0
     for share in shared.shares:
-        solution, gap = share.loaded.solution, share.loaded.separation.gap
+        solution = share.loaded.solution
         pressed = solution.in_contact
-        displacement = solution.approach + solution.gap[pressed] - gap[pressed]
+        displacement = solution.approach + solution.gap[pressed] - solution.problem.gap[pressed]
         energy += 0.5 * float(solution.pressure[pressed] @ displacement) * solution.cell_area
     return energy
 
