@@ -88,9 +88,9 @@ class LoadedContact:
 
     @property
     def peak_pressure(self) -> float:
-        """Peak pressure [MPa]; the largest cell where the contact reaches an edge or a relief start."""
+        """Peak pressure [MPa]; that of the largest cell where the contact reaches an edge or a relief start."""
         rough = self.at_edge or self.at_relief_start
-        return float(self.solution.pressure.max()) if rough else self.solution.peak_pressure
+        return float(self.solution.pressure_on_material.max()) if rough else self.solution.peak_pressure
 
     @property
     def central_pressure(self) -> float:

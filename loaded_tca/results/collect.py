@@ -71,7 +71,8 @@ def _pressure_map(loaded: LoadedContact | None) -> PressureMap | None:
     if loaded is None:
         return None
     grid, solution = loaded.separation, loaded.solution
-    return PressureMap(grid.x, grid.y, grid.spacing, solution.pressure, solution.gap, grid.origin, grid.axes)
+    gap = np.where(np.isfinite(grid.gap), solution.gap, np.inf)
+    return PressureMap(grid.x, grid.y, grid.spacing, solution.pressure, gap, grid.origin, grid.axes)
 
 
 def _numbers(pair: GearPair, loaded: LoadedContact) -> dict[str, float | bool | int]:

@@ -25,8 +25,9 @@ class PressureMap:
     spacing : (float, float) [mm]
         Cell sizes (dx, dy).
     pressure : (nx, ny) array [MPa]
+        The mean over the whole cell where an edge of a flank cuts it: force = pressure.sum() dx dy.
     gap : (nx, ny) array [mm]
-        Deformed gap; +inf where a flank ends.
+        Deformed gap in the middles of the cells; +inf where a flank ends before it.
     origin : (3,) array [mm]
         The contact point in the fixed frame.
     axes : (3, 3) array

@@ -40,7 +40,7 @@ circles and ellipses: 1e-3 at 16 cells, 2.5e-4 at 32)."""
 LOAD_OF_UNLOADED_BOX = 1e-6
 """Load [N] that sizes the box of an unloaded contact: small enough for its smallest gap to be rounding."""
 SLIVER = 0.01
-"""Part of a cell below which it has no material: that little carries next to nothing, and hardly converges."""
+"""Part of a cell that does not count: below it a cell has no material, and where only that much is missing it is whole."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,7 +186,7 @@ def _cover(distances: list[Array], spacing: tuple[float, float]) -> Array:
             growth += np.abs(np.gradient(met, axis=axis))
         parts = np.divide(distance, growth, out=np.copysign(1.0, distance), where=growth > 0.0)
         cover = np.minimum(cover, 0.5 + parts)
-    return np.where(cover < SLIVER, 0.0, cover)
+    return np.where(cover < SLIVER, 0.0, np.where(cover > 1.0 - SLIVER, 1.0, cover))
 
 
 def _check(

@@ -274,7 +274,7 @@ def test_edges_stand_or_are_named_for_every_kind_of_gear(name):
 def test_end_that_no_edge_stands_for_is_told(monkeypatch):
     monkeypatch.setattr("loaded_tca.results.warnings.oblique_ends", lambda *_: ("toe of the pinion",))
     scene = read_scene(SCENES / "helical.toml").with_changes(
-        {"analysis.free_edges": True, "analysis.positions": 3, "analysis.cells": (16, 16)}
+        {"analysis.free_edges": True, "analysis.positions": 3, "analysis.cells": (32, 32)}
     )
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
