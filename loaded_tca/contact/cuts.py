@@ -13,6 +13,8 @@ min(1/c_i, 1/c_j) is, and so is its product with K, element by element.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from scipy.sparse import csr_array
 
@@ -61,13 +63,14 @@ class CutCells:
         own, inverse = influence_coefficients((cover.shape[0], 1), aspect)[:, 0], 1.0 / cover[row, column]
         one, other = np.nonzero(column[:, None] == column)
         value = own[np.abs(row[one] - row[other])] * (np.minimum(inverse[one], inverse[other]) - 1.0)
-        self._matrix = csr_array((CROWDING * value, (one, other)), shape=2 * row.shape).astype(dtype)
+        matrix: Any = csr_array((CROWDING * value, (one, other)), shape=2 * row.shape)
         self._at = self._under = row, column
         if window is not None:
             rows, columns = window
             inside = (row >= rows.start) & (row < rows.stop) & (column >= columns.start) & (column < columns.stop)
-            self._matrix = self._matrix[:, np.flatnonzero(inside)]
+            matrix = matrix[:, np.flatnonzero(inside)]
             self._under = row[inside] - rows.start, column[inside] - columns.start
+        self._matrix = matrix.astype(dtype)
 
     def add(self, pressure: Array, out: Array) -> None:
         """Add the displacement of the cut cells under a pressure on the window to ``out``."""

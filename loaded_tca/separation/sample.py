@@ -40,7 +40,7 @@ circles and ellipses: 1e-3 at 16 cells, 2.5e-4 at 32)."""
 LOAD_OF_UNLOADED_BOX = 1e-6
 """Load [N] that sizes the box of an unloaded contact: small enough for its smallest gap to be rounding."""
 SLIVER = 0.01
-"""Part of a cell that does not count: below it a cell has no material, and where only that much is missing it is whole."""
+"""Part of a cell that does not count: below it a cell has no material, and one that lacks no more is whole."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -290,3 +290,35 @@ def test_contact_point_off_the_flanks_is_refused():
     away = replace(contact, point=contact.point + [0.0, 0.0, 100.0])  # noqa: RUF005 (a sum)
     with pytest.raises(GeometryError, match="no flank around the contact point at pinion angle 0 rad"):
         sample_separation(pair, away, load=1.0)
+
+
+def test_material_of_cut_cells_adds_up_to_the_face():
+    """The contact point stands off the middle of the face, so that the nearer end lies within a cell."""
+    mounting = Mounting(out_of_plane=1e-4)
+    pair = gear_pair(FlankModifications(lead_crowning=0.005), mounting=mounting)
+    for cells in (24, 28, 32, 40):
+        contact, separation = separation_of(pair, load=9e3, cells=(cells, cells))
+        assert abs(contact.point[2]) > 1.0
+        assert_allclose(separation.cover.sum(axis=1) * separation.spacing[1], 25.0, rtol=2e-4)
+        inside = np.isfinite(separation.gap)
+        assert (inside == (separation.cover >= 0.5)).all()
+        assert ((separation.cover > 0.0) == np.isfinite(separation.cut_gap)).all()
+        assert (separation.gap[inside] == separation.cut_gap[inside]).all()
+
+
+@pytest.mark.parametrize("name", ["helical corner", "bevel line"])
+def test_cover_is_the_part_of_the_cell_within_the_edges(name):
+    """Beside 40 x 40 points in every cell; oblique cuts of slender cells are known to some hundredths."""
+    make, turn = CONTACTS[name]
+    pair = make()
+    contact, separation = separation_of(pair, turn, load=9e3, cells=(16, 16))
+    gap, fine = NormalGap(pair, contact, separation.axes), (np.arange(40) + 0.5) / 40.0 - 0.5
+    x, y = (
+        (centres[:, None] + fine * step).ravel()
+        for centres, step in zip((separation.x, separation.y), separation.spacing, strict=True)
+    )
+    inside = (gap.at(x[:, None], y)[1] >= 0.0).reshape(16, 40, 16, 40).mean(axis=(1, 3))
+    cut = (inside > 0.0) & (inside < 1.0)
+    assert cut.any()
+    assert_allclose(separation.cover, inside, rtol=0.0, atol=0.13)
+    assert_allclose(separation.cover.sum(), inside.sum(), rtol=2e-3)
