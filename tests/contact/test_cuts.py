@@ -41,7 +41,7 @@ def approach(cells, axis, end):
     ("axis", "cells", "whole", "allowed"), [(1, 16, 14, ALONG), (1, 32, 29, ALONG), (0, 32, 18, ACROSS)]
 )
 def test_approach_goes_smoothly_from_one_whole_cell_to_the_next(axis, cells, whole, allowed):
-    """Beside the cubic through four ends on borders of cells; whole cells would jump by 3 to 7 % between two of them."""
+    """Beside the cubic through the approaches of strips that end on borders of cells."""
     borders = whole + np.arange(-1.0, 3.0)
     cubic = np.polyfit(borders - whole, [approach(cells, axis, end) for end in borders], 3)
     parts = np.array([0.02, 0.2, 0.5, 0.8, 0.98])

@@ -311,7 +311,9 @@ def test_cover_is_the_part_of_the_cell_within_the_edges(name):
     """Beside 40 x 40 points in every cell; oblique cuts of slender cells are known to some hundredths."""
     make, turn = CONTACTS[name]
     pair = make()
-    contact, separation = separation_of(pair, turn, load=9e3, cells=(16, 16))
+    contact, fitting = separation_of(pair, turn, load=9e3, cells=(16, 16))
+    across, along = fitting.half_lengths
+    separation = sample_separation(pair, contact, cells=(16, 16), box=(across, 1.07 * along))
     gap, fine = NormalGap(pair, contact, separation.axes), (np.arange(40) + 0.5) / 40.0 - 0.5
     x, y = (
         (centres[:, None] + fine * step).ravel()
