@@ -38,7 +38,7 @@ def real(value: Any) -> Any:
     return value if isinstance(value, Real) and not isinstance(value, bool) else math.nan
 
 
-def count_problems(counts: Mapping[str, object], least: int) -> list[str]:
+def count_problems(counts: Mapping[Any, object], least: int) -> list[str]:
     """A problem for each count, by name, that is not a whole number from ``least`` on."""
     return [
         f"{name}: {count!r} is not a whole number from {least} on"

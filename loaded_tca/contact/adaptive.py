@@ -83,16 +83,13 @@ def solve_to_accuracy(
     >>> solution.pressure.shape, bool(abs(solution.peak_pressure / 1420.7 - 1.0) < 1e-3)
     ((64, 64), True)
     """
+    two = isinstance(first_cells, Sequence) and len(first_cells) == 2
     require(
         (callable(problem), f"problem: {problem!r:.60} is not a function of the numbers of cells"),
-        *(
-            (0.0 < real(value) < 1.0, f"{name}: {value} is not between 0 and 1")
-            for name, value in (("accuracy", accuracy), ("tolerance", tolerance))
-        ),
+        (0.0 < real(accuracy) < 1.0, f"accuracy: {accuracy} is not between 0 and 1"),
+        (0.0 < real(tolerance) < 1.0, f"tolerance: {tolerance} is not between 0 and 1"),
         (
-            isinstance(first_cells, Sequence)
-            and len(first_cells) == 2
-            and not count_problems(dict(zip("xy", first_cells)), 1),
+            two and not count_problems(dict(enumerate(first_cells)), 1),
             f"first_cells: {first_cells!r:.60} are not two whole numbers from 1 on",
         ),
     )

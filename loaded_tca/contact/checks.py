@@ -9,7 +9,7 @@ import numpy as np
 from loaded_tca.arrays import Array, count_problems, numbers, real
 from loaded_tca.errors import InputError
 
-LEAST, MOST = 1e-12, 1e12
+LEAST, MOST = 1e-20, 1e20
 """Widths of a cell [mm] between which nothing leaves the range of floating point numbers, whatever the unit."""
 SOFTEST, STIFFEST = 1e-30, 1e30
 """The same of the contact modulus [MPa]."""

@@ -110,7 +110,7 @@ def test_argument_that_is_none_is_refused_by_name(change, told):
 
 
 def test_problem_that_is_no_function_is_refused():
-    with pytest.raises(InputError, match="^problem: 'text' is not a function of the numbers of cells$"):
+    with pytest.raises(InputError, match=r"^problem: 'text' is not a function of the numbers of cells$"):
         solve_to_accuracy("text", accuracy=1e-3)
 
 
