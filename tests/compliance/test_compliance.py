@@ -11,6 +11,7 @@ from loaded_tca.contact.edges import FreeEdge
 from loaded_tca.errors import InputError
 from loaded_tca.gears import bevel_mesh
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
+from loaded_tca.material import Material
 from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.reference.iso6336 import theoretical_single_stiffness
@@ -140,4 +141,15 @@ def test_compliance_survives_pickling():
 def test_a_bore_that_reaches_the_teeth_names_its_gear():
     pair = cylindrical_pair(spur_mesh(bore_diameters=(None, 103.0)))
     with pytest.raises(InputError, match=r"wheel: bore_diameter: .* no rim is left"):
+        tooth_compliance(pair, density=COARSE)
+
+
+@pytest.mark.parametrize(("member", "ratio"), [("pinion", 0.5), ("wheel", 0.4901)])
+def test_material_that_keeps_its_volume_is_refused(member, ratio):
+    """Finite elements of displacements lock: without a bound they divide by zero at 0.5."""
+    materials = [Material(poisson_ratio=ratio if name == member else 0.49) for name in ("pinion", "wheel")]
+    pair = cylindrical_pair(spur_mesh(), materials=tuple(materials))
+    with pytest.raises(
+        InputError, match=f"^{member}: poisson_ratio: {ratio} is above 0.49: finite elements would lock$"
+    ):
         tooth_compliance(pair, density=COARSE)
