@@ -35,12 +35,11 @@ def input_checks(gear: Any, positive: tuple[str, ...], finite: tuple[str, ...]) 
     yield allowed, f"pressure_angle: {angle:.6g} rad is not between 0.0175 and 0.785 rad (1 to 45 deg)"
 
 
-def face_check(face_width: float, module: float, name: str) -> tuple[bool, str]:
-    """Check of a face width against the module that is called so."""
-    least = LEAST_FACE * module
-    return not 0.0 < real(
-        face_width
-    ) < least, f"face_width: {face_width} mm is below {LEAST_FACE:g} {name}, {least:.4g} mm"
+def face_check(face_width: float, length: float, name: str) -> tuple[bool, str]:
+    """Check of a face width against the module, or another length, that is called so."""
+    least = LEAST_FACE * length
+    short = 0.0 < real(face_width) < least
+    return not short, f"face_width: {face_width} mm is below {LEAST_FACE:g} {name}, {least:.4g} mm"
 
 
 def half_turn_checks(**angles: float | None) -> Iterator[tuple[bool, str]]:

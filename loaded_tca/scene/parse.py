@@ -100,5 +100,5 @@ def _table(text: str, source: str) -> dict[str, Any]:
     except ValueError:  # of Python's integers, which are read from no more digits
         most = sys.get_int_max_str_digits()
         digits = re.compile(rf"[\d_]{{{most + 1},}}")
-        line = next((number for number, line in enumerate(text.split("\n"), 1) if digits.search(line)), "?")
-        raise InputError(f"{source}: line {line} holds a whole number of more than {most} digits") from None
+        lines = [str(number) for number, line in enumerate(text.split("\n"), 1) if digits.search(line)]
+        raise InputError(f"{source}: line {lines[0]} holds a whole number of more than {most} digits") from None

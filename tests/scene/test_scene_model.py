@@ -306,7 +306,7 @@ def test_incompressible_material_of_either_gear_is_refused_where_teeth_bend_only
 @pytest.mark.parametrize("name", ["helical", "spiral_bevel", "duplex_30x20"])
 @pytest.mark.parametrize("sense", ["x", "", 1, True])
 def test_sense_that_is_none_is_refused_by_every_family(name, sense):
-    with pytest.raises(InputError, match="^sense: .* is not 'positive' or 'negative'$"):
+    with pytest.raises(InputError, match=r"^sense: .* is not 'positive' or 'negative'$"):
         read_scene(SCENES / f"{name}.toml").pair(sense)
 
 
