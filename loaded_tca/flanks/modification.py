@@ -37,10 +37,21 @@ NO_POLYNOMIAL = (0.0,) * 6
 """a1 to a6 of no correction."""
 
 LARGEST_AMOUNT = 1.0
-"""Material removed or added [mm] beyond which a warning says so: gears have some hundredths of a millimetre."""
+"""Amount [mm] beyond which a warning says so: gears have some hundredths of a millimetre."""
+
+AMOUNTS = (
+    "lead_crowning",
+    "end_relief",
+    "profile_crowning",
+    "tip_relief",
+    "root_relief",
+    "helix_slope",
+    "profile_slope",
+    "twist",
+)
 
 CHECKED = (9, 9)
-"""Points at which it is looked at, along the profile and lengthwise, the edges included."""
+"""Points at which the sum of all is looked at, along the profile and lengthwise, the edges included."""
 
 LOGARITHMIC_STEEPNESS = 0.99
 """k of the logarithmic crowning C ln(1 - k t^2)/ln(1 - k)."""
@@ -352,12 +363,12 @@ def modified(
     ------
     InputError
         If a relief starts off the active profile or is longer than half the face, or if more is removed somewhere, or
-        added, than the flank is high.
+        added, than the flank is long.
 
     Warns
     -----
     AccuracyWarning
-        If more than 1 mm is removed or added.
+        If an amount is more than 1 mm.
     """
     try:
         terms = modifications.terms(face_width, diameters, coordinate, nominal.profile_unit)
@@ -366,11 +377,15 @@ def modified(
     if not terms:
         return nominal
     flank = ModifiedFlank(nominal, terms)
-    most, limit = float(np.abs(flank.removal(*nominal.grid(*CHECKED)).value).max()), min(nominal.extent)
-    told = f"{owner}.modifications: together they remove or add up to {most:.4g} mm"
+    most, limit = float(np.abs(flank.removal(*nominal.grid(*CHECKED)).value).max()), max(nominal.extent)
     if not most <= limit:
-        raise InputError(f"{told}; allowed up to {limit:.4g} mm, the height or width of the flank")
-    if most > LARGEST_AMOUNT:
-        message = f"{told}, more than {LARGEST_AMOUNT:g} mm: are amounts in um given as mm?"
-        warnings.warn(message, AccuracyWarning, stacklevel=2)
+        told = f"{owner}.modifications: together they remove or add up to {most:.4g} mm"
+        raise InputError(f"{told}; allowed up to {limit:.4g} mm, the longer side of the flank")
+    for name in AMOUNTS:
+        amount = getattr(modifications, name)
+        if abs(amount) > LARGEST_AMOUNT:
+            message = (
+                f"{owner}.{name}: {amount:.6g} mm is more than {LARGEST_AMOUNT:g} mm: an amount in um given as mm?"
+            )
+            warnings.warn(message, AccuracyWarning, stacklevel=2)
     return flank

@@ -142,11 +142,10 @@ def cylindrical_pair(
 
 
 def _require_common_face(mesh: CylindricalMesh, offset: float) -> None:
-    """Refuse faces that the offset [mm] of the wheel leaves next to nothing in common."""
-    halves = 0.5 * mesh.pinion.face_width, 0.5 * mesh.wheel.face_width
-    common = min(halves[0] + halves[1] - abs(offset), 2.0 * min(halves))
+    """Refuse faces that the offset [mm] of the wheel leaves next to nothing in common; apart, they never touch."""
+    common = 0.5 * (mesh.pinion.face_width + mesh.wheel.face_width) - abs(offset)
     least = LEAST_FACE * mesh.pinion.normal_module
-    if common < least:
+    if abs(common) < least:
         raise GeometryError(
             f"axial_offset: {offset:.6g} mm leaves no common flank: the faces of pinion and wheel have "
             f"{max(common, 0.0):.4g} mm in common; at least {least:.4g} mm, {LEAST_FACE:g} normal modules, are needed"

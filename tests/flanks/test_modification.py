@@ -396,36 +396,30 @@ def test_circular_crowning_of_more_than_half_the_face_is_refused():
         modified(lead_crowning=13.0, lead_crowning_form="circular")
 
 
-HEIGHT = 5.368
-"""Of the flank, from the form circle to the tip [mm]."""
-
-
 @pytest.mark.parametrize(
     "amounts",
     [
-        {"polynomial": (5.5, 0.0, 0.0, 0.0, 0.0, 0.0)},
-        {"polynomial": (0.0, -5.5 / HALF, 0.0, 0.0, 0.0, 0.0)},
+        {"polynomial": (25.1, 0.0, 0.0, 0.0, 0.0, 0.0)},
+        {"polynomial": (0.0, -25.1 / HALF, 0.0, 0.0, 0.0, 0.0)},
         {"polynomial": (100.0,) * 6},
         {"polynomial": (0.0, 0.0, 0.0, -100.0, 100.0, 100.0)},
-        {"lead_crowning": 5.5},
-        {"lead_crowning": 3.0, "end_relief": 2.5, "end_relief_length": 5.0},
+        {"lead_crowning": 25.1},
+        {"lead_crowning": 20.0, "end_relief": 5.1, "end_relief_length": 5.0},
     ],
 )
-def test_more_than_the_height_of_the_flank_is_no_modification(amounts):
-    told = rf"^pinion.modifications: together they remove or add up to .* mm; allowed up to {HEIGHT} mm, the height"
+def test_more_than_the_longer_side_of_the_flank_is_no_modification(amounts):
+    told = r"^pinion.modifications: together they remove or add up to .* mm; allowed up to 25 mm, the longer side"
     with pytest.raises(InputError, match=told):
         modified(**amounts)
+    modified(polynomial=(24.9, *[0.0] * 5))
 
 
-@pytest.mark.parametrize(
-    "amounts", [{"lead_crowning": 5.0}, {"helix_slope": -1.001}, {"polynomial": (-1.001, *[0.0] * 5)}]
-)
-def test_micrometres_given_as_millimetres_are_doubted(amounts):
-    with pytest.warns(
-        AccuracyWarning, match=r"^pinion.modifications: .* more than 1 mm: are amounts in um given as mm"
-    ):
-        modified(**amounts)
-    assert modified(lead_crowning=0.999).terms  # and no warning
+@pytest.mark.parametrize(("name", "amount"), [("lead_crowning", 5.0), ("helix_slope", -1.001), ("twist", 1.001)])
+def test_micrometres_given_as_millimetres_are_doubted(name, amount):
+    told = rf"^pinion.{name}: {amount:g} mm is more than 1 mm: an amount in um given as mm\?$"
+    with pytest.warns(AccuracyWarning, match=told):
+        modified(**{name: amount})
+    assert modified(**{name: 0.999}).terms  # and no warning
 
 
 def test_gear_pair_of_the_helpers_has_the_modified_flank_on_the_gear_asked_for():
