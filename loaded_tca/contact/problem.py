@@ -29,7 +29,7 @@ class ContactProblem:
     gap : (nx, ny) array_like [mm]
         Gap between the surfaces before loading; +inf where there is no material, as it becomes beyond free edges.
     spacing : (float, float) [mm]
-        Width of a cell along the first and the second axis.
+        Width of a cell along the first and the second axis; the limits of sizes are in ``contact.checks``.
     contact_modulus : float [MPa]
         E*, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
     load : float, optional [N]
