@@ -78,7 +78,7 @@ def test_name_that_is_loaded_later_is_that_of_no_module_beside_it(package):
     """Else the name would be the module once that has been imported, by whomever."""
     module = importlib.import_module(package)
     beside = {info.name for info in pkgutil.iter_modules(module.__path__)}
-    assert all(sys.modules.get(f"{package}.{name}") is getattr(module, name) for name in beside & set(module.__all__))
+    assert all(getattr(module, name) is sys.modules.get(f"{package}.{name}") for name in beside & set(module.__all__))
 
 
 def test_unknown_name_is_told():
