@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from loaded_tca.compliance import tooth_compliance
+from loaded_tca.errors import require
 from loaded_tca.loaded.cycle import Progress, carried_by_all, carried_by_one, farthest_apart
+from loaded_tca.loaded.effort import expected_effort
 from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
@@ -32,7 +34,8 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
     Raises
     ------
     InputError, GeometryError
-        If the scene's parts do not fit each other, or the flanks are never in contact.
+        If the scene's parts do not fit each other, the flanks are never in contact, or the grids it asks for exceed
+        the memory of the machine.
     ConvergenceError
         If a contact, or the balance of the tooth pairs, is not solved to the tolerance.
 
@@ -41,7 +44,8 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
     AccuracyWarning
         If the contact reaches an edge of a flank, or the model is at another limit.
     """
-    pair, wanted = scene.pair(), scene.analysis
+    pair, wanted, effort = scene.pair(), scene.analysis, expected_effort(scene)
+    require((not effort.is_refused, f"analysis.cells: {wanted.cells}: {effort}"))
     count, torques = wanted.positions, np.asarray(scene.torques)
     angles = np.linspace(-0.5 * pair.pitch, 0.5 * pair.pitch, count) if count > 1 else np.zeros(1)
     grid = GridChoice(

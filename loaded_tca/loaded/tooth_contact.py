@@ -132,7 +132,10 @@ class LoadedContact:
         return ellipse
 
     def _misfit(self, ellipse: PointContact) -> float:
-        """How far the gap leaves the paraboloid of the contact point, weighted with Hertz's pressure, over its mean."""
+        """How far the gap leaves the paraboloid of the contact point, weighted with Hertz's pressure, over its mean.
+
+        Infinite where no cell of the grid tells, the ellipse being smaller than one.
+        """
         grid = self.separation
         x, y = grid.x[:, None], grid.y
         below = 1.0 - (x / ellipse.semi_minor) ** 2 - (y / ellipse.semi_major) ** 2
@@ -140,7 +143,8 @@ class LoadedContact:
         paraboloid = 0.5 * (grid.curvatures[0] * x**2 + grid.curvatures[1] * y**2)
         inside = weight > 0.0
         gap = np.abs(grid.gap - paraboloid)
-        return float(weight[inside] @ gap[inside] / (weight[inside] @ paraboloid[inside]))
+        mean = float(weight[inside] @ paraboloid[inside])
+        return float(weight[inside] @ gap[inside]) / mean if mean > 0.0 else math.inf
 
     @property
     def extent(self) -> tuple[float, float]:

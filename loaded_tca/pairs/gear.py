@@ -32,7 +32,8 @@ class Gear:
     flank : Flank
         In contact, in the gear's own frame: with its modifications, fitted or measured.
     nominal_flank : Flank
-        The same by its equations, without modifications.
+        The same by its equations, without modifications; made anew where ``flank`` is replaced by one of the other
+        side of the teeth.
     geometry : ToothGeometry
         What the other flank and the form of the teeth are made from.
     material : Material
@@ -45,6 +46,10 @@ class Gear:
     geometry: ToothGeometry
     material: Material = Material()
     bore_diameter: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.nominal_flank.side != self.flank.side:
+            object.__setattr__(self, "nominal_flank", self.geometry.nominal(self.flank.side))
 
     @classmethod
     def of(cls, geometry: ToothGeometry, side: int, material: Material, bore_diameter: float | None) -> Gear:

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from loaded_tca.errors import InputError
+from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.flanks import FlankModifications, InvoluteFlank, ModifiedFlank
 from loaded_tca.flanks.base import outward_normal
 from loaded_tca.flanks.modification import (
@@ -432,7 +432,7 @@ def test_roll_angle_or_length_off_the_active_profile_is_refused_in_its_own_unit(
 
 
 def test_relief_with_two_starts_is_refused():
-    told = "^tip_relief_start: found tip_relief_start = 105, tip_relief_start_length = 20; give one of them$"
+    told = "^tip_relief_start: found tip_relief_start = 105.0, tip_relief_start_length = 20.0; give one of them$"
     with pytest.raises(InputError, match=told):
         FlankModifications(tip_relief=AMOUNT, tip_relief_start=105.0, tip_relief_start_length=20.0)
 
@@ -449,18 +449,17 @@ def test_starts_of_reliefs_that_are_not_there_are_not_looked_at():
     assert isinstance(modified(tip_relief_start=3.0, end_relief_length=999.0), InvoluteFlank)
 
 
-@pytest.mark.parametrize(
-    "name", ["lead_crowning", "tip_relief", "end_relief_length", "end_relief_lower", "profile_slope"]
-)
-@pytest.mark.parametrize("value", [math.nan, math.inf])
+@pytest.mark.parametrize("name", ["lead_crowning", "tip_relief", "end_relief_length", "profile_slope"])
+@pytest.mark.parametrize("value", [math.nan, math.inf, "much", None])
 def test_amount_that_is_not_finite_is_refused(name, value):
     with pytest.raises(InputError, match=f"{name}: {value} mm is not finite"):
         FlankModifications(**{name: value})
 
 
-def test_roll_angle_that_is_not_finite_is_refused():
-    with pytest.raises(InputError, match=r"^root_relief_start_roll: nan rad is not finite$"):
-        FlankModifications(root_relief_start_roll=math.nan)
+@pytest.mark.parametrize(("name", "unit"), [("root_relief_start_roll", "rad"), ("end_relief_lower", "mm")])
+def test_optional_number_that_is_not_finite_is_refused_in_its_unit(name, unit):
+    with pytest.raises(InputError, match=rf"^{name}: nan {unit} is not finite$"):
+        FlankModifications(**{name: math.nan})
 
 
 def test_unknown_forms_are_refused_all_at_once():
@@ -481,6 +480,34 @@ def test_polynomial_that_is_not_six_finite_numbers_is_refused(wrong):
 def test_circular_crowning_of_more_than_half_the_face_is_refused():
     with pytest.raises(InputError, match="lead_crowning: 13 mm is more than a circular arc over 25 mm can fall"):
         modified(lead_crowning=13.0, lead_crowning_form="circular")
+
+
+@pytest.mark.parametrize(
+    "amounts",
+    [
+        {"polynomial": (25.1, 0.0, 0.0, 0.0, 0.0, 0.0)},
+        {"polynomial": (0.0, -25.1 / HALF, 0.0, 0.0, 0.0, 0.0)},
+        {"polynomial": (100.0,) * 6},
+        {"polynomial": (0.0, 0.0, 0.0, -100.0, 100.0, 100.0)},
+        {"lead_crowning": 25.1},
+        {"lead_crowning": 20.0, "end_relief": 5.1, "end_relief_length": 5.0},
+    ],
+)
+def test_more_than_the_longer_side_of_the_flank_is_no_modification(amounts):
+    told = r"^pinion.modifications: together they remove or add up to .* mm; allowed up to 25 mm, the longer side"
+    with pytest.raises(InputError, match=told):
+        modified(**amounts)
+    modified(polynomial=(24.9, *[0.0] * 5))
+
+
+@pytest.mark.parametrize(
+    ("name", "amount"), [("lead_crowning", 5.0), ("helix_slope", -1.001), ("twist", 1.001), ("end_relief_upper", 1.5)]
+)
+def test_micrometres_given_as_millimetres_are_doubted(name, amount):
+    told = rf"^pinion.{name}: {amount:g} mm is more than 1 mm: an amount in um given as mm\?$"
+    with pytest.warns(AccuracyWarning, match=told):
+        modified(**{name: amount}, end_relief_length=5.0)
+    assert modified(**{name: 0.999}, end_relief_length=5.0).terms  # and no warning
 
 
 def test_gear_pair_of_the_helpers_has_the_modified_flank_on_the_gear_asked_for():

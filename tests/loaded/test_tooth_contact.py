@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -60,6 +61,13 @@ def test_peak_pressure_of_the_sam_paper_pairs_is_that_of_hertz(helix_deg, drivin
         loaded.extent, (loaded.hertz.semi_minor, loaded.hertz.semi_major), loaded.separation.spacing, strict=True
     ):
         assert_allclose(extent, 2.0 * axis, atol=2.0 * spacing)
+
+
+@pytest.mark.parametrize("cells", [(32, 32), (33, 33)])
+def test_hertz_is_not_told_where_no_cell_lies_in_the_ellipse_or_the_middle_one_alone(cells):
+    loaded = solved(sam_paper(15.0), 1000.0, grid=GridChoice(cells=cells))
+    assert loaded.hertz is not None
+    assert replace(loaded, solution=replace(loaded.solution, load=1e-6)).hertz is None
 
 
 def test_stiffness_of_a_point_contact_is_that_of_hertz():

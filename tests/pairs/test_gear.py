@@ -92,7 +92,17 @@ def test_pair_with_other_flanks_keeps_its_gears():
     other = pair.with_flanks(wheel=pair.wheel.back)
     assert other.pinion.flank is pair.pinion.flank
     assert other.wheel.flank is pair.wheel.back
-    assert other.wheel.nominal_flank is pair.wheel.nominal_flank
+    assert_same_flank(other.wheel.nominal_flank, pair.wheel.nominal_back)
+    assert_same_flank(other.wheel.back, pair.wheel.flank)
+
+
+@MEMBERS
+def test_gear_whose_flank_is_replaced_by_its_back_is_that_of_the_other_sense(member):
+    this, other = (getattr(pair_of(MESHES["helical"], sense, RELIEVED), member) for sense in ("positive", "negative"))
+    turned = replace(this, flank=this.back)
+    for name in ("flank", "back", "nominal_flank", "nominal_back"):
+        assert_same_flank(getattr(turned, name), getattr(other, name))
+    assert replace(this, flank=this.nominal_flank).nominal_flank is this.nominal_flank
 
 
 @pytest.mark.parametrize("name", ["spur", "straight bevel"])
