@@ -254,6 +254,13 @@ def test_unknown_keys_of_the_top_beyond_twenty_are_counted(table):
     assert problems_of(table, {f"x{i}": 1 for i in range(30)})[-1] == "scene: 10 more unknown keys"
 
 
+def test_message_shortens_the_list_of_many_keys(table):
+    (line,) = problems_of(table, {"wheel.modifications.colour": "red"})
+    assert line.startswith("wheel.modifications.colour: unknown key; allowed lead_crowning_um, ")
+    assert line.endswith(", ...")
+    assert len(line) < 400
+
+
 def test_message_shortens_long_values(table):
     (line,) = problems_of(table, {"pair.driving": "w" * 10000})
     assert len(line) < 150

@@ -272,6 +272,10 @@ def test_units_are_converted_by_the_end_of_the_key():
     assert_allclose(modifications["tip_relief"], 0.02, rtol=ROUNDING)
     assert modifications["tip_relief_start"] == 109.0
     assert modifications["tip_relief_form"] == "parabolic"
+    assert "end_relief_lower" not in modifications  # not given: as at both ends
+    starts = in_base_units(Modifications(tip_relief_start_roll_deg=18.0, root_relief_start_length_mm=17.0))
+    assert_allclose(starts["tip_relief_start_roll"], 0.1 * np.pi, rtol=ROUNDING)
+    assert starts["root_relief_start_length"] == 17.0
     assert_allclose(in_base_units(MountingErrors(in_plane_deg=9.0))["in_plane"], np.pi / 20, rtol=ROUNDING)
     assert in_base_units(Load(pinion_torque_Nm=2.0)) == {"pinion_torque": 2000.0}
 
