@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import ConvergenceError
+from loaded_tca.errors import ConvergenceError, named
 from loaded_tca.loaded.load_sharing import Laws, SharedLoad, share_load, tooth_pairs_at
 from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, solve_under_load
@@ -163,11 +163,12 @@ def _told(shape: tuple[int, int], progress: Progress | None) -> Iterator[tuple[i
 
 @contextmanager
 def _told_where(torque: float, angle: float) -> Iterator[None]:
-    """Say under which torque [N mm] and at which pinion angle [rad] something did not converge."""
+    """Say under which torque [N mm] and at which pinion angle [rad] something cannot be solved."""
+    where = f"{1e-3 * torque:g} N m at pinion angle {math.degrees(angle):.6g} deg"
     try:
-        yield
+        with named(where):
+            yield
     except ConvergenceError as error:
-        where = f"{1e-3 * torque:g} N m at pinion angle {math.degrees(angle):.6g} deg"
         raise ConvergenceError(f"{where}: {error}", error.last) from error
 
 

@@ -33,6 +33,7 @@ from functools import cache, partial
 from itertools import combinations, product
 
 import numpy as np
+from scipy.optimize import brentq
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError, InputError
@@ -46,7 +47,9 @@ from loaded_tca.unloaded import ContactPoint, MeshPath
 MOST_BALANCES = 40
 """Balances before giving up; two to four are the rule."""
 SWINGING = 8
-"""Balances after which forces go half the way only: near a cap on the pressure they swing to and fro."""
+"""Balances after which forces go half the way only, or where the pressure has a cap their rotation is looked for."""
+ROTATION = 1e-11
+"""Relative accuracy of that rotation, and so of the torques balanced."""
 AGREEMENT = 5e-2
 """Wanted agreement of the rotations, relative, over the accuracy of the peak pressure."""
 AGREEMENT_ON_CELLS = 1e-5
@@ -296,6 +299,10 @@ class _Balance:
                 self._solve(index, forces)
             self.compliance = self._corrected()
             shared = self._shared(forces, count)
+            if count > SWINGING and self.pair.max_pressure is not None:
+                forces = self._solve_at_common_rotation(shared)
+                self.compliance = self._corrected()
+                shared = self._shared(forces, count)
             residual = shared.residual
             if residual <= self.agreement and self._settled(forces, shared.rotation):
                 return shared
@@ -324,6 +331,35 @@ class _Balance:
         if loaded.solution.load > 0.0 and deformation > 0.0:
             first = replace(law, load=force, deformation=deformation)
             self.laws[index] = first if before is None else law.through(force, deformation)
+
+    def _solve_at_common_rotation(self, shared: SharedLoad) -> Array:
+        """Solve the carrying pairs on their grids at the rotation that balances the torque; forces (k,).
+
+        At a cap whole rows of cells yield at once: the deformation jumps as the force grows, so that forces swing to
+        and fro, but the force grows steadily with the deformation.
+        """
+        numbers = {tooth_pair.pair: index for index, tooth_pair in enumerate(self.tooth_pairs)}
+        before = [(numbers[share.tooth_pair.pair], share.loaded) for share in shared.shares]
+        given = np.array([0.0 if loaded is None else loaded.solution.load for loaded in self.solved])
+        coupling = {index: self._coupling(index, given, loaded.separation) for index, loaded in before}
+
+        def torque_missing(rotation: float) -> float:
+            for index, loaded in before:
+                approach = float(self.levers[1, index] * (rotation - self.separations[index]))
+                self.solved[index] = loaded.at(approach, coupling[index])
+            return self.torque - sum(self.levers[0, index] * self.solved[index].solution.load for index, _ in before)
+
+        asked = [share.rotation for share in shared.shares]
+        low, high = min(asked), max(asked)
+        while torque_missing(low) < 0.0:
+            low -= max(high - low, self.agreement * high)
+        while torque_missing(high) > 0.0:
+            high += max(high - low, self.agreement * high)
+        torque_missing(float(brentq(torque_missing, low, high, xtol=ROTATION * high, rtol=ROTATION)))
+        forces = np.zeros(len(self.solved))
+        for index, loaded in self._loaded():
+            forces[index] = loaded.solution.load
+        return forces
 
     def _loaded(self) -> Iterator[tuple[int, LoadedContact]]:
         """Place and contact of the pairs that were solved under a load."""

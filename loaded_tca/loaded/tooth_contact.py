@@ -28,6 +28,8 @@ CHORD = 0.8
 """Part of the load down to which the stiffness is taken."""
 CHORD_TOLERANCE = 1e-5
 """Of the solution at that end: 1e-4 of the stiffness."""
+EXACT = 1e-9
+"""Tolerance of the solver where the approach is given: forces then balance a torque to that."""
 MARGIN_LEFT = 0.8
 """Expected contact over its box."""
 SMALLEST_LOAD = 1e-15
@@ -208,6 +210,20 @@ class LoadedContact:
             deeper = solution.approach_under_load / before.approach_under_load
             approach = problem.first_contact + deeper * (coarser.approach - first)
             solution = replace(solution, coarser=CoarserGrid(higher * coarser.largest, approach))
+        return replace(self, solution=solution, coupling_deflection=coupling)
+
+    def at(self, approach: float, coupling: Array | None = None) -> LoadedContact:
+        """Return the contact at another approach [mm], counted as the gap is, on the same grid; ``coupling`` as above.
+
+        The estimated error is left as it is. The solution is closer than others: at a cap on the pressure the force
+        depends on it.
+        """
+        before, gap = self.solution, self.separation.gap
+        gap = gap if coupling is None else gap + coupling
+        problem = replace(before.problem, load=None, approach=approach, gap=gap)
+        solution = solve_problem(problem, tolerance=EXACT, initial_pressure=before.pressure)
+        problem = replace(problem, load=solution.load, approach=None)
+        solution = replace(solution, problem=problem, coarser=before.coarser)
         return replace(self, solution=solution, coupling_deflection=coupling)
 
     def _solved(self, problem: ContactProblem, tolerance: float) -> ContactSolution:
