@@ -134,7 +134,7 @@ def carried_by_all(
         for part in shared[t][n].shares:
             place = t, n, pairs.index(part.tooth_pair.pair)
             contacts[t][n][place[2]], deflection[place] = part.loaded, part.tooth_deflection
-            share[place] = part.torque / torques[t] if torques[t] > 0.0 else 1.0
+            share[place] = part.torque / torques[t] if shared[t][n].torque > 0.0 else 1.0
     in_gear_angles = []
     for path in (mesh.paths[column] for column in columns):
         turned = pair.ratio * (angles - path.pinion_angle)

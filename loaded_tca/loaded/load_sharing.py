@@ -36,7 +36,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import ConvergenceError, InputError
+from loaded_tca.errors import ConvergenceError, InputError, named
 from loaded_tca.loaded.balance import EXPONENTS, PowerLaw, balance
 from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, solve_under_load
@@ -44,6 +44,9 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
 from loaded_tca.unloaded import ContactPoint, MeshPath
 
+SMALLEST_SHARED = 1e-12
+"""Forces below this times E* m_n^2 are not shared, but taken for none: what the pairs deform then is near the rounding of
+their gaps and initial separations (1 uN at module 3; a line deforms by 1e-12 mm)."""
 MOST_BALANCES = 40
 """Balances before giving up; two to four are the rule."""
 SWINGING = 8
@@ -57,7 +60,7 @@ AGREEMENT_ON_CELLS = 1e-5
 SETTLED = 10.0
 """Change of how the slices of a pair are displaced, over its deflection, in agreements: it only moves force about."""
 SAME_BOX = (0.75, 1.25)
-"""Loads over the one a box was made for, between which the contact still fills it well."""
+"""Loads over the one a box was made for, between which the contact still fills it well, if it does not reach it."""
 SOFTEST_START = 4.0
 """First guess of a contact deformation: so many times F/(E* b), as slender contacts of gears have it."""
 
@@ -154,7 +157,7 @@ class SharedLoad:
     Attributes
     ----------
     torque : float [N mm]
-        Of the pinion.
+        Of the pinion; zero where next to none is taken for none.
     rotation : float [rad]
         Of the wheel back by the load; zero without load.
     shares : tuple of Share
@@ -211,7 +214,8 @@ def share_load(
     tooth_pairs : sequence of ToothPair
         Every pair that may come into contact, one at least without initial separation; see :func:`tooth_pairs_at`.
     torque : float [N mm]
-        Of the pinion, >= 0.
+        Of the pinion, >= 0. One that is next to none, below about 1e-12 E* m_n^2 times the lever of the leading pair,
+        is taken for none: what it closes is rounding.
     grid : GridChoice
         How finely each contact is resolved.
     bending : BendingModel, optional
@@ -250,8 +254,9 @@ def share_load(
         raise InputError(f"torque: {torque!r} N mm is not a finite number >= 0")
     if not tooth_pairs:
         raise InputError("tooth_pairs: none given; a torque needs one tooth pair at least that can be in contact")
-    if torque == 0.0:
-        leading = min(tooth_pairs, key=lambda tooth_pair: tooth_pair.initial_separation)
+    leading = min(tooth_pairs, key=lambda tooth_pair: tooth_pair.initial_separation)
+    smallest = SMALLEST_SHARED * pair.contact_modulus * pair.module**2
+    if torque <= smallest * leading.contact.pinion_lever:
         share = Share(leading, solve_under_load(pair, leading.contact, 0.0, grid), 0.0)
         return SharedLoad(0.0, 0.0, (share,), np.zeros((1, 1)), 0.0, 0)
     return _Balance(pair, tooth_pairs, torque, grid, bending, start).run()
@@ -319,11 +324,13 @@ class _Balance:
         force, before, law = float(forces[index]), self.solved[index], self.laws[index]
         tooth_pair, coupling = self.tooth_pairs[index], partial(self._coupling, index, forces)
         try:
+            loaded = None
             if before is not None and SAME_BOX[0] * before.solution.load <= force <= SAME_BOX[1] * before.solution.load:
                 loaded = before.under(force, coupling(before.separation))
-            else:
+            if loaded is None or loaded.solution.reaches_border:
                 contact, number = tooth_pair.contact, tooth_pair.pair
-                loaded = solve_under_load(self.pair, contact, force, self.grid, self.bending, number, coupling)
+                with named(f"tooth pair {number:+d}"):
+                    loaded = solve_under_load(self.pair, contact, force, self.grid, self.bending, number, coupling)
         except ConvergenceError as error:
             raise ConvergenceError(f"tooth pair {tooth_pair.pair:+d}: {error}", error.last) from error
         self.solved[index] = loaded
@@ -410,7 +417,7 @@ class _Balance:
         return True
 
     def _shared(self, forces: Array, count: int) -> SharedLoad:
-        carrying = np.flatnonzero(forces)
+        carrying = np.array([index for index, _ in self._loaded() if forces[index] > 0.0])
         deflections = self.compliance @ forces
         shares = []
         for index in carrying.tolist():

@@ -34,6 +34,9 @@ def warn_of_accuracy(pair: GearPair, grid: GridChoice, carried: Carried, *, load
     alone = carried.share.shape[0] == carried.share.shape[2] == 1
     what = "positions" if alone else "pressure maps"
     told = [f"{reason} (at {count} of {len(solved)} {what})" for reason, count in reasons.items()]
+    for torque, rows in zip(carried.torque.tolist(), carried.contacts, strict=True):
+        if torque > 0.0 and not any(loaded is not None and loaded.solution.load > 0.0 for row in rows for loaded in row):
+            told.append(f"{1e-3 * torque:g} N m is next to no torque, the gaps it closes are rounding: taken for no load")
     deflection = float(np.nanmax(carried.rotation, initial=0.0)) * pair.base_radii[1]
     if load_sharing and deflection > REACH * pair.module:
         told.append(
