@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import math
 import warnings
-from collections import Counter
 
 import numpy as np
 
@@ -19,7 +19,7 @@ THICKEST_CONTACT = 0.25
 
 
 def warn_of_accuracy(pair: GearPair, grid: GridChoice, carried: Carried, *, load_sharing: bool) -> None:
-    """Give one AccuracyWarning, for the caller's caller, for each reason, with the number of pressure maps it concerns.
+    """Give one AccuracyWarning, for the caller's caller, for each reason, with the number of pressure maps it concerns and the first.
 
     Parameters
     ----------
@@ -29,11 +29,17 @@ def warn_of_accuracy(pair: GearPair, grid: GridChoice, carried: Carried, *, load
     load_sharing : bool
         Whether the pairs that were looked for depend on how far the load turns the wheel.
     """
-    solved = [loaded for rows in carried.contacts for row in rows for loaded in row if loaded is not None]
-    reasons = Counter(reason for loaded in solved for reason in _reasons(pair, grid, loaded))
-    alone = carried.share.shape[0] == carried.share.shape[2] == 1
-    what = "positions" if alone else "pressure maps"
-    told = [f"{reason} (at {count} of {len(solved)} {what})" for reason, count in reasons.items()]
+    places: dict[str, list[str]] = {}
+    solved = 0
+    for torque, rows in zip(carried.torque.tolist(), carried.contacts, strict=True):
+        for angle, row in zip(carried.path.pinion_angle.tolist(), rows, strict=True):
+            for number, loaded in zip(carried.pairs.tolist(), row, strict=True):
+                if loaded is not None:
+                    solved += 1
+                    place = f"{1e-3 * torque:g} N m, pinion angle {math.degrees(angle):.4g} deg, tooth pair {number:+d}"
+                    for reason in _reasons(pair, grid, loaded):
+                        places.setdefault(reason, []).append(place)
+    told = [f"{reason} (at {len(at)} of {solved} pressure maps; the first: {at[0]})" for reason, at in places.items()]
     for torque, rows in zip(carried.torque.tolist(), carried.contacts, strict=True):
         if torque > 0.0 and not any(loaded is not None and loaded.solution.load > 0.0 for row in rows for loaded in row):
             told.append(f"{1e-3 * torque:g} N m is next to no torque, the gaps it closes are rounding: taken for no load")
@@ -61,7 +67,7 @@ def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[st
     if grid.cells is None and smooth and solution.error_estimate.peak_pressure > grid.accuracy:
         found.append(f"the estimated error stays above the accuracy of {grid.accuracy:g}")
     if solution.reaches_border:
-        found.append("the contact reaches the box")
+        found.append("the contact reaches the box of its grid")
     if solution.load > 0.0 and solution.cells_across[0] < 8:
         found.append("fewer than 8 cells lie across the contact")
     if 0.5 * loaded.extent[0] > THICKEST_CONTACT * pair.module:
