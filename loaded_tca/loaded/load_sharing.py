@@ -296,18 +296,17 @@ class _Balance:
     def run(self) -> SharedLoad:
         residual, forces = math.inf, np.zeros(len(self.laws))
         for count in range(1, MOST_BALANCES + 1):
-            before = forces
-            forces = balance(self.laws, self.separations, self.levers, self.torque, self.compliance)
-            if count > SWINGING:
-                forces = 0.5 * (before + forces)
-            for index in np.flatnonzero(forces).tolist():
-                self._solve(index, forces)
+            if count > SWINGING and count % SWINGING != 1 and self.pair.max_pressure is not None:
+                forces = self._solve_at_common_rotation(shared)
+            else:  # also now and then there, since pairs that are apart may come under load
+                before = forces
+                forces = balance(self.laws, self.separations, self.levers, self.torque, self.compliance)
+                if count > SWINGING and self.pair.max_pressure is None:
+                    forces = 0.5 * (before + forces)
+                for index in np.flatnonzero(forces).tolist():
+                    self._solve(index, forces)
             self.compliance = self._corrected()
             shared = self._shared(forces, count)
-            if count > SWINGING and self.pair.max_pressure is not None:
-                forces = self._solve_at_common_rotation(shared)
-                self.compliance = self._corrected()
-                shared = self._shared(forces, count)
             residual = shared.residual
             if residual <= self.agreement and self._settled(forces, shared.rotation):
                 return shared
