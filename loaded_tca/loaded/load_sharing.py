@@ -45,8 +45,8 @@ from loaded_tca.separation import Separation
 from loaded_tca.unloaded import ContactPoint, MeshPath
 
 SMALLEST_SHARED = 1e-12
-"""Forces below this times E* m_n^2 are not shared, but taken for none: what the pairs deform then is near the rounding of
-their gaps and initial separations (1 uN at module 3; a line deforms by 1e-12 mm)."""
+"""Forces below this times E* m_n^2 are not shared, but taken for none: what the pairs deform then is near the rounding
+of their gaps and initial separations (1 uN at module 3; a line deforms by 1e-12 mm)."""
 MOST_BALANCES = 40
 """Balances before giving up; two to four are the rule."""
 SWINGING = 8
@@ -294,27 +294,29 @@ class _Balance:
         return PowerLaw(load, SOFTEST_START * load / (self.pair.contact_modulus * self.pair.face_width))
 
     def run(self) -> SharedLoad:
-        residual, forces = math.inf, np.zeros(len(self.laws))
+        shared: SharedLoad | None = None
+        forces = np.zeros(len(self.laws))
         for count in range(1, MOST_BALANCES + 1):
-            if count > SWINGING and count % SWINGING != 1 and self.pair.max_pressure is not None:
+            capped = self.pair.max_pressure is not None
+            if capped and shared is not None and count > SWINGING and count % SWINGING != 1:
                 forces = self._solve_at_common_rotation(shared)
             else:  # also now and then there, since pairs that are apart may come under load
                 before = forces
                 forces = balance(self.laws, self.separations, self.levers, self.torque, self.compliance)
-                if count > SWINGING and self.pair.max_pressure is None:
+                if count > SWINGING and not capped:
                     forces = 0.5 * (before + forces)
                 for index in np.flatnonzero(forces).tolist():
                     self._solve(index, forces)
             self.compliance = self._corrected()
             shared = self._shared(forces, count)
-            residual = shared.residual
-            if residual <= self.agreement and self._settled(forces, shared.rotation):
+            if shared.residual <= self.agreement and self._settled(forces, shared.rotation):
                 return shared
+        assert shared is not None
         cap = self.pair.max_pressure
         limit = "" if cap is None else f"; with max_pressure {cap:g} MPa contacts near their limit deform without end"
         raise ConvergenceError(
-            f"load sharing not converged: the tooth pairs' rotations differ by {residual:.1e} > {self.agreement:.1e} "
-            f"of the rotation after {MOST_BALANCES} balances{limit}",
+            f"load sharing not converged: the tooth pairs' rotations differ by {shared.residual:.1e} > "
+            f"{self.agreement:.1e} of the rotation after {MOST_BALANCES} balances{limit}",
             last=shared,
         )
 
@@ -349,11 +351,13 @@ class _Balance:
         given = np.array([0.0 if loaded is None else loaded.solution.load for loaded in self.solved])
         coupling = {index: self._coupling(index, given, loaded.separation) for index, loaded in before}
 
+        def solved_at(rotation: float) -> dict[int, LoadedContact]:
+            approach = self.levers[1] * (rotation - self.separations)
+            return {index: loaded.at(float(approach[index]), coupling[index]) for index, loaded in before}
+
         def torque_missing(rotation: float) -> float:
-            for index, loaded in before:
-                approach = float(self.levers[1, index] * (rotation - self.separations[index]))
-                self.solved[index] = loaded.at(approach, coupling[index])
-            return self.torque - sum(self.levers[0, index] * self.solved[index].solution.load for index, _ in before)
+            found = solved_at(rotation).items()
+            return self.torque - sum(float(self.levers[0, index]) * loaded.solution.load for index, loaded in found)
 
         asked = [share.rotation for share in shared.shares]
         low, high = min(asked), max(asked)
@@ -361,10 +365,10 @@ class _Balance:
             low -= max(high - low, self.agreement * high)
         while torque_missing(high) > 0.0:
             high += max(high - low, self.agreement * high)
-        torque_missing(float(brentq(torque_missing, low, high, xtol=ROTATION * high, rtol=ROTATION)))
+        rotation = float(brentq(torque_missing, low, high, xtol=ROTATION * high, rtol=ROTATION))
         forces = np.zeros(len(self.solved))
-        for index, loaded in self._loaded():
-            forces[index] = loaded.solution.load
+        for index, loaded in solved_at(rotation).items():
+            self.solved[index], forces[index] = loaded, loaded.solution.load
         return forces
 
     def _loaded(self) -> Iterator[tuple[int, LoadedContact]]:

@@ -151,10 +151,15 @@ class LoadedContact:
         if not self.at_edge:
             minor, major = self.solution.semi_axes
             return 2.0 * minor, 2.0 * major
-        pressure, void = np.pad(self.solution.pressure, 1), np.pad(np.isinf(self.separation.gap), 1, constant_values=True)
-        steps = zip(np.indices(pressure.shape), self.separation.spacing, strict=True)
-        width, length = (step * float(np.ptp(values_at_ends(pressure, cell, void))) for cell, step in steps)
-        return width, length
+        pressure, void = (
+            np.pad(self.solution.pressure, 1),
+            np.pad(np.isinf(self.separation.gap), 1, constant_values=True),
+        )
+        dx, dy = self.separation.spacing
+        across, along = (
+            float(np.ptp(values_at_ends(pressure, place, void))) for place in [*np.indices(pressure.shape)]
+        )
+        return across * dx, along * dy
 
     @cached_property
     def slice_force(self) -> Array:

@@ -17,8 +17,8 @@ from loaded_tca.tooth.geometry import ToothGeometry
 DEFAULT_BORE = 0.55
 """Bore of a gear that has none given, over its (smallest) root diameter."""
 SMALLEST_BORE, LARGEST_BORE = 0.05, 0.98
-"""Bores over the smallest root diameter. A larger one leaves no rim below the teeth; at a smaller one a gear twists about
-its bore twenty times as far as its teeth bend, and no shaft is so thin."""
+"""Bores over the smallest root diameter. A larger one leaves no rim below the teeth; at a smaller one a gear twists
+about its bore twenty times as far as its teeth bend, and no shaft is so thin."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,8 +94,8 @@ class Gear:
         if not SMALLEST_BORE * smallest <= diameter < LARGEST_BORE * smallest:
             thin = "it is held rigid, and the body would twist about so thin a bore far more than the teeth bend"
             raise InputError(
-                f"bore_diameter: {diameter:.6g} mm is not between {SMALLEST_BORE:g} and {LARGEST_BORE:g} times the smallest "
-                f"root diameter, {smallest:.6g} mm: "
+                f"bore_diameter: {diameter:.6g} mm is not between {SMALLEST_BORE:g} and {LARGEST_BORE:g} times the "
+                f"smallest root diameter, {smallest:.6g} mm: "
                 + (thin if diameter < smallest * SMALLEST_BORE else "no rim is left below the teeth")
             )
         return np.full_like(root, 0.5 * self.bore_diameter)

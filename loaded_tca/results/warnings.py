@@ -29,7 +29,7 @@ def warn_of_accuracy(
     load_sharing: bool,
     body_torsion: float = 0.0,
 ) -> None:
-    """Give one AccuracyWarning, for the caller's caller, for each reason, with the number of pressure maps it concerns and the first.
+    """Give one AccuracyWarning for each reason, for the caller's caller: how many pressure maps it concerns, and which.
 
     Parameters
     ----------
@@ -46,7 +46,9 @@ def warn_of_accuracy(
     for torque, rows in zip(carried.torque.tolist(), carried.contacts, strict=True):
         loads = [loaded.solution.load for row in rows for loaded in row if loaded is not None]
         if torque > 0.0 and not any(loads):
-            told.append(f"{1e-3 * torque:g} N m is next to no torque, the gaps it closes are rounding: taken for no load")
+            told.append(
+                f"{1e-3 * torque:g} N m is next to no torque, the gaps it closes are rounding: taken for no load"
+            )
         for angle, row in zip(carried.path.pinion_angle.tolist(), rows, strict=True):
             for number, loaded in zip(carried.pairs.tolist(), row, strict=True):
                 if loaded is not None:
@@ -60,8 +62,8 @@ def warn_of_accuracy(
     if (share := float(twist.max())) > MOST_TORSION:
         bores = " and ".join(f"{bore:.4g}" for bore in pair.rigid_bores)
         told.append(
-            f"the twist of the gear bodies about their bores, {bores} mm, is up to {min(share, 1.0):.0%} of the deflection: "
-            "the mesh stiffness is that of the bodies"
+            f"the twist of the gear bodies about their bores, {bores} mm, is up to {min(share, 1.0):.0%} of the "
+            "deflection: the mesh stiffness is that of the bodies"
         )
     deflection = float(np.nanmax(carried.rotation, initial=0.0)) * pair.base_radii[1]
     if load_sharing and deflection > REACH * pair.module:

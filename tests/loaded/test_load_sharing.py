@@ -231,15 +231,6 @@ def test_pairs_at_their_cap_share_the_torque(cap, bending):
         assert solution.residual <= 1e-6
 
 
-def test_contact_that_outgrows_its_box_under_a_corrected_force_gets_a_larger_one(monkeypatch):
-    """Boxes that are too small for 0.9 of the force they were made for."""
-    monkeypatch.setattr("loaded_tca.separation.box.MARGIN", 1.01)
-    pair = helical()
-    for phi1 in np.linspace(-1.0, 1.0, 9) * CENTRE:
-        found = share_load(pair, tooth_pairs_at(trace_teeth(pair, [phi1]), 0), TORQUE, GRID)
-        assert not any(share.loaded.solution.reaches_border for share in found.shares)
-
-
 class Springs:
     """Every pair deflects by some amount more, and a little by the load of the others."""
 

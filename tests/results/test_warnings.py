@@ -76,5 +76,7 @@ def test_twist_about_a_thin_bore_is_told():
 
 
 def test_cap_that_the_flanks_cannot_carry_is_told_with_its_place():
-    with pytest.raises(InputError, match=r"130 N m at pinion angle .* deg: tooth pair [+-]\d: load: .* max_pressure, 5 MPa"):
+    with pytest.raises(
+        InputError, match=r"130 N m at pinion angle .* deg: tooth pair [+-]\d: load: .* max_pressure, 5 MPa"
+    ):
         told("mesh_cycle_spur", **{"analysis.torques_Nm": (130.0,), "material.max_pressure_MPa": 5.0})

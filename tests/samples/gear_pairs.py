@@ -28,7 +28,13 @@ def cylindrical_mesh(teeth=(34, 57), module=3.0, width=25.0, helix_deg=0.0, shif
 
 
 def gear_pair(
-    pinion=NONE, wheel=NONE, mounting=None, driving="pinion", sense="positive", materials=(Material(), Material()), **mesh
+    pinion=NONE,
+    wheel=NONE,
+    mounting=None,
+    driving="pinion",
+    sense="positive",
+    materials=(Material(), Material()),
+    **mesh,
 ):
     return cylindrical_pair(
         cylindrical_mesh(**mesh),
