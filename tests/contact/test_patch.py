@@ -82,8 +82,8 @@ def test_contact_ends_at_the_material_or_before(end, reached, turn):
 
 @given(offset=st.floats(-0.5, 0.5), radius=st.floats(4.0, 12.0))
 def test_ends_of_a_strip_lie_within_its_cells(offset, radius):
-    """A Hertzian strip: p^2 is a parabola of half width R, which a chord through its last two cells, one d from its end,
-    leaves by d (d + 1)/(2 R - 2 d - 1), at most 1/(R - 1.5).
+    """A Hertzian strip: p^2 is a parabola of half width R, which a chord through its last cells, d and d + 1 from its
+    end, leaves by d (d + 1)/(2 R - 2 d - 1), at most 1/(R - 1.5).
     """
     pressure = ellipse((40, 6), (19.5 + offset, 2.5), (radius, 1e9))
     place = np.broadcast_to(np.arange(40.0)[:, None], pressure.shape)
