@@ -326,8 +326,9 @@ class _Balance:
         tooth_pair, coupling = self.tooth_pairs[index], partial(self._coupling, index, forces)
         try:
             loaded = None
-            if before is not None and SAME_BOX[0] * before.solution.load <= force <= SAME_BOX[1] * before.solution.load:
-                loaded = before.under(force, coupling(before.separation))
+            if before is not None and not before.solution.reaches_border:
+                least, most = (factor * before.solution.load for factor in SAME_BOX)
+                loaded = before.under(force, coupling(before.separation)) if least <= force <= most else None
             if loaded is None or loaded.solution.reaches_border:
                 contact, number = tooth_pair.contact, tooth_pair.pair
                 with named(f"tooth pair {number:+d}"):
@@ -369,6 +370,9 @@ class _Balance:
         forces = np.zeros(len(self.solved))
         for index, loaded in solved_at(rotation).items():
             self.solved[index], forces[index] = loaded, loaded.solution.load
+        for index, loaded in self._loaded():
+            if loaded.solution.reaches_border:
+                self._solve(index, forces)  # in a larger box
         return forces
 
     def _loaded(self) -> Iterator[tuple[int, LoadedContact]]:

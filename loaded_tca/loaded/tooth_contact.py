@@ -230,6 +230,8 @@ class LoadedContact:
         gap = gap if coupling is None else gap + coupling
         problem = replace(before.problem, load=None, approach=approach, gap=gap)
         solution = solve_problem(problem, tolerance=EXACT, initial_pressure=before.pressure)
+        area = np.count_nonzero(np.isfinite(problem.gap)) * problem.spacing[0] * problem.spacing[1]
+        solution = replace(solution, load=min(solution.load, problem.cap * area))  # rounding, where all is at the cap
         problem = replace(problem, load=solution.load, approach=None)
         solution = replace(solution, problem=problem, coarser=before.coarser)
         return replace(self, solution=solution, coupling_deflection=coupling)

@@ -75,6 +75,15 @@ def test_twist_about_a_thin_bore_is_told():
     assert_allclose(turned, force * added, rtol=0.1)  # four layers, and one force bends the body, too: 6 %
 
 
+def test_pair_that_fills_its_grid_at_the_cap_gets_a_larger_one():
+    """Beside a pair at its limit a light one takes several times the force that its first grid was made for."""
+    capped = {"analysis.torques_Nm": (130.0,), "material.max_pressure_MPa": 50.0}
+    result, sentences = told("mesh_cycle_spur", **capped, **{"analysis.positions": 9, "analysis.cells": (24, 24)})
+    assert not any("the box" in sentence for sentence in sentences)
+    assert_allclose(result.load_share.sum(axis=-1), 1.0, rtol=1e-8)
+    assert np.nanmax(result.peak_pressure) <= 50.0
+
+
 def test_cap_that_the_flanks_cannot_carry_is_told_with_its_place():
     with pytest.raises(
         InputError, match=r"130 N m at pinion angle .* deg: tooth pair [+-]\d: load: .* max_pressure, 5 MPa"
