@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import dis
+import ast
 import sys
 from collections.abc import Callable
 from importlib import import_module
@@ -13,8 +13,7 @@ def lazy_names(package: str) -> tuple[Callable[[str], object], Callable[[], list
     """``__getattr__`` and ``__dir__`` of a package that imports each of its public names when it is first used.
 
     Which name is in which module stands once, as ordinary imports under ``if TYPE_CHECKING:`` in the package's
-    ``__init__.py``: type checkers and the import contracts read them there, and this function reads them in the
-    compiled module, which is there without the source, too. The modules of
+    ``__init__.py``: type checkers and the import contracts read them there, and so does this function. The modules of
     the package are found, too. A public name must not be that of a module beside it: importing the module would put it
     in the name's place.
 
@@ -29,12 +28,9 @@ def lazy_names(package: str) -> tuple[Callable[[str], object], Callable[[], list
         ``__getattr__``, ``__dir__``.
     """
     module = sys.modules[package]
-    origins, origin = {}, ""
-    for step in dis.get_instructions(module.__loader__.get_code(package)):  # type: ignore[union-attr]
-        if step.opname == "IMPORT_NAME":
-            origin = step.argval
-        elif step.opname == "IMPORT_FROM" and origin != package:
-            origins[step.argval] = origin
+    source = module.__loader__.get_source(package)  # type: ignore[union-attr]
+    imports = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.ImportFrom)]
+    origins = {name.name: str(node.module) for node in imports for name in node.names if node.module != package}
 
     def load(name: str) -> object:
         if name in origins:

@@ -112,7 +112,13 @@ def test_smallest_bore_is_a_part_of_the_root_circle_at_the_toe(name):
     assert_allclose(gear.smallest_bore, 0.55 * 2.0 * root, rtol=1e-12)
 
 
-@pytest.mark.parametrize("diameter", [math.nan, 0.0, -1.0, 64.5])
+@pytest.mark.parametrize("diameter", [-1.0, 0.0, 0.1, 3.2])
+def test_bore_too_thin_to_hold_the_gear_is_refused(diameter):
+    with pytest.raises(InputError, match=r"bore_diameter: .* mm is not between 0.05 and 0.98 times .* so thin a bore"):
+        _ = replace(gear_of(MESHES["spur"]), bore_diameter=diameter).smallest_bore
+
+
+@pytest.mark.parametrize("diameter", [math.nan, 64.5])
 def test_bore_that_leaves_no_rim_is_refused(diameter):
     with pytest.raises(InputError, match=r"bore_diameter: .* no rim is left below the teeth"):
         _ = replace(gear_of(MESHES["spur"]), bore_diameter=diameter).smallest_bore
