@@ -73,12 +73,19 @@ class Grid:
     def of(cls, problem: ContactProblem) -> Grid:
         """Return the whole finest grid of a problem, its gap and approach counted from first contact."""
         (dx, dy), modulus, slices = problem.spacing, problem.contact_modulus, problem.slice_compliance
+        total = None if problem.load is None else problem.load / (dy * modulus)
+        approach = 0.0 if problem.approach is None else problem.approach - problem.first_contact
+        cap = math.inf if problem.max_pressure is None else problem.max_pressure * (dx / modulus)
+        # One cell that takes all of the load, or of the approach, has the highest pressure there can be.
+        highest = approach / float(influence_coefficients((1, 1), dy / dx)[0, 0]) if total is None else total
+        if problem.cover is not None:
+            highest /= float(problem.cover[problem.cover > 0.0].min())
         return cls(
             gap=problem.gap - problem.first_contact,
             spacing=problem.spacing,
-            total=None if problem.load is None else problem.load / (dy * modulus),
-            approach=0.0 if problem.approach is None else problem.approach - problem.first_contact,
-            cap=math.inf if problem.max_pressure is None else problem.max_pressure * (dx / modulus),
+            total=total,
+            approach=approach,
+            cap=cap if cap < highest else math.inf,
             free_edges=tuple(problem.free_edges),
             slices=None if slices is None else slices * (dy * modulus),
             cover=problem.cover,

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, numbers
 from loaded_tca.contact import checks
 from loaded_tca.contact.cuts import limits
 from loaded_tca.contact.edges import FreeEdge, check_edges, without_material_beyond
@@ -30,7 +30,7 @@ class ContactProblem:
     gap : (nx, ny) array_like [mm]
         Gap between the surfaces before loading; +inf where there is no material, as it becomes beyond free edges.
     spacing : (float, float) [mm]
-        Width of a cell along the first and the second axis.
+        Width of a cell along the first and the second axis; the limits of sizes are in ``contact.checks``.
     contact_modulus : float [MPa]
         E*, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
     load : float, optional [N]
@@ -71,28 +71,32 @@ class ContactProblem:
     cover: Array | None = None
 
     def __post_init__(self) -> None:
-        gap, slices, edges = _numbers(self.gap), self.slice_compliance, tuple(self.free_edges)
-        slices = None if slices is None else _numbers(slices).copy()
-        cover = None if self.cover is None else _numbers(self.cover).copy()
+        gap, slices, cover = numbers("gap", self.gap), self.slice_compliance, self.cover
+        slices = None if slices is None else numbers("slice_compliance", slices).copy()
+        cover = None if cover is None else numbers("cover", cover)
         checks.raise_if(
             checks.check_grid(gap, self.spacing, self.contact_modulus)
-            + check_edges(edges)
+            + check_edges(self.free_edges)
             + check_slices(slices, gap.shape)
             + checks.check_cover(cover, gap)
         )
-        spacing = float(self.spacing[0]), float(self.spacing[1])
+        spacing, edges = (float(self.spacing[0]), float(self.spacing[1])), tuple(self.free_edges)
         gap = without_material_beyond(gap.copy(), spacing, edges if cover is None else ())
         there = np.isfinite(gap)
+        checks.raise_if([] if there.any() else ["free_edges: no cell within them holds material"])
         cover = None if cover is None or (cover[there] == 1.0).all() else np.where(there, cover, 0.0)
-        area = float(np.count_nonzero(there) if cover is None else cover.sum()) * spacing[0] * spacing[1]
-        checks.raise_if([] if area else ["free_edges: no cell within them holds material"])
-        checks.raise_if(checks.check_demand(self.load, self.approach, self.max_pressure, area))
         for array in (gap, slices, cover):
             if array is not None:
                 array.flags.writeable = False
         own = {"gap": gap, "spacing": spacing, "free_edges": edges, "slice_compliance": slices, "cover": cover}
         for name, value in own.items():
             object.__setattr__(self, name, value)
+        demand = self.load, self.approach, self.max_pressure
+        checks.raise_if(checks.check_demand(*demand, gap, self.material_area, spacing, self.contact_modulus))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Made anew by pickle and copy: arrays of theirs could be written to."""
+        return type(self), tuple(getattr(self, entry.name) for entry in fields(self))
 
     @cached_property
     def first_contact(self) -> float:
@@ -107,6 +111,12 @@ class ContactProblem:
         return self.max_pressure if self.cover is None else limits(self.max_pressure, self.cover)
 
     @property
+    def material_area(self) -> float:
+        """Area of the cells that has material [mm^2]."""
+        parts = np.isfinite(self.gap) if self.cover is None else self.cover
+        return float(parts.sum()) * self.cell_area
+
+    @property
     def cells(self) -> tuple[int, int]:
         """Cells along the two axes."""
         return self.gap.shape[0], self.gap.shape[1]
@@ -115,7 +125,3 @@ class ContactProblem:
     def cell_area(self) -> float:
         """Area of a cell [mm^2]."""
         return self.spacing[0] * self.spacing[1]
-
-
-def _numbers(values: ArrayLike) -> Array:
-    return np.asarray(values, dtype=np.float64)
