@@ -98,15 +98,15 @@ def ends_at_material(pressure: Array, void: Mask) -> bool:
     return False
 
 
-def values_at_ends(pressure: Array, values: Array, cover: Array) -> Array:
+def values_at_ends(pressure: Array, values: Array, cover: Array, axes: tuple[int, ...] = (0, 1)) -> Array:
     """Values (n,), known at the centres of the cells, at the ends of the contact between these centres.
 
     The square of the pressure falls linearly to zero at an end, but no farther away than the next centre; or than the
-    end of the material, ``cover`` being the part of each cell that has some.
+    end of the material, ``cover`` being the part of each cell that has some. Only ends along ``axes`` are told.
     """
     square = continue_outside(pressure**2)
     found = []
-    for axis in (0, 1):
+    for axis in axes:
         levels, known, parts = (np.moveaxis(array, axis, 0) for array in (square, values, cover))
         for inner, outer in ((slice(-1), slice(1, None)), (slice(1, None), slice(-1))):
             ends = (levels[inner] > 0.0) & (levels[outer] <= 0.0)

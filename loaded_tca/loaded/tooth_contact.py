@@ -156,13 +156,11 @@ class LoadedContact:
             minor, major = self.solution.semi_axes
             return 2.0 * minor, 2.0 * major
         pressure, cover = np.pad(self.solution.pressure_on_material, 1), np.pad(self.separation.cover, 1)
-        lengths = []
-        for axis, place in enumerate(np.indices(pressure.shape)):
-            material = np.where(pressure > 0.0, cover, 0.0).max(axis=1 - axis).sum()  # all of it, where an edge cuts
-            lengths.append(
-                min(np.ptp(values_at_ends(pressure, place, cover)), material) * self.separation.spacing[axis]
-            )
-        return float(lengths[0]), float(lengths[1])
+        across, along = (
+            float(np.ptp(values_at_ends(pressure, place, cover, (axis,)))) * self.separation.spacing[axis]
+            for axis, place in enumerate(np.indices(pressure.shape))
+        )
+        return across, along
 
     @cached_property
     def slice_force(self) -> Array:
