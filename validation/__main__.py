@@ -40,6 +40,7 @@ CASES = (
     "face_milled.duplex_paper",
     "cylindrical.iso_tr_6336_30",
     "loaded.limits",
+    "loaded.cut_contacts",
     "calculix.mesh_cycle",
     "contact.subsurface",
     "contact.free_edge",

@@ -158,7 +158,7 @@ class LoadedContact:
         pressure, cover = np.pad(self.solution.pressure_on_material, 1), np.pad(self.separation.cover, 1)
         across, along = (
             float(np.ptp(values_at_ends(pressure, place, cover, (axis,)))) * self.separation.spacing[axis]
-            for axis, place in enumerate(np.indices(pressure.shape))
+            for axis, place in enumerate([*np.indices(pressure.shape)])
         )
         return across, along
 

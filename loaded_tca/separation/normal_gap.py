@@ -101,13 +101,14 @@ class NormalGap:
             start = tuple(o + (x * a + y * b) for o, a, b in zip(origin.tolist(), across, along, strict=True))
             rays.append(_Rays(flank, start, tuple(normal), turn))
         met = [self._meet(ray, np.zeros(ray.start[0].shape)) for ray in rays]
-        missed = np.zeros(met[0].height.shape, dtype=bool)
+        missed = None
         if not (met[0].settled & met[1].settled).all():
-            for own in (0, 1):
-                missed |= self._meet_rest(rays[own], met[own], met[1 - own])
-        beside = ON_EDGE * self.pair.module
-        edges = [jet.value for ray, one in zip(rays, met, strict=True) for jet in ray.flank.edges(one.rho, one.z)]
-        return met[1].height - met[0].height, [np.where(missed, -np.inf, edge + beside) for edge in edges]
+            missed = np.logical_or(*(self._meet_rest(rays[own], met[own], met[1 - own]) for own in (0, 1)))
+        jets = [jet for ray, one in zip(rays, met, strict=True) for jet in ray.flank.edges(one.rho, one.z)]
+        distances = [jet.value + ON_EDGE * self.pair.module for jet in jets]
+        if missed is not None:
+            distances = [np.where(missed, -np.inf, distance) for distance in distances]
+        return met[1].height - met[0].height, distances
 
     def _meet_rest(self, rays: _Rays, met: _Meeting, mating: _Meeting) -> Mask:
         """Take further steps as long as they shrink, where the mating gear is met; return where that is in vain."""
