@@ -13,12 +13,12 @@ min(1/c_i, 1/c_j) is, and so is its product with K, element by element.
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_array
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.contact.convolution import Window
 from loaded_tca.contact.love import influence_coefficients
 from loaded_tca.contact.slices import merged
@@ -36,42 +36,52 @@ def merged_cover(cover: Array, merge: tuple[int, int]) -> Array:
     return cover
 
 
+def is_cut(cover: Array) -> Mask:
+    """Cells that have some material, but not over the whole of them."""
+    return np.asarray((cover > 0.0) & (cover < 1.0))
+
+
 def limits(cap: float, cover: Array) -> Array:
     """Largest pressure of every cell (nx, ny) where its material carries the cap at most."""
     return np.where(cover > 0.0, cover, 1.0) * cap
 
 
+@dataclass(frozen=True, eq=False)
 class CutCells:
-    """Displacement of cut cells on top of that of half-spaces under their pressures.
+    """Cells (n,) of a grid that edges cut, and their displacement on top of that of half-spaces.
 
-    Parameters
+    Attributes
     ----------
-    cover : (nx, ny) array
-        Part of every cell that has material, from 0 to 1.
-    aspect : float
-        dy/dx of a cell.
-    window : Window or None
-        Cells that carry the pressure; None: all.
-    dtype : str
-        Of the products.
+    row, column : (n,) array of int
+    crowding : (n, n) array
+        Displacement under a unit pressure on each, in the units of the influence coefficients.
     """
 
-    def __init__(self, cover: Array, aspect: float, window: Window | None, dtype: str) -> None:
-        row, column = np.nonzero((cover > 0.0) & (cover < 1.0))
-        order = np.argsort(column, kind="stable")
-        row, column = row[order], column[order]
-        own, inverse = influence_coefficients((cover.shape[0], 1), aspect)[:, 0], 1.0 / cover[row, column]
-        one, other = np.nonzero(column[:, None] == column)
-        value = own[np.abs(row[one] - row[other])] * (np.minimum(inverse[one], inverse[other]) - 1.0)
-        matrix: Any = csr_array((CROWDING * value, (one, other)), shape=2 * row.shape)
-        self._at = self._under = row, column
-        if window is not None:
-            rows, columns = window
-            inside = (row >= rows.start) & (row < rows.stop) & (column >= columns.start) & (column < columns.stop)
-            matrix = matrix[:, np.flatnonzero(inside)]
-            self._under = row[inside] - rows.start, column[inside] - columns.start
-        self._matrix = matrix.astype(dtype)
+    row: Indices
+    column: Indices
+    crowding: Array
 
-    def add(self, pressure: Array, out: Array) -> None:
-        """Add the displacement of the cut cells under a pressure on the window to ``out``."""
-        out[self._at] += self._matrix @ pressure[self._under].astype(self._matrix.dtype, copy=False)
+    @classmethod
+    def of(cls, cover: Array, aspect: float) -> CutCells:
+        """Those of a grid with the parts ``cover`` (nx, ny), and cells of an aspect dy/dx."""
+        row, column = np.nonzero(is_cut(cover))
+        own, inverse = influence_coefficients((cover.shape[0], 1), aspect)[:, 0], 1.0 / cover[row, column]
+        crowding = CROWDING * (np.minimum(inverse[:, None], inverse) - 1.0)
+        crowding *= own[np.abs(row[:, None] - row)] * (column[:, None] == column)
+        return cls(row, column, crowding)
+
+    def operator(self, window: Window | None, dtype: str) -> Callable[[Array, Array], None] | None:
+        """What adds the displacement under a pressure on a window to that of the grid; None if it holds no cut cell."""
+        under, crowding = (self.row, self.column), self.crowding
+        if window is not None:
+            (rows, columns), (row, column) = window, under
+            inside = (row >= rows.start) & (row < rows.stop) & (column >= columns.start) & (column < columns.stop)
+            under, crowding = (row[inside] - rows.start, column[inside] - columns.start), crowding[:, inside]
+        if not crowding.size:
+            return None
+        matrix = crowding.astype(dtype)
+
+        def add(pressure: Array, out: Array) -> None:
+            out[self.row, self.column] += matrix @ pressure[under].astype(dtype, copy=False)
+
+        return add

@@ -11,7 +11,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.convolution import Convolution, Window
-from loaded_tca.contact.cuts import CutCells, limits, merged_cover
+from loaded_tca.contact.cuts import CutCells, is_cut, limits, merged_cover
 from loaded_tca.contact.edges import FreeEdge, MirroredConvolution, amplification, mirrors
 from loaded_tca.contact.levels import coarsen, window_around
 from loaded_tca.contact.love import influence_coefficients
@@ -144,7 +144,7 @@ class Grid:
             gap=np.minimum(self.gap[window], OUT_OF_REACH * self.reach),
             slices=None if self.slices is None else self.slices[columns, columns],
             start=(rows.start, columns.start),
-            cover=None if self.cover is None else self.cover[window],
+            cover=None if self.cover is None or not is_cut(self.cover[window]).any() else self.cover[window],
         )
 
     def coarser(self, merge: tuple[int, int]) -> Grid:
@@ -167,6 +167,11 @@ class Grid:
         loaded = pressure > 0.0
         return window_around(loaded if loaded.any() else self.reachable)
 
+    @cached_property
+    def _cut_cells(self) -> CutCells:
+        assert self.cover is not None
+        return CutCells.of(self.cover, self.aspect)
+
     def operator(self, window: Window | None = None, dtype: str = "float64", threads: int = 2) -> Operator:
         """K for pressures on a window of the grid, or on all of it; it fills its second argument and returns it."""
         convolve: Convolution | MirroredConvolution
@@ -175,9 +180,9 @@ class Grid:
             convolve = MirroredConvolution(self.shape, self.aspect, edges, window, dtype, threads)
         else:
             convolve = Convolution(self.shape, self.aspect, window, dtype, threads)
-        if self.slices is None and self.cover is None:
+        cuts = None if self.cover is None else self._cut_cells.operator(window, dtype)
+        if self.slices is None and cuts is None:
             return convolve
-        cuts = None if self.cover is None else CutCells(self.cover, self.aspect, window, dtype)
         slices = self.slices
         if slices is not None:
             slices = (slices if window is None else slices[:, window[1]]).astype(dtype)
@@ -187,7 +192,7 @@ class Grid:
             if slices is not None:
                 out += slices @ pressure.sum(axis=0, dtype=slices.dtype)
             if cuts is not None:
-                cuts.add(pressure, out)
+                cuts(pressure, out)
             return out
 
         return displaced
