@@ -179,23 +179,22 @@ def _cover(distances: list[Array], spacing: tuple[float, float]) -> Array:
     """
     cover = np.ones(distances[0].shape)
     for distance in distances:
-        if distance.min() >= sum(spacing) or _farther(distance):
+        least = float(distance.min())
+        if least >= sum(spacing):
             continue
-        met, growth = np.where(np.isfinite(distance), distance, np.nan), np.zeros(distance.shape)
-        for axis in np.flatnonzero(np.array(met.shape) > 1):
-            growth += np.abs(np.gradient(met, axis=axis))
+        growth, met = np.zeros(distance.shape), distance
+        if not math.isfinite(least):
+            met = np.where(np.isfinite(distance), distance, np.nan)
+        for lines, sums in ((met, growth), (met.T, growth.T)):
+            if len(lines) > 1:
+                steps = np.abs(lines[1:] - lines[:-1])
+                sums[:-1] += steps
+                sums[-1] += steps[-1]
         parts = np.divide(distance, growth, out=np.copysign(1.0, distance), where=growth > 0.0)
-        cover = np.minimum(cover, 0.5 + parts)
+        np.minimum(cover, 0.5 + parts, out=cover)
+    if cover.min() >= 1.0:
+        return cover
     return np.where(cover < SLIVER, 0.0, np.where(cover > 1.0 - SLIVER, 1.0, cover))
-
-
-def _farther(distance: Array) -> bool:
-    """Whether an edge is farther away from all cells than it grows from one to the next, told by three corners."""
-    corner, across, along = distance[0, 0], distance[-1, 0], distance[0, -1]
-    if not np.isfinite(distance.min()):
-        return False
-    growth = abs(across - corner) / len(distance) + abs(along - corner) / len(distance[0])
-    return bool(distance.min() > growth)
 
 
 def _check(
