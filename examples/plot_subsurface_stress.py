@@ -25,8 +25,7 @@ def main() -> float:
     print(below.summary())
     save_figure(plot_stress_below(below, "max_shear"), "subsurface_stress.png")
 
-    hertz_shear, _depth, _pressure = below.hertz_shear
-    return below.largest("max_shear").value / hertz_shear
+    return below.largest("max_shear").value / below.hertz_shear.value
 
 
 if __name__ == "__main__":

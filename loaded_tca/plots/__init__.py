@@ -6,6 +6,7 @@ from pathlib import Path
 
 from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
 from loaded_tca.plots.ease_off import plot_ease_off
+from loaded_tca.plots.envelope import plot_pressure_envelope
 from loaded_tca.plots.flanks import plot_contact_path
 from loaded_tca.plots.pressure_map import plot_pressure_map
 from loaded_tca.plots.sharing import (
@@ -15,7 +16,6 @@ from loaded_tca.plots.sharing import (
     plot_load_share,
     plot_mesh_stiffness,
     plot_path_pressure,
-    plot_pressure_envelope,
 )
 from loaded_tca.plots.style import highest_torque, save_figure
 from loaded_tca.plots.subsurface import plot_stress_below, plot_subsurface

@@ -8,13 +8,13 @@ from matplotlib.figure import Figure
 
 from loaded_tca.arrays import Array
 from loaded_tca.plots import style
-from loaded_tca.plots.style import HEADROOM, HERTZ, loads, range_of_positions, torque_styles
+from loaded_tca.plots.style import HEADROOM, HERTZ, NO_LOAD, loads, range_of_positions, torque_styles
 from loaded_tca.results.key_figures import ARCSEC, mean_over_a_pitch
 from loaded_tca.results.mesh_cycle import MeshCycle
 
 SMALLEST_SPAN_ARCSEC = 0.02
 """Height of a transmission error axis below which a curve would be rounding."""
-BESIDE = "there beside the contact point"
+BESIDE = "at the contact point, where the peak is mesh-dependent"
 EDGE_HEADROOM = 1.15
 """How far above the curves a peak at an edge may draw the axis: how high it is depends on the mesh."""
 
@@ -90,7 +90,7 @@ def plot_peak_pressure(result: MeshCycle) -> Figure:
     if at_edge.any():
         _draw_edge_peaks(axes, result, angle, np.where(at_edge, peak, np.nan))
     if not (peak > 0.0).any():
-        style.tell_no_load(axes)
+        style.tell(axes, NO_LOAD)
     axes.set_ylabel("contact pressure [MPa]")
     about = f"peak contact pressure, {loads(result)}", range_of_positions(result)
     return style.finished(figure, axes, result, *about, columns=2)
@@ -105,12 +105,12 @@ def _draw_edge_peaks(axes: Axes, result: MeshCycle, angle: Array, peak: Array) -
     for torque, _, colour, _ in torque_styles(result):
         axes.plot(angle[within[torque]], peak[torque][within[torque]], "x", color=colour)
         axes.plot(angle[beyond[torque]], np.full(beyond[torque].sum(), edge), "^", color=colour)
-    label = "at an edge or relief start (mesh-dependent)"
+    label = "peak at an edge or relief start (mesh-dependent)"
     if within.any():
         axes.plot([], [], "x", color="black", label=label)
     if beyond.any():
         span = " to ".join(dict.fromkeys(f"{value:.0f}" for value in (peak[beyond].min(), peak[beyond].max())))
-        told = "the same" if within.any() else label
-        axes.plot([], [], "^", color="black", label=f"{told}, above: {span} MPa")
+        told = "such a peak" if within.any() else label
+        axes.plot([], [], "^", color="black", label=f"{told} above the axis: {span} MPa")
         high = 1.03 * edge
     axes.set_ylim(0.0, high)

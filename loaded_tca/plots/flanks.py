@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Literal
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -23,6 +24,8 @@ CONTACT_POINTS = "unloaded contact points of all positions and pairs"
 MOST_AREAS = 7
 LEAST_SEEN = 0.01
 """Part of the height of a flank from which an area of it is seen."""
+CELLS_OF_SPIKES = 0.05
+"""Part of the cells under pressure that may lie beyond the scale of colours."""
 FINENESS = (129, 33)
 """Points along the profile and lengthwise from which the outline of a flank is drawn."""
 
@@ -48,7 +51,7 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     positions = sorted({round(last * part / (MOST_AREAS - 1)) for part in range(MOST_AREAS)})
     drawn = [row for row in (loaded_maps(result, torque, [position]) for position in positions) if row]
     maps = [one for row in drawn for one in row]
-    scale = Normalize(0.0, highest_mesh_independent_pressure(result, torque, maps))
+    scale, extend = colour_scale(result, torque, maps)
 
     def draw(axes: Axes, to_picture: Callable[[Array], Array]) -> list[Artist]:
         areas: list[Artist] = []
@@ -62,9 +65,7 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
 
     figure, panels = both_flanks(result, draw)
     if maps:
-        beyond = any(one.pressure.max() > scale.vmax for one in maps)
-        bar = ScalarMappable(scale, COLOURS)
-        figure.colorbar(bar, ax=panels, label="contact pressure [MPa]", extend="max" if beyond else "neither")
+        figure.colorbar(ScalarMappable(scale, COLOURS), ax=panels, label="contact pressure [MPa]", extend=extend)
     handles: list[Artist] = [Line2D([], [], color=ACCENT, marker=".", linestyle="", label=CONTACT_POINTS)]
     flanks = pair.pinion.flank, pair.wheel.flank
     heights = [flank.profile_coordinate(*flank.grid(*FINENESS)).value for flank in flanks]
@@ -87,12 +88,25 @@ def loaded_maps(result: MeshCycle, torque: int, positions: Sequence[int] | None 
     return [one for row in rows for one in row if one is not None and one.pressure.any()]
 
 
-def highest_mesh_independent_pressure(result: MeshCycle, torque: int, maps: list[PressureMap]) -> float:
-    """Highest mesh-independent pressure [MPa], the end of a scale; the highest at all if there is none."""
+def colour_scale(
+    result: MeshCycle, torque: int, maps: Sequence[PressureMap]
+) -> tuple[Normalize, Literal["max", "neither"]]:
+    """Scale of the colours of maps that no spike at an edge stretches, and the arrow of its bar if one lies beyond."""
+    highest = highest_of_scale(result, torque, maps)
+    beyond = any(one.pressure.max() > highest for one in maps)
+    return Normalize(0.0, highest), "max" if beyond else "neither"
+
+
+def highest_of_scale(result: MeshCycle, torque: int, maps: Sequence[PressureMap]) -> float:
+    """Highest mesh-independent pressure [MPa] under a torque; if there is none, that of all cells but the spikes."""
     known = result.mesh_independent_pressure[torque]
-    if np.isfinite(known).any():
-        return float(np.nanmax(known)) or 1.0
-    return max((float(one.pressure.max()) for one in maps), default=1.0)
+    return float(np.nanmax(known)) or 1.0 if np.isfinite(known).any() else below_spikes(maps)
+
+
+def below_spikes(maps: Sequence[PressureMap]) -> float:
+    """Pressure [MPa] that all loaded cells of maps but a small part stay below."""
+    loaded = np.concatenate([[], *(one.pressure[one.pressure > 0.0] for one in maps)])
+    return float(np.quantile(loaded, 1.0 - CELLS_OF_SPIKES)) if loaded.size else 1.0
 
 
 def both_flanks(

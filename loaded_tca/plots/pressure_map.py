@@ -11,13 +11,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
 from loaded_tca.flanks.frame import FlankFrame
-from loaded_tca.plots.flanks import highest_mesh_independent_pressure
-from loaded_tca.plots.style import ACCENT, COLOURS, NO_MATERIAL, highest_torque, load, place, set_title, tell_no_load
+from loaded_tca.plots.flanks import below_spikes, highest_of_scale
+from loaded_tca.plots.style import ACCENT, COLOURS, NO_LOAD, NO_MATERIAL, highest_torque, load, place, set_title, tell
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
-
-CELLS_OF_A_SPIKE = 0.05
-"""Part of the cells under pressure that may lie beyond the scale of colours."""
 
 
 def plot_pressure_map(
@@ -58,9 +55,8 @@ def plot_pressure_map(
     figure = Figure(figsize=(9.0, 1.8 + height), layout="constrained")
     axes = figure.add_subplot()
     highest = float(one.pressure.max())
-    if result.peak_at_edge[torque][at]:  # what nearly all cells stay below, or the highest pressure that is no spike
-        most = float(np.quantile(one.pressure[one.pressure > 0.0], 1.0 - CELLS_OF_A_SPIKE))
-        highest = min(highest, max(most, highest_mesh_independent_pressure(result, torque, [one])))
+    if result.peak_at_edge[torque][at]:
+        highest = min(highest, max(below_spikes([one]), highest_of_scale(result, torque, [one])))
     _draw_pressure(figure, axes, one, highest)
     names = ("hertz_semi_minor", "hertz_semi_major", "hertz_pressure")
     minor, major, pressure = (float(getattr(result, name)[torque][at]) for name in names)
@@ -99,7 +95,7 @@ def _draw_pressure(figure: Figure, axes: Axes, one: PressureMap, highest: float)
     if void.any():
         axes.plot([], [], "s", color=NO_MATERIAL, label="no material")
     if not one.pressure.any():
-        tell_no_load(axes)
+        tell(axes, NO_LOAD)
         return
     loaded = np.where(one.pressure > 0.0, one.pressure, np.nan)
     mesh = axes.pcolormesh(y, x, loaded, cmap=COLOURS, norm=Normalize(0.0, highest))

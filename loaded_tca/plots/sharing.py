@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
@@ -18,11 +17,12 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.plots import style
-from loaded_tca.plots.flanks import both_flanks, highest_mesh_independent_pressure, loaded_maps
+from loaded_tca.plots.flanks import both_flanks, loaded_maps
 from loaded_tca.plots.style import (
     COLOURS,
     HERTZ,
     MARKERS,
+    NO_LOAD,
     highest_torque,
     load,
     loads,
@@ -30,18 +30,19 @@ from loaded_tca.plots.style import (
     torque_styles,
 )
 from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.summary import signed
 from loaded_tca.unloaded import trace_contact
 
-EDGE = "contact at an edge (its peak is mesh-dependent)"
-ROW_OF_ENDS, MOST_ROWS = 0.035, 4
-"""Height of a row of such marks over that of the axis, and how many rows there are at most."""
+EDGE = "at an edge or relief start: pressure mesh-dependent, not drawn"
 WHAT_LETTERS_ARE = "A, E: the unloaded contact of these flanks begins, ends; B, D: a pitch from E, A; C: pitch point"
 NEAR_LETTERS = 0.03
 """Part of the axis below which two letters stand to either side of their lines."""
+PAIR_COLOURS = "#0072b2", "#d55e00", "#56b4e9", "#cc79a7", "#e69f00", "#009e73"
+"""Of tooth pairs 0, +1, ...: told apart by colour-blind readers (Okabe and Ito)."""
 MOST_PANELS = 4
 """Torques with a panel each."""
-MOST_ORDERS = 8
-"""Orders of the tooth mesh that are drawn."""
+MOST_ORDERS, LEAST_POSITIONS = 8, 4
+"""Orders of the tooth mesh that are drawn; positions from which the first is known."""
 SMALLEST_AMPLITUDE_UM = 1e-4
 ROUNDS, FINENESS = 3, 33
 """Rounds in which the ends of the path of contact are found, and angles of each: to 3e-5 of the span."""
@@ -67,25 +68,27 @@ def plot_load_share(result: MeshCycle, torque: int | None = None) -> Figure:
     *panels, below = figure.subplots(len(shown) + 1, 1, sharex=True, height_ratios=(*(3.0,) * len(shown), 1.5))
     angle = np.degrees(result.pinion_angle)
     styles = {index: style for index, *style in torque_styles(result)}
-    for axes, index in zip(panels, shown, strict=True):
+    for k, (axes, index) in enumerate(zip(panels, shown, strict=True)):
         for number, share in zip(result.pair.tolist(), result.load_share[index].T, strict=True):
             marker = MARKERS[number % len(MARKERS)]
-            axes.plot(angle, 100.0 * share, marker=marker, markersize=4.0, label=f"tooth pair {style.signed(number)}")
+            colour, label = PAIR_COLOURS[number % len(PAIR_COLOURS)], f"tooth pair {signed(number)}"
+            axes.plot(angle, 100.0 * share, color=colour, marker=marker, markersize=4.0, label=label)
         axes.set_ylabel("share of\nthe torque [%]")
         axes.set_ylim(-4.0, 106.0)
         axes.grid(alpha=0.3)
         torque_label, colour, _ = styles[index]
-        below.step(angle, result.loaded_pairs[index], where="mid", color=colour, label=torque_label)
+        told = torque_label if len(shown) > 1 else "_the only one"
+        width = 1.5 * (len(shown) - k)  # curves on each other are seen, each beside the next
+        below.step(angle, result.loaded_pairs[index], where="mid", color=colour, linewidth=width, label=told)
         if len(shown) > 1:
             axes.set_title(load(result, index).partition(" (")[0], fontsize="small")
     below.set_ylabel("pairs\nunder load")
     below.set_ylim(0.0, len(result.pair) + 0.5)
     below.set_yticks(range(len(result.pair) + 1))
-    if len(shown) > 1:
-        below.legend(loc="lower right", ncols=len(shown), fontsize="x-small")
     below.set_xlabel("pinion angle [deg]")
     below.grid(alpha=0.3)
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=5, fontsize="small")
+    keys = [key for axes in (panels[0], below) for key in axes.get_legend_handles_labels()[0]]
+    figure.legend(handles=keys, loc="outside lower center", ncols=4, fontsize="small")
     about = load(result, shown[0]) if len(shown) == 1 else loads(result)
     style.set_title(figure, result, f"load sharing, {about}", range_of_positions(result))
     return figure
@@ -152,44 +155,19 @@ def plot_harmonics(result: MeshCycle) -> Figure:
     for torque, label, colour, _ in torque_styles(result):
         place = orders + (torque - 0.5 * (len(result.torque) - 1)) * width
         axes.bar(place, amplitudes[torque], width, color=colour, label=label)
+    known = orders[np.isfinite(amplitudes).any(axis=0)]
+    if known.size:
+        axes.set_xticks(known)
+        axes.set_xlim(known[0] - 0.6, known[-1] + 0.6)
+    else:
+        axes.set(xticks=[], yticks=[])
+        style.tell(axes, f"no order is known: the first needs {LEAST_POSITIONS} positions, all of them in contact")
     axes.set_xlabel("order of the tooth mesh")
     axes.set_ylabel("amplitude at the wheel's base circle [µm]")
     style.widen(axes, SMALLEST_AMPLITUDE_UM)
     axes.grid(visible=False, axis="x")
     about = f"harmonics of the transmission error, {loads(result)}", range_of_positions(result)
     return style.finished(figure, axes, result, *about)
-
-
-def plot_pressure_envelope(result: MeshCycle, torque: int | None = None) -> Figure:
-    """Highest pressure that each place of both flanks sees over the cycle, from the maps of all pairs.
-
-    Parameters
-    ----------
-    result : MeshCycle
-    torque : int, optional
-        Index of the torque; default: the largest one.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
-    torque = highest_torque(result) if torque is None else torque
-    maps = loaded_maps(result, torque)
-    scale = Normalize(0.0, highest_mesh_independent_pressure(result, torque, maps))
-    cells, pressures = [np.zeros((0, 4, 3))], [np.zeros(0)]
-    for one in maps:
-        at, loaded = one.corners, one.pressure > 0.0
-        cells.append(np.stack([at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]], axis=2)[loaded])
-        pressures.append(one.pressure[loaded])
-    pressure = np.concatenate(pressures)
-    highest_last = np.argsort(pressure, kind="stable")
-    drawn = {"edgecolors": "face", "linewidths": 0.3}
-    figure, panels = _coloured(
-        result, PolyCollection, np.concatenate(cells)[highest_last], pressure[highest_last], scale, drawn
-    )
-    figure.colorbar(ScalarMappable(scale, COLOURS), ax=panels, label="highest contact pressure [MPa]", extend="max")
-    style.set_title(figure, result, f"pressure envelope, {load(result, torque)}", range_of_positions(result))
-    return figure
 
 
 def plot_line_load_distribution(result: MeshCycle, torque: int | None = None) -> Figure:
@@ -219,30 +197,18 @@ def plot_line_load_distribution(result: MeshCycle, torque: int | None = None) ->
         values.append(0.5 * (line_load[:-1] + line_load[1:]))
         highest = max(highest, float(line_load.max()))
     scale = Normalize(0.0, highest or 1.0)
-    lines = np.concatenate(segments), np.concatenate(values)
-    figure, panels = _coloured(result, LineCollection, *lines, scale, {"linewidths": 2.0})
+
+    def draw(axes: Axes, to_picture: Callable[[Array], Array]) -> list[Artist]:
+        places = list(to_picture(np.concatenate(segments)))
+        lines = LineCollection(places, cmap=COLOURS, norm=scale, linewidths=2.0, rasterized=True)
+        lines.set_array(np.concatenate(values))
+        axes.add_collection(lines, autolim=False)
+        return [lines]
+
+    figure, panels = both_flanks(result, draw)
     figure.colorbar(ScalarMappable(scale, COLOURS), ax=panels, label="line load [N/mm]")
     style.set_title(figure, result, f"line load along the contacts, {load(result, torque)}", range_of_positions(result))
     return figure
-
-
-def _coloured(
-    result: MeshCycle,
-    kind: type[PolyCollection] | type[LineCollection],
-    shapes: Array,
-    values: Array,
-    scale: Normalize,
-    drawn: Mapping[str, Any],
-) -> tuple[Figure, list[Axes]]:
-    """Polygons or lines (k, corners, 3) of the fixed frame on both flanks, coloured by values (k,)."""
-
-    def draw(axes: Axes, to_picture: Callable[[Array], Array]) -> list[Artist]:
-        collection = kind(list(to_picture(shapes)), cmap=COLOURS, norm=scale, rasterized=True, **drawn)
-        collection.set_array(values)
-        axes.add_collection(collection, autolim=False)
-        return [collection]
-
-    return both_flanks(result, draw)
 
 
 def plot_path_pressure(result: MeshCycle) -> Figure:
@@ -250,7 +216,9 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
 
     For a spur pair that is the pressure from A to E, single contact from B to D. Dotted lines mark where the unloaded
     contact point comes into the flanks and leaves them (A, E), a pitch before the end and after the begin (B, D: only
-    one pair is in contact between them without load, if they lie in this order) and the pitch point (C).
+    one pair is in contact between them without load, if they lie in this order) and the pitch point (C). Where a
+    contact lies at an edge, its peak is mesh-dependent: such positions have no pressure here, but a mark in a panel of
+    their own, in the colour of their torque.
 
     Parameters
     ----------
@@ -260,25 +228,46 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
     -------
     matplotlib.figure.Figure
     """
+    pair, pressure = result.gear_pair, result.mesh_independent_pressure
+    angle = np.degrees(result.pinion_angle[:, None] - pair.pitch * result.pair)
+    order = np.argsort(angle, axis=None, kind="stable")
+    at_edge = np.isfinite(result.peak_pressure) & np.isnan(pressure)
     figure, axes = style.one_panel()
-    pair, hertz = result.gear_pair, result.hertz_pressure
-    angle = np.degrees(result.pinion_angle[:, None] - pair.pitch * result.pair).ravel()
-    order, ends = np.argsort(angle, kind="stable"), []
+    below = _draw_edge_contacts(figure, axes, result, [angle[flags] for flags in at_edge]) if at_edge.any() else axes
     for torque, label, colour, marker in torque_styles(result):
-        curve, largest, ellipse = (
-            values[torque].ravel()[order] for values in (result.mesh_independent_pressure, result.peak_pressure, hertz)
-        )
-        known = np.isfinite(curve)
-        axes.plot(angle[order][known], curve[known], color=colour, marker=marker, markersize=4.0, label=label)
-        axes.plot(angle[order], ellipse, color=colour, **HERTZ)
-        ends.append((angle[order][np.isfinite(largest) & ~known], colour))
-    if np.isfinite(hertz).any():
+        curve, ellipse = (values[torque].ravel()[order] for values in (pressure, result.hertz_pressure))
+        known, places = np.isfinite(curve), angle.ravel()[order]
+        axes.plot(places[known], curve[known], color=colour, marker=marker, markersize=4.0, label=label)
+        axes.plot(places, ellipse, color=colour, **HERTZ)
+    if np.isfinite(result.hertz_pressure).any():
         axes.plot([], [], color="black", label="after Hertz", **HERTZ)
-    axes.set_xlabel(f"pinion angle from the pitch point of the tooth pair [deg]\n{WHAT_LETTERS_ARE}")
+    if at_edge.any():
+        axes.plot([], [], "|", color="black", markeredgewidth=2.0, label=EDGE)
+    below.set_xlabel(f"pinion angle from the pitch point of the tooth pair [deg]\n{WHAT_LETTERS_ARE}")
     axes.set_ylabel("contact pressure [MPa]")
-    _draw_ends(axes, ends)
+    style.from_zero(axes)
+    if not np.isfinite(pressure).any():
+        axes.set_yticks([])
+        style.tell(axes, "every contact lies at an edge or relief start: its pressure is mesh-dependent")
+    elif not (pressure > 0.0).any():
+        style.tell(axes, NO_LOAD)
     _mark_points(axes, pair, float(np.abs(np.radians(angle)).max()))
-    return style.finished(figure, axes, result, f"pressure over the path of contact, {loads(result)}")
+    about, columns = f"pressure over the path of contact, {loads(result)}", 2 if at_edge.any() else 3
+    return style.finished(figure, axes, result, about, columns=columns)
+
+
+def _draw_edge_contacts(figure: Figure, axes: Axes, result: MeshCycle, angles: list[Array]) -> Axes:
+    """A low panel below the axes with the angles [deg] of contacts at an edge, a row for each torque; returns it."""
+    grid = figure.add_gridspec(2, 1, height_ratios=(10.0, 1.0))
+    axes.set_subplotspec(grid[0])
+    below = figure.add_subplot(grid[1], sharex=axes)
+    colours = [colour for _, _, colour, _ in torque_styles(result)]
+    below.eventplot(angles, linelengths=0.8, linewidths=2.0, colors=colours)
+    below.set_yticks([])
+    below.set_ylabel("at an\nedge", rotation=0.0, ha="right", va="center", fontsize="small")
+    axes.tick_params(labelbottom=False)
+    axes.set_xlabel("")
+    return below
 
 
 def _mark_points(axes: Axes, pair: GearPair, reach: float) -> None:
@@ -314,14 +303,3 @@ def _leaves_flanks(pair: GearPair, farthest: float) -> float:
         first = int(np.argmax(outside))
         low, high = angles[first - 1], angles[first]
     return high
-
-
-def _draw_ends(axes: Axes, ends: list[tuple[Array, str]]) -> None:
-    """Arrows above the curves, a row for each torque, where a contact lies on an edge: its peak is mesh-dependent."""
-    rows = [(angles, colour) for angles, colour in ends if angles.size]
-    style.from_zero(axes, 1.0 - ROW_OF_ENDS * (min(len(rows), MOST_ROWS) + 1.0) if rows else 1.0)
-    for row, (angles, colour) in enumerate(reversed(rows)):
-        height = np.full(angles.size, 1.0 - ROW_OF_ENDS * (min(row, MOST_ROWS - 1) + 1.0))
-        axes.plot(angles, height, "^", color=colour, markersize=4.0, transform=axes.get_xaxis_transform())
-    if rows:
-        axes.plot([], [], "^", color="black", markersize=4.0, linestyle="", label=EDGE)

@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.results.files import FilePath, replacing
 from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.summary import signed
 
 COLOURS = "viridis"
 """Even in lightness, and told apart by colour-blind readers and in grey."""
@@ -23,11 +24,12 @@ ACCENT, NO_MATERIAL, NOT_REACHED = "#d55e00", "0.8", "0.9"
 MARKERS = "osD^vP*X"
 HERTZ: dict[str, Any] = {"linestyle": "--", "linewidth": 4.0, "alpha": 0.4, "zorder": 1.0}
 """How a curve after Hertz is drawn: broad, below the curve that it is compared with, in the colour of its torque."""
+NO_LOAD = "no load, no pressure"
 MOST_LABELS = 8
 HEADROOM = 0.08
 """Part of an axis above the highest curve."""
-LONGEST_LINE = 100
-"""Characters of a title in one line."""
+LONGEST_LINE = 95
+"""Characters of a title in one line, as many as the narrowest picture holds."""
 DOTS_PER_INCH = 120
 
 
@@ -81,9 +83,9 @@ def from_zero(axes: Axes, part: float = 1.0) -> None:
         axes.set_ylim(bottom=0.0)
 
 
-def tell_no_load(axes: Axes) -> None:
+def tell(axes: Axes, why: str) -> None:
     """Say in a picture why it is empty."""
-    axes.text(0.5, 0.65, "no load, no pressure", transform=axes.transAxes, ha="center", va="center", fontsize="large")
+    axes.text(0.5, 0.65, why, transform=axes.transAxes, ha="center", va="center", wrap=True)
 
 
 def highest_torque(result: MeshCycle) -> int:
@@ -114,11 +116,6 @@ def place(result: MeshCycle, position: int, frame: FlankFrame, column: int) -> t
     )
 
 
-def signed(number: int) -> str:
-    """Return the number of a tooth pair as pictures show it: 0, +1, -1."""
-    return f"{number:+d}" if number else "0"
-
-
 def range_of_positions(result: MeshCycle) -> str:
     """Return what a title says of all positions."""
     first, last = (_degrees(result.pinion_angle[end]) for end in (0, -1))
@@ -130,8 +127,15 @@ def range_of_positions(result: MeshCycle) -> str:
 def set_title(figure: Figure, result: MeshCycle, *about: str) -> None:
     """Write the title of the scene and what is shown; taken literally, signs of TeX too."""
     joined = ", ".join(about)
-    lines = [*textwrap.wrap(result.scene.title, 90), *([joined] if len(joined) <= LONGEST_LINE else about)]
-    figure.suptitle("\n".join(lines), fontsize="medium", parse_math=False)
+    lines = [result.scene.title, *([joined] if len(joined) <= LONGEST_LINE else about)]
+    wrapped = [part for line in lines for part in _parts_of(line)]
+    figure.suptitle("\n".join(wrapped), fontsize="medium", parse_math=False)
+
+
+def _parts_of(line: str) -> list[str]:
+    """A line, or as many of even length as it takes, so that no short end is left over."""
+    count = math.ceil(len(line) / LONGEST_LINE)
+    return textwrap.wrap(line, min(LONGEST_LINE, len(line) // max(1, count) + 10))
 
 
 def _in_newton_metres(result: MeshCycle, torque: int) -> str:

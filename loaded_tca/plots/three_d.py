@@ -12,12 +12,14 @@ from matplotlib.colors import Normalize, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.output.teeth_in_space import TeethInSpace, teeth_in_space
 from loaded_tca.pairs import mating_teeth
+from loaded_tca.plots.flanks import highest_of_scale
 from loaded_tca.plots.style import ACCENT, COLOURS, load, place, set_title
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.tooth import PATCHES, Resolution, TriangleMesh
@@ -32,6 +34,8 @@ SEAMS = "0.35"
 LIFT, AMBIENT = 3e-3, 0.4
 """How far pressure and path are lifted off the facets of the flank, over the length of the tooth, so that these do not
 hide them; light from everywhere."""
+MOST_TICKS, LABEL_PAD = 5, 10.0
+"""Ticks of an axis, and the distance [points] of its name, at which neither covers the other."""
 DRAWN = Resolution(flank=25, fillet=9, land=3, lengthwise=25)
 EXTRA = "pyvista is not installed; install it with: pip install 'loaded_tca[three-d]'"
 
@@ -80,19 +84,26 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
     points = np.concatenate([shown.pinion.vertices, shown.wheel.vertices])
     low, high = points.min(axis=0), points.max(axis=0)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set_box_aspect(high - low, zoom=0.98)
-    axes.set(xlabel="x [mm]", ylabel="y [mm]", zlabel="z [mm]")
+    axes.set_box_aspect(high - low, zoom=0.85)
+    for axis, name in zip((axes.xaxis, axes.yaxis, axes.zaxis), "xyz", strict=True):
+        axis.set_major_locator(MaxNLocator(MOST_TICKS))
+        axis.set_rotate_label(False)  # matplotlib would turn them along the axes, that of z upside down
+        axis.set_label_text(f"{name} [mm]", rotation=90.0 if name == "z" else 0.0)
+        axis.labelpad = LABEL_PAD
     x, y, z = shown.eye
     axes.view_init(elev=math.degrees(math.asin(z)), azim=math.degrees(math.atan2(y, x)))
     side = shown.pair.pinion.flank.side
     axes.add_collection3d(_solid(shown.pinion, PINION, 1.0, shown.eye))
     axes.add_collection3d(_lines(shown.pinion, side))
-    if shown.highest_pressure > 0.0:
-        norm = Normalize(0.0, shown.highest_pressure)
+    one = result.maps[shown.torque][shown.position][shown.column]
+    if one is not None and shown.highest_pressure > 0.0:
+        highest = min(shown.highest_pressure, highest_of_scale(result, shown.torque, [one]))
+        norm, extend = Normalize(0.0, highest), "max" if shown.highest_pressure > highest else "neither"
         faces = colormaps[COLOURS](norm(shown.pressure.cell_data["pressure_MPa"]))
         corners = shown.pressure.corners
         axes.add_collection3d(Poly3DCollection(corners, facecolors=faces, edgecolors=faces, linewidths=0.2))
-        figure.colorbar(ScalarMappable(norm, COLOURS), ax=axes, label="contact pressure [MPa]", shrink=0.7)
+        bar = ScalarMappable(norm, COLOURS)
+        figure.colorbar(bar, ax=axes, label="contact pressure [MPa]", shrink=0.7, extend=extend)
     axes.plot(*shown.path.T, ".", color=ACCENT, markersize=3.0)
     axes.add_collection3d(_solid(shown.wheel, WHEEL, SEE_THROUGH, shown.eye))
     axes.add_collection3d(_lines(shown.wheel, side))

@@ -161,8 +161,12 @@ def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
 
 
 def _error_figures(name: str, error: Array, length: float) -> dict[str, float]:
-    """Mean and peak-to-peak of a transmission error, as an angle and as a length: so many um per rad."""
-    mean, span = mean_over_a_pitch(error), _reduced(np.ptp, error)
+    """Mean and peak-to-peak of a transmission error, as an angle and as a length: so many um per rad.
+
+    One position has no peak-to-peak: NaN.
+    """
+    mean = mean_over_a_pitch(error)
+    span = _reduced(np.ptp, error) if np.isfinite(error).sum() > 1 else math.nan
     return {
         f"{name}_mean_arcsec": mean * ARCSEC,
         f"{name}_mean_um": mean * length,

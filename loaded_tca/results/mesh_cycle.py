@@ -17,7 +17,7 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.files import FilePath, Part, arrays_of, read_dataset, variables_of, write_dataset
 from loaded_tca.results.key_figures import harmonic_amplitudes, key_figures
 from loaded_tca.results.pressure_map import MAP_PARTS, SIZES, Maps, maps_from, stacked_maps
-from loaded_tca.results.summary import summary_text
+from loaded_tca.results.summary import signed, summary_text
 from loaded_tca.scene import Scene, parse_scene
 from loaded_tca.unloaded import ContactPath
 
@@ -121,7 +121,8 @@ class MeshCycle:
 
     Every name of ``QUANTITIES`` is an attribute too: ``result.peak_pressure`` is the NumPy array of
     ``result.dataset["peak_pressure"]``, with the axes (torque, position, pair) whatever their lengths. NaN where a pair
-    carries nothing, but its ``normal_force`` and ``load_share``, which are zero; flags and counts are 0 there.
+    carries nothing, but its ``normal_force`` and ``load_share``, which are zero; flags and counts are 0 there. What is
+    computed from these numbers is computed when it is asked for, so that it follows what is written into the dataset.
 
     Attributes
     ----------
@@ -172,7 +173,7 @@ class MeshCycle:
         """Whether teeth bend, in words."""
         return "teeth do not bend" if self.scene.analysis.compliance == "contact" else "teeth bend"
 
-    @cached_property
+    @property
     def peak_at_edge(self) -> Array:
         """Whether the largest cell lies where a flank ends, or a relief start in the contact: (torque, position, pair).
 
@@ -186,7 +187,7 @@ class MeshCycle:
         """Whether the peak equals the cap on the pressure: bool, (torque, position, pair)."""
         return np.asarray(self.peak_pressure >= CAPPED * self.max_pressure)
 
-    @cached_property
+    @property
     def mesh_independent_pressure(self) -> Array:
         """Highest mesh-independent pressure [MPa], (torque, position, pair).
 
@@ -201,7 +202,7 @@ class MeshCycle:
             within[t, n, k] |= one is not None and one.flank_ends_within(0.5 * self.contact_width[t, n, k])
         return np.where(self.peak_at_edge, np.where(within, math.nan, self.central_pressure), self.peak_pressure)
 
-    @cached_property
+    @property
     def peak_column(self) -> NDArray[np.int_]:
         """Index of the pair with the highest mesh-independent pressure, if none has one of the highest peak: (m, n)."""
         known = np.nan_to_num(self.mesh_independent_pressure, nan=-math.inf)
@@ -222,14 +223,23 @@ class MeshCycle:
         ----------
         name : str
             Of an array (torque, position, pair).
+
+        Raises
+        ------
+        InputError
+            For any other name.
         """
+        values = getattr(self, name, None) if isinstance(name, str) else None
+        if not isinstance(values, np.ndarray) or values.ndim != len(PAIRS):
+            known = f"; result.{name} has its numbers as they are" if name in QUANTITIES else ""
+            raise InputError(f"name: {name!r} is no array (torque, position, pair) of the result{known}")
         if name == "mesh_independent_pressure":
             columns = self.peak_column
         elif name in OF_THE_PEAK:
             columns = self._highest_column
         else:  # without load, of the pair in contact
             columns = np.where(np.isnan(self.peak_pressure), -1.0, self.normal_force).argmax(axis=-1)
-        return np.take_along_axis(getattr(self, name), columns[..., None], axis=-1)[..., 0]
+        return np.take_along_axis(values, columns[..., None], axis=-1)[..., 0]
 
     def harmonics(self, count: int) -> Array:
         """Return the amplitudes of the orders 1 to ``count`` of the tooth mesh of the loaded transmission error.
@@ -281,10 +291,13 @@ class MeshCycle:
     def summary(self) -> str:
         """Return the key figures in the engineer's units: about 20 lines, one column per torque."""
         first, last = (math.degrees(self.pinion_angle[end]) for end in (0, -1))
-        count, pairs = len(self.path), len(self.pair)
+        count = len(self.path)
         where = f"{count} positions, pinion angle {first:.4g} to {last:.4g} deg" if count > 1 else "1 position"
         if self.scene.analysis.load_sharing:
-            carrying = f"{pairs} tooth pairs share the load, up to {self.loaded_pairs.max()} at once"
+            numbers = [signed(number) for number in self.pair.tolist()]
+            carrying = f"load shared by the tooth pairs {', '.join(numbers)}, at most {self.loaded_pairs.max()} at once"
+            if len(numbers) == 1:
+                carrying = f"tooth pair {numbers[0]} alone carries the load (load sharing on)"
         else:
             carrying = "one tooth pair carries the whole load (load sharing off)"
         return summary_text(self.scene.title, f"{where}; {carrying}; {self.bending}", self.key_figures())

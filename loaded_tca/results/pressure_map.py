@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -51,7 +53,7 @@ class PressureMap:
         x, y = self.borders
         return self.origin + x[:, None, None] * self.axes[0] + y[:, None] * self.axes[1]
 
-    @property
+    @cached_property
     def peak_is_at_end(self) -> bool:
         """Whether the largest cell lies beside cells without material, or at the end of the grid."""
         across, along = np.unravel_index(int(self.pressure.argmax()), self.pressure.shape)
@@ -61,11 +63,16 @@ class PressureMap:
 
     def flank_ends_within(self, distance: float) -> bool:
         """Whether a cell without material, its edges counted, lies nearer to the contact point than a distance [mm]."""
+        return self._end_of_flank < distance
+
+    @cached_property
+    def _end_of_flank(self) -> float:
+        """Distance [mm] from the contact point to the nearest cell without material; infinite without one."""
         x, y = (
             np.maximum(np.abs(centres) - 0.5 * step, 0.0)
             for centres, step in zip((self.x, self.y), self.spacing, strict=True)
         )
-        return bool((np.isinf(self.gap) & (np.hypot(x[:, None], y) < distance)).any())
+        return float(np.hypot(x[:, None], y)[np.isinf(self.gap)].min(initial=math.inf))
 
 
 Maps = tuple[tuple[tuple[PressureMap | None, ...], ...], ...]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -44,6 +44,25 @@ class LargestStress:
     depth: float
     radius: float
     axial: float
+
+
+class HertzShear(NamedTuple):
+    """Greatest shear stress below a contact after Hertz.
+
+    Attributes
+    ----------
+    value : float [MPa]
+    depth : float [mm]
+    pressure : float [MPa]
+        p_0 of the same contact.
+    half_width : float [mm]
+        b of the same contact: the smaller semi-axis of the ellipse, or half the width of the strip.
+    """
+
+    value: float
+    depth: float
+    pressure: float
+    half_width: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,8 +157,8 @@ class StressBelow:
         return LargestStress(float(values[level, across, along]), depth, math.hypot(x, y), float(z))
 
     @property
-    def hertz_shear(self) -> tuple[float, float, float] | None:
-        """Greatest shear after Hertz [MPa], its depth [mm], and the pressure it belongs to [MPa].
+    def hertz_shear(self) -> HertzShear | None:
+        """Greatest shear after Hertz, with its depth and the pressure and half width of the same contact.
 
         Of the contact ellipse, from 0.31 p_0 at 0.48 a below a circle to 0.300 p_0 at 0.786 b below a slender one;
         below a line contact, of a long line with the line load and the pressure of the section that holds the greatest
@@ -151,7 +170,7 @@ class StressBelow:
             minor, major = float(result.hertz_semi_minor[at]), float(result.hertz_semi_major[at])
             # The stresses follow from the pressure and the axes; modulus and approach do not matter for them.
             ellipse = PointContact(float(result.normal_force[at]), math.nan, major, minor, pressure, math.nan)
-            return *ellipse.subsurface_shear(self.stress.poisson_ratio), pressure
+            return HertzShear(*ellipse.subsurface_shear(self.stress.poisson_ratio), pressure, minor)
         if not bool(result.paths[self.column].on_line[self.position]) or result.on_relief_start[at]:
             return None
         one = self.pressure_map
@@ -159,7 +178,7 @@ class StressBelow:
         section = one.pressure[:, self.stress.max_shear_at[2] if beside is None else beside]
         line_load, pressure = float(section.sum()) * one.spacing[0], float(section.max())
         line = LineContact(line_load, math.nan, 2.0 * line_load / (math.pi * pressure), pressure)
-        return *line.subsurface_shear(), pressure
+        return HertzShear(*line.subsurface_shear(), pressure, line.half_width)
 
     @property
     def where(self) -> tuple[str, str]:
@@ -181,10 +200,14 @@ class StressBelow:
         lines = [self.result.scene.title or "Stresses below the surface", *self.where]
         for quantity, name in NAMES.items():
             found = self.largest(quantity)
-            lines.append(self._row(name, found.value, found.depth, peak))
+            relative = f"{found.value / peak:.3f} of the pressure at {found.depth / self.half_width:.2f} b"
+            lines.append(f"{name:<34}{found.value:>8.4g} MPa at {found.depth:.4g} mm: {relative}")
             lines.append(f"  on the pinion at {frame.place(found.radius, found.axial)}")
         if (hertz := self.hertz_shear) is not None:
-            lines.append(self._row("greatest shear stress after Hertz", *hertz))
+            relative = f"{hertz.value / hertz.pressure:.3f} of p0 at {hertz.depth / hertz.half_width:.2f} b"
+            own = f"p0 {hertz.pressure:.4g} MPa, b {hertz.half_width:.4g} mm"
+            what = "greatest shear stress after Hertz"
+            lines.append(f"{what:<34}{hertz.value:>8.4g} MPa at {hertz.depth:.4g} mm: {relative} of its own, {own}")
         if self.result.on_edge[self._at]:
             note = "note: the contact reaches an edge, where pressure and stress are mesh-dependent"
             if self.beside_spike is not None:
@@ -195,10 +218,6 @@ class StressBelow:
                 )
             lines.append(note)
         return "\n".join(lines)
-
-    def _row(self, name: str, value: float, depth: float, pressure: float) -> str:
-        relative = f"{value / pressure:.3f} of the pressure at {depth / self.half_width:.2f} b"
-        return f"{name:<34}{value:>8.4g} MPa at {depth:.4g} mm: {relative}"
 
 
 def stress_below(

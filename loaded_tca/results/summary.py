@@ -84,6 +84,11 @@ def summary_text(title: str, scope: str, figures: Sequence[Figures]) -> str:
     return "\n".join([title or "Loaded tooth contact", scope, *table, *notes])
 
 
+def signed(number: int) -> str:
+    """Return the number of a tooth pair as summaries and pictures show it: 0, +1, -1."""
+    return f"{number:+d}" if number else "0"
+
+
 def without_rounding(value: float, name: str) -> float:
     """Zero for what is rounding in the engineer's units; residuals stay what they are."""
     return value if "residual" in name or not abs(value) < ROUNDING else 0.0

@@ -13,10 +13,12 @@ from loaded_tca.plots import (
     plot_contact_path,
     plot_peak_pressure,
     plot_pressure_map,
+    plot_stress_below,
     plot_transmission_error,
     save_figure,
 )
 from loaded_tca.results.key_figures import ARCSEC
+from loaded_tca.results.stress_below import stress_below
 from tests.samples.results import PER_PAIR, PER_POSITION, changed, changed_scene, result, with_a_gap
 
 PLOTS = [plot_contact_path, plot_peak_pressure, plot_pressure_map, plot_transmission_error]
@@ -275,6 +277,19 @@ def test_pictures_without_load_say_so():
     assert "no load, no pressure on the flanks" in texts(flanks)
     assert len(flanks.axes) == 2
     assert flanks.legends[0].get_title().get_text() == "pressure drawn at 0 of 2 positions"
+
+
+def test_lines_of_a_title_are_no_wider_than_the_picture_and_none_is_a_mere_end():
+    figure = plot_stress_below(stress_below(result("fzg_c14", positions=3)))
+    figure.draw_without_rendering()
+    (title,) = [text for text in figure.texts if text.get_text() == figure.get_suptitle()]
+    assert title.get_window_extent().width < figure.bbox.width
+    assert min(len(line) for line in title.get_text().splitlines()) > 10
+
+
+def test_pressure_beside_an_edge_says_where_it_is():
+    labels = plot_peak_pressure(result("misaligned", positions=2)).axes[0].get_legend_handles_labels()[1]
+    assert "at the contact point, where the peak is mesh-dependent" in labels
 
 
 def test_pictures_touch_no_global_state():

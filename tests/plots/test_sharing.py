@@ -1,21 +1,26 @@
 """Pictures of the shared load: what is drawn is what the result holds."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection
+from matplotlib.colors import same_color
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError
 from loaded_tca.plots import (
     plot_contact_path,
+    plot_harmonics,
     plot_line_load_distribution,
     plot_load_share,
     plot_path_pressure,
+    plot_peak_pressure,
+    plot_pressure_envelope,
     sharing,
 )
-from tests.samples.results import changed_scene, result
+from tests.samples.results import changed, changed_scene, result
 
 
 def shared(name="mesh_cycle_helical", torques=(260.0,)):
@@ -105,24 +110,127 @@ def test_load_shares_of_many_torques_stay_few():
     assert len(titles) == 4
 
 
-def test_contacts_at_an_edge_stand_above_the_pressure_not_at_zero():
-    figure = plot_path_pressure(shared(torques=(40.0, 260.0)))
+def test_contacts_at_an_edge_have_a_panel_of_their_own_without_a_pressure():
+    cycle = shared(torques=(40.0, 260.0))
+    axes, below = plot_path_pressure(cycle).axes
+    assert axes.get_legend_handles_labels()[1][-1] == sharing.EDGE
+    assert not [line for line in axes.lines if line.get_linestyle() == "None" and len(line.get_xdata())]
+    assert not below.get_yticks().size
+    angle = np.degrees(cycle.pinion_angle[:, None] - cycle.gear_pair.pitch * cycle.pair)
+    no_number = np.isfinite(cycle.peak_pressure) & np.isnan(cycle.mesh_independent_pressure)
+    assert no_number.any()
+    colours = [line.get_color() for line in axes.lines if line.get_label().startswith("pinion torque")]
+    for row, flags, colour in zip(below.collections, no_number, colours, strict=True):
+        assert_allclose(sorted(row.get_positions()), sorted(angle[flags]))
+        assert same_color(row.get_color(), colour)
+    assert below.get_xlim() == axes.get_xlim()
+
+
+@pytest.mark.parametrize(
+    "plot", [plot_harmonics, plot_load_share, plot_path_pressure, sharing.plot_mesh_stiffness, plot_peak_pressure]
+)
+def test_legends_are_no_wider_than_the_picture(plot):
+    figure = plot(shared(torques=(40.0, 130.0, 260.0)))
     figure.draw_without_rendering()
-    (axes,) = figure.axes
-    assert "contact at an edge (its peak is mesh-dependent)" in axes.get_legend_handles_labels()[1]
-    marks = [line for line in axes.lines if line.get_marker() == "^" and len(line.get_xdata())]
-    curves = [line.get_ydata() for line in axes.lines if line.get_linestyle() == "-" and len(line.get_xdata()) > 2]
-    highest = max(float(np.nanmax(curve)) for curve in curves)
-    assert marks
-    for line in marks:  # their heights are parts of the axis
-        assert min(line.get_ydata()) * axes.get_ylim()[1] > 1.02 * highest
+    legend = figure.legends[0].get_window_extent()
+    assert figure.bbox.x0 <= legend.x0 < legend.x1 <= figure.bbox.x1
+
+
+def test_path_without_contacts_at_edges_has_one_panel():
+    assert len(plot_path_pressure(shared("mesh_cycle_spur", torques=(40.0,))).axes) == 1
+
+
+def test_path_whose_every_contact_lies_at_an_edge_says_so():
+    cycle = shared()
+    held = changed(cycle, on_relief_start=np.ones(cycle.load_share.shape, dtype=bool))
+    paths = tuple(replace(path, on_relief_start=np.ones(len(path), dtype=bool)) for path in cycle.paths)
+    axes, _ = plot_path_pressure(replace(held, paths=paths)).axes
+    assert "every contact lies at an edge or relief start: its pressure is mesh-dependent" in [
+        text.get_text() for text in axes.texts
+    ]
+    assert not axes.get_yticks().size
+
+
+def test_orders_of_the_tooth_mesh_are_whole_numbers():
+    axes = plot_harmonics(result("mesh_cycle_spur", positions=7, torques=(40.0, 130.0))).axes[0]
+    assert axes.get_xticks().tolist() == [1, 2]
+
+
+def test_positions_too_few_for_any_order_are_told():
+    for positions, told in ((3, True), (4, False)):
+        axes = plot_harmonics(result("mesh_cycle_spur", positions=positions, torques=(40.0,))).axes[0]
+        assert any("the first needs 4 positions" in text.get_text() for text in axes.texts) is told
+
+
+def test_legend_of_the_load_shares_covers_no_curve():
+    figure = plot_load_share(shared(torques=(40.0, 260.0)))
+    assert all(axes.get_legend() is None for axes in figure.axes)
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels[-2:] == ["pinion torque 40 N m", "pinion torque 260 N m"]
+    figure.draw_without_rendering()
+    assert figure.legends[0].get_window_extent().y1 < min(axes.get_window_extent().y0 for axes in figure.axes)
+    widths = [line.get_linewidth() for line in figure.axes[-1].get_lines()]
+    assert widths[0] > widths[1]  # where they lie on each other both are seen
+
+
+def envelope(cycle):
+    """Picture of the pinion's flank: centres of its fields, the pressure in them, and the bar of colours."""
+    figure = plot_pressure_envelope(cycle)
+    (mesh,) = figure.axes[0].collections
+    corners = mesh.get_coordinates()
+    return 0.5 * (corners[:-1, :-1] + corners[1:, 1:]), mesh.get_array().filled(0.0), figure.axes[-1], mesh.get_clim()
+
+
+def test_envelope_has_no_stripes_between_positions():
+    """Contacts 1.3 mm apart and 0.2 mm wide: between the first and the last no place of the middle is left out."""
+    cycle = shared("mesh_cycle_spur", torques=(130.0,))
+    centres, pressure, _, _ = envelope(cycle)
+    column = np.argmin(np.abs(centres[0, :, 0]))
+    loaded = np.nonzero(pressure[:, column])[0]
+    assert (pressure[loaded[0] : loaded[-1] + 1, column] > 0.0).all()
+    apart = np.diff(2.0 * np.sort(cycle.peak_radius[np.isfinite(cycle.peak_radius)])).max()
+    assert apart > 4.0 * np.nanmax(cycle.contact_width)
+    assert centres[loaded[-1], 0, 1] - centres[loaded[0], 0, 1] > 3.0 * apart
+
+
+@pytest.mark.parametrize("name", ["mesh_cycle_spur", "mesh_cycle_bevel"])
+def test_envelope_reaches_the_highest_pressure_of_every_map_and_none_above(name):
+    cycle = result(name, positions=5, torques=(1.0,))
+    centres, pressure, _, _ = envelope(cycle)
+    highest = [one.pressure.max() for row in cycle.maps[0] for one in row if one is not None]
+    assert pressure.max() == max(highest)
+    frame = cycle.gear_pair.pinion.flank.frame
+    for n, k in np.argwhere(cycle.normal_force[0] > 0.0):
+        x, y = frame.to_picture(cycle.peak_radius[0, n, k], cycle.peak_axial[0, n, k])
+        row, column = np.argmin(np.abs(centres[:, 0, 1] - y)), np.argmin(np.abs(centres[0, :, 0] - x))
+        around = pressure[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2]
+        assert around.max() >= cycle.maps[0][n][k].pressure.max()
+
+
+def test_scale_of_the_envelope_ends_at_the_highest_mesh_independent_pressure():
+    cycle = shared()
+    assert cycle.peak_pressure[cycle.peak_at_edge].max() > 1.5 * np.nanmax(cycle.mesh_independent_pressure)
+    _, _, bar, limits = envelope(cycle)
+    assert_allclose(limits, (0.0, np.nanmax(cycle.mesh_independent_pressure)), rtol=1e-12)
+    assert bar._colorbar.extend == "max"
+    assert envelope(shared("mesh_cycle_spur", torques=(40.0,)))[2]._colorbar.extend == "neither"
+
+
+def test_scale_without_any_mesh_independent_pressure_leaves_the_spikes_out():
+    cycle = shared()
+    paths = tuple(replace(path, on_edge=np.ones(len(path), dtype=bool)) for path in cycle.paths)
+    spikes = changed(replace(cycle, paths=paths), on_relief_start=np.ones(cycle.load_share.shape, dtype=bool))
+    assert np.isnan(spikes.mesh_independent_pressure).all()
+    _, top = envelope(spikes)[3]
+    cells = np.concatenate([one.pressure.ravel() for row in cycle.maps[0] for one in row if one is not None])
+    assert 0.04 < (cells > top).sum() / (cells > 0.0).sum() < 0.06
 
 
 def test_letters_say_what_they_are_and_do_not_cover_each_other():
     figure = plot_path_pressure(shared())
     figure.draw_without_rendering()
-    (axes,) = figure.axes
-    assert sharing.WHAT_LETTERS_ARE in axes.get_xlabel()
+    axes, below = figure.axes
+    assert sharing.WHAT_LETTERS_ARE in below.get_xlabel()
     boxes = sorted((text.get_window_extent() for text in axes.texts), key=lambda box: box.x0)
     assert len(boxes) == 5
     assert all(one.x1 <= other.x0 for one, other in pairwise(boxes))

@@ -1,4 +1,5 @@
 import sys
+from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
@@ -36,6 +37,37 @@ def test_scales_of_the_three_axes_are_equal():
     spans = np.array([np.ptp(limits) for limits in (axes.get_xlim(), axes.get_ylim(), axes.get_zlim())])
     scale = axes._box_aspect / spans
     assert_allclose(scale, scale[0], rtol=1e-9)
+
+
+def test_names_of_the_axes_are_upright_and_clear_of_the_numbers():
+    for name in ("helical", "spiral_bevel", "misaligned", "fzg_c14"):
+        figure = plot_teeth(result(name, positions=3))
+        figure.draw_without_rendering()
+        axes = axes_of(figure)
+        assert [axis.label.get_rotation() for axis in (axes.xaxis, axes.yaxis, axes.zaxis)] == [0.0, 0.0, 90.0]
+        legend = figure.legends[0].get_window_extent()
+        for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+            name = axis.label.get_window_extent()
+            numbers = [one.label1.get_window_extent() for one in axis.get_major_ticks() if one.label1.get_text()]
+            assert not name.overlaps(legend)
+            assert not name.count_overlaps(numbers)
+            assert all(not one.overlaps(other) for one, other in pairwise(numbers))
+
+
+def test_colours_of_the_teeth_do_not_follow_the_spike_of_an_edge():
+    cycle = result("fzg_c14", positions=3)
+    bar = plot_teeth(cycle).axes[1]
+    assert cycle.peak_at_edge.all()
+    assert_allclose(bar.get_ylim()[1], np.nanmax(cycle.mesh_independent_pressure), rtol=1e-12)
+    assert bar._colorbar.extend == "max"
+
+
+def test_colours_of_the_teeth_end_at_the_highest_pressure_of_their_position():
+    cycle = result()
+    lowest = int(cycle.peak_pressure[0, :, 0].argmin())
+    bar = plot_teeth(cycle, position=lowest).axes[1]
+    assert_allclose(bar.get_ylim()[1], cycle.maps[0][lowest][0].pressure.max(), rtol=1e-12)
+    assert bar._colorbar.extend == "neither"
 
 
 def test_picture_without_load_has_no_pressure():

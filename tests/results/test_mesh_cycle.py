@@ -216,7 +216,8 @@ def test_summary_shows_the_pitch_point_in_engineers_units():
     peak = float(line(text, "peak pressure [MPa]").split()[-3])
     hertz = float(line(text, "highest of smooth contacts").split()[-1])
     assert_allclose([peak, hertz], 706.85, rtol=5e-3)  # coarse grid
-    assert re.search(r" 0 \| 0$", line(text, "  unloaded, peak to peak [arcsec | um]"))
+    for label in ("  peak to peak [arcsec | um]", "  unloaded, peak to peak [arcsec | um]"):
+        assert line(text, label).split()[-3:] == ["-", "|", "-"]  # of one position not known
     assert 14 <= len(text.splitlines()) <= 16
 
 
@@ -231,6 +232,28 @@ def test_peak_where_hertz_holds_leaves_edges_out():
     assert figures["hertz_pressure_there_MPa"] == hertz[0][smooth]
     assert figures["peak_pressure_where_hertz_holds_MPa"] < figures["peak_pressure_MPa"]
     assert edge_contact().peak_contact(0, where_hertz_holds=True) is None
+
+
+def test_what_is_written_into_the_dataset_is_followed_by_what_comes_from_it():
+    """In place and as a new variable, after it was looked at."""
+    cycle = changed(result(), peak_pressure=result().peak_pressure.copy())
+    assert cycle.peak_contact(0) != (4, 0)
+    assert cycle.mesh_independent_pressure[0, 4, 0] < 9000.0
+    cycle.dataset.peak_pressure[0, 4, 0] = 9000.0
+    assert cycle.peak_contact(0) == (4, 0)
+    assert cycle.key_figures()[0]["peak_pressure_MPa"] == 9000.0
+    cycle.dataset["on_relief_start"] = cycle.dataset.on_relief_start.copy(data=np.ones((1, 5, 1), dtype=bool))
+    assert cycle.peak_at_edge.all()
+    assert np.isnan(cycle.mesh_independent_pressure[0, 4, 0]) or cycle.mesh_independent_pressure[0, 4, 0] < 9000.0
+
+
+@pytest.mark.parametrize("name", ["transmission_error", "torque", "wheel_base_radius", "peak", "maps", "save", 3])
+def test_number_of_every_position_is_told_what_it_is_taken_from(name):
+    with pytest.raises(
+        InputError, match=rf"^name: '?{name}'? is no array \(torque, position, pair\) of the result"
+    ) as told:
+        result().at_position(name)
+    assert ("has its numbers as they are" in str(told.value)) is (name in QUANTITIES)
 
 
 def test_summary_has_a_column_per_torque():

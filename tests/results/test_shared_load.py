@@ -233,7 +233,9 @@ def test_peak_of_the_figures_is_the_highest_mesh_independent_pressure_of_any_pai
 
 def test_summary_names_the_pairs_and_whether_teeth_bend():
     text = helical().summary()
-    assert "3 tooth pairs share the load, up to 2 at once; teeth do not bend" in text
+    assert "load shared by the tooth pairs -1, 0, +1, at most 2 at once; teeth do not bend" in text
+    alone = cycle("spur", 1).summary().splitlines()[1]
+    assert alone == "1 position; tooth pair 0 alone carries the load (load sharing on); teeth do not bend"
     assert "  orders 1 | 2 | 3 of the tooth mesh [um]" in text
     assert json.loads(summary_json(helical()))["tooth_pairs_sharing_load"] == 3
 

@@ -12,7 +12,7 @@ from loaded_tca.output.subsurface_files import STRESSES, subsurface_csv, write_s
 from loaded_tca.plots import plot_stress_below
 from loaded_tca.results.files import read_dataset
 from loaded_tca.results.stress_below import NAMES, depth_of_largest, stress_below
-from tests.samples.results import changed_scene, result, with_a_gap
+from tests.samples.results import changed, changed_scene, result, with_a_gap
 
 COARSE = 0.02  # 20 cells across the box: pressure within 1 %, shear with it
 DEPTH = 0.05  # a flat top on depths 0.1 half widths apart
@@ -25,7 +25,7 @@ def shared():
 @pytest.mark.parametrize("name", ["helical", "straight_bevel"])
 def test_greatest_shear_is_that_of_hertz(name):
     below = stress_below(result(name, positions=1))
-    shear, depth, pressure = below.hertz_shear
+    shear, depth, pressure, _ = below.hertz_shear
     found = below.largest("max_shear")
     assert_allclose(pressure, result(name, positions=1).hertz_pressure.item())
     assert_allclose(found.value, shear, rtol=COARSE)
@@ -36,16 +36,17 @@ def test_greatest_shear_is_that_of_hertz(name):
 def test_slender_ellipse_is_sheared_as_a_line():
     """0.300 p0 at 0.786 b below a line; the ellipse of this pair is 80 times longer than wide."""
     below = stress_below(result(positions=1))
-    shear, depth, pressure = below.hertz_shear
+    shear, depth, pressure, half_width = below.hertz_shear
+    assert half_width == below.result.hertz_semi_minor.item()
     assert_allclose(shear / pressure, 0.300, rtol=0.02)
-    assert_allclose(depth / below.result.hertz_semi_minor.item(), 0.786, rtol=0.02)
+    assert_allclose(depth / half_width, 0.786, rtol=0.02)
 
 
 def test_line_contact_is_compared_with_a_long_line():
     below = stress_below(result("fzg_c14", positions=1))
     assert below.result.path.on_line[0]
-    shear, _, pressure = below.hertz_shear
-    assert_allclose(shear / pressure, 0.3003, rtol=1e-3)  # Johnson 1985, section 4.2
+    shear, depth, pressure, half_width = below.hertz_shear
+    assert_allclose([shear / pressure, depth / half_width], [0.3003, 0.786], rtol=1e-3)  # Johnson 1985, section 4.2
     assert_allclose(below.largest("max_shear").value, shear, rtol=0.1)  # the sides of the teeth end the line
 
 
@@ -83,6 +84,17 @@ def test_summary_tells_depth_place_and_hertz():
     text = stress_below(result(positions=1)).summary()
     for words in ("position 1 of 1, tooth pair 0", *NAMES.values(), "stress after Hertz", "mm: 0.30", "at diameter"):
         assert words in text
+
+
+def test_line_after_hertz_is_relative_to_its_own_pressure_and_half_width():
+    """An ellipse twice as large above the same map has its greatest shear twice as deep, at the same part of its b."""
+    whole = result(positions=1)
+    axes = {name: 2.0 * getattr(whole, name) for name in ("hertz_semi_minor", "hertz_semi_major")}
+    for cycle in (whole, changed(whole, **axes)):
+        (row,) = [row for row in stress_below(cycle).summary().splitlines() if "after Hertz" in row]
+        p0, b = cycle.hertz_pressure.item(), cycle.hertz_semi_minor.item()
+        assert row.endswith(f" of p0 at 0.79 b of its own, p0 {p0:.4g} MPa, b {b:.4g} mm")  # 0.786 b below a line
+        assert "mm: 0.30" in row
 
 
 @pytest.mark.parametrize(

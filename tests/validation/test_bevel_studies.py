@@ -12,10 +12,11 @@ from loaded_tca.pairs.bevel import BevelMounting
 from validation.bevel.convergence import cases
 from validation.bevel.effects import effect, first_order_error, spiral_curve, spiral_effect, spiral_mounting
 from validation.bevel.mounting_errors import rows as error_rows
+from validation.bevel.mounting_errors import signs_together
 from validation.bevel.pairs import SPIRAL, STRAIGHT, TABLE_6, spiral_modifications, straight_modifications
 from validation.bevel.pictures import draw_error_map
-from validation.bevel.spiral_trends import error_map
-from validation.bevel.straight_trends import straight_effect
+from validation.bevel.spiral_trends import closest_fit, error_map, sign_table
+from validation.bevel.straight_trends import straight_effect, trends_of_strong_crowning
 from validation.unloaded.convergence_from_random_starts import cases as cylindrical_cases
 from validation.unloaded.mounting_error_pairs import ARCSEC
 from validation.unloaded.random_starts import COMPONENTS, SPREADS, conventional, points_of, reduced
@@ -171,3 +172,38 @@ def test_picture_of_the_map_names_its_units(small_map):
     assert "ΔE [mm]" in labels
     assert "ΔH [mm]" in labels
     assert "shift of the path, toe to heel [mm]" in labels
+
+
+# Statements of the source
+
+
+def test_pressure_rises_by_less_than_printed_with_ten_times_the_lead_crowning():
+    nearer, higher, size = trends_of_strong_crowning()
+    assert nearer.holds
+    assert higher.holds
+    assert not size.holds  # printed: nearly 80 %
+    assert size.because.startswith("+63%")
+
+
+def test_one_load_presses_least_where_the_profiles_fit_best():
+    for error in ({"e": 0.08}, {"h": 0.08}):
+        height, across, pressure = closest_fit(error)
+        assert height[0] < -0.3 < abs(height[1]) < 0.1 < 0.3 < height[2]  # root, next to the pitch cone, tip
+        assert pressure[1] < min(pressure[[0, 2]])
+        # a line contact's law, nearly: the ellipse is long, its curvature along changes little
+        assert_allclose(pressure / pressure[1], np.sqrt(across / across[1]), rtol=0.1)
+
+
+def test_statements_on_the_spiral_pair_do_not_hold_with_one_set_of_signs(small_map):
+    table = sign_table(small_map)
+    offset, pinion_root, wheel_root, amplitude, worst = (
+        {signs for signs, holds in part.items() if holds} for part in table.values()
+    )
+    assert offset == {(-1.0, 1.0), (-1.0, -1.0)}
+    assert pinion_root == {(1.0, 1.0), (-1.0, 1.0)}
+    assert wheel_root == {(1.0, -1.0), (-1.0, -1.0)}
+    assert worst == {(-1.0, -1.0)}
+    assert not offset & pinion_root & worst
+    assert not worst & amplitude
+    parts = signs_together(small_map)
+    assert [parts[key] for key in ("on_pinion", "on_wheel", "with_amplitude")] == ["none", "(-, -)", "none"]

@@ -5,7 +5,6 @@ Run from the root of the repository: ``python -m validation.bevel.mounting_error
 
 import argparse
 import sys
-from collections.abc import Iterable
 from pathlib import Path
 
 from loaded_tca.pairs.bevel import BevelMounting
@@ -13,13 +12,13 @@ from loaded_tca.unloaded import trace_contact
 from validation.bevel.effects import Effect, first_order_error, spiral_effect
 from validation.bevel.pairs import SPIRAL, STRAIGHT, BevelGears, spiral_modifications, straight_modifications
 from validation.bevel.pictures import draw_error_map, draw_spiral, draw_straight, draw_straight_crowning
-from validation.bevel.spiral_trends import FULL, SIGNS, STEPS, ErrorMap, error_map
+from validation.bevel.spiral_trends import FULL, SIGNS, STEPS, ErrorMap, error_map, sign_table
 from validation.bevel.spiral_trends import trends as spiral_trends
 from validation.bevel.straight_trends import LEAD, straight_effect
 from validation.bevel.straight_trends import trends as straight_trends
 from validation.table import Row
 from validation.unloaded.mounting_error_pairs import ARCSEC, FORMS
-from validation.unloaded.mounting_error_trends import Trend
+from validation.unloaded.mounting_error_trends import verdicts
 
 CASE = "reduced-TCA dissertation, bevel mounting errors"
 SMALL = 1e-4
@@ -59,10 +58,10 @@ def _printed_amplitudes(gears: BevelGears) -> list[Row]:
 
 
 def _line(name: str, one: Effect) -> str:
-    lengthwise, height = one.place
-    edge = "yes" if one.continuous else "no"
+    lengthwise, height = (round(value, 2) + 0.0 for value in one.place)  # no -0.00 where rounding decides the sign
+    mean, edge = round(one.mean, 1) + 0.0, "yes" if one.continuous else "no"
     return (
-        f"| {name} | {one.mean:.1f} | {max(one.peak_to_peak, 0.0):.1f} | {edge} | {lengthwise:+.2f} | {height:+.2f} "
+        f"| {name} | {mean:.1f} | {max(one.peak_to_peak, 0.0):.1f} | {edge} | {lengthwise:+.2f} | {height:+.2f} "
         f"| {_pressure(one)} |"
     )
 
@@ -95,14 +94,6 @@ def spiral_table() -> list[str]:
             _line(f"{name} {s * step:+.2f}", spiral_effect(*FULL, **{key: s * step})) for s in SIGNS for step in STEPS
         ]
     return lines
-
-
-def verdicts(trends: Iterable[Trend]) -> list[str]:
-    """One line a statement."""
-    return [
-        f"| {one.figure} | {one.statement} | {'holds' if one.holds else '**does not hold**'} | {one.because} |"
-        for one in trends
-    ]
 
 
 COLUMNS = (
@@ -140,9 +131,18 @@ Lead crowning {lead:g} um, all forms removing the same at the ends of the face:
 
 ## Spiral pair, Figures 42 to 53
 
+ΔE and ΔH have no sign in the source: a statement holds if it does for one of them.
+
 | figure | statement | verdict | because |
 |---|---|---|---|
 {spiral_trends}
+
+One set of signs does not do for all. Sets (ΔE, ΔH) with which 45, 47 and 53 hold together: {on_pinion} if 47 is read on
+the pinion, as the paths of this page are; {on_wheel} if it is read on the wheel; and with 51 as well: {with_amplitude}.
+
+| ΔE, ΔH | {signs} |
+|---|---|---|---|---|
+{sign_lines}
 
 The constant part of the transmission error follows from the normal at the pitch point alone: displacements d of the
 wheel give -(n . d)/(n_y r_m2), n ~ e_y + tan(alpha) e_u - tan(beta) e_R (e_u across the pitch cone, e_R along it). It
@@ -168,9 +168,33 @@ rad high, so that c_t is never reached); ΔA = P, ΔG = G, ΔH = P, Δγ lessens
 source gives none."""
 
 
+def signs_together(errors: ErrorMap) -> dict[str, str]:
+    """Parts of the page on the signs of Delta E and Delta H: the lines of the table, and which signs do for all."""
+    table = sign_table(errors)
+    both = list(next(iter(table.values())))
+    names = {signs: ", ".join("+" if sign > 0 else "-" for sign in signs) for signs in both}
+
+    def common(*figures: str) -> str:
+        held = [part for statement, part in table.items() if statement.startswith(figures)]
+        return " or ".join(f"({names[signs]})" for signs in both if all(part[signs] for part in held)) or "none"
+
+    pinion, wheel = (f"47: ΔH moves the path towards the root of the {gear}" for gear in ("pinion", "wheel"))
+    return {
+        "on_pinion": common("45", pinion, "53"),
+        "on_wheel": common("45", wheel, "53"),
+        "with_amplitude": common("45", wheel, "51", "53"),
+        "signs": " | ".join(names.values()),
+        "sign_lines": "\n".join(
+            f"| {statement} | {' | '.join('yes' if part[signs] else 'no' for signs in both)} |"
+            for statement, part in table.items()
+        ),
+    }
+
+
 def document(errors: ErrorMap) -> str:
     """The page, with its tables."""
     return TEXT.format(
+        **signs_together(errors),
         assumed=ASSUMED,
         straight_trends="\n".join(verdicts(straight_trends())),
         straight="\n".join(straight_table()),

@@ -1,7 +1,7 @@
 """What the reduced-TCA dissertation says of Figures 42 to 53, the spiral bevel pair, and whether a computation agrees.
 
 Delta E and Delta H have no sign in the source: both are computed, and a statement holds if it does for one of them; the
-numbers say which.
+numbers say which. ``sign_table`` tells which statements hold together.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from loaded_tca.unloaded import trace_contact
+from loaded_tca.unloaded import relative_curvature, trace_contact
 from validation.bevel.effects import Effect, first_order_error, spiral_curve, spiral_effect, spiral_mounting
 from validation.bevel.pairs import SPIRAL, spiral_modifications
 from validation.unloaded.mounting_error_pairs import ARCSEC
@@ -96,14 +96,14 @@ def _angular() -> list[Trend]:
             "Δγ leaves the path where it is, but for a small move to the tip",
             bool(0.0 < abs(up) < 0.05 and abs(along) < 1e-6),
             f"shaft angle 0.2 deg less: {up:+.3f} mm in height, to the tip of the wheel, the root of the pinion; more: "
-            f"the other way; {abs(along):.0e} mm lengthwise",
+            f"the other way; {abs(along):.3f} mm lengthwise",
         ),
         Trend(
             "42",
             "Δγ gives no transmission error, from peak to peak",
             worst < 1e-6,
-            f"0.2 deg, c1 = 0.002 and 0.02: {worst:.0e} arcsec, but a constant {constant:.0f}: spherical involutes "
-            "stay conjugate about one apex",
+            f"0.2 deg, c1 = 0.002 and 0.02: {abs(worst):.1f} arcsec, but a constant {constant:.0f}: spherical "
+            "involutes stay conjugate about one apex",
         ),
         Trend(
             "43",
@@ -201,6 +201,20 @@ def _along(one: Effect) -> tuple[float, float, float]:
     return float(pressure[-1]), float(pressure[middle]), float(pressure[0])
 
 
+def closest_fit(errors: dict[str, float]) -> tuple[Array, Array, Array]:
+    """Height [mm], relative curvature across the contact [1/mm] and pressure [MPa] along the path of one tooth pair.
+
+    Of the positions of surface contact the lowest, the one of the smallest curvature, and the highest: each (3,).
+    """
+    pair = SPIRAL.pair(spiral_mounting(**errors), spiral_modifications(0.005, 0.04))
+    path = trace_contact(pair, np.linspace(-0.8, 0.8, 33) * pair.pitch, warn=False)
+    path = path[np.flatnonzero(path.in_contact & ~path.on_edge)]
+    height, pressure = SPIRAL.path_on_pinion(path)[1], SPIRAL.pressures(pair, path)
+    across = np.array([relative_curvature(pair, path[i]).across for i in range(len(path))])
+    chosen = [height.argmin(), across.argmin(), height.argmax()]
+    return height[chosen], across[chosen], pressure[chosen]
+
+
 def _pressure_along_the_path() -> list[Trend]:
     found = []
     for figure, error, name in (("46", "e", "ΔE"), ("49", "h", "ΔH")):
@@ -209,15 +223,49 @@ def _pressure_along_the_path() -> list[Trend]:
             f"{name} {sign * 0.08:+.2f}: {tip:.0f}, {middle:.0f}, {root:.0f} MPa"
             for sign, (tip, middle, root) in parts.items()
         )
+        height, across, pressure = closest_fit({error: 0.08})
+        share = (pressure[1] / pressure[[0, 2]]) ** 3
+        reason = (
+            f"the profiles fit each other best next to the pitch cone: relative curvature {across[2]:.2f} at the top, "
+            f"{across[1]:.2f} at {height[1]:+.2f} mm, {across[0]:.2f} 1/mm at the bottom of one tooth pair's whole "
+            f"path ({name} +0.08), so that the one load of the source presses least there; highest there needs less "
+            f"than {share[1]:.0%} of the load at the top and {share[0]:.0%} at the bottom"
+        )
         found.append(
             Trend(
                 figure,
                 f"{name} = 0.08: the stress is highest between tip and root",
                 any(middle > max(tip, root) for tip, middle, root in parts.values()),
-                f"top, middle, bottom of the path: {listed}",
+                f"top, middle, bottom of the path: {listed}: {reason}",
             )
         )
     return found
+
+
+def sign_table(errors: ErrorMap) -> dict[str, dict[tuple[float, float], bool]]:
+    """Statements that depend on the signs of (Delta E, Delta H), and with which of them each holds."""
+    both = [(e, h) for e in SIGNS for h in SIGNS]
+    largest = tuple(np.sign([errors.e, errors.h][k][place]) for k, place in enumerate(_worst(errors)))
+    smooth = {s: [step for step in STEPS if spiral_effect(*FULL, e=s * step).continuous] for s in SIGNS}
+    aligned = spiral_effect(*FULL).place[1]
+    rootwards = {s: spiral_effect(*FULL, h=s * 0.04).place[1] < aligned for s in SIGNS}
+    alone = {(key, s): spiral_effect(*FULL, **{key: s * 0.04}).peak_to_peak for key in ("e", "h") for s in SIGNS}
+    raised = {
+        (e, h): spiral_effect(*FULL, e=e * 0.04, h=h * 0.04).peak_to_peak > max(alone["e", e], alone["h", h])
+        for e, h in both
+    }
+    return {
+        "45: continuous up to ΔE = 0.04, not above": {(e, h): smooth[e] == [0.02, 0.04] for e, h in both},
+        "47: ΔH moves the path towards the root of the pinion": {(e, h): rootwards[h] for e, h in both},
+        "47: ΔH moves the path towards the root of the wheel": {(e, h): not rootwards[h] for e, h in both},
+        "51: both together raise the amplitude": raised,
+        "53: the stress is highest at ΔE = ΔH = 0.1": {signs: signs == largest for signs in both},
+    }
+
+
+def _worst(errors: ErrorMap) -> tuple[int, int]:
+    row, column = np.unravel_index(errors.ratio.argmax(), errors.ratio.shape)
+    return int(row), int(column)
 
 
 def _path_of_axial_error() -> list[Trend]:
@@ -280,7 +328,7 @@ def _map_trends(errors: ErrorMap) -> list[Trend]:
     middle = len(errors.e) // 2
     offset, axial = np.abs(errors.deviation[:, middle]), np.abs(errors.deviation[middle])
     rises = [np.abs(part - 1.0).max() for part in (errors.ratio[:, middle], errors.ratio[middle])]
-    row, column = np.unravel_index(errors.ratio.argmax(), errors.ratio.shape)
+    row, column = _worst(errors)
     corners = {(float(errors.e[i]), float(errors.h[j])): float(errors.ratio[i, j]) for i in (0, -1) for j in (0, -1)}
     listed = ", ".join(f"({e:+.1f}, {h:+.1f}) {ratio:.2f}" for (e, h), ratio in corners.items())
     return [

@@ -2,7 +2,9 @@
 
 - ``involute_pairs``: unmodified, aligned pairs have no transmission error;
 - ``reduced_tca_misalignment``, ``reduced_tca_tables``: the helical pair 40/37 of the reduced-TCA dissertation;
-- ``mounting_errors``, with ``mounting_error_pairs``, ``mounting_error_trends`` and ``mounting_error_map``: what each
-  error does, and which statements of the dissertation hold;
+- ``mounting_errors``, with ``mounting_error_pairs``, ``mounting_error_trends``, ``spur_trends``, ``helical_trends`` and
+  ``mounting_error_figures``: what each error does, and which statements and numbers of the dissertation hold; writes a
+  page;
+- ``mounting_error_map``: two errors together;
 - ``convergence_from_random_starts``, with ``random_starts``: two equations beside five; writes a page.
 """

@@ -78,3 +78,10 @@ def hertz_pressure(pair: GearPair, contact: ContactPoint, load: float) -> float:
 def shift(gears: Gears, mounting: Mounting, **modifications: float | str) -> float:
     """Axial coordinate of the contact at phi1 = 0 on the pinion [mm]."""
     return float(trace_contact(gears.pair(mounting, **modifications), [0.0]).pinion_axial[0])
+
+
+def pressures_along(gears: Gears, mounting: Mounting, points: int = 7, **modifications: float | str) -> Array:
+    """Hertz pressure along the surface contact of one tooth pair [MPa]."""
+    pair = gears.pair(mounting, **modifications)
+    path = trace_contact(pair, np.linspace(-0.7, 0.7, points) * pair.pitch)
+    return np.array([hertz_pressure(pair, path[i], gears.load) for i in range(points)])

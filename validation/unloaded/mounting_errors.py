@@ -1,15 +1,14 @@
-"""What each mounting error does to contact path, transmission error and Hertz pressure.
+"""What each mounting error does to contact path, transmission error and Hertz pressure of cylindrical pairs.
 
-The trends of the reduced-TCA dissertation (Figures 17 to 30) for its spur pair 25/25 and its helical pair 40/37 with
-three forms of lead crowning, each with a verdict, and a table of every error. The dissertation compares forms of
-crowning of unlike amounts; here all forms remove the same at the ends of the face.
+The statements of the reduced-TCA dissertation (Figures 10 to 30) on its spur pair 25/25 and its helical pair 40/37 with
+three forms of lead crowning, each with a verdict; the numbers it prints beside computed ones; a table of every error.
 
 Run from the root of the repository: ``python -m validation.unloaded.mounting_errors``.
 """
 
 import argparse
 import sys
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from math import cos, degrees, radians, sin, tan
 from pathlib import Path
 
@@ -20,6 +19,10 @@ from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.unloaded import trace_contact
 from loaded_tca.unloaded.teeth import trace_teeth
 from validation.table import Row
+from validation.unloaded.helical_trends import trends as helical_trends
+from validation.unloaded.mounting_error_figures import lines as printed_lines
+from validation.unloaded.mounting_error_figures import rows as printed_rows
+from validation.unloaded.mounting_error_figures import unmodified_pressure
 from validation.unloaded.mounting_error_pairs import (
     ARCSEC,
     CASE,
@@ -33,7 +36,8 @@ from validation.unloaded.mounting_error_pairs import (
     hertz_pressure,
     shift,
 )
-from validation.unloaded.mounting_error_trends import trends
+from validation.unloaded.mounting_error_trends import verdicts
+from validation.unloaded.spur_trends import trends as spur_trends
 
 
 @dataclass(frozen=True)
@@ -114,7 +118,7 @@ def rows() -> list[Row]:
             1e-3,
         )
     )
-    return found
+    return [*found, *printed_rows()]
 
 
 def _slope(mounting: Mounting) -> float:
@@ -155,19 +159,83 @@ def draw_paths() -> Figure:
     return figure
 
 
+def _line(one: Effect) -> str:
+    continuous = "yes" if one.continuous else "no"
+    return (
+        f"| {one.gears} | {one.form} | {one.error.replace('_', ' ')} | {round(one.shift, 3) + 0.0:+.3f} | "
+        f"{max(one.peak_to_peak, 0.0):.2f} | {one.pressure:.0f} | {continuous} |"
+    )
+
+
+TEXT = """# Spur and helical pairs under mounting errors
+
+Written by `python -m validation.unloaded.mounting_errors`. Unloaded contact of all teeth over one pitch; pressures
+after Hertz, one tooth pair carrying the whole load. Figures 10 to 30 of the
+[reduced-TCA dissertation](../sources.md) show pictures, most of them without numbers: each statement of its text is
+judged here by a number. Its bevel pairs have [a page of their own](bevel_studies.md), and so has
+[the convergence from random starts](unloaded_convergence.md).
+
+Assumed, where the source says nothing: the pinion drives, and has all modifications; lead crowning of the spur pair
+{spur:g} um at the ends of the face (its a1 = 0.0025/mm), of the helical pair {helical:g} um (the smallest c1 of its
+Table 3), parabolic unless a form is named; errors of the spur pair {angle:.2g} deg and {length:g} mm. "Continuous": one
+tooth pair takes over from the other without edge contact.
+
+## Figures 10 to 30
+
+| figure | statement | verdict | because |
+|---|---|---|---|
+{trends}
+
+![Contact paths and transmission errors of both pairs](cylindrical_studies.png)
+
+## Printed numbers of Figures 24, 26 and 29
+
+S is the area under the transmission function, printed without window or unit (and negative); SR = p/p_0 is the pressure
+over that of the aligned, unmodified pair, which is not printed; here p_0 = {p0:.0f} MPa, of a contact line over the
+whole face under the whole load.
+
+| figure | quantity | printed | computed | computed/printed | assumed |
+|---|---|---|---|---|---|
+{printed}
+
+The areas of one figure cannot differ: lead crowning leaves a straight line whose slope depends on the error alone. The
+stress ratios fall with the angle as the printed ones do, at about half their size: a p_0 of half the size would give
+them.
+
+## Every error
+
+All forms remove the same at the ends of the face. Shift and pressure at phi1 = 0; peak to peak of the transmission
+error of all teeth:
+
+| pair | form | error | z on the pinion [mm] | peak to peak [arcsec] | pressure [MPa] | continuous |
+|---|---|---|---|---|---|---|
+{effects}
+"""
+
+
+def document() -> str:
+    """The page, with its tables."""
+    return TEXT.format(
+        spur=1e3 * SPUR.crowning,
+        helical=1e3 * HELICAL.crowning,
+        angle=degrees(LARGEST[SPUR]["in_plane"]),
+        length=LARGEST[SPUR]["axial_offset"],
+        trends="\n".join(verdicts([*spur_trends(), *helical_trends()])),
+        p0=unmodified_pressure(),
+        printed="\n".join(printed_lines()),
+        effects="\n".join(_line(one) for one in effects()),
+    )
+
+
 def main() -> int:
-    """Print trends and effects, save the pictures; 0 in any case: a trend that does not hold is a finding."""
+    """Print and write the page, save the picture; 0 in any case: a statement that does not hold is a finding."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path(), help="directory of the pictures")
+    parser.add_argument("--out", type=Path, default=Path("docs/studies"), help="directory of the page and the picture")
     directory = parser.parse_args().out
-    for trend in trends():
-        verdict = "holds" if trend.holds else "does not hold"
-        print(f"Figure {trend.figure}: {trend.statement}: {verdict}: {trend.because}")
-    print("\n" + "  ".join(f"{field.name:>22}" for field in fields(Effect)))
-    for one in effects():
-        numbers = f"{one.shift:22.4f}  {one.peak_to_peak:22.4f}  {one.pressure:22.2f}  {one.continuous!s:>22}"
-        print(f"{one.gears:>22}  {one.form:>22}  {one.error:>22}  {numbers}")
-    draw_paths().savefig(directory / "mounting_errors.png", dpi=90)
+    text = document()
+    print(text)
+    (directory / "cylindrical_studies.md").write_text(text)
+    draw_paths().savefig(directory / "cylindrical_studies.png", dpi=90)
     return 0
 
 

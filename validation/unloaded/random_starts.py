@@ -9,7 +9,7 @@ import os
 import platform
 import time
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
@@ -31,7 +31,6 @@ Array = NDArray[np.float64]
 Result = TypeVar("Result")
 SAME = 1e-9
 """Wheel angle [rad], and ease-off relative to r_b2, within which an ending is the contact."""
-SPREADS = {"within 0.2 rad": 0.2, "within pi/2": 0.5 * math.pi}
 COMPONENTS = {"y, z": (1, 2), "x, z": (0, 2), "x, y": (0, 1)}
 RUNS = 3
 """The shortest of so many runs is the time of a vectorised method."""
@@ -44,6 +43,30 @@ SCIPY_STARTS = 200
 """SciPy solves one start after the other."""
 COLOURS = {"converged": "#0072b2", "not": "#d55e00", "answer": "#000000"}
 """Okabe and Ito 2008: told apart by colour-blind readers; the markers differ, too."""
+
+
+@dataclass(frozen=True)
+class Draw:
+    """How the start of the five equations is drawn: phi2 - answer from low to high [rad], evenly.
+
+    The start on the wheel is drawn over its flank, or always in the middle of it.
+    """
+
+    name: str
+    low: float
+    high: float
+    wheel_in_the_middle: bool = False
+
+    def __str__(self) -> str:
+        return self.name
+
+    @property
+    def mirrored(self) -> "Draw":
+        """The same on the other side of the answer."""
+        return replace(self, low=-self.high, high=-self.low)
+
+
+SPREADS = (Draw("within 0.2 rad", -0.2, 0.2), Draw("within pi/2", -0.5 * math.pi, 0.5 * math.pi))
 
 
 @dataclass(frozen=True)
@@ -79,10 +102,12 @@ class Case:
         flanks = (self.pair.pinion.flank, shares[:2]), (self.pair.wheel.flank, shares[2:])
         return np.stack([*(part for flank, share in flanks for part in points_of(flank, *share)), angle], axis=-1)
 
-    def draw(self, spread: float) -> Array:
-        """The same starts, with phi2 within ``spread`` [rad] of the answer."""
-        starts = self.unit_starts * [1.0, 1.0, 1.0, 1.0, spread]
-        starts[:, 4] += self.contact.wheel_angle
+    def draw(self, how: Draw) -> Array:
+        """The same starts, with phi2 [rad] about the answer and the start on the wheel as drawn."""
+        starts = self.unit_starts * [1.0, 1.0, 1.0, 1.0, 0.5 * (how.high - how.low)]
+        starts[:, 4] += self.contact.wheel_angle + 0.5 * (how.low + how.high)
+        if how.wheel_in_the_middle:
+            starts[:, 2:4] = np.stack(points_of(self.pair.wheel.flank, *np.full((2, 1), 0.5)), axis=-1)
         return starts
 
 
@@ -135,24 +160,24 @@ def reduced(case: Case, runs: int = 1) -> Outcome:
     return Outcome("reduced", "-", good, float(found.iterations[good].mean()), seconds, starts[:, :2], ends)
 
 
-def conventional(case: Case, spread: str, components: str, runs: int = 1) -> Outcome:
+def conventional(case: Case, spread: Draw, components: str, runs: int = 1) -> Outcome:
     """Plain Newton iteration on the five equations."""
-    starts, chosen = case.draw(SPREADS[spread]), COMPONENTS[components]
+    starts, chosen = case.draw(spread), COMPONENTS[components]
     found, seconds = timed(lambda: solve_conventional(case.pair, 0.0, starts, chosen), runs)
     return _five(f"five, normals {components}", case, spread, starts, found, seconds)
 
 
-def scipy_root(case: Case, spread: str, components: str) -> Outcome:
+def scipy_root(case: Case, spread: Draw, components: str) -> Outcome:
     """SciPy's ``root`` on the same equations, from the first starts."""
-    starts, chosen = case.draw(SPREADS[spread])[:SCIPY_STARTS], COMPONENTS[components]
+    starts, chosen = case.draw(spread)[:SCIPY_STARTS], COMPONENTS[components]
     found, seconds = timed(lambda: solve_with_scipy_root(case.pair, 0.0, starts, chosen), 1)
     return _five(f"SciPy root, normals {components}", case, spread, starts, found, seconds)
 
 
-def _five(method: str, case: Case, spread: str, starts: Array, found: ConventionalResult, seconds: float) -> Outcome:
+def _five(method: str, case: Case, spread: Draw, starts: Array, found: ConventionalResult, seconds: float) -> Outcome:
     good = found.is_contact & (np.abs(found.wheel_angle - case.contact.wheel_angle) <= SAME)
     steps = float(found.iterations[good].mean()) if good.any() else math.nan
-    return Outcome(method, spread, good, steps, seconds, starts[:, [0, 1, 4]], found.unknowns[:, :2])
+    return Outcome(method, spread.name, good, steps, seconds, starts[:, [0, 1, 4]], found.unknowns[:, :2])
 
 
 def study(case: Case, components: Iterable[str]) -> list[Outcome]:

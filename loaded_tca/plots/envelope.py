@@ -1,0 +1,112 @@
+"""The highest pressure that each place of both flanks sees while the teeth pass through the mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.figure import Figure
+
+from loaded_tca.arrays import Array
+from loaded_tca.plots import style
+from loaded_tca.plots.flanks import both_flanks, colour_scale, loaded_maps
+from loaded_tca.plots.style import COLOURS, highest_torque, load, range_of_positions
+from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.pressure_map import PressureMap
+
+FIELDS = 240
+"""Fields of the picture of a flank in each direction, each coloured by the highest pressure in it."""
+POINTS_OF_A_FIELD = 1.5
+"""Points of a pressure map in the length of a field: more than one, so that no field between two points stays empty."""
+
+
+def plot_pressure_envelope(result: MeshCycle, torque: int | None = None) -> Figure:
+    """Highest pressure that each place of both flanks sees over the cycle, from the maps of all pairs.
+
+    Between two positions the contact moves evenly from one place to the other, and its pressure changes evenly.
+
+    Parameters
+    ----------
+    result : MeshCycle
+    torque : int, optional
+        Index of the torque; default: the largest one.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    torque = highest_torque(result) if torque is None else torque
+    scale, extend = colour_scale(result, torque, loaded_maps(result, torque))
+
+    def draw(axes: Axes, to_picture: Callable[[Array], Array]) -> list[Artist]:
+        low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+        field = (high - low) / FIELDS
+        highest = np.zeros((FIELDS, FIELDS))
+        for places, pressure in _passing(result, torque, to_picture, field):
+            column, row = np.floor((places - low) / field).astype(int).T
+            inside = (column >= 0) & (column < FIELDS) & (row >= 0) & (row < FIELDS)
+            np.maximum.at(highest, (row[inside], column[inside]), pressure[inside])
+        seen = np.where(highest > 0.0, highest, np.nan)
+        borders = np.linspace(low, high, FIELDS + 1).T
+        return [axes.pcolormesh(*borders, seen, cmap=COLOURS, norm=scale, rasterized=True)]
+
+    figure, panels = both_flanks(result, draw)
+    figure.colorbar(ScalarMappable(scale, COLOURS), ax=panels, label="highest contact pressure [MPa]", extend=extend)
+    style.set_title(figure, result, f"pressure envelope, {load(result, torque)}", range_of_positions(result))
+    return figure
+
+
+def _passing(
+    result: MeshCycle, torque: int, to_picture: Callable[[Array], Array], field: Array
+) -> Iterator[tuple[Array, Array]]:
+    """Places (k, 2) in the picture of a flank and the pressure (k,) that they see.
+
+    Of each map all cells, and from each position to the next the ridge of the pressure, which no place between sees
+    anything higher than.
+    """
+    for passage in zip(*result.maps[torque], strict=True):
+        before = None
+        for one in passage:
+            if one is None or not one.pressure.any():
+                before = None
+                continue
+            points, pressure = _cells(one, to_picture, field)
+            yield to_picture(points), pressure
+            points, height = _ridge(one)
+            ridge = to_picture(points), height
+            if before is not None:
+                moved = np.abs(ridge[0] - before[0]) / field
+                part = np.linspace(0.0, 1.0, 2 + int(POINTS_OF_A_FIELD * moved.max()))[:, None]
+                places, heights = (a + np.multiply.outer(part[:, 0], b - a) for a, b in zip(before, ridge, strict=True))
+                yield places.reshape(-1, 2), heights.ravel()
+            before = ridge
+
+
+def _cells(one: PressureMap, to_picture: Callable[[Array], Array], field: Array) -> tuple[Array, Array]:
+    """Points (k, 3) within the cells under pressure, so close that none leaves a field empty, and their pressure."""
+    corners = to_picture(one.corners)
+    across, along = (
+        1 + int(POINTS_OF_A_FIELD * (np.abs(np.diff(corners, axis=axis)) / field).max()) for axis in (0, 1)
+    )
+    rows, columns = np.nonzero(one.pressure)
+    (dx, dy), (u, v) = one.spacing, ((np.arange(count) + 0.5) / count - 0.5 for count in (across, along))
+    x = (one.x[rows, None, None] + dx * u[:, None] + np.zeros(along)).reshape(-1, 1)
+    y = (one.y[columns, None, None] + dy * v + np.zeros((across, 1))).reshape(-1, 1)
+    return one.origin + x * one.axes[0] + y * one.axes[1], np.repeat(one.pressure[rows, columns], across * along)
+
+
+def _ridge(one: PressureMap) -> tuple[Array, Array]:
+    """Points (n, 3) evenly along the middle of the pressure, from one end of the contact to the other, and its height.
+
+    The ends are those of the cells, not their centres, so that no stripe is left at the end of a face.
+    """
+    sums = one.pressure.sum(axis=0)
+    loaded = np.nonzero(sums)[0]
+    half = 0.5 * one.spacing[1]
+    y = np.linspace(one.y[loaded[0]] - half, one.y[loaded[-1]] + half, 2 * FIELDS)
+    across = one.x @ one.pressure[:, loaded] / sums[loaded]
+    x, height = (np.interp(y, one.y[loaded], values) for values in (across, one.pressure[:, loaded].max(axis=0)))
+    return one.origin + x[:, None] * one.axes[0] + y[:, None] * one.axes[1], height
