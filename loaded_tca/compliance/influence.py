@@ -6,7 +6,7 @@ The contact solver takes each flank for a half-space, whose displacement it meas
 
 u_FE is the displacement of the gear body under a unit force at q, where the line of action through p cuts the middle of
 the tooth; u_B that of the half-space at the same depth t (it is part of u_FE, and would count twice); c_loc the local
-term of a line force in the plane, spread along the face by a normal distribution k of the standard deviation 3.3 t,
+term of a line force in the plane, spread along the face by a normal distribution k of 3.4 mean depths of the middle,
 with its mirror images beyond the ends of the face: along a whole face width the local term is that of the plane.
 It belongs to the back of the tooth, which follows short waves of the load no more: so the sections of teeth say that
 carry waves of load along the face (``validation/loaded/local_term.py``). Another tooth of the gear has the first term
@@ -53,8 +53,8 @@ class FlankLine:
     z: Array
 
 
-SPREAD = 3.3
-"""Standard deviation of the spread of the local term along the face, over the depth of the middle of the tooth."""
+SPREAD = 3.4
+"""Standard deviation of the spread of the local term along the face, over the mean depth of the middle of the tooth."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +120,7 @@ class GearCompliance:
         from_start = width * (places.length[:, None] + places.length)  # of mirror images beyond the ends of the face
         aside = (distance, from_start, 2.0 * width - from_start)
         # Line density [1/mm], whose integral over the distances of a line is 1.
-        deviation = SPREAD * depth
+        deviation = SPREAD * float(self.table.depth.mean())
         spread = sum(np.exp(-0.5 * (away / deviation) ** 2) for away in aside) / (math.sqrt(2.0 * math.pi) * deviation)
         half_space = depth_displacement(depth, distance, self.frame.gear.material)
         local = np.interp(places.height, self.table.local_height, self.table.local_value)

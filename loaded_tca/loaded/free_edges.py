@@ -42,7 +42,7 @@ VARIATION, MEAN_PLACE, PLACE_BELOW = 0.4, 0.8, 0.5
 WIDTH = 0.02
 """Distance across the contact that stands for its width, over the module. It is that of a half width of a twentieth
 module, and matters within such a length from the end."""
-PLACES, WEIGHTS = np.polynomial.legendre.leggauss(3)
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(3)
 
 
 def edge_compliance(pair: GearPair, separation: Separation) -> Array | None:
@@ -87,16 +87,16 @@ def edge_compliance(pair: GearPair, separation: Separation) -> Array | None:
             value, slope_rho, slope_z = np.broadcast_arrays(jets[edge].value, jets[edge].rho, jets[edge].z)
             steep = np.hypot(slope_rho, slope_z)
             distance = value / steep
-            near = np.flatnonzero((distance > 0.0) & (distance < reach * pair.module))
+            near = np.flatnonzero(np.abs(distance) < reach * pair.module)
             if not near.size:
                 continue
-            end = near[distance[near].argmin()]
+            end = near[np.abs(distance[near]).argmin()]
             inwards = np.array([slope_rho[end], 0.0, slope_z[end]]) / steep[end]
             angle = math.acos(float(np.clip(outward_normal(gear.flank, rho[end], z[end]) @ inwards, -1.0, 1.0)))
             if found is None:
                 found = np.zeros((separation.y.size,) * 2)
             added = _added(distance[near], separation.y[near], separation.spacing[1], pair.module, angle, gear.material)
-            faded = _faded(distance[near] / (reach * pair.module))
+            faded = _faded(np.maximum(distance[near], 0.0) / (reach * pair.module))
             found[np.ix_(near, near)] += faded[:, None] * added * faded
     return found
 
@@ -115,17 +115,21 @@ def _added(distance: Array, y: Array, length: float, module: float, angle: float
     factor = wedge_factor(angle, material.poisson_ratio)
     scale = factor / quarter_space_factor(material.poisson_ratio)
     rise = np.clip(np.gradient(distance, y), -1.0, 1.0) if y.size > 1 else np.zeros(1)
+    inside = np.maximum(distance, 0.0)  # a contact on an edge is beside it by rounding, or curves beyond it
+    width = WIDTH * module
     total = np.zeros((y.size, y.size))
-    for place, weight in zip(PLACES, WEIGHTS, strict=True):
-        offset = 0.5 * length * place
+    for node, weight in zip(NODES, WEIGHTS, strict=True):
+        offset = 0.5 * length * node
         own = np.maximum(distance + rise * offset, 0.0)[:, None]
-        apart, both = y[:, None] + offset - y, own + distance
-        square = both**2 + apart**2 * (1.0 - rise**2)
+        apart, both = y[:, None] + offset - y, own + inside
+        aside = apart**2 * (1.0 - rise**2)
         along = apart * (1.0 - rise**2) - both * rise  # of the place, from the middle of the image along it
-        aside = np.sqrt(np.maximum(square - along**2, 0.0) + (WIDTH * module) ** 2)
-        inverse = (np.arcsinh((0.5 * length - along) / aside) + np.arcsinh((0.5 * length + along) / aside)) / length
-        square = square + (WIDTH * module) ** 2
-        varied = factor + scale * VARIATION * (4.0 * own * distance / square - MEAN_PLACE)
+        square = both**2 + aside + width**2
+        off = np.sqrt(np.maximum(square - along**2, width**2))
+        inverse = (np.arcsinh((0.5 * length - along) / off) + np.arcsinh((0.5 * length + along) / off)) / length
+        # the load of a contact on an edge lies half its width beside it
+        place = 4.0 * (own + 0.5 * width) * (inside + 0.5 * width) / ((both + width) ** 2 + aside)
+        varied = factor + scale * VARIATION * (place - MEAN_PLACE)
         below = factor + scale * VARIATION * (PLACE_BELOW - MEAN_PLACE)
         surface = depth_displacement(np.asarray(0.0), np.asarray(1.0), material) * inverse
         middle = depth_displacement(np.asarray(DEPTH * module), np.sqrt(square), material)

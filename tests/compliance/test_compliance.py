@@ -7,7 +7,6 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.compliance import MeshDensity, default_density, tooth_compliance
-from loaded_tca.contact.edges import FreeEdge
 from loaded_tca.errors import InputError
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, bevel_mesh
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
@@ -92,21 +91,6 @@ def test_compliance_of_the_other_sense_is_the_same():
     both = made(20.0), made(20.0, "negative")
     found = [matrix(one, dict(enumerate(grids(one, 0.4, -0.4)))) for one in both]
     assert_allclose(found[1], found[0], rtol=1e-4)  # the meshes and grids are no exact mirror images
-
-
-def test_free_edges_leave_less_to_the_teeth():
-    """The images that the half-spaces were corrected by are taken off again in the middle of the tooth."""
-    compliance = made()
-    grid = grids(compliance, 0.0)[0]
-    edges = tuple(FreeEdge(1, place, side, 1.7) for place, side in ((0.0, "above"), (20.0, "below")))
-    plain, corrected = compliance.within(0, grid), compliance.within(0, grid, edges)
-    taken = plain - corrected
-    assert (taken > 0.0).all()
-    assert_allclose(taken, taken[::-1, ::-1], rtol=1e-9)
-    assert taken[0, 0] > 2.0 * taken[16, 16]
-    assert_allclose(compliance.within(0, grid, [FreeEdge(1, 1e9, "below", 1.7)]), plain, rtol=1e-6)
-    corner = compliance.within(0, grid, [edges[0], FreeEdge(0, 0.4, "below", 1.0)])
-    assert (corner < compliance.within(0, grid, edges[:1])).all()
 
 
 def test_a_smaller_bore_makes_the_pair_softer():
