@@ -20,6 +20,7 @@ wedge; Timoshenko & Goodier 1970, Theory of Elasticity, art. 38).
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Literal
@@ -27,7 +28,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, real
 from loaded_tca.contact.convolution import Convolution, Window
 from loaded_tca.errors import InputError
 
@@ -164,17 +165,19 @@ def _extra_displacement(angle: float) -> float:
     return max(0.0, math.pi * (angle + sine * cosine) / (angle * angle - sine * sine) - 1.0)
 
 
-def check_edges(edges: tuple[FreeEdge, ...]) -> list[str]:
+def check_edges(edges: Sequence[FreeEdge]) -> list[str]:
     """Problems of the free edges."""
+    if not (isinstance(edges, Sequence) and all(isinstance(edge, FreeEdge) for edge in edges)):
+        return [f"free_edges: {edges!r:.60} is not a sequence of FreeEdge"]
     problems = []
     for k, edge in enumerate(edges):
         if edge.axis not in (0, 1):
             problems.append(f"free_edges[{k}].axis: {edge.axis} is neither 0 nor 1")
-        if not math.isfinite(edge.position):
+        if not math.isfinite(real(edge.position)):
             problems.append(f"free_edges[{k}].position: {edge.position} mm is not finite")
         if edge.material not in ("below", "above"):
             problems.append(f'free_edges[{k}].material: {edge.material!r} is neither "below" nor "above"')
-        if not 0.0 <= edge.factor < math.inf:
+        if not 0.0 <= real(edge.factor) < math.inf:
             problems.append(f"free_edges[{k}].factor: {edge.factor} is negative or not finite")
     return problems
 

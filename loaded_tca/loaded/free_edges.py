@@ -27,6 +27,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.half_space import depth_displacement
 from loaded_tca.contact.edges import quarter_space_factor, wedge_factor
+from loaded_tca.errors import named
 from loaded_tca.flanks.base import outward_normal
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear_pair import GearPair
@@ -81,7 +82,7 @@ def edge_compliance(pair: GearPair, separation: Separation) -> Array | None:
     radius, _, axial = pair.to_wheel(points)
     places = (np.hypot(points[:, 0], points[:, 1]), points[:, 2]), (radius, axial)
     found = None
-    for gear, (rho, z) in zip((pair.pinion, pair.wheel), places, strict=True):
+    for name, gear, (rho, z) in zip(("pinion", "wheel"), (pair.pinion, pair.wheel), places, strict=True):
         jets = gear.flank.edges(rho, z)
         for edge, reach in REACHES.items():
             value, slope_rho, slope_z = np.broadcast_arrays(jets[edge].value, jets[edge].rho, jets[edge].z)
@@ -95,7 +96,11 @@ def edge_compliance(pair: GearPair, separation: Separation) -> Array | None:
             angle = math.acos(float(np.clip(outward_normal(gear.flank, rho[end], z[end]) @ inwards, -1.0, 1.0)))
             if found is None:
                 found = np.zeros((separation.y.size,) * 2)
-            added = _added(distance[near], separation.y[near], separation.spacing[1], pair.module, angle, gear.material)
+            with named(f"analysis.free_edges: {gear.flank.frame.edges[edge]} of the {name}"):
+                factor = wedge_factor(angle, gear.material.poisson_ratio)
+            added = _added(
+                distance[near], separation.y[near], separation.spacing[1], pair.module, factor, gear.material
+            )
             faded = _faded(np.maximum(distance[near], 0.0) / (reach * pair.module))
             found[np.ix_(near, near)] += faded[:, None] * added * faded
     return found
@@ -106,13 +111,12 @@ def _faded(part: Array) -> Array:
     return np.asarray(1.0 - part**2 * (3.0 - 2.0 * part))
 
 
-def _added(distance: Array, y: Array, length: float, module: float, angle: float, material: Material) -> Array:
+def _added(distance: Array, y: Array, length: float, module: float, factor: float, material: Material) -> Array:
     """What an edge adds to the deflection of slices (n,) of a ``length`` at distances from it: (n, n) [mm/N].
 
     The image of a slice is a straight line, so that 1/R has its mean over it in closed form; the mean over the slice
     that it displaces is taken at three places.
     """
-    factor = wedge_factor(angle, material.poisson_ratio)
     scale = factor / quarter_space_factor(material.poisson_ratio)
     rise = np.clip(np.gradient(distance, y), -1.0, 1.0) if y.size > 1 else np.zeros(1)
     inside = np.maximum(distance, 0.0)  # a contact on an edge is beside it by rounding, or curves beyond it

@@ -166,11 +166,11 @@ def test_steepest_helix_is_not_refused():
     assert added_of(gear_pair(width=4.0, helix_deg=59.9), load=50.0)[0] is not None
 
 
-def test_tooth_that_ends_too_sharp_is_refused(monkeypatch):
-    pair = gear_pair(width=12.0)
-    monkeypatch.setattr("loaded_tca.loaded.free_edges.outward_normal", lambda *_: np.array([0.0, 0.0, 1.0]))
-    with pytest.raises(InputError, match=r"angle: .* is not between 30 and 180 degrees"):
-        added_of(pair, load=LOAD)
+def test_end_that_is_too_sharp_is_named_with_the_key_that_makes_it_an_edge(monkeypatch):
+    monkeypatch.setattr("loaded_tca.contact.edges.SHARPEST", math.radians(80.0))
+    told = r"^analysis.free_edges: end of the face at z [<>] 0 of the (pinion|wheel): angle: 7\d\.\d+ degrees is not"
+    with pytest.raises(InputError, match=told):
+        added_of(gear_pair(helix_deg=15.0))
 
 
 @pytest.mark.parametrize(("pitches", "member"), [(0.82, 0), (-0.86, 1)])
