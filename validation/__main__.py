@@ -43,6 +43,7 @@ CASES = (
     "calculix.mesh_cycle",
     "contact.subsurface",
     "contact.free_edge",
+    "contact.free_block",
     "contact.wedge",
 )
 

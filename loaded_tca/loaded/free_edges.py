@@ -1,10 +1,10 @@
 r"""Free edges of teeth: what tip edges and face ends add to the deflection of the half-spaces, slice by slice.
 
-A body that ends beside its contact is softer than a half-space. Hetenyi's solution of the quarter-space is met within
-3 % by an image of the pressure in the end, at the distance R from the place that it displaces, with a factor that
+A body that ends beside its contact is softer than a half-space. Hetenyi's solution of the quarter-space is met by
+an image of the pressure in the end, at the distance R from the place that it displaces, with a factor that
 depends on where both lie:
 
-.. math:: \psi(S) = \psi + 0.4 \left(S - 0.8\right),\qquad S = 4 d d'/R^2
+.. math:: \psi(S) = \psi + 0.4 \left(S - 0.9\right),\qquad S = 4 d d'/R^2
 
 d and d' are the distances of the two from the end, S = 1 for a place and its own image. At other angles than 90 deg
 psi(S) is scaled as psi is (:func:`loaded_tca.contact.wedge_factor`). What the image displaces in the middle of the
@@ -38,7 +38,7 @@ DEPTH = 0.25 * math.pi
 REACHES = {0: 0.5, 2: 3.0 * DEPTH, 3: 3.0 * DEPTH}
 """Distance over the module from which on an edge of a flank counts no more: of the tip edge, where bending knows the
 tip from there on, and of both face ends. At the root a tooth goes on as the fillet."""
-VARIATION, MEAN_PLACE, PLACE_BELOW = 0.4, 0.8, 0.5
+VARIATION, MEAN_PLACE, PLACE_BELOW = 0.4, 0.9, 0.5
 """psi(S) = psi + VARIATION (S - MEAN_PLACE), and the S that stands for all places in the middle of the tooth."""
 WIDTH = 0.02
 """Distance across the contact that stands for its width, over the module. It is that of a half width of a twentieth
@@ -131,9 +131,7 @@ def _added(distance: Array, y: Array, length: float, module: float, factor: floa
         square = both**2 + aside + width**2
         off = np.sqrt(np.maximum(square - along**2, width**2))
         inverse = (np.arcsinh((0.5 * length - along) / off) + np.arcsinh((0.5 * length + along) / off)) / length
-        # the load of a contact on an edge lies half its width beside it
-        place = 4.0 * (own + 0.5 * width) * (inside + 0.5 * width) / ((both + width) ** 2 + aside)
-        varied = factor + scale * VARIATION * (place - MEAN_PLACE)
+        varied = factor + scale * VARIATION * (4.0 * own * inside / square - MEAN_PLACE)
         below = factor + scale * VARIATION * (PLACE_BELOW - MEAN_PLACE)
         surface = depth_displacement(np.asarray(0.0), np.asarray(1.0), material) * inverse
         middle = depth_displacement(np.asarray(DEPTH * module), np.sqrt(square), material)
