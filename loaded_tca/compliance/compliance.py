@@ -11,11 +11,11 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.influence import FlankLine, GearCompliance, Image, gear_compliance
 from loaded_tca.compliance.layout import MeshDensity
+from loaded_tca.compliance.torsion import body_torsion
 from loaded_tca.contact.edges import FreeEdge, edge_images
 from loaded_tca.errors import named
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.reference.weber_banaschek import ring_torsion
 from loaded_tca.separation import Separation
 from loaded_tca.tooth.build import Resolution, build_tooth
 
@@ -42,18 +42,11 @@ class ToothCompliance:
 
     @property
     def body_torsion(self) -> tuple[float, float]:
-        """Twist of the gear body between bore and root of pinion and wheel, in closed form [mm/N].
+        """Twist of the gear body between bore and root of pinion and wheel [mm/N].
 
-        It is a part of :meth:`within`, told to show what a bore diameter does; of bevel gears that of the mean section.
+        See :func:`loaded_tca.compliance.torsion.body_torsion`; it is a part of :meth:`within`.
         """
-        found = []
-        for gear, base_radius in zip((self.pinion, self.wheel), self.pair.base_radii, strict=True):
-            nodes, middle = gear.frame.nodes, len(gear.frame.nodes.coordinate) // 2
-            images = nodes.radius[0, [0, nodes.layout.base_row], middle]
-            radii, _ = nodes.sections.point(images, nodes.coordinate[middle])
-            twist = ring_torsion(float(radii[0]), float(radii[1]), gear.frame.gear.material)
-            found.append(base_radius**2 * twist / float(np.ptp(nodes.coordinate)))
-        return found[0], found[1]
+        return body_torsion(self.pair)
 
     def within(self, number: int, separation: Separation, edges: Sequence[FreeEdge] = ()) -> Array:
         """Deflection of every slice of a contact's grid per force on each, both gears together.

@@ -15,7 +15,7 @@ from loaded_tca.tooth.form import ToothForm
 from loaded_tca.tooth.geometry import ToothGeometry
 
 DEFAULT_BORE = 0.55
-"""Bore of a gear that has none given, over its (smallest) root diameter."""
+"""Bore of a gear that has none given, or journals of a solid gear, over the root diameter."""
 LARGEST_BORE = 0.98
 """Largest bore, over the smallest root diameter, that leaves a rim below the teeth."""
 
@@ -37,7 +37,8 @@ class Gear:
         What the other flank and the form of the teeth are made from.
     material : Material
     bore_diameter : float [mm], optional
-        Held rigid where teeth bend; None: 0.55 of the root diameter.
+        Held rigid where teeth bend; None: 0.55 of the root diameter. 0: a solid gear, held on both faces by journals of
+        that diameter.
     """
 
     flank: Flank
@@ -78,8 +79,13 @@ class Gear:
         flanks = self.nominal_flank, self.nominal_back
         return flanks if self.flank.side > 0 else flanks[::-1]
 
+    @property
+    def is_solid(self) -> bool:
+        """Whether the gear has no bore: it is held by its journals."""
+        return self.bore_diameter == 0.0
+
     def bore_radius(self, coordinate: Array) -> Array:
-        """Distance (k,) from the axis at which sections meet the bore [mm], given or by default.
+        """Distance (k,) from the axis at which sections meet the bore [mm], given or by default, or the journals.
 
         Raises
         ------
@@ -87,18 +93,18 @@ class Gear:
             If the bore leaves no rim below the teeth.
         """
         root, _ = self.form.sections.point(self.form.root_radius(coordinate), coordinate)
-        if self.bore_diameter is None:
+        if self.bore_diameter is None or self.is_solid:
             return DEFAULT_BORE * root
         if not 0.0 < 0.5 * self.bore_diameter < LARGEST_BORE * root.min():
             raise InputError(
-                f"bore_diameter: {self.bore_diameter:.6g} mm is not between 0 and {LARGEST_BORE:g} times the "
-                f"smallest root diameter, {2.0 * root.min():.6g} mm: no rim is left below the teeth"
+                f"bore_diameter: {self.bore_diameter:.6g} mm is neither 0 (a solid gear) nor between 0 and {LARGEST_BORE:g} "
+                f"times the smallest root diameter, {2.0 * root.min():.6g} mm: no rim is left below the teeth"
             )
         return np.full_like(root, 0.5 * self.bore_diameter)
 
     @property
     def smallest_bore(self) -> float:
-        """Bore diameter [mm], given or by default; the smallest one of a cone, at the toe.
+        """Diameter [mm] of the bore, given or by default, or of the journals; the smallest one of a cone, at the toe.
 
         Raises
         ------
