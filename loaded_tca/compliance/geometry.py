@@ -31,7 +31,8 @@ GROWTH = 1.8
 HOLE = 0.1
 """Free hole in the core of a solid gear, over the diameter of its journals: the mesh is a ring."""
 SHARP = math.pi / 3.0
-"""Bend of an edge between its halves from which it is made straight; 29 deg on usual teeth, 66 where one folded."""
+"""Bend of an edge between its halves from which it is made straight; 29 deg on usual teeth. With fewer elements
+along a foot they bend more, to 66 where one folded; made straight, that made a face-milled pinion 4 % too stiff."""
 
 
 @dataclass(frozen=True, eq=False)

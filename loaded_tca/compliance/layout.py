@@ -44,7 +44,7 @@ class MeshDensity:
     through: int = 4
     flank: int = 6
     fillet: int = 2
-    land: int = 2
+    land: int = 3
     rim: int = 4
     lengthwise: int = 10
     neighbours: int = 1

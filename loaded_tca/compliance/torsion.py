@@ -43,8 +43,10 @@ def _twist(gear: Gear) -> float:
     middle, width = np.array([0.5 * (ends[0] + ends[-1])]), float(ends[-1] - ends[0])
     root = float(gear.form.sections.point(gear.form.root_radius(middle), middle)[0][0])
     held = float(gear.bore_radius(middle)[0])
-    return solid_torsion(held, root, width, gear.material) if gear.is_solid else (
-        ring_torsion(held, root, gear.material) / width
+    return (
+        solid_torsion(held, root, width, gear.material)
+        if gear.is_solid
+        else (ring_torsion(held, root, gear.material) / width)
     )
 
 
@@ -87,7 +89,7 @@ def solid_torsion(journal_radius: float, outer_radius: float, width: float, mate
     basis, element = Basis(mesh, ElementQuad2(), intorder=6), ElementQuad2()
     outside = FacetBasis(mesh, element, facets=mesh.facets_satisfying(lambda x: x[0] > 1.0 - 1e-9))
     stiffness = BilinearForm(lambda u, v, w: 4.0 * math.pi * w.x[0] ** 3 * (u.grad * v.grad).sum(axis=0))
-    load = LinearForm(lambda v, w: v / end).assemble(outside)
+    load = LinearForm(lambda v, _: v / end).assemble(outside)
     held = basis.get_dofs(lambda x: (x[1] < 1e-9) & (x[0] < edge + 1e-9))
     turned = float(load @ solve(*condense(stiffness.assemble(basis), load, D=held)))
     shear_modulus = 0.5 * material.youngs_modulus / (1.0 + material.poisson_ratio)

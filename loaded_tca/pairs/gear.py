@@ -97,8 +97,8 @@ class Gear:
             return DEFAULT_BORE * root
         if not 0.0 < 0.5 * self.bore_diameter < LARGEST_BORE * root.min():
             raise InputError(
-                f"bore_diameter: {self.bore_diameter:.6g} mm is neither 0 (a solid gear) nor between 0 and {LARGEST_BORE:g} "
-                f"times the smallest root diameter, {2.0 * root.min():.6g} mm: no rim is left below the teeth"
+                f"bore_diameter: {self.bore_diameter:.6g} mm is not 0 (a solid gear), nor between 0 and "
+                f"{LARGEST_BORE:g} times the smallest root diameter, {2.0 * root.min():.6g} mm: no rim is left below the teeth"
             )
         return np.full_like(root, 0.5 * self.bore_diameter)
 

@@ -49,7 +49,15 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
 )
 """Label and key figures of each line of the summary."""
 
-ONLY_IF_KNOWN = ("_without_body_torsion_", "_at_edge_", "edge_pressure", "_order_", "loaded_contact_ratio", "_where_hertz_holds_", "_there_")
+ONLY_IF_KNOWN = (
+    "_without_body_torsion_",
+    "_at_edge_",
+    "edge_pressure",
+    "_order_",
+    "loaded_contact_ratio",
+    "_where_hertz_holds_",
+    "_there_",
+)
 """Figures whose line is left out where no torque has them."""
 
 NOTES = (

@@ -102,7 +102,16 @@ def test_smallest_bore_is_a_part_of_the_root_circle_at_the_toe(name):
     assert_allclose(gear.smallest_bore, 0.55 * 2.0 * root, rtol=1e-12)
 
 
-@pytest.mark.parametrize("diameter", [math.nan, 0.0, -1.0, 64.5])
+@pytest.mark.parametrize("name", ["spur", "straight bevel"])
+def test_journals_of_a_solid_gear_are_as_thick_as_the_default_bore(name):
+    gear = gear_of(MESHES[name])
+    solid = replace(gear, bore_diameter=0.0)
+    assert solid.is_solid
+    assert not gear.is_solid
+    assert solid.smallest_bore == gear.smallest_bore
+
+
+@pytest.mark.parametrize("diameter", [math.nan, -1.0, 64.5])
 def test_bore_that_leaves_no_rim_is_refused(diameter):
     with pytest.raises(InputError, match=r"bore_diameter: .* no rim is left below the teeth"):
         _ = replace(gear_of(MESHES["spur"]), bore_diameter=diameter).smallest_bore
