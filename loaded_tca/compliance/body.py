@@ -213,7 +213,7 @@ def gear_body(nodes: BodyNodes, material: Material) -> tuple[Discretisation, Fac
 def factorised(
     mesh: Discretisation, material: Material, held: Indices, blocks: Indices | None = None
 ) -> tuple[Factorisation, Array]:
-    """Factor of the stiffness of a mesh whose nodes ``held`` (-1: none) do not move; matrices of its elements' kinds."""
+    """Factor of the stiffness of a mesh with nodes ``held`` (-1: none), and the matrices of its elements' kinds."""
     free = np.ones((len(mesh.points), mesh.dimension), dtype=bool)
     free[held[held >= 0]] = False
     matrices, places = mesh.stiffness(material), mesh.lowest // 2

@@ -13,7 +13,8 @@ from loaded_tca.compliance.influence import FlankLine, GearCompliance, Image, ge
 from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.compliance.torsion import body_torsion
 from loaded_tca.contact.edges import FreeEdge, edge_images
-from loaded_tca.errors import named
+from loaded_tca.errors import named, require
+from loaded_tca.material import LARGEST_RATIO_IN_BENDING
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
@@ -44,7 +45,8 @@ class ToothCompliance:
     def body_torsion(self) -> tuple[float, float]:
         """Twist of the gear body between bore and root of pinion and wheel [mm/N].
 
-        See :func:`loaded_tca.compliance.torsion.body_torsion`; it is a part of :meth:`within`.
+        See :func:`loaded_tca.compliance.torsion.body_torsion`. It is a part of :meth:`within`, told to show what a bore
+        diameter does; along the normal of helical teeth it is cos^2(beta_b) of that.
         """
         return body_torsion(self.pair)
 
@@ -133,7 +135,7 @@ def tooth_compliance(pair: GearPair, *, neighbours: int = 1, density: MeshDensit
     Raises
     ------
     InputError
-        If a bore reaches the teeth; the gear is named.
+        If a bore reaches the teeth or Poisson's ratio is above 0.49; the gear is named.
     GeometryError
         If a tooth is pointed or cut off; the gear is named.
 
@@ -153,6 +155,9 @@ def tooth_compliance(pair: GearPair, *, neighbours: int = 1, density: MeshDensit
     found = []
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         with named(name):
+            ratio = gear.material.poisson_ratio
+            bends = ratio <= LARGEST_RATIO_IN_BENDING
+            require((bends, f"poisson_ratio: {ratio} is above {LARGEST_RATIO_IN_BENDING}: finite elements would lock"))
             if gear.flank is not gear.nominal_flank:  # modifications may leave a pointed tooth, or none
                 build_tooth(gear.flanks, gear.form, CHECKED)
             found.append(gear_compliance(gear, replace(density or default_density(gear), neighbours=neighbours)))

@@ -9,14 +9,15 @@ off, and the flank becomes Theta - s delta |grad F| with |grad F| of the unmodif
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from typing import Any, Literal, get_args
 
 import numpy as np
 
-from loaded_tca.arrays import Array
-from loaded_tca.errors import InputError
+from loaded_tca.arrays import Array, real
+from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.flanks.base import DerivedFlank, Flank
 from loaded_tca.flanks.jet import Jet
 
@@ -34,6 +35,23 @@ _FORMS = {
 
 NO_POLYNOMIAL = (0.0,) * 6
 """a1 to a6 of no correction."""
+
+LARGEST_AMOUNT = 1.0
+"""Amount [mm] beyond which a warning says so: gears have some hundredths of a millimetre."""
+
+AMOUNTS = (
+    "lead_crowning",
+    "end_relief",
+    "profile_crowning",
+    "tip_relief",
+    "root_relief",
+    "helix_slope",
+    "profile_slope",
+    "twist",
+)
+
+CHECKED = (9, 9)
+"""Points at which the sum of all is looked at, along the profile and lengthwise, the edges included."""
 
 LOGARITHMIC_STEEPNESS = 0.99
 """k of the logarithmic crowning C ln(1 - k t^2)/ln(1 - k)."""
@@ -204,7 +222,7 @@ class FlankModifications:
                 values = np.asarray(value)
                 if not (values.shape == (6,) and values.dtype.kind in "if" and np.isfinite(values).all()):
                     problems.append(f"polynomial: {value!r:.100} is not six finite numbers, a1 to a6")
-            elif forms is None and not math.isfinite(value):
+            elif forms is None and not math.isfinite(real(value)):
                 problems.append(f"{name}: {value} mm is not finite")
             elif forms is not None and value not in forms:
                 problems.append(f"{name}: {str(value)!r} is not {', '.join(map(repr, forms[:-1]))} or {forms[-1]!r}")
@@ -344,10 +362,30 @@ def modified(
     Raises
     ------
     InputError
-        If a relief starts off the active profile, or is longer than half the face.
+        If a relief starts off the active profile or is longer than half the face, or if more is removed somewhere, or
+        added, than the flank is long.
+
+    Warns
+    -----
+    AccuracyWarning
+        If an amount is more than 1 mm.
     """
     try:
         terms = modifications.terms(face_width, diameters, coordinate, nominal.profile_unit)
     except InputError as error:
         raise InputError(f"{owner}.{problem}" for problem in error.problems) from None
-    return ModifiedFlank(nominal, terms) if terms else nominal
+    if not terms:
+        return nominal
+    flank = ModifiedFlank(nominal, terms)
+    most, limit = float(np.abs(flank.removal(*nominal.grid(*CHECKED)).value).max()), max(nominal.extent)
+    if not most <= limit:
+        told = f"{owner}.modifications: together they remove or add up to {most:.4g} mm"
+        raise InputError(f"{told}; allowed up to {limit:.4g} mm, the longer side of the flank")
+    for name in AMOUNTS:
+        amount = getattr(modifications, name)
+        if abs(amount) > LARGEST_AMOUNT:
+            message = (
+                f"{owner}.{name}: {amount:.6g} mm is more than {LARGEST_AMOUNT:g} mm: an amount in um given as mm?"
+            )
+            warnings.warn(message, AccuracyWarning, stacklevel=2)
+    return flank

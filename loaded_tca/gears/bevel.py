@@ -11,7 +11,15 @@ from functools import cached_property
 from math import acos, asin, atan, atan2, cos, degrees, isclose, log, pi, radians, sin, sqrt, tan
 
 from loaded_tca.errors import GeometryError, InputError, require
-from loaded_tca.gears.checks import bore_check, half_turn_checks, input_checks, pair_checks, spiral_check, teeth_checks
+from loaded_tca.gears.checks import (
+    bore_check,
+    face_check,
+    half_turn_checks,
+    input_checks,
+    pair_checks,
+    spiral_check,
+    teeth_checks,
+)
 
 _EQUAL = 1e-9
 _DEDENDUM = 1.25
@@ -101,6 +109,7 @@ class BevelGear:
             bore_check(self.bore_diameter),
             *half_turn_checks(pitch_angle=self.pitch_angle, face_angle=self.face_angle, root_angle=self.root_angle),
             spiral_check("spiral_angle", self.spiral_angle),
+            face_check(self.face_width, self.outer_module, "outer_module"),
             owner=self.name,
         )
         root, pitch, face = self.root_cone_angle, self.pitch_angle, self.tip_angle

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from loaded_tca.flanks.modification import NO_POLYNOMIAL
+from loaded_tca.material import LARGEST_RATIO_IN_BENDING, SOFTEST
 from loaded_tca.scene.flank_form import FlankForm
 from loaded_tca.scene.keys import Choice, Line, List, Number, Whole, above_zero, key
 from loaded_tca.scene.section import Rule, Section, rule, subsection
@@ -96,8 +97,10 @@ class Modifications(Section):
 class ElasticMaterial(Section):
     """[material], or [pinion.material] and [wheel.material]."""
 
-    youngs_modulus_MPa: float = key(above_zero(1e7), "Young's modulus E")
-    poisson_ratio: float = key(Number(0.0, 0.5), "Poisson's ratio nu")
+    youngs_modulus_MPa: float = key(Number(SOFTEST, 1e7), "Young's modulus E")
+    poisson_ratio: float = key(
+        Number(0.0, 0.5), f"Poisson's ratio nu; up to {LARGEST_RATIO_IN_BENDING} where teeth bend"
+    )
     max_pressure_MPa: float | None = key(
         above_zero(1e7), "pressure at which the surface yields (plastic cap)", None, "elastic"
     )

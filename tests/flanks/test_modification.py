@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from loaded_tca.errors import InputError
+from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.flanks import FlankModifications, InvoluteFlank, ModifiedFlank
 from loaded_tca.flanks.base import outward_normal
 from loaded_tca.flanks.modification import (
@@ -370,7 +370,7 @@ def test_starts_of_reliefs_that_are_not_there_are_not_looked_at():
 
 
 @pytest.mark.parametrize("name", ["lead_crowning", "tip_relief", "end_relief_length", "profile_slope"])
-@pytest.mark.parametrize("value", [math.nan, math.inf])
+@pytest.mark.parametrize("value", [math.nan, math.inf, "much", None])
 def test_amount_that_is_not_finite_is_refused(name, value):
     with pytest.raises(InputError, match=f"{name}: {value} mm is not finite"):
         FlankModifications(**{name: value})
@@ -394,6 +394,32 @@ def test_polynomial_that_is_not_six_finite_numbers_is_refused(wrong):
 def test_circular_crowning_of_more_than_half_the_face_is_refused():
     with pytest.raises(InputError, match="lead_crowning: 13 mm is more than a circular arc over 25 mm can fall"):
         modified(lead_crowning=13.0, lead_crowning_form="circular")
+
+
+@pytest.mark.parametrize(
+    "amounts",
+    [
+        {"polynomial": (25.1, 0.0, 0.0, 0.0, 0.0, 0.0)},
+        {"polynomial": (0.0, -25.1 / HALF, 0.0, 0.0, 0.0, 0.0)},
+        {"polynomial": (100.0,) * 6},
+        {"polynomial": (0.0, 0.0, 0.0, -100.0, 100.0, 100.0)},
+        {"lead_crowning": 25.1},
+        {"lead_crowning": 20.0, "end_relief": 5.1, "end_relief_length": 5.0},
+    ],
+)
+def test_more_than_the_longer_side_of_the_flank_is_no_modification(amounts):
+    told = r"^pinion.modifications: together they remove or add up to .* mm; allowed up to 25 mm, the longer side"
+    with pytest.raises(InputError, match=told):
+        modified(**amounts)
+    modified(polynomial=(24.9, *[0.0] * 5))
+
+
+@pytest.mark.parametrize(("name", "amount"), [("lead_crowning", 5.0), ("helix_slope", -1.001), ("twist", 1.001)])
+def test_micrometres_given_as_millimetres_are_doubted(name, amount):
+    told = rf"^pinion.{name}: {amount:g} mm is more than 1 mm: an amount in um given as mm\?$"
+    with pytest.warns(AccuracyWarning, match=told):
+        modified(**{name: amount})
+    assert modified(**{name: 0.999}).terms  # and no warning
 
 
 def test_gear_pair_of_the_helpers_has_the_modified_flank_on_the_gear_asked_for():

@@ -45,6 +45,18 @@ def test_no_single_contact_where_two_pairs_touch_always():
     assert "single tooth contact" not in text
 
 
+def test_estimate_is_shown_and_noted_where_it_exceeds_the_memory(monkeypatch):
+    label = "analysis, roughly: time [s], memory [GiB]"
+    few, many = (described(analysis__positions=count) for count in (20, 2000))
+    assert float(cells(many, label)[0]) == pytest.approx(100.0 * float(cells(few, label)[0]), rel=0.05)  # two digits
+    assert float(cells(many, label)[1]) > float(cells(few, label)[1])
+    monkeypatch.setattr("loaded_tca.loaded.effort.machine_memory", lambda: 2.0**29)
+    assert any(
+        "2000 contacts of" in note and "the machine has 0.5 GiB" in note
+        for note in notes(described(analysis__positions=2000))
+    )
+
+
 def test_forces_are_those_of_the_torque():
     text = described("helical", analysis__torques_Nm=(13.0, 130.0))
     assert cells(text, "pinion torque [N m]") == ["13", "130"]

@@ -14,9 +14,9 @@ from loaded_tca.output.report import positions_csv, summary_json
 from loaded_tca.output.teeth_in_space import teeth_in_space
 from loaded_tca.pairs import mating_teeth
 from loaded_tca.plots import PICTURES, plot_all
+from loaded_tca.reference.weber_banaschek import ring_torsion
 from loaded_tca.results.files import read_dataset, write_dataset
 from loaded_tca.results.key_figures import harmonic_amplitudes
-from loaded_tca.reference.weber_banaschek import ring_torsion
 from tests.samples.results import PER_PAIR, SCENES, assert_same
 
 EQUILIBRIUM = 1e-8

@@ -62,6 +62,15 @@ ONE_PROBLEM = [
         "analysis.cells: found 32; allowed a list of 2 values, each a whole number from 4 to 1000000",
     ),
     # out of range
+    (
+        {"material.youngs_modulus_MPa": 1e-300},
+        "material.youngs_modulus_MPa: found 1e-300; allowed a number from 0.001 to 1e+07",
+    ),
+    (
+        {"material.poisson_ratio": 0.5, "analysis.compliance": "contact+tooth"},
+        'material.poisson_ratio: found 0.5; allowed up to 0.49 with analysis.compliance = "contact+tooth": finite '
+        "elements of a material that keeps its volume lock",
+    ),
     ({"pinion.teeth": -34}, "pinion.teeth: found -34; allowed a whole number from 3 to 10000"),
     ({"pinion.teeth": 10001}, "pinion.teeth: found 10001; allowed a whole number from 3 to 10000"),
     (

@@ -302,6 +302,22 @@ def test_example_makes_a_pair_and_holds_the_pitch_point(name):
     assert scene.analysis.positions % 2 == 1
 
 
+def test_incompressible_material_of_either_gear_is_refused_where_teeth_bend_only(scene):
+    own = {"youngs_modulus_MPa": 10.0, "poisson_ratio": 0.5}
+    assert scene.with_changes({"wheel.material": own, "analysis.compliance": "contact"}).pair().wheel
+    with pytest.raises(InputError, match=r"^wheel.material.poisson_ratio: found 0.5; allowed up to 0.49 with"):
+        scene.with_changes({"wheel.material": own, "analysis.compliance": "contact+tooth"})
+    soft = scene.with_changes({"wheel.material": own | {"poisson_ratio": 0.49}, "analysis.compliance": "contact+tooth"})
+    assert soft.materials[1].poisson_ratio == 0.49
+
+
+@pytest.mark.parametrize("name", ["helical", "spiral_bevel", "duplex_30x20"])
+@pytest.mark.parametrize("sense", ["x", "", 1, True])
+def test_sense_that_is_none_is_refused_by_every_family(name, sense):
+    with pytest.raises(InputError, match=r"^sense: .* is not 'positive' or 'negative'$"):
+        read_scene(SCENES / f"{name}.toml").pair(sense)
+
+
 def test_misaligned_example_touches_at_the_edge_of_the_face():
     path = trace_contact(read_scene(SCENES / "misaligned.toml").pair())
     assert path.on_edge.all()
