@@ -5,8 +5,8 @@ the contact deformation of a line of length l and width w is F/l (ln(4 l/w) - 1)
 the load nearly by their lengths; two pairs at a symmetric position carry one half each.
 
 Stiffnesses are means over a pitch of the tangent of the whole mesh, unmodified teeth and bodies included. ISO 6336-1
-gives its values, from measurements, an error of 10 to 20 %. ROSS is a slice model and names no force: an order of
-magnitude.
+gives its values, from measurements and without body torsion, an error of 10 to 20 %. ROSS is a slice model and names no
+force: an order of magnitude.
 """
 
 import math
@@ -148,8 +148,8 @@ def _half() -> Row:
 
 
 def _iso() -> Row:
-    stiffness, _ = mean_stiffness(iso_tr_6336_30.pair(), iso_tr_6336_30.TORQUE, layers=COARSE)
-    source, bores = f"{iso_tr_6336_30.PUBLISHED}, ex. 1", "bores 0.55 of the root circles"
+    _, stiffness = mean_stiffness(iso_tr_6336_30.pair(), iso_tr_6336_30.TORQUE, layers=COARSE)
+    source, bores = f"{iso_tr_6336_30.PUBLISHED}, ex. 1", "bores 0.55 of the root circles, without body torsion"
     return _row(source, "mesh stiffness c_gamma_alpha [N/(mm um)]", 17.46485, stiffness, STANDARD, bores)
 
 

@@ -100,7 +100,7 @@ def spreads(gear: Gear) -> list[Spread]:
     found = []
     for n, (facet, depth) in enumerate(zip(FACETS, section.depths, strict=True)):
         surface, middle = amplitudes[:, n].T
-        half_space = np.array([_surface(wave) - _below(depth, wave) for wave in WAVES])
+        half_space = np.array([surface_under_wave(wave) - below_wave(depth, wave) for wave in WAVES])
         found.append(Spread((facet + 0.5) / DENSITY.flank, surface - middle - half_space))
     return found
 
@@ -206,7 +206,7 @@ def _elasticity(wave: float) -> BilinearForm:
     return energy
 
 
-def _surface(wave: float, points: int = 400) -> float:
+def surface_under_wave(wave: float, points: int = 400) -> float:
     """Mean displacement of a half-space under an elliptical strip of line load cos(kz), weighted with the pressure."""
     angle = (np.arange(points) + 0.5) / points * math.pi
     place, weight = HALF_WIDTH * np.cos(angle), np.sin(angle) ** 2
@@ -219,7 +219,7 @@ def _surface(wave: float, points: int = 400) -> float:
     return float(weight @ regular @ weight - logarithm) * 2.0 / (math.pi * STEEL.plane_strain_modulus)
 
 
-def _below(depth: float, wave: float) -> float:
+def below_wave(depth: float, wave: float) -> float:
     """Displacement at a depth below a line load cos(kz) on a half-space: Boussinesq's, transformed."""
     nu, kt = STEEL.poisson_ratio, wave * depth
     return float((1.0 + nu) / (math.pi * STEEL.youngs_modulus) * (kt * k1(kt) + 2.0 * (1.0 - nu) * k0(kt)))
