@@ -332,6 +332,14 @@ class BevelMesh:
         return pinion, wheel
 
     @property
+    def backlash(self) -> float:
+        """Circumferential backlash at the mean pitch circles; negative where the teeth overlap [mm]."""
+        gears = self.pinion, self.wheel
+        spaces = (pi / gear.teeth - 2.0 * gear.half_thickness_angle for gear in gears)
+        radii = (gear.mean_cone_distance * sin(gear.pitch_angle) for gear in gears)
+        return sum(radius * space for radius, space in zip(radii, spaces, strict=True))
+
+    @property
     def transverse_contact_ratio(self) -> float:
         """eps_alpha: arc of contact over the base pitch 2 pi sin(delta_b1)/z1, on the sphere."""
         length = self._line_of_action - sum(max(arcs) for arcs in self._tip_and_form_arcs)
