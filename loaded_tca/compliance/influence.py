@@ -6,7 +6,7 @@ The contact solver takes each flank for a half-space, whose displacement it meas
 
 u_FE is the displacement of the gear body under a unit force at q, where the line of action through p cuts the middle of
 the tooth; u_B that of the half-space at the same depth t (it is part of u_FE, and would count twice); c_loc the local
-term of a line force in the plane, spread along the face by a normal distribution k of 3.4 mean depths of the middle,
+term of a line force in the plane, spread along the face by a normal distribution k of 3.7 mean depths of the middle,
 with its mirror images beyond the ends of the face: along a whole face width the local term is that of the plane.
 It belongs to the back of the tooth, which follows short waves of the load no more: so the sections of teeth say that
 carry waves of load along the face (``validation/loaded/local_term.py``). Another tooth of the gear has the first term
@@ -53,7 +53,7 @@ class FlankLine:
     z: Array
 
 
-SPREAD = 3.4
+SPREAD = 3.7
 """Standard deviation of the spread of the local term along the face, over the mean depth of the middle of the tooth."""
 
 
