@@ -29,7 +29,7 @@ class MeshDensity:
     land : int
         From there to the middle of the space.
     rim : int
-        From the root to the bore.
+        From the root to the bore; the lowest is cut into more where the bore is small.
     lengthwise : int
         Across the face.
     neighbours : int
@@ -84,10 +84,18 @@ class RingLayout:
     ----------
     teeth : int
     density : MeshDensity
+    cuts : int
+        Layers that the lowest layer of the rim is cut into.
     """
 
     teeth: int
     density: MeshDensity
+    cuts: int = 1
+
+    @property
+    def rim(self) -> int:
+        """Elements from the root to the bore."""
+        return self.density.rim - 1 + self.cuts
 
     @property
     def neighbours(self) -> int:
@@ -118,7 +126,7 @@ class RingLayout:
         """Nodes around the gear, and from the bore to the tip of the resolved tooth."""
         last = self.sectors[-1]
         tooth = self.density.flank + self.density.fillet
-        return last.first + 2 * last.columns, 2 * (self.density.rim + tooth) + 1
+        return last.first + 2 * last.columns, 2 * (self.rim + tooth) + 1
 
     @cached_property
     def turns(self) -> Array:
@@ -149,7 +157,7 @@ class RingLayout:
     @property
     def base_row(self) -> int:
         """Row between rim and teeth."""
-        return 2 * self.density.rim
+        return 2 * self.rim
 
     @cached_property
     def elements(self) -> Indices:
@@ -157,7 +165,7 @@ class RingLayout:
         return np.concatenate([self._elements_of(sector) for sector in self.sectors])
 
     def _elements_of(self, sector: SectorLayout) -> Indices:
-        rim = _block(sector.first, sector.columns, 0, self.density.rim)
+        rim = _block(sector.first, sector.columns, 0, self.rim)
         density = sector.density
         if density is None:
             return rim
