@@ -30,7 +30,7 @@ GROWTH = 1.8
 """Each layer of the rim is so much thicker than the one above."""
 LARGEST_RATIO = 1.6
 """Outer over inner radius of an element at the bore. Displacements in a twisted ring go with r and 1/r, of which one
-quadratic element takes off 0.06 % of the twist at this ratio, 0.25 % at 2, 5 % at 5.5; no default bore needs a cut."""
+quadratic element takes off 0.06 % of the twist at this ratio, 0.25 % at 2, 5 % at 5.5; default bores need no cut."""
 SHARP = math.pi / 3.0
 """Bend of an edge between its halves from which it is made straight; 29 deg on usual teeth, 66 where one folded."""
 
