@@ -133,6 +133,9 @@ def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
         },
         **_error_figures("unloaded_transmission_error", result.unloaded_transmission_error, length),
         "mesh_stiffness_mean_N_per_mm_um": mean_over_a_pitch(result.mesh_stiffness[torque]),
+        "mesh_stiffness_without_body_torsion_mean_N_per_mm_um": result.without_body_torsion(
+            mean_over_a_pitch(result.mesh_stiffness[torque])
+        ),
         "secant_stiffness_mean_N_per_mm_um": mean_over_a_pitch(result.secant_stiffness[torque]),
         "loaded_contact_ratio": mean_over_a_pitch(pairs),
         "fewest_loaded_pairs": _reduced(np.min, pairs),

@@ -35,6 +35,10 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
         "mesh stiffness, mean, tangent | secant [N/(mm um)]",
         ("mesh_stiffness_mean_N_per_mm_um", "secant_stiffness_mean_N_per_mm_um"),
     ),
+    (
+        "  tangent, without body torsion [N/(mm um)]",
+        ("mesh_stiffness_without_body_torsion_mean_N_per_mm_um",),
+    ),
     ("line load of the most loaded pair [N/mm]", ("line_load_at_largest_force_N_per_mm",)),
     ("  line load ratio", ("line_load_ratio_at_largest_force",)),
     (
@@ -45,7 +49,15 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
 )
 """Label and key figures of each line of the summary."""
 
-ONLY_IF_KNOWN = ("_at_edge_", "edge_pressure", "_order_", "loaded_contact_ratio", "_where_hertz_holds_", "_there_")
+ONLY_IF_KNOWN = (
+    "_without_body_torsion_",
+    "_at_edge_",
+    "edge_pressure",
+    "_order_",
+    "loaded_contact_ratio",
+    "_where_hertz_holds_",
+    "_there_",
+)
 """Figures whose line is left out where no torque has them."""
 
 NOTES = (
