@@ -18,7 +18,7 @@ if TYPE_CHECKING:  # xarray takes a third of a second to import: only what makes
     import xarray
 
 FORMAT = "loaded_tca"
-FORMAT_VERSION = 3
+FORMAT_VERSION = 4
 """Raised whenever the code of one version cannot read the files of another."""
 
 FilePath = str | os.PathLike[str]

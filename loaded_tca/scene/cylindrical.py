@@ -137,6 +137,12 @@ class CylindricalScene(BlankScene):
         mesh = self.mesh()
         return mesh.pinion_active_profile.start_roll_length, mesh.wheel_active_profile.start_roll_length
 
+    @property
+    def mean_contact_length(self) -> float:
+        """Mean length of all contact lines over a pitch, eps_alpha b/cos(beta_b) [mm]."""
+        mesh = self.mesh()
+        return mesh.transverse_contact_ratio * mesh.common_face_width / math.cos(mesh.pinion.base_helix_angle)
+
     def geometry_rows(self) -> Sequence[Row]:
         """Return centre distance, contact ratios and diameters."""
         mesh = self.mesh()
