@@ -95,6 +95,15 @@ def colour_scale(
     return Normalize(0.0, highest), "max" if beyond else "neither"
 
 
+def highest_of_map(result: MeshCycle, torque: int, position: int, column: int) -> float:
+    """Pressure [MPa] up to which the colours of one map go: its peak pressure where cells at an edge are above it."""
+    one, at = result.maps[torque][position][column], (torque, position, column)
+    highest = 0.0 if one is None else float(one.pressure.max())
+    if result.on_edge[at] or result.on_relief_start[at]:
+        highest = min(highest, float(result.peak_pressure[at]))
+    return highest
+
+
 def both_flanks(
     result: MeshCycle, draw: Callable[[Axes, Callable[[Array], Array]], Sequence[Artist]]
 ) -> tuple[Figure, list[Axes]]:

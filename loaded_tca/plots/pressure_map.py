@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse, Patch, Rectangle
 
 from loaded_tca.flanks.frame import FlankFrame
+from loaded_tca.plots.flanks import highest_of_map
 from loaded_tca.plots.style import ACCENT, COLOURS, NO_LOAD, NO_MATERIAL, highest_torque, load, place, set_title, tell
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
@@ -54,10 +55,7 @@ def plot_pressure_map(
     scale, height = _scale_factor(one)
     figure = Figure(figsize=(9.0, 1.8 + height), layout="constrained")
     axes = figure.add_subplot()
-    highest = float(one.pressure.max())
-    if result.on_edge[torque][at] or result.on_relief_start[torque][at]:
-        highest = min(highest, float(result.peak_pressure[torque][at]))
-    _draw_pressure(figure, axes, one, highest)
+    _draw_pressure(figure, axes, one, highest_of_map(result, torque, *at))
     names = ("hertz_semi_minor", "hertz_semi_major", "hertz_pressure")
     minor, major, pressure = (float(getattr(result, name)[torque][at]) for name in names)
     if math.isfinite(pressure):

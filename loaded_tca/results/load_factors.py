@@ -18,7 +18,6 @@ ISO 6336-1:2019, Calculation of load capacity of spur and helical gears - Part 1
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 

@@ -53,7 +53,11 @@ QUANTITIES: dict[str, Part] = {
     "central_pressure": (PAIRS, "MPa", "contact pressure beside the unloaded contact point"),
     "peak_radius": (PAIRS, "mm", "radius on the pinion of the peak pressure"),
     "peak_axial": (PAIRS, "mm", "axial coordinate on the pinion of the peak pressure"),
-    "hertz_pressure": (PAIRS, "MPa", "peak pressure after Hertz at the contact point or of the line; NaN where Hertz does not hold"),
+    "hertz_pressure": (
+        PAIRS,
+        "MPa",
+        "peak pressure after Hertz at the contact point or of the line; NaN where Hertz does not hold",
+    ),
     "hertz_semi_minor": (PAIRS, "mm", "half width across the contact after Hertz"),
     "hertz_semi_major": (PAIRS, "mm", "half length of the Hertz ellipse, or of the loaded line"),
     "contact_width": (PAIRS, "mm", "full width of the contact across, from the pressure map"),

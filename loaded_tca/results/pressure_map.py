@@ -58,7 +58,7 @@ class PressureMap:
     def edge_cell(self) -> tuple[int, int]:
         """Indices of the cell with the largest pressure of those beside the end of the material or of the grid."""
         beyond = np.pad(np.isinf(self.gap), 1, constant_values=True)
-        beside = binary_dilation(beyond, np.ones((3, 3)))[1:-1, 1:-1]
+        beside = binary_dilation(beyond, np.ones((3, 3), dtype=bool))[1:-1, 1:-1]
         across, along = np.unravel_index(int(np.where(beside, self.pressure, -1.0).argmax()), beside.shape)
         return int(across), int(along)
 

@@ -22,10 +22,7 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("  pinion diameter | axial place [mm]", ("pinion_diameter_at_peak_mm", "pinion_axial_at_peak_mm")),
     ("  contact length | width [mm]", ("contact_length_at_peak_mm", "contact_width_at_peak_mm")),
     ("at an edge, mesh-dependent if sharp [MPa] | its force [N]", ("edge_pressure_MPa", "normal_force_at_edge_N")),
-    (
-        "  pinion angle [deg] | diameter | axial place [mm]",
-        ("pinion_angle_at_edge_deg", "pinion_diameter_at_edge_mm", "pinion_axial_at_edge_mm"),
-    ),
+    ("  pinion diameter | axial place [mm]", ("pinion_diameter_at_edge_mm", "pinion_axial_at_edge_mm")),
     ("highest where Hertz holds | Hertz [MPa]", ("peak_pressure_where_hertz_holds_MPa", "hertz_pressure_there_MPa")),
     ("  length | width after Hertz [mm]", ("hertz_length_there_mm", "hertz_width_there_mm")),
     ("transmission error, mean [arcsec | um]", ("transmission_error_mean_arcsec", "transmission_error_mean_um")),
@@ -49,7 +46,15 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
 )
 """Label and key figures of each line of the summary."""
 
-ONLY_IF_KNOWN = ("_at_edge_", "edge_pressure", "_order_", "load_factor", "loaded_contact_ratio", "_where_hertz_holds_", "_there_")
+ONLY_IF_KNOWN = (
+    "_at_edge_",
+    "edge_pressure",
+    "_order_",
+    "load_factor",
+    "loaded_contact_ratio",
+    "_where_hertz_holds_",
+    "_there_",
+)
 """Figures whose line is left out where no torque has them."""
 
 NOTES = (

@@ -53,7 +53,9 @@ def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[st
         oblique = oblique_ends(pair, loaded.contact, loaded.separation) if grid.free_edges else ()
         found += [f"the {end} is oblique to the contact and taken for that of a half-space" for end in oblique]
     if loaded.at_relief_start:
-        found.append("the contact lies across the start of a linear relief, where the pressure of the map is mesh-dependent")
+        found.append(
+            "the contact lies across the start of a linear relief, where the pressure of the map is mesh-dependent"
+        )
     smooth = not (loaded.at_edge or loaded.at_relief_start)
     if grid.cells is None and smooth and solution.error_estimate.peak_pressure > grid.accuracy:
         found.append(f"the estimated error stays above the accuracy of {grid.accuracy:g}")
