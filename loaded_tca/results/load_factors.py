@@ -27,6 +27,8 @@ from loaded_tca.results.pressure_map import Maps, PressureMap
 from loaded_tca.unloaded import ContactPath
 
 STRIPS = 30
+ROUNDING = 1e-12
+"""Extent of a cell, over the width of a strip, that is none: the cell lies beyond the face."""
 
 
 def load_factors(pair: GearPair, path: ContactPath, maps: Maps, mean_length: float) -> tuple[Array, Array]:
@@ -82,10 +84,10 @@ def strip_forces(pair: GearPair, one: PressureMap, borders: Array) -> tuple[Arra
     middles = one.origin + one.x[across, None] * one.axes[0] + one.y[along, None] * one.axes[1]
     ends = [_lengthwise(pair, middles + side * dy * one.axes[1])[0] for side in (-0.5, 0.5)]
     slope = np.abs(ends[1] - ends[0]).mean() / dy if across.size else 1.0
-    low, high = np.sort(np.clip(ends, borders[0], borders[-1]), axis=0)
-    shares = np.clip((borders[1:-1, None] - low) / np.maximum(high - low, np.finfo(float).tiny), 0.0, 1.0)
-    force = one.pressure[across, along] * dx * dy
     width = float(borders[1] - borders[0])
+    low, high = np.sort(np.clip(ends, borders[0], borders[-1]), axis=0)
+    shares = np.clip((borders[1:-1, None] - low) / np.maximum(high - low, ROUNDING * width), 0.0, 1.0)
+    force = one.pressure[across, along] * dx * dy
     return np.diff(shares @ force, prepend=0.0, append=force.sum()), width / slope if slope else math.inf
 
 
