@@ -31,7 +31,9 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.summary import signed
 from loaded_tca.unloaded.contact_span import contact_span, path_letters, roll_lengths_of_flanks
 
-WHAT_LETTERS_ARE = "A, E: the unloaded contact of these flanks begins, ends; B, D: a pitch from E, A; C: pitch point"
+WHAT_LETTERS_ARE = (
+    "A, E: unloaded contact of these flanks ends at the pinion's root, tip; B, D: a pitch from E, A; C: pitch point"
+)
 NEAR_LETTERS = 0.03
 """Part of the axis below which two letters stand to either side of their lines."""
 PAIR_COLOURS = "#0072b2", "#d55e00", "#56b4e9", "#cc79a7", "#e69f00", "#009e73"
@@ -210,8 +212,8 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
     """Peak pressure from the begin to the end of contact: every tooth pair at the angle of its own teeth, one curve.
 
     For a spur pair that is the pressure from A to E, single contact from B to D. Dotted lines mark where the unloaded
-    contact point comes into the flanks and leaves them (A, E), a pitch before the end and after the begin (B, D: only
-    one pair is in contact between them without load, if they lie in this order) and the pitch point (C). Of cylindrical
+    contact point comes to an edge of the flanks towards the pinion's root and tip (A, E), a pitch from the other end
+    (B, D: only one pair is in contact between them without load) and the pitch point (C). Of cylindrical
     gears a table has these points as lengths on the path of contact, roll angles and diameters of the pinion, beside
     those of ISO 21771.
 
@@ -242,11 +244,11 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
     style.from_zero(axes)
     if not (pressure > 0.0).any():
         style.tell(axes, NO_LOAD)
-    first, last = contact_span(pair)
-    begin, end = (math.nan if one is None else one.pinion_angle for one in (first, last))
-    _mark_points(axes, {"C": 0.0, **path_letters(begin, end, pair.pitch)})
+    ends = contact_span(pair)
+    at_root, at_tip = (math.nan if one is None else float(one.pinion_angle) for one in ends)
+    _mark_points(axes, {"C": 0.0, **path_letters(at_root, at_tip, pair.driving * pair.pitch)})
     if result.scene.path_points:
-        points = {"C": result.scene.path_points["C"], **roll_lengths_of_flanks(pair, first, last)}
+        points = {"C": result.scene.path_points["C"], **roll_lengths_of_flanks(pair, *ends)}
         _draw_table(figure, axes, points, result.scene.path_points, pair.base_radii[0])
     return style.finished(figure, axes, result, f"pressure over the path of contact, {loads(result)}")
 

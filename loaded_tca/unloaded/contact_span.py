@@ -17,7 +17,7 @@ FARTHEST = 4.0
 
 
 def contact_span(pair: GearPair) -> tuple[ContactPoint | None, ContactPoint | None]:
-    """First and last contact of a tooth pair within its flanks, modifications and mounting errors included.
+    """Ends of the contact of a tooth pair within its flanks, modifications and mounting errors included.
 
     Parameters
     ----------
@@ -25,9 +25,10 @@ def contact_span(pair: GearPair) -> tuple[ContactPoint | None, ContactPoint | No
 
     Returns
     -------
-    first, last : ContactPoint or None
-        Where the contact point comes off an edge of a flank and comes to one; None if it does not within four pitches,
-        or lies on one at the pitch point already.
+    at_root, at_tip : ContactPoint or None
+        Where the contact point comes to an edge of a flank, towards root and tip of the pinion; None if it comes to
+        none within four pitches, or lies on one at the pitch point already. If the pinion drives, contact begins
+        towards its root.
 
     Examples
     --------
@@ -35,23 +36,23 @@ def contact_span(pair: GearPair) -> tuple[ContactPoint | None, ContactPoint | No
     >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
     >>> mesh = CylindricalMesh(*(CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)))
     >>> pair = cylindrical_pair(mesh)
-    >>> first, last = contact_span(pair)
-    >>> round((last.pinion_angle - first.pinion_angle) / pair.pitch, 3), round(mesh.transverse_contact_ratio, 3)
+    >>> at_root, at_tip = contact_span(pair)
+    >>> round((at_tip.pinion_angle - at_root.pinion_angle) / pair.pitch, 3), round(mesh.transverse_contact_ratio, 3)
     (1.75, 1.75)
     """
-    farthest = FARTHEST * pair.pitch
+    farthest = FARTHEST * pair.driving * pair.pitch
     return _end_of_contact(pair, -farthest), _end_of_contact(pair, farthest)
 
 
-def path_letters(first: float, last: float, pitch: float) -> dict[str, float]:
+def path_letters(at_root: float, at_tip: float, pitch: float) -> dict[str, float]:
     """Points A, B, D and E of a path of contact, as angles or as lengths on it.
 
     Parameters
     ----------
-    first, last : float
-        Where contact begins and ends; NaN: not known.
+    at_root, at_tip : float
+        Its ends A and E towards root and tip of the pinion; NaN: not known.
     pitch : float
-        In the same unit.
+        In the same unit, negative where the first is larger than the second.
 
     Returns
     -------
@@ -63,38 +64,20 @@ def path_letters(first: float, last: float, pitch: float) -> dict[str, float]:
     >>> path_letters(0.0, 1.6, 1.0)
     {'A': 0.0, 'B': 0.6000000000000001, 'D': 1.0, 'E': 1.6}
     """
-    alone = first < last - pitch < first + pitch < last
-    points = {
-        "A": first,
-        "B": last - pitch if alone else math.nan,
-        "D": first + pitch if alone else math.nan,
-        "E": last,
-    }
-    return {letter: place for letter, place in points.items() if math.isfinite(place)}
+    points = {"A": at_root, "B": at_tip - pitch, "D": at_root + pitch, "E": at_tip}
+    alone = 1.0 < (at_tip - at_root) / pitch < 2.0
+    return {name: place for name, place in points.items() if math.isfinite(place) and (alone or name in "AE")}
 
 
-def _end_of_contact(pair: GearPair, farthest: float) -> ContactPoint | None:
-    low, high, last = 0.0, farthest, None
-    for _ in range(ROUNDS):
-        try:
-            path = trace_contact(pair, np.linspace(low, high, FINENESS), warn=False)
-        except GeometryError:  # nothing is in contact on that side
-            return None
-        outside = path.on_edge | ~path.in_contact
-        if not outside.any() or outside[0]:
-            return None
-        first = int(np.argmax(outside))
-        low, high, last = path.pinion_angle[first - 1], path.pinion_angle[first], path[first - 1]
-    return last
-
-
-def roll_lengths_of_flanks(pair: GearPair, first: ContactPoint | None, last: ContactPoint | None) -> dict[str, float]:
+def roll_lengths_of_flanks(
+    pair: GearPair, at_root: ContactPoint | None, at_tip: ContactPoint | None
+) -> dict[str, float]:
     """Points A, B, D and E of the path of contact of the flanks of a cylindrical pair, as roll lengths of the pinion.
 
     Parameters
     ----------
     pair : GearPair
-    first, last : ContactPoint or None
+    at_root, at_tip : ContactPoint or None
         Its ends, as :func:`contact_span` finds them.
 
     Returns
@@ -105,6 +88,6 @@ def roll_lengths_of_flanks(pair: GearPair, first: ContactPoint | None, last: Con
     coordinate = pair.pinion.flank.profile_coordinate
     begin, end = (
         math.nan if one is None else float(coordinate(np.array(one.pinion_radius), np.array(one.pinion_axial)).value)
-        for one in (first, last)
+        for one in (at_root, at_tip)
     )
     return path_letters(begin, end, pair.pitch * pair.base_radii[0])

@@ -167,9 +167,9 @@ def test_edge_contacts_are_marked_and_no_hertz_is_drawn():
 
 
 def test_high_peaks_at_a_edge_do_not_rule_the_axis():
-    cycle = result("fzg_c14", positions=3)
+    cycle = result("mesh_cycle_helical", positions=5, torques=(260.0,))
     (axes,) = plot_peak_pressure(cycle).axes
-    assert axes.get_ylim()[1] < cycle.edge_pressure.max()
+    assert axes.get_ylim()[1] < np.nanmax(cycle.edge_pressure)
     assert "above" in axes.get_lines()[-1].get_label()
     (arrows,) = drawn(axes, "^")
     assert (arrows.get_ydata() < axes.get_ylim()[1]).all()
@@ -323,7 +323,7 @@ def test_colours_of_a_edge_map_do_not_follow_its_spike():
     at = cycle.edge_contact(0)
     bar = plot_pressure_map(cycle, at[0], 0, at[1]).axes[-1]
     one = cycle.maps[0][at[0]][at[1]].pressure
-    assert bar.get_ylim()[1] == cycle.peak_pressure[0][at] < 0.9 * one.max()
+    assert bar.get_ylim()[1] == cycle.peak_pressure[0][at] < one.max()
     assert f"up to {one.max():.0f}" in bar.get_ylabel()
 
 

@@ -79,7 +79,8 @@ def test_slice_pressure_takes_line_load_and_curvature_of_its_own_place():
     gap = NormalGap(pair, contact, one.axes)
     step, half, highest = 1e-3, 0.125 * pair.module, 0.0
     loaded = np.flatnonzero(one.pressure.any(axis=0))
-    for middle in np.linspace(one.y[loaded[0]] + half, one.y[loaded[-1]] - half, 201):
+    ends = one.borders[1][[loaded[0], loaded[-1] + 1]] + [half, -half]
+    for middle in np.linspace(*ends, 201):
         cover = np.clip(
             np.minimum(one.y + 0.5 * dy, middle + half) - np.maximum(one.y - 0.5 * dy, middle - half), 0, None
         )

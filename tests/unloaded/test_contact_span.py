@@ -25,11 +25,8 @@ def test_crowned_involutes_are_in_contact_as_long_as_iso_21771_says(helix_deg, d
 
 
 def test_tip_relief_of_the_wheel_begins_contact_later():
-    """A relief that grows faster than the pair can follow: contact begins nearer to where the relief does."""
-    crowned, relieved = (
-        FlankModifications(lead_crowning=0.005),
-        FlankModifications(tip_relief=0.05, tip_relief_start=172.0, tip_relief_form="linear"),
-    )
+    crowned = FlankModifications(lead_crowning=0.005)
+    relieved = FlankModifications(tip_relief=0.012, tip_relief_start=174.6)
     plain, shorter = (contact_span(gear_pair(crowned, wheel))[0] for wheel in (FlankModifications(), relieved))
     assert shorter.pinion_angle > plain.pinion_angle + 1e-3
 
@@ -40,5 +37,6 @@ def test_contact_that_lies_on_an_edge_throughout_has_no_ends():
 
 def test_letters_of_a_path_are_those_that_are_known():
     assert path_letters(-1.0, 0.5, 1.0) == {"A": -1.0, "B": -0.5, "D": 0.0, "E": 0.5}
+    assert path_letters(1.0, -0.5, -1.0) == {"A": 1.0, "B": 0.5, "D": 0.0, "E": -0.5}
     assert path_letters(-1.0, 1.5, 1.0) == {"A": -1.0, "E": 1.5}  # two pairs at least everywhere
     assert path_letters(np.nan, 0.5, 1.0) == {"E": 0.5}
