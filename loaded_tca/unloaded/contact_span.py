@@ -44,6 +44,22 @@ def contact_span(pair: GearPair) -> tuple[ContactPoint | None, ContactPoint | No
     return _end_of_contact(pair, -farthest), _end_of_contact(pair, farthest)
 
 
+def _end_of_contact(pair: GearPair, farthest: float) -> ContactPoint | None:
+    """Last contact before the contact point comes to an edge, between the pitch point and an angle [rad]."""
+    low, high, last = 0.0, farthest, None
+    for _ in range(ROUNDS):
+        try:
+            path = trace_contact(pair, np.linspace(low, high, FINENESS), warn=False)
+        except GeometryError:  # nothing is in contact on that side
+            return None
+        outside = path.on_edge | ~path.in_contact
+        if not outside.any() or outside[0]:
+            return None
+        first = int(np.argmax(outside))
+        low, high, last = path.pinion_angle[first - 1], path.pinion_angle[first], path[first - 1]
+    return last
+
+
 def path_letters(at_root: float, at_tip: float, pitch: float) -> dict[str, float]:
     """Points A, B, D and E of a path of contact, as angles or as lengths on it.
 

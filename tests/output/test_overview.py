@@ -174,7 +174,7 @@ def test_bores_are_shown_where_teeth_bend():
 
 
 def test_path_of_contact_has_the_points_of_iso_21771_beside_those_of_the_flanks():
-    """Without relief they are the same; relief of the wheel's tip begins contact later, and with it D."""
+    """Without relief they are the same; relief of the wheel's tip moves A up the pinion's flank, and with it D."""
     modifications = {f"{gear}__modifications__tip_relief_um": 0.0 for gear in ("pinion", "wheel")}
     path = read_scene(SCENES / "mesh_cycle_spur.toml").mesh().path_of_contact
     base = 0.5 * 34 * 3.0 * math.cos(math.radians(20.0))
