@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from loaded_tca.compliance import tooth_compliance
+from loaded_tca.compliance import ToothCompliance, tooth_compliance
+from loaded_tca.errors import require
 from loaded_tca.loaded.cycle import Progress, carried_by_all, carried_by_one, farthest_apart
-from loaded_tca.loaded.pair_coupling import BendingModel
+from loaded_tca.loaded.effort import expected_effort
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.collect import mesh_cycle
@@ -32,7 +33,8 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
     Raises
     ------
     InputError, GeometryError
-        If the scene's parts do not fit each other, or the flanks are never in contact.
+        If the scene's parts do not fit each other, the flanks are never in contact, or the grids it asks for exceed
+        the memory of the machine.
     ConvergenceError
         If a contact, or the balance of the tooth pairs, is not solved to the tolerance.
 
@@ -41,7 +43,8 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
     AccuracyWarning
         If the contact reaches an edge of a flank, or the model is at another limit.
     """
-    pair, wanted = scene.pair(), scene.analysis
+    pair, wanted, effort = scene.pair(), scene.analysis, expected_effort(scene)
+    require((not effort.is_refused, f"analysis.cells: {wanted.cells}: {effort}"))
     count, torques = wanted.positions, np.asarray(scene.torques)
     angles = np.linspace(-0.5 * pair.pitch, 0.5 * pair.pitch, count) if count > 1 else np.zeros(1)
     grid = GridChoice(
@@ -52,15 +55,18 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
     )
     if wanted.load_sharing:
         mesh = trace_teeth(pair, angles)
-        carried = carried_by_all(pair, mesh, torques, grid, _bending(scene, pair, farthest_apart(mesh)), progress)
+        bending = _bending(scene, pair, farthest_apart(mesh))
+        carried = carried_by_all(pair, mesh, torques, grid, bending, progress)
     else:
         path = trace_contact(pair, angles)
-        carried = carried_by_one(pair, path, torques, grid, _bending(scene, pair, 1), progress)
-    warn_of_accuracy(pair, grid, carried, load_sharing=wanted.load_sharing)
+        bending = _bending(scene, pair, 1)
+        carried = carried_by_one(pair, path, torques, grid, bending, progress)
+    torsion = 0.0 if bending is None else sum(bending.body_torsion)
+    warn_of_accuracy(pair, grid, carried, load_sharing=wanted.load_sharing, body_torsion=torsion)
     return mesh_cycle(scene, pair, carried)
 
 
-def _bending(scene: Scene, pair: GearPair, neighbours: int) -> BendingModel | None:
+def _bending(scene: Scene, pair: GearPair, neighbours: int) -> ToothCompliance | None:
     """Bending of the teeth, where loaded ones are up to so many pitches apart; None if the scene asks for none."""
     if scene.analysis.compliance == "contact":
         return None

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -16,14 +18,27 @@ Mask = NDArray[np.bool_]
 
 
 def numbers(name: str, values: ArrayLike) -> Array:
-    """An argument as an array of floats; InputError if it is none."""
+    """An argument as an array of floats; InputError if it is none, or a masked one."""
+    if isinstance(values, np.ma.MaskedArray):
+        raise InputError(f"{name}: a masked array; fill what is masked (a gap: with inf, where there is no material)")
     try:
-        return np.asarray(values, dtype=float)
+        array = np.asarray(values)
+        if array.dtype.kind not in "biuf":  # text and dates would be turned into numbers, None into NaN
+            raise TypeError
+        return np.asarray(array, dtype=float)
     except (TypeError, ValueError):
-        raise InputError(f"{name}: an array of finite numbers is asked for, not {values!r:.60}") from None
+        shown = " ".join(f"{values!r:.60}".split())
+        raise InputError(f"{name}: an array of finite numbers is asked for, not {shown}") from None
 
 
-def count_problems(counts: Mapping[str, object], least: int) -> list[str]:
+def real(value: Any) -> Any:
+    """One real number, or NaN in place of anything else, which lies in no range."""
+    if getattr(value, "ndim", None) == 0:
+        value = value.item()
+    return value if isinstance(value, Real) and not isinstance(value, bool) else math.nan
+
+
+def count_problems(counts: Mapping[Any, object], least: int) -> list[str]:
     """A problem for each count, by name, that is not a whole number from ``least`` on."""
     return [
         f"{name}: {count!r} is not a whole number from {least} on"

@@ -13,14 +13,16 @@ import traceback
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from threading import Event, Thread
+from typing import TYPE_CHECKING, NoReturn, TextIO
 
-from loaded_tca.errors import ConvergenceError, InputError, LoadedTCAError
+from loaded_tca.errors import ConvergenceError, InputError, LoadedTCAError, reason_of
 
 if TYPE_CHECKING:
     from loaded_tca.results.mesh_cycle import MeshCycle
+    from loaded_tca.scene import Scene
 
 # The modules that compute and draw take most of a second to import: each command imports what it needs.
 
@@ -66,6 +68,10 @@ Stresses in MPa, tension positive, of a half-space without friction; docs/result
 BAR = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt}, {elapsed} gone, {remaining} left"
 NOT_BY_ITSELF = 1e-9
 """Delay [s] of a bar that does not draw itself while it is made."""
+TICK = 1.0
+"""Seconds after which a bar is drawn again, also where one contact takes longer."""
+WORTH_TELLING = 10.0
+"""Seconds from which an estimate is told where there is no terminal, too."""
 EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
 
 
@@ -89,20 +95,49 @@ def main(arguments: Sequence[str] | None = None) -> int:
         with _warnings_in_one_line_each():
             options = _parser().parse_args(arguments)
             options.command(options)
-    except KeyboardInterrupt:
-        return _failure(INTERRUPTED, ["interrupted; no file is half written"])
-    except BrokenPipeError:  # whoever read the output has closed it
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return OK
-    except Exception as error:  # whatever happens ends in one line
-        if "--traceback" in arguments:
+            _flush()
+    except (Exception, KeyboardInterrupt) as error:  # whatever happens ends in one line
+        if "--traceback" in arguments and not isinstance(error, KeyboardInterrupt | BrokenPipeError):
             traceback.print_exc()
-        return _failure(*_told(error))
+        if isinstance(error, OSError) and error.filename is None:
+            _let_go(sys.stdout)
+        code, lines = _told(error)
+        for line in (*lines, *getattr(error, "__notes__", ())):
+            _say(f"loaded-tca: {line}")
+        return code
     return OK
 
 
-def _told(error: Exception) -> tuple[int, list[str]]:
+def _flush() -> None:
+    """Write what was printed, while a failure can still be told."""
+    if sys.stdout is not None:  # closed from the start
+        sys.stdout.flush()
+
+
+def _let_go(stream: TextIO | None) -> None:
+    """Give up a stream that cannot be written: what it holds would fail again when the interpreter ends."""
+    if stream is not None:
+        with suppress(OSError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+def _say(line: str) -> None:
+    """Print a line on standard error, if that can be written."""
+    if sys.stderr is not None:
+        try:
+            print(line, file=sys.stderr)
+        except OSError:
+            _let_go(sys.stderr)
+
+
+def _told(error: BaseException) -> tuple[int, list[str]]:
     """Exit code and lines of an error."""
+    if isinstance(error, KeyboardInterrupt):
+        return INTERRUPTED, ["interrupted; no file is half written"]
+    if isinstance(error, BrokenPipeError):  # whoever read the output has closed it
+        return OK, []
+    if isinstance(error, OSError):  # what the package writes tells by itself what cannot be written
+        return BAD_INPUT, [f"{error.filename or 'standard output: cannot be written'}: {reason_of(error)}"]
     if isinstance(error, ConvergenceError):
         return NO_CONVERGENCE, str(error).splitlines()
     if isinstance(error, LoadedTCAError):
@@ -116,17 +151,21 @@ def _told(error: Exception) -> tuple[int, list[str]]:
     return FAULT, [f"a fault of the program, please report it with the output of --traceback: {what}"]
 
 
-def _failure(code: int, lines: list[str]) -> int:
-    for line in lines:
-        print(f"loaded-tca: {line}", file=sys.stderr)
-    return code
-
-
 class _Parser(argparse.ArgumentParser):
-    """Tells a wrong command line as any other bad input."""
+    """Tells a wrong command line, and help that cannot be shown, as any other bad input."""
 
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message}; see '{self.prog} --help'")
+
+    def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
+        _flush()
+        super().exit(status, message)
+
+
+def _path(text: str) -> Path:
+    if not text:
+        raise argparse.ArgumentTypeError("the name is empty; '.' is the directory that you are in")
+    return Path(text)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -147,23 +186,23 @@ def _parser() -> argparse.ArgumentParser:
         return added
 
     demo = command("demo", _demo, "analyse a crowned helical pair; writes its scene file too")
-    demo.add_argument("--out", metavar="DIR", type=Path, default=DEMO_DIRECTORY, help=f"default: ./{DEMO_DIRECTORY}")
+    demo.add_argument("--out", metavar="DIR", type=_path, default=DEMO_DIRECTORY, help=f"default: ./{DEMO_DIRECTORY}")
     run = command("run", _run, "analyse a scene; writes result.nc, summary.json, positions.csv and pictures")
     run.add_argument("scene", metavar="SCENE.toml", help="scene file")
-    run.add_argument("--out", metavar="DIR", required=True, type=Path, help="directory for the results")
-    own = "beside the result, with --torque or --position in a directory there that these name"
+    run.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
+    own = "beside the result; with options that choose a part of it, in a directory there that these name"
     peak = "default: that of the peak pressure of the summary"
     plot = command("plot", _plot, "draw the pictures of a result again")
     told = "write the complete teeth of a result as surfaces (VTK, STL) and as a picture"
     tooth = command("tooth", _tooth, told, TEETH)
     below = command("subsurface", _subsurface, "show the stresses below a pressure map of a result", SUBSURFACE)
-    for reader, place, of_torque, of_position in (
-        (plot, f"directory for the pictures; default: {own}", "pinion torque of maps and flanks", "pressure_map.png"),
-        (tooth, "directory for the files; default: beside the result", "pinion torque of the pressure", "the teeth"),
-        (below, "directory for the files; default: beside the result", "pinion torque", "the pressure map"),
+    for reader, of_torque, of_position in (
+        (plot, "pinion torque of maps and flanks", "pressure_map.png"),
+        (tooth, "pinion torque of the pressure", "the teeth"),
+        (below, "pinion torque", "the pressure map"),
     ):
-        reader.add_argument("result", metavar="DIR|FILE", type=Path, help="result.nc, or the directory that holds it")
-        reader.add_argument("--out", metavar="DIR", type=Path, help=place)
+        reader.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
+        reader.add_argument("--out", metavar="DIR", type=_path, help=f"directory for the files; default: {own}")
         reader.add_argument("--torque", metavar="NM", type=float, help=f"{of_torque}; default: largest")
         reader.add_argument("--position", metavar="N", type=int, help=f"position of {of_position}, from 1; {peak}")
     tooth.add_argument("--fillet-radius", metavar="MM", type=float, help="of arcs at the root; default: by the module")
@@ -174,7 +213,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     ease_off = command("ease-off", _ease_off, "draw the ease-off of a scene, without load", EASE_OFF)
     ease_off.add_argument("scene", metavar="SCENE.toml", help="scene file")
-    ease_off.add_argument("--out", metavar="DIR", required=True, type=Path, help="directory for the picture")
+    ease_off.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the picture")
     ease_off.add_argument("--gear", choices=("pinion", "wheel"), default="pinion", help="whose flank; default: pinion")
     check = command("check", _check, "read a scene and show its geometry, without computing a contact", None)
     check.add_argument("scene", metavar="SCENE.toml", help="scene file")
@@ -192,18 +231,15 @@ class _Version(argparse.Action):
 
 
 def _demo(options: argparse.Namespace) -> None:
-    from loaded_tca.output.report import make_directory
-    from loaded_tca.results.files import replacing
+    from loaded_tca.results.files import replace_together
 
     directory = options.out
     _check_place(directory)
-    make_directory(directory)
     scene, content = directory / "scene.toml", DEMO_SCENE.read_bytes()
     if scene.exists() and scene.read_bytes() != content:
         again = f"'loaded-tca run {scene} --out {directory}'"
         raise InputError(f"{scene}: has been changed, and the demo would replace it; rename it, or use {again}")
-    with replacing(scene) as temporary:
-        temporary.write_bytes(content)
+    replace_together(directory, {scene.name: content})
     _run(argparse.Namespace(scene=scene, out=directory))
     print(f"Next: change {scene}, for instance its lead_crowning_um, then try\n")
     print(f"  loaded-tca run {scene} --out my-pair")
@@ -213,27 +249,28 @@ def _run(options: argparse.Namespace) -> None:
     """Read, analyse, write everything, and show the summary."""
     from loaded_tca.analysis import analyse
     from loaded_tca.output.report import write_report
-    from loaded_tca.plots import plot_all
+    from loaded_tca.plots import PICTURES, plot_all
     from loaded_tca.scene import read_scene
 
-    scene = read_scene(options.scene)
-    _check_place(options.out)
-    with _progress_bar(len(scene.torques), scene.analysis.positions) as progress:
+    scene, directory = read_scene(options.scene), options.out
+    _check_place(directory)
+    with _progress_bar(scene) as progress:
         result = analyse(scene, progress=progress)
-    written = [*write_report(result, options.out), *plot_all(result, options.out)]
+    report = write_report(result, directory, outdated=[f"{name}.png" for name in PICTURES])
+    try:
+        pictures = plot_all(result, directory)
+    except BaseException as error:  # an interrupt, too
+        again = f"'loaded-tca plot {directory}' draws them"
+        error.add_note(f"{directory}: the numbers are new, all pictures are missing: {again}")
+        raise
     print(result.summary(), end="\n\n")
-    _print_files(written)
+    _print_files([*report, *pictures])
 
 
 def _plot(options: argparse.Namespace) -> None:
-    from loaded_tca.output.report import make_directory
     from loaded_tca.plots import plot_all
 
     result, directory, torque, position = _loaded(options)
-    if options.out is None:  # pictures of one torque or position do not replace those of the result as a whole
-        chosen = {"torque_{:g}_Nm": options.torque, "position_{}": options.position}
-        directory /= "_".join(name.format(value) for name, value in chosen.items() if value is not None)
-        make_directory(directory)
     _print_files(plot_all(result, directory, torque=torque, position=position))
 
 
@@ -241,56 +278,49 @@ def _tooth(options: argparse.Namespace) -> None:
     from loaded_tca.output.surface_files import write_teeth
     from loaded_tca.output.teeth_in_space import teeth_in_space
     from loaded_tca.pairs import mating_teeth
-    from loaded_tca.plots import save_figure
-    from loaded_tca.plots.three_d import draw_teeth
+    from loaded_tca.plots import draw_teeth, png_of
 
     result, directory, torque, position = _loaded(options)
     teeth = mating_teeth(result.gear_pair, fillet_radius=options.fillet_radius)
     shown = teeth_in_space(result, teeth, position, torque)
-    written = write_teeth(shown, teeth, directory, title=result.scene.title, whole_gears=options.whole_gears)
-    save_figure(draw_teeth(result, shown), directory / "teeth.png")
-    _print_files([*written, directory / "teeth.png"])
+    picture = {"teeth.png": png_of(draw_teeth(result, shown))}
+    title = result.scene.title
+    _print_files(write_teeth(shown, teeth, directory, title=title, whole_gears=options.whole_gears, more=picture))
 
 
 def _subsurface(options: argparse.Namespace) -> None:
     from loaded_tca.output.subsurface_files import write_subsurface
-    from loaded_tca.plots import plot_stress_below, save_figure
+    from loaded_tca.plots import plot_stress_below, png_of
     from loaded_tca.results.stress_below import NAMES, stress_below
 
     result, directory, torque, position = _loaded(options)
     below = stress_below(result, torque, position, options.pair, gear=options.gear)
-    written = [*write_subsurface(below, directory)]
-    for quantity in NAMES:
-        written.append(directory / f"subsurface_{quantity}.png")
-        save_figure(plot_stress_below(below, quantity), written[-1])
+    pictures = {f"subsurface_{quantity}.png": png_of(plot_stress_below(below, quantity)) for quantity in NAMES}
+    written = write_subsurface(below, directory, pictures)
     print(below.summary(), end="\n\n")
     _print_files(written)
 
 
 def _ease_off(options: argparse.Namespace) -> None:
     from loaded_tca.flank_maps.ease_off_map import ease_off_map
-    from loaded_tca.output.report import make_directory
-    from loaded_tca.plots import save_figure
-    from loaded_tca.plots.ease_off import plot_ease_off
+    from loaded_tca.plots import plot_ease_off, png_of
+    from loaded_tca.results.files import replace_together
     from loaded_tca.scene import read_scene
 
     scene = read_scene(options.scene)
     _check_place(options.out)
     ease_off = ease_off_map(scene.pair(), options.gear)
-    make_directory(options.out)
-    save_figure(plot_ease_off(ease_off, scene.title), options.out / "ease_off.png")
-    _print_files([options.out / "ease_off.png"])
+    picture = png_of(plot_ease_off(ease_off, scene.title))
+    _print_files(replace_together(options.out, {"ease_off.png": picture}))
 
 
 def _loaded(options: argparse.Namespace) -> tuple[MeshCycle, Path, int | None, int | None]:
     """What the command line names: the result, the directory to write to, and indices of the torque and position."""
-    from loaded_tca.output.report import RESULT, make_directory
+    from loaded_tca.output.report import RESULT
     from loaded_tca.results.mesh_cycle import MeshCycle
 
-    path = options.result / RESULT if options.result.is_dir() else options.result
+    path = options.result / RESULT if os.path.isdir(options.result) else options.result
     result = MeshCycle.load(path)
-    directory = options.out or path.parent
-    make_directory(directory)
     torque, position = options.torque, options.position
     if torque is not None:
         known = [f"{1e-3 * float(one):.6g}" for one in result.torque]
@@ -303,6 +333,11 @@ def _loaded(options: argparse.Namespace) -> tuple[MeshCycle, Path, int | None, i
         if not result.path.in_contact[position - 1]:
             raise InputError(f"--position {position}: no tooth pair is in contact there")
         position -= 1
+    chosen = {"torque_{:g}_Nm": options.torque, "position_{}": options.position}
+    chosen |= {"pair_{}": getattr(options, "pair", None), "below_{}": getattr(options, "gear", None)}
+    names = [name.format(value) for name, value in chosen.items() if value not in (None, "pinion")]
+    directory = options.out or path.parent / "_".join(names)  # files of a part do not replace those of the whole
+    _check_place(directory)
     return result, directory, torque, position
 
 
@@ -319,33 +354,59 @@ def _print_files(paths: Sequence[Path]) -> None:
 
 def _check_place(directory: Path) -> None:
     """Refuse a directory that cannot be written before the analysis rather than after it; makes nothing."""
-    existing = next(place for place in (directory, *directory.absolute().parents) if place.exists())
-    if not existing.is_dir():
-        raise InputError(f"--out {directory}: {existing} is a file; give a directory")
+    whole = directory.absolute()
+    existing = next(place for place in (whole, *whole.parents) if os.path.lexists(place))
+    if not os.path.isdir(existing):
+        what = "a link that leads nowhere" if existing.is_symlink() else "a file"
+        raise InputError(f"--out {directory}: {existing} is {what}; give a directory")
     if not os.access(existing, os.W_OK):
         raise InputError(f"--out {directory}: {existing} cannot be written to; give another directory")
+    for place in (whole, *(existing / name for name in whole.relative_to(existing).parts)):
+        try:
+            with suppress(FileNotFoundError):
+                place.lstat()
+        except OSError as error:  # a name that is too long
+            raise InputError(f"--out {directory}: cannot be made a directory: {reason_of(error)}") from error
 
 
 @contextmanager
-def _progress_bar(torques: int, positions: int) -> Iterator[Callable[[int, int], None] | None]:
-    """A bar on a terminal, with what is done, of how much, and the time left; nothing in a file or a pipe.
+def _progress_bar(scene: Scene) -> Iterator[Callable[[int, int], None] | None]:
+    """An estimate of the analysis and, on a terminal, a bar with what is done, of how much, and the time left.
 
-    It is there from the start: before the first position teeth that bend are modelled.
+    In a file or a pipe there is no bar, and an estimate only of an analysis that is long or exceeds the memory. The bar
+    is there from the start, before the first position teeth that bend are modelled, and shows the time all along.
     """
-    if not sys.stderr.isatty():
+    from loaded_tca.loaded.effort import expected_effort
+
+    effort, terminal = expected_effort(scene), sys.stderr is not None and sys.stderr.isatty()
+    if not effort.is_refused and (terminal or effort.seconds > WORTH_TELLING or not effort.fits):
+        _say(f"loaded-tca: {effort}")
+    if not terminal:
         yield None
         return
     from tqdm import tqdm
 
+    torques, positions = len(scene.torques), scene.analysis.positions
     count = "positions" if torques == 1 else f"{torques} torques x {positions} positions"
     with tqdm(desc=count, total=torques * positions, bar_format=BAR, delay=NOT_BY_ITSELF) as bar:
         bar.refresh()  # drawn only where an interrupt ends its line
+        finished = Event()
+
+        def tick() -> None:
+            while not finished.wait(TICK):
+                bar.refresh()
 
         def show(done: int, total: int) -> None:
             bar.total = total
             bar.update(done - bar.n)
 
-        yield show
+        ticking = Thread(target=tick, daemon=True)
+        ticking.start()
+        try:
+            yield show
+        finally:
+            finished.set()
+            ticking.join()
 
 
 @contextmanager
@@ -353,8 +414,9 @@ def _warnings_in_one_line_each() -> Iterator[None]:
     """Collect warnings and tell each once, with its count, also if an error follows."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
+        warnings.simplefilter("ignore", ResourceWarning)  # files that an interrupt leaves open
         try:
             yield
         finally:
             for message, count in Counter(" ".join(str(entry.message).split()) for entry in caught).items():
-                print(f"warning: {message}" + (f" ({count} times)" if count > 1 else ""), file=sys.stderr)
+                _say(f"warning: {message}" + (f" ({count} times)" if count > 1 else ""))

@@ -2,7 +2,13 @@
 
 from dataclasses import dataclass
 
+from loaded_tca.arrays import real
 from loaded_tca.errors import require
+
+SOFTEST = 1e-3
+"""Smallest Young's modulus [MPa], that of gels: contacts of softer bodies outgrow every flank."""
+LARGEST_RATIO_IN_BENDING = 0.49
+"""Largest Poisson's ratio of teeth that bend: nearer to 0.5 finite elements of displacements lock."""
 
 
 @dataclass(frozen=True)
@@ -12,9 +18,9 @@ class Material:
     Parameters
     ----------
     youngs_modulus : float [MPa]
-        Young's modulus, positive. Default: steel.
+        Young's modulus, 0.001 MPa at least. Default: steel.
     poisson_ratio : float
-        Between 0 and 0.5.
+        Between 0 and 0.5; up to 0.49 where teeth bend.
     max_pressure : float [MPa], optional
         Pressure at which the surface yields (elastic-perfectly plastic cap); None: elastic.
 
@@ -30,10 +36,11 @@ class Material:
 
     def __post_init__(self) -> None:
         modulus, ratio, cap = self.youngs_modulus, self.poisson_ratio, self.max_pressure
+        finite = SOFTEST <= real(modulus) < float("inf")
         require(
-            (0.0 < modulus < float("inf"), f"youngs_modulus: {modulus} MPa is not positive and finite"),
-            (0.0 <= ratio <= 0.5, f"poisson_ratio: {ratio} is not between 0 and 0.5"),
-            (cap is None or cap > 0.0, f"max_pressure: {cap} MPa is not positive"),
+            (finite, f"youngs_modulus: {modulus} MPa is not finite and at least {SOFTEST:g} MPa"),
+            (0.0 <= real(ratio) <= 0.5, f"poisson_ratio: {ratio} is not between 0 and 0.5"),
+            (cap is None or real(cap) > 0.0, f"max_pressure: {cap} MPa is not positive"),
         )
 
     @property

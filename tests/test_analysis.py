@@ -182,7 +182,10 @@ def test_small_torque_tends_to_the_unloaded_transmission_error(scene):
 
 def test_edge_contact_warns_and_has_no_hertz_value(scene):
     misaligned = scene.with_changes({"mounting.out_of_plane_deg": 0.3, "analysis.positions": 1})
-    with pytest.warns(AccuracyWarning, match=r"reaches an edge of a flank.*1 of 1 positions"):
+    with pytest.warns(
+        AccuracyWarning,
+        match=r"reaches an edge of a flank.*1 of 1 pressure maps; the first: .* N m, pinion angle .*, tooth pair \+0",
+    ):
         result = analyse(misaligned)
     assert result.on_edge.item() is True
     assert np.isnan(result.hertz_pressure.item())

@@ -1,8 +1,11 @@
 import io
 import json
+import math
 import os
+import signal
 import subprocess
 import sys
+import time
 import warnings
 from importlib.metadata import version
 from pathlib import Path
@@ -18,6 +21,7 @@ from loaded_tca.errors import AccuracyWarning, ConvergenceError, GeometryError, 
 SCENES = Path(__file__).parents[1] / "examples" / "scenes"
 HELICAL = str(SCENES / "helical.toml")
 REPORT = {"result.nc", "summary.json", "positions.csv"}
+LONG = 300 * "a"
 PICTURES = {"contact_path.png", "transmission_error.png", "peak_pressure.png", "pressure_map.png"}
 
 
@@ -209,6 +213,15 @@ def test_equal_warnings_are_told_once_with_their_count(run, monkeypatch):
         (["plot", HELICAL], "not a NetCDF-3 file; expected a result file written by loaded_tca"),
         (["run", HELICAL, "--out", __file__], "is a file; give a directory"),
         (["run", HELICAL, "--out", f"{__file__}/below"], "is a file; give a directory"),
+        (["run", HELICAL, "--out", ""], "argument --out: the name is empty"),
+        (["demo", "--out", ""], "argument --out: the name is empty"),
+        (["plot", ""], "argument DIR|FILE: the name is empty"),
+        (["run", HELICAL, "--out", LONG], "cannot be made a directory: File name too long"),
+        (["run", HELICAL, "--out", f"absent/{LONG}"], "cannot be made a directory: File name too long"),
+        (["ease-off", HELICAL, "--out", LONG], "cannot be made a directory: File name too long"),
+        (["demo", "--out", LONG], "cannot be made a directory: File name too long"),
+        (["check", LONG], "cannot be read: File name too long"),
+        (["plot", LONG], "cannot be read: File name too long"),
     ],
 )
 def test_bad_input_is_told_in_one_line(run, arguments, message):
@@ -217,6 +230,15 @@ def test_bad_input_is_told_in_one_line(run, arguments, message):
     assert len(err) == 1
     assert err[0].startswith("loaded-tca: ")
     assert message in err[0]
+
+
+@pytest.mark.parametrize("place", ["link", "link/below"])
+def test_link_that_leads_nowhere_is_told_before_the_analysis(run, monkeypatch, place):
+    Path("link").symlink_to("nowhere")
+    fail_with(monkeypatch, AssertionError("has started"))
+    code, _, err = run("run", scene(), "--out", place)
+    assert code == 2
+    assert err[0].endswith("link is a link that leads nowhere; give a directory")
 
 
 def test_every_problem_of_a_scene_gets_its_line(run):
@@ -276,14 +298,58 @@ def test_traceback_is_shown_when_asked_for(run, monkeypatch, arguments):
     assert err[-1] == "loaded-tca: not converged"
 
 
-def test_interrupt_while_writing_leaves_whole_files_only(run, monkeypatch):
-    def interrupted(_, path, **__):
-        Path(path).write_bytes(b"half a picture")
-        raise KeyboardInterrupt
+@pytest.mark.parametrize(
+    ("failure", "code"), [(KeyboardInterrupt(), 130), (MemoryError(), 2), (OSError(28, "No space left on device"), 2)]
+)
+def test_failure_while_drawing_leaves_the_numbers_without_old_pictures(run, monkeypatch, failure, code):
+    changes = {"pinion_torque_Nm = 130.0": "pinion_torque_Nm = 20.0"}
+    assert run("run", scene("earlier", **changes), "--out", "out")[0] == 0
+    earlier = Path("out", "result.nc").read_bytes()
 
-    monkeypatch.setattr(Figure, "savefig", interrupted)
-    assert run("run", scene(), "--out", "out")[0] == 130
+    def fail_at_the_third(figure, file, **_):
+        drawn.append(figure)
+        file.write(b"half a picture")
+        if len(drawn) == 3:
+            raise failure
+
+    drawn = []
+    with monkeypatch.context() as patch:
+        patch.setattr(Figure, "savefig", fail_at_the_third)
+        found, _, err = run("run", scene(), "--out", "out")
+    assert found == code
+    assert err[-1] == "loaded-tca: out: the numbers are new, all pictures are missing: 'loaded-tca plot out' draws them"
     assert set(os.listdir("out")) == REPORT
+    assert Path("out", "result.nc").read_bytes() != earlier
+    assert run("plot", "out")[0] == 0
+    assert set(os.listdir("out")) == REPORT | PICTURES
+
+
+def test_failure_while_drawing_again_keeps_the_pictures(run, monkeypatch):
+    run("run", scene(), "--out", "out")
+    before = {name: Path("out", name).read_bytes() for name in os.listdir("out")}
+    monkeypatch.setattr(Figure, "savefig", lambda *_, **__: os.kill(os.getpid(), signal.SIGINT))
+    for command in ("plot", "subsurface", "tooth"):
+        assert run(command, "out")[0] == 130
+        assert {name: Path("out", name).read_bytes() for name in os.listdir("out")} == before
+
+
+def test_parts_of_a_result_do_not_replace_the_files_of_the_whole(run):
+    run("run", scene(), "--out", "out")
+    assert run("subsurface", "out")[0] == run("tooth", "out")[0] == 0
+    before = {name: Path("out", name).read_bytes() for name in os.listdir("out")}
+    for command, *options, place in (
+        ("tooth", "--position", 2, "position_2"),
+        ("tooth", "--torque", 40, "torque_40_Nm"),
+        ("subsurface", "--position", 3, "position_3"),
+        ("subsurface", "--gear", "wheel", "--pair", 0, "pair_0_below_wheel"),
+    ):
+        code, out, _ = run(command, "out", *options)
+        assert code == 0
+        assert f"Written to out/{place}: " in out
+    places = {"position_2", "torque_40_Nm", "position_3", "pair_0_below_wheel"}
+    assert set(os.listdir("out")) == {*before, *places}
+    assert {name: Path("out", name).read_bytes() for name in before} == before
+    assert set(os.listdir("out/position_3")) == {name for name in before if name.startswith("subsurface")}
 
 
 class Terminal(io.StringIO):
@@ -311,6 +377,33 @@ def test_progress_counts_torques_and_positions(monkeypatch):
     assert "2 torques x 3 positions: 100%" in shown
     assert "0/6" in shown
     assert "6/6" in shown
+
+
+def test_estimate_is_told_on_a_terminal_and_where_an_analysis_is_long(run, monkeypatch):
+    assert run("run", scene(), "--out", "out")[2] == []
+    monkeypatch.setattr(cli, "WORTH_TELLING", 0.0)
+    (told,) = run("run", scene(), "--out", "out")[2]
+    assert told.startswith("loaded-tca: 3 contacts of 256 cells: roughly 0.03")
+    monkeypatch.setattr(cli, "WORTH_TELLING", math.inf)
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    assert cli.main(["run", str(scene()), "--out", "out"]) == 0
+    assert told in terminal.getvalue()
+
+
+def test_bar_is_drawn_again_while_a_contact_takes_long(monkeypatch):
+    terminal = Terminal()
+
+    def analyse(*_, **__):
+        shown = len(terminal.getvalue())
+        while terminal.getvalue().count(" gone", shown) < 3:  # the bar of tqdm stands still between two positions
+            time.sleep(0.01)
+        raise GeometryError("enough")
+
+    monkeypatch.setattr(cli, "TICK", 0.02)
+    monkeypatch.setattr(loaded_tca.analysis, "analyse", analyse)
+    monkeypatch.setattr(sys, "stderr", terminal)
+    assert cli.main(["run", str(scene()), "--out", "out"]) == 2
 
 
 def test_version_is_that_of_the_package(capsys):
@@ -359,12 +452,47 @@ def test_process_ends_with_the_exit_code():
     assert done.stderr.count(b"\n") == 1
 
 
-def test_closed_pipe_is_no_fault():
-    command = [sys.executable, "-m", "loaded_tca", "check", HELICAL]
+def in_a_shell(redirected, *arguments):
+    """Exit code and lines of standard error of the command with its streams redirected by a shell."""
+    text = f'"$@" {redirected}'
+    command = ["sh", "-c", text, "sh", sys.executable, "-m", "loaded_tca", *map(str, arguments)]
+    done = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False, timeout=60)
+    return done.returncode, done.stderr.splitlines()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no full device")
+@pytest.mark.parametrize("arguments", [["check", HELICAL], ["run", "quick.toml", "--out", "out"], ["--version"]])
+def test_full_standard_output_is_told(arguments):
+    scene()
+    told = ["loaded-tca: standard output: cannot be written: No space left on device"]
+    assert in_a_shell("> /dev/full", *arguments) == (2, told)
+
+
+@pytest.mark.parametrize("arguments", [["check", HELICAL], ["run", "quick.toml", "--out", "out"]])
+def test_closed_standard_output_is_no_failure(arguments):
+    scene()
+    assert in_a_shell(">&-", *arguments) == (0, [])
+    assert in_a_shell("2>&- > /dev/null", *arguments) == (0, [])
+
+
+@pytest.mark.parametrize("redirected", ["2>&-", "2> /dev/full"])
+def test_standard_error_that_cannot_be_written_leaves_the_exit_code(redirected):
+    assert in_a_shell(redirected, "check", "absent.toml") == (2, [])
+
+
+@pytest.mark.parametrize("arguments", [["check", HELICAL], ["run", "quick.toml", "--out", "out"]])
+def test_closed_pipe_is_no_fault(arguments):
+    scene()
+    command = [sys.executable, "-m", "loaded_tca", *arguments]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         process.stdout.close()
-        assert "fault" not in process.stderr.read()
-        assert process.wait() in (0, 120)  # 120: Python's own word that stdout could not be flushed
+        assert process.stderr.read() == ""
+        assert process.wait() == 0
+
+
+def test_file_that_the_system_does_not_give_is_no_fault(run, monkeypatch):
+    fail_with(monkeypatch, PermissionError(13, "Permission denied", "scene.toml"))
+    assert run("run", scene(), "--out", "out")[::2] == (2, ["loaded-tca: scene.toml: Permission denied"])
 
 
 # Ease-off

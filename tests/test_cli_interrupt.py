@@ -9,6 +9,9 @@ import sys
 from pathlib import Path
 
 import pytest
+import xarray
+
+from loaded_tca.results.files import write_dataset
 
 pty = pytest.importorskip("pty")
 fcntl = pytest.importorskip("fcntl")
@@ -42,6 +45,31 @@ def _read(terminal):
         return os.read(terminal, 4096)
     except OSError:
         return b""
+
+
+PRESSED_WHILE_IMPORTING = """
+import os, runpy, signal, sys
+
+class PressCtrlC:
+    def find_spec(self, name, *_):
+        if name == NAME:
+            os.kill(os.getpid(), signal.SIGINT)
+
+sys.meta_path.insert(0, PressCtrlC())
+sys.argv = ["loaded-tca", "run", "absent.toml", "--out", "out"]
+runpy.run_module("loaded_tca", run_name="__main__", alter_sys=True)
+"""
+
+
+@pytest.mark.parametrize("name", ["loaded_tca.cli", "argparse", "loaded_tca.scene", "numpy", "xarray"])
+def test_interrupt_while_a_module_is_imported_is_one_line(tmp_path, name):
+    code = PRESSED_WHILE_IMPORTING.replace("NAME", repr(name))
+    if name == "xarray":  # a result is read by it
+        write_dataset(tmp_path / "absent.nc", xarray.Dataset())
+        code = code.replace('"run", "absent.toml", "--out", "out"', '"plot", "absent.nc"')
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.stderr.splitlines() == ["loaded-tca: interrupted; no file is half written"]
+    assert done.returncode == 130
 
 
 @pytest.mark.parametrize(

@@ -43,13 +43,17 @@ def test_contact_modulus_scales_with_both_moduli(first, second, factor):
 @pytest.mark.parametrize(
     ("values", "problem"),
     [
-        ({"youngs_modulus": 0.0}, "youngs_modulus: 0.0 MPa is not positive and finite"),
-        ({"youngs_modulus": math.inf}, "youngs_modulus: inf MPa is not positive and finite"),
-        ({"youngs_modulus": math.nan}, "youngs_modulus: nan MPa is not positive and finite"),
+        ({"youngs_modulus": 0.0}, "youngs_modulus: 0.0 MPa is not finite and at least 0.001 MPa"),
+        ({"youngs_modulus": math.inf}, "youngs_modulus: inf MPa is not finite and at least 0.001 MPa"),
+        ({"youngs_modulus": math.nan}, "youngs_modulus: nan MPa is not finite and at least 0.001 MPa"),
+        ({"youngs_modulus": 1e-300}, "youngs_modulus: 1e-300 MPa is not finite and at least 0.001 MPa"),
+        ({"youngs_modulus": "steel"}, "youngs_modulus: steel MPa is not finite and at least 0.001 MPa"),
+        ({"poisson_ratio": None}, "poisson_ratio: None is not between 0 and 0.5"),
         ({"poisson_ratio": -0.1}, "poisson_ratio: -0.1 is not between 0 and 0.5"),
         ({"poisson_ratio": 0.51}, "poisson_ratio: 0.51 is not between 0 and 0.5"),
         ({"poisson_ratio": math.nan}, "poisson_ratio: nan is not between 0 and 0.5"),
         ({"max_pressure": 0.0}, "max_pressure: 0.0 MPa is not positive"),
+        ({"max_pressure": "high"}, "max_pressure: high MPa is not positive"),
         ({"max_pressure": math.nan}, "max_pressure: nan MPa is not positive"),
     ],
 )

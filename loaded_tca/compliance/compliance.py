@@ -12,7 +12,8 @@ from loaded_tca.arrays import Array
 from loaded_tca.compliance.influence import FlankLine, GearCompliance, Image, gear_compliance
 from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.contact.edges import FreeEdge, edge_images
-from loaded_tca.errors import named
+from loaded_tca.errors import named, require
+from loaded_tca.material import LARGEST_RATIO_IN_BENDING
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.weber_banaschek import ring_torsion
@@ -140,7 +141,7 @@ def tooth_compliance(pair: GearPair, *, neighbours: int = 1, density: MeshDensit
     Raises
     ------
     InputError
-        If a bore reaches the teeth; the gear is named.
+        If a bore reaches the teeth or Poisson's ratio is above 0.49; the gear is named.
     GeometryError
         If a tooth is pointed or cut off; the gear is named.
 
@@ -160,6 +161,9 @@ def tooth_compliance(pair: GearPair, *, neighbours: int = 1, density: MeshDensit
     found = []
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         with named(name):
+            ratio = gear.material.poisson_ratio
+            bends = ratio <= LARGEST_RATIO_IN_BENDING
+            require((bends, f"poisson_ratio: {ratio} is above {LARGEST_RATIO_IN_BENDING}: finite elements would lock"))
             if gear.flank is not gear.nominal_flank:  # modifications may leave a pointed tooth, or none
                 build_tooth(gear.flanks, gear.form, CHECKED)
             found.append(gear_compliance(gear, replace(density or default_density(gear), neighbours=neighbours)))

@@ -33,7 +33,7 @@ from scipy.sparse import vstack
 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.body import FlankPlaces, ToothFrame, gear_body
-from loaded_tca.compliance.local_term import local_flexibility
+from loaded_tca.compliance.local_term import local_flexibility, local_heights
 
 HEIGHTS = 6
 """Places along the profile between which the displacements are interpolated."""
@@ -47,6 +47,8 @@ MOST_ON_DISK = 64
 """Files of 0.1 to 2 MB each; the oldest go."""
 SAME_OUTLINE = 1e-9
 """Numbers are the same if they agree to this part of the size of the gear: far above rounding."""
+SAME_PLACE = 1e-6
+"""Relative difference of places that are the same: the outlines of equal keys differ by less."""
 UNREADABLE = OSError, EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile
 _recent: OrderedDict[str, ToothFlexibility] = OrderedDict()
 _lock = Lock()
@@ -117,7 +119,7 @@ def kept_flexibility(frame: ToothFrame) -> ToothFlexibility:
     with _lock:
         found = _recent.get(key)
     if found is None and folder is not None:
-        found = _read(folder / f"{key}.npz", key)
+        found = _read(folder / f"{key}.npz", key, frame)
     if found is None:
         found = tooth_flexibility(frame)
         if folder is not None:
@@ -170,24 +172,37 @@ def _folder() -> Path | None:
     """Where models are kept on disk, if anywhere."""
     wanted = os.environ.get(FOLDER, "")
     if wanted:
-        return None if wanted == "off" else Path(wanted)
+        return None if wanted == "off" else Path(os.path.expanduser(wanted))
     caches = Path(os.environ.get("XDG_CACHE_HOME", ""))
     with contextlib.suppress(RuntimeError):  # nobody's home is known
         return (caches if caches.is_absolute() else Path.home() / ".cache") / "loaded_tca"
     return None
 
 
-def _read(path: Path, key: str) -> ToothFlexibility | None:
-    """Return what a file keeps under a key; None if it is not there, damaged, or another's."""
+def _read(path: Path, key: str, frame: ToothFrame) -> ToothFlexibility | None:
+    """Return what a file keeps under a key; None if it is not there, damaged, or no model of this gear."""
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             own = str(file["key"]) == key
             values = {name: np.asarray(file[name], dtype=float) for name in file.files if name != "key"}
         found = ToothFlexibility(**values)
-        fits = found.displacement.shape[1:] == (found.depth.size,) * 2
     except UNREADABLE:
         return None
-    return found if own and fits and all(np.isfinite(array).all() for array in values.values()) else None
+    finite = all(np.isfinite(array).all() for array in values.values())
+    return found if own and finite and _is_of(found, frame) else None
+
+
+def _is_of(found: ToothFlexibility, frame: ToothFrame) -> bool:
+    """Whether a table has the places of this gear, and displacements of as many."""
+    heights, lengths, places = grid_of_places(frame)
+    depth = places.depth.reshape(len(heights), len(lengths))
+    own = {"heights": heights, "lengths": lengths, "depth": depth, "local_height": local_heights()}
+    teeth = 2 * frame.nodes.layout.neighbours + 1
+    shapes = found.displacement.shape, found.local_value.shape
+    return shapes == ((teeth, depth.size, depth.size), own["local_height"].shape) and all(
+        getattr(found, name).shape == values.shape and np.allclose(getattr(found, name), values, rtol=SAME_PLACE)
+        for name, values in own.items()
+    )
 
 
 def _write(folder: Path, key: str, flexibility: ToothFlexibility) -> None:

@@ -32,6 +32,11 @@ SLOPE = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
 """Derivative at the middle one of five even steps."""
 
 
+def local_heights(density: MeshDensity = DENSITY) -> Array:
+    """Return the parts (n,) of the flank's height at which the local term is found, increasing."""
+    return np.arange(2, 2 * density.flank - 1, 2) / (2.0 * density.flank)
+
+
 def local_flexibility(gear: Gear, density: MeshDensity = DENSITY) -> tuple[Array, Array]:
     """Local term of the middle section.
 
@@ -53,7 +58,8 @@ def local_flexibility(gear: Gear, density: MeshDensity = DENSITY) -> tuple[Array
     flank = mesh.number[column + (2 * density.through if gear.flank.side > 0 else 0)]
     middle = mesh.number[column + density.through]
     first = nodes.layout.base_row + 2 * density.fillet
-    rows = first + np.arange(2, 2 * density.flank - 1, 2)
+    heights = local_heights(density)
+    rows = first + np.rint(2 * density.flank * heights).astype(int)
     forces = [_Force.on_flank(mesh.points, flank[row - 2 : row + 3], middle[row], gear.material) for row in rows]
     bore, held = mesh.number[:, 0], np.zeros((*mesh.points.shape, len(forces)))
     held[bore] = np.stack([-force.field(mesh.points[bore])[0] for force in forces], axis=-1)
@@ -63,7 +69,7 @@ def local_flexibility(gear: Gear, density: MeshDensity = DENSITY) -> tuple[Array
     np.subtract.at(loads, mesh.dofs, matrices[mesh.kinds] @ held[mesh.dofs])
     rest = (factor.solve(loads) + held).reshape(-1, 2, len(forces))
     value = [force.approach(rest[..., n], middle, mesh.points) for n, force in enumerate(forces)]
-    return (rows - first) / (2.0 * density.flank), np.array(value)
+    return heights, np.array(value)
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,16 +2,17 @@
 
 import math
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from numpy.typing import ArrayLike
 
+from loaded_tca.arrays import count_problems, real
 from loaded_tca.contact.levels import prolong
 from loaded_tca.contact.problem import ContactProblem
 from loaded_tca.contact.solution import CoarserGrid, ContactSolution
 from loaded_tca.contact.solver import solve_problem
-from loaded_tca.errors import AccuracyWarning, InputError
+from loaded_tca.errors import AccuracyWarning, require
 
 Cells = tuple[int, int]
 
@@ -64,7 +65,7 @@ def solve_to_accuracy(
     Raises
     ------
     InputError, ConvergenceError
-        As :func:`solve_contact` does, and if the accuracy is not between 0 and 1.
+        As :func:`solve_contact` does, and if the accuracy is not between 0 and 1 or the first grid is none.
 
     Warns
     -----
@@ -82,8 +83,16 @@ def solve_to_accuracy(
     >>> solution.pressure.shape, bool(abs(solution.peak_pressure / 1420.7 - 1.0) < 1e-3)
     ((64, 64), True)
     """
-    if not 0.0 < accuracy < 1.0:
-        raise InputError(f"accuracy: {accuracy} is not between 0 and 1")
+    two = isinstance(first_cells, Sequence) and len(first_cells) == 2
+    require(
+        (callable(problem), f"problem: {problem!r:.60} is not a function of the numbers of cells"),
+        (0.0 < real(accuracy) < 1.0, f"accuracy: {accuracy} is not between 0 and 1"),
+        (0.0 < real(tolerance) < 1.0, f"tolerance: {tolerance} is not between 0 and 1"),
+        (
+            two and not count_problems(dict(enumerate(first_cells)), 1),
+            f"first_cells: {first_cells!r:.60} are not two whole numbers from 1 on",
+        ),
+    )
     closely, refined = TOLERANCE_SHARE * accuracy, max(first_cells) < MOST_CELLS_AT_A_BORDER
     tolerance, first = min(closely, tolerance), closely if refined else min(closely, tolerance)
     cells = first_cells

@@ -2,12 +2,21 @@
 
 import math
 import os
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, count_problems, numbers, real
 from loaded_tca.errors import InputError
+
+LEAST, MOST = 1e-20, 1e20
+"""Widths of a cell [mm] between which nothing leaves the range of floating point numbers, whatever the unit."""
+SOFTEST, STIFFEST = 1e-30, 1e30
+"""The same of the contact modulus [MPa]."""
+MOST_SLENDER = 1e12
+"""Length of a cell over its width, either way."""
+SHORTEST, LONGEST = 1e-25, 1e25
+"""Displacements [mm] that stay far from the limits of single precision, in which the iteration runs."""
 
 
 def check_grid(gap: Array, spacing: tuple[float, float], contact_modulus: float) -> list[str]:
@@ -17,8 +26,8 @@ def check_grid(gap: Array, spacing: tuple[float, float], contact_modulus: float)
     if (memory := memory_problem(gap.shape)) is not None:
         return [f"gap: {memory}"]
     problems = check_spacing(spacing)
-    if not 0.0 < contact_modulus < math.inf:
-        problems.append(f"contact_modulus: {contact_modulus} is not positive and finite")
+    if not SOFTEST <= real(contact_modulus) <= STIFFEST:
+        problems.append(f"contact_modulus: {contact_modulus} is not a number from {SOFTEST:g} to {STIFFEST:g} MPa")
     if np.isnan(gap).any():
         problems.append(f"gap: {int(np.isnan(gap).sum())} cells are NaN (use inf for no material)")
     elif np.isneginf(gap).any():
@@ -30,36 +39,51 @@ def check_grid(gap: Array, spacing: tuple[float, float], contact_modulus: float)
 
 def check_spacing(spacing: tuple[float, float]) -> list[str]:
     """Problems of the widths of a cell."""
-    if np.shape(spacing) != (2,):
-        return [f"spacing: {spacing} is not a pair of cell widths (dx, dy)"]
-    return [
-        f"spacing[{axis}]: {width} is not positive and finite"
-        for axis, width in enumerate(spacing)
-        if not 0.0 < width < math.inf
+    try:
+        widths = numbers("spacing", spacing)
+    except InputError as error:
+        return list(error.problems)
+    if widths.shape != (2,):
+        return [f"spacing: {widths.tolist()} is not a pair of cell widths (dx, dy)"]
+    problems = [
+        f"spacing[{axis}]: {width} is not between {LEAST:g} and {MOST:g} mm"
+        for axis, width in enumerate(widths)
+        if not LEAST <= width <= MOST
     ]
+    if not problems and widths.max() > MOST_SLENDER * widths.min():
+        problems.append(f"spacing: {widths.tolist()} are widths of a ratio above {MOST_SLENDER:g}")
+    return problems
 
 
-def check_demand(load: float | None, approach: float | None, max_pressure: float | None, area: float) -> list[str]:
+def check_demand(
+    load: Any, approach: Any, max_pressure: Any, gap: Array, spacing: tuple[float, float], contact_modulus: float
+) -> list[str]:
     """Problems of what is asked for: exactly one of load and approach, within what the cap can carry."""
     problems = []
     if (load is None) == (approach is None):
         problems.append("load, approach: give exactly one of the two")
-    if load is not None and not 0.0 <= load < math.inf:
-        problems.append(f"load: {load} N is negative or not finite")
-    if approach is not None and not math.isfinite(approach):
-        problems.append(f"approach: {approach} mm is not finite")
-    if max_pressure is not None and not max_pressure > 0.0:
+    least, most = (limit * spacing[1] * contact_modulus for limit in (SHORTEST, LONGEST))
+    if load is not None and not (least <= real(load) <= most or real(load) == 0.0):
+        problems.append(f"load: {load} N is neither 0 nor, on this grid, a number from {least:.3g} to {most:.3g} N")
+    depth = 0.0 if approach is None else real(approach) - float(gap.min())
+    if not (-LONGEST <= depth <= 0.0 or SHORTEST <= depth <= LONGEST):
+        allowed = f"within {LONGEST:g} mm of it and, beyond it, at least {SHORTEST:g} mm"
+        problems.append(f"approach: {approach} mm lies {depth} mm beyond first contact; allowed {allowed}")
+    if max_pressure is not None and not real(max_pressure) > 0.0:
         problems.append(f"max_pressure: {max_pressure} MPa is not positive")
-    elif max_pressure is not None and load is not None and load > max_pressure * area:
-        most = max_pressure * area
-        problems.append(f"load: {load} N is more than max_pressure on all material can carry, {most:.6g} N")
+    elif max_pressure is not None and load is not None:
+        carried = max_pressure * np.count_nonzero(np.isfinite(gap)) * spacing[0] * spacing[1]
+        if real(load) > carried:
+            problems.append(f"load: {load} N is more than max_pressure on all material can carry, {carried:.6g} N")
     return problems
 
 
-def check_run(tolerance: float, on_failure: str, initial: ArrayLike | None, shape: tuple[int, ...]) -> list[str]:
+def check_run(
+    tolerance: float, on_failure: str, start: Array | None, shape: tuple[int, ...], threads: int
+) -> list[str]:
     """Problems of the options of the iteration."""
-    problems, start = [], None if initial is None else np.asarray(initial, dtype=np.float64)
-    if not 0.0 < tolerance < 1.0:
+    problems = count_problems({"threads": threads}, 1)
+    if not 0.0 < real(tolerance) < 1.0:
         problems.append(f"tolerance: {tolerance} is not between 0 and 1")
     if on_failure not in ("raise", "return"):
         problems.append(f'on_failure: {on_failure!r} is neither "raise" nor "return"')

@@ -28,7 +28,7 @@ from typing import ClassVar, Literal, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, real
 from loaded_tca.contact.convolution import Convolution, Window
 from loaded_tca.contact.oblique import ObliqueImage, ObliqueMirror
 from loaded_tca.errors import InputError
@@ -235,19 +235,21 @@ def edge_of_plane(
     return FreeEdge(axis, position, "below" if normal[axis] > 0.0 else "above", factor, slope)
 
 
-def check_edges(edges: tuple[FreeEdge, ...]) -> list[str]:
+def check_edges(edges: Sequence[FreeEdge]) -> list[str]:
     """Problems of the free edges."""
+    if not (isinstance(edges, Sequence) and all(isinstance(edge, FreeEdge) for edge in edges)):
+        return [f"free_edges: {edges!r:.60} is not a sequence of FreeEdge"]
     problems = []
     for k, edge in enumerate(edges):
         if edge.axis not in (0, 1):
             problems.append(f"free_edges[{k}].axis: {edge.axis} is neither 0 nor 1")
-        if not math.isfinite(edge.position):
+        if not math.isfinite(real(edge.position)):
             problems.append(f"free_edges[{k}].position: {edge.position} mm is not finite")
         if edge.material not in ("below", "above"):
             problems.append(f'free_edges[{k}].material: {edge.material!r} is neither "below" nor "above"')
-        if not 0.0 <= edge.factor < math.inf:
+        if not 0.0 <= real(edge.factor) < math.inf:
             problems.append(f"free_edges[{k}].factor: {edge.factor} is negative or not finite")
-        if not math.isfinite(edge.slope):
+        if not math.isfinite(real(edge.slope)):
             problems.append(f"free_edges[{k}].slope: {edge.slope} is not finite")
     return problems
 

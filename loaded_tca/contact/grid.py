@@ -67,12 +67,17 @@ class Grid:
     def of(cls, problem: ContactProblem) -> Grid:
         """Return the whole finest grid of a problem, its gap and approach counted from first contact."""
         (dx, dy), modulus, slices = problem.spacing, problem.contact_modulus, problem.slice_compliance
+        total = None if problem.load is None else problem.load / (dy * modulus)
+        approach = 0.0 if problem.approach is None else problem.approach - problem.first_contact
+        cap = problem.cap * (dx / modulus)
+        # One cell that takes all of the load, or of the approach, has the highest pressure there can be.
+        highest = approach / float(influence_coefficients((1, 1), dy / dx)[0, 0]) if total is None else total
         return cls(
             gap=problem.gap - problem.first_contact,
             spacing=problem.spacing,
-            total=None if problem.load is None else problem.load / (dy * modulus),
-            approach=0.0 if problem.approach is None else problem.approach - problem.first_contact,
-            cap=problem.cap * (dx / modulus),
+            total=total,
+            approach=approach,
+            cap=cap if cap < highest else math.inf,
             free_edges=tuple(problem.free_edges),
             slices=None if slices is None else slices * (dy * modulus),
         )

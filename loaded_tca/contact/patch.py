@@ -96,3 +96,21 @@ def ends_at_material(pressure: Array, void: Mask) -> bool:
             if (beyond & (square > 0.0) & (3.0 * square >= before)).any():
                 return True
     return False
+
+
+def values_at_ends(pressure: Array, values: Array, void: Mask) -> Array:
+    """Values (n,), known at the centres of the cells, at the ends of the contact between these centres.
+
+    The square of the pressure falls linearly to zero at an end, but no farther away than the next centre; or than the
+    border of the cell where the material ends.
+    """
+    square = continue_outside(pressure**2)
+    found = []
+    for axis in (0, 1):
+        levels, known, ended = (np.moveaxis(array, axis, 0) for array in (square, values, void))
+        for inner, outer in ((slice(-1), slice(1, None)), (slice(1, None), slice(-1))):
+            ends = (levels[inner] > 0.0) & (levels[outer] <= 0.0)
+            inside, beyond = levels[inner][ends], levels[outer][ends]
+            part = np.minimum(inside / (inside - beyond), np.where(ended[outer][ends], 0.5, 1.0))
+            found.append(known[inner][ends] + part * (known[outer][ends] - known[inner][ends]))
+    return np.concatenate(found)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, numbers
 from loaded_tca.contact import checks
 from loaded_tca.contact.edges import FreeEdge, check_edges, without_material_beyond
 from loaded_tca.contact.slices import check_slices
@@ -29,7 +29,7 @@ class ContactProblem:
     gap : (nx, ny) array_like [mm]
         Gap between the surfaces before loading; +inf where there is no material, as it becomes beyond free edges.
     spacing : (float, float) [mm]
-        Width of a cell along the first and the second axis.
+        Width of a cell along the first and the second axis; the limits of sizes are in ``contact.checks``.
     contact_modulus : float [MPa]
         E*, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
     load : float, optional [N]
@@ -66,24 +66,28 @@ class ContactProblem:
     slice_compliance: Array | None = None
 
     def __post_init__(self) -> None:
-        gap, slices, edges = _numbers(self.gap), self.slice_compliance, tuple(self.free_edges)
-        slices = None if slices is None else _numbers(slices).copy()
+        gap, slices = numbers("gap", self.gap), self.slice_compliance
+        slices = None if slices is None else numbers("slice_compliance", slices).copy()
         checks.raise_if(
             checks.check_grid(gap, self.spacing, self.contact_modulus)
-            + check_edges(edges)
+            + check_edges(self.free_edges)
             + check_slices(slices, gap.shape)
         )
-        spacing = float(self.spacing[0]), float(self.spacing[1])
+        spacing, edges = (float(self.spacing[0]), float(self.spacing[1])), tuple(self.free_edges)
         gap = without_material_beyond(gap.copy(), spacing, edges)
-        area = np.count_nonzero(np.isfinite(gap)) * spacing[0] * spacing[1]
-        checks.raise_if([] if area else ["free_edges: no cell within them holds material"])
-        checks.raise_if(checks.check_demand(self.load, self.approach, self.max_pressure, area))
+        checks.raise_if([] if np.isfinite(gap).any() else ["free_edges: no cell within them holds material"])
+        demand = self.load, self.approach, self.max_pressure
+        checks.raise_if(checks.check_demand(*demand, gap, spacing, self.contact_modulus))
         for array in (gap, slices):
             if array is not None:
                 array.flags.writeable = False
         own = {"gap": gap, "spacing": spacing, "free_edges": edges, "slice_compliance": slices}
         for name, value in own.items():
             object.__setattr__(self, name, value)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Made anew by pickle and copy: arrays of theirs could be written to."""
+        return type(self), tuple(getattr(self, entry.name) for entry in fields(self))
 
     @cached_property
     def first_contact(self) -> float:
@@ -104,7 +108,3 @@ class ContactProblem:
     def cell_area(self) -> float:
         """Area of a cell [mm^2]."""
         return self.spacing[0] * self.spacing[1]
-
-
-def _numbers(values: ArrayLike) -> Array:
-    return np.asarray(values, dtype=np.float64)

@@ -25,8 +25,10 @@ def check_slices(compliance: Array | None, shape: tuple[int, ...]) -> list[str]:
     """Problems of a slice compliance for a grid of a shape."""
     if compliance is None:
         return []
-    if compliance.shape != (shape[-1], shape[-1]) or not np.isfinite(compliance).all():
-        return [f"slice_compliance: finite {(shape[-1], shape[-1])} is needed, not {compliance.shape}"]
+    if compliance.shape != (shape[-1], shape[-1]):
+        return [f"slice_compliance: shape {(shape[-1], shape[-1])} is needed, not {compliance.shape}"]
+    if not np.isfinite(compliance).all():
+        return [f"slice_compliance: {int((~np.isfinite(compliance)).sum())} values are not finite"]
     if np.abs(compliance - compliance.T).max() > SYMMETRY * np.abs(compliance).max():
         return ["slice_compliance: is not symmetric"]
     return []

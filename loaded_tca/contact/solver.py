@@ -26,7 +26,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, numbers
 from loaded_tca.contact import checks
 from loaded_tca.contact.descent import Descent, judge
 from loaded_tca.contact.edges import FreeEdge
@@ -131,7 +131,8 @@ def solve_contact(
     >>> bool(abs(solution.peak_pressure - 1420.7) < 1.0)
     True
     """
-    gap = np.asarray(gap, dtype=np.float64)
+    gap = numbers("gap", gap)
+    start = None if initial_pressure is None else numbers("initial_pressure", initial_pressure)
     try:
         problem = ContactProblem(
             gap,
@@ -141,13 +142,13 @@ def solve_contact(
             approach=approach,
             max_pressure=max_pressure,
             free_edges=free_edges,
-            slice_compliance=None if slice_compliance is None else np.asarray(slice_compliance, dtype=np.float64),
+            slice_compliance=slice_compliance,  # type: ignore[arg-type]
         )
     except InputError as error:
-        run = checks.check_run(tolerance, on_failure, initial_pressure, gap.shape)
+        run = checks.check_run(tolerance, on_failure, start, gap.shape, threads)
         raise InputError([*error.problems, *run]) from None
     solution = solve_problem(
-        problem, tolerance=tolerance, on_failure=on_failure, initial_pressure=initial_pressure, threads=threads
+        problem, tolerance=tolerance, on_failure=on_failure, initial_pressure=start, threads=threads
     )
     if warn:
         for sentence in solution.accuracy_warnings:
@@ -180,11 +181,12 @@ def solve_problem(
     InputError, ConvergenceError
         As :func:`solve_contact` does.
     """
-    checks.raise_if(checks.check_run(tolerance, on_failure, initial_pressure, problem.gap.shape))
+    given = None if initial_pressure is None else numbers("initial_pressure", initial_pressure)
+    checks.raise_if(checks.check_run(tolerance, on_failure, given, problem.gap.shape, threads))
     grid = Grid.of(problem)
     if problem.load == 0.0 or (problem.load is None and grid.approach <= 0.0):
         return _without_load(problem, grid.approach)
-    if initial_pressure is not None and (given := np.asarray(initial_pressure, dtype=np.float64)).any():
+    if given is not None and given.any():
         start, coarser = grid.fitted(given * _unit(problem)), None
     else:
         start, coarser = _start_from_coarser(grid, tolerance, threads)

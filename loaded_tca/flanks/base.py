@@ -37,12 +37,15 @@ class Flank(ABC):
         How pictures and messages show places on it.
     profile_unit : float [mm]
         Length that one unit of the profile coordinate stands for: 1 of a roll length, R_m of an arc.
+    roll_unit : float or None [mm or rad]
+        Profile coordinate at a roll angle of 1 rad; None: the flank is no involute.
     """
 
     side: int
     extent: tuple[float, float]
     frame: FlankFrame
     profile_unit: float = 1.0
+    roll_unit: float | None = None
 
     @abstractmethod
     def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:
@@ -117,7 +120,7 @@ class DerivedFlank(Flank):
     def __init__(self, nominal: Flank) -> None:
         self.nominal = nominal
         self.side, self.extent, self.frame = nominal.side, nominal.extent, nominal.frame
-        self.profile_unit = nominal.profile_unit
+        self.profile_unit, self.roll_unit = nominal.profile_unit, nominal.roll_unit
 
     def edges(self, rho: Array, z: Array) -> tuple[Jet, ...]:
         """Edges of the nominal flank."""

@@ -108,6 +108,7 @@ class SphericalInvoluteFlank(Flank):
         self.base_angle, self.side = base, side
         self.cone_angles, self.cone_distances = cone_angles, cone_distances
         self.mean_cone_distance = self.profile_unit = 0.5 * (cone_distances[0] + cone_distances[1])
+        self.roll_unit = math.sin(base)
         self._spiral = math.tan(spiral_angle) / math.sin(pitch_angle)
         self._pitch_involute = float(spherical_involute(np.array(pitch_angle), base))
         rho, z = self.grid(9, 2)

@@ -58,6 +58,7 @@ class InvoluteFlank(Flank):
             raise InputError(f"radii: base {base_radius} <= form {radii[0]} < tip {radii[1]} mm does not hold")
         self.base_radius, self.base_helix_angle, self.side = base_radius, base_helix_angle, side
         self.radii, self.face_width = radii, face_width
+        self.roll_unit = base_radius
         self.extent = (radii[1] - radii[0], face_width)
         self.frame = CylinderFrame()
         self._twist = math.tan(base_helix_angle) / base_radius

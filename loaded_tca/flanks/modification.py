@@ -9,14 +9,15 @@ off, and the flank becomes Theta - s delta |grad F| with |grad F| of the unmodif
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from typing import Any, Literal, get_args
 
 import numpy as np
 
-from loaded_tca.arrays import Array
-from loaded_tca.errors import InputError
+from loaded_tca.arrays import Array, real
+from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.flanks.base import DerivedFlank, Flank
 from loaded_tca.flanks.jet import Jet
 
@@ -32,8 +33,30 @@ _FORMS = {
     "root_relief_form": get_args(ReliefForm),
 }
 
+_OF_ONE_END = tuple(f"end_relief_{end}{what}" for end in ("lower", "upper") for what in ("", "_length"))
+"""None where they are as at both ends."""
+
 NO_POLYNOMIAL = (0.0,) * 6
 """a1 to a6 of no correction."""
+
+LARGEST_AMOUNT = 1.0
+"""Amount [mm] beyond which a warning says so: gears have some hundredths of a millimetre."""
+
+AMOUNTS = (
+    "lead_crowning",
+    "end_relief",
+    "end_relief_lower",
+    "end_relief_upper",
+    "profile_crowning",
+    "tip_relief",
+    "root_relief",
+    "helix_slope",
+    "profile_slope",
+    "twist",
+)
+
+CHECKED = (9, 9)
+"""Points at which the sum of all is looked at, along the profile and lengthwise, the edges included."""
 
 LOGARITHMIC_STEEPNESS = 0.99
 """k of the logarithmic crowning C ln(1 - k t^2)/ln(1 - k)."""
@@ -145,13 +168,19 @@ class FlankModifications:
         C_beta, at the ends of the face; ``lead_crowning_form``: parabolic, circular or logarithmic.
     end_relief, end_relief_length : float [mm]
         C_betaI = C_betaII at both ends, parabolic over the length.
+    end_relief_lower, end_relief_upper, end_relief_lower_length, end_relief_upper_length : float [mm], optional
+        The same of one end, the lower one at small z (toe); None: as at both ends.
     profile_crowning : float [mm]
         C_alpha, at both ends of the active profile.
     tip_relief, tip_relief_start : float [mm]
         C_alpha_a at the tip; the **diameter** where it starts. ``tip_relief_form``: parabolic or linear in
         the roll length.
-    root_relief, root_relief_start : float [mm]
-        C_alpha_f at the start of the active profile; the diameter where it starts.
+    tip_relief_start_roll : float [rad], tip_relief_start_length : float [mm]
+        Roll angle xi = tan(alpha_y) or roll length r_b xi where it starts, instead of the diameter; zero: not given.
+        On a bevel gear w/sin(delta_b) and R_m w of the unwound arc w; the length on a generated flank is counted from
+        its form line at mid-face, and it has no roll angle.
+    root_relief, root_relief_start, root_relief_start_roll, root_relief_start_length
+        C_alpha_f at the start of the active profile; where it starts, likewise.
     helix_slope, profile_slope : float [mm]
         C_H_beta and C_H_alpha; may be negative.
     twist : float [mm]
@@ -167,12 +196,13 @@ class FlankModifications:
     Raises
     ------
     InputError
-        If an amount is not finite, a form is unknown or the polynomial has not six coefficients.
+        If an amount is not finite, a form is unknown, a relief has two starts or the polynomial has not six
+        coefficients.
 
     References
     ----------
-    ISO 21771, clause 5 (flank modifications). Polynomial: the bi-directional correction that studies of straight bevel
-    gears with fitted flanks use.
+    ISO 21771, clause 5 (flank modifications; roll angle and roll length). Polynomial: the bi-directional correction
+    that studies of straight bevel gears with fitted flanks use.
 
     Examples
     --------
@@ -184,12 +214,20 @@ class FlankModifications:
     lead_crowning_form: CrowningForm = "parabolic"
     end_relief: float = 0.0
     end_relief_length: float = 0.0
+    end_relief_lower: float | None = None
+    end_relief_lower_length: float | None = None
+    end_relief_upper: float | None = None
+    end_relief_upper_length: float | None = None
     profile_crowning: float = 0.0
     tip_relief: float = 0.0
     tip_relief_start: float = 0.0
+    tip_relief_start_roll: float = 0.0
+    tip_relief_start_length: float = 0.0
     tip_relief_form: ReliefForm = "parabolic"
     root_relief: float = 0.0
     root_relief_start: float = 0.0
+    root_relief_start_roll: float = 0.0
+    root_relief_start_length: float = 0.0
     root_relief_form: ReliefForm = "parabolic"
     helix_slope: float = 0.0
     profile_slope: float = 0.0
@@ -204,10 +242,17 @@ class FlankModifications:
                 values = np.asarray(value)
                 if not (values.shape == (6,) and values.dtype.kind in "if" and np.isfinite(values).all()):
                     problems.append(f"polynomial: {value!r:.100} is not six finite numbers, a1 to a6")
-            elif forms is None and not math.isfinite(value):
-                problems.append(f"{name}: {value} mm is not finite")
+            elif value is None and name in _OF_ONE_END:
+                continue
+            elif forms is None and not math.isfinite(real(value)):
+                problems.append(f"{name}: {value} {'rad' if name.endswith('_roll') else 'mm'} is not finite")
             elif forms is not None and value not in forms:
                 problems.append(f"{name}: {str(value)!r} is not {', '.join(map(repr, forms[:-1]))} or {forms[-1]!r}")
+        for relief in ("tip_relief", "root_relief"):
+            starts = {name: value for name in _starts_of(relief) if (value := getattr(self, name)) != 0.0}
+            if len(starts) > 1:
+                told = ", ".join(f"{name} = {value}" for name, value in starts.items())
+                problems.append(f"{relief}_start: found {told}; give one of them")
         if problems:
             raise InputError(problems)
         object.__setattr__(self, "polynomial", tuple(float(value) for value in self.polynomial))
@@ -218,6 +263,7 @@ class FlankModifications:
         diameters: tuple[float, float],
         coordinate: Callable[[float], float],
         profile_unit: float = 1.0,
+        roll_unit: float | None = None,
     ) -> tuple[Term | Polynomial, ...]:
         """Terms of every amount that is not zero.
 
@@ -230,11 +276,14 @@ class FlankModifications:
             Diameter [mm] -> profile coordinate.
         profile_unit : float [mm]
             Length of one unit of the profile coordinate.
+        roll_unit : float, optional
+            Profile coordinate at a roll angle of 1 rad; None: there is no roll angle.
 
         Raises
         ------
         InputError
-            If a relief starts off the active profile, or is longer than half the face.
+            If a relief starts off the active profile, or at a roll angle that the flank does not have, or is longer
+            than half the face.
         """
         start, tip = (coordinate(diameter) for diameter in diameters)
         middle, length = 0.5 * (start + tip), tip - start
@@ -242,7 +291,7 @@ class FlankModifications:
             *self._lengthwise(face_width),
             Term("profile", self.profile_crowning, middle, 0.5 * length, parabola),
             Term("profile", self.profile_slope, start, length, linear),
-            *self._reliefs(diameters, coordinate),
+            *self._reliefs(diameters, coordinate, profile_unit, roll_unit),
         )
         terms = tuple(term for term in candidates if term.amount != 0.0)
         a1, a2, a3, a4, a5, a6 = self.polynomial
@@ -258,33 +307,70 @@ class FlankModifications:
                 raise InputError(message)
             shapes["circular"] = CircularArc(abs(crowning), half)
         shape = shapes.get(self.lead_crowning_form, parabola)
-        relief, length = self.end_relief, self.end_relief_length
-        if relief != 0.0:
-            _require_between("end_relief_length", length, 0.0, half * (1.0 + 1e-12))
-        return [
+        terms = [
             Term("lengthwise", crowning, 0.0, half, shape),
             Term("lengthwise", self.helix_slope, -half, width, linear),
-            Term("lengthwise", relief, half - length, length, one_sided_parabola),
-            Term("lengthwise", relief, length - half, -length, one_sided_parabola),
         ]
-
-    def _reliefs(self, diameters: tuple[float, float], coordinate: Callable[[float], float]) -> list[Term]:
-        reliefs = (
-            ("tip_relief", self.tip_relief, self.tip_relief_start, self.tip_relief_form, diameters[1]),
-            ("root_relief", self.root_relief, self.root_relief_start, self.root_relief_form, diameters[0]),
-        )
-        terms = []
-        for name, amount, diameter, form, end in reliefs:
+        for end, relief, length, outward in (
+            ("lower", self.end_relief_lower, self.end_relief_lower_length, -1.0),
+            ("upper", self.end_relief_upper, self.end_relief_upper_length, 1.0),
+        ):
+            amount = self.end_relief if relief is None else relief
+            name, over = f"end_relief_{end}_length", length
+            if over is None:
+                name, over = "end_relief_length", self.end_relief_length
             if amount != 0.0:
-                _require_between(f"{name}_start (diameter on the active profile)", diameter, *diameters)
-                origin, shape = coordinate(diameter), one_sided_parabola if form == "parabolic" else None
-                terms.append(Term("profile", amount, origin, coordinate(end) - origin, shape))
+                _require_between(name, over, 0.0, half * (1.0 + 1e-12))
+                terms.append(Term("lengthwise", amount, outward * (half - over), outward * over, one_sided_parabola))
+        return terms
+
+    def _reliefs(
+        self,
+        diameters: tuple[float, float],
+        coordinate: Callable[[float], float],
+        profile_unit: float,
+        roll_unit: float | None,
+    ) -> list[Term]:
+        ends = coordinate(diameters[0]), coordinate(diameters[1])
+
+        def start(relief: str) -> float:
+            """Profile coordinate at which a relief starts, however that is given."""
+            diameter, roll, length = (getattr(self, name) for name in _starts_of(relief))
+            if roll != 0.0:
+                name = f"{relief}_start_roll"
+                if roll_unit is None:
+                    told = f"{name}: the flank is no involute and has no roll angle; give {relief}_start"
+                    raise InputError(f"{told} (a diameter) or {relief}_start_length")
+                low, high = (math.degrees(end / roll_unit) for end in ends)
+                _require_between(f"{name} (roll angle on the active profile)", math.degrees(roll), low, high, "deg")
+                return float(roll * roll_unit)
+            if length != 0.0:
+                low, high = (end * profile_unit for end in ends)
+                _require_between(f"{relief}_start_length (length on the active profile)", length, low, high)
+                return float(length / profile_unit)
+            _require_between(f"{relief}_start (diameter on the active profile)", diameter, *diameters)
+            return coordinate(diameter)
+
+        terms = []
+        for name, form, end in (
+            ("tip_relief", self.tip_relief_form, ends[1]),
+            ("root_relief", self.root_relief_form, ends[0]),
+        ):
+            amount = getattr(self, name)
+            if amount != 0.0:
+                origin, shape = start(name), one_sided_parabola if form == "parabolic" else None
+                terms.append(Term("profile", amount, origin, end - origin, shape))
         return terms
 
 
-def _require_between(name: str, value: float, low: float, high: float) -> None:
+def _starts_of(relief: str) -> tuple[str, str, str]:
+    """Names of the three ways to say where a relief starts: diameter, roll angle, roll length."""
+    return f"{relief}_start", f"{relief}_start_roll", f"{relief}_start_length"
+
+
+def _require_between(name: str, value: float, low: float, high: float, unit: str = "mm") -> None:
     if not low < value < high:
-        raise InputError(f"{name}: {value:.6g} mm is not between {low:.6g} and {high:.6g} mm")
+        raise InputError(f"{name}: {value:.6g} {unit} is not between {low:.6g} and {high:.6g} {unit}")
 
 
 class ModifiedFlank(DerivedFlank):
@@ -344,10 +430,30 @@ def modified(
     Raises
     ------
     InputError
-        If a relief starts off the active profile, or is longer than half the face.
+        If a relief starts off the active profile or is longer than half the face, or if more is removed somewhere, or
+        added, than the flank is long.
+
+    Warns
+    -----
+    AccuracyWarning
+        If an amount is more than 1 mm.
     """
     try:
-        terms = modifications.terms(face_width, diameters, coordinate, nominal.profile_unit)
+        terms = modifications.terms(face_width, diameters, coordinate, nominal.profile_unit, nominal.roll_unit)
     except InputError as error:
         raise InputError(f"{owner}.{problem}" for problem in error.problems) from None
-    return ModifiedFlank(nominal, terms) if terms else nominal
+    if not terms:
+        return nominal
+    flank = ModifiedFlank(nominal, terms)
+    most, limit = float(np.abs(flank.removal(*nominal.grid(*CHECKED)).value).max()), max(nominal.extent)
+    if not most <= limit:
+        told = f"{owner}.modifications: together they remove or add up to {most:.4g} mm"
+        raise InputError(f"{told}; allowed up to {limit:.4g} mm, the longer side of the flank")
+    for name in AMOUNTS:
+        amount = getattr(modifications, name) or 0.0  # None: as at both ends
+        if abs(amount) > LARGEST_AMOUNT:
+            message = (
+                f"{owner}.{name}: {amount:.6g} mm is more than {LARGEST_AMOUNT:g} mm: an amount in um given as mm?"
+            )
+            warnings.warn(message, AccuracyWarning, stacklevel=2)
+    return flank

@@ -35,6 +35,7 @@ UNITS = {"um": 1e-3, "mm": 1.0, "m": 1e3, "in": 25.4}
 INDICES = ("profile_index", "lengthwise_index")
 LENGTHS = ("x", "y", "z", "radius", "axial", "deviation", "removed")
 CHOICES = ({"x", "y", "z"}, {"radius", "axial", "deviation"}, {"radius", "axial", "removed"})
+DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+([eE][+-]?\d+)?\s*")
 MOST_PROBLEMS = 10
 """Problems of single lines that are told; more of them are counted."""
 
@@ -83,8 +84,9 @@ def parse_topography(text: str) -> Topography:
         raise InputError("no points: a line with the names of the columns, and one line per point, are asked for")
     separator = next((mark for mark in (";", "\t") if mark in body[0][1]), ",")
     header = [name.strip() for name in body[0][1].split(separator)]
+    columns = _factors(body[0][0], header)
     values = _numbers(body[1:], header, separator)
-    table = {name: values[:, k] * factor for k, (name, factor) in enumerate(_factors(header))}
+    table = {name: values[:, k] * factor for k, (name, factor) in enumerate(columns)}
     if INDICES[0] in table:
         shape, order = _order_by_indices(*(table[name] for name in INDICES))
     else:
@@ -97,17 +99,27 @@ def parse_topography(text: str) -> Topography:
 
 
 def _numbers(body: list[tuple[int, str]], header: list[str], separator: str) -> Array:
-    """Rows of numbers (points, columns); InputError with every line that is none."""
+    """Rows of numbers (points, columns); InputError with every line that is none.
+
+    Places are told, and not what stands there: the file may be any that can be read.
+    """
+    lines = [(number, line.split(separator)) for number, line in body]
+    longer = [number for number, cells in lines if separator == "," and len(cells) > len(header)]
+    with_comma = [number for number, cells in lines if any(map(DECIMAL_COMMA.fullmatch, cells))]
+    if 2 * len(longer) > len(lines) or with_comma:
+        raise InputError(
+            f"line {(with_comma or longer)[0]}: decimal commas, it seems ({len(with_comma or longer)} such lines); "
+            "numbers are written with a decimal point"
+        )
     rows, problems = [], []
-    for number, line in body:
-        cells = line.split(separator)
+    for number, cells in lines:
         if len(cells) != len(header):
             problems.append(f"line {number}: {len(cells)} values; the header names {len(header)} columns")
             continue
         row = [_number(cell) for cell in cells]
         problems += [
-            f"line {number}: {name} {cell.strip()!r:.40} is not a finite number"
-            for name, cell, value in zip(header, cells, row, strict=True)
+            f"line {number}, column {k}: {name} is not a finite number"
+            for k, (name, value) in enumerate(zip(header, row, strict=True), 1)
             if not np.isfinite(value)
         ]
         rows.append(row)
@@ -124,11 +136,11 @@ def _number(cell: str) -> float:
         return float("nan")
 
 
-def _factors(header: list[str]) -> list[tuple[str, float]]:
+def _factors(line: int, header: list[str]) -> list[tuple[str, float]]:
     """Name of each column without its unit, and the factor to mm; InputError with every problem of the header."""
     found, problems = [], []
     known = [*INDICES, *(f"{name}_{unit}" for name in LENGTHS for unit in UNITS)]
-    for column in header:
+    for k, column in enumerate(header, 1):
         name, _, unit = column.rpartition("_")
         if column in INDICES:
             found.append((column, 1.0))
@@ -138,7 +150,8 @@ def _factors(header: list[str]) -> list[tuple[str, float]]:
             problems.append(f"column {column!r} has no unit; allowed {', '.join(f'{column}_{unit}' for unit in UNITS)}")
         else:
             near = difflib.get_close_matches(column, known, 1)
-            problems.append(f"column {column!r:.60} is unknown" + (f"; did you mean {near[0]!r}?" if near else ""))
+            meant = f"did you mean {near[0]!r}?" if near else f"allowed {', '.join(INDICES)}, and lengths as x_mm"
+            problems.append(f"line {line}, column {k}: the name of the column is unknown; {meant}")
     names = [name for name, _ in found]
     problems += [f"column {name} appears twice" for name in sorted(set(names)) if names.count(name) > 1]
     lengths = set(names) - set(INDICES)

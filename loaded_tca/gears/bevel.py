@@ -11,7 +11,7 @@ from functools import cached_property
 from math import acos, asin, atan, atan2, cos, degrees, isclose, log, pi, radians, sin, sqrt, tan
 
 from loaded_tca.errors import GeometryError, InputError, require
-from loaded_tca.gears.checks import half_turn_checks, input_checks, pair_checks, spiral_check, teeth_checks
+from loaded_tca.gears.checks import face_check, half_turn_checks, input_checks, pair_checks, spiral_check, teeth_checks
 
 _EQUAL = 1e-9
 _DEDENDUM = 1.25
@@ -100,6 +100,7 @@ class BevelGear:
             *input_checks(self, ("outer_module", "face_width", "bore_diameter"), ("profile_shift",)),
             *half_turn_checks(pitch_angle=self.pitch_angle, face_angle=self.face_angle, root_angle=self.root_angle),
             spiral_check("spiral_angle", self.spiral_angle),
+            face_check(self.face_width, self.outer_module, "outer_module"),
             owner=self.name,
         )
         root, pitch, face = self.root_cone_angle, self.pitch_angle, self.tip_angle
@@ -320,6 +321,14 @@ class BevelMesh:
         """Whether the mating gear's tip reaches below the form cone of pinion and wheel, into what is no involute."""
         pinion, wheel = (tip < form for tip, form in self._tip_and_form_arcs)
         return pinion, wheel
+
+    @property
+    def backlash(self) -> float:
+        """Circumferential backlash at the mean pitch circles; negative where the teeth overlap [mm]."""
+        gears = self.pinion, self.wheel
+        spaces = (pi / gear.teeth - 2.0 * gear.half_thickness_angle for gear in gears)
+        radii = (gear.mean_cone_distance * sin(gear.pitch_angle) for gear in gears)
+        return sum(radius * space for radius, space in zip(radii, spaces, strict=True))
 
     @property
     def transverse_contact_ratio(self) -> float:

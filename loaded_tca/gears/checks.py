@@ -6,16 +6,20 @@ from collections.abc import Iterator
 from math import degrees, inf, isclose, isfinite, pi, radians
 from typing import Any
 
+from loaded_tca.arrays import real
+
 SMALLEST_PRESSURE_ANGLE, LARGEST_PRESSURE_ANGLE = radians(1), radians(45)
 LARGEST_SPIRAL_ANGLE = radians(60)
 """Of helices too."""
+LEAST_FACE = 1e-3
+"""Smallest face width over the module: a face of less is no tooth, and its pressure no number."""
 _EQUAL = 1e-12
 
 
 def teeth_checks(*teeth: float) -> Iterator[tuple[bool, str]]:
     """Checks for ``require``: every number of teeth is a whole one from 3 on."""
     for count in teeth:
-        whole = isfinite(count) and count == int(count) and count >= 3
+        whole = isfinite(real(count)) and count == int(count) and count >= 3
         yield whole, f"teeth: {count} is not a whole number from 3 on"
 
 
@@ -23,24 +27,31 @@ def input_checks(gear: Any, positive: tuple[str, ...], finite: tuple[str, ...]) 
     """Checks of lengths that are to be positive (where they are given), of finite numbers, of the pressure angle."""
     for key in positive:
         value = getattr(gear, key)
-        yield value is None or 0.0 < value < inf, f"{key}: {value} is not positive and finite"
+        yield value is None or 0.0 < real(value) < inf, f"{key}: {value} is not positive and finite"
     for key in finite:
-        yield isfinite(getattr(gear, key)), f"{key}: {getattr(gear, key)} is not finite"
-    angle = gear.pressure_angle
+        yield isfinite(real(getattr(gear, key))), f"{key}: {getattr(gear, key)} is not finite"
+    angle = real(gear.pressure_angle)
     allowed = SMALLEST_PRESSURE_ANGLE <= angle <= LARGEST_PRESSURE_ANGLE
     yield allowed, f"pressure_angle: {angle:.6g} rad is not between 0.0175 and 0.785 rad (1 to 45 deg)"
+
+
+def face_check(face_width: float, length: float, name: str) -> tuple[bool, str]:
+    """Check of a face width against the module, or another length, that is called so."""
+    least = LEAST_FACE * length
+    short = 0.0 < real(face_width) < least
+    return not short, f"face_width: {face_width} mm is below {LEAST_FACE:g} {name}, {least:.4g} mm"
 
 
 def half_turn_checks(**angles: float | None) -> Iterator[tuple[bool, str]]:
     """Checks of angles, where they are given: each lies between 0 and 180 deg."""
     for key, angle in angles.items():
         if angle is not None:
-            yield 0.0 < angle < pi, f"{key}: {angle:.6g} rad is not between 0 and 3.142 rad (180 deg)"
+            yield 0.0 < real(angle) < pi, f"{key}: {real(angle):.6g} rad is not between 0 and 3.142 rad (180 deg)"
 
 
 def spiral_check(key: str, angle: float) -> tuple[bool, str]:
     """Check of a helix or spiral angle of either hand."""
-    return abs(angle) < LARGEST_SPIRAL_ANGLE, f"{key}: {angle:.6g} rad is not within 1.047 rad (60 deg)"
+    return abs(real(angle)) < LARGEST_SPIRAL_ANGLE, f"{key}: {real(angle):.6g} rad is not within 1.047 rad (60 deg)"
 
 
 def pair_checks(pinion: Any, wheel: Any, lengths: tuple[str, ...], spiral: str) -> Iterator[tuple[bool, str]]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from loaded_tca.errors import GeometryError, InputError, require
-from loaded_tca.gears.checks import input_checks, spiral_check, teeth_checks
+from loaded_tca.gears.checks import face_check, input_checks, spiral_check, teeth_checks
 
 
 def involute(angle: float) -> float:
@@ -120,6 +120,7 @@ class CylindricalGear:
             *teeth_checks(self.teeth),
             *input_checks(self, positive, finite=("profile_shift",)),
             spiral_check("helix_angle", self.helix_angle),
+            face_check(self.face_width, self.normal_module, "normal_module"),
             (0.0 <= rounding < inf, f"root_radius_coefficient: {rounding} is negative or not finite"),
             owner=self.name,
         )

@@ -14,7 +14,7 @@ from math import inf, isfinite, pi
 from typing import Literal, get_args
 
 from loaded_tca.errors import require
-from loaded_tca.gears.checks import half_turn_checks
+from loaded_tca.gears.checks import face_check, half_turn_checks
 
 Generation = Literal["generated", "formate"]
 
@@ -133,6 +133,7 @@ class FaceMilledBlank:
             *_finite_checks(self),
             (self.hand in ("right", "left"), f"hand: {self.hand!r} is not 'right' or 'left'"),
             (0.0 < width < outer < inf, f"face_width: 0 < {width} < outer_cone_distance {outer} mm does not hold"),
+            face_check(width, outer, "outer_cone_distance"),
             (0.0 < root <= pitch <= face < pi, f"root_angle: {cones} does not hold"),
         )
 

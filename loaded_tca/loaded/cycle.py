@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import ConvergenceError
+from loaded_tca.errors import ConvergenceError, named
 from loaded_tca.loaded.load_sharing import Laws, SharedLoad, share_load, tooth_pairs_at
 from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, solve_under_load
@@ -134,7 +134,7 @@ def carried_by_all(
         for part in shared[t][n].shares:
             place = t, n, pairs.index(part.tooth_pair.pair)
             contacts[t][n][place[2]], deflection[place] = part.loaded, part.tooth_deflection
-            share[place] = part.torque / torques[t] if torques[t] > 0.0 else 1.0
+            share[place] = part.torque / torques[t] if shared[t][n].torque > 0.0 else 1.0
     in_gear_angles = []
     for path in (mesh.paths[column] for column in columns):
         turned = pair.ratio * (angles - path.pinion_angle)
@@ -163,11 +163,12 @@ def _told(shape: tuple[int, int], progress: Progress | None) -> Iterator[tuple[i
 
 @contextmanager
 def _told_where(torque: float, angle: float) -> Iterator[None]:
-    """Say under which torque [N mm] and at which pinion angle [rad] something did not converge."""
+    """Say under which torque [N mm] and at which pinion angle [rad] something cannot be solved."""
+    where = f"{1e-3 * torque:g} N m at pinion angle {math.degrees(angle):.6g} deg"
     try:
-        yield
+        with named(where):
+            yield
     except ConvergenceError as error:
-        where = f"{1e-3 * torque:g} N m at pinion angle {math.degrees(angle):.6g} deg"
         raise ConvergenceError(f"{where}: {error}", error.last) from error
 
 

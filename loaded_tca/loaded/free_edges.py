@@ -10,6 +10,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.contact.edges import MOST_OBLIQUE, FreeEdge, edge_of_plane, wedge_factor
+from loaded_tca.errors import named
 from loaded_tca.flanks.base import outward_normal
 from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
 from loaded_tca.separation import Separation
@@ -177,4 +178,5 @@ def _factor(pair: GearPair, end: _End) -> float:
     """Factor of the mirrored pressure for the body that ends."""
     material = (pair.pinion, pair.wheel)[end.member].material
     share = pair.contact_modulus * (1.0 - material.poisson_ratio**2) / material.youngs_modulus
-    return wedge_factor(end.angle, material.poisson_ratio, min(share, 1.0))
+    with named(f"analysis.free_edges: {end.name}"):
+        return wedge_factor(end.angle, material.poisson_ratio, min(share, 1.0))

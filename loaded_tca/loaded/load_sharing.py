@@ -33,9 +33,10 @@ from functools import cache, partial
 from itertools import combinations, product
 
 import numpy as np
+from scipy.optimize import brentq
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import ConvergenceError, InputError
+from loaded_tca.errors import ConvergenceError, InputError, named
 from loaded_tca.loaded.balance import EXPONENTS, PowerLaw, balance
 from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, solve_under_load
@@ -43,10 +44,15 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
 from loaded_tca.unloaded import ContactPoint, MeshPath
 
+SMALLEST_SHARED = 1e-12
+"""Forces below this times E* m_n^2 are not shared, but taken for none: what the pairs deform then is near the rounding
+of their gaps and initial separations (1 uN at module 3; a line deforms by 1e-12 mm)."""
 MOST_BALANCES = 40
 """Balances before giving up; two to four are the rule."""
 SWINGING = 8
-"""Balances after which forces go half the way only: near a cap on the pressure they swing to and fro."""
+"""Balances after which forces go half the way only, or where the pressure has a cap their rotation is looked for."""
+ROTATION = 1e-11
+"""Relative accuracy of that rotation, and so of the torques balanced."""
 AGREEMENT = 5e-2
 """Wanted agreement of the rotations, relative, over the accuracy of the peak pressure."""
 AGREEMENT_ON_CELLS = 1e-5
@@ -54,7 +60,7 @@ AGREEMENT_ON_CELLS = 1e-5
 SETTLED = 10.0
 """Change of how the slices of a pair are displaced, over its deflection, in agreements: it only moves force about."""
 SAME_BOX = (0.75, 1.25)
-"""Loads over the one a box was made for, between which the contact still fills it well."""
+"""Loads over the one a box was made for, between which the contact still fills it well, if it does not reach it."""
 SOFTEST_START = 4.0
 """First guess of a contact deformation: so many times F/(E* b), as slender contacts of gears have it."""
 
@@ -151,7 +157,7 @@ class SharedLoad:
     Attributes
     ----------
     torque : float [N mm]
-        Of the pinion.
+        Of the pinion; zero where next to none is taken for none.
     rotation : float [rad]
         Of the wheel back by the load; zero without load.
     shares : tuple of Share
@@ -208,7 +214,8 @@ def share_load(
     tooth_pairs : sequence of ToothPair
         Every pair that may come into contact, one at least without initial separation; see :func:`tooth_pairs_at`.
     torque : float [N mm]
-        Of the pinion, >= 0.
+        Of the pinion, >= 0. One that is next to none, below about 1e-12 E* m_n^2 times the lever of the leading pair,
+        is taken for none: what it closes is rounding.
     grid : GridChoice
         How finely each contact is resolved.
     bending : BendingModel, optional
@@ -247,8 +254,9 @@ def share_load(
         raise InputError(f"torque: {torque!r} N mm is not a finite number >= 0")
     if not tooth_pairs:
         raise InputError("tooth_pairs: none given; a torque needs one tooth pair at least that can be in contact")
-    if torque == 0.0:
-        leading = min(tooth_pairs, key=lambda tooth_pair: tooth_pair.initial_separation)
+    leading = min(tooth_pairs, key=lambda tooth_pair: tooth_pair.initial_separation)
+    smallest = SMALLEST_SHARED * pair.contact_modulus * pair.module**2
+    if torque <= smallest * leading.contact.pinion_lever:
         share = Share(leading, solve_under_load(pair, leading.contact, 0.0, grid), 0.0)
         return SharedLoad(0.0, 0.0, (share,), np.zeros((1, 1)), 0.0, 0)
     return _Balance(pair, tooth_pairs, torque, grid, bending, start).run()
@@ -286,24 +294,29 @@ class _Balance:
         return PowerLaw(load, SOFTEST_START * load / (self.pair.contact_modulus * self.pair.face_width))
 
     def run(self) -> SharedLoad:
-        residual, forces = math.inf, np.zeros(len(self.laws))
+        shared: SharedLoad | None = None
+        forces = np.zeros(len(self.laws))
         for count in range(1, MOST_BALANCES + 1):
-            before = forces
-            forces = balance(self.laws, self.separations, self.levers, self.torque, self.compliance)
-            if count > SWINGING:
-                forces = 0.5 * (before + forces)
-            for index in np.flatnonzero(forces).tolist():
-                self._solve(index, forces)
+            capped = self.pair.max_pressure is not None
+            if capped and shared is not None and count > SWINGING and count % SWINGING != 1:
+                forces = self._solve_at_common_rotation(shared)
+            else:  # also now and then there, since pairs that are apart may come under load
+                before = forces
+                forces = balance(self.laws, self.separations, self.levers, self.torque, self.compliance)
+                if count > SWINGING and not capped:
+                    forces = 0.5 * (before + forces)
+                for index in np.flatnonzero(forces).tolist():
+                    self._solve(index, forces)
             self.compliance = self._corrected()
             shared = self._shared(forces, count)
-            residual = shared.residual
-            if residual <= self.agreement and self._settled(forces, shared.rotation):
+            if shared.residual <= self.agreement and self._settled(forces, shared.rotation):
                 return shared
+        assert shared is not None
         cap = self.pair.max_pressure
         limit = "" if cap is None else f"; with max_pressure {cap:g} MPa contacts near their limit deform without end"
         raise ConvergenceError(
-            f"load sharing not converged: the tooth pairs' rotations differ by {residual:.1e} > {self.agreement:.1e} "
-            f"of the rotation after {MOST_BALANCES} balances{limit}",
+            f"load sharing not converged: the tooth pairs' rotations differ by {shared.residual:.1e} > "
+            f"{self.agreement:.1e} of the rotation after {MOST_BALANCES} balances{limit}",
             last=shared,
         )
 
@@ -312,11 +325,14 @@ class _Balance:
         force, before, law = float(forces[index]), self.solved[index], self.laws[index]
         tooth_pair, coupling = self.tooth_pairs[index], partial(self._coupling, index, forces)
         try:
-            if before is not None and SAME_BOX[0] * before.solution.load <= force <= SAME_BOX[1] * before.solution.load:
-                loaded = before.under(force, coupling(before.separation))
-            else:
+            loaded = None
+            if before is not None and not before.solution.reaches_border:
+                least, most = (factor * before.solution.load for factor in SAME_BOX)
+                loaded = before.under(force, coupling(before.separation)) if least <= force <= most else None
+            if loaded is None or loaded.solution.reaches_border:
                 contact, number = tooth_pair.contact, tooth_pair.pair
-                loaded = solve_under_load(self.pair, contact, force, self.grid, self.bending, number, coupling)
+                with named(f"tooth pair {number:+d}"):
+                    loaded = solve_under_load(self.pair, contact, force, self.grid, self.bending, number, coupling)
         except ConvergenceError as error:
             raise ConvergenceError(f"tooth pair {tooth_pair.pair:+d}: {error}", error.last) from error
         self.solved[index] = loaded
@@ -324,6 +340,40 @@ class _Balance:
         if loaded.solution.load > 0.0 and deformation > 0.0:
             first = replace(law, load=force, deformation=deformation)
             self.laws[index] = first if before is None else law.through(force, deformation)
+
+    def _solve_at_common_rotation(self, shared: SharedLoad) -> Array:
+        """Solve the carrying pairs on their grids at the rotation that balances the torque; forces (k,).
+
+        At a cap whole rows of cells yield at once: the deformation jumps as the force grows, so that forces swing to
+        and fro, but the force grows steadily with the deformation.
+        """
+        numbers = {tooth_pair.pair: index for index, tooth_pair in enumerate(self.tooth_pairs)}
+        before = [(numbers[share.tooth_pair.pair], share.loaded) for share in shared.shares]
+        given = np.array([0.0 if loaded is None else loaded.solution.load for loaded in self.solved])
+        coupling = {index: self._coupling(index, given, loaded.separation) for index, loaded in before}
+
+        def solved_at(rotation: float) -> dict[int, LoadedContact]:
+            approach = self.levers[1] * (rotation - self.separations)
+            return {index: loaded.at(float(approach[index]), coupling[index]) for index, loaded in before}
+
+        def torque_missing(rotation: float) -> float:
+            found = solved_at(rotation).items()
+            return self.torque - sum(float(self.levers[0, index]) * loaded.solution.load for index, loaded in found)
+
+        asked = [share.rotation for share in shared.shares]
+        low, high = min(asked), max(asked)
+        while torque_missing(low) < 0.0:
+            low -= max(high - low, self.agreement * high)
+        while torque_missing(high) > 0.0:
+            high += max(high - low, self.agreement * high)
+        rotation = float(brentq(torque_missing, low, high, xtol=ROTATION * high, rtol=ROTATION))
+        forces = np.zeros(len(self.solved))
+        for index, loaded in solved_at(rotation).items():
+            self.solved[index], forces[index] = loaded, loaded.solution.load
+        for index, loaded in self._loaded():
+            if loaded.solution.reaches_border:
+                self._solve(index, forces)  # in a larger box
+        return forces
 
     def _loaded(self) -> Iterator[tuple[int, LoadedContact]]:
         """Place and contact of the pairs that were solved under a load."""
@@ -374,7 +424,7 @@ class _Balance:
         return True
 
     def _shared(self, forces: Array, count: int) -> SharedLoad:
-        carrying = np.flatnonzero(forces)
+        carrying = np.array([index for index, _ in self._loaded() if forces[index] > 0.0])
         deflections = self.compliance @ forces
         shares = []
         for index in carrying.tolist():

@@ -13,6 +13,7 @@ from loaded_tca.contact import ContactProblem, ContactSolution, solve_problem, s
 from loaded_tca.contact.adaptive import TOLERANCE_SHARE
 from loaded_tca.contact.checks import memory_problem
 from loaded_tca.contact.levels import under_other_load
+from loaded_tca.contact.patch import values_at_ends
 from loaded_tca.contact.solution import CoarserGrid
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.free_edges import tooth_edges
@@ -28,6 +29,8 @@ CHORD = 0.8
 """Part of the load down to which the stiffness is taken."""
 CHORD_TOLERANCE = 1e-5
 """Of the solution at that end: 1e-4 of the stiffness."""
+EXACT = 1e-9
+"""Tolerance of the solver where the approach is given: forces then balance a torque to that."""
 MARGIN_LEFT = 0.8
 """Expected contact over its box."""
 SMALLEST_LOAD = 1e-15
@@ -132,7 +135,10 @@ class LoadedContact:
         return ellipse
 
     def _misfit(self, ellipse: PointContact) -> float:
-        """How far the gap leaves the paraboloid of the contact point, weighted with Hertz's pressure, over its mean."""
+        """How far the gap leaves the paraboloid of the contact point, weighted with Hertz's pressure, over its mean.
+
+        Infinite where no cell of the grid tells, the ellipse being smaller than one.
+        """
         grid = self.separation
         x, y = grid.x[:, None], grid.y
         below = 1.0 - (x / ellipse.semi_minor) ** 2 - (y / ellipse.semi_major) ** 2
@@ -140,16 +146,24 @@ class LoadedContact:
         paraboloid = 0.5 * (grid.curvatures[0] * x**2 + grid.curvatures[1] * y**2)
         inside = weight > 0.0
         gap = np.abs(grid.gap - paraboloid)
-        return float(weight[inside] @ gap[inside] / (weight[inside] @ paraboloid[inside]))
+        mean = float(weight[inside] @ paraboloid[inside])
+        return float(weight[inside] @ gap[inside]) / mean if mean > 0.0 else math.inf
 
     @property
     def extent(self) -> tuple[float, float]:
-        """Width across and length along [mm]: of the contact ellipse, at an edge of the cells under pressure."""
+        """Width across and length along [mm]: of the contact ellipse; at an edge between its ends, within the cells."""
         if not self.at_edge:
             minor, major = self.solution.semi_axes
             return 2.0 * minor, 2.0 * major
-        (nx, ny), (dx, dy) = self.solution.cells_across, self.separation.spacing
-        return nx * dx, ny * dy
+        pressure, void = (
+            np.pad(self.solution.pressure, 1),
+            np.pad(np.isinf(self.separation.gap), 1, constant_values=True),
+        )
+        dx, dy = self.separation.spacing
+        across, along = (
+            float(np.ptp(values_at_ends(pressure, place, void))) for place in [*np.indices(pressure.shape)]
+        )
+        return across * dx, along * dy
 
     @cached_property
     def slice_force(self) -> Array:
@@ -208,6 +222,22 @@ class LoadedContact:
             deeper = solution.approach_under_load / before.approach_under_load
             approach = problem.first_contact + deeper * (coarser.approach - first)
             solution = replace(solution, coarser=CoarserGrid(higher * coarser.largest, approach))
+        return replace(self, solution=solution, coupling_deflection=coupling)
+
+    def at(self, approach: float, coupling: Array | None = None) -> LoadedContact:
+        """Return the contact at another approach [mm], counted as the gap is, on the same grid; ``coupling`` as above.
+
+        The estimated error is left as it is. The solution is closer than others: at a cap on the pressure the force
+        depends on it.
+        """
+        before, gap = self.solution, self.separation.gap
+        gap = gap if coupling is None else gap + coupling
+        problem = replace(before.problem, load=None, approach=approach, gap=gap)
+        solution = solve_problem(problem, tolerance=EXACT, initial_pressure=before.pressure)
+        area = np.count_nonzero(np.isfinite(problem.gap)) * problem.spacing[0] * problem.spacing[1]
+        solution = replace(solution, load=min(solution.load, problem.cap * area))  # rounding, where all is at the cap
+        problem = replace(problem, load=solution.load, approach=None)
+        solution = replace(solution, problem=problem, coarser=before.coarser)
         return replace(self, solution=solution, coupling_deflection=coupling)
 
     def _solved(self, problem: ContactProblem, tolerance: float) -> ContactSolution:
@@ -328,25 +358,29 @@ def _solve_in_box(
             problem,
             accuracy=grid.accuracy,
             tolerance=grid.tolerance,
-            smooth=not _crosses_relief_start(pair, contact, first, expected > 0.0),
+            smooth=not _crosses_relief_start(pair, contact, first, expected),
             first_cells=FIRST_CELLS,
             initial_pressure=expected,
             warn=False,
         )
     separation, displaced = sampled(solution.problem.cells)
-    at_relief_start = _crosses_relief_start(pair, contact, separation, solution.in_contact)
+    at_relief_start = _crosses_relief_start(pair, contact, separation, solution.pressure)
     return LoadedContact(contact, separation, solution, at_relief_start, tolerance, displaced)
 
 
-def _crosses_relief_start(pair: GearPair, contact: ContactPoint, separation: Separation, where: Array) -> bool:
-    """Whether the start of a linear relief, of either flank, runs between the cells ``where``."""
+def _crosses_relief_start(pair: GearPair, contact: ContactPoint, separation: Separation, pressure: Array) -> bool:
+    """Whether the start of a linear relief, of either flank, runs through the contact, whose ends lie within cells."""
     if contact.on_relief_start:
         return True
-    points = separation.points[where]
-    own = pair.pinion.flank.relief_starts(np.hypot(points[:, 0], points[:, 1]), points[:, 2])
-    radius, _, axial = pair.to_wheel(points)
-    values = [jet.value for jet in (*own, *pair.wheel.flank.relief_starts(radius, axial))]
-    return any(value.size and value.min() < 0.0 < value.max() for value in values)
+    (x, y, z), void = np.moveaxis(separation.points, -1, 0), np.isinf(separation.gap)
+    radius, _, axial = pair.to_wheel(separation.points)
+    jets = (*pair.pinion.flank.relief_starts(np.hypot(x, y), z), *pair.wheel.flank.relief_starts(radius, axial))
+    for jet in jets if pressure.any() else ():
+        beyond = np.broadcast_to(jet.value, pressure.shape)
+        values = np.concatenate([beyond[pressure > 0.0], values_at_ends(pressure, beyond, void)])
+        if values.min() < 0.0 < values.max():
+            return True
+    return False
 
 
 def _expected(separation: Separation) -> Array:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
+from loaded_tca.loaded.effort import expected_effort, rounded
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import Scene
 from loaded_tca.scene.model import Row
@@ -34,7 +35,9 @@ def describe_scene(scene: Scene) -> str:
         *_spline_rows(scene, pair),
     ]
     lines = [f"{label:<{LABEL}}" + "".join(f"{cell:>14}" for cell in cells) for label, *cells in rows]
-    return "\n".join([scene.title or "Scene", *lines, *(f"note: {note}" for note in scene.notes())])
+    effort = expected_effort(scene)
+    notes = [*scene.notes(), *([] if effort.fits else [f"{effort}"])]
+    return "\n".join([scene.title or "Scene", *lines, *(f"note: {note}" for note in notes)])
 
 
 def _path_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
@@ -63,6 +66,8 @@ def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     switches = ("on" if switch else "off" for switch in (wanted.load_sharing, wanted.free_edges))
     yield "load sharing, free edges, compliance", *switches, wanted.compliance
     yield "positions, torques", f"{wanted.positions}", f"{len(scene.torques)}"
+    effort = expected_effort(scene)
+    yield "analysis, roughly: time [s], memory [GiB]", rounded(effort.seconds), rounded(effort.gibibytes)
     if wanted.compliance != "contact":
         yield "bores held rigid, smallest diameter [mm]", *(f"{bore:.4f}" for bore in pair.rigid_bores)
 

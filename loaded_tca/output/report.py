@@ -12,8 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from loaded_tca.errors import InputError
-from loaded_tca.results.files import FilePath, Part, remove, replacing
+from loaded_tca.results.files import Buffer, FilePath, Part, replace_together
 from loaded_tca.results.key_figures import ARCSEC
 from loaded_tca.results.mesh_cycle import CYCLE, PAIRS, PATH_PARTS, QUANTITIES, MeshCycle
 from loaded_tca.results.pressure_map import MAP_PARTS
@@ -46,8 +45,8 @@ COLUMNS = {
 """Name -> column and factor, where these do not follow from the unit: full widths, diameters, um."""
 
 
-def write_report(result: MeshCycle, directory: FilePath) -> tuple[Path, ...]:
-    """Write ``result.nc``, ``summary.json`` and ``positions.csv``, each whole or not at all.
+def write_report(result: MeshCycle, directory: FilePath, outdated: Iterable[str] = ()) -> tuple[Path, ...]:
+    """Write ``result.nc``, ``summary.json`` and ``positions.csv``, all of them or none.
 
     Where tooth pairs share the load ``contacts.csv`` too; elsewhere one that an earlier result left is removed.
 
@@ -56,6 +55,8 @@ def write_report(result: MeshCycle, directory: FilePath) -> tuple[Path, ...]:
     result : MeshCycle
     directory : str or path
         Made if it does not exist.
+    outdated : iterable of str
+        Names of files that an earlier result may have left there: removed before the new ones take their places.
 
     Returns
     -------
@@ -67,26 +68,11 @@ def write_report(result: MeshCycle, directory: FilePath) -> tuple[Path, ...]:
     InputError
         If they cannot be written.
     """
-    folder = Path(directory)
-    make_directory(folder)
     texts = {SUMMARY: summary_json(result), POSITIONS: positions_csv(result)}
     if result.scene.analysis.load_sharing:
         texts[CONTACTS] = contacts_csv(result)
-    else:
-        remove(folder / CONTACTS)
-    result.save(folder / RESULT)
-    for name, text in texts.items():
-        with replacing(folder / name) as temporary:
-            temporary.write_text(text, encoding="utf-8", newline="")
-    return tuple(folder / name for name in (RESULT, *texts))
-
-
-def make_directory(directory: Path) -> None:
-    """Make a directory and those above it; InputError if that cannot be done."""
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{directory}: cannot be made a directory: {error.strerror}") from error
+    contents: dict[str, Buffer] = {RESULT: result.to_netcdf(), **{name: text.encode() for name, text in texts.items()}}
+    return replace_together(directory, contents, {*outdated, CONTACTS} - {*contents})
 
 
 def summary_json(result: MeshCycle) -> str:

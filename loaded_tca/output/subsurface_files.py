@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from loaded_tca.output.report import csv_table
-from loaded_tca.results.files import FilePath, Part, replacing, variables_of, write_dataset
+from loaded_tca.results.files import Buffer, FilePath, Part, netcdf_of, replace_together, variables_of
 from loaded_tca.results.mesh_cycle import QUANTITIES
 from loaded_tca.results.pressure_map import MAP_PARTS
 from loaded_tca.results.stress_below import StressBelow
@@ -27,18 +28,21 @@ STRESSES = {
 """Field of ``SubsurfaceStress`` -> what the file says of it."""
 
 
-def write_subsurface(below: StressBelow, directory: FilePath) -> tuple[Path, Path]:
-    """Write ``subsurface.nc`` and ``subsurface.csv``, each whole or not at all.
+def write_subsurface(below: StressBelow, directory: FilePath, more: Mapping[str, Buffer] = {}) -> tuple[Path, ...]:
+    """Write ``subsurface.nc`` and ``subsurface.csv``, all files or none.
 
     Parameters
     ----------
     below : StressBelow
     directory : str or path
-        Exists.
+        Made if it does not exist.
+    more : mapping of str to bytes
+        Contents of files to write with these, by their names: pictures of the same stresses.
 
     Returns
     -------
-    (Path, Path)
+    tuple of Path
+        All files.
 
     Raises
     ------
@@ -47,7 +51,6 @@ def write_subsurface(below: StressBelow, directory: FilePath) -> tuple[Path, Pat
     """
     import xarray
 
-    fields, table = Path(directory) / FIELDS, Path(directory) / TABLE
     one, stress, result = below.pressure_map, below.stress, below.result
     grid = ("depth", "across", "along")
     told: dict[str, tuple[Part, Any]] = {
@@ -62,10 +65,8 @@ def write_subsurface(below: StressBelow, directory: FilePath) -> tuple[Path, Pat
     }
     parts, arrays = ({name: entry[k] for name, entry in told.items()} for k in (0, 1))
     texts = {"title": result.scene.title, "scene_toml": result.scene.to_toml(), "version": result.version}
-    write_dataset(fields, xarray.Dataset(variables_of(parts, arrays), attrs={**texts, "gear": below.gear}))
-    with replacing(table) as temporary:
-        temporary.write_text(subsurface_csv(below), encoding="utf-8", newline="")
-    return fields, table
+    fields = xarray.Dataset(variables_of(parts, arrays), attrs={**texts, "gear": below.gear})
+    return replace_together(directory, {FIELDS: netcdf_of(fields), TABLE: subsurface_csv(below).encode(), **more})
 
 
 def subsurface_csv(below: StressBelow) -> str:

@@ -11,7 +11,7 @@ StereoLithography Interface Specification.
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +20,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.output.teeth_in_space import TeethInSpace
 from loaded_tca.pairs import MatingTeeth
-from loaded_tca.results.files import FilePath, replacing
+from loaded_tca.results.files import Buffer, FilePath, replace_together, replacing
 from loaded_tca.tooth import TriangleMesh
 
 LONGEST_TITLE = 255
@@ -49,16 +49,16 @@ def write_vtk(path: FilePath, mesh: TriangleMesh, title: str = "", *, binary: bo
     InputError
         If the file cannot be written, or the name of an array has a blank in it.
     """
+    content = b"".join(_vtk_parts(mesh, title, binary=binary))
+    with replacing(path) as temporary:
+        temporary.write_bytes(content)
+
+
+def _vtk_parts(mesh: TriangleMesh, title: str, *, binary: bool = True) -> Iterator[bytes]:
     names = [name for data in (mesh.point_data, mesh.cell_data) for name in data]
     problems = [f"data {name!r}: a name in a VTK file is one word" for name in names if len(name.split()) != 1]
     if problems:
         raise InputError(problems)
-    with replacing(path) as temporary, open(temporary, "wb") as file:
-        for part in _vtk_parts(mesh, title, binary=binary):
-            file.write(part)
-
-
-def _vtk_parts(mesh: TriangleMesh, title: str, *, binary: bool) -> Iterator[bytes]:
     count = len(mesh.triangles)
     yield f"# vtk DataFile Version 3.0\n{_header(mesh, title, LONGEST_TITLE)}\n".encode("ascii")
     yield (b"BINARY" if binary else b"ASCII") + f"\nDATASET POLYDATA\nPOINTS {mesh.size} double\n".encode("ascii")
@@ -103,13 +103,18 @@ def write_stl(path: FilePath, mesh: TriangleMesh, title: str = "") -> None:
     InputError
         If the file cannot be written.
     """
+    content = _stl(mesh, title)
+    with replacing(path) as temporary:
+        temporary.write_bytes(content)
+
+
+def _stl(mesh: TriangleMesh, title: str) -> bytes:
     records = np.zeros(len(mesh.triangles), dtype=_STL_RECORD)
     normals = mesh.normals
     records["normal"] = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
     records["corners"] = mesh.corners
     header = _header(mesh, title, STL_HEADER).encode("ascii").ljust(STL_HEADER)
-    with replacing(path) as temporary, open(temporary, "wb") as file:
-        file.write(header + struct.pack("<I", len(records)) + records.tobytes())
+    return header + struct.pack("<I", len(records)) + records.tobytes()
 
 
 def _header(mesh: TriangleMesh, title: str, longest: int) -> str:
@@ -120,9 +125,15 @@ def _header(mesh: TriangleMesh, title: str, longest: int) -> str:
 
 
 def write_teeth(
-    shown: TeethInSpace, teeth: MatingTeeth, directory: FilePath, *, title: str = "", whole_gears: bool = False
+    shown: TeethInSpace,
+    teeth: MatingTeeth,
+    directory: FilePath,
+    *,
+    title: str = "",
+    whole_gears: bool = False,
+    more: Mapping[str, Buffer] = {},
 ) -> tuple[Path, ...]:
-    """Write the teeth in contact and the solids of both gears into an existing directory.
+    """Write the teeth in contact and the solids of both gears into a directory, all files or none.
 
     Parameters
     ----------
@@ -133,13 +144,15 @@ def write_teeth(
         Said in the header of each file.
     whole_gears : bool
         Whether the solids have all teeth, on their rim, instead of one.
+    more : mapping of str to bytes
+        Contents of files to write with these, by their names: a picture of the same teeth.
 
     Returns
     -------
     tuple of Path
         ``pinion.vtk``, ``wheel.vtk``, ``pressure.vtk`` (fixed frame, teeth in contact; ``patch`` on each triangle of a
         tooth, ``pressure_MPa`` on each of the pressure), and ``pinion.stl``, ``wheel.stl`` (each in its gear's own
-        frame, closed).
+        frame, closed), and those of ``more``.
 
     Raises
     ------
@@ -147,13 +160,7 @@ def write_teeth(
         If a file cannot be written.
     """
     solids = [tooth.triangles(tooth.teeth if whole_gears else 1, closed=True) for tooth in (teeth.pinion, teeth.wheel)]
-    content: dict[str, tuple[Callable[[FilePath, TriangleMesh, str], None], TriangleMesh]] = {
-        "pinion.vtk": (write_vtk, shown.pinion),
-        "wheel.vtk": (write_vtk, shown.wheel),
-        "pressure.vtk": (write_vtk, shown.pressure),
-        "pinion.stl": (write_stl, solids[0]),
-        "wheel.stl": (write_stl, solids[1]),
-    }
-    for name, (write, mesh) in content.items():
-        write(Path(directory) / name, mesh, title)
-    return tuple(Path(directory) / name for name in content)
+    surfaces = {"pinion.vtk": shown.pinion, "wheel.vtk": shown.wheel, "pressure.vtk": shown.pressure}
+    contents: dict[str, Buffer] = {name: b"".join(_vtk_parts(mesh, title)) for name, mesh in surfaces.items()}
+    contents |= {"pinion.stl": _stl(solids[0], title), "wheel.stl": _stl(solids[1], title)}
+    return replace_together(directory, {**contents, **more})

@@ -11,6 +11,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.modification import FlankModifications
 from loaded_tca.gears import CylindricalMesh
+from loaded_tca.gears.checks import LEAST_FACE
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense, require_finite, signs_of
@@ -101,7 +102,8 @@ def cylindrical_pair(
     InputError
         If driving or sense is not one of the two, or a relief starts off the active profile.
     GeometryError
-        If the teeth wind a whole turn around a gear over its face width.
+        If the teeth wind a whole turn around a gear over its face width, or the faces have less than a thousandth of
+        the module in common.
 
     Examples
     --------
@@ -113,6 +115,7 @@ def cylindrical_pair(
     turning, drive = signs_of(driving, sense)
     radii = mesh.pinion_working_radius, mesh.wheel_working_radius
     profiles = mesh.pinion_active_profile, mesh.wheel_active_profile
+    _require_common_face(mesh, mounting.axial_offset)
     gears = []
     for member, gear in enumerate((mesh.pinion, mesh.wheel)):
         turn = gear.face_width * abs(math.tan(gear.base_helix_angle)) / gear.base_radius
@@ -136,3 +139,14 @@ def cylindrical_pair(
         base_radii=(mesh.pinion.base_radius, mesh.wheel.base_radius),
         face_width=min(mesh.pinion.face_width, mesh.wheel.face_width),
     )
+
+
+def _require_common_face(mesh: CylindricalMesh, offset: float) -> None:
+    """Refuse faces that the offset [mm] of the wheel leaves next to nothing in common; apart, they never touch."""
+    common = 0.5 * (mesh.pinion.face_width + mesh.wheel.face_width) - abs(offset)
+    least = LEAST_FACE * mesh.pinion.normal_module
+    if abs(common) < least:
+        raise GeometryError(
+            f"axial_offset: {offset:.6g} mm leaves no common flank: the faces of pinion and wheel have "
+            f"{max(common, 0.0):.4g} mm in common; at least {least:.4g} mm, {LEAST_FACE:g} normal modules, are needed"
+        )

@@ -16,8 +16,9 @@ from loaded_tca.tooth.geometry import ToothGeometry
 
 DEFAULT_BORE = 0.55
 """Bore of a gear that has none given, over its (smallest) root diameter."""
-LARGEST_BORE = 0.98
-"""Largest bore, over the smallest root diameter, that leaves a rim below the teeth."""
+SMALLEST_BORE, LARGEST_BORE = 0.05, 0.98
+"""Bores over the smallest root diameter. A larger one leaves no rim below the teeth; at a smaller one a gear twists
+about its bore twenty times as far as its teeth bend, and no shaft is so thin."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +33,8 @@ class Gear:
     flank : Flank
         In contact, in the gear's own frame: with its modifications, fitted or measured.
     nominal_flank : Flank
-        The same by its equations, without modifications.
+        The same by its equations, without modifications; made anew where ``flank`` is replaced by one of the other
+        side of the teeth.
     geometry : ToothGeometry
         What the other flank and the form of the teeth are made from.
     material : Material
@@ -45,6 +47,10 @@ class Gear:
     geometry: ToothGeometry
     material: Material = Material()
     bore_diameter: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.nominal_flank.side != self.flank.side:
+            object.__setattr__(self, "nominal_flank", self.geometry.nominal(self.flank.side))
 
     @classmethod
     def of(cls, geometry: ToothGeometry, side: int, material: Material, bore_diameter: float | None) -> Gear:
@@ -84,15 +90,18 @@ class Gear:
         Raises
         ------
         InputError
-            If the bore leaves no rim below the teeth.
+            If the bore leaves no rim below the teeth, or is too thin to hold the gear by.
         """
         root, _ = self.form.sections.point(self.form.root_radius(coordinate), coordinate)
         if self.bore_diameter is None:
             return DEFAULT_BORE * root
-        if not 0.0 < 0.5 * self.bore_diameter < LARGEST_BORE * root.min():
+        diameter, smallest = self.bore_diameter, 2.0 * root.min()
+        if not SMALLEST_BORE * smallest <= diameter < LARGEST_BORE * smallest:
+            thin = "it is held rigid, and the body would twist about so thin a bore far more than the teeth bend"
             raise InputError(
-                f"bore_diameter: {self.bore_diameter:.6g} mm is not between 0 and {LARGEST_BORE:g} times the "
-                f"smallest root diameter, {2.0 * root.min():.6g} mm: no rim is left below the teeth"
+                f"bore_diameter: {diameter:.6g} mm is not between {SMALLEST_BORE:g} and {LARGEST_BORE:g} times the "
+                f"smallest root diameter, {smallest:.6g} mm: "
+                + (thin if diameter < smallest * SMALLEST_BORE else "no rim is left below the teeth")
             )
         return np.full_like(root, 0.5 * self.bore_diameter)
 

@@ -17,11 +17,11 @@ from loaded_tca.plots.sharing import (
     plot_mesh_stiffness,
     plot_path_pressure,
 )
-from loaded_tca.plots.style import highest_torque, save_figure
+from loaded_tca.plots.style import highest_torque, png_of, save_figure
 from loaded_tca.plots.subsurface import plot_stress_below, plot_subsurface
 from loaded_tca.plots.three_d import draw_teeth, plot_teeth, show_teeth
 from loaded_tca.plots.vh_check import plot_vh_check
-from loaded_tca.results.files import FilePath, remove
+from loaded_tca.results.files import FilePath, replace_together
 from loaded_tca.results.mesh_cycle import MeshCycle
 
 __all__ = [
@@ -44,6 +44,7 @@ __all__ = [
     "plot_teeth",
     "plot_transmission_error",
     "plot_vh_check",
+    "png_of",
     "save_figure",
     "show_teeth",
 ]
@@ -69,7 +70,7 @@ PICTURES = (
 def plot_all(
     result: MeshCycle, directory: FilePath, *, torque: int | None = None, position: int | None = None
 ) -> tuple[Path, ...]:
-    """Save every picture as PNG into an existing directory, each whole or not at all.
+    """Save every picture as PNG into a directory, all of them or none.
 
     Pictures of these names that the result does not have, as an earlier one may have left, are removed.
 
@@ -77,6 +78,7 @@ def plot_all(
     ----------
     result : MeshCycle
     directory : str or path
+        Made if it does not exist.
     torque : int, optional
         Index of the torque of maps and flanks, and of the only load shares; default: the largest one, and all.
     position : int, optional
@@ -126,10 +128,5 @@ def plot_all(
             "pressure_envelope": plot_pressure_envelope(result, torque),
             "path_pressure": plot_path_pressure(result),
         }
-    files = {name: Path(directory) / f"{name}.png" for name in PICTURES}
-    for name, file in files.items():
-        if name in figures:
-            save_figure(figures[name], file)
-        else:
-            remove(file)
-    return tuple(files[name] for name in figures)
+    contents = {f"{name}.png": png_of(figure) for name, figure in figures.items()}
+    return replace_together(directory, contents, {f"{name}.png" for name in PICTURES} - {*contents})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 import textwrap
 from collections.abc import Iterator
@@ -39,8 +40,16 @@ DOTS_PER_INCH = 120
 
 def save_figure(figure: Figure, path: FilePath) -> None:
     """Save a figure as PNG, whole or not at all; InputError if that cannot be done."""
+    content = png_of(figure)
     with replacing(path) as temporary:
-        figure.savefig(temporary, format="png", dpi=DOTS_PER_INCH)
+        temporary.write_bytes(content)
+
+
+def png_of(figure: Figure) -> bytes:
+    """Return a figure as the content of a PNG file."""
+    content = io.BytesIO()
+    figure.savefig(content, format="png", dpi=DOTS_PER_INCH)
+    return content.getvalue()
 
 
 def one_panel(height: float = 5.0) -> tuple[Figure, Axes]:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import os
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +21,14 @@ if TYPE_CHECKING:  # xarray takes a third of a second to import: only what makes
 FORMAT = "loaded_tca"
 FORMAT_VERSION = 4
 """Raised whenever the code of one version cannot read the files of another."""
+DIGITS = 64
+DIGEST = b"\0\0\0\x06digest\0\0\0\0\0\x02" + DIGITS.to_bytes(4, "big")
+"""Name, type and length of the attribute ``digest`` in NetCDF-3; the digits follow, SHA-256 of all other bytes."""
 
+UNSTORABLE = KeyError, NotImplementedError, OverflowError, TypeError, ValueError
+"""What xarray raises over values that NetCDF-3 has no type for."""
+
+Buffer = bytes | bytearray
 FilePath = str | os.PathLike[str]
 Part = tuple[tuple[str, ...], str, str]
 """Dimensions, unit and long name of an array."""
@@ -74,16 +82,69 @@ def write_dataset(path: FilePath, dataset: xarray.Dataset) -> None:
     path : str or path
         Replaced if it exists.
     dataset : xarray.Dataset
-        Its integers fit into 32 bits: NetCDF-3 has no larger ones.
 
     Raises
     ------
     InputError
-        If the file cannot be written.
+        If the file cannot be written, or NetCDF-3 has no type for a part of the dataset.
     """
-    marked = dataset.assign_attrs(format=FORMAT, format_version=str(FORMAT_VERSION))
+    content = netcdf_of(dataset)
     with replacing(path) as temporary:
-        marked.to_netcdf(temporary, engine="scipy", format="NETCDF3_64BIT")
+        temporary.write_bytes(content)
+
+
+def netcdf_of(dataset: xarray.Dataset) -> Buffer:
+    """Return what ``write_dataset`` writes: the dataset, the marks of this package, and a digest of all bytes.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Its integers fit into 32 bits: NetCDF-3 has no larger ones, and no complex numbers.
+
+    Raises
+    ------
+    InputError
+        If NetCDF-3 has no type for a variable or an attribute; each is named.
+    """
+    marks = {"format": FORMAT, "format_version": str(FORMAT_VERSION), "digest": DIGITS * "0"}
+    try:
+        content = _netcdf(dataset.assign_attrs(marks))
+    except UNSTORABLE as error:
+        raise InputError(list(_unfit_parts(dataset)) or str(error)) from error
+    place = _place_of_digest(content)
+    content[place] = _digest(content, place)
+    return content
+
+
+def _netcdf(dataset: xarray.Dataset) -> bytearray:
+    return bytearray(dataset.to_netcdf(engine="scipy", format="NETCDF3_64BIT"))
+
+
+def _unfit_parts(dataset: xarray.Dataset) -> Iterator[str]:
+    """Problems of the variables and attributes of a dataset that NetCDF-3 cannot hold, each tried by itself."""
+    import xarray
+
+    parts = {name: xarray.Dataset({name: variable}) for name, variable in dataset.variables.items()}
+    parts |= {f"attribute {name}": xarray.Dataset(attrs={name: value}) for name, value in dataset.attrs.items()}
+    for name, part in parts.items():
+        try:
+            _netcdf(part)
+        except UNSTORABLE as error:
+            yield f"{name}: cannot be stored in a NetCDF-3 file: {error}"
+
+
+def _place_of_digest(content: Buffer) -> slice:
+    """Where the digits of the digest stand in a file; an empty slice if there is none."""
+    start = content.find(DIGEST) + len(DIGEST)
+    return slice(start, start + DIGITS) if start >= len(DIGEST) else slice(0)
+
+
+def _digest(content: Buffer, place: slice) -> bytes:
+    """Digits of the digest of a file: of all bytes but those at its place."""
+    whole = memoryview(content)
+    digest = hashlib.sha256(whole[: place.start])
+    digest.update(whole[place.stop :])
+    return digest.hexdigest().encode()
 
 
 def read_dataset(path: FilePath) -> xarray.Dataset:
@@ -92,20 +153,27 @@ def read_dataset(path: FilePath) -> xarray.Dataset:
     Raises
     ------
     InputError
-        If the file cannot be read, is damaged, no NetCDF-3 file, not of this package, or of another format.
+        If the file cannot be read, has changed since it was written, is no NetCDF-3 file, not of this package, or of
+        another format.
     """
     import xarray
 
     try:
         content = Path(path).read_bytes()
+    except IsADirectoryError:
+        raise InputError(f"{path}: a directory; name the result file in it, as {Path(path, 'result.nc')}") from None
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: cannot be read: {reason_of(error)}") from error
+    place = _place_of_digest(content)
+    if content[place] and content[place] != _digest(content, place):
+        raise InputError(f"{path}: damaged: its bytes are not those that loaded_tca wrote; run the scene again")
     try:
         with xarray.open_dataset(io.BytesIO(content), engine="scipy", decode_times=False) as file:
             dataset = file.load()
     except Exception as error:  # on a damaged file the reader stumbles in any way
         kind = "damaged" if content.startswith(b"CDF") else "not a NetCDF-3 file"
         raise InputError(f"{path}: {kind}; expected a result file written by loaded_tca") from error
+    dataset.attrs.pop("digest", None)
     version = str(dataset.attrs.pop("format_version", ""))
     if dataset.attrs.pop("format", "") != FORMAT or not (version.isdecimal() and len(version) < 9):
         raise InputError(f"{path}: a NetCDF-3 file, but not a result of loaded_tca")
@@ -115,6 +183,8 @@ def read_dataset(path: FilePath) -> xarray.Dataset:
             f"{path}: written in format {version} by {age} loaded_tca; this one reads format {FORMAT_VERSION}: "
             "run the scene again, its text is the attribute scene_toml of the file"
         )
+    if not content[place]:
+        raise InputError(f"{path}: damaged: it has no digest of its bytes; run the scene again")
     return dataset
 
 
@@ -147,6 +217,53 @@ def replacing(path: FilePath) -> Iterator[Path]:
         raise InputError(f"{path}: cannot be written: {reason_of(error)}") from error
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def replace_together(directory: FilePath, contents: Mapping[str, Buffer], old: Iterable[str] = ()) -> tuple[Path, ...]:
+    """Write files into a directory: none takes its place before all are written.
+
+    Parameters
+    ----------
+    directory : str or path
+        Made if it does not exist.
+    contents : mapping of str to bytes
+        By the name of the file.
+    old : iterable of str
+        Names of files that do not belong to the new ones: removed before these take their places, if they are there.
+
+    Returns
+    -------
+    tuple of Path
+        The files, in the order given.
+
+    Raises
+    ------
+    InputError
+        If the directory cannot be made, or a file cannot be written or removed.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as directory:
+    ...     [path.name for path in replace_together(directory, {"a.txt": b"a", "b.txt": b"b"})]
+    ['a.txt', 'b.txt']
+    """
+    make_directory(Path(directory))
+    paths = tuple(Path(directory, name) for name in contents)
+    with ExitStack() as unfinished:
+        for path, content in zip(paths, contents.values(), strict=True):
+            unfinished.enter_context(replacing(path)).write_bytes(content)
+        for name in old:
+            remove(Path(directory, name))
+    return paths
+
+
+def make_directory(directory: Path) -> None:
+    """Make a directory and those above it; InputError if that cannot be done."""
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{directory}: cannot be made a directory: {reason_of(error)}") from error
 
 
 def remove(path: FilePath) -> None:

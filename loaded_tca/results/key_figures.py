@@ -98,7 +98,7 @@ def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
         return int(flags.any(axis=-1).sum())
 
     on_line = np.stack([path.on_line for path in result.paths], axis=-1)
-    pairs = result.loaded_pairs[torque].astype(float) if result.scene.analysis.load_sharing else np.full(1, math.nan)
+    pairs = result.loaded_pairs[torque] if result.scene.analysis.load_sharing else np.full(1, math.nan)
     radius, axial = _edge_place(result, torque, edge)
     highest = np.fmax(result.peak_pressure, result.edge_pressure)[torque]
     return {
@@ -183,6 +183,6 @@ def _error_figures(name: str, error: Array, length: float) -> dict[str, float]:
 
 
 def _reduced(reduction: Any, values: Array) -> float:
-    """Least, largest or span of the finite values; NaN if there is none."""
+    """Least, largest or span of the finite values, whole for whole numbers; NaN if there is none."""
     finite = values[np.isfinite(values)]
-    return float(reduction(finite)) if finite.size else math.nan
+    return reduction(finite).item() if finite.size else math.nan

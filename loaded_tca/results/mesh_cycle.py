@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, require
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.results.files import FilePath, Part, arrays_of, read_dataset, variables_of, write_dataset
+from loaded_tca.results.files import Buffer, FilePath, Part, arrays_of, netcdf_of, read_dataset, replacing, variables_of
 from loaded_tca.results.key_figures import harmonic_amplitudes, key_figures
 from loaded_tca.results.pressure_map import MAP_PARTS, SIZES, Maps, maps_from, stacked_maps
 from loaded_tca.results.summary import signed, summary_text
@@ -275,13 +275,19 @@ class MeshCycle:
         Raises
         ------
         InputError
-            If the file cannot be written.
+            If the file cannot be written, or NetCDF-3 has no type for what was added to the dataset.
         """
+        content = self.to_netcdf()
+        with replacing(path) as temporary:
+            temporary.write_bytes(content)
+
+    def to_netcdf(self) -> Buffer:
+        """Return the content of the file that ``save`` writes; InputError as it has."""
         paths = (self.path, *self.paths)
         arrays = {f"path_{name}": np.stack([getattr(one, name) for one in paths]) for name in PATH_PARTS}
         arrays |= {f"map_{name}": stack for name, stack in stacked_maps(self.maps).items()}
         whole = self.dataset.assign(variables_of(IN_FILES, arrays))
-        write_dataset(path, whole.assign_attrs(title=self.scene.title, scene_toml=self.scene.to_toml()))
+        return netcdf_of(whole.assign_attrs(title=self.scene.title, scene_toml=self.scene.to_toml()))
 
     @classmethod
     def load(cls, path: FilePath) -> MeshCycle:
@@ -296,18 +302,20 @@ class MeshCycle:
         try:
             arrays = arrays_of(file, QUANTITIES | IN_FILES)
             expected = {**SIZES, "end": 2, "edge": 8, "path": 1 + file.sizes["pair"]}
-            if wrong := [name for name, size in expected.items() if file.sizes[name] != size]:
-                raise InputError(f"{name}: {file.sizes[name]} long, expected {expected[name]}" for name in wrong)
+            checks = [(name, file.sizes[name] == size, f"{size}") for name, size in expected.items()]
+            checks += [(name, file.sizes[name] > 0, "at least 1") for name in PAIRS]
+            require(*((holds, f"{name}: {file.sizes[name]} long, expected {size}") for name, holds, size in checks))
             scene = parse_scene(str(file.attrs.get("scene_toml", "")), source="scene_toml")
         except InputError as error:
             raise InputError([f"{path}: not the result of a mesh cycle", *error.problems]) from None
+        added = {name: file.variables[name] for name in file.data_vars if name not in QUANTITIES | IN_FILES}
         leading, *paths = (
             ContactPath(**{entry.name: arrays[f"path_{entry.name}"][k] for entry in fields(ContactPath)})
             for k in range(expected["path"])
         )
         return cls(
             scene=scene,
-            dataset=dataset_of(arrays, str(file.attrs.get("version", ""))),
+            dataset=dataset_of(arrays, str(file.attrs.get("version", ""))).assign(added),
             path=leading,
             paths=tuple(paths),
             maps=maps_from({name: arrays[f"map_{name}"] for name in MAP_PARTS}),

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import math
 import warnings
-from collections import Counter
 
 import numpy as np
 
@@ -17,9 +17,19 @@ from loaded_tca.unloaded.tooth_cycle import REACH
 THICKEST_CONTACT = 0.25
 """Half width of a contact, over the module, above which a tooth is no half-space: it is 1.6 modules thick."""
 
+MOST_TORSION = 0.5
+"""Part of the deflection from which the twist of the bodies about their bores is told."""
 
-def warn_of_accuracy(pair: GearPair, grid: GridChoice, carried: Carried, *, load_sharing: bool) -> None:
-    """Give one AccuracyWarning, for the caller's caller, for each reason, with the number of pressure maps it concerns.
+
+def warn_of_accuracy(
+    pair: GearPair,
+    grid: GridChoice,
+    carried: Carried,
+    *,
+    load_sharing: bool,
+    body_torsion: float = 0.0,
+) -> None:
+    """Give one AccuracyWarning for each reason, for the caller's caller: how many pressure maps it concerns, and which.
 
     Parameters
     ----------
@@ -28,12 +38,33 @@ def warn_of_accuracy(pair: GearPair, grid: GridChoice, carried: Carried, *, load
     carried : Carried
     load_sharing : bool
         Whether the pairs that were looked for depend on how far the load turns the wheel.
+    body_torsion : float [mm/N]
+        Twist of both gear bodies about their bores at the base circle, where teeth bend.
     """
-    solved = [loaded for rows in carried.contacts for row in rows for loaded in row if loaded is not None]
-    reasons = Counter(reason for loaded in solved for reason in _reasons(pair, grid, loaded))
-    alone = carried.share.shape[0] == carried.share.shape[2] == 1
-    what = "positions" if alone else "pressure maps"
-    told = [f"{reason} (at {count} of {len(solved)} {what})" for reason, count in reasons.items()]
+    places: dict[str, list[str]] = {}
+    solved, told = 0, []
+    for torque, rows in zip(carried.torque.tolist(), carried.contacts, strict=True):
+        loads = [loaded.solution.load for row in rows for loaded in row if loaded is not None]
+        if torque > 0.0 and not any(loads):
+            told.append(
+                f"{1e-3 * torque:g} N m is next to no torque, the gaps it closes are rounding: taken for no load"
+            )
+        for angle, row in zip(carried.path.pinion_angle.tolist(), rows, strict=True):
+            for number, loaded in zip(carried.pairs.tolist(), row, strict=True):
+                if loaded is not None:
+                    solved += 1
+                    place = f"{1e-3 * torque:g} N m, pinion angle {math.degrees(angle):.4g} deg, tooth pair {number:+d}"
+                    for reason in _reasons(pair, grid, loaded):
+                        places.setdefault(reason, []).append(place)
+    told += [f"{reason} (at {len(at)} of {solved} pressure maps; the first: {at[0]})" for reason, at in places.items()]
+    turned = np.where(carried.rotation > 0.0, carried.rotation, math.inf)
+    twist = body_torsion * carried.torque[:, None] / pair.base_radii[0] / (turned * pair.base_radii[1])
+    if (share := float(twist.max())) > MOST_TORSION:
+        bores = " and ".join(f"{bore:.4g}" for bore in pair.rigid_bores)
+        told.append(
+            f"the twist of the gear bodies about their bores, {bores} mm, is up to {min(share, 1.0):.0%} of the "
+            "deflection: the mesh stiffness is that of the bodies"
+        )
     deflection = float(np.nanmax(carried.rotation, initial=0.0)) * pair.base_radii[1]
     if load_sharing and deflection > REACH * pair.module:
         told.append(
@@ -60,7 +91,7 @@ def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[st
     if grid.cells is None and smooth and solution.error_estimate.peak_pressure > grid.accuracy:
         found.append(f"the estimated error stays above the accuracy of {grid.accuracy:g}")
     if solution.reaches_border:
-        found.append("the contact reaches the box")
+        found.append("the contact reaches the box of its grid")
     if solution.load > 0.0 and solution.cells_across[0] < 8:
         found.append("fewer than 8 cells lie across the contact")
     if 0.5 * loaded.extent[0] > THICKEST_CONTACT * pair.module:

@@ -9,6 +9,7 @@ from math import atan, cos, degrees, radians, sin, tan
 from typing import ClassVar, Literal
 
 from loaded_tca.gears.bevel import BevelGear, BevelMesh, pitch_angles
+from loaded_tca.gears.checks import LARGEST_PRESSURE_ANGLE
 from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene import spiral
@@ -22,8 +23,18 @@ from loaded_tca.scene.spiral import MountingErrors, SpiralScene
 
 SPIRAL_deg = Number(0.0, 59.0)
 CONE_deg = above_zero(179.0)
+PRESSURE_deg = Number(1.0, 44.0)
 ROUNDING = 1e-9
 """Cone angles closer than this [rad] are the same."""
+
+
+def _too_steep(normal: float | None, spiral: float | None) -> str | None:
+    """What is wrong with a normal pressure angle [deg] whose transverse one is more than a gear may have."""
+    largest = degrees(atan(tan(LARGEST_PRESSURE_ANGLE) * cos(radians(spiral or 0.0))))
+    if normal is None or normal <= largest:
+        return None
+    most = f"{degrees(LARGEST_PRESSURE_ANGLE):g} deg of transverse pressure angle"
+    return f"found {normal:g}; with spiral_angle_deg = {spiral:g} allowed up to {largest:.4f}, which is {most}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,7 +52,19 @@ class Geometry(Pair):
         None,
         "0; required for `spiral_bevel`",
     )
-    pressure_angle_deg: float = key(Number(1.0, 44.0), "transverse pressure angle alpha on the pitch cone", 20.0)
+    pressure_angle_deg: float | None = key(
+        PRESSURE_deg,
+        "transverse pressure angle alpha on the pitch cone",
+        None,
+        "20, unless `normal_pressure_angle_deg` is given",
+    )
+    normal_pressure_angle_deg: float | None = key(
+        PRESSURE_deg,
+        "mean normal pressure angle alpha_n on the pitch cone, instead of the transverse one: tan(alpha) = "
+        "tan(alpha_n)/cos(beta_m)",
+        None,
+        "follows from `pressure_angle_deg`",
+    )
     driving: Literal["pinion", "wheel"] = key(DRIVING, "the gear that drives", "pinion")
     sense: Sense | None = key(
         SENSE,
@@ -70,6 +93,12 @@ class Geometry(Pair):
             'found "{0}", but flanks of straight teeth are neither; give sense instead',
         ),
         spiral.FLANK_OR_SENSE,
+        rule(
+            ("normal_pressure_angle_deg", "pressure_angle_deg"),
+            lambda *both: None in both,
+            "found {0:g} beside pressure_angle_deg = {1:g}; give one of the two",
+        ),
+        Rule(("normal_pressure_angle_deg", "spiral_angle_deg"), _too_steep),
     )
 
 
@@ -133,10 +162,13 @@ class BevelScene(SpiralScene, BlankScene):
 
     def mesh(self) -> BevelMesh:
         """Return the macro geometry: cones, cone distances, contact ratios."""
+        normal = self.geometry.normal_pressure_angle_deg
 
         def gear(own: GearSection, pitch_angle: float, sign: int, name: str) -> BevelGear:
             values = parameters_of(BevelGear, self.geometry, own)
             values["spiral_angle"] = sign * values.get("spiral_angle", 0.0)
+            if normal is not None:
+                values["pressure_angle"] = atan(tan(radians(normal)) / cos(values["spiral_angle"]))
             return BevelGear(**values, pitch_angle=pitch_angle, name=name)
 
         pitches = pitch_angles((self.pinion.teeth, self.wheel.teeth), radians(self.geometry.shaft_angle_deg))
@@ -165,6 +197,7 @@ class BevelScene(SpiralScene, BlankScene):
         gear = mesh.pinion
         distances = (gear.outer_cone_distance, gear.mean_cone_distance, gear.inner_cone_distance)
         modules = (gear.outer_module, gear.mean_normal_module / cos(gear.spiral_angle))
+        normal = self.geometry.normal_pressure_angle_deg
         pressures = (gear.pressure_angle, atan(tan(gear.pressure_angle) * cos(gear.spiral_angle)))
         return [
             ("shaft angle Sigma [deg]", f"{degrees(mesh.shaft_angle):.4f}"),
@@ -173,6 +206,8 @@ class BevelScene(SpiralScene, BlankScene):
             ("mean normal module m_mn [mm]", f"{gear.mean_normal_module:.4f}"),
             ("mean spiral angle beta_m [deg]", f"{degrees(abs(gear.spiral_angle)):.4f}"),
             ("pressure angles alpha_t, alpha_n [deg]", *(f"{degrees(angle):.4f}" for angle in pressures)),
+            ("pressure angle that the scene states", "transverse" if normal is None else "normal"),
+            ("backlash j_mt at the mean pitch circles [mm]", f"{round(mesh.backlash, 4) + 0.0:.4f}"),
             ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:.4f}"),
             ("overlap ratio eps_beta", f"{mesh.overlap_ratio:.4f}"),
             ("total contact ratio eps_gamma", f"{mesh.transverse_contact_ratio + mesh.overlap_ratio:.4f}"),

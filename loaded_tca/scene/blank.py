@@ -8,7 +8,7 @@ from typing import ClassVar
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Hand, Scene
 from loaded_tca.scene.section import Rule, subsection
-from loaded_tca.scene.sections import GearSection, below
+from loaded_tca.scene.sections import GearSection, end_reliefs_within
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,7 +24,7 @@ class BlankGearSection(GearSection):
     )
     profile_shift: float = key(Number(-5.0, 5.0), "profile shift coefficient x", 0.0)
 
-    rules: ClassVar[tuple[Rule, ...]] = (below("modifications.end_relief_length_mm", "face_width_mm", 0.5),)
+    rules: ClassVar[tuple[Rule, ...]] = end_reliefs_within("face_width_mm")
 
 
 OTHER: dict[Hand, Hand] = {"right": "left", "left": "right"}

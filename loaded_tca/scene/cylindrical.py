@@ -7,16 +7,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
-from loaded_tca.errors import GeometryError
+from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
+from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row, family
 from loaded_tca.scene.section import Rule, Section, subsection
-from loaded_tca.scene.sections import DRIVING, SENSE, DIAMETER_mm, ERROR_deg, ERROR_mm, Pair, below
+from loaded_tca.scene.sections import DRIVING, SENSE, DIAMETER_mm, ERROR_deg, ERROR_mm, Pair, SLOPE_um, below
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,6 +64,12 @@ class MountingErrors(Section):
     out_of_plane_deg: float = key(
         ERROR_deg,
         "axis error across that plane; positive: at z > 0 the wheel moves against the driving flank",
+        0.0,
+    )
+    misalignment_um: float = key(
+        SLOPE_um,
+        "misalignment f in the plane of action over the common face width b, which adds f/(b cos(alpha_wt)) to "
+        "`out_of_plane_deg`",
         0.0,
     )
     centre_distance_error_mm: float = key(ERROR_mm, "centre distance error; positive: apart", 0.0)
@@ -123,14 +129,30 @@ class CylindricalScene(BlankScene):
 
     def analytic_pair(self, sense: Sense) -> GearPair:
         """Return the two involute flanks in space."""
+        mesh = self.mesh()
         return cylindrical_pair(
-            self.mesh(),
+            mesh,
             modifications=build_modifications(self.pinion, self.wheel),
-            mounting=Mounting(**in_base_units(self.mounting)),
+            mounting=self._mounting(mesh),
             materials=build_materials(self.materials),
             driving=self.geometry.driving,
             sense=sense,
         )
+
+    def _mounting(self, mesh: CylindricalMesh) -> Mounting:
+        """Mounting errors, the misalignment in the plane of action as the axis error that makes it."""
+        errors = in_base_units(self.mounting)
+        width = mesh.common_face_width
+        errors["out_of_plane"] += errors.pop("misalignment") / (width * math.cos(mesh.working_pressure_angle))
+        require(
+            (
+                abs(errors["out_of_plane"]) < LARGEST_ANGLE,
+                f"mounting.misalignment_um: found {self.mounting.misalignment_um:g}; over the common face width of "
+                f"{width:g} mm it makes out_of_plane_deg {math.degrees(errors['out_of_plane']):.4g}, allowed up to "
+                f"{math.degrees(LARGEST_ANGLE):g}",
+            )
+        )
+        return Mounting(**errors)
 
     def active_starts(self) -> tuple[float, float]:
         """Return the roll lengths at which the active profiles of pinion and wheel start [mm]."""
@@ -156,6 +178,7 @@ class CylindricalScene(BlankScene):
         return [
             ("working centre distance a_w [mm]", f"{mesh.working_centre_distance:.4f}"),
             ("working pressure angle alpha_wt [deg]", f"{math.degrees(mesh.working_pressure_angle):.4f}"),
+            ("profile shift sum: given, without backlash", *(f"{value:.4f}" for value in _profile_shift_sums(mesh))),
             ("backlash j_wt at the working circles [mm]", f"{_backlash(mesh):.4f}"),
             ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:.4f}"),
             ("overlap ratio eps_beta", f"{mesh.overlap_ratio:.4f}"),
@@ -192,6 +215,12 @@ class CylindricalScene(BlankScene):
 def _backlash(mesh: CylindricalMesh) -> float:
     """Backlash [mm], zero where it is rounding."""
     return mesh.backlash if abs(mesh.backlash) > 1e-9 * mesh.pinion.normal_module else 0.0
+
+
+def _profile_shift_sums(mesh: CylindricalMesh) -> tuple[float, float]:
+    """x1 + x2 as given, and what the centre distance needs for no backlash; no minus before a zero."""
+    given = mesh.pinion.profile_shift + mesh.wheel.profile_shift
+    return round(given, 4) + 0.0, round(mesh.profile_shift_sum_without_backlash, 4) + 0.0
 
 
 def _overlap(mesh: CylindricalMesh, which: str) -> list[str]:

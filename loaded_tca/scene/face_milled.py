@@ -23,7 +23,7 @@ from loaded_tca.scene.build import build_materials, build_modifications, in_base
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Hand, Row, Scene, family
 from loaded_tca.scene.section import Rule, Section, rule, subsection
-from loaded_tca.scene.sections import DRIVING, SENSE, Pair, below
+from loaded_tca.scene.sections import DRIVING, SENSE, Pair, end_reliefs_within
 from loaded_tca.scene.spiral import MountingErrors, SpiralScene
 
 LENGTH_mm = above_zero(10000.0)
@@ -175,7 +175,7 @@ class GearSection(sections.GearSection):
     machine: Machine = subsection(Machine, "machine settings, with the signs of a right-hand gear")
     cutter: Cutter = subsection(Cutter, "the blades, and the number of their group")
 
-    rules: ClassVar[tuple[Rule, ...]] = (below("modifications.end_relief_length_mm", "blank.face_width_mm", 0.5),)
+    rules: ClassVar[tuple[Rule, ...]] = end_reliefs_within("blank.face_width_mm")
 
 
 def _same_spheres(name: str) -> Rule:

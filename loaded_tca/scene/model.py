@@ -8,7 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Literal, TypeVar
 
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, require
+from loaded_tca.material import LARGEST_RATIO_IN_BENDING
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene.build import described_gear, in_base_units
 from loaded_tca.scene.keys import Choice, Line, key
@@ -71,6 +72,15 @@ class Scene(Section, ABC):
             lambda common, pinion, wheel: common is not None or None not in (pinion, wheel),
             "missing; give [material] for both gears, or [pinion.material] and [wheel.material]",
         ),
+        *(
+            rule(
+                (f"{place}.poisson_ratio", "analysis.compliance"),
+                lambda ratio, compliance: compliance == "contact" or ratio <= LARGEST_RATIO_IN_BENDING,
+                f'found {{0:g}}; allowed up to {LARGEST_RATIO_IN_BENDING} with analysis.compliance = "{{1}}": finite '
+                "elements of a material that keeps its volume lock",
+            )
+            for place in ("material", "pinion.material", "wheel.material")
+        ),
     )
 
     @abstractmethod
@@ -117,7 +127,7 @@ class Scene(Section, ABC):
         Raises
         ------
         InputError
-            If values that are sound one by one do not fit each other.
+            If the sense is neither of the two, or values that are sound one by one do not fit each other.
         GeometryError
             If the gears cannot exist or cannot mesh.
 
@@ -126,6 +136,8 @@ class Scene(Section, ABC):
         AccuracyWarning
             If a B-spline misses its flank by more than 0.1 um, or a measurement leaves much of it uncovered.
         """
+        known = sense in (None, "positive", "negative")
+        require((known, f"sense: {sense!r:.60} is not 'positive' or 'negative'"))
         pair = self.analytic_pair(sense or self.sense)
         side = pair.pinion.flank.side if sense in (None, self.sense) else -pair.pinion.flank.side
         return replace(

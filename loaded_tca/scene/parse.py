@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import re
+import sys
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -93,5 +95,10 @@ def _table(text: str, source: str) -> dict[str, Any]:
         return tomllib.loads(text)
     except RecursionError:
         raise InputError(f"{source}: not a scene: nested too deeply") from None
-    except ValueError as error:  # TOMLDecodeError is one; so is a whole number of too many digits
+    except tomllib.TOMLDecodeError as error:
         raise InputError(f"{source}: not a TOML file: {error}") from None
+    except ValueError:  # of Python's integers, which are read from no more digits
+        most = sys.get_int_max_str_digits()
+        digits = re.compile(rf"[\d_]{{{most + 1},}}")
+        lines = [str(number) for number, line in enumerate(text.split("\n"), 1) if digits.search(line)]
+        raise InputError(f"{source}: line {lines[0]} holds a whole number of more than {most} digits") from None

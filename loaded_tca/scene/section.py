@@ -9,6 +9,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from textwrap import shorten
 from typing import Any, ClassVar, TypeVar
 
 from loaded_tca.errors import InputError
@@ -19,6 +20,9 @@ SectionType = TypeVar("SectionType", bound="Section")
 
 MOST_UNKNOWN_KEYS = 20
 """Unknown keys told one by one; of the rest of a section only the number is told."""
+
+LONGEST_LIST = 300
+"""Characters of the names of keys that a message lists."""
 
 
 @dataclass(frozen=True)
@@ -160,7 +164,8 @@ def _unknown(section: type[Section], found: Mapping[str, Any], place: str) -> It
     homes = _homes(section)
     for name in unknown[:MOST_UNKNOWN_KEYS]:
         meant = nearest(name, homes)
-        hint = did_you_mean(place + homes[meant]) if meant else "; allowed " + ", ".join(known)
+        allowed = shorten(", ".join(known), LONGEST_LIST, placeholder=" ...")
+        hint = did_you_mean(place + homes[meant]) if meant else f"; allowed {allowed}"
         yield f"{place}{shown_key(name)}: unknown key{hint}"
     if len(unknown) > MOST_UNKNOWN_KEYS:
         more = len(unknown) - MOST_UNKNOWN_KEYS

@@ -8,14 +8,18 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from loaded_tca.flanks.modification import NO_POLYNOMIAL
+from loaded_tca.material import LARGEST_RATIO_IN_BENDING, SOFTEST
 from loaded_tca.scene.flank_form import FlankForm
 from loaded_tca.scene.keys import Choice, Line, List, Number, Whole, above_zero, key
-from loaded_tca.scene.section import Rule, Section, rule, subsection
+from loaded_tca.scene.section import Rule, Section, subsection
 
 AMOUNT_um = Number(0.0, 10000.0)
 SLOPE_um = Number(-10000.0, 10000.0)
 DIAMETER_mm = above_zero(100000.0)
 RELIEF_FORM = Choice(("parabolic", "linear"))
+START_deg = Number(0.0, 3600.0)
+START_mm = Number(0.0, 100000.0)
+END_mm = above_zero(10000.0)
 ERROR_deg = Number(-10.0, 10.0)
 ERROR_mm = Number(-1000.0, 1000.0)
 TORQUE_Nm = Number(0.0, 1e9)
@@ -23,10 +27,29 @@ DRIVING = Choice(("pinion", "wheel"))
 SENSE = Choice(("positive", "negative"))
 
 
-def needs(amount_key: str, companion_key: str) -> Rule:
-    """Rule: an amount above zero needs its companion above zero."""
-    problem = f"missing or 0; {amount_key} = {{1:g}} needs a value above 0"
-    return rule((companion_key, amount_key), lambda companion, amount: amount == 0.0 or companion > 0.0, problem)
+def one_start(relief: str) -> Rule:
+    """Rule: a relief starts at a diameter, a roll angle or a length, and one above zero has such a start."""
+    mm, roll, length = (f"{relief}_start_{unit}" for unit in ("mm", "roll_deg", "length_mm"))
+
+    def complain(diameter: float, angle: float, distance: float, amount: float) -> str | None:
+        starts = ((mm, diameter), (roll, angle), (length, distance))
+        given = [f"{name} = {start:g}" for name, start in starts if start > 0.0]
+        if len(given) > 1:
+            return f"found {' beside '.join(given)}; give one of them"
+        if amount > 0.0 and not given:
+            return f"missing or 0; {relief}_um = {amount:g} needs a value above 0, or {roll} or {length}"
+        return None
+
+    return Rule((mm, roll, length, f"{relief}_um"), complain)
+
+
+def _end_lengths(length: float, amount: float, *own: float | None) -> str | None:
+    """What is wrong where an end is relieved over no length; ``own`` are amount and length of lower and upper end."""
+    for end, own_amount, own_length in zip(("lower", "upper"), own[::2], own[1::2], strict=True):
+        name, removed = ("end_relief_um", amount) if own_amount is None else (f"end_relief_{end}_um", own_amount)
+        if removed > 0.0 and length == 0.0 and own_length is None:
+            return f"missing or 0; {name} = {removed:g} needs a value above 0, or end_relief_{end}_length_mm"
+    return None
 
 
 def below(smaller_key: str, larger_key: str, factor: float = 1.0) -> Rule:
@@ -39,6 +62,12 @@ def below(smaller_key: str, larger_key: str, factor: float = 1.0) -> Rule:
         return None
 
     return Rule((smaller_key, larger_key), complain)
+
+
+def end_reliefs_within(face_width_key: str) -> tuple[Rule, ...]:
+    """Rules: no end relief of [pinion.modifications] is longer than half the face."""
+    ends = ("", "lower_", "upper_")
+    return tuple(below(f"modifications.end_relief_{end}length_mm", face_width_key, 0.5) for end in ends)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,14 +85,35 @@ class Modifications(Section):
     lead_crowning_form: str = key(
         Choice(("parabolic", "circular", "logarithmic")), "form of the lead crowning", "parabolic"
     )
-    end_relief_um: float = key(AMOUNT_um, "end relief C_betaI = C_betaII at both ends, parabolic", 0.0)
+    end_relief_um: float = key(
+        AMOUNT_um, "end relief C_betaI = C_betaII at both ends, parabolic; each end may have its own", 0.0
+    )
     end_relief_length_mm: float = key(
         Number(0.0, 10000.0), "length of the end relief at each end, up to half the face width", 0.0
     )
+    end_relief_lower_um: float | None = key(
+        AMOUNT_um, "end relief C_betaI at the lower end (z < 0; toe)", None, "`end_relief_um`"
+    )
+    end_relief_lower_length_mm: float | None = key(END_mm, "its length", None, "`end_relief_length_mm`")
+    end_relief_upper_um: float | None = key(
+        AMOUNT_um, "end relief C_betaII at the upper end (z > 0; heel)", None, "`end_relief_um`"
+    )
+    end_relief_upper_length_mm: float | None = key(END_mm, "its length", None, "`end_relief_length_mm`")
     profile_crowning_um: float = key(AMOUNT_um, "profile crowning C_alpha, at the ends of the active profile", 0.0)
     tip_relief_um: float = key(AMOUNT_um, "tip relief C_alpha_a, at the tip; above 0 it needs its start", 0.0)
     tip_relief_start_mm: float = key(
-        Number(0.0, 100000.0), "diameter at which the tip relief starts (bevel gears: 2 R_m sin u)", 0.0
+        START_mm, "diameter at which the tip relief starts (bevel gears: 2 R_m sin u)", 0.0
+    )
+    tip_relief_start_roll_deg: float = key(
+        START_deg,
+        "or its roll angle, tan(alpha_y) (bevel gears: unwound arc over sin(delta_b); face-milled gears have none)",
+        0.0,
+    )
+    tip_relief_start_length_mm: float = key(
+        START_mm,
+        "or its roll length, which counts on the path of contact from T1, on a wheel from T2 (bevel gears: the "
+        "unwound arc times R_m; face-milled gears: from the form line at mid-face)",
+        0.0,
     )
     tip_relief_form: str = key(RELIEF_FORM, "form of the tip relief over the roll length", "parabolic")
     root_relief_um: float = key(
@@ -71,7 +121,9 @@ class Modifications(Section):
         "root relief C_alpha_f, at the start of the active profile; above 0 it needs its start",
         0.0,
     )
-    root_relief_start_mm: float = key(Number(0.0, 100000.0), "diameter at which the root relief starts", 0.0)
+    root_relief_start_mm: float = key(START_mm, "diameter at which the root relief starts", 0.0)
+    root_relief_start_roll_deg: float = key(START_deg, "or its roll angle", 0.0)
+    root_relief_start_length_mm: float = key(START_mm, "or its roll length", 0.0)
     root_relief_form: str = key(RELIEF_FORM, "form of the root relief over the roll length", "parabolic")
     helix_slope_um: float = key(SLOPE_um, "helix slope C_H_beta over the face width; may be negative", 0.0)
     profile_slope_um: float = key(SLOPE_um, "profile slope C_H_alpha over the active profile; may be negative", 0.0)
@@ -86,9 +138,19 @@ class Modifications(Section):
     )
 
     rules: ClassVar[tuple[Rule, ...]] = (
-        needs("end_relief_um", "end_relief_length_mm"),
-        needs("tip_relief_um", "tip_relief_start_mm"),
-        needs("root_relief_um", "root_relief_start_mm"),
+        Rule(
+            (
+                "end_relief_length_mm",
+                "end_relief_um",
+                "end_relief_lower_um",
+                "end_relief_lower_length_mm",
+                "end_relief_upper_um",
+                "end_relief_upper_length_mm",
+            ),
+            _end_lengths,
+        ),
+        one_start("tip_relief"),
+        one_start("root_relief"),
     )
 
 
@@ -96,8 +158,10 @@ class Modifications(Section):
 class ElasticMaterial(Section):
     """[material], or [pinion.material] and [wheel.material]."""
 
-    youngs_modulus_MPa: float = key(above_zero(1e7), "Young's modulus E")
-    poisson_ratio: float = key(Number(0.0, 0.5), "Poisson's ratio nu")
+    youngs_modulus_MPa: float = key(Number(SOFTEST, 1e7), "Young's modulus E")
+    poisson_ratio: float = key(
+        Number(0.0, 0.5), f"Poisson's ratio nu; up to {LARGEST_RATIO_IN_BENDING} where teeth bend"
+    )
     max_pressure_MPa: float | None = key(
         above_zero(1e7), "pressure at which the surface yields (plastic cap)", None, "elastic"
     )

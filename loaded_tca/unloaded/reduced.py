@@ -85,13 +85,27 @@ class Quadratic:
         parts = (self.gradient, self.curvature, self.edges, self.slopes, self.bend)
         return Quadratic(*(part[rows] for part in parts))
 
-    def room(self, steps: Array) -> Array:
-        """Distance to the nearest edge after the steps (n, m, 2): (n, m), negative outside."""
-        return (steps @ np.swapaxes(self.slopes, -1, -2) + self.edges[:, None, :]).min(axis=-1)
+    # Sums over axes of length two cost ten times what the components do: steps come as (x, y), (n, m) each.
 
-    def rest(self, steps: Array) -> Array:
-        """Gradient of the model after the steps (n, m, 2)."""
-        return self.gradient[:, None, :] - steps @ self.curvature
+    def room(self, x: Array, y: Array) -> Array:
+        """Distance to the nearest edge after the steps: (n, m), negative outside."""
+        nearest = np.full(x.shape, np.inf)
+        for edge in range(self.edges.shape[-1]):
+            across = x * self.slopes[:, edge, :1] + y * self.slopes[:, edge, 1:]
+            across += self.edges[:, edge, None]
+            np.minimum(nearest, across, out=nearest)
+        return nearest
+
+    def rest(self, x: Array, y: Array) -> tuple[Array, Array]:
+        """Gradient of the model after the steps: two arrays (n, m)."""
+        along, aside = _times(self.curvature, x, y)
+        return self.gradient[:, :1] - along, self.gradient[:, 1:] - aside
+
+
+def _times(matrix: Array, x: Array, y: Array) -> tuple[Array, Array]:
+    """Symmetric matrices (n, 2, 2) times vectors (x, y), (n, m) each."""
+    first, mixed, second = (matrix[:, i, j, None] for i, j in ((0, 0), (0, 1), (1, 1)))
+    return x * first + y * mixed, x * mixed + y * second
 
 
 def best_step(problem: Quadratic, tolerance: float) -> tuple[Array, Array]:
@@ -104,8 +118,9 @@ def best_step(problem: Quadratic, tolerance: float) -> tuple[Array, Array]:
     (n, k) array
         Multipliers >= 0.
     """
-    step, force = _on_one_edge(problem)
-    optimal = (problem.room(step) >= -tolerance) & (force >= 0.0)
+    *parts, force = _on_one_edge(problem)
+    optimal = (problem.room(*parts) >= -tolerance) & (force >= 0.0)
+    step = np.stack(parts, axis=-1)
     rows, best = np.arange(len(step)), optimal.argmax(axis=1)
     chosen, multipliers = step[rows, best], np.zeros_like(force)
     multipliers[rows, best] = np.maximum(force[rows, best], 0.0)
@@ -115,23 +130,27 @@ def best_step(problem: Quadratic, tolerance: float) -> tuple[Array, Array]:
     return chosen, multipliers
 
 
-def _on_one_edge(problem: Quadratic) -> tuple[Array, Array]:
-    """Best step onto each edge (n, k, 2), and its multiplier (n, k).
+def _on_one_edge(problem: Quadratic) -> tuple[Array, Array, Array]:
+    """Best step onto each edge, x and y, and its multiplier, (n, k) each.
 
     From the foot of the edge along its tangent: the free step is not used, since on a flat ridge it is so long that
     nothing would be left of its difference to the edge.
     """
-    slopes = problem.slopes
-    square = np.maximum((slopes**2).sum(axis=-1), TINY)
-    foot = -slopes * (problem.edges / square)[..., None]
-    tangent = np.stack([-slopes[..., 1], slopes[..., 0]], axis=-1)
-    rise = (problem.rest(foot) * tangent).sum(axis=-1)
-    modelled, own = (((tangent @ matrix) * tangent).sum(axis=-1) for matrix in (problem.curvature, problem.bend))
+    x, y = (np.ascontiguousarray(problem.slopes[..., part]) for part in (0, 1))
+    square = np.maximum(x * x + y * y, TINY)
+    foot = -problem.edges / square
+    rest = problem.rest(x * foot, y * foot)
+    rise = x * rest[1] - y * rest[0]  # along the tangent (-y, x)
+    modelled, own = (
+        x * aside - y * along for along, aside in (_times(m, -y, x) for m in (problem.curvature, problem.bend))
+    )
     flat = FLAT * square * np.linalg.norm(problem.bend, axis=(-2, -1))[:, None]
     reached = np.abs(problem.edges) <= REACHED * np.sqrt(square)
     bend = np.maximum(np.where(reached, np.maximum(np.abs(own), flat), modelled), TINY)
-    step = foot + tangent * (rise / bend)[..., None]
-    return step, -(problem.rest(step) * slopes).sum(axis=-1) / square
+    part = rise / bend
+    step = x * foot - y * part, y * foot + x * part
+    rest = problem.rest(*step)
+    return *step, -(rest[0] * x + rest[1] * y) / square
 
 
 def _in_a_corner(problem: Quadratic, singles: Array, tolerance: float) -> tuple[Array, Array]:
@@ -139,18 +158,20 @@ def _in_a_corner(problem: Quadratic, singles: Array, tolerance: float) -> tuple[
     pairs = np.array(list(combinations(range(problem.edges.shape[-1]), 2)))
     slopes, edges = problem.slopes[:, pairs], -problem.edges[:, pairs]
     corners, parallel = solve_pairs(slopes[:, :, 0], slopes[:, :, 1], edges[..., 0], edges[..., 1])
-    room = np.where(parallel, -np.inf, problem.room(corners))
-    rise = (corners * (problem.gradient[:, None, :] + problem.rest(corners))).sum(axis=-1)
+    x, y = np.moveaxis(corners, -1, 0)
+    room = np.where(parallel, -np.inf, problem.room(x, y))
+    along, aside = problem.rest(x, y)
+    rise = x * (problem.gradient[:, :1] + along) + y * (problem.gradient[:, 1:] + aside)
     rows, best = np.arange(len(room)), np.where(room >= -tolerance, rise, -np.inf).argmax(axis=1)
     step, feasible = corners[rows, best], np.asarray((room >= -tolerance).any(axis=1))
     lost = np.flatnonzero(~feasible)
     everything = np.concatenate([singles[lost], corners[lost]], axis=1)
-    least = np.concatenate([problem.only(lost).room(singles[lost]), room[lost]], axis=1).argmax(axis=1)
-    step[lost] = everything[np.arange(len(lost)), least]
+    least = np.concatenate([problem.only(lost).room(*np.moveaxis(singles[lost], -1, 0)), room[lost]], axis=1)
+    step[lost] = everything[np.arange(len(lost)), least.argmax(axis=1)]
     # multipliers of the two edges of a corner, from rest + J^T lambda = 0; zero where there is none
     multipliers, held = np.zeros_like(problem.edges), np.flatnonzero(feasible)
     two = held[:, None], pairs[best[held]]
-    rest = problem.only(held).rest(step[held, None, :])[:, 0]
+    rest = np.concatenate(problem.only(held).rest(step[held, :1], step[held, 1:]), axis=1)
     forces = np.linalg.solve(np.swapaxes(problem.slopes[two], -1, -2), -rest[..., None])[..., 0]
     multipliers[two] = np.maximum(forces, 0.0)
     return step, multipliers

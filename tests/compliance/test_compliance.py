@@ -159,3 +159,14 @@ def test_a_bore_that_reaches_the_teeth_names_its_gear():
     pair = cylindrical_pair(spur_mesh(bore_diameters=(None, 103.0)))
     with pytest.raises(InputError, match=r"wheel: bore_diameter: .* no rim is left"):
         tooth_compliance(pair, density=COARSE)
+
+
+@pytest.mark.parametrize(("member", "ratio"), [("pinion", 0.5), ("wheel", 0.4901)])
+def test_material_that_keeps_its_volume_is_refused(member, ratio):
+    """Finite elements of displacements lock: without a bound they divide by zero at 0.5."""
+    materials = [Material(poisson_ratio=ratio if name == member else 0.49) for name in ("pinion", "wheel")]
+    pair = cylindrical_pair(spur_mesh(), materials=tuple(materials))
+    with pytest.raises(
+        InputError, match=f"^{member}: poisson_ratio: {ratio} is above 0.49: finite elements would lock$"
+    ):
+        tooth_compliance(pair, density=COARSE)

@@ -143,6 +143,43 @@ def test_another_version_is_another_model(monkeypatch):
     assert key_of(frame_of()) != before
 
 
+def cut(**axes):
+    """A change of the kept arrays: the last entry along an axis is left out."""
+    return lambda arrays: {name: np.delete(arrays[name], -1, axis) for name, axis in axes.items()}
+
+
+def with_one_height_less(arrays):
+    """Arrays that fit each other, of a table with other places."""
+    size = arrays["depth"][:-1].size
+    return {**cut(heights=0, depth=0)(arrays), "displacement": arrays["displacement"][:, :size, :size]}
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        cut(heights=0),
+        cut(lengths=0),
+        cut(displacement=0),
+        cut(displacement=1),
+        cut(local_value=0),
+        cut(local_value=0, local_height=0),
+        with_one_height_less,
+        lambda arrays: {"depth": arrays["depth"].T},
+        lambda arrays: {"heights": arrays["heights"][::-1]},
+        lambda arrays: {"depth": 1.01 * arrays["depth"]},
+        lambda arrays: {"local_height": 0.5 * arrays["local_height"]},
+    ],
+)
+def test_a_valid_file_with_other_shapes_or_places_is_made_anew(other, made, folder):
+    first = kept_flexibility(frame_of())
+    (path,) = folder.iterdir()
+    arrays = dict(np.load(path))
+    np.savez(path, **arrays | other(arrays))
+    kept.forget()
+    same(kept_flexibility(frame_of()), first)
+    assert len(made) == 2
+
+
 @pytest.mark.parametrize("damage", [b"", b"no archive", "cut", "changed", "foreign", "renamed", "not finite"])
 def test_a_damaged_file_is_made_anew(damage, made, folder):
     first = kept_flexibility(frame_of())
@@ -217,6 +254,15 @@ def test_models_lie_in_the_cache_of_the_user(variable, inside, tmp_path, monkeyp
     monkeypatch.setenv(variable, str(tmp_path))
     kept_flexibility(frame_of())
     assert len(list(tmp_path.joinpath(*inside, "loaded_tca").glob("*.npz"))) == 1
+
+
+def test_a_tilde_in_the_name_of_the_folder_is_the_home_directory(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.setenv(kept.FOLDER, "~/models")
+    kept_flexibility(frame_of())
+    assert len(list(tmp_path.glob("home/models/*.npz"))) == 1
+    assert os.listdir(tmp_path) == ["home"]
 
 
 def test_the_last_models_stay(made, folder, monkeypatch):

@@ -87,3 +87,35 @@ def test_refuses_an_accuracy_out_of_range(accuracy):
     sample, _ = paraboloid((0.1, 0.1))
     with pytest.raises(InputError, match="accuracy"):
         solve_to_accuracy(sample, accuracy=accuracy)
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        *(({"accuracy": value}, "accuracy: ") for value in ("text", None)),
+        *(({"tolerance": value}, "tolerance: ") for value in (np.nan, "text", None, 0.0, 2.0)),
+        *(
+            ({"first_cells": cells}, "first_cells: .* are not two whole numbers from 1 on")
+            for cells in ((16,), (16, 16, 16), (16.0, 16.0), (0, 16), (-16, 16), 16, None, "ab")
+        ),
+        ({"initial_pressure": "text"}, "initial_pressure: "),
+        ({"threads": "text"}, "threads: "),
+    ],
+)
+def test_argument_that_is_none_is_refused_by_name(change, told):
+    sample, _ = paraboloid((0.1, 0.1))
+    with pytest.raises(InputError, match=f"^{told}") as caught:
+        solve_to_accuracy(sample, **{"accuracy": 1e-3} | change)
+    assert len(caught.value.problems) == 1
+
+
+def test_problem_that_is_no_function_is_refused():
+    with pytest.raises(InputError, match=r"^problem: 'text' is not a function of the numbers of cells$"):
+        solve_to_accuracy("text", accuracy=1e-3)
+
+
+@pytest.mark.parametrize("first_cells", [(17, 15), (3, 5), (1, 1)])
+def test_first_grid_of_any_number_of_cells_leads_to_the_same_answer(first_cells):
+    sample, contact = paraboloid((0.1, 0.1))
+    solution = solve_to_accuracy(sample, accuracy=1e-3, first_cells=first_cells)
+    assert_allclose(solution.peak_pressure, contact.max_pressure, rtol=1e-3)

@@ -78,3 +78,24 @@ def test_contact_ends_at_the_material_or_before(end, reached, turn):
     void = np.broadcast_to(np.arange(32)[:, None] > end, (32, 32))
     pressure = np.where(void, 0.0, pressure)
     assert patch.ends_at_material(np.rot90(pressure, turn), np.rot90(void, turn)) is reached
+
+
+@given(offset=st.floats(-0.5, 0.5), radius=st.floats(4.0, 12.0))
+def test_ends_of_a_strip_lie_within_its_cells(offset, radius):
+    """A Hertzian strip: p^2 is a parabola of half width R, which a chord through its last cells, d and d + 1 from its
+    end, leaves by d (d + 1)/(2 R - 2 d - 1), at most 1/(R - 1.5).
+    """
+    pressure = ellipse((40, 6), (19.5 + offset, 2.5), (radius, 1e9))
+    place = np.broadcast_to(np.arange(40.0)[:, None], pressure.shape)
+    ends = patch.values_at_ends(pressure, place, np.zeros(pressure.shape, dtype=bool))
+    assert_allclose(
+        [ends.min(), ends.max()], [19.5 + offset - radius, 19.5 + offset + radius], atol=1.0 / (radius - 1.5)
+    )
+
+
+def test_contact_that_the_material_cuts_ends_at_the_border_of_its_last_cell():
+    pressure = ellipse((20, 20), (9.5, 9.5), (8.0, 8.0))
+    void = np.zeros(pressure.shape, dtype=bool)
+    void[10:] = True
+    place = np.broadcast_to(np.arange(20.0)[:, None], pressure.shape)
+    assert_allclose(patch.values_at_ends(np.where(void, 0.0, pressure), place, void).max(), 9.5, rtol=1e-12)

@@ -1,6 +1,8 @@
 """A contact problem is what was given, checked, and stays so."""
 
+import copy
 import dataclasses
+import pickle
 
 import numpy as np
 import pytest
@@ -24,6 +26,20 @@ def test_arrays_are_copies_that_cannot_be_written_to():
     assert_array_equal(problem.gap, ball())
     assert not problem.slice_compliance.any()
     for array in (problem.gap, problem.slice_compliance):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0, 0] = 1.0
+
+
+@pytest.mark.parametrize("again", [copy.copy, copy.deepcopy, lambda problem: pickle.loads(pickle.dumps(problem))])
+def test_copies_and_what_pickle_brings_back_cannot_be_written_to_either(again):
+    edge = FreeEdge(1, 0.5, "below", 1.0)
+    problem = ContactProblem(
+        ball(), (0.03, 0.03), E_STAR, load=50.0, free_edges=[edge], slice_compliance=np.zeros((24, 24))
+    )
+    found = again(problem)
+    assert_array_equal(found.gap, problem.gap)
+    assert (found.load, found.free_edges, found.spacing) == (50.0, (edge,), (0.03, 0.03))
+    for array in (found.gap, found.slice_compliance):
         with pytest.raises(ValueError, match="read-only"):
             array[0, 0] = 1.0
 

@@ -140,8 +140,10 @@ def test_merged_slices_have_the_mean_of_both(count):
 @pytest.mark.parametrize(
     ("slices", "told"),
     [
-        (np.zeros((3, 3)), r"slice_compliance: finite \(48, 48\) is needed, not \(3, 3\)"),
-        (np.full((48, 48), np.nan), "slice_compliance: finite"),
+        (np.zeros((3, 3)), r"^slice_compliance: shape \(48, 48\) is needed, not \(3, 3\)$"),
+        (np.full((48, 48), np.nan), "^slice_compliance: 2304 values are not finite$"),
+        (np.ma.masked_greater(np.eye(48), 0.0), "^slice_compliance: a masked array"),
+        ("soft", "^slice_compliance: an array of finite numbers is asked for, not 'soft'$"),
         (np.triu(np.ones((48, 48))), "slice_compliance: is not symmetric"),
     ],
 )

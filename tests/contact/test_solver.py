@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from loaded_tca.contact import ContactStatus, contact_stiffness, solve_contact, solver
+from loaded_tca.contact import ContactStatus, FreeEdge, contact_stiffness, solve_contact, solver
 from loaded_tca.contact.checks import memory_problem
 from loaded_tca.errors import AccuracyWarning, ConvergenceError, InputError
 from loaded_tca.reference import hertz
@@ -251,10 +251,10 @@ def test_inputs_are_left_alone():
         ({"gap": np.array([[0.0, math.nan]])}, "1 cells are NaN"),
         ({"gap": np.array([[0.0, -math.inf]])}, "minus infinity"),
         ({"gap": np.full((4, 4), math.inf)}, "no cell holds material"),
-        ({"spacing": (0.0, 1.0)}, r"spacing\[0\]: 0.0 is not positive"),
+        ({"spacing": (0.0, 1.0)}, r"spacing\[0\]: 0.0 is not between 1e-20 and"),
         ({"spacing": (1.0, math.nan)}, r"spacing\[1\]"),
         ({"contact_modulus": -1.0}, "contact_modulus"),
-        ({"load": -1.0}, "load: -1.0 N is negative"),
+        ({"load": -1.0}, "^load: -1.0 N is neither 0 nor, on this grid, a number from"),
         ({"load": math.nan}, "load"),
         ({"load": None}, "exactly one"),
         ({"approach": 1.0}, "exactly one"),
@@ -271,6 +271,82 @@ def test_refuses(change, message):
     arguments = {"gap": np.zeros((4, 4)), "spacing": (1.0, 1.0), "contact_modulus": E_STAR, "load": 1.0} | change
     with pytest.raises(InputError, match=message):
         solve_contact(arguments.pop("gap"), arguments.pop("spacing"), arguments.pop("contact_modulus"), **arguments)
+
+
+OFF_SCALE = [
+    ({"spacing": (1.0,)}, r"spacing: \[1.0\] is not a pair of cell widths"),
+    ({"spacing": (1.0, 1.0, 1.0)}, r"spacing: \[1.0, 1.0, 1.0\] is not a pair of cell widths"),
+    ({"spacing": 1.0}, "spacing: 1.0 is not a pair of cell widths"),
+    ({"spacing": (1e-200, 1.0)}, r"spacing\[0\]: 1e-200 is not between 1e-20 and 1e\+20 mm"),
+    ({"spacing": (1.0, 1e200)}, r"spacing\[1\]: 1e\+200 is not between"),
+    ({"spacing": (1e-9, 1e9)}, r"spacing: \[1e-09, 1000000000.0\] are widths of a ratio above 1e\+12"),
+    ({"contact_modulus": 1e300}, r"contact_modulus: 1e\+300 is not a number from 1e-30 to 1e\+30 MPa"),
+    ({"contact_modulus": 1e-300}, "contact_modulus: 1e-300 is not a number from"),
+    ({"load": 1e-300}, "load: 1e-300 N is neither 0 nor, on this grid, a number from 1.15e-20 to"),
+    ({"load": 1e300}, r"load: 1e\+300 N is neither 0 nor"),
+    ({"load": None, "approach": 1e300}, r"approach: 1e\+300 mm lies 1e\+300 mm beyond first contact; allowed within"),
+    ({"load": None, "approach": 1e-300}, "approach: 1e-300 mm lies"),
+]
+NO_NUMBERS = [
+    *(
+        ({name: values}, f"{name}: an array of finite numbers is asked for, not ")
+        for name in ("gap", "spacing", "initial_pressure")
+        for values in ("text", [[1.0], [1.0, 2.0]], [["1.0", "2.0"]], [None, 1.0], 1j)
+    ),
+    ({"gap": None}, "gap: an array of finite numbers is asked for, not None"),
+    ({"spacing": None}, "spacing: an array of finite numbers is asked for, not None"),
+    *(
+        ({name: np.ma.masked_less(np.ones((4, 4)), 2.0)}, f"{name}: a masked array; fill what is masked")
+        for name in ("gap", "initial_pressure")
+    ),
+    *(
+        ({name: value}, f"{name}: ")
+        for name in ("contact_modulus", "load", "max_pressure", "tolerance", "threads", "free_edges")
+        for value in ("text", [1.0, 2.0], 1j)
+    ),
+    *(({name: None}, f"{name}: None ") for name in ("contact_modulus", "tolerance", "threads", "free_edges")),
+    ({"load": None, "approach": "text"}, "approach: text"),
+    ({"load": True}, "load: True"),
+    ({"threads": 0}, "threads: 0 is not a whole number from 1 on"),
+    ({"free_edges": [(0, 1.0, "below", 1.0)]}, "free_edges: .* is not a sequence of FreeEdge"),
+    ({"free_edges": [FreeEdge(0, "text", "below", 1.0)]}, r"free_edges\[0\].position: text mm is not finite"),
+]
+
+
+@pytest.mark.parametrize(("change", "message"), OFF_SCALE + NO_NUMBERS)
+def test_argument_off_every_scale_or_of_another_type_is_one_named_problem(change, message):
+    arguments = {"gap": np.zeros((4, 4)), "spacing": (1.0, 1.0), "contact_modulus": E_STAR, "load": 1.0} | change
+    with pytest.raises(InputError, match="^" + message) as caught:
+        solve_contact(**arguments)
+    assert len(caught.value.problems) == 1
+
+
+@pytest.mark.parametrize("modulus", [1e-30, 1e30])
+@pytest.mark.parametrize("widths", [(1e-20, 1e-20), (1e20, 1e20), (1e-6, 1e6), (1e6, 1e-6)])
+@pytest.mark.parametrize("demand", ["load", "approach"])
+@pytest.mark.parametrize("displacement", [1.001e-25, 0.999e25])
+def test_numbers_at_the_ends_of_their_ranges_are_solved(modulus, widths, demand, displacement):
+    """A flat punch has no scale: its pressures in terms of the largest are the same everywhere."""
+    gap, amount = np.zeros((8, 8)), displacement * (widths[1] * modulus if demand == "load" else 1.0)
+    found = solve_contact(gap, widths, modulus, warn=False, **{demand: amount}).pressure
+    known = solve_contact(gap, (1.0, widths[1] / widths[0]), 1.0, approach=1.0, warn=False).pressure
+    assert_allclose(found / found.max(), known / known.max(), rtol=1e-4)  # the tolerance is 1e-6 of the approach
+
+
+@pytest.mark.parametrize("demand", [{"load": 1.0}, {"load": 1e-15}, {"approach": 1e-3}])
+@pytest.mark.parametrize("cap", [1e14, 1e300, math.inf])
+def test_cap_that_nothing_can_reach_is_none(demand, cap):
+    _, gap, spacing = hertz_problem()
+    free, capped = (
+        solve_contact(gap, spacing, E_STAR, max_pressure=each, warn=False, **demand).pressure for each in (None, cap)
+    )
+    assert_allclose(capped, free, rtol=1e-12)
+
+
+def test_numbers_of_numpy_in_no_dimension_are_numbers():
+    gap = np.zeros((4, 4))
+    found = solve_contact(gap, np.ones(2), np.array(E_STAR), load=np.float32(1.0), threads=np.int64(1), warn=False)
+    assert_allclose(found.pressure, solve_contact(gap, (1.0, 1.0), E_STAR, load=1.0, warn=False).pressure)
 
 
 def test_refusal_names_every_problem():

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from loaded_tca.errors import InputError
+from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.flanks import FlankModifications, InvoluteFlank, ModifiedFlank
 from loaded_tca.flanks.base import outward_normal
 from loaded_tca.flanks.modification import (
@@ -120,6 +120,59 @@ def test_end_relief_is_a_parabola_over_its_length_at_both_ends(length):
         distances = np.array([length, 0.5 * length, 0.0])
         found = [removed(flank, WORKING, end * (HALF - distance)) for distance in distances]
         assert_allclose(found, [0.0, 0.25 * AMOUNT, AMOUNT], rtol=1e-10)
+
+
+def test_ends_may_have_reliefs_of_their_own_over_lengths_of_their_own():
+    """What is not given of one end is as at both ends."""
+    cases = (
+        ({"end_relief": 0.02, "end_relief_length": 4.0, "end_relief_upper": 0.05}, (0.02, 4.0), (0.05, 4.0)),
+        ({"end_relief": 0.02, "end_relief_length": 4.0, "end_relief_lower_length": 8.0}, (0.02, 8.0), (0.02, 4.0)),
+        ({"end_relief": 0.02, "end_relief_length": 4.0, "end_relief_lower": 0.0}, (0.0, 4.0), (0.02, 4.0)),
+        ({"end_relief_upper": 0.03, "end_relief_upper_length": 5.0}, (0.0, 4.0), (0.03, 5.0)),
+    )
+    for amounts, lower, upper in cases:
+        flank = modified(**amounts)
+        for sign, (amount, length) in ((-1.0, lower), (1.0, upper)):
+            found = [removed(flank, WORKING, sign * (HALF - share * length)) for share in (1.0, 0.5, 0.0)]
+            assert_allclose(found, [0.0, 0.25 * amount, amount], rtol=1e-10, atol=1e-17)
+
+
+ROLL = math.radians(24.0)
+TRANSVERSE = math.atan(math.tan(math.radians(20.0)) / math.cos(math.radians(15.0)))
+BASE = 0.5 * 34 * 3.0 / math.cos(math.radians(15.0)) * math.cos(TRANSVERSE)
+"""Base radius of the pinion, by ISO 21771."""
+
+
+@pytest.mark.parametrize("relief", ["tip_relief", "root_relief"])
+@pytest.mark.parametrize("form", ["linear", "parabolic"])
+def test_relief_starts_at_the_diameter_of_its_roll_angle_or_roll_length(relief, form):
+    """ISO 21771: xi = tan(alpha_y), cos(alpha_y) = d_b/d_y, and the roll length is r_b xi."""
+    diameter = 2.0 * BASE / math.cos(math.atan(ROLL))
+    start = f"{relief}_start"
+    same = {start: diameter}, {f"{start}_roll": ROLL}, {f"{start}_length": BASE * ROLL}
+    flanks = [modified(**{relief: AMOUNT, f"{relief}_form": form}, **given) for given in same]
+    rho, z = flanks[0].grid(41, 2)
+    expected = parts(flanks[0], rho, z)
+    assert expected[0].max() > 0.9 * AMOUNT
+    for flank in flanks[1:]:
+        for found, part in zip(parts(flank, rho, z), expected, strict=True):
+            assert_allclose(found, part, rtol=1e-10, atol=1e-13)
+
+
+def test_relief_of_a_bevel_gear_starts_at_the_cone_that_its_roll_angle_unwinds():
+    """A great circle that rolls on the base cone unwinds w while the gear turns by w/sin(delta_b); R_m w at R_m."""
+    pitch, middle = math.atan(0.5), 0.5 * 4.0 * math.hypot(20.0, 40.0) - 10.0
+    base, start = math.asin(math.sin(pitch) * math.cos(math.radians(20.0))), pitch + 0.01
+    arc = math.acos(math.cos(start) / math.cos(base))
+    tip = bevel_mesh((20, 40), 4.0, 20.0, spiral_angle=math.radians(35.0)).pinion.tip_angle
+    angle = np.array([start - 1e-6, start + 1e-6, tip])
+    ways = {"_roll": arc / math.sin(base), "_length": middle * arc, "": 2.0 * middle * math.sin(start)}
+    for way, value in ways.items():
+        flank = bevel_modified(tip_relief=AMOUNT, tip_relief_form="linear", **{f"tip_relief_start{way}": value})
+        below, above, end = flank.removal(middle * np.sin(angle), middle * np.cos(angle)).value
+        assert below == 0.0
+        assert above > 0.0
+        assert_allclose(end, AMOUNT, rtol=1e-10)
 
 
 def bevel_modified(**amounts):
@@ -365,15 +418,48 @@ def test_end_relief_longer_than_half_the_face_or_without_length_is_refused(lengt
         modified(end_relief=AMOUNT, end_relief_length=length)
 
 
+@pytest.mark.parametrize("relief", ["tip_relief", "root_relief"])
+def test_roll_angle_or_length_off_the_active_profile_is_refused_in_its_own_unit(relief):
+    lengths = [math.sqrt(radius_at(share) ** 2 - BASE**2) for share in (0.0, 1.0)]
+    low, high = (f"{math.degrees(length / BASE):.6g}" for length in lengths)
+    told = rf"^pinion.{relief}_start_roll \(roll angle .*\): 5 deg is not between {low} and {high} deg$"
+    with pytest.raises(InputError, match=told):
+        modified(**{relief: AMOUNT, f"{relief}_start_roll": math.radians(5.0)})
+    low, high = (f"{length:.6g}" for length in lengths)
+    told = rf"^pinion.{relief}_start_length \(length on .*\): 99 mm is not between {low} and {high} mm$"
+    with pytest.raises(InputError, match=told):
+        modified(**{relief: AMOUNT, f"{relief}_start_length": 99.0})
+
+
+def test_relief_with_two_starts_is_refused():
+    told = "^tip_relief_start: found tip_relief_start = 105.0, tip_relief_start_length = 20.0; give one of them$"
+    with pytest.raises(InputError, match=told):
+        FlankModifications(tip_relief=AMOUNT, tip_relief_start=105.0, tip_relief_start_length=20.0)
+
+
+@pytest.mark.parametrize("end", ["lower", "upper"])
+def test_length_of_the_relief_of_one_end_is_checked_by_its_own_name(end):
+    with pytest.raises(InputError, match=f"end_relief_{end}_length: 13 mm is not between 0 and 12.5 mm"):
+        modified(end_relief=AMOUNT, end_relief_length=3.0, **{f"end_relief_{end}_length": 13.0})
+    with pytest.raises(InputError, match=r"end_relief_length: 0 mm is not between 0 and 12\.5 mm"):
+        modified(**{f"end_relief_{end}": AMOUNT})
+
+
 def test_starts_of_reliefs_that_are_not_there_are_not_looked_at():
     assert isinstance(modified(tip_relief_start=3.0, end_relief_length=999.0), InvoluteFlank)
 
 
 @pytest.mark.parametrize("name", ["lead_crowning", "tip_relief", "end_relief_length", "profile_slope"])
-@pytest.mark.parametrize("value", [math.nan, math.inf])
+@pytest.mark.parametrize("value", [math.nan, math.inf, "much", None])
 def test_amount_that_is_not_finite_is_refused(name, value):
     with pytest.raises(InputError, match=f"{name}: {value} mm is not finite"):
         FlankModifications(**{name: value})
+
+
+@pytest.mark.parametrize(("name", "unit"), [("root_relief_start_roll", "rad"), ("end_relief_lower", "mm")])
+def test_optional_number_that_is_not_finite_is_refused_in_its_unit(name, unit):
+    with pytest.raises(InputError, match=rf"^{name}: nan {unit} is not finite$"):
+        FlankModifications(**{name: math.nan})
 
 
 def test_unknown_forms_are_refused_all_at_once():
@@ -394,6 +480,34 @@ def test_polynomial_that_is_not_six_finite_numbers_is_refused(wrong):
 def test_circular_crowning_of_more_than_half_the_face_is_refused():
     with pytest.raises(InputError, match="lead_crowning: 13 mm is more than a circular arc over 25 mm can fall"):
         modified(lead_crowning=13.0, lead_crowning_form="circular")
+
+
+@pytest.mark.parametrize(
+    "amounts",
+    [
+        {"polynomial": (25.1, 0.0, 0.0, 0.0, 0.0, 0.0)},
+        {"polynomial": (0.0, -25.1 / HALF, 0.0, 0.0, 0.0, 0.0)},
+        {"polynomial": (100.0,) * 6},
+        {"polynomial": (0.0, 0.0, 0.0, -100.0, 100.0, 100.0)},
+        {"lead_crowning": 25.1},
+        {"lead_crowning": 20.0, "end_relief": 5.1, "end_relief_length": 5.0},
+    ],
+)
+def test_more_than_the_longer_side_of_the_flank_is_no_modification(amounts):
+    told = r"^pinion.modifications: together they remove or add up to .* mm; allowed up to 25 mm, the longer side"
+    with pytest.raises(InputError, match=told):
+        modified(**amounts)
+    modified(polynomial=(24.9, *[0.0] * 5))
+
+
+@pytest.mark.parametrize(
+    ("name", "amount"), [("lead_crowning", 5.0), ("helix_slope", -1.001), ("twist", 1.001), ("end_relief_upper", 1.5)]
+)
+def test_micrometres_given_as_millimetres_are_doubted(name, amount):
+    told = rf"^pinion.{name}: {amount:g} mm is more than 1 mm: an amount in um given as mm\?$"
+    with pytest.warns(AccuracyWarning, match=told):
+        modified(**{name: amount}, end_relief_length=5.0)
+    assert modified(**{name: 0.999}, end_relief_length=5.0).terms  # and no warning
 
 
 def test_gear_pair_of_the_helpers_has_the_modified_flank_on_the_gear_asked_for():

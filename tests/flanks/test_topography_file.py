@@ -110,10 +110,13 @@ def test_points_are_read_with_every_separator_a_byte_order_mark_and_blank_lines(
 def test_columns_that_are_unknown_without_unit_or_double_are_refused_all_at_once():
     assert problems_of("radius_mm,axial,deviation_um,deviatoin_um,axial_mm,axial_um\n1,2,3,4,5,6") == (
         "column 'axial' has no unit; allowed axial_um, axial_mm, axial_m, axial_in",
-        "column 'deviatoin_um' is unknown; did you mean 'deviation_um'?",
+        "line 1, column 4: the name of the column is unknown; did you mean 'deviation_um'?",
         "column axial appears twice",
     )
-    assert problems_of("qqq,x_mm,y_mm,z_mm\n1,2,3,4") == ("column 'qqq' is unknown",)
+    assert problems_of("# note\nqqq,x_mm,y_mm,z_mm\n1,2,3,4") == (
+        "line 2, column 1: the name of the column is unknown; allowed profile_index, lengthwise_index, and lengths as "
+        "x_mm",
+    )
 
 
 @pytest.mark.parametrize(
@@ -134,11 +137,36 @@ def test_one_index_alone_is_refused():
 def test_lines_that_are_no_numbers_are_refused_with_their_place():
     text = "\n".join(["# note", HEADER, "1,1,50,0,1", "2,1,51,0,abc", "3,1,52,0", "", "4,1,nan,inf,0"])
     assert problems_of(text) == (
-        "line 4: deviation_um 'abc' is not a finite number",
+        "line 4, column 5: deviation_um is not a finite number",
         "line 5: 4 values; the header names 5 columns",
-        "line 7: radius_mm 'nan' is not a finite number",
-        "line 7: axial_mm 'inf' is not a finite number",
+        "line 7, column 3: radius_mm is not a finite number",
+        "line 7, column 4: axial_mm is not a finite number",
     )
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t", ":"])
+@pytest.mark.parametrize("header", [True, False])
+def test_what_stands_in_a_file_of_another_kind_is_not_repeated(header, separator):
+    """A scene may name any file that can be read."""
+    secret = [separator.join(["root", "x", "0", "secret", f"/home/{k}"]) for k in range(20)]
+    told = problems_of("\n".join([HEADER.replace(",", separator)] * header + secret))
+    assert not any(word in line for line in told for word in ("root", "secret", "home"))
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+def test_decimal_commas_are_one_problem(grid, separator):
+    rows = [row.replace(".", ",") for row in rows_of(*grid, separator=separator)]
+    told = problems_of("\n".join([HEADER.replace(",", separator), *rows]))
+    assert told == (
+        f"line 2: decimal commas, it seems ({len(rows)} such lines); numbers are written with a decimal point",
+    )
+
+
+def test_decimal_comma_of_one_line_is_told_with_its_place(grid):
+    rows = rows_of(*grid, separator=";")
+    rows[3] = "4;1;+50,25;-,5e-1;0"
+    (told,) = problems_of("\n".join([HEADER.replace(",", ";"), *rows]))
+    assert told.startswith("line 5: decimal commas, it seems (1 such lines)")
 
 
 def test_many_bad_lines_are_counted():

@@ -129,6 +129,7 @@ def test_fillet_interference_ends_where_the_tip_of_the_mate_reaches_the_form_con
     [
         ({"teeth": 2}, "teeth: 2 is not a whole number from 3 on"),
         ({"outer_module": 0.0}, "outer_module: 0.0 is not positive"),
+        ({"face_width": 0.0039}, "face_width: 0.0039 mm is below 0.001 outer_module, 0.004 mm"),
         ({"face_width": math.inf}, "face_width: inf is not positive and finite"),
         ({"pitch_angle": 3.2}, "pitch_angle: 3.2 rad is not between"),
         ({"pressure_angle": 0.9}, "pressure_angle: 0.9 rad is not between"),

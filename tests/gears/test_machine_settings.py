@@ -49,6 +49,11 @@ def test_blank_out_of_order_is_refused_with_every_problem():
     ]
 
 
+def test_blank_of_next_to_no_face_is_refused():
+    with pytest.raises(InputError, match=r"^face_width: 1e-300 mm is below 0.001 outer_cone_distance, 0.1 mm$"):
+        FaceMilledBlank(100.0, 1e-300, 0.5, 0.55, 0.45)
+
+
 def test_teeth_are_counted_in_whole_numbers_from_three_on():
     with pytest.raises(InputError, match=r"pinion: teeth: 2 is not a whole number"):
         replace(published_pinion(), teeth=2)

@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import analyse, read_scene, sample_separation, trace_contact
 from loaded_tca.contact.edges import quarter_space_factor, wedge_factor
+from loaded_tca.errors import InputError
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, bevel_mesh
 from loaded_tca.loaded.free_edges import oblique_ends, tooth_edges
@@ -269,6 +270,13 @@ def test_edges_stand_or_are_named_for_every_kind_of_gear(name):
         edges = tooth_edges(pair, contact, separation)
         assert all(0.0 < edge.factor < 20.0 for edge in edges)
         assert not any("root" in end for end in oblique_ends(pair, contact, separation))
+
+
+def test_end_that_is_too_sharp_is_named_with_the_key_that_makes_it_an_edge(monkeypatch):
+    monkeypatch.setattr("loaded_tca.contact.edges.SHARPEST", math.radians(80.0))
+    told = r"^analysis.free_edges: end of the face at z [<>] 0 of the (pinion|wheel): angle: 7\d\.\d+ degrees is not"
+    with pytest.raises(InputError, match=told):
+        edges_of(gear_pair(helix_deg=15.0))
 
 
 def test_end_that_no_edge_stands_for_is_told(monkeypatch):

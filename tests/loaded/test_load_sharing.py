@@ -12,6 +12,7 @@ from loaded_tca.errors import ConvergenceError, InputError
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.loaded.load_sharing import Laws, ToothPair, share_load, tooth_pairs_at
 from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.material import Material
 from loaded_tca.unloaded import trace_teeth
 from tests.samples.gear_pairs import NONE, gear_pair, sam_paper
 
@@ -190,6 +191,44 @@ def test_next_to_no_torque_is_carried_by_the_leading_pair(torque, springs):
     assert len(found.shares) == 1
     assert 0.0 <= found.rotation < 1e-8
     assert found.torque_rate >= 0.0
+
+
+@pytest.mark.parametrize("torque", [1e-297, 1e-9, 1e-6])
+@pytest.mark.parametrize("pair_of", [spur, uncrowned_helical])
+def test_next_to_no_torque_is_none(pair_of, torque):
+    """Two pairs in contact, whose gaps are rounding: 1e-300, 1e-12 and 1e-9 N m did not converge, or overflowed."""
+    found = shared(pair_of, -0.9 * CENTRE, torque)
+    assert found.torque == found.rotation == found.torque_rate == 0.0
+    assert [share.force for share in found.shares] == [0.0]
+
+
+@pytest.mark.parametrize("torque", [1e-4, 1e-2])
+def test_small_torques_of_point_contacts_are_those_of_large_ones_scaled(torque):
+    """Rotations go with the torque to 2/3 where no further pair comes under load."""
+    small, large = (shared(spur, 0.0, value) for value in (torque, 1e3 * torque))
+    assert_allclose(large.rotation / small.rotation, 100.0, rtol=1e-3)
+
+
+@pytest.mark.parametrize("cap", [50.0, 70.0, 85.0, 100.0, 120.0])
+@pytest.mark.parametrize("bending", [None, (2e-6, 3e-7)])
+def test_pairs_at_their_cap_share_the_torque(cap, bending):
+    """Whole rows of cells yield at once there: the deformation jumps over the force."""
+    pair = gear_pair(FlankModifications(lead_crowning=0.005), materials=(Material(max_pressure=cap),) * 2)
+    found = share_load(
+        pair,
+        tooth_pairs_at(trace_teeth(pair, [-0.75 * CENTRE]), 0),
+        TORQUE,
+        GRID,
+        bending=None if bending is None else Springs(*bending),
+    )
+    assert len(found.shares) == 2
+    assert_allclose(sum(share.torque for share in found.shares), TORQUE, rtol=EQUILIBRIUM)
+    assert_allclose([share.rotation for share in found.shares], found.rotation, rtol=COMPATIBLE)
+    for share in found.shares:
+        solution = share.loaded.solution
+        assert solution.pressure.max() <= cap
+        assert_allclose(solution.pressure.sum() * solution.cell_area, share.force, rtol=EQUILIBRIUM)
+        assert solution.residual <= 1e-6
 
 
 class Springs:

@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -60,6 +61,13 @@ def test_peak_pressure_of_the_sam_paper_pairs_is_that_of_hertz(helix_deg, drivin
         loaded.extent, (loaded.hertz.semi_minor, loaded.hertz.semi_major), loaded.separation.spacing, strict=True
     ):
         assert_allclose(extent, 2.0 * axis, atol=2.0 * spacing)
+
+
+@pytest.mark.parametrize("cells", [(32, 32), (33, 33)])
+def test_hertz_is_not_told_where_no_cell_lies_in_the_ellipse_or_the_middle_one_alone(cells):
+    loaded = solved(sam_paper(15.0), 1000.0, grid=GridChoice(cells=cells))
+    assert loaded.hertz is not None
+    assert replace(loaded, solution=replace(loaded.solution, load=1e-6)).hertz is None
 
 
 def test_stiffness_of_a_point_contact_is_that_of_hertz():
@@ -215,6 +223,37 @@ def test_linear_relief_in_the_contact_leaves_no_hertz_and_a_coarse_grid():
     assert loaded.at_relief_start
     assert loaded.hertz is None
     assert max(loaded.solution.pressure.shape) <= 64
+
+
+@pytest.mark.parametrize(("radius", "crossed"), [(52.318, False), (52.407, True), (52.497, True)])
+def test_relief_start_in_the_contact_is_found_on_every_grid(radius, crossed):
+    """At 52.407 mm the contact ends within a cell of 32 beyond it, with a spike; at 52.318 mm it ends before it."""
+    relief = FlankModifications(lead_crowning=0.005, tip_relief=0.02, tip_relief_start=105.0, tip_relief_form="linear")
+    pair = gear_pair(relief)
+    path = trace_contact(pair, np.linspace(-0.5, 0.5, 41) * pair.pitch)
+    contact = path[int(abs(path.pinion_radius - radius).argmin())]
+    assert_allclose(contact.pinion_radius, radius, atol=1e-3)
+    for cells in (8, 12, 16, 24, 32, 48, 64):
+        loaded = solve_under_load(pair, contact, 2700.0, GridChoice(cells=(cells, 32)))
+        assert loaded.at_relief_start == crossed
+        assert (loaded.hertz is None) == crossed
+
+
+def test_length_of_a_contact_at_an_edge_does_not_follow_whole_cells():
+    """Seven grids: cells counted, the length of this contact scatters by 7 %."""
+    pair = sam_paper(mounting=Mounting(out_of_plane=0.0025))
+    grids = [GridChoice(cells=(32, cells)) for cells in (16, 20, 24, 32, 40, 64, 96)]
+    found = [solved(pair, 2700.0, grid=grid) for grid in grids]
+    assert all(loaded.at_edge for loaded in found)
+    lengths = [loaded.extent[1] for loaded in found]
+    assert np.ptp(lengths) < 0.02 * np.mean(lengths)
+
+
+def test_contact_at_another_approach_is_that_under_its_load():
+    loaded = solved(sam_paper(), 2700.0)
+    deeper = loaded.at(1.1 * loaded.solution.approach)
+    assert_allclose(loaded.under(deeper.solution.load).solution.approach, deeper.solution.approach, rtol=1e-5)
+    assert deeper.solution.problem.load == deeper.solution.load > 2700.0
 
 
 def test_central_pressure_is_the_peak_of_a_smooth_contact():

@@ -45,6 +45,18 @@ def test_no_single_contact_where_two_pairs_touch_always():
     assert "single tooth contact" not in text
 
 
+def test_estimate_is_shown_and_noted_where_it_exceeds_the_memory(monkeypatch):
+    label = "analysis, roughly: time [s], memory [GiB]"
+    few, many = (described(analysis__positions=count) for count in (20, 2000))
+    assert float(cells(many, label)[0]) == pytest.approx(100.0 * float(cells(few, label)[0]), rel=0.05)  # two digits
+    assert float(cells(many, label)[1]) > float(cells(few, label)[1])
+    monkeypatch.setattr("loaded_tca.loaded.effort.machine_memory", lambda: 2.0**29)
+    assert any(
+        "2000 contacts of" in note and "the machine has 0.5 GiB" in note
+        for note in notes(described(analysis__positions=2000))
+    )
+
+
 def test_forces_are_those_of_the_torque():
     text = described("helical", analysis__torques_Nm=(13.0, 130.0))
     assert cells(text, "pinion torque [N m]") == ["13", "130"]
@@ -75,6 +87,20 @@ def test_cap_is_shown_where_there_is_one():
 def test_pair_without_backlash_shows_none_and_no_note():
     assert cells(described(), "backlash") == ["0.0000"]
     assert notes(described()) == []
+
+
+def test_profile_shift_sum_that_a_centre_distance_needs_is_shown_beside_the_given_one():
+    """sum = (z1 + z2)(inv alpha_wt - inv alpha_t)/(2 tan alpha_n); FZG C pair: published x = 0.1817 and 0.1715."""
+    text = described("fzg_c14", pair__centre_distance_mm=91.6)
+    base, alpha = 4.5 * 40 * math.cos(math.radians(20.0)), math.radians(20.0)
+    working = math.acos(base / (2.0 * 91.6))
+    needed = 20.0 * (math.tan(working) - working - math.tan(alpha) + alpha) / math.tan(alpha)
+    given, without_backlash = (float(cell) for cell in cells(text, "profile shift sum: given, without backlash"))
+    assert_allclose([given, without_backlash], [0.3532, needed], atol=6e-5)  # four decimals
+    # j_wt = p_wt - s_w1 - s_w2 = 2 m (sum needed - sum given) tan(alpha) cos(alpha)/cos(alpha_wt)
+    backlash = 9.0 * (needed - 0.3532) * math.tan(alpha) * math.cos(alpha) / math.cos(working)
+    assert_allclose(float(cells(text, "backlash j_wt")[0]), backlash, atol=6e-5)
+    assert cells(described("helical"), "profile shift sum") == ["0.0000", "0.0000"]
 
 
 def test_overlap_is_told_at_both_centre_distances():
@@ -134,6 +160,24 @@ def test_spiral_pair_shows_hands_flanks_and_what_departs_from_nominal():
     assert cells(text, "pinion.modifications.lead_crowning_um") == ["10.0"]
     normal = float(cells(text, "pressure angles alpha_t, alpha_n [deg]")[1])
     assert_allclose(math.tan(math.radians(normal)), math.tan(math.radians(20)) * math.cos(math.radians(35)), rtol=1e-5)
+
+
+@pytest.mark.parametrize(("prefix", "stated"), [("", "transverse"), ("normal_", "normal")])
+def test_pressure_angle_that_a_bevel_scene_states_is_named(prefix, stated):
+    text = described("spiral_bevel", **{"pair__pressure_angle_deg": None, f"pair__{prefix}pressure_angle_deg": 20.0})
+    assert cells(text, "pressure angle that the scene states") == [stated]
+    angles = dict(zip(("transverse", "normal"), cells(text, "pressure angles alpha_t, alpha_n [deg]"), strict=True))
+    assert angles[stated] == "20.0000"
+    assert cells(described("spiral_bevel", pair__pressure_angle_deg=None), "pressure angle that")[0] == "transverse"
+
+
+def test_profile_shifts_of_one_sign_let_bevel_teeth_overlap():
+    """s = m (pi/2 + 2 x tan(alpha)) on both mean pitch circles, m_mt = m_et R_m/R_e."""
+    text = described("straight_bevel", pinion__profile_shift=0.1, wheel__profile_shift=-0.3)
+    module = 2.5 * 56.06 / 63.06
+    backlash = 2.0 * 0.2 * module * math.tan(math.radians(20.0))
+    assert_allclose(float(cells(text, "backlash j_mt at the mean pitch circles [mm]")[0]), backlash, atol=6e-5)
+    assert cells(described("straight_bevel"), "backlash j_mt") == ["0.0000"]
 
 
 def test_fitted_flanks_show_how_closely_they_follow_their_points():

@@ -209,6 +209,32 @@ def test_summary_is_strict_json_with_null_for_the_unknown():
     assert content["tooth_pairs_sharing_load"] == 1
 
 
+def test_counts_are_whole_numbers():
+    counts = ("cells", "positions", "most_solver_iterations", "loaded_pairs", "most_loaded", "fewest_loaded")
+    for cycle in (result(), shared()):
+        figures = json.loads(summary_json(cycle))["torques"][0]
+        found = {name: value for name, value in figures.items() if name.startswith(counts) or "_cells_" in name}
+        assert len(found) > 6
+        assert all(value is None or type(value) is int for value in found.values()), found
+
+
+def test_full_disk_leaves_the_earlier_report_as_it_was(tmp_path, monkeypatch):
+    write_report(shared(), tmp_path)
+    (tmp_path / "load_share.png").write_bytes(b"of this report")
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+
+    def full(path, _):
+        raise OSError(28, "No space left on device", str(path))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "write_bytes", full)
+        with pytest.raises(InputError, match="cannot be written: No space left on device"):
+            write_report(result(), tmp_path, outdated=["load_share.png"])
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+    write_report(result(), tmp_path, outdated=["load_share.png"])
+    assert sorted(os.listdir(tmp_path)) == ["positions.csv", "result.nc", "summary.json"]
+
+
 def test_summary_says_what_the_stiffness_is():
     assert json.loads(summary_json(result()))["mesh_stiffness_is"].endswith("teeth do not bend")
 

@@ -162,6 +162,23 @@ def test_relief_starts_at_a_diameter_of_the_mean_section():
     assert removed[2] > 1e-6
 
 
+@pytest.mark.parametrize("length", [2.0, 3.0])
+def test_relief_starts_at_a_length_over_the_form_line(length):
+    relieved = FlankModifications(tip_relief=0.02, tip_relief_start_length=length)
+    flank = matched(modifications=(relieved, NONE)).pinion.flank
+    rho, z = flank.grid(101, 3)
+    height, removed = flank.profile_coordinate(rho, z).value, flank.removal(rho, z).value
+    assert_allclose(removed[height <= length], 0.0, atol=1e-15)
+    assert (removed[height > length] > 0.0).all()
+
+
+def test_generated_flank_has_no_roll_angle():
+    relieved = FlankModifications(root_relief=0.02, root_relief_start_roll=0.3)
+    told = r"^pinion\.root_relief_start_roll: the flank is no involute and has no roll angle; give root_relief_start "
+    with pytest.raises(InputError, match=told):
+        matched(modifications=(relieved, NONE))
+
+
 def test_wheel_moved_away_lets_the_wheel_lag():
     aligned = trace_contact(matched(), [0.0])[0]
     withdrawn = trace_contact(matched(mounting=BevelMounting(wheel_axial=0.05)), [0.0])[0]

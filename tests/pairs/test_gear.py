@@ -92,7 +92,17 @@ def test_pair_with_other_flanks_keeps_its_gears():
     other = pair.with_flanks(wheel=pair.wheel.back)
     assert other.pinion.flank is pair.pinion.flank
     assert other.wheel.flank is pair.wheel.back
-    assert other.wheel.nominal_flank is pair.wheel.nominal_flank
+    assert_same_flank(other.wheel.nominal_flank, pair.wheel.nominal_back)
+    assert_same_flank(other.wheel.back, pair.wheel.flank)
+
+
+@MEMBERS
+def test_gear_whose_flank_is_replaced_by_its_back_is_that_of_the_other_sense(member):
+    this, other = (getattr(pair_of(MESHES["helical"], sense, RELIEVED), member) for sense in ("positive", "negative"))
+    turned = replace(this, flank=this.back)
+    for name in ("flank", "back", "nominal_flank", "nominal_back"):
+        assert_same_flank(getattr(turned, name), getattr(other, name))
+    assert replace(this, flank=this.nominal_flank).nominal_flank is this.nominal_flank
 
 
 @pytest.mark.parametrize("name", ["spur", "straight bevel"])
@@ -102,7 +112,13 @@ def test_smallest_bore_is_a_part_of_the_root_circle_at_the_toe(name):
     assert_allclose(gear.smallest_bore, 0.55 * 2.0 * root, rtol=1e-12)
 
 
-@pytest.mark.parametrize("diameter", [math.nan, 0.0, -1.0, 64.5])
+@pytest.mark.parametrize("diameter", [-1.0, 0.0, 0.1, 3.2])
+def test_bore_too_thin_to_hold_the_gear_is_refused(diameter):
+    with pytest.raises(InputError, match=r"bore_diameter: .* mm is not between 0.05 and 0.98 times .* so thin a bore"):
+        _ = replace(gear_of(MESHES["spur"]), bore_diameter=diameter).smallest_bore
+
+
+@pytest.mark.parametrize("diameter", [math.nan, 64.5])
 def test_bore_that_leaves_no_rim_is_refused(diameter):
     with pytest.raises(InputError, match=r"bore_diameter: .* no rim is left below the teeth"):
         _ = replace(gear_of(MESHES["spur"]), bore_diameter=diameter).smallest_bore

@@ -171,3 +171,18 @@ def test_mounting_error_that_is_not_finite_is_refused_all_at_once():
 def test_teeth_that_wind_around_the_gear_are_refused():
     with pytest.raises(GeometryError, match=r"pinion: its teeth wind .* times around the gear .* 300 mm"):
         gear_pair(teeth=(14, 62), module=1.0, helix_deg=20.0, width=300.0)
+
+
+@pytest.mark.parametrize("offset", [24.998, 25.0, -25.0, 25.002])
+def test_faces_with_next_to_nothing_in_common_are_refused(offset):
+    told = (
+        rf"^axial_offset: {offset:g} mm leaves no common flank: .* at least 0.003 mm, 0.001 normal modules, are needed"
+    )
+    with pytest.raises(GeometryError, match=told):
+        gear_pair(mounting=Mounting(axial_offset=offset))
+
+
+@pytest.mark.parametrize("offset", [24.996, -24.996])
+def test_faces_with_a_little_in_common_touch_there(offset):
+    contact = trace_contact(gear_pair(mounting=Mounting(axial_offset=offset)), [0.0])[0]
+    assert abs(contact.pinion_axial - 0.5 * offset) < 0.003

@@ -1,4 +1,3 @@
-import contextlib
 import os
 
 import numpy as np
@@ -14,6 +13,7 @@ from loaded_tca.results.files import (
     arrays_of,
     read_dataset,
     remove,
+    replace_together,
     replacing,
     variables_of,
     write_dataset,
@@ -105,11 +105,31 @@ def test_interrupted_writing_keeps_the_old_file_and_no_part_of_the_new(path, int
     assert path.read_text() == "old"
 
 
-def test_failed_variable_leaves_no_file(path):
-    wrong = ("row", np.array([2**40, 0]))  # an integer that NetCDF-3 cannot hold
-    with pytest.raises(ValueError):
-        write_dataset(path, dataset().assign(wrong=wrong))
+@pytest.mark.parametrize(
+    ("addition", "name"),
+    [
+        ({"wrong": ("row", np.array([2**40, 0]))}, "wrong"),
+        ({"wrong": ("row", np.array([1j, 0]))}, "wrong"),
+        ({"wrong": ("row", np.array([{}, None], dtype=object))}, "wrong"),
+        ({"wrong": ("row", np.zeros(2), {"units": None})}, "wrong"),
+        ({"": ("row", np.zeros(2))}, ""),
+        ({3: ("row", np.zeros(2))}, "3"),
+    ],
+)
+def test_variable_that_netcdf_cannot_hold_is_told_and_leaves_no_file(path, addition, name):
+    with pytest.raises(InputError) as caught:
+        write_dataset(path, dataset().assign(addition))
+    assert len(caught.value.problems) == 1
+    assert caught.value.problems[0].startswith(f"{name}: cannot be stored in a NetCDF-3 file: ")
     assert not os.listdir(path.parent)
+
+
+@pytest.mark.parametrize("value", [None, {}, [1, "a"], 1j, 2**40, "\ud800"])
+def test_attribute_that_netcdf_cannot_hold_is_told(path, value):
+    with pytest.raises(InputError) as caught:
+        write_dataset(path, dataset(right=1.0, wrong=value))
+    assert len(caught.value.problems) == 1
+    assert caught.value.problems[0].startswith("attribute wrong: cannot be stored")
 
 
 def test_directory_that_is_not_there_is_told(tmp_path):
@@ -128,7 +148,7 @@ def test_missing_file_is_told(path):
 
 
 def test_directory_instead_of_file_is_told(tmp_path):
-    assert problem(tmp_path) == f"{tmp_path}: cannot be read: Is a directory"
+    assert problem(tmp_path) == f"{tmp_path}: a directory; name the result file in it, as {tmp_path}/result.nc"
 
 
 @pytest.mark.parametrize("content", [b"", b"torque = 3\n", b"\x89HDF\r\n\x1a\n", b"\xff" * 100])
@@ -145,15 +165,34 @@ def test_truncated_file_is_told_wherever_it_ends(path):
         assert str(path) in problem(path)
 
 
-@given(position=st.integers(0, 10**6), value=st.integers(0, 255))
-def test_damaged_file_is_read_or_told(tmp_path_factory, position, value):
-    path = tmp_path_factory.mktemp("damage") / "a.nc"
+@pytest.mark.parametrize("bit", [1, 128])
+def test_every_changed_byte_is_told(path, bit):
     write_dataset(path, dataset(title="whole"))
     content = bytearray(path.read_bytes())
-    content[position % len(content)] = value
-    path.write_bytes(content)
-    with contextlib.suppress(InputError):
-        read_dataset(path)
+    for position in range(len(content)):
+        content[position] ^= bit
+        path.write_bytes(content)
+        with pytest.raises(InputError, match=r"damaged|not a NetCDF-3 file"):
+            read_dataset(path)
+        content[position] ^= bit
+
+
+@pytest.mark.parametrize("change", [lambda content: content + b"\0", lambda content: content[:-4]])
+def test_bytes_more_or_less_are_told(path, change):
+    write_dataset(path, dataset(title="whole"))
+    path.write_bytes(change(path.read_bytes()))
+    assert "damaged: its bytes are not those that loaded_tca wrote" in problem(path)
+
+
+def test_file_without_its_digest_is_told(path):
+    marks = {"format": "loaded_tca", "format_version": str(FORMAT_VERSION)}
+    dataset(**marks).to_netcdf(path, engine="scipy", format="NETCDF3_64BIT")
+    assert "damaged: it has no digest of its bytes" in problem(path)
+
+
+def test_file_of_the_format_before_digests_is_told_as_such(path):
+    dataset(format="loaded_tca", format_version="3").to_netcdf(path, engine="scipy", format="NETCDF3_64BIT")
+    assert "written in format 3 by an earlier loaded_tca" in problem(path)
 
 
 def test_netcdf_file_of_another_program_is_told(path):
@@ -180,6 +219,30 @@ def test_missing_and_misshapen_parts_are_told_together():
         "absent: missing",
         "flags: no numbers",
     )
+
+
+@pytest.mark.parametrize("failure", [KeyboardInterrupt(), OSError(28, "No space left on device")])
+def test_files_written_together_are_all_new_or_all_old(tmp_path, monkeypatch, failure):
+    old = {"a.nc": b"old", "b.csv": b"old", "picture.png": b"old"}
+    for name, content in old.items():
+        (tmp_path / name).write_bytes(content)
+    write = type(tmp_path).write_bytes
+
+    def fail_at_the_second(path, content):
+        write(path, content[:1])
+        if "b.csv" in path.name:
+            raise failure
+
+    new = {"a.nc": b"new", "b.csv": b"new"}
+    with monkeypatch.context() as patch:
+        patch.setattr(type(tmp_path), "write_bytes", fail_at_the_second)
+        with pytest.raises((KeyboardInterrupt, InputError)) as caught:
+            replace_together(tmp_path, new, ["picture.png"])
+    if isinstance(failure, OSError):
+        assert str(caught.value) == f"{tmp_path / 'b.csv'}: cannot be written: No space left on device"
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == old
+    assert replace_together(tmp_path, new, ["picture.png", "absent.png"]) == tuple(tmp_path / name for name in new)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == new
 
 
 def test_removing_a_file_needs_none_to_be_there(tmp_path):

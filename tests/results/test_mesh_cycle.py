@@ -103,6 +103,46 @@ def test_file_with_a_dimension_of_another_length_is_told(path):
     assert caught.value.problems[1:] == ("vector: 2 long, expected 3", "path: 1 long, expected 2")
 
 
+def test_file_without_a_torque_is_told(path):
+    result().save(path)
+    write_dataset(path, read_dataset(path).isel(torque=[]))
+    with pytest.raises(InputError) as caught:
+        MeshCycle.load(path)
+    assert caught.value.problems[1:] == ("torque: 0 long, expected at least 1",)
+
+
+def test_directory_instead_of_a_result_is_told(tmp_path):
+    with pytest.raises(InputError, match=r"a directory; name the result file in it, as .*result\.nc"):
+        MeshCycle.load(tmp_path)
+
+
+def test_what_a_user_adds_to_the_dataset_is_kept(path):
+    cycle = result()
+    added = {"wear": (("torque", "position"), np.array([[0.1, 0.2, 0.3, 0.4, 0.5]]), {"units": "um"})}
+    replace(cycle, dataset=cycle.dataset.assign(added)).save(path)
+    found = MeshCycle.load(path)
+    assert_same(found, replace(cycle, dataset=cycle.dataset.assign(added)))
+
+
+def test_what_netcdf_cannot_hold_is_told_and_keeps_the_old_file(path):
+    result().save(path)
+    before = path.read_bytes()
+    with pytest.raises(InputError, match="wear: cannot be stored"):
+        replace(result(), dataset=result().dataset.assign(wear=("position", [1j] * 5))).save(path)
+    assert path.read_bytes() == before
+
+
+def test_flipped_bytes_are_always_told(path):
+    result(positions=1).save(path)
+    content = path.read_bytes()
+    for position in np.linspace(0, len(content) - 1, 400).astype(int):  # header, scene, numbers, padding
+        damaged = bytearray(content)
+        damaged[position] ^= 4
+        path.write_bytes(damaged)
+        with pytest.raises(InputError):
+            MeshCycle.load(path)
+
+
 @pytest.mark.parametrize("text", ["", "pair = ", "[pair]\ntype = 'worm'"])
 def test_file_without_a_scene_is_told(path, text):
     result().save(path)

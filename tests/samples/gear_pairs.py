@@ -9,6 +9,7 @@ from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.modification import NO_POLYNOMIAL
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
+from loaded_tca.material import Material
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.unloaded import trace_contact
 
@@ -26,10 +27,19 @@ def cylindrical_mesh(teeth=(34, 57), module=3.0, width=25.0, helix_deg=0.0, shif
     return CylindricalMesh(*gears, distance)
 
 
-def gear_pair(pinion=NONE, wheel=NONE, mounting=None, driving="pinion", sense="positive", **mesh):
+def gear_pair(
+    pinion=NONE,
+    wheel=NONE,
+    mounting=None,
+    driving="pinion",
+    sense="positive",
+    materials=(Material(), Material()),
+    **mesh,
+):
     return cylindrical_pair(
         cylindrical_mesh(**mesh),
         modifications=(pinion, wheel),
+        materials=materials,
         mounting=mounting or Mounting(),
         driving=driving,
         sense=sense,

@@ -15,11 +15,12 @@ from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.scene import BevelScene, CylindricalScene, parse_scene, scene_from_table
 from loaded_tca.scene.bevel import GearSection, Geometry, MountingErrors
 
+ANGLES = ("pressure_angle_deg", "normal_pressure_angle_deg")
 ROUNDING = 1e-13  # a few multiplications by units and trigonometric functions
 
 EVERY_KEY = {
     "pair.shaft_angle_deg": 75.0,
-    "pair.pressure_angle_deg": 22.5,
+    "pair.normal_pressure_angle_deg": 18.5,
     "pair.driving": "wheel",
     "pair.pinion_flank": "convex",
     "pinion.hand": "left",
@@ -54,6 +55,19 @@ ONE_PROBLEM = [
     ({"pair.outer_module_mm": 0}, "pair.outer_module_mm: found 0; allowed a number above 0, up to 1000"),
     ({"pair.shaft_angle_deg": 180.0}, "pair.shaft_angle_deg: found 180.0; allowed a number from 1 to 179"),
     ({"pair.pressure_angle_deg": 50.0}, "pair.pressure_angle_deg: found 50.0; allowed a number from 1 to 44"),
+    (
+        {"pair.normal_pressure_angle_deg": 20.0, "pair.pressure_angle_deg": 24.0},
+        "pair.normal_pressure_angle_deg: found 20 beside pressure_angle_deg = 24; give one of the two",
+    ),
+    (
+        {"pair.normal_pressure_angle_deg": 0.5},
+        "pair.normal_pressure_angle_deg: found 0.5; allowed a number from 1 to 44",
+    ),
+    (
+        {"pair.normal_pressure_angle_deg": 30.0, "pair.spiral_angle_deg": 59.0},
+        "pair.normal_pressure_angle_deg: found 30; with spiral_angle_deg = 59 allowed up to 27.2502, which is 45 deg "
+        "of transverse pressure angle",
+    ),
     ({"pair.spiral_angle_deg": -35.0}, "pair.spiral_angle_deg: found -35.0; allowed a number from 0 to 59"),
     ({"pair.spiral_angle_deg": None}, 'pair.spiral_angle_deg: missing; a "spiral_bevel" pair needs it, 0 to 59'),
     (
@@ -153,7 +167,7 @@ def test_geometry_that_cannot_be_is_told_by_the_gears(spiral, changes, error, me
 
 
 def test_defaults_are_those_of_the_documentation(spiral):
-    assert (spiral.geometry.shaft_angle_deg, spiral.geometry.pressure_angle_deg) == (90.0, 20.0)
+    assert (spiral.geometry.shaft_angle_deg, np.degrees(spiral.mesh().pinion.pressure_angle)) == (90.0, 20.0)
     assert (spiral.geometry.driving, spiral.geometry.sense, spiral.sense) == ("pinion", None, "positive")
     assert (spiral.pinion.face_angle_deg, spiral.pinion.root_angle_deg) == (None, None)
     assert spiral.mounting == MountingErrors()
@@ -193,8 +207,27 @@ def test_changes_may_lead_to_another_family(spiral, scene):
 # The pair
 
 
+@pytest.mark.parametrize("hand", ["left", "right"])
+def test_normal_pressure_angle_is_that_of_the_section_across_the_teeth(spiral, hand):
+    """At the mean pitch point the flank's normal leans by alpha_n out of the plane that touches the pitch cone."""
+    pair = spiral.with_changes({"pair.normal_pressure_angle_deg": 20.0, "pinion.hand": hand}).pair()
+    mesh = spiral.mesh()
+    delta, distance = mesh.pinion.pitch_angle, mesh.pinion.mean_cone_distance
+    normal = outward_normal(pair.pinion.flank, np.array(distance * np.sin(delta)), np.array(distance * np.cos(delta)))
+    out_of_the_cone = np.array([np.cos(delta), 0.0, -np.sin(delta)])
+    assert_allclose(np.degrees(np.arcsin(normal @ out_of_the_cone)), 20.0, rtol=1e-9)
+
+
+def test_normal_pressure_angle_of_straight_teeth_is_the_transverse_one(spiral):
+    straight = {"pair.type": "straight_bevel", "pair.spiral_angle_deg": None}
+    both = [spiral.with_changes({**straight, f"pair.{name}": 30.0}) for name in ANGLES]
+    assert_allclose(both[0].mesh().pinion.pressure_angle, both[1].mesh().pinion.pressure_angle, rtol=ROUNDING)
+
+
 def test_pair_is_the_one_made_by_hand(spiral):
-    full = spiral.with_changes({**EVERY_KEY, "wheel.material": {"youngs_modulus_MPa": 1e5, "poisson_ratio": 0.25}})
+    pressure_angles = {"pair.normal_pressure_angle_deg": None, "pair.pressure_angle_deg": 22.5}
+    brass = {"youngs_modulus_MPa": 1e5, "poisson_ratio": 0.25}
+    full = spiral.with_changes({**EVERY_KEY, **pressure_angles, "wheel.material": brass})
     mesh = bevel_mesh(
         (20, 40),
         4.0,

@@ -224,7 +224,7 @@ def test_problems_of_a_file_are_told_all_at_once_and_with_those_of_the_scene(sma
     assert refused(small, tmp_path, csv, "[pinion.modifications]\ntwist_um = true\n") == [
         "pinion.modifications.twist_um: found true; allowed a number from -10000 to 10000",
         "wheel.flank.file: wheel.csv: line 3: 2 values; the header names 3 columns",
-        "wheel.flank.file: wheel.csv: line 4: axial_mm 'x' is not a finite number",
+        "wheel.flank.file: wheel.csv: line 4, column 2: axial_mm is not a finite number",
     ]
 
 

@@ -62,6 +62,15 @@ ONE_PROBLEM = [
         "analysis.cells: found 32; allowed a list of 2 values, each a whole number from 4 to 1000000",
     ),
     # out of range
+    (
+        {"material.youngs_modulus_MPa": 1e-300},
+        "material.youngs_modulus_MPa: found 1e-300; allowed a number from 0.001 to 1e+07",
+    ),
+    (
+        {"material.poisson_ratio": 0.5, "analysis.compliance": "contact+tooth"},
+        'material.poisson_ratio: found 0.5; allowed up to 0.49 with analysis.compliance = "contact+tooth": finite '
+        "elements of a material that keeps its volume lock",
+    ),
     ({"pinion.teeth": -34}, "pinion.teeth: found -34; allowed a whole number from 3 to 10000"),
     ({"pinion.teeth": 10001}, "pinion.teeth: found 10001; allowed a whole number from 3 to 10000"),
     (
@@ -122,15 +131,62 @@ ONE_PROBLEM = [
     # together
     (
         {"wheel.modifications.tip_relief_um": 20.0},
-        "wheel.modifications.tip_relief_start_mm: missing or 0; tip_relief_um = 20 needs a value above 0",
+        "wheel.modifications.tip_relief_start_mm: missing or 0; tip_relief_um = 20 needs a value above 0, or "
+        "tip_relief_start_roll_deg or tip_relief_start_length_mm",
     ),
     (
         {"wheel.modifications.root_relief_um": 20.0},
-        "wheel.modifications.root_relief_start_mm: missing or 0; root_relief_um = 20 needs a value above 0",
+        "wheel.modifications.root_relief_start_mm: missing or 0; root_relief_um = 20 needs a value above 0, or "
+        "root_relief_start_roll_deg or root_relief_start_length_mm",
     ),
     (
         {"wheel.modifications.end_relief_um": 20.0},
-        "wheel.modifications.end_relief_length_mm: missing or 0; end_relief_um = 20 needs a value above 0",
+        "wheel.modifications.end_relief_length_mm: missing or 0; end_relief_um = 20 needs a value above 0, or "
+        "end_relief_lower_length_mm",
+    ),
+    (
+        {"wheel.modifications.end_relief_um": 20.0, "wheel.modifications.end_relief_lower_length_mm": 4.0},
+        "wheel.modifications.end_relief_length_mm: missing or 0; end_relief_um = 20 needs a value above 0, or "
+        "end_relief_upper_length_mm",
+    ),
+    (
+        {"wheel.modifications.end_relief_upper_um": 12.0, "wheel.modifications.end_relief_lower_length_mm": 4.0},
+        "wheel.modifications.end_relief_length_mm: missing or 0; end_relief_upper_um = 12 needs a value above 0, or "
+        "end_relief_upper_length_mm",
+    ),
+    (
+        {"wheel.modifications.end_relief_lower_length_mm": 10.5},
+        "wheel.modifications.end_relief_lower_length_mm: found 10.5; allowed up to 0.5 face_width_mm = 10",
+    ),
+    (
+        {"wheel.modifications.end_relief_upper_length_mm": 0.0},
+        "wheel.modifications.end_relief_upper_length_mm: found 0.0; allowed a number above 0, up to 10000",
+    ),
+    (
+        {"wheel.modifications.end_relief_lower_um": -1.0},
+        "wheel.modifications.end_relief_lower_um: found -1.0; allowed a number from 0 to 10000",
+    ),
+    (
+        {"pinion.modifications.tip_relief_start_mm": 109.0, "pinion.modifications.tip_relief_start_roll_deg": 25.0},
+        "pinion.modifications.tip_relief_start_mm: found tip_relief_start_mm = 109 beside tip_relief_start_roll_deg "
+        "= 25; give one of them",
+    ),
+    (
+        {
+            "pinion.modifications.root_relief_um": 5.0,
+            "pinion.modifications.root_relief_start_roll_deg": 18.0,
+            "pinion.modifications.root_relief_start_length_mm": 16.0,
+        },
+        "pinion.modifications.root_relief_start_mm: found root_relief_start_roll_deg = 18 beside "
+        "root_relief_start_length_mm = 16; give one of them",
+    ),
+    (
+        {"pinion.modifications.root_relief_start_roll_deg": -1.0},
+        "pinion.modifications.root_relief_start_roll_deg: found -1.0; allowed a number from 0 to 3600",
+    ),
+    (
+        {"mounting.misalignment_um": 1e5},
+        "mounting.misalignment_um: found 100000.0; allowed a number from -10000 to 10000",
     ),
     (
         {"wheel.modifications.end_relief_length_mm": 11.0},
@@ -196,6 +252,13 @@ def test_unknown_keys_beyond_twenty_are_counted(table):
 
 def test_unknown_keys_of_the_top_beyond_twenty_are_counted(table):
     assert problems_of(table, {f"x{i}": 1 for i in range(30)})[-1] == "scene: 10 more unknown keys"
+
+
+def test_message_shortens_the_list_of_many_keys(table):
+    (line,) = problems_of(table, {"wheel.modifications.colour": "red"})
+    assert line.startswith("wheel.modifications.colour: unknown key; allowed lead_crowning_um, ")
+    assert line.endswith(", ...")
+    assert len(line) < 400
 
 
 def test_message_shortens_long_values(table):

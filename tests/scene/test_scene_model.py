@@ -24,11 +24,19 @@ from loaded_tca.scene import (
 from loaded_tca.scene.build import in_base_units
 from loaded_tca.scene.cylindrical import GearSection, Geometry, MountingErrors
 from loaded_tca.unloaded import trace_contact
+from tests.samples.gear_pairs import transmission_error_at
 
 ROOT = Path(__file__).parents[2]
 
 SCENES = ROOT / "examples" / "scenes"
 ROUNDING = 1e-14  # one multiplication by a unit
+DRIVES = [
+    ("pinion", "positive", 1),
+    ("pinion", "negative", -1),
+    ("wheel", "positive", -1),
+    ("wheel", "negative", 1),
+]
+"""Driving gear, sense, and the flanks in contact: s = +1 or -1."""
 
 EVERY_KEY = {
     "title": 'Naïve "quoted" \\ title, 5 µm, ∞',
@@ -47,6 +55,10 @@ EVERY_KEY = {
     "pinion.modifications.lead_crowning_form": "logarithmic",
     "pinion.modifications.end_relief_um": 4.0,
     "pinion.modifications.end_relief_length_mm": 3.0,
+    "pinion.modifications.end_relief_lower_um": 0.0,
+    "pinion.modifications.end_relief_lower_length_mm": 2.5,
+    "pinion.modifications.end_relief_upper_um": 6.0,
+    "pinion.modifications.end_relief_upper_length_mm": 4.5,
     "pinion.modifications.profile_crowning_um": 2.0,
     "pinion.modifications.tip_relief_um": 20.0,
     "pinion.modifications.tip_relief_start_mm": 109.0,
@@ -61,6 +73,10 @@ EVERY_KEY = {
     "pinion.flank.form": "bspline",
     "pinion.flank.points": [21, 25],
     "pinion.flank.degree": 3,
+    "wheel.modifications.tip_relief_um": 12.0,
+    "wheel.modifications.tip_relief_start_roll_deg": 24.5,
+    "wheel.modifications.root_relief_um": 8.0,
+    "wheel.modifications.root_relief_start_length_mm": 29.0,
     "pinion.material.youngs_modulus_MPa": 210000,
     "pinion.material.poisson_ratio": 0.28,
     "pinion.material.max_pressure_MPa": 4000,
@@ -68,6 +84,7 @@ EVERY_KEY = {
     "mounting.out_of_plane_deg": -0.02,
     "mounting.centre_distance_error_mm": 0.03,
     "mounting.axial_offset_mm": -1e-7,
+    "mounting.misalignment_um": -15.0,
     "analysis.positions": 1,
     "analysis.accuracy": 1e-2,
     "analysis.cells": [32, 64],
@@ -217,11 +234,48 @@ def test_changes_are_checked(scene, changes, message):
     assert str(raised.value).startswith(message)
 
 
+@pytest.mark.parametrize(("driving", "sense", "side"), DRIVES)
+def test_misalignment_is_the_parting_in_the_plane_of_action_over_the_common_face(scene, driving, sense, side):
+    """First touch of each transverse section, as a length on the line of action: flanks s = +1 close at z > 0."""
+    pair = scene.with_changes(
+        {"mounting.misalignment_um": 20.0, "pair.driving": driving, "pair.sense": sense, "pair.helix_angle_deg": 0.0}
+    ).pair()
+    rho = np.linspace(49.5, 53.0, 2001)  # of the pinion, about its pitch circle of 51 mm
+
+    def first_touch(z):
+        error, _ = transmission_error_at(pair, 0.0, rho, np.full_like(rho, z))
+        return (pair.driving * error).max()
+
+    # over 18 of the 20 mm that both faces cover; the rest is of second order in an angle of 1e-3
+    parting = pair.base_radii[1] * (first_touch(9.0) - first_touch(-9.0))
+    assert_allclose(parting, side * 0.02 * 18.0 / 20.0, rtol=1e-3)
+
+
+def test_misalignment_adds_to_the_out_of_plane_error(scene):
+    """Helical pair without profile shift: tan(alpha_wt) = tan 20/cos 15, b = 20 mm."""
+    alpha = np.arctan(np.tan(np.deg2rad(20.0)) / np.cos(np.deg2rad(15.0)))
+    errors = {"mounting.out_of_plane_deg": 0.01, "mounting.in_plane_deg": 0.02, "mounting.misalignment_um": -30.0}
+    pair = scene.with_changes(errors).pair()
+    tilt = np.deg2rad(0.01) - 0.03 / (20.0 * np.cos(alpha))
+    assert_allclose(pair.wheel_axes[2, 1], -np.sin(tilt), rtol=1e-9)  # alpha_wt comes from a square root
+    assert_allclose(pair.wheel_axes[2, 0], np.sin(np.deg2rad(0.02)) * np.cos(tilt), rtol=1e-9)
+
+
+def test_misalignment_that_turns_the_axes_across_is_refused_by_its_key(scene):
+    told = r"^mounting.misalignment_um: found -10000; over the common face width of 5 mm .* -122.5, allowed up to 45$"
+    with pytest.raises(InputError, match=told):
+        scene.with_changes({"mounting.misalignment_um": -1e4, "wheel.face_width_mm": 5.0}).pair()
+
+
 def test_units_are_converted_by_the_end_of_the_key():
     modifications = in_base_units(Modifications(tip_relief_um=20.0, tip_relief_start_mm=109.0))
     assert_allclose(modifications["tip_relief"], 0.02, rtol=ROUNDING)
     assert modifications["tip_relief_start"] == 109.0
     assert modifications["tip_relief_form"] == "parabolic"
+    assert "end_relief_lower" not in modifications  # not given: as at both ends
+    starts = in_base_units(Modifications(tip_relief_start_roll_deg=18.0, root_relief_start_length_mm=17.0))
+    assert_allclose(starts["tip_relief_start_roll"], 0.1 * np.pi, rtol=ROUNDING)
+    assert starts["root_relief_start_length"] == 17.0
     assert_allclose(in_base_units(MountingErrors(in_plane_deg=9.0))["in_plane"], np.pi / 20, rtol=ROUNDING)
     assert in_base_units(Load(pinion_torque_Nm=2.0)) == {"pinion_torque": 2000.0}
 
@@ -302,10 +356,32 @@ def test_example_makes_a_pair_and_holds_the_pitch_point(name):
     assert scene.analysis.positions % 2 == 1
 
 
+def test_incompressible_material_of_either_gear_is_refused_where_teeth_bend_only(scene):
+    own = {"youngs_modulus_MPa": 10.0, "poisson_ratio": 0.5}
+    assert scene.with_changes({"wheel.material": own, "analysis.compliance": "contact"}).pair().wheel
+    with pytest.raises(InputError, match=r"^wheel.material.poisson_ratio: found 0.5; allowed up to 0.49 with"):
+        scene.with_changes({"wheel.material": own, "analysis.compliance": "contact+tooth"})
+    soft = scene.with_changes({"wheel.material": own | {"poisson_ratio": 0.49}, "analysis.compliance": "contact+tooth"})
+    assert soft.materials[1].poisson_ratio == 0.49
+
+
+@pytest.mark.parametrize("name", ["helical", "spiral_bevel", "duplex_30x20"])
+@pytest.mark.parametrize("sense", ["x", "", 1, True])
+def test_sense_that_is_none_is_refused_by_every_family(name, sense):
+    with pytest.raises(InputError, match=r"^sense: .* is not 'positive' or 'negative'$"):
+        read_scene(SCENES / f"{name}.toml").pair(sense)
+
+
 def test_misaligned_example_touches_at_the_edge_of_the_face():
     path = trace_contact(read_scene(SCENES / "misaligned.toml").pair())
     assert path.on_edge.all()
     assert_allclose(path.pinion_axial, 12.5, atol=0.01)  # the tilted wheel ends up to 0.006 mm earlier
+
+
+def test_misaligned_example_has_the_misalignment_of_its_comment():
+    scene = read_scene(SCENES / "misaligned.toml")
+    other = scene.with_changes({"mounting.out_of_plane_deg": 0.0, "mounting.misalignment_um": 32.8})
+    assert_allclose(other.pair().wheel_axes, scene.pair().wheel_axes, atol=1e-6)  # 25 mm tan(0.08 deg) cos(20 deg)
 
 
 @pytest.mark.parametrize(

@@ -216,10 +216,12 @@ gears = st.fixed_dictionaries(
         "pinion.modifications.lead_crowning_um": st.floats(0.0, 10000.0),
         "pinion.modifications.lead_crowning_form": st.sampled_from(["circular", "logarithmic"]),
         "mounting.in_plane_deg": st.floats(-10.0, 10.0),
+        "mounting.misalignment_um": st.floats(-10000.0, 10000.0),
     },
 )
 
 
+@pytest.mark.filterwarnings("ignore:pinion.lead_crowning")
 @given(gears)
 def test_scene_makes_a_pair_or_says_why_not(changes):
     scene = parse_scene(CYLINDRICAL).with_changes(
@@ -239,7 +241,8 @@ bevel_gears = st.fixed_dictionaries(
     optional={
         "pair.shaft_angle_deg": st.floats(1.0, 179.0),
         "pair.spiral_angle_deg": st.floats(0.0, 59.0),
-        "pair.pressure_angle_deg": st.floats(1.0, 44.0),
+        "pair.pressure_angle_deg": st.none() | st.floats(1.0, 44.0),
+        "pair.normal_pressure_angle_deg": st.floats(1.0, 44.0),
         "pair.pinion_flank": st.sampled_from(["concave", "convex"]),
         "pair.driving": st.sampled_from(["pinion", "wheel"]),
         "pinion.hand": st.sampled_from(["left", "right"]),
@@ -248,6 +251,7 @@ bevel_gears = st.fixed_dictionaries(
         "pinion.root_angle_deg": st.floats(1.0, 179.0),
         "pinion.bore_diameter_mm": st.floats(1.0, 100.0),
         "pinion.modifications.tip_relief_um": st.floats(0.0, 100.0),
+        "pinion.modifications.tip_relief_start_roll_deg": st.floats(0.0, 60.0),
         "mounting.shaft_angle_error_deg": st.floats(-10.0, 10.0),
         "mounting.offset_mm": st.floats(-5.0, 5.0),
     },

@@ -8,3 +8,10 @@
 - ``mounting_error_map``: two errors together;
 - ``convergence_from_random_starts``, with ``random_starts``: two equations beside five; writes a page.
 """
+
+import warnings
+
+from loaded_tca.errors import AccuracyWarning
+
+# The dissertation's crownings are as thick as a tooth.
+warnings.filterwarnings("ignore", message=".*lead_crowning: .* is more than 1 mm", category=AccuracyWarning)

@@ -1,0 +1,71 @@
+from pathlib import Path
+
+import pytest
+
+from loaded_tca import InputError, analyse, read_scene
+from loaded_tca.loaded import effort
+from loaded_tca.loaded.effort import expected_effort
+from tests.samples.results import result
+
+SCENES = Path(__file__).parents[2] / "examples" / "scenes"
+
+
+def effort_of(name="helical", **changes):
+    return expected_effort(scene(name, **changes))
+
+
+def scene(name="helical", **changes):
+    changed = {f"analysis.{key}": value for key, value in changes.items()}
+    return read_scene(SCENES / f"{name}.toml").with_changes(changed)
+
+
+def test_contacts_are_those_of_the_result_where_one_pair_carries_all():
+    cycle = result(positions=5, torques=(20.0, 80.0))
+    found = expected_effort(cycle.scene)
+    maps = [one for rows in cycle.maps for row in rows for one in row]
+    assert found.contacts == len(maps)
+    assert found.cells == maps[0].pressure.size
+
+
+def test_contacts_are_about_those_of_a_result_whose_pairs_share_the_load():
+    cycle = result("mesh_cycle_helical", positions=5, torques=(40.0, 260.0))
+    loaded = int((cycle.normal_force > 0.0).sum())
+    assert loaded / 2 <= expected_effort(cycle.scene).contacts <= 2 * loaded
+
+
+def test_memory_holds_at_least_the_maps_of_the_result():
+    found = effort_of(cells=(300, 200), accuracy=None, positions=50)
+    assert found.memory > 50 * 2 * 8 * 300 * 200  # pressure and gap
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"positions": 42},
+        {"torques_Nm": (10.0, 20.0)},
+        {"load_sharing": True},
+        {"free_edges": True},
+        {"compliance": "contact+tooth"},
+        {"accuracy": 1e-4},
+        {"cells": (100, 100), "accuracy": None},
+    ],
+)
+def test_more_work_is_a_larger_estimate(more):
+    assert effort_of(**more).seconds > 1.2 * effort_of().seconds
+
+
+def test_accuracy_asks_for_no_more_cells_than_the_finest_grid():
+    assert effort_of(accuracy=1e-6).cells == 1024**2
+    assert not effort_of(accuracy=1e-6, positions=10000).is_refused
+
+
+def test_analysis_beyond_the_memory_is_refused_before_it_starts(monkeypatch):
+    monkeypatch.setattr(effort, "machine_memory", lambda: 2.0**30)
+    asked = scene(cells=(1000, 1000), accuracy=None, positions=21)
+    with pytest.raises(InputError, match=r"cells: \(1000, 1000\): 21 contacts of 1000000 cells.*has 1 GiB"):
+        analyse(asked, progress=lambda *_: pytest.fail("has started"))
+
+
+def test_estimate_says_what_it_is_of():
+    text = str(effort_of(positions=1, cells=(10, 10), accuracy=None))
+    assert text.startswith("1 contact of 100 cells: roughly 0.01 s, 0.14 GiB")

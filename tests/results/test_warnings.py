@@ -1,0 +1,91 @@
+"""Accuracy warnings: what is told, and where."""
+
+import math
+import re
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca import AccuracyWarning, InputError, analyse, read_scene
+
+SCENES = Path(__file__).parents[2] / "examples" / "scenes"
+COARSE = {"analysis.accuracy": None, "analysis.cells": (20, 20), "analysis.positions": 3}
+
+
+def told(name, **changes):
+    """Result and warnings of an example scene on a coarse grid."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", AccuracyWarning)
+        result = analyse(read_scene(SCENES / f"{name}.toml").with_changes(COARSE | changes))
+    return result, [str(warning.message) for warning in caught]
+
+
+@pytest.mark.parametrize("load_sharing", [True, False])
+@pytest.mark.parametrize("torque", [1e-11, 1e-300])
+def test_next_to_no_torque_is_told_and_taken_for_no_load(torque, load_sharing):
+    changes = {"analysis.load_sharing": load_sharing, "analysis.torques_Nm": (torque, 1.0)}
+    result, sentences = told("mesh_cycle_spur", **changes)
+    assert sum(f"{torque:g} N m is next to no torque" in sentence for sentence in sentences) == 1
+    assert (result.normal_force[0] == 0.0).all()
+    assert_allclose(result.load_share.sum(axis=-1), 1.0, rtol=1e-9)
+    assert (result.normal_force[1].sum(axis=-1) > 0.0).all()
+
+
+def test_warning_names_a_place_that_has_what_it_tells():
+    result, sentences = told("mesh_cycle_helical", **{"analysis.torques_Nm": (40.0, 260.0)})
+    (sentence,) = (one for one in sentences if "reaches an edge" in one)
+    count, total, torque, angle, number = re.search(
+        r"at (\d+) of (\d+) pressure maps; the first: (\S+) N m, pinion angle (\S+) deg, tooth pair (\S+)\)", sentence
+    ).groups()
+    assert int(count) == result.on_edge.sum()
+    assert int(total) == sum(one is not None for rows in result.maps for row in rows for one in row)
+    place = (
+        int(abs(result.torque - 1e3 * float(torque)).argmin()),
+        int(abs(np.degrees(result.pinion_angle) - float(angle)).argmin()),
+        result.pair.tolist().index(int(number)),
+    )
+    assert result.on_edge[place]
+
+
+def test_contacts_of_the_helical_mesh_cycle_do_not_reach_their_boxes():
+    """Two of its contacts did, which had grown under a corrected force."""
+    changes = {"analysis.accuracy": 1e-2, "analysis.cells": None, "analysis.positions": 33}
+    result, sentences = told("mesh_cycle_helical", **changes)
+    assert not any("the box" in sentence for sentence in sentences)
+    for rows in result.maps:
+        for one in (one for row in rows for one in row if one is not None):
+            assert not one.pressure[[0, -1]].any()
+            assert not one.pressure[:, [0, -1]].any()
+
+
+def test_twist_about_a_thin_bore_is_told():
+    scene = "mesh_cycle_finite_elements"
+    thin, sentences = told(scene, **{"pinion.bore_diameter_mm": 6.0})
+    assert sum("twist of the gear bodies about their bores, 6 and" in sentence for sentence in sentences) == 1
+    usual, sentences = told(scene)
+    assert not any("twist" in sentence for sentence in sentences)
+    # in closed form: the twist of the ring that is added, at the base circle, over the face of 20 mm
+    base, width, modulus = 0.5 * 75.0 * math.cos(math.radians(20.0)), 20.0, 206000.0 / 2.6
+    added = base**2 / (4.0 * math.pi * modulus * width) * (1.0 / 3.0**2 - 1.0 / (0.275 * 67.5) ** 2)
+    force = 20e3 / base
+    turned = (usual.transmission_error - thin.transmission_error) * usual.wheel_base_radius
+    assert_allclose(turned, force * added, rtol=0.1)  # four layers, and one force bends the body, too: 6 %
+
+
+def test_pair_that_fills_its_grid_at_the_cap_gets_a_larger_one():
+    """Beside a pair at its limit a light one takes several times the force that its first grid was made for."""
+    capped = {"analysis.torques_Nm": (130.0,), "material.max_pressure_MPa": 50.0}
+    result, sentences = told("mesh_cycle_spur", **capped, **{"analysis.positions": 9, "analysis.cells": (24, 24)})
+    assert not any("the box" in sentence for sentence in sentences)
+    assert_allclose(result.load_share.sum(axis=-1), 1.0, rtol=1e-8)
+    assert np.nanmax(result.peak_pressure) <= 50.0
+
+
+def test_cap_that_the_flanks_cannot_carry_is_told_with_its_place():
+    with pytest.raises(
+        InputError, match=r"130 N m at pinion angle .* deg: tooth pair [+-]\d: load: .* max_pressure, 5 MPa"
+    ):
+        told("mesh_cycle_spur", **{"analysis.torques_Nm": (130.0,), "material.max_pressure_MPa": 5.0})
