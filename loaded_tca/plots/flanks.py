@@ -22,6 +22,8 @@ from loaded_tca.results.pressure_map import PressureMap
 
 CONTACT_POINTS = "unloaded contact points of all positions and pairs"
 MOST_AREAS = 7
+CELLS_OF_SPIKES = 0.05
+"""Part of the cells of a map under pressure that may lie beyond its scale of colours."""
 LEAST_SEEN = 0.01
 """Part of the height of a flank from which an area of it is seen."""
 FINENESS = (129, 33)
@@ -96,12 +98,17 @@ def colour_scale(
 
 
 def highest_of_map(result: MeshCycle, torque: int, position: int, column: int) -> float:
-    """Pressure [MPa] up to which the colours of one map go: its peak pressure where cells at an edge are above it."""
+    """Pressure [MPa] up to which the colours of a map under pressure go: its peak pressure, where cells are above it.
+
+    On a tip corner most of them are: there it is what all but a small part of them stay below.
+    """
     one, at = result.maps[torque][position][column], (torque, position, column)
-    highest = 0.0 if one is None else float(one.pressure.max())
-    if result.on_edge[at] or result.on_relief_start[at]:
-        highest = min(highest, float(result.peak_pressure[at]))
-    return highest
+    assert one is not None
+    highest = float(one.pressure.max())
+    if not (result.on_edge[at] or result.on_relief_start[at]):
+        return highest
+    body = float(np.quantile(one.pressure[one.pressure > 0.0], 1.0 - CELLS_OF_SPIKES))
+    return min(highest, max(body, float(result.peak_pressure[at])))
 
 
 def both_flanks(

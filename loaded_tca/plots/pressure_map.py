@@ -55,7 +55,7 @@ def plot_pressure_map(
     scale, height = _scale_factor(one)
     figure = Figure(figsize=(9.0, 1.8 + height), layout="constrained")
     axes = figure.add_subplot()
-    _draw_pressure(figure, axes, one, highest_of_map(result, torque, *at))
+    _draw_pressure(figure, axes, one, highest_of_map(result, torque, *at) if one.pressure.any() else 0.0)
     names = ("hertz_semi_minor", "hertz_semi_major", "hertz_pressure")
     minor, major, pressure = (float(getattr(result, name)[torque][at]) for name in names)
     if math.isfinite(pressure):

@@ -31,9 +31,7 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.summary import signed
 from loaded_tca.unloaded.contact_span import contact_span, path_letters, roll_lengths_of_flanks
 
-WHAT_LETTERS_ARE = (
-    "A, E: unloaded contact of these flanks ends at the pinion's root, tip; B, D: a pitch from E, A; C: pitch point"
-)
+WHAT_LETTERS_ARE = "A, E: unloaded contact ends at the pinion's root, tip; B, D: a pitch from E, A; C: pitch point"
 NEAR_LETTERS = 0.03
 """Part of the axis below which two letters stand to either side of their lines."""
 PAIR_COLOURS = "#0072b2", "#d55e00", "#56b4e9", "#cc79a7", "#e69f00", "#009e73"

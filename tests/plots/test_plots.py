@@ -318,12 +318,15 @@ def test_picture_that_cannot_be_written_is_told(tmp_path):
         save_figure(Figure(), tmp_path / "absent" / "a.png")
 
 
-def test_colours_of_a_edge_map_do_not_follow_its_spike():
-    cycle = result("fzg_c14", positions=3)
+@pytest.mark.parametrize(("name", "torques"), [("fzg_c14", None), ("mesh_cycle_helical", (260.0,))])
+def test_colours_of_a_edge_map_do_not_follow_its_spike(name, torques):
+    """A line that ends at the faces, and a tip corner, whose cells are nearly all above its peak pressure."""
+    cycle = result(name, positions=3, torques=torques)
     at = cycle.edge_contact(0)
     bar = plot_pressure_map(cycle, at[0], 0, at[1]).axes[-1]
     one = cycle.maps[0][at[0]][at[1]].pressure
-    assert bar.get_ylim()[1] == cycle.peak_pressure[0][at] < one.max()
+    assert cycle.peak_pressure[0][at] <= bar.get_ylim()[1] < one.max()
+    assert (one > bar.get_ylim()[1]).sum() <= 0.05 * (one > 0.0).sum() + 1
     assert f"up to {one.max():.0f}" in bar.get_ylabel()
 
 
