@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca import AccuracyWarning, analyse, read_scene
-from loaded_tca.results.load_factors import STRIPS, load_factors, strip_forces
+from loaded_tca.results.load_factors import load_factors, strip_forces
 from tests.samples.results import SCENES, result
 
 
@@ -48,14 +48,22 @@ def test_pair_that_carries_half_the_load_of_a_longer_mesh_is_told_by_the_transve
 def test_strips_share_the_force_of_a_cell_by_its_overlap():
     """Cells of 0.28 mm on strips of 0.4667 mm: an even load is even in the strips, and no force is lost."""
     cycle, even = evenly_loaded(line_load=300.0)
-    borders = np.linspace(-7.0, 7.0, STRIPS + 1)
+    borders = np.linspace(-7.0, 7.0, 30 + 1)
     force, length = strip_forces(cycle.gear_pair, even, borders)
-    assert_allclose(force, 300.0 * 14.0 / STRIPS, rtol=1e-12)
-    assert_allclose(length, 14.0 / STRIPS, rtol=1e-12)
+    assert_allclose(force, 300.0 * 14.0 / 30, rtol=1e-12)
+    assert_allclose(length, 14.0 / 30, rtol=1e-12)
     beyond = replace(even, origin=even.origin + np.array([0.0, 0.0, 1.0]))
     force, _ = strip_forces(cycle.gear_pair, beyond, borders)
     assert_allclose(force.sum(), 300.0 * 14.0, rtol=1e-12)
     assert force[0] == force[1] == 0.0
+
+
+def test_contact_line_across_a_strip_is_as_long_as_its_helix_says():
+    cycle = result(positions=1)
+    _, length = strip_forces(cycle.gear_pair, cycle.maps[0][0][0], np.linspace(-12.5, 12.5, 31))
+    base_helix = cycle.scene.mesh().pinion.base_helix_angle
+    assert base_helix > 0.1
+    assert_allclose(length, 25.0 / 30.0 / np.cos(base_helix), rtol=1e-3)  # crowning turns the contact a little
 
 
 def test_load_that_grows_linearly_along_the_face_has_the_factor_of_its_last_strip():
@@ -64,7 +72,7 @@ def test_load_that_grows_linearly_along_the_face_has_the_factor_of_its_last_stri
     part = (even.y - even.y[0] + 0.5 * even.spacing[1]) / 14.0
     rising = replace(even, pressure=even.pressure * part)
     face, _ = load_factors(cycle.gear_pair, cycle.path, (((rising,),) * 3,), 14.0)
-    assert_allclose(face, 2.0 - 1.0 / STRIPS, rtol=1e-6)
+    assert_allclose(face, 2.0 - 1.0 / 30, rtol=1e-6)
 
 
 def test_last_position_does_not_count():
@@ -140,8 +148,8 @@ def test_face_load_factor_does_not_depend_on_the_grid(error):
 def test_face_load_factor_of_a_crowned_pair_is_that_of_its_mean_parabola():
     """Hertz's ellipse has the line load 1 - (y/a)^2: its strip in the middle over the mean of the face, weighted."""
     cycle = crowned(0.0, 64)
-    borders = np.linspace(-12.5, 12.5, STRIPS + 1)
-    mean = np.zeros(STRIPS)
+    borders = np.linspace(-12.5, 12.5, 30 + 1)
+    mean = np.zeros(30)
     for n, k in np.argwhere(cycle.normal_force[0, :-1] > 0.0):
         half = cycle.hertz_semi_major[0, n, k]
         inside = np.clip(borders / half, -1.0, 1.0)
