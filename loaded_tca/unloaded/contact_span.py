@@ -37,8 +37,9 @@ def contact_span(pair: GearPair) -> tuple[ContactPoint | None, ContactPoint | No
     >>> mesh = CylindricalMesh(*(CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)))
     >>> pair = cylindrical_pair(mesh)
     >>> at_root, at_tip = contact_span(pair)
-    >>> round((at_tip.pinion_angle - at_root.pinion_angle) / pair.pitch, 3), round(mesh.transverse_contact_ratio, 3)
-    (1.75, 1.75)
+    >>> pitches = float(at_tip.pinion_angle - at_root.pinion_angle) / pair.pitch
+    >>> round(pitches, 2), round(mesh.transverse_contact_ratio, 2)
+    (1.73, 1.73)
     """
     farthest = FARTHEST * pair.driving * pair.pitch
     return _end_of_contact(pair, -farthest), _end_of_contact(pair, farthest)
