@@ -40,9 +40,12 @@ CASES = (
     "face_milled.duplex_paper",
     "cylindrical.iso_tr_6336_30",
     "loaded.limits",
+    "loaded.mesh_stiffness",
+    "loaded.local_term",
     "calculix.mesh_cycle",
     "contact.subsurface",
     "contact.free_edge",
+    "contact.free_block",
     "contact.wedge",
 )
 

@@ -44,7 +44,7 @@ class MeshDensity:
     through: int = 4
     flank: int = 6
     fillet: int = 2
-    land: int = 2
+    land: int = 3
     rim: int = 4
     lengthwise: int = 10
     neighbours: int = 1
@@ -84,10 +84,13 @@ class RingLayout:
     ----------
     teeth : int
     density : MeshDensity
+    core : int
+        Layers of a solid gear below those of the rim; 0: a bore.
     """
 
     teeth: int
     density: MeshDensity
+    core: int = 0
 
     @property
     def neighbours(self) -> int:
@@ -115,10 +118,10 @@ class RingLayout:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Nodes around the gear, and from the bore to the tip of the resolved tooth."""
+        """Nodes around the gear, and from the lowest row to the tip of the resolved tooth."""
         last = self.sectors[-1]
         tooth = self.density.flank + self.density.fillet
-        return last.first + 2 * last.columns, 2 * (self.density.rim + tooth) + 1
+        return last.first + 2 * last.columns, self.base_row + 2 * tooth + 1
 
     @cached_property
     def turns(self) -> Array:
@@ -149,7 +152,11 @@ class RingLayout:
     @property
     def base_row(self) -> int:
         """Row between rim and teeth."""
-        return 2 * self.density.rim
+        return 2 * (self.core + self.density.rim)
+
+    def held(self, number: Indices) -> Indices:
+        """Nodes that are held, of those numbered (columns, rows, ...): the bore, or both faces of the core."""
+        return (number[:, : 2 * self.core + 1, [0, -1]] if self.core else number[:, 0]).ravel()
 
     @cached_property
     def elements(self) -> Indices:
@@ -157,7 +164,7 @@ class RingLayout:
         return np.concatenate([self._elements_of(sector) for sector in self.sectors])
 
     def _elements_of(self, sector: SectorLayout) -> Indices:
-        rim = _block(sector.first, sector.columns, 0, self.density.rim)
+        rim = _block(sector.first, sector.columns, 0, self.core + self.density.rim)
         density = sector.density
         if density is None:
             return rim

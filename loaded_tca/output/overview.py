@@ -55,7 +55,7 @@ def _path_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
 
 
 def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
-    """The load, what the analysis is asked to do, and the bores that it holds where teeth bend."""
+    """The load, what the analysis is asked to do, and the bores or journals that it holds where teeth bend."""
     torques, label, wanted = scene.torques, "pinion torque [N m]", scene.analysis
     if len(torques) > MOST_TORQUES:
         torques, label = (min(torques), max(torques)), f"{len(torques)} pinion torques from, to [N m]"
@@ -69,7 +69,7 @@ def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     effort = expected_effort(scene)
     yield "analysis, roughly: time [s], memory [GiB]", rounded(effort.seconds), rounded(effort.gibibytes)
     if wanted.compliance != "contact":
-        yield "bores held rigid, smallest diameter [mm]", *(f"{bore:.4f}" for bore in pair.rigid_bores)
+        yield "bores or journals held rigid, diameter [mm]", *(f"{bore:.4f}" for bore in pair.rigid_bores)
 
 
 def _departures(scene: Scene) -> Iterator[Row]:

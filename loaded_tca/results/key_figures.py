@@ -131,6 +131,9 @@ def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
         },
         **_error_figures("unloaded_transmission_error", result.unloaded_transmission_error, length),
         "mesh_stiffness_mean_N_per_mm_um": mean_over_a_pitch(result.mesh_stiffness[torque]),
+        "mesh_stiffness_without_body_torsion_mean_N_per_mm_um": result.without_body_torsion(
+            mean_over_a_pitch(result.mesh_stiffness[torque])
+        ),
         "secant_stiffness_mean_N_per_mm_um": mean_over_a_pitch(result.secant_stiffness[torque]),
         "face_load_factor": float(result.face_load_factor[torque]),
         "transverse_load_factor": float(result.transverse_load_factor[torque]),

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
+from loaded_tca.compliance.torsion import body_torsion
 from loaded_tca.errors import InputError, require
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.files import Buffer, FilePath, Part, arrays_of, netcdf_of, read_dataset, replacing, variables_of
@@ -174,6 +175,23 @@ class MeshCycle:
     def gear_pair(self) -> GearPair:
         """The gears of the scene in space."""
         return self.scene.pair()
+
+    def without_body_torsion(self, stiffness: float) -> float:
+        """Mesh stiffness that is left without the twist of the gear bodies, as c_gamma of ISO 6336-1 has none.
+
+        Parameters
+        ----------
+        stiffness : float [N/(mm um)]
+            With it, for instance a mean of ``mesh_stiffness``.
+
+        Returns
+        -------
+        float [N/(mm um)]
+            NaN where teeth do not bend.
+        """
+        if self.scene.analysis.compliance == "contact" or not stiffness > 0.0:
+            return math.nan
+        return 1.0 / (1.0 / stiffness - 1e3 * self.face_width * sum(body_torsion(self.gear_pair)))
 
     @property
     def bending(self) -> str:

@@ -36,6 +36,10 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
         "mesh stiffness, mean, tangent | secant [N/(mm um)]",
         ("mesh_stiffness_mean_N_per_mm_um", "secant_stiffness_mean_N_per_mm_um"),
     ),
+    (
+        "  tangent, without body torsion [N/(mm um)]",
+        ("mesh_stiffness_without_body_torsion_mean_N_per_mm_um",),
+    ),
     ("load factors K_Hbeta | K_Halpha", ("face_load_factor", "transverse_load_factor")),
     ("largest line load, mesh-dependent at sharp ends [N/mm]", ("line_load_at_largest_force_N_per_mm",)),
     (
@@ -47,6 +51,7 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
 """Label and key figures of each line of the summary."""
 
 ONLY_IF_KNOWN = (
+    "_without_body_torsion_",
     "_at_edge_",
     "edge_pressure",
     "_order_",

@@ -9,7 +9,6 @@ import numpy as np
 
 from loaded_tca.errors import AccuracyWarning
 from loaded_tca.loaded.cycle import Carried
-from loaded_tca.loaded.free_edges import oblique_ends
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.tooth_cycle import REACH
@@ -81,8 +80,6 @@ def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[st
     if loaded.at_edge:
         edge = "the contact reaches an edge of a flank, where the pressure of the map is mesh-dependent"
         found.append(edge + ("" if grid.free_edges else "; the free edge is left out (analysis.free_edges)"))
-        oblique = oblique_ends(pair, loaded.contact, loaded.separation) if grid.free_edges else ()
-        found += [f"the {end} is oblique to the contact and taken for that of a half-space" for end in oblique]
     if loaded.at_relief_start:
         found.append(
             "the contact lies across the start of a linear relief, where the pressure of the map is mesh-dependent"

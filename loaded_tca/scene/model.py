@@ -148,7 +148,7 @@ class Scene(Section, ABC):
 
     @property
     def rigid_bores(self) -> tuple[float, float] | None:
-        """Bore diameters of pinion and wheel [mm] that are held where teeth bend; None where they do not.
+        """Diameters of bores or journals of both gears [mm] that are held where teeth bend; None where they do not.
 
         See :attr:`GearPair.rigid_bores`.
         """

@@ -18,7 +18,7 @@ from loaded_tca.scene.build import described_gear
 from tests.samples.bodies import pinion, spur_mesh
 
 DENSITY = MeshDensity(2, 2, 1, 1, 2, 1, 1)
-CHANGES = "side density neighbours bore modulus poisson width thickness tip fillet"
+CHANGES = "side density neighbours bore solid modulus poisson width thickness tip fillet"
 ARRAYS = "heights", "lengths", "displacement", "depth", "local_height", "local_value"
 
 
@@ -86,6 +86,7 @@ def test_model_cannot_be_written_to():
         lambda: frame_of(density=replace(DENSITY, rim=3)),
         lambda: frame_of(density=replace(DENSITY, neighbours=2)),
         lambda: frame_of(pinion(bore_diameter=36.0)),
+        lambda: frame_of(pinion(bore_diameter=0.0)),
         lambda: frame_of(pinion(material=Material(205000.0, 0.3))),
         lambda: frame_of(pinion(material=Material(206000.0, 0.29))),
         lambda: frame_of(pinion(width=20.001)),

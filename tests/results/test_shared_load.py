@@ -14,6 +14,7 @@ from loaded_tca.output.report import positions_csv, summary_json
 from loaded_tca.output.teeth_in_space import teeth_in_space
 from loaded_tca.pairs import mating_teeth
 from loaded_tca.plots import PICTURES, plot_all
+from loaded_tca.reference.weber_banaschek import ring_torsion
 from loaded_tca.results.files import read_dataset, write_dataset
 from loaded_tca.results.key_figures import harmonic_amplitudes
 from tests.samples.results import PER_PAIR, SCENES, assert_same
@@ -291,9 +292,20 @@ def bending(load_sharing):
     return analyse(scene.with_changes({**narrow, **coarse, **how}))
 
 
+@cache
+def bending_face_milled(load_sharing, compliance="contact+tooth"):
+    scene = read_scene(SCENES / "face_milled_19x62_matched.toml")
+    coarse = {"analysis.positions": 2, "analysis.cells": (20, 20), "analysis.accuracy": None}
+    how = {"analysis.load_sharing": load_sharing, "analysis.compliance": compliance, "analysis.free_edges": False}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # contacts at tips are wanted here
+        return analyse(scene.with_changes({**coarse, **how}))
+
+
 @pytest.mark.parametrize("load_sharing", [False, True])
-def test_transmission_error_of_teeth_that_bend_is_their_deflection(load_sharing):
-    result = bending(load_sharing)
+@pytest.mark.parametrize("make", [bending, bending_face_milled])
+def test_transmission_error_of_teeth_that_bend_is_their_deflection(make, load_sharing):
+    result = make(load_sharing)
     added = result.path.transmission_error - result.transmission_error[0]
     for column, path in enumerate(result.paths):
         loaded = result.normal_force[0, :, column] > 0.0
@@ -309,6 +321,37 @@ def test_bending_teeth_are_half_as_stiff_as_their_contacts():
     alone = bending(False).mesh_stiffness
     assert ((alone > 10.0) & (alone < 20.0)).all()
     assert (bending(True).mesh_stiffness > 1.2 * alone).all()  # two pairs at both ends of the pitch
+
+
+def test_face_milled_teeth_that_bend_are_softer_and_share_more_evenly():
+    """Both ends of a pitch are one state of the mesh, with and without bending."""
+    bends, stiff = (bending_face_milled(True, compliance) for compliance in ("contact+tooth", "contact"))
+    assert (bends.mesh_stiffness < 0.7 * stiff.mesh_stiffness).all()
+    assert bends.load_share[0, 0].max() < stiff.load_share[0, 0].max()
+    for result in (bends, stiff):
+        assert_allclose(result.transmission_error[0, 0], result.transmission_error[0, 1], rtol=PERIOD)
+
+
+def test_mesh_stiffness_without_body_torsion_is_told_beside_the_whole_one():
+    """The twist of two rings, 0.55 of the root circles, in series with the rest; bodies of solid gears twist, too."""
+    result = bending(True)
+    (figures,) = result.key_figures()
+    gears = result.scene.mesh().pinion, result.scene.mesh().wheel
+    rings = [gear.base_radius**2 * ring_torsion(0.55 * gear.root_radius, gear.root_radius) for gear in gears]
+    whole = figures["mesh_stiffness_mean_N_per_mm_um"]
+    without = figures["mesh_stiffness_without_body_torsion_mean_N_per_mm_um"]
+    assert_allclose(1.0 / whole - 1.0 / without, 1e3 * sum(rings), rtol=1e-9)
+    assert without > 1.02 * whole
+    assert "without body torsion [N/(mm um)]" in result.summary()
+    solid = replace(result, scene=result.scene.with_changes({"pinion.bore_diameter_mm": 0.0}))
+    assert solid.without_body_torsion(whole) > without
+
+
+def test_flanks_that_deform_alone_have_no_body_torsion():
+    bends = bending(True)
+    result = replace(bends, scene=bends.scene.with_changes({"analysis.compliance": "contact"}))
+    assert np.isnan(result.key_figures()[0]["mesh_stiffness_without_body_torsion_mean_N_per_mm_um"])
+    assert "without body torsion" not in result.summary()
 
 
 def test_progress_is_told_after_every_torque_and_position():

@@ -1,5 +1,7 @@
 """The loaded mesh cycle by itself; ``validation.calculix`` has it beside finite elements.
 
 - ``limits``: balance, energy, no load, conjugate teeth, published stiffnesses;
+- ``mesh_stiffness``: beside ISO 6336-1, over helix angle, bore, face width, torque and crowning;
+- ``local_term``: how far the local term of a tooth reaches along the face;
 - ``speed``: time against error of whole analyses.
 """
