@@ -14,7 +14,7 @@ from scipy.sparse import csr_array
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.dissection import Factorisation, factorise
 from loaded_tca.compliance.finite_elements import Discretisation, discretise, node_offsets
-from loaded_tca.compliance.geometry import BodyNodes, body_nodes
+from loaded_tca.compliance.geometry import BodyNodes, body_nodes, cuts_at_bore
 from loaded_tca.compliance.layout import MeshDensity, RingLayout
 from loaded_tca.flanks.base import Flank, outward_normal
 from loaded_tca.material import Material
@@ -44,8 +44,10 @@ def gear_nodes(gear: Gear, density: MeshDensity) -> BodyNodes:
     resolution = Resolution(flank=65, fillet=65, land=9, lengthwise=2 * density.lengthwise + 1)
     tooth = build_tooth(gear.nominal_flanks, gear.form, resolution)
     sections, root = gear.form.sections, tooth.outline[0]
-    bore = gear.bore_radius(sections.coordinate(np.hypot(root[:, 0], root[:, 1]), root[:, 2]))
-    return body_nodes(tooth, sections, bore, RingLayout(gear.form.teeth, density, CORE if gear.is_solid else 0))
+    radius = np.hypot(root[:, 0], root[:, 1])
+    bore = gear.bore_radius(sections.coordinate(radius, root[:, 2]))
+    core, cuts = CORE if gear.is_solid else 0, cuts_at_bore(radius, bore, density.rim)
+    return body_nodes(tooth, sections, bore, RingLayout(gear.form.teeth, density, core, cuts))
 
 
 @dataclass(frozen=True, eq=False)

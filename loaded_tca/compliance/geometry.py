@@ -28,6 +28,9 @@ SHALLOW = 0.3
 """The same at most over the depth of the rim."""
 GROWTH = 1.8
 """Each layer of the rim is so much thicker than the one above."""
+LARGEST_RATIO = 1.6
+"""Outer over inner radius of an element at the bore. Displacements in a twisted ring go with r and 1/r, of which one
+quadratic element takes off 0.06 % of the twist at this ratio, 0.25 % at 2, 5 % at 5.5; default bores need no cut."""
 HOLE = 0.1
 """Free hole in the core of a solid gear, over the diameter of its journals: the mesh is a ring."""
 SHARP = math.pi / 3.0
@@ -162,7 +165,7 @@ def _sector(sector: SectorLayout, layout: RingLayout, sides: tuple[_Side, _Side]
     filled = slice(0, layout.base_row + 1)
     part = np.linspace(HOLE, 1.0, 2 * layout.core + 1)[:-1, None]
     core = np.broadcast_to(part * bore, (len(radius), *part.shape[:1], len(bore)))
-    radius[:, filled] = np.concatenate([core, _rim(top[0], bore, layout.density.rim)], axis=1)
+    radius[:, filled] = np.concatenate([core, _rim(top[0], bore, layout)], axis=1)
     angle[:, filled] = top[1][:, None]
     return radius, angle
 
@@ -196,11 +199,26 @@ def _tooth(density: MeshDensity, sides: tuple[_Side, _Side], bore: Array) -> tup
     return radius, angle
 
 
-def _rim(top: Array, bore: Array, layers: int) -> Array:
-    """Radii (columns, rows, k) from the bore to the tops (columns, k), in layers that grow inwards."""
+def cuts_at_bore(root: Array, bore: Array, layers: int) -> int:
+    """Layers of at most the largest ratio of radii that the lowest layer of a rim is cut into; radii (k,) [mm]."""
+    lowest = (GROWTH**layers - GROWTH ** (layers - 1)) / (GROWTH**layers - 1.0)
+    ratio = 1.0 + lowest * float((root / bore).max() - 1.0)
+    return max(1, math.ceil(math.log(ratio) / math.log(LARGEST_RATIO)))
+
+
+def _rim(top: Array, bore: Array, layout: RingLayout) -> Array:
+    """Radii (columns, rows, k) from the bore to the tops (columns, k), in layers that grow inwards.
+
+    The lowest is cut in equal ratios of the radius.
+    """
+    layers, cuts = layout.density.rim, layout.cuts
     above = layers - 0.5 * np.arange(2 * layers + 1)
     part = (GROWTH**above - 1.0) / (GROWTH**layers - 1.0)
-    return top[:, None] - part[:, None] * (top - bore)[:, None]
+    radius = top[:, None] - part[:, None] * (top - bore)[:, None]
+    if cuts == 1:
+        return radius
+    up = np.linspace(0.0, 1.0, 2 * cuts + 1)[:, None]
+    return np.concatenate([bore * (radius[:, 2:3] / bore) ** up, radius[:, 3:]], axis=1)
 
 
 def _interpolated(wanted: Array, places: Array, values: Array) -> Array:

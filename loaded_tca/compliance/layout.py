@@ -29,7 +29,7 @@ class MeshDensity:
     land : int
         From there to the middle of the space.
     rim : int
-        From the root to the bore.
+        From the root to the bore; the lowest is cut into more where the bore is small.
     lengthwise : int
         Across the face.
     neighbours : int
@@ -86,11 +86,14 @@ class RingLayout:
     density : MeshDensity
     core : int
         Layers of a solid gear below those of the rim; 0: a bore.
+    cuts : int
+        Layers that the lowest layer of the rim is cut into.
     """
 
     teeth: int
     density: MeshDensity
     core: int = 0
+    cuts: int = 1
 
     @property
     def neighbours(self) -> int:
@@ -152,7 +155,7 @@ class RingLayout:
     @property
     def base_row(self) -> int:
         """Row between rim and teeth."""
-        return 2 * (self.core + self.density.rim)
+        return 2 * (self.core + self.density.rim - 1 + self.cuts)
 
     def held(self, number: Indices) -> Indices:
         """Nodes that are held, of those numbered (columns, rows, ...): the bore, or both faces of the core."""
@@ -164,7 +167,7 @@ class RingLayout:
         return np.concatenate([self._elements_of(sector) for sector in self.sectors])
 
     def _elements_of(self, sector: SectorLayout) -> Indices:
-        rim = _block(sector.first, sector.columns, 0, self.core + self.density.rim)
+        rim = _block(sector.first, sector.columns, 0, self.base_row // 2)
         density = sector.density
         if density is None:
             return rim

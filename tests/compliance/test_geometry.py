@@ -87,6 +87,19 @@ def test_bore_is_that_of_the_gear_or_the_default():
         assert_allclose(nodes.radius[:, 0], 0.5 * expected, rtol=1e-12)
 
 
+@pytest.mark.parametrize("kind", gears())
+def test_elements_at_a_small_bore_are_thin(kind):
+    """They reach between radii of a ratio of 1.6; tops of the rim lie a little above the root that it is taken from."""
+    gear = replace(gears()[kind], bore_diameter=10.0)
+    nodes = gear_nodes(gear, DENSITY)
+    radius = np.hypot(*np.moveaxis(nodes.points, -1, 0)[:2])[:, : nodes.layout.base_row + 1]
+    assert_allclose(radius[:, 0], 5.0)
+    assert (np.diff(radius, axis=1) > 0.0).all()
+    assert (radius[:, 2::2] / radius[:, :-2:2]).max() < 1.05 * 1.6
+    assert nodes.layout.base_row > 2 * DENSITY.rim
+    gear_body(nodes, gear.material)  # no element is turned inside out
+
+
 @pytest.mark.parametrize("bore", [67.4, 70.0])
 def test_a_bore_without_a_rim_is_refused(bore):
     with pytest.raises(InputError, match=r"bore_diameter: .* no rim is left"):

@@ -133,10 +133,10 @@ def test_places_beyond_the_flank_count_as_its_edge():
     assert_allclose(gear.between(beyond, beyond), gear.between(top, top), rtol=1e-9)
 
 
-def test_body_torsion_is_that_of_a_ring():
+@pytest.mark.parametrize("bores", [(40.0, 30.0), (10.0, 6.0)])
+def test_body_torsion_is_that_of_a_ring(bores):
     """All teeth loaded alike: a pure torque, of which two bores take the ring between them differently."""
     density = MeshDensity(through=2, flank=3, fillet=1, land=1, rim=4, lengthwise=1, neighbours=12)
-    bores = (40.0, 30.0)
     found = []
     for bore in bores:
         gear = model(density, bore_diameter=bore)
