@@ -78,10 +78,12 @@ def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[st
     solution = loaded.solution
     found = []
     if loaded.at_edge:
-        edge = "the contact reaches an edge of a flank: Hertz does not hold, and pressure there is mesh-dependent"
+        edge = "the contact reaches an edge of a flank, where the pressure of the map is mesh-dependent"
         found.append(edge + ("" if grid.free_edges else "; the free edge is left out (analysis.free_edges)"))
     if loaded.at_relief_start:
-        found.append("the contact lies across the start of a linear relief: its peak pressure is mesh-dependent")
+        found.append(
+            "the contact lies across the start of a linear relief, where the pressure of the map is mesh-dependent"
+        )
     smooth = not (loaded.at_edge or loaded.at_relief_start)
     if grid.cells is None and smooth and solution.error_estimate.peak_pressure > grid.accuracy:
         found.append(f"the estimated error stays above the accuracy of {grid.accuracy:g}")

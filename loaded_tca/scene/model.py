@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -160,6 +161,16 @@ class Scene(Section, ABC):
     @abstractmethod
     def geometry_rows(self) -> Sequence[Row]:
         """Return what there is to tell of the geometry: of the mesh, then of pinion and wheel."""
+
+    @property
+    def path_points(self) -> Mapping[str, float]:
+        """Points A to E of the path of contact after ISO 21771, as roll lengths of the pinion; none of bevel gears."""
+        return {}
+
+    @property
+    def mean_contact_length(self) -> float:
+        """Mean length of all contact lines over a pitch [mm]; NaN for gears of which ISO 6336-1 does not speak."""
+        return math.nan
 
     @abstractmethod
     def force_rows(self, torques: Sequence[float]) -> Sequence[Row]:
