@@ -81,29 +81,25 @@ def edge_compliance(pair: GearPair, separation: Separation) -> Array | None:
     points = separation.origin + separation.y[:, None] * separation.axes[1]
     radius, _, axial = pair.to_wheel(points)
     places = (np.hypot(points[:, 0], points[:, 1]), points[:, 2]), (radius, axial)
-    found = None
+    there, found = np.isfinite(separation.gap).any(axis=0), np.zeros((separation.y.size,) * 2)
     for name, gear, (rho, z) in zip(("pinion", "wheel"), (pair.pinion, pair.wheel), places, strict=True):
         jets = gear.flank.edges(rho, z)
         for edge, reach in REACHES.items():
             value, slope_rho, slope_z = np.broadcast_arrays(jets[edge].value, jets[edge].rho, jets[edge].z)
             steep = np.hypot(slope_rho, slope_z)
             distance = value / steep
-            near = np.flatnonzero(np.abs(distance) < reach * pair.module)
+            near = np.flatnonzero(there & (np.abs(distance) < reach * pair.module))
             if not near.size:
                 continue
             end = near[np.abs(distance[near]).argmin()]
             inwards = np.array([slope_rho[end], 0.0, slope_z[end]]) / steep[end]
             angle = math.acos(float(np.clip(outward_normal(gear.flank, rho[end], z[end]) @ inwards, -1.0, 1.0)))
-            if found is None:
-                found = np.zeros((separation.y.size,) * 2)
             with named(f"analysis.free_edges: {gear.flank.frame.edges[edge]} of the {name}"):
                 factor = wedge_factor(angle, gear.material.poisson_ratio)
-            added = _added(
-                distance[near], separation.y[near], separation.spacing[1], pair.module, factor, gear.material
-            )
+            slices = distance[near], separation.y[near], separation.spacing[1]
             faded = _faded(np.maximum(distance[near], 0.0) / (reach * pair.module))
-            found[np.ix_(near, near)] += faded[:, None] * added * faded
-    return found
+            found[np.ix_(near, near)] += faded[:, None] * _added(*slices, pair.module, factor, gear.material) * faded
+    return found if found.any() else None
 
 
 def _faded(part: Array) -> Array:
@@ -121,19 +117,17 @@ def _added(distance: Array, y: Array, length: float, module: float, factor: floa
     rise = np.clip(np.gradient(distance, y), -1.0, 1.0) if y.size > 1 else np.zeros(1)
     inside = np.maximum(distance, 0.0)  # a contact on an edge is beside it by rounding, or curves beyond it
     width = WIDTH * module
-    total = np.zeros((y.size, y.size))
-    for node, weight in zip(NODES, WEIGHTS, strict=True):
-        offset = 0.5 * length * node
-        own = np.maximum(distance + rise * offset, 0.0)[:, None]
-        apart, both = y[:, None] + offset - y, own + inside
-        aside = apart**2 * (1.0 - rise**2)
-        along = apart * (1.0 - rise**2) - both * rise  # of the place, from the middle of the image along it
-        square = both**2 + aside + width**2
-        off = np.sqrt(np.maximum(square - along**2, width**2))
-        inverse = (np.arcsinh((0.5 * length - along) / off) + np.arcsinh((0.5 * length + along) / off)) / length
-        varied = factor + scale * VARIATION * (4.0 * own * inside / square - MEAN_PLACE)
-        below = factor + scale * VARIATION * (PLACE_BELOW - MEAN_PLACE)
-        surface = depth_displacement(np.asarray(0.0), np.asarray(1.0), material) * inverse
-        middle = depth_displacement(np.asarray(DEPTH * module), np.sqrt(square), material)
-        total += 0.5 * weight * (varied * surface - below * middle)
-    return np.asarray(0.5 * (total + total.T))
+    offset = 0.5 * length * NODES[:, None, None]  # (3, 1, 1) of the places in the slice that is displaced
+    own = np.maximum(distance[:, None] + rise[:, None] * offset, 0.0)
+    apart, both = y[:, None] + offset - y, own + inside
+    aside = apart**2 * (1.0 - rise**2)
+    along = apart * (1.0 - rise**2) - both * rise  # of the place, from the middle of the image along it
+    square = both**2 + aside + width**2
+    off = np.sqrt(np.maximum(square - along**2, width**2))
+    inverse = (np.arcsinh((0.5 * length - along) / off) + np.arcsinh((0.5 * length + along) / off)) / length
+    varied = factor + scale * VARIATION * (4.0 * own * inside / square - MEAN_PLACE)
+    below = factor + scale * VARIATION * (PLACE_BELOW - MEAN_PLACE)
+    surface = depth_displacement(np.asarray(0.0), np.asarray(1.0), material) * inverse
+    middle = depth_displacement(np.asarray(DEPTH * module), np.sqrt(square), material)
+    mean = np.tensordot(0.5 * WEIGHTS, varied * surface - below * middle, axes=1)
+    return np.asarray(0.5 * (mean + mean.T))
