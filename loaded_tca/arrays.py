@@ -33,7 +33,7 @@ def numbers(name: str, values: ArrayLike) -> Array:
 
 def real(value: Any) -> Any:
     """One real number, or NaN in place of anything else, which lies in no range."""
-    if getattr(value, "ndim", None) == 0:
+    if getattr(value, "ndim", None) == 0 and not isinstance(value, np.ma.MaskedArray):
         value = value.item()
     return value if isinstance(value, Real) and not isinstance(value, bool) else math.nan
 

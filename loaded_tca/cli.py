@@ -40,7 +40,7 @@ FILES = """files in DIR:
   transmission_error.png    over the positions, all torques
   peak_pressure.png         over the positions, all torques
   pressure_map.png          at the position of the peak pressure, under the largest torque
-  pressure_map_edge.png   only if a peak lies at an edge or relief start, at another position
+  pressure_map_edge.png     only if a contact at another position has the highest edge pressure
   pressure_map_hertz.png    only if Hertz holds, but not where the peak pressure is
 and where tooth pairs share the load
   load_share.png            of each tooth pair, all torques

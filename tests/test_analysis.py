@@ -189,7 +189,9 @@ def test_edge_contact_warns_and_has_no_hertz_value(scene):
         result = analyse(misaligned)
     assert result.on_edge.item() is True
     assert np.isnan(result.hertz_pressure.item())
-    assert result.peak_pressure.item() == result.maps[0][0][0].pressure.max()
+    assert result.edge_pressure.item() == result.maps[0][0][0].pressure.max()
+    assert result.edge_is_rounded.item() is False
+    assert result.peak_pressure.item() < result.edge_pressure.item()
 
 
 def test_unmodified_pair_carries_line_contact_hertz_in_the_middle(scene):

@@ -41,9 +41,12 @@ CASES = (
     "cylindrical.iso_tr_6336_30",
     "loaded.limits",
     "loaded.cut_contacts",
+    "loaded.mesh_stiffness",
+    "loaded.local_term",
     "calculix.mesh_cycle",
     "contact.subsurface",
     "contact.free_edge",
+    "contact.free_block",
     "contact.wedge",
 )
 

@@ -1,4 +1,7 @@
-"""A gear body held at its bore: whole ring, one resolved tooth, its neighbours, in space or in one section."""
+"""A gear body held at its bore: whole ring, one resolved tooth, its neighbours, in space or in one section.
+
+A solid gear (bore diameter 0) is that ring and its core, held where its journals adjoin both faces.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ from scipy.sparse import csr_array
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.dissection import Factorisation, factorise
 from loaded_tca.compliance.finite_elements import Discretisation, discretise, node_offsets
-from loaded_tca.compliance.geometry import BodyNodes, body_nodes
+from loaded_tca.compliance.geometry import BodyNodes, body_nodes, cuts_at_bore
 from loaded_tca.compliance.layout import MeshDensity, RingLayout
 from loaded_tca.flanks.base import Flank, outward_normal
 from loaded_tca.material import Material
@@ -20,6 +23,8 @@ from loaded_tca.tooth.build import Resolution, build_tooth
 
 FIRST_CHORD = 0.25
 """First guess of the distance from a flank to the middle of the tooth, over the height of the flank."""
+CORE = 2
+"""Layers of a solid gear below the diameter of its journals."""
 
 
 def gear_nodes(gear: Gear, density: MeshDensity) -> BodyNodes:
@@ -39,8 +44,10 @@ def gear_nodes(gear: Gear, density: MeshDensity) -> BodyNodes:
     resolution = Resolution(flank=65, fillet=65, land=9, lengthwise=2 * density.lengthwise + 1)
     tooth = build_tooth(gear.nominal_flanks, gear.form, resolution)
     sections, root = gear.form.sections, tooth.outline[0]
-    bore = gear.bore_radius(sections.coordinate(np.hypot(root[:, 0], root[:, 1]), root[:, 2]))
-    return body_nodes(tooth, sections, bore, RingLayout(gear.form.teeth, density))
+    radius = np.hypot(root[:, 0], root[:, 1])
+    bore = gear.bore_radius(sections.coordinate(radius, root[:, 2]))
+    core, cuts = CORE if gear.is_solid else 0, cuts_at_bore(radius, bore, density.rim)
+    return body_nodes(tooth, sections, bore, RingLayout(gear.form.teeth, density, core, cuts))
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,15 +206,16 @@ def _among_nodes(number: Indices, row: Array, layer: Array) -> SurfacePlaces:
 
 
 def gear_body(nodes: BodyNodes, material: Material) -> tuple[Discretisation, Factorisation]:
-    """Mesh of a ring held at its bore, and the factor of its stiffness."""
+    """Mesh of a body held at its bore or journals, and the factor of its stiffness."""
     lowest, spans, blocks = nodes.layout.bricks
     mesh = discretise(nodes.points, lowest, nodes.layout.turns, spans)
-    return mesh, factorised(mesh, material, blocks)[0]
+    return mesh, factorised(mesh, material, nodes.layout.held(mesh.number), blocks)[0]
 
 
-def factorised(mesh: Discretisation, material: Material, blocks: Indices | None = None) -> tuple[Factorisation, Array]:
-    """Factor of the stiffness of a mesh whose first row is held, and the matrices of its elements' kinds."""
-    held = mesh.number[:, 0].ravel()
+def factorised(
+    mesh: Discretisation, material: Material, held: Indices, blocks: Indices | None = None
+) -> tuple[Factorisation, Array]:
+    """Factor of the stiffness of a mesh with nodes ``held`` (-1: none), and the matrices of its elements' kinds."""
     free = np.ones((len(mesh.points), mesh.dimension), dtype=bool)
     free[held[held >= 0]] = False
     matrices, places = mesh.stiffness(material), mesh.lowest // 2

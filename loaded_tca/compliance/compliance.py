@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.compliance.influence import FlankLine, GearCompliance, Image, gear_compliance
+from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_compliance
 from loaded_tca.compliance.layout import MeshDensity
-from loaded_tca.contact.edges import FreeEdge, edge_images
+from loaded_tca.compliance.torsion import body_torsion
 from loaded_tca.errors import named, require
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.reference.weber_banaschek import ring_torsion
 from loaded_tca.separation import Separation
 from loaded_tca.tooth.build import Resolution, build_tooth
 
@@ -43,20 +40,14 @@ class ToothCompliance:
 
     @property
     def body_torsion(self) -> tuple[float, float]:
-        """Twist of the gear body between bore and root of pinion and wheel, in closed form [mm/N].
+        """Twist of the gear body between bore and root of pinion and wheel [mm/N].
 
-        It is a part of :meth:`within`, told to show what a bore diameter does; of bevel gears that of the mean section.
+        See :func:`loaded_tca.compliance.torsion.body_torsion`. It is a part of :meth:`within`, told to show what a bore
+        diameter does; along the normal of helical teeth it is cos^2(beta_b) of that.
         """
-        found = []
-        for gear, base_radius in zip((self.pinion, self.wheel), self.pair.base_radii, strict=True):
-            nodes, middle = gear.frame.nodes, len(gear.frame.nodes.coordinate) // 2
-            images = nodes.radius[0, [0, nodes.layout.base_row], middle]
-            radii, _ = nodes.sections.point(images, nodes.coordinate[middle])
-            twist = ring_torsion(float(radii[0]), float(radii[1]), gear.frame.gear.material)
-            found.append(base_radius**2 * twist / float(np.ptp(nodes.coordinate)))
-        return found[0], found[1]
+        return body_torsion(self.pair)
 
-    def within(self, number: int, separation: Separation, edges: Sequence[FreeEdge] = ()) -> Array:
+    def within(self, number: int, separation: Separation) -> Array:
         """Deflection of every slice of a contact's grid per force on each, both gears together.
 
         It comes on top of the displacement of the two half-spaces that carry the same pressures.
@@ -67,17 +58,15 @@ class ToothCompliance:
             Of the tooth pair: 0 is in contact at the pitch point at phi1 = 0, +1 comes into mesh after it.
         separation : Separation
             Grid of its contact, in the angles of its own tooth: as if it were pair 0.
-        edges : sequence of FreeEdge
-            For which the half-spaces are corrected.
 
         Returns
         -------
         (ny, ny) array [mm/N]
             Symmetric.
         """
-        distance, images = np.abs(separation.y[:, None] - separation.y), _images(separation, edges)
+        distance = np.abs(separation.y[:, None] - separation.y)
         on_pinion, on_wheel = self._lines(number, separation)
-        return self.pinion.within(on_pinion, distance, images) + self.wheel.within(on_wheel, distance, images)
+        return self.pinion.within(on_pinion, distance) + self.wheel.within(on_wheel, distance)
 
     def between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
         """Deflection of every slice of one contact's grid per force on each slice of another's.
@@ -107,24 +96,6 @@ class ToothCompliance:
         tooth = self.pair.sense * number
         on_pinion = FlankLine(-tooth, np.hypot(points[:, 0], points[:, 1]), points[:, 2])
         return on_pinion, FlankLine(tooth, radius, axial)
-
-
-def _images(separation: Separation, edges: Sequence[FreeEdge]) -> list[Image]:
-    """Distances (ny, ny) of the middles of slices from their images in free edges, and the factors of these."""
-    half_across, half_along = separation.half_lengths
-    found = []
-    for chosen in edge_images(edges):
-        across: Array | float = 0.0
-        along = separation.y
-        for edge in chosen:
-            if edge.axis == 0:
-                place = edge.position - half_across + edge.slope * (separation.y + half_along)
-                across = place[:, None] + place
-            else:
-                along = 2.0 * (edge.position - half_along) - along
-        factor = math.prod(edge.factor for edge in chosen)
-        found.append((np.hypot(across, separation.y[:, None] - along), factor))
-    return found
 
 
 def tooth_compliance(pair: GearPair, *, neighbours: int = 1, density: MeshDensity | None = None) -> ToothCompliance:

@@ -33,7 +33,7 @@ from scipy.sparse import vstack
 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.body import FlankPlaces, ToothFrame, gear_body
-from loaded_tca.compliance.local_term import local_flexibility, local_heights
+from loaded_tca.compliance.local_term import local_flexibility
 
 HEIGHTS = 6
 """Places along the profile between which the displacements are interpolated."""
@@ -47,8 +47,6 @@ MOST_ON_DISK = 64
 """Files of 0.1 to 2 MB each; the oldest go."""
 SAME_OUTLINE = 1e-9
 """Numbers are the same if they agree to this part of the size of the gear: far above rounding."""
-SAME_PLACE = 1e-6
-"""Relative difference of places that are the same: the outlines of equal keys differ by less."""
 UNREADABLE = OSError, EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile
 _recent: OrderedDict[str, ToothFlexibility] = OrderedDict()
 _lock = Lock()
@@ -119,7 +117,7 @@ def kept_flexibility(frame: ToothFrame) -> ToothFlexibility:
     with _lock:
         found = _recent.get(key)
     if found is None and folder is not None:
-        found = _read(folder / f"{key}.npz", key, frame)
+        found = _read(folder / f"{key}.npz", key)
     if found is None:
         found = tooth_flexibility(frame)
         if folder is not None:
@@ -179,30 +177,23 @@ def _folder() -> Path | None:
     return None
 
 
-def _read(path: Path, key: str, frame: ToothFrame) -> ToothFlexibility | None:
-    """Return what a file keeps under a key; None if it is not there, damaged, or no model of this gear."""
+def _read(path: Path, key: str) -> ToothFlexibility | None:
+    """Return what a file keeps under a key; None if it is not there, damaged, or another gear's."""
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            own = str(file["key"]) == key
-            values = {name: np.asarray(file[name], dtype=float) for name in file.files if name != "key"}
-        found = ToothFlexibility(**values)
+            told = str(file["digest"])
+            found = ToothFlexibility(**{name: file[name] for name in file.files if name != "digest"})
+            return found if told == _digest(key, found) else None
     except UNREADABLE:
         return None
-    finite = all(np.isfinite(array).all() for array in values.values())
-    return found if own and finite and _is_of(found, frame) else None
 
 
-def _is_of(found: ToothFlexibility, frame: ToothFrame) -> bool:
-    """Whether a table has the places of this gear, and displacements of as many."""
-    heights, lengths, places = grid_of_places(frame)
-    depth = places.depth.reshape(len(heights), len(lengths))
-    own = {"heights": heights, "lengths": lengths, "depth": depth, "local_height": local_heights()}
-    teeth = 2 * frame.nodes.layout.neighbours + 1
-    shapes = found.displacement.shape, found.local_value.shape
-    return shapes == ((teeth, depth.size, depth.size), own["local_height"].shape) and all(
-        getattr(found, name).shape == values.shape and np.allclose(getattr(found, name), values, rtol=SAME_PLACE)
-        for name, values in own.items()
-    )
+def _digest(key: str, flexibility: ToothFlexibility) -> str:
+    """Digest of a key and of all numbers that are kept under it."""
+    digest = hashlib.sha256(key.encode())
+    for name, array in vars(flexibility).items():
+        digest.update(f"{name} {array.dtype} {array.shape}".encode() + np.ascontiguousarray(array).tobytes())
+    return digest.hexdigest()
 
 
 def _write(folder: Path, key: str, flexibility: ToothFlexibility) -> None:
@@ -212,7 +203,7 @@ def _write(folder: Path, key: str, flexibility: ToothFlexibility) -> None:
         descriptor, unfinished = tempfile.mkstemp(dir=folder, suffix=".unfinished")
         try:
             with os.fdopen(descriptor, "wb") as file:
-                np.savez(file, key=np.array(key), **vars(flexibility))
+                np.savez(file, digest=np.array(_digest(key, flexibility)), **vars(flexibility))
             os.replace(unfinished, folder / f"{key}.npz")
         finally:
             Path(unfinished).unlink(missing_ok=True)

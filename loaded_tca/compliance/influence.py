@@ -6,9 +6,11 @@ The contact solver takes each flank for a half-space, whose displacement it meas
 
 u_FE is the displacement of the gear body under a unit force at q, where the line of action through p cuts the middle of
 the tooth; u_B that of the half-space at the same depth t (it is part of u_FE, and would count twice); c_loc the local
-term of a line force in the plane, spread lengthwise as the stress spreads down to the middle,
-:math:`k = t^2/(2 (t^2 + s^2)^{3/2})`, with its mirror images beyond the ends of the face: along a whole face width the
-local term is that of the plane. Another tooth of the gear has the first term only.
+term of a line force in the plane, spread along the face by a normal distribution k of 3.7 mean depths of the middle,
+with its mirror images beyond the ends of the face: along a whole face width the local term is that of the plane.
+It belongs to the back of the tooth, which follows short waves of the load no more: so the sections of teeth say that
+carry waves of load along the face (``validation/loaded/local_term.py``). Another tooth of the gear has the first term
+only.
 
 References
 ----------
@@ -18,7 +20,7 @@ strain).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -51,8 +53,8 @@ class FlankLine:
     z: Array
 
 
-Image = tuple[Array, float]
-"""Distances (m, m) [mm] of places from the images of places in a free edge, and the factor of the image."""
+SPREAD = 3.7
+"""Standard deviation of the spread of the local term along the face, over the mean depth of the middle of the tooth."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +104,7 @@ class GearCompliance:
         """Displacements at places of a tooth under forces at places of the one that stands so many pitches before."""
         return np.asarray(at.shares @ self._mutual[self.neighbours + away] @ under.shares.T)
 
-    def within(self, line: FlankLine, distance: Array, images: Sequence[Image] = ()) -> Array:
+    def within(self, line: FlankLine, distance: Array) -> Array:
         """Displacements (m, m) of places of one tooth per force at each [mm/N], on top of those of a half-space.
 
         Parameters
@@ -111,19 +113,16 @@ class GearCompliance:
             m places.
         distance : (m, m) array [mm]
             Between them, along the line.
-        images : sequence of Image
-            Of free edges for which the half-space was corrected: their displacements in the middle go off as well.
         """
         places = _Places.of(self, line)
         depth = np.einsum("ma,ab,mb->m", places.across, self.table.depth, places.along)[:, None]
         width = float(np.ptp(self.frame.nodes.coordinate))
         from_start = width * (places.length[:, None] + places.length)  # of mirror images beyond the ends of the face
-        # Line density [1/mm] at a depth below a point force: its integral over the distances of a line is 1.
         aside = (distance, from_start, 2.0 * width - from_start)
-        spread = sum(0.5 * depth**2 / (depth**2 + away**2) ** 1.5 for away in aside)
-        material = self.frame.gear.material
-        half_space = depth_displacement(depth, distance, material)
-        half_space = half_space + sum(factor * depth_displacement(depth, image, material) for image, factor in images)
+        # Line density [1/mm], whose integral over the distances of a line is 1.
+        deviation = SPREAD * float(self.table.depth.mean())
+        spread = sum(np.exp(-0.5 * (away / deviation) ** 2) for away in aside) / (math.sqrt(2.0 * math.pi) * deviation)
+        half_space = depth_displacement(depth, distance, self.frame.gear.material)
         local = np.interp(places.height, self.table.local_height, self.table.local_value)
         found = local[:, None] * spread - half_space
         return self._displaced(0, places, places) + 0.5 * (found + found.T)

@@ -29,7 +29,7 @@ class MeshDensity:
     land : int
         From there to the middle of the space.
     rim : int
-        From the root to the bore.
+        From the root to the bore; the lowest is cut into more where the bore is small.
     lengthwise : int
         Across the face.
     neighbours : int
@@ -44,7 +44,7 @@ class MeshDensity:
     through: int = 4
     flank: int = 6
     fillet: int = 2
-    land: int = 2
+    land: int = 3
     rim: int = 4
     lengthwise: int = 10
     neighbours: int = 1
@@ -84,10 +84,16 @@ class RingLayout:
     ----------
     teeth : int
     density : MeshDensity
+    core : int
+        Layers of a solid gear below those of the rim; 0: a bore.
+    cuts : int
+        Layers that the lowest layer of the rim is cut into.
     """
 
     teeth: int
     density: MeshDensity
+    core: int = 0
+    cuts: int = 1
 
     @property
     def neighbours(self) -> int:
@@ -115,10 +121,10 @@ class RingLayout:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Nodes around the gear, and from the bore to the tip of the resolved tooth."""
+        """Nodes around the gear, and from the lowest row to the tip of the resolved tooth."""
         last = self.sectors[-1]
         tooth = self.density.flank + self.density.fillet
-        return last.first + 2 * last.columns, 2 * (self.density.rim + tooth) + 1
+        return last.first + 2 * last.columns, self.base_row + 2 * tooth + 1
 
     @cached_property
     def turns(self) -> Array:
@@ -149,7 +155,11 @@ class RingLayout:
     @property
     def base_row(self) -> int:
         """Row between rim and teeth."""
-        return 2 * self.density.rim
+        return 2 * (self.core + self.density.rim - 1 + self.cuts)
+
+    def held(self, number: Indices) -> Indices:
+        """Nodes that are held, of those numbered (columns, rows, ...): the bore, or both faces of the core."""
+        return (number[:, : 2 * self.core + 1, [0, -1]] if self.core else number[:, 0]).ravel()
 
     @cached_property
     def elements(self) -> Indices:
@@ -157,7 +167,7 @@ class RingLayout:
         return np.concatenate([self._elements_of(sector) for sector in self.sectors])
 
     def _elements_of(self, sector: SectorLayout) -> Indices:
-        rim = _block(sector.first, sector.columns, 0, self.density.rim)
+        rim = _block(sector.first, sector.columns, 0, self.base_row // 2)
         density = sector.density
         if density is None:
             return rim

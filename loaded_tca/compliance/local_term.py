@@ -12,7 +12,7 @@ between the flank and the middle of the tooth along the normal.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -51,7 +51,8 @@ def local_flexibility(gear: Gear, density: MeshDensity = DENSITY) -> tuple[Array
     (n,) array, (n,) array [mm per N/mm]
         Parts of the flank's height, increasing, and the local term there.
     """
-    nodes = gear_nodes(gear, density)
+    # The term ends in the middle of the tooth, so that it is the same for a solid gear, whose section is not held.
+    nodes = gear_nodes(replace(gear, bore_diameter=None) if gear.is_solid else gear, density)
     section = (values[:, :, density.lengthwise] for values in (nodes.radius, nodes.angle))
     mesh = discretise(polar(*section), nodes.layout.elements)
     column = nodes.layout.sector(0).first + 2 * density.land
@@ -64,7 +65,7 @@ def local_flexibility(gear: Gear, density: MeshDensity = DENSITY) -> tuple[Array
     bore, held = mesh.number[:, 0], np.zeros((*mesh.points.shape, len(forces)))
     held[bore] = np.stack([-force.field(mesh.points[bore])[0] for force in forces], axis=-1)
     held = held.reshape(-1, len(forces))
-    factor, matrices = factorised(mesh, gear.material)
+    factor, matrices = factorised(mesh, gear.material, bore)
     loads = _rest_loads(mesh, forces)
     np.subtract.at(loads, mesh.dofs, matrices[mesh.kinds] @ held[mesh.dofs])
     rest = (factor.solve(loads) + held).reshape(-1, 2, len(forces))

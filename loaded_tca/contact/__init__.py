@@ -6,7 +6,7 @@ from loaded_tca.lazy import lazy_names
 
 if TYPE_CHECKING:
     from loaded_tca.contact.adaptive import solve_to_accuracy
-    from loaded_tca.contact.edges import FreeEdge, edge_of_plane, quarter_space_factor, wedge_factor
+    from loaded_tca.contact.edges import FreeEdge, quarter_space_factor, wedge_factor
     from loaded_tca.contact.problem import ContactProblem
     from loaded_tca.contact.solution import ContactSolution, ContactStatus, ErrorEstimate
     from loaded_tca.contact.solver import contact_stiffness, solve_contact, solve_problem
@@ -23,7 +23,6 @@ __all__ = [
     "SubsurfaceStress",
     "contact_stiffness",
     "depths_below",
-    "edge_of_plane",
     "quarter_space_factor",
     "solve_contact",
     "solve_problem",

@@ -23,18 +23,15 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import ClassVar, Literal, TypeVar
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array, real
 from loaded_tca.contact.convolution import Convolution, Window
-from loaded_tca.contact.oblique import ObliqueImage, ObliqueMirror
 from loaded_tca.errors import InputError
 
-# Where a plane cuts the grid at more than this angle to an axis of it, no axis stands for the edge.
-MOST_OBLIQUE = math.radians(30.0)
 # psi = c0 + c1 nu + c2 nu^2, between what Hetenyi's solution gives for Hertz circles of radius a centred 0 to 1.5 a
 # from the edge (1.30 to 1.34 at nu = 0, 1.76 to 1.81 at 0.3) and for strips that end at it (1.21 to 1.25 and 1.70 to
 # 1.72); see validation/contact/free_edge.py.
@@ -49,7 +46,7 @@ WHOLE = 1e-9
 
 @dataclass(frozen=True)
 class FreeEdge:
-    """A straight edge along an axis of the grid or at an angle to it, where one body or both end.
+    """A straight edge along an axis of the grid, where one body or both end.
 
     Parameters
     ----------
@@ -61,32 +58,21 @@ class FreeEdge:
         On which side of the position the bodies are; the cells beyond carry nothing.
     factor : float
         psi, not negative; see :func:`wedge_factor`. Zero: a half-space that merely carries nothing beyond.
-    slope : float
-        By how much the position grows per length along the other axis, from the outer border of the first cell there,
-        where it is ``position``; see :mod:`loaded_tca.contact.oblique`.
     """
 
     axis: int
     position: float
     material: Literal["below", "above"]
     factor: float
-    slope: float = 0.0
-
-
-Edge = TypeVar("Edge", FreeEdge, "Mirror")
 
 
 @dataclass(frozen=True)
 class Mirror:
     """A free edge in whole numbers: cell j of a window has its image at ``double - 1 - j``."""
 
-    slope: ClassVar[float] = 0.0
     axis: int
     double: int
     factor: float
-
-
-AnyMirror = Mirror | ObliqueMirror
 
 
 def quarter_space_factor(poisson_ratio: float, share: float = 1.0) -> float:
@@ -179,62 +165,6 @@ def _extra_displacement(angle: float) -> float:
     return max(0.0, math.pi * (angle + sine * cosine) / (angle * angle - sine * sine) - 1.0)
 
 
-def edge_of_plane(
-    normal: tuple[float, float, float],
-    distance: float,
-    spacing: tuple[float, float],
-    shape: tuple[int, int],
-    factor: float,
-    straight: bool = True,
-) -> FreeEdge:
-    """The free edge that a plane cuts off a grid whose middle is the origin.
-
-    An oblique cut is replaced by the line along the nearer axis through its point on the other axis, which is right
-    for a contact that is narrow there, unless it is to keep its angle.
-
-    Parameters
-    ----------
-    normal : (float, float, float)
-        Out of the material, in the axes of the grid (x, y, normal to it): ``separation.axes @ plane_normal``.
-    distance : float [mm]
-        Of the plane from the middle of the grid along the normal, positive where the middle is material:
-        ``plane_normal @ (point_of_plane - separation.origin)``.
-    spacing : (float, float) [mm]
-        Width of a cell.
-    shape : (int, int)
-        Cells of the grid.
-    factor : float
-        See :func:`wedge_factor`.
-    straight : bool
-        Whether an oblique cut is replaced.
-
-    Returns
-    -------
-    FreeEdge
-
-    Raises
-    ------
-    InputError
-        If the cut is more than 30 degrees off both axes, or the plane is parallel to the grid.
-
-    Examples
-    --------
-    The face end of a spur tooth, 2 mm from the contact point towards positive y, on 20 cells of 0.5 mm:
-
-    >>> edge_of_plane((0.0, 1.0, 0.0), 2.0, (0.01, 0.5), (32, 20), 1.745)
-    FreeEdge(axis=1, position=7.0, material='below', factor=1.745, slope=0.0)
-    """
-    across, along = abs(normal[0]), abs(normal[1])
-    axis = 0 if across > along else 1
-    if not min(across, along) <= math.tan(MOST_OBLIQUE) * max(across, along) > 0.0:
-        angle = math.degrees(math.atan2(min(across, along), max(across, along)))
-        raise InputError(f"normal: the edge is {angle:.3g} degrees off the axes of the grid; 30 degrees are allowed")
-    slope = 0.0 if straight else -normal[1 - axis] / normal[axis]
-    half_across, half_along = (0.5 * shape[k] * spacing[k] for k in (axis, 1 - axis))
-    position = half_across + distance / normal[axis] - slope * half_along
-    return FreeEdge(axis, position, "below" if normal[axis] > 0.0 else "above", factor, slope)
-
-
 def check_edges(edges: Sequence[FreeEdge]) -> list[str]:
     """Problems of the free edges."""
     if not (isinstance(edges, Sequence) and all(isinstance(edge, FreeEdge) for edge in edges)):
@@ -249,8 +179,6 @@ def check_edges(edges: Sequence[FreeEdge]) -> list[str]:
             problems.append(f'free_edges[{k}].material: {edge.material!r} is neither "below" nor "above"')
         if not 0.0 <= real(edge.factor) < math.inf:
             problems.append(f"free_edges[{k}].factor: {edge.factor} is negative or not finite")
-        if not math.isfinite(real(edge.slope)):
-            problems.append(f"free_edges[{k}].slope: {edge.slope} is not finite")
     return problems
 
 
@@ -259,38 +187,23 @@ def without_material_beyond(
 ) -> NDArray[np.float64]:
     """The gap, infinite where the centre of a cell lies beyond an edge."""
     for edge in edges:
-        cells = np.ogrid[: gap.shape[0], : gap.shape[1]]
-        across, along = ((cells[axis] + 0.5) * spacing[axis] for axis in (edge.axis, 1 - edge.axis))
-        place = edge.position + edge.slope * along
-        gap = np.where(across > place if edge.material == "below" else across < place, np.inf, gap)
+        middle = (np.ogrid[: gap.shape[0], : gap.shape[1]][edge.axis] + 0.5) * spacing[edge.axis]
+        gap = np.where(middle > edge.position if edge.material == "below" else middle < edge.position, np.inf, gap)
     return gap
 
 
 def mirrors(
     edges: tuple[FreeEdge, ...], spacing: tuple[float, float], starts: tuple[int, int] = (0, 0)
-) -> tuple[AnyMirror, ...]:
+) -> tuple[Mirror, ...]:
     """The edges on a grid of a spacing, counted from a cell of it."""
-    found: list[AnyMirror] = []
+    found = []
     for edge in edges:
-        across, start = spacing[edge.axis], starts[edge.axis]
-        if edge.slope == 0.0:
-            double = 2.0 * edge.position / across - 2 * start
-            first = math.floor(double + WHOLE)
-            part = double - first
-            shares = (1.0,) if part <= WHOLE else (1.0 - part, part)  # between half cells: those at either side
-            found += [Mirror(edge.axis, first + n, share * edge.factor) for n, share in enumerate(shares)]
-        else:
-            slope = edge.slope * spacing[1 - edge.axis] / across
-            place = edge.position / across - start + slope * starts[1 - edge.axis]
-            found.append(ObliqueMirror(edge.axis, place, slope, edge.material == "below", edge.factor))
+        double = 2.0 * edge.position / spacing[edge.axis] - 2 * starts[edge.axis]
+        first = math.floor(double + WHOLE)
+        part = double - first
+        shares = (1.0,) if part <= WHOLE else (1.0 - part, part)  # between half cells: those at either side
+        found += [Mirror(edge.axis, first + n, share * edge.factor) for n, share in enumerate(shares)]
     return tuple(found)
-
-
-def edge_images(edges: Sequence[Edge]) -> list[tuple[Edge, ...]]:
-    """Edges that each image of the pressure is mirrored in: one after the other, and two that make a corner."""
-    found: list[tuple[Edge, ...]] = [(edge,) for edge in edges]
-    straight = [edge for edge in edges if edge.slope == 0.0]
-    return found + [pair for pair in combinations(straight, 2) if pair[0].axis != pair[1].axis]
 
 
 def amplification(edges: tuple[FreeEdge, ...]) -> float:
@@ -302,14 +215,14 @@ def amplification(edges: tuple[FreeEdge, ...]) -> float:
 class MirroredConvolution:
     """Displacement of ``target`` cells under the pressure on a window of them and its images in free edges.
 
-    A corner of two edges across different axes mirrors the image too; edges across the same axis and oblique ones give
-    one image each.
+    A corner of two edges across different axes mirrors the image too; edges across the same axis give one image
+    each.
 
     Parameters
     ----------
     target, aspect, window, dtype, threads
         As for :class:`Convolution`.
-    edges : tuple of Mirror or ObliqueMirror
+    edges : tuple of Mirror
         Counted from the first cell of the target.
     """
 
@@ -317,14 +230,14 @@ class MirroredConvolution:
         self,
         target: tuple[int, int],
         aspect: float,
-        edges: tuple[AnyMirror, ...],
+        edges: tuple[Mirror, ...],
         window: Window | None = None,
         dtype: str = "float64",
         threads: int = 2,
     ) -> None:
         starts = (0, 0) if window is None else (window[0].start, window[1].start)
         stops = target if window is None else (window[0].stop, window[1].stop)
-        self._images = _images(tuple(edge for edge in edges if isinstance(edge, Mirror)), starts, stops)
+        self._images = _images(edges, starts, stops)
         least = [min(place[axis][0] for place, _, _ in self._images) for axis in (0, 1)]
         most = [max(place[axis][1] for place, _, _ in self._images) for axis in (0, 1)]
         self._least, self._dtype = least, dtype
@@ -336,10 +249,6 @@ class MirroredConvolution:
         self._convolve = Convolution(extended, aspect, (within[0], within[1]), dtype, threads)
         self._displaced = np.empty(extended, dtype=dtype)
         self._target = (slice(shift[0], None), slice(shift[1], None))
-        oblique = (edge for edge in edges if isinstance(edge, ObliqueMirror))
-        self._oblique = [ObliqueImage(target, aspect, edge, dtype, threads) for edge in oblique]
-        self._whole = np.zeros(target if self._oblique else (0, 0), dtype=dtype)
-        self._window = (slice(starts[0], stops[0]), slice(starts[1], stops[1]))
 
     def __call__(self, pressure: Array, out: Array) -> Array:
         """Write the displacement into ``out`` and return it."""
@@ -349,10 +258,6 @@ class MirroredConvolution:
             self._loaded[rows, columns] += factor * pressure[:: flips[0], :: flips[1]]
         self._convolve(self._loaded, self._displaced)
         np.copyto(out, self._displaced[self._target], casting="same_kind")
-        if self._oblique:
-            self._whole[self._window] = pressure
-            for image in self._oblique:
-                image.add(self._whole, out)
         return out
 
 
@@ -362,7 +267,8 @@ Image = tuple[tuple[tuple[int, int], tuple[int, int]], tuple[int, int], float]
 def _images(edges: tuple[Mirror, ...], starts: tuple[int, int], stops: tuple[int, int]) -> list[Image]:
     """Place of the pressure and of every image of it, the direction it is read in along each axis, and its factor."""
     images: list[Image] = []
-    for reflections in ((), *edge_images(edges)):
+    corners = (pair for pair in combinations(edges, 2) if pair[0].axis != pair[1].axis)
+    for reflections in ((), *((edge,) for edge in edges), *corners):
         place, flips, factor = [(starts[0], stops[0]), (starts[1], stops[1])], [1, 1], 1.0
         for edge in reflections:
             first, last = place[edge.axis]

@@ -55,6 +55,9 @@ AMOUNTS = (
     "twist",
 )
 
+MOST = 2.0
+"""What all modifications may remove or add together, over the longer side of the flank: crownings of the literature
+that bring a contact to the middle at any price are about as thick as the flank is long."""
 CHECKED = (9, 9)
 """Points at which the sum of all is looked at, along the profile and lengthwise, the edges included."""
 
@@ -445,15 +448,13 @@ def modified(
     if not terms:
         return nominal
     flank = ModifiedFlank(nominal, terms)
-    most, limit = float(np.abs(flank.removal(*nominal.grid(*CHECKED)).value).max()), max(nominal.extent)
+    most, limit = float(np.abs(flank.removal(*nominal.grid(*CHECKED)).value).max()), MOST * max(nominal.extent)
     if not most <= limit:
         told = f"{owner}.modifications: together they remove or add up to {most:.4g} mm"
-        raise InputError(f"{told}; allowed up to {limit:.4g} mm, the longer side of the flank")
+        raise InputError(f"{told}; allowed up to {limit:.4g} mm, {MOST:g} longer sides of the flank")
     for name in AMOUNTS:
         amount = getattr(modifications, name) or 0.0  # None: as at both ends
         if abs(amount) > LARGEST_AMOUNT:
-            message = (
-                f"{owner}.{name}: {amount:.6g} mm is more than {LARGEST_AMOUNT:g} mm: an amount in um given as mm?"
-            )
+            message = f"{owner}.{name}: {amount:.6g} mm is more than {LARGEST_AMOUNT:g} mm; is its unit right?"
             warnings.warn(message, AccuracyWarning, stacklevel=2)
     return flank

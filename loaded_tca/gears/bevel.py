@@ -11,7 +11,15 @@ from functools import cached_property
 from math import acos, asin, atan, atan2, cos, degrees, isclose, log, pi, radians, sin, sqrt, tan
 
 from loaded_tca.errors import GeometryError, InputError, require
-from loaded_tca.gears.checks import face_check, half_turn_checks, input_checks, pair_checks, spiral_check, teeth_checks
+from loaded_tca.gears.checks import (
+    bore_check,
+    face_check,
+    half_turn_checks,
+    input_checks,
+    pair_checks,
+    spiral_check,
+    teeth_checks,
+)
 
 _EQUAL = 1e-9
 _DEDENDUM = 1.25
@@ -97,7 +105,8 @@ class BevelGear:
     def __post_init__(self) -> None:
         require(
             *teeth_checks(self.teeth),
-            *input_checks(self, ("outer_module", "face_width", "bore_diameter"), ("profile_shift",)),
+            *input_checks(self, ("outer_module", "face_width"), ("profile_shift",)),
+            bore_check(self.bore_diameter),
             *half_turn_checks(pitch_angle=self.pitch_angle, face_angle=self.face_angle, root_angle=self.root_angle),
             spiral_check("spiral_angle", self.spiral_angle),
             face_check(self.face_width, self.outer_module, "outer_module"),

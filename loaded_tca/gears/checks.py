@@ -23,6 +23,12 @@ def teeth_checks(*teeth: float) -> Iterator[tuple[bool, str]]:
         yield whole, f"teeth: {count} is not a whole number from 3 on"
 
 
+def bore_check(bore_diameter: float | None) -> tuple[bool, str]:
+    """Check of a bore diameter, where it is given: 0 is a solid gear."""
+    fits = bore_diameter is None or 0.0 <= real(bore_diameter) < inf
+    return fits, f"bore_diameter: {bore_diameter} is not positive and finite, nor 0, a solid gear"
+
+
 def input_checks(gear: Any, positive: tuple[str, ...], finite: tuple[str, ...]) -> Iterator[tuple[bool, str]]:
     """Checks of lengths that are to be positive (where they are given), of finite numbers, of the pressure angle."""
     for key in positive:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from loaded_tca.errors import GeometryError, InputError, require
-from loaded_tca.gears.checks import face_check, input_checks, spiral_check, teeth_checks
+from loaded_tca.gears.checks import bore_check, face_check, input_checks, spiral_check, teeth_checks
 
 
 def involute(angle: float) -> float:
@@ -114,11 +114,12 @@ class CylindricalGear:
     name: str = "gear"
 
     def __post_init__(self) -> None:
-        positive = "normal_module", "face_width", "tip_diameter", "dedendum_coefficient", "bore_diameter"
+        positive = "normal_module", "face_width", "tip_diameter", "dedendum_coefficient"
         rounding = self.root_radius_coefficient
         require(
             *teeth_checks(self.teeth),
             *input_checks(self, positive, finite=("profile_shift",)),
+            bore_check(self.bore_diameter),
             spiral_check("helix_angle", self.helix_angle),
             face_check(self.face_width, self.normal_module, "normal_module"),
             (0.0 <= rounding < inf, f"root_radius_coefficient: {rounding} is negative or not finite"),

@@ -77,7 +77,8 @@ def transverse_profile(gear: CylindricalGear, points: int, inner_radius: float |
     points : int
         Points along each of the four parts of the tooth and along the inner circle.
     inner_radius : float [mm], optional
-        Default: that of the bore, or two modules below the root circle, at most half its radius.
+        Default: that of the bore; of a gear that is solid or has none given, two modules below the root circle, but at
+        least half its radius.
 
     Returns
     -------
@@ -95,7 +96,7 @@ def transverse_profile(gear: CylindricalGear, points: int, inner_radius: float |
     (43, 2)
     """
     solid = max(gear.root_radius - RIM_MODULES * gear.normal_module, 0.5 * gear.root_radius)
-    default = solid if gear.bore_diameter is None else 0.5 * gear.bore_diameter
+    default = 0.5 * gear.bore_diameter if gear.bore_diameter else solid
     inner = default if inner_radius is None else inner_radius
     if not 0.0 < inner < gear.root_radius:
         raise InputError(f"inner_radius: {inner} mm is not between 0 and {gear.root_radius:.6g} mm, the root radius")

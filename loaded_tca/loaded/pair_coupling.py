@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Protocol
 
 from loaded_tca.arrays import Array
-from loaded_tca.contact import FreeEdge
 from loaded_tca.separation import Separation
 
 
@@ -18,10 +17,10 @@ class BendingModel(Protocol):
     are cells of one place along the contact.
     """
 
-    def within(self, number: int, separation: Separation, edges: Sequence[FreeEdge] = ()) -> Array:
+    def within(self, number: int, separation: Separation) -> Array:
         """Deflection of every slice under a unit force on each, (ny, ny) [mm/N], symmetric.
 
-        On top of two half-spaces under the same pressures, corrected for free ``edges``.
+        On top of two half-spaces under the same pressures.
         """
 
     def between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:

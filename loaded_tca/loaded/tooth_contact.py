@@ -16,7 +16,7 @@ from loaded_tca.contact.levels import under_other_load
 from loaded_tca.contact.patch import values_at_ends
 from loaded_tca.contact.solution import CoarserGrid
 from loaded_tca.errors import InputError
-from loaded_tca.loaded.free_edges import tooth_edges
+from loaded_tca.loaded.free_edges import edge_compliance
 from loaded_tca.loaded.pair_coupling import BendingModel, Coupling
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import PointContact, point_contact
@@ -75,6 +75,8 @@ class LoadedContact:
         To which the solver kept the contact conditions.
     coupling_deflection : (ny,) array or None [mm]
         Displacement of the slices under the load of other tooth pairs, if there are any.
+    bending : (ny, ny) array or None [mm/N]
+        Slice compliance of the teeth, without that of free edges.
     """
 
     contact: ContactPoint
@@ -83,6 +85,7 @@ class LoadedContact:
     at_relief_start: bool
     tolerance: float = 1e-6
     coupling_deflection: Array | None = None
+    bending: Array | None = None
 
     @property
     def at_edge(self) -> bool:
@@ -175,10 +178,10 @@ class LoadedContact:
     @cached_property
     def own_tooth_deflection(self) -> float:
         """Deflection of the teeth under the pair's own load, the mean over the force [mm]."""
-        compliance, force = self.solution.problem.slice_compliance, self.slice_force
-        if compliance is None or not force.any():
+        force = self.slice_force
+        if self.bending is None or not force.any():
             return 0.0
-        return float(force @ compliance @ force / force.sum())
+        return float(force @ self.bending @ force / force.sum())
 
     @property
     def contact_deformation(self) -> float:
@@ -326,24 +329,24 @@ def _solve_in_box(
     coupling: Coupling | None,
 ) -> LoadedContact:
     """Solve in the box of ``first``, on its grid if cells were given, else on finer and finer ones."""
-    edges = tooth_edges(pair, contact, first) if grid.free_edges else ()
 
     @cache
-    def sampled(cells: tuple[int, int]) -> tuple[Separation, Array | None]:
+    def sampled(cells: tuple[int, int]) -> tuple[Separation, Array | None, Array | None]:
         box, given = first.half_lengths, first.gap.shape == cells
         separation = first if given else sample_separation(pair, contact, cells=cells, box=box)
-        return separation, None if coupling is None else coupling(separation)
+        displaced = None if coupling is None else coupling(separation)
+        return separation, displaced, None if bending is None else bending.within(number, separation)
 
     def problem(cells: tuple[int, int]) -> ContactProblem:
-        separation, displaced = sampled(cells)
+        separation, displaced, bent = sampled(cells)
+        ends = edge_compliance(pair, separation) if grid.free_edges else None
         return ContactProblem(
             separation.cut_gap if displaced is None else separation.cut_gap + displaced,
             separation.spacing,
             pair.contact_modulus,
             load=load,
             max_pressure=pair.max_pressure,
-            free_edges=edges,
-            slice_compliance=None if bending is None else bending.within(number, separation, edges),
+            slice_compliance=bent if ends is None else ends if bent is None else bent + ends,
             cover=separation.cover,
         )
 
@@ -361,9 +364,9 @@ def _solve_in_box(
             initial_pressure=expected,
             warn=False,
         )
-    separation, displaced = sampled(solution.problem.cells)
+    separation, displaced, bent = sampled(solution.problem.cells)
     at_relief_start = _crosses_relief_start(pair, contact, separation, solution.pressure_on_material)
-    return LoadedContact(contact, separation, solution, at_relief_start, tolerance, displaced)
+    return LoadedContact(contact, separation, solution, at_relief_start, tolerance, displaced, bent)
 
 
 def _crosses_relief_start(pair: GearPair, contact: ContactPoint, separation: Separation, pressure: Array) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
@@ -10,6 +11,7 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import Scene
 from loaded_tca.scene.model import Row
 from loaded_tca.scene.section import Section, contents
+from loaded_tca.unloaded.contact_span import contact_span, roll_lengths_of_flanks
 
 MOST_TORQUES = 4
 """Torques that have a column each; of more, the least and the largest are shown."""
@@ -25,15 +27,35 @@ def describe_scene(scene: Scene) -> str:
         If the gears of the scene cannot exist or cannot mesh.
     """
     pair = scene.pair()
-    rows = [*scene.geometry_rows(), *_asked_rows(scene, pair), *_departures(scene), *_spline_rows(scene, pair)]
+    rows = [
+        *scene.geometry_rows(),
+        *_path_rows(scene, pair),
+        *_asked_rows(scene, pair),
+        *_departures(scene),
+        *_spline_rows(scene, pair),
+    ]
     lines = [f"{label:<{LABEL}}" + "".join(f"{cell:>14}" for cell in cells) for label, *cells in rows]
     effort = expected_effort(scene)
     notes = [*scene.notes(), *([] if effort.fits else [f"{effort}"])]
     return "\n".join([scene.title or "Scene", *lines, *(f"note: {note}" for note in notes)])
 
 
+def _path_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
+    """Points A to E of the path of contact on the pinion after ISO 21771, and those of the unloaded flanks."""
+    if not scene.path_points:
+        return
+    yield "path of contact of the pinion", "from T1 [mm]", "roll [deg]", "diameter [mm]"
+    own = roll_lengths_of_flanks(pair, *contact_span(pair))
+    for letter, nominal in scene.path_points.items():
+        for whose, points in (("ISO 21771", {letter: nominal}), ("these flanks", own)):
+            if letter in points:
+                length = points[letter]
+                roll, diameter = length / pair.base_radii[0], 2.0 * math.hypot(length, pair.base_radii[0])
+                yield f"  {letter}, {whose}", f"{length:.4f}", f"{math.degrees(roll):.4f}", f"{diameter:.4f}"
+
+
 def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
-    """The load, what the analysis is asked to do, and the bores that it holds where teeth bend."""
+    """The load, what the analysis is asked to do, and the bores or journals that it holds where teeth bend."""
     torques, label, wanted = scene.torques, "pinion torque [N m]", scene.analysis
     if len(torques) > MOST_TORQUES:
         torques, label = (min(torques), max(torques)), f"{len(torques)} pinion torques from, to [N m]"
@@ -47,7 +69,7 @@ def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     effort = expected_effort(scene)
     yield "analysis, roughly: time [s], memory [GiB]", rounded(effort.seconds), rounded(effort.gibibytes)
     if wanted.compliance != "contact":
-        yield "bores held rigid, smallest diameter [mm]", *(f"{bore:.4f}" for bore in pair.rigid_bores)
+        yield "bores or journals held rigid, diameter [mm]", *(f"{bore:.4f}" for bore in pair.rigid_bores)
 
 
 def _departures(scene: Scene) -> Iterator[Row]:

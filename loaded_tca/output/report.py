@@ -122,7 +122,6 @@ def positions_csv(result: MeshCycle) -> str:
         if dimensions in (CYCLE, PAIRS) and name != "load_share":
             column, factor = _column(name, unit)
             columns[column] = (result.at_position(name) if dimensions == PAIRS else getattr(result, name)) * factor
-    columns["peak_at_edge"] = result.at_position("peak_at_edge")
     columns["transmission_error_um"] = result.transmission_error * result.wheel_base_radius * 1e3
     columns |= {f"load_share_pair_{number}": result.load_share[..., k] for k, number in enumerate(result.pair)}
     return csv_table({name: np.broadcast_to(values, shape).ravel() for name, values in columns.items()})
@@ -148,7 +147,6 @@ def contacts_csv(result: MeshCycle) -> str:
         if dimensions == PAIRS:
             column, factor = _column(name, unit)
             columns[column] = getattr(result, name) * factor
-    columns["peak_at_edge"] = result.peak_at_edge
     rows = result.normal_force > 0.0
     reached = reached_edges(result)[rows]
     words = [" + ".join(name for name, one in zip(EDGES, row, strict=True) if one) for row in reached]

@@ -15,7 +15,7 @@ from loaded_tca.tooth.form import ToothForm
 from loaded_tca.tooth.geometry import ToothGeometry
 
 DEFAULT_BORE = 0.55
-"""Bore of a gear that has none given, over its (smallest) root diameter."""
+"""Bore of a gear that has none given, or journals of a solid gear, over the root diameter."""
 SMALLEST_BORE, LARGEST_BORE = 0.05, 0.98
 """Bores over the smallest root diameter. A larger one leaves no rim below the teeth; at a smaller one a gear twists
 about its bore twenty times as far as its teeth bend, and no shaft is so thin."""
@@ -39,7 +39,8 @@ class Gear:
         What the other flank and the form of the teeth are made from.
     material : Material
     bore_diameter : float [mm], optional
-        Held rigid where teeth bend; None: 0.55 of the root diameter.
+        Held rigid where teeth bend; None: 0.55 of the root diameter. 0: a solid gear, held on both faces by journals of
+        that diameter.
     """
 
     flank: Flank
@@ -84,8 +85,13 @@ class Gear:
         flanks = self.nominal_flank, self.nominal_back
         return flanks if self.flank.side > 0 else flanks[::-1]
 
+    @property
+    def is_solid(self) -> bool:
+        """Whether the gear has no bore: it is held by its journals."""
+        return self.bore_diameter == 0.0
+
     def bore_radius(self, coordinate: Array) -> Array:
-        """Distance (k,) from the axis at which sections meet the bore [mm], given or by default.
+        """Distance (k,) from the axis at which sections meet the bore [mm], given or by default, or the journals.
 
         Raises
         ------
@@ -93,21 +99,21 @@ class Gear:
             If the bore leaves no rim below the teeth, or is too thin to hold the gear by.
         """
         root, _ = self.form.sections.point(self.form.root_radius(coordinate), coordinate)
-        if self.bore_diameter is None:
+        if self.bore_diameter is None or self.is_solid:
             return DEFAULT_BORE * root
         diameter, smallest = self.bore_diameter, 2.0 * root.min()
         if not SMALLEST_BORE * smallest <= diameter < LARGEST_BORE * smallest:
             thin = "it is held rigid, and the body would twist about so thin a bore far more than the teeth bend"
             raise InputError(
                 f"bore_diameter: {diameter:.6g} mm is not between {SMALLEST_BORE:g} and {LARGEST_BORE:g} times the "
-                f"smallest root diameter, {smallest:.6g} mm: "
+                f"smallest root diameter, {smallest:.6g} mm, nor 0, a solid gear: "
                 + (thin if diameter < smallest * SMALLEST_BORE else "no rim is left below the teeth")
             )
         return np.full_like(root, 0.5 * self.bore_diameter)
 
     @property
     def smallest_bore(self) -> float:
-        """Bore diameter [mm], given or by default; the smallest one of a cone, at the toe.
+        """Diameter [mm] of the bore, given or by default, or of the journals; the smallest one of a cone, at the toe.
 
         Raises
         ------

@@ -112,7 +112,7 @@ class GearPair:
 
     @property
     def rigid_bores(self) -> tuple[float, float]:
-        """Bore diameters of pinion and wheel [mm] that are held where teeth bend; the smallest one of a cone.
+        """Diameters of the bores, or journals, of both gears [mm] held where teeth bend; the smallest one of a cone.
 
         Raises
         ------

@@ -14,9 +14,8 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 
 SMALLEST_SPAN_ARCSEC = 0.02
 """Height of a transmission error axis below which a curve would be rounding."""
-BESIDE = "at the contact point, where the peak is mesh-dependent"
 EDGE_HEADROOM = 1.15
-"""How far above the curves a peak at an edge may draw the axis: how high it is depends on the mesh."""
+"""How far above the curves the pressure at an edge may draw the axis: at a sharp one it depends on the mesh."""
 
 
 def plot_transmission_error(result: MeshCycle) -> Figure:
@@ -54,11 +53,11 @@ def plot_transmission_error(result: MeshCycle) -> Figure:
 
 
 def plot_peak_pressure(result: MeshCycle) -> Figure:
-    """Peak pressure over the positions for each torque, with the pressure beside the contact point and after Hertz.
+    """Peak pressure over the positions for each torque, with that after Hertz and the pressure at sharp edges.
 
-    Where tooth pairs share the load, the peak and that after Hertz are those of the pair with the highest
-    mesh-independent pressure. Peaks at an edge or a relief start, which are mesh-dependent, are single crosses, and the
-    axis does not follow them far; there the pressure beside the contact point of the most loaded pair is drawn too.
+    Where tooth pairs share the load, the peak and that after Hertz are those of the pair with the highest peak, the
+    pressure at an edge is the highest of all pairs. That of sharp edges is mesh-dependent: single crosses, which the
+    axis does not follow far. Hertz is drawn where it holds over a stretch of positions.
 
     Parameters
     ----------
@@ -70,25 +69,18 @@ def plot_peak_pressure(result: MeshCycle) -> Figure:
     """
     figure, axes = style.one_panel(5.5)
     angle = np.degrees(result.pinion_angle)
-    peak, at_edge = result.at_position("peak_pressure"), result.at_position("peak_at_edge")
-    central = np.where(at_edge, result.at_position("central_pressure"), np.nan)
-    hertz, smooth = (
-        np.take_along_axis(values, result.peak_column[..., None], axis=-1)[..., 0]
-        for values in (result.hertz_pressure, np.where(result.peak_at_edge, np.nan, result.peak_pressure))
-    )
+    peak, edge = result.at_position("peak_pressure"), result.at_position("edge_pressure")
+    hertz = np.take_along_axis(result.hertz_pressure, result.peak_column[..., None], axis=-1)[..., 0]
+    stretches = np.stack([style.over_a_stretch(row) for row in hertz])
     for torque, label, colour, marker in torque_styles(result):
-        axes.plot(angle, smooth[torque], color=colour, marker=marker, markersize=5.0, label=label)
-        if at_edge[torque].any():
-            axes.plot(angle, central[torque], color=colour, marker=".", markersize=3.0, linestyle=":")
-        if np.isfinite(hertz[torque]).any():
-            axes.plot(angle, hertz[torque], color=colour, **HERTZ)
-    if at_edge.any():
-        axes.plot([], [], color="black", marker=".", markersize=3.0, linestyle=":", label=BESIDE)
-    if np.isfinite(hertz).any():
+        axes.plot(angle, peak[torque], color=colour, marker=marker, markersize=5.0, label=label)
+        if np.isfinite(stretches[torque]).any():
+            axes.plot(angle, stretches[torque], color=colour, **HERTZ)
+    if np.isfinite(stretches).any():
         axes.plot([], [], color="black", label="after Hertz", **HERTZ)
     style.from_zero(axes)
-    if at_edge.any():
-        _draw_edge_peaks(axes, result, angle, np.where(at_edge, peak, np.nan))
+    if (edge > 0.0).any():
+        _draw_edge_peaks(axes, result, angle, np.where(edge > 0.0, edge, np.nan))
     if not (peak > 0.0).any():
         style.tell(axes, NO_LOAD)
     axes.set_ylabel("contact pressure [MPa]")
@@ -105,12 +97,12 @@ def _draw_edge_peaks(axes: Axes, result: MeshCycle, angle: Array, peak: Array) -
     for torque, _, colour, _ in torque_styles(result):
         axes.plot(angle[within[torque]], peak[torque][within[torque]], "x", color=colour)
         axes.plot(angle[beyond[torque]], np.full(beyond[torque].sum(), edge), "^", color=colour)
-    label = "peak at an edge or relief start (mesh-dependent)"
+    label = "at an edge (mesh-dependent if sharp)"
     if within.any():
         axes.plot([], [], "x", color="black", label=label)
     if beyond.any():
         span = " to ".join(dict.fromkeys(f"{value:.0f}" for value in (peak[beyond].min(), peak[beyond].max())))
-        told = "such a peak" if within.any() else label
+        told = "the same" if within.any() else label
         axes.plot([], [], "^", color="black", label=f"{told} above the axis: {span} MPa")
         high = 1.03 * edge
     axes.set_ylim(0.0, high)

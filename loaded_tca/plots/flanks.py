@@ -22,10 +22,10 @@ from loaded_tca.results.pressure_map import PressureMap
 
 CONTACT_POINTS = "unloaded contact points of all positions and pairs"
 MOST_AREAS = 7
+CELLS_OF_SPIKES = 0.05
+"""Part of the cells of a map under pressure that may lie beyond its scale of colours."""
 LEAST_SEEN = 0.01
 """Part of the height of a flank from which an area of it is seen."""
-CELLS_OF_SPIKES = 0.05
-"""Part of the cells under pressure that may lie beyond the scale of colours."""
 FINENESS = (129, 33)
 """Points along the profile and lengthwise from which the outline of a flank is drawn."""
 
@@ -91,22 +91,24 @@ def loaded_maps(result: MeshCycle, torque: int, positions: Sequence[int] | None 
 def colour_scale(
     result: MeshCycle, torque: int, maps: Sequence[PressureMap]
 ) -> tuple[Normalize, Literal["max", "neither"]]:
-    """Scale of the colours of maps that no spike at an edge stretches, and the arrow of its bar if one lies beyond."""
-    highest = highest_of_scale(result, torque, maps)
+    """Scale of the colours of maps up to the highest peak pressure, and the arrow of its bar if a cell lies beyond."""
+    highest = float(np.nanmax(result.peak_pressure[torque], initial=0.0)) or 1.0
     beyond = any(one.pressure.max() > highest for one in maps)
     return Normalize(0.0, highest), "max" if beyond else "neither"
 
 
-def highest_of_scale(result: MeshCycle, torque: int, maps: Sequence[PressureMap]) -> float:
-    """Highest mesh-independent pressure [MPa] under a torque; if there is none, that of all cells but the spikes."""
-    known = result.mesh_independent_pressure[torque]
-    return float(np.nanmax(known)) or 1.0 if np.isfinite(known).any() else below_spikes(maps)
+def highest_of_map(result: MeshCycle, torque: int, position: int, column: int) -> float:
+    """Pressure [MPa] up to which the colours of a map under pressure go: its peak pressure, where cells are above it.
 
-
-def below_spikes(maps: Sequence[PressureMap]) -> float:
-    """Pressure [MPa] that all loaded cells of maps but a small part stay below."""
-    loaded = np.concatenate([[], *(one.pressure[one.pressure > 0.0] for one in maps)])
-    return float(np.quantile(loaded, 1.0 - CELLS_OF_SPIKES)) if loaded.size else 1.0
+    On a tip corner most of them are: there it is what all but a small part of them stay below.
+    """
+    one, at = result.maps[torque][position][column], (torque, position, column)
+    assert one is not None
+    highest = float(one.pressure.max())
+    if not (result.on_edge[at] or result.on_relief_start[at]):
+        return highest
+    body = float(np.quantile(one.pressure[one.pressure > 0.0], 1.0 - CELLS_OF_SPIKES))
+    return min(highest, max(body, float(result.peak_pressure[at])))
 
 
 def both_flanks(

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
-from matplotlib.patches import Ellipse
+from matplotlib.patches import Ellipse, Patch, Rectangle
 
 from loaded_tca.flanks.frame import FlankFrame
-from loaded_tca.plots.flanks import below_spikes, highest_of_scale
+from loaded_tca.plots.flanks import highest_of_map
 from loaded_tca.plots.style import ACCENT, COLOURS, NO_LOAD, NO_MATERIAL, highest_torque, load, place, set_title, tell
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
@@ -20,7 +21,7 @@ from loaded_tca.results.pressure_map import PressureMap
 def plot_pressure_map(
     result: MeshCycle, position: int | None = None, torque: int | None = None, column: int | None = None
 ) -> Figure:
-    """Contact pressure of one tooth pair at one position in the tangent plane, with the ellipse after Hertz.
+    """Contact pressure of one tooth pair at one position in the tangent plane, with the area after Hertz.
 
     Cells without material are grey, cells without pressure white. The direction across is drawn larger than the
     one along by a factor that the axis tells. The axes say where the heel (or z > 0) and the pinion's tip lie.
@@ -33,7 +34,7 @@ def plot_pressure_map(
     torque : int, optional
         Index of the torque; default: the largest torque.
     column : int, optional
-        Index of the tooth pair in ``result.pair``; default: that with the highest pressure at the position.
+        Index of the tooth pair in ``result.pair``; default: that with the highest peak pressure at the position.
 
     Returns
     -------
@@ -54,16 +55,15 @@ def plot_pressure_map(
     scale, height = _scale_factor(one)
     figure = Figure(figsize=(9.0, 1.8 + height), layout="constrained")
     axes = figure.add_subplot()
-    highest = float(one.pressure.max())
-    if result.peak_at_edge[torque][at]:
-        highest = min(highest, max(below_spikes([one]), highest_of_scale(result, torque, [one])))
-    _draw_pressure(figure, axes, one, highest)
+    _draw_pressure(figure, axes, one, highest_of_map(result, torque, *at) if one.pressure.any() else 0.0)
     names = ("hertz_semi_minor", "hertz_semi_major", "hertz_pressure")
     minor, major, pressure = (float(getattr(result, name)[torque][at]) for name in names)
     if math.isfinite(pressure):
-        label = f"ellipse after Hertz, peak pressure {pressure:.4g} MPa"
-        ellipse = Ellipse((0.0, 0.0), 2.0 * major, 2.0 * minor, fill=False, color=ACCENT, linestyle="--", label=label)
-        axes.add_patch(ellipse)
+        label = f"after Hertz, peak pressure {pressure:.4g} MPa"
+        drawn: dict[str, Any] = {"fill": False, "color": ACCENT, "linestyle": "--", "label": label}
+        line, size = bool(result.paths[at[1]].on_line[at[0]]), (2.0 * major, 2.0 * minor)
+        area: Patch = Rectangle((-major, -minor), *size, **drawn) if line else Ellipse((0.0, 0.0), *size, **drawn)
+        axes.add_patch(area)
     axes.plot(0.0, 0.0, "+", color=ACCENT, label="unloaded contact point")
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
     axes.set_aspect(scale)
@@ -102,7 +102,7 @@ def _draw_pressure(figure: Figure, axes: Axes, one: PressureMap, highest: float)
     peak = float(one.pressure.max())
     label = "contact pressure [MPa]"
     if highest < peak:
-        label += f"\n(few cells at the edge: up to {peak:.0f})"
+        label += f"\n(single cells: up to {peak:.0f})"
     figure.colorbar(mesh, ax=axes, label=label, extend="max" if highest < peak else "neither")
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -14,8 +14,6 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import GeometryError
-from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.plots import style
 from loaded_tca.plots.flanks import both_flanks, loaded_maps
 from loaded_tca.plots.style import (
@@ -31,10 +29,9 @@ from loaded_tca.plots.style import (
 )
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.summary import signed
-from loaded_tca.unloaded import trace_contact
+from loaded_tca.unloaded.contact_span import contact_span, path_letters, roll_lengths_of_flanks
 
-EDGE = "at an edge or relief start: pressure mesh-dependent, not drawn"
-WHAT_LETTERS_ARE = "A, E: the unloaded contact of these flanks begins, ends; B, D: a pitch from E, A; C: pitch point"
+WHAT_LETTERS_ARE = "A, E: unloaded contact ends at the pinion's root, tip; B, D: a pitch from E, A; C: pitch point"
 NEAR_LETTERS = 0.03
 """Part of the axis below which two letters stand to either side of their lines."""
 PAIR_COLOURS = "#0072b2", "#d55e00", "#56b4e9", "#cc79a7", "#e69f00", "#009e73"
@@ -44,8 +41,6 @@ MOST_PANELS = 4
 MOST_ORDERS, LEAST_POSITIONS = 8, 4
 """Orders of the tooth mesh that are drawn; positions from which the first is known."""
 SMALLEST_AMPLITUDE_UM = 1e-4
-ROUNDS, FINENESS = 3, 33
-"""Rounds in which the ends of the path of contact are found, and angles of each: to 3e-5 of the span."""
 
 
 def plot_load_share(result: MeshCycle, torque: int | None = None) -> Figure:
@@ -212,13 +207,13 @@ def plot_line_load_distribution(result: MeshCycle, torque: int | None = None) ->
 
 
 def plot_path_pressure(result: MeshCycle) -> Figure:
-    """Pressure from the begin to the end of contact: every tooth pair at the angle of its own teeth, one curve.
+    """Peak pressure from the begin to the end of contact: every tooth pair at the angle of its own teeth, one curve.
 
     For a spur pair that is the pressure from A to E, single contact from B to D. Dotted lines mark where the unloaded
-    contact point comes into the flanks and leaves them (A, E), a pitch before the end and after the begin (B, D: only
-    one pair is in contact between them without load, if they lie in this order) and the pitch point (C). Where a
-    contact lies at an edge, its peak is mesh-dependent: such positions have no pressure here, but a mark in a panel of
-    their own, in the colour of their torque.
+    contact point comes to an edge of the flanks towards the pinion's root and tip (A, E), a pitch from the other end
+    (B, D: only one pair is in contact between them without load) and the pitch point (C). Of cylindrical
+    gears a table has these points as lengths on the path of contact, roll angles and diameters of the pinion, beside
+    those of ISO 21771.
 
     Parameters
     ----------
@@ -228,55 +223,37 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    pair, pressure = result.gear_pair, result.mesh_independent_pressure
+    pair, pressure = result.gear_pair, result.peak_pressure
     angle = np.degrees(result.pinion_angle[:, None] - pair.pitch * result.pair)
     order = np.argsort(angle, axis=None, kind="stable")
-    at_edge = np.isfinite(result.peak_pressure) & np.isnan(pressure)
-    figure, axes = style.one_panel()
-    below = _draw_edge_contacts(figure, axes, result, [angle[flags] for flags in at_edge]) if at_edge.any() else axes
+    figure, axes = style.one_panel(6.0 if result.scene.path_points else 5.0)
+    drawn = False
     for torque, label, colour, marker in torque_styles(result):
-        curve, ellipse = (values[torque].ravel()[order] for values in (pressure, result.hertz_pressure))
+        curve, hertz = (values[torque].ravel()[order] for values in (pressure, result.hertz_pressure))
         known, places = np.isfinite(curve), angle.ravel()[order]
         axes.plot(places[known], curve[known], color=colour, marker=marker, markersize=4.0, label=label)
-        axes.plot(places, ellipse, color=colour, **HERTZ)
-    if np.isfinite(result.hertz_pressure).any():
+        stretches = style.over_a_stretch(hertz)
+        axes.plot(places, stretches, color=colour, **HERTZ)
+        drawn |= bool(np.isfinite(stretches).any())
+    if drawn:
         axes.plot([], [], color="black", label="after Hertz", **HERTZ)
-    if at_edge.any():
-        axes.plot([], [], "|", color="black", markeredgewidth=2.0, label=EDGE)
-    below.set_xlabel(f"pinion angle from the pitch point of the tooth pair [deg]\n{WHAT_LETTERS_ARE}")
-    axes.set_ylabel("contact pressure [MPa]")
+    axes.set_xlabel(f"pinion angle from the pitch point of the tooth pair [deg]\n{WHAT_LETTERS_ARE}")
+    axes.set_ylabel("peak pressure [MPa]")
     style.from_zero(axes)
-    if not np.isfinite(pressure).any():
-        axes.set_yticks([])
-        style.tell(axes, "every contact lies at an edge or relief start: its pressure is mesh-dependent")
-    elif not (pressure > 0.0).any():
+    if not (pressure > 0.0).any():
         style.tell(axes, NO_LOAD)
-    _mark_points(axes, pair, float(np.abs(np.radians(angle)).max()))
-    about, columns = f"pressure over the path of contact, {loads(result)}", 2 if at_edge.any() else 3
-    return style.finished(figure, axes, result, about, columns=columns)
+    ends = contact_span(pair)
+    at_root, at_tip = (math.nan if one is None else float(one.pinion_angle) for one in ends)
+    _mark_points(axes, {"C": 0.0, **path_letters(at_root, at_tip, pair.driving * pair.pitch)})
+    if result.scene.path_points:
+        points = {"C": result.scene.path_points["C"], **roll_lengths_of_flanks(pair, *ends)}
+        _draw_table(figure, axes, points, result.scene.path_points, pair.base_radii[0])
+    return style.finished(figure, axes, result, f"pressure over the path of contact, {loads(result)}")
 
 
-def _draw_edge_contacts(figure: Figure, axes: Axes, result: MeshCycle, angles: list[Array]) -> Axes:
-    """A low panel below the axes with the angles [deg] of contacts at an edge, a row for each torque; returns it."""
-    grid = figure.add_gridspec(2, 1, height_ratios=(10.0, 1.0))
-    axes.set_subplotspec(grid[0])
-    below = figure.add_subplot(grid[1], sharex=axes)
-    colours = [colour for _, _, colour, _ in torque_styles(result)]
-    below.eventplot(angles, linelengths=0.8, linewidths=2.0, colors=colours)
-    below.set_yticks([])
-    below.set_ylabel("at an\nedge", rotation=0.0, ha="right", va="center", fontsize="small")
-    axes.tick_params(labelbottom=False)
-    axes.set_xlabel("")
-    return below
-
-
-def _mark_points(axes: Axes, pair: GearPair, reach: float) -> None:
-    """Dotted lines at the points A to E of the path of contact that lie within the picture."""
-    begin, end = (_leaves_flanks(pair, side * reach) for side in (-1.0, 1.0))
-    marks = {"A": begin, "B": end - pair.pitch, "C": 0.0, "D": begin + pair.pitch, "E": end}
-    if not marks["A"] < marks["B"] < marks["D"] < marks["E"]:  # a NaN, or never one pair alone
-        marks = {name: marks[name] for name in "ACE"}
-    places = {name: math.degrees(angle) for name, angle in marks.items() if math.isfinite(angle)}
+def _mark_points(axes: Axes, points: Mapping[str, float]) -> None:
+    """Dotted lines at points of the path of contact, each a pinion angle [rad]."""
+    places = {name: math.degrees(angle) for name, angle in points.items()}
     near = NEAR_LETTERS * float(np.ptp(axes.get_xlim()))
     for name, at in places.items():
         beside = [other for letter, other in places.items() if letter != name and abs(other - at) < near]
@@ -285,21 +262,27 @@ def _mark_points(axes: Axes, pair: GearPair, reach: float) -> None:
         axes.annotate(name, (at, 1.0), xycoords=("data", "axes fraction"), ha=side, va="bottom", color="0.4")
 
 
-def _leaves_flanks(pair: GearPair, farthest: float) -> float:
-    """Angle [rad] between zero and the farthest at which the unloaded contact point of a pair comes to an edge.
-
-    NaN if it does not, or lies on one at zero already.
-    """
-    low, high = 0.0, farthest
-    for _ in range(ROUNDS):
-        angles = np.linspace(low, high, FINENESS)
-        try:
-            path = trace_contact(pair, angles, warn=False)
-        except GeometryError:  # nothing is in contact on that side
-            return math.nan
-        outside = path.on_edge | ~path.in_contact
-        if not outside.any() or outside[0]:
-            return math.nan
-        first = int(np.argmax(outside))
-        low, high = angles[first - 1], angles[first]
-    return high
+def _draw_table(
+    figure: Figure, axes: Axes, points: Mapping[str, float], nominal: Mapping[str, float], base_radius: float
+) -> None:
+    """A table below the axes: points of the path of contact, and in brackets those of ISO 21771, by roll lengths."""
+    quantities: dict[str, Callable[[float], float]] = {
+        "from T1 [mm]": lambda length: length,
+        "roll angle [deg]": lambda length: math.degrees(length / base_radius),
+        "diameter [mm]": lambda length: 2.0 * math.hypot(length, base_radius),
+    }
+    cells = [
+        [
+            f"{f'{of(points[name]):.3f}' if name in points else '-'} ({of(length):.3f})"
+            for name, length in nominal.items()
+        ]
+        for of in quantities.values()
+    ]
+    grid = figure.add_gridspec(2, 1, height_ratios=(5.0, 1.0))
+    axes.set_subplotspec(grid[0])
+    below = figure.add_subplot(grid[1])
+    below.set_axis_off()
+    below.set_title("on the pinion: these flanks, unloaded (ISO 21771)", fontsize="small")
+    table = below.table(cells, rowLabels=list(quantities), colLabels=list(nominal), loc="center", cellLoc="center")
+    table.auto_set_font_size(False)
+    table.set_fontsize(8.0)

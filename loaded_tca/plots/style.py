@@ -13,7 +13,9 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from scipy.ndimage import label
 
+from loaded_tca.arrays import Array
 from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.results.files import FilePath, replacing
 from loaded_tca.results.mesh_cycle import MeshCycle
@@ -27,6 +29,8 @@ HERTZ: dict[str, Any] = {"linestyle": "--", "linewidth": 4.0, "alpha": 0.4, "zor
 """How a curve after Hertz is drawn: broad, below the curve that it is compared with, in the colour of its torque."""
 NO_LOAD = "no load, no pressure"
 MOST_LABELS = 8
+SHORTEST_STRETCH = 3
+"""Positions in a row from which a curve after Hertz is drawn: single ones are chance."""
 HEADROOM = 0.08
 """Part of an axis above the highest curve."""
 LONGEST_LINE = 95
@@ -90,6 +94,14 @@ def from_zero(axes: Axes, part: float = 1.0) -> None:
         axes.set_ylim(0.0, (1.0 + HEADROOM) * highest / part)
     else:
         axes.set_ylim(bottom=0.0)
+
+
+def over_a_stretch(values: Array) -> Array:
+    """Values (n,) that stand in a row of three or more, of fewer positions all of them; others NaN."""
+    known = np.isfinite(values)
+    rows, _ = label(known)
+    long = np.bincount(rows) >= min(SHORTEST_STRETCH, len(values))
+    return np.where(known & long[rows], values, np.nan)
 
 
 def tell(axes: Axes, why: str) -> None:

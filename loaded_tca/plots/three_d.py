@@ -19,7 +19,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.output.teeth_in_space import TeethInSpace, teeth_in_space
 from loaded_tca.pairs import mating_teeth
-from loaded_tca.plots.flanks import highest_of_scale
+from loaded_tca.plots.flanks import highest_of_map
 from loaded_tca.plots.style import ACCENT, COLOURS, load, place, set_title
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.tooth import PATCHES, Resolution, TriangleMesh
@@ -95,9 +95,8 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
     side = shown.pair.pinion.flank.side
     axes.add_collection3d(_solid(shown.pinion, PINION, 1.0, shown.eye))
     axes.add_collection3d(_lines(shown.pinion, side))
-    one = result.maps[shown.torque][shown.position][shown.column]
-    if one is not None and shown.highest_pressure > 0.0:
-        highest = min(shown.highest_pressure, highest_of_scale(result, shown.torque, [one]))
+    if shown.highest_pressure > 0.0:
+        highest = highest_of_map(result, shown.torque, shown.position, shown.column)
         norm, extend = Normalize(0.0, highest), "max" if shown.highest_pressure > highest else "neither"
         faces = colormaps[COLOURS](norm(shown.pressure.cell_data["pressure_MPa"]))
         corners = shown.pressure.corners
@@ -172,7 +171,8 @@ def show_teeth(
     plotter.add_mesh(_poly_data(pyvista, shown.pinion), color=PINION, ambient=AMBIENT)
     plotter.add_mesh(_poly_data(pyvista, shown.wheel), color=WHEEL, ambient=AMBIENT, opacity=SEE_THROUGH)
     if shown.highest_pressure > 0.0:
-        limits, bar = (0.0, shown.highest_pressure), {"title": "contact pressure [MPa]", "fmt": "%.0f"}
+        limits = 0.0, highest_of_map(result, shown.torque, shown.position, shown.column)
+        bar = {"title": "contact pressure [MPa]", "fmt": "%.0f"}
         surface = _poly_data(pyvista, shown.pressure.moved(lift, np.eye(3)))
         colours = {"scalars": "pressure_MPa", "cmap": COLOURS, "clim": limits, "scalar_bar_args": bar}
         plotter.add_mesh(surface, lighting=False, **colours)

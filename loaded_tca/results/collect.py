@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from importlib.metadata import version
 
 import numpy as np
@@ -11,8 +12,11 @@ from loaded_tca.arrays import Array
 from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.tooth_contact import LoadedContact
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.reference.hertz import line_contact
+from loaded_tca.results.load_factors import load_factors
 from loaded_tca.results.mesh_cycle import MeshCycle, dataset_of
 from loaded_tca.results.pressure_map import PressureMap
+from loaded_tca.results.slice_pressure import largest_slice_pressure
 from loaded_tca.scene import Scene
 from loaded_tca.unloaded import heelwards
 
@@ -31,8 +35,12 @@ def mesh_cycle(scene: Scene, pair: GearPair, carried: Carried) -> MeshCycle:
     share = carried.share[..., order]
     contacts = {(t, n, k): carried.contacts[t][n][order[k]] for t, n, k in np.ndindex(share.shape)}
     numbers: dict[str, Array] = {}
+    maps: dict[tuple[int, ...], PressureMap | None] = dict.fromkeys(contacts)
     for place, loaded in contacts.items():
-        for name, number in ({} if loaded is None else _numbers(pair, loaded)).items():
+        if loaded is None:
+            continue
+        one = maps[place] = _pressure_map(loaded)
+        for name, number in _numbers(pair, loaded, one).items():
             missing = math.nan if isinstance(number, float) else type(number)()
             numbers.setdefault(name, np.full(share.shape, missing))[place] = number
     apart = np.isnan(numbers["contact_deformation"])
@@ -40,7 +48,9 @@ def mesh_cycle(scene: Scene, pair: GearPair, carried: Carried) -> MeshCycle:
     lengths = 1e3 * pair.base_radii[0] * pair.base_radii[1] * pair.face_width
     with np.errstate(divide="ignore", invalid="ignore"):
         secant = np.where(carried.rotation > 0.0, carried.torque[:, None] / carried.rotation, math.nan)
-    path = carried.path
+    path, (torques, positions, pairs) = carried.path, (range(length) for length in share.shape)
+    stacked = tuple(tuple(tuple(maps[t, n, k] for k in pairs) for n in positions) for t in torques)
+    face_load_factor, transverse_load_factor = load_factors(pair, path, stacked, scene.mean_contact_length)
     arrays = {
         **numbers,
         "torque": carried.torque,
@@ -50,6 +60,8 @@ def mesh_cycle(scene: Scene, pair: GearPair, carried: Carried) -> MeshCycle:
         "face_width": pair.face_width,
         "max_pressure": math.nan if pair.max_pressure is None else pair.max_pressure,
         "unloaded_transmission_error": path.transmission_error,
+        "face_load_factor": face_load_factor,
+        "transverse_load_factor": transverse_load_factor,
         "transmission_error": path.transmission_error - pair.driving * carried.rotation,
         "mesh_stiffness": carried.torque_rate / lengths,
         "secant_stiffness": secant / lengths,
@@ -57,42 +69,47 @@ def mesh_cycle(scene: Scene, pair: GearPair, carried: Carried) -> MeshCycle:
         "load_share": share,
         "tooth_deflection": np.where(apart, math.nan, carried.tooth_deflection[..., order]),
     }
-    torques, positions, pairs = (range(length) for length in share.shape)
     return MeshCycle(
         scene=scene,
         dataset=dataset_of(arrays, version("loaded_tca")),
         path=path,
         paths=tuple(carried.paths[k] for k in order),
-        maps=tuple(tuple(tuple(_pressure_map(contacts[t, n, k]) for k in pairs) for n in positions) for t in torques),
+        maps=stacked,
     )
 
 
-def _pressure_map(loaded: LoadedContact | None) -> PressureMap | None:
-    if loaded is None:
-        return None
+def _pressure_map(loaded: LoadedContact) -> PressureMap:
     grid, solution = loaded.separation, loaded.solution
     gap = np.where(np.isfinite(grid.gap), solution.gap, np.inf)
     return PressureMap(grid.x, grid.y, grid.spacing, solution.pressure, gap, grid.origin, grid.axes)
 
 
-def _numbers(pair: GearPair, loaded: LoadedContact) -> dict[str, float | bool | int]:
+def _numbers(pair: GearPair, loaded: LoadedContact, one: PressureMap) -> dict[str, float | bool | int]:
     """What a result has of one loaded contact, by the names of its dataset."""
-    solution, hertz = loaded.solution, loaded.hertz
+    solution = loaded.solution
     width, length = loaded.extent
-    radius, axial = loaded.peak_place
+    if solution.load > 0.0 and (loaded.at_edge or loaded.at_relief_start):
+        peak, place = largest_slice_pressure(pair, loaded)
+        radius, axial = one.place(*place)
+    else:
+        peak, (radius, axial) = solution.peak_pressure, loaded.peak_place
     slope = abs(float(loaded.separation.axes[1] @ heelwards(pair, loaded.contact)))
     longest = pair.face_width / slope if slope > 0.0 else math.inf  # what of the contact's direction the face holds
+    length = min(length, longest)
+    hertz, of_material = _hertz(pair, loaded, length), replace(one, pressure=solution.pressure_on_material)
     return {
         "normal_force": solution.load,
-        "peak_pressure": loaded.peak_pressure,
+        "peak_pressure": peak,
+        "edge_pressure": float(of_material.pressure[of_material.edge_cell]) if loaded.at_edge else math.nan,
+        "edge_is_rounded": False,
         "central_pressure": loaded.central_pressure,
         "peak_radius": radius,
         "peak_axial": axial,
-        "hertz_pressure": hertz.max_pressure if hertz else math.nan,
-        "hertz_semi_minor": hertz.semi_minor if hertz else math.nan,
-        "hertz_semi_major": hertz.semi_major if hertz else math.nan,
+        "hertz_pressure": hertz[0],
+        "hertz_semi_minor": hertz[1],
+        "hertz_semi_major": hertz[2],
         "contact_width": width,
-        "contact_length": min(length, longest),
+        "contact_length": length,
         "line_load": loaded.line_load,
         "line_load_ratio": loaded.line_load * longest / solution.load if solution.load > 0.0 else math.nan,
         "contact_deformation": loaded.contact_deformation,
@@ -103,3 +120,21 @@ def _numbers(pair: GearPair, loaded: LoadedContact) -> dict[str, float | bool | 
         "iterations": solution.iterations,
         "residual": solution.residual,
     }
+
+
+def _hertz(pair: GearPair, loaded: LoadedContact, length: float) -> tuple[float, float, float]:
+    """Pressure after Hertz [MPa] and semi-axes across and along [mm]; NaN where Hertz does not hold.
+
+    Of a line it is that of its force spread evenly over the loaded length, which the ends of the flanks bound; a line
+    that lies on an edge or a relief start, or is so near to a tip that this bounds its width, has none.
+    """
+    if (ellipse := loaded.hertz) is not None:
+        return ellipse.max_pressure, ellipse.semi_minor, ellipse.semi_major
+    contact, load = loaded.contact, loaded.solution.load
+    if not contact.on_line or contact.on_edge or loaded.at_relief_start or load <= 0.0:
+        return math.nan, math.nan, math.nan
+    line = line_contact(load / length, loaded.separation.curvatures[0], pair.contact_modulus)
+    middle = np.array_split(loaded.separation.gap, 2, axis=1)[0][:, -1]
+    if np.isinf(middle[np.abs(loaded.separation.x) <= line.half_width]).any():
+        return math.nan, math.nan, math.nan
+    return line.max_pressure, line.half_width, 0.5 * length

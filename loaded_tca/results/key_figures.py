@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 ARCSEC = math.degrees(3600.0)
 """Seconds of arc per radian."""
 
+CAPPED = 1.0 - 1e-6
+"""Part of the cap on the pressure from which a pressure equals it."""
 ORDERS = 3
 """Orders of the tooth mesh that the key figures name."""
 
@@ -83,7 +85,6 @@ def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
     """
     peak, edge, heaviest = result.peak_contact(torque), result.edge_contact(torque), result.most_loaded_contact(torque)
     smooth = result.peak_contact(torque, where_hertz_holds=True)
-    beside = peak is not None and bool(result.peak_at_edge[torque][peak])
     length = 1e3 * result.wheel_base_radius
 
     def at(place: tuple[int, int] | None, name: str) -> float:
@@ -98,19 +99,14 @@ def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
 
     on_line = np.stack([path.on_line for path in result.paths], axis=-1)
     pairs = result.loaded_pairs[torque] if result.scene.analysis.load_sharing else np.full(1, math.nan)
-    radius, axial = (
-        (contact_point(peak, "pinion_radius"), contact_point(peak, "pinion_axial"))
-        if beside
-        else (at(peak, "peak_radius"), at(peak, "peak_axial"))
-    )
+    radius, axial = _edge_place(result, torque, edge)
+    highest = np.fmax(result.peak_pressure, result.edge_pressure)[torque]
     return {
         "pinion_torque_Nm": 1e-3 * float(result.torque[torque]),
-        "peak_pressure_MPa": at(peak, "central_pressure" if beside else "peak_pressure"),
-        "peak_is_beside_contact_point": beside,
-        "contact_point_is_at_edge": beside and math.isnan(at(peak, "mesh_independent_pressure")),
+        "peak_pressure_MPa": at(peak, "peak_pressure"),
         "pinion_angle_at_peak_deg": math.degrees(contact_point(peak, "pinion_angle")),
-        "pinion_diameter_at_peak_mm": 2.0 * radius,
-        "pinion_axial_at_peak_mm": axial,
+        "pinion_diameter_at_peak_mm": 2.0 * at(peak, "peak_radius"),
+        "pinion_axial_at_peak_mm": at(peak, "peak_axial"),
         "contact_point_diameter_at_peak_mm": 2.0 * contact_point(peak, "pinion_radius"),
         "contact_point_axial_at_peak_mm": contact_point(peak, "pinion_axial"),
         "central_pressure_at_peak_MPa": at(peak, "central_pressure"),
@@ -118,10 +114,12 @@ def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
         "contact_length_at_peak_mm": at(peak, "contact_length"),
         "contact_width_at_peak_mm": at(peak, "contact_width"),
         "contact_deformation_at_peak_um": 1e3 * at(peak, "contact_deformation"),
-        "edge_pressure_MPa": at(edge, "peak_pressure"),
+        "edge_pressure_MPa": at(edge, "edge_pressure"),
+        "edge_is_rounded": edge is not None and bool(result.edge_is_rounded[torque][edge]),
+        "normal_force_at_edge_N": at(edge, "normal_force"),
         "pinion_angle_at_edge_deg": math.degrees(contact_point(edge, "pinion_angle")),
-        "pinion_diameter_at_edge_mm": 2.0 * at(edge, "peak_radius"),
-        "pinion_axial_at_edge_mm": at(edge, "peak_axial"),
+        "pinion_diameter_at_edge_mm": 2.0 * radius,
+        "pinion_axial_at_edge_mm": axial,
         "peak_pressure_where_hertz_holds_MPa": at(smooth, "peak_pressure"),
         "hertz_pressure_there_MPa": at(smooth, "hertz_pressure"),
         "hertz_length_there_mm": 2.0 * at(smooth, "hertz_semi_major"),
@@ -133,14 +131,18 @@ def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
         },
         **_error_figures("unloaded_transmission_error", result.unloaded_transmission_error, length),
         "mesh_stiffness_mean_N_per_mm_um": mean_over_a_pitch(result.mesh_stiffness[torque]),
+        "mesh_stiffness_without_body_torsion_mean_N_per_mm_um": result.without_body_torsion(
+            mean_over_a_pitch(result.mesh_stiffness[torque])
+        ),
         "secant_stiffness_mean_N_per_mm_um": mean_over_a_pitch(result.secant_stiffness[torque]),
+        "face_load_factor": float(result.face_load_factor[torque]),
+        "transverse_load_factor": float(result.transverse_load_factor[torque]),
         "loaded_contact_ratio": mean_over_a_pitch(pairs),
         "fewest_loaded_pairs": _reduced(np.min, pairs),
         "most_loaded_pairs": _reduced(np.max, pairs),
         "line_load_max_N_per_mm": _reduced(np.max, result.line_load[torque]),
         "line_load_at_largest_force_N_per_mm": at(heaviest, "line_load"),
         "line_load_ratio_at_largest_force": at(heaviest, "line_load_ratio"),
-        "largest_force_is_at_edge": heaviest is not None and bool(result.peak_at_edge[torque][heaviest]),
         "max_pressure_MPa": result.max_pressure,
         **{
             f"{word}_{name}": _reduced(reduction, cells[cells > 0])
@@ -155,9 +157,17 @@ def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
         "line_positions": count(on_line & np.isfinite(result.contact_deformation[torque])),
         "edge_positions": count(result.on_edge[torque]),
         "relief_start_positions": count(result.on_relief_start[torque]),
-        "edge_peak_positions": count(result.peak_at_edge[torque]),
-        "capped_positions": count(result.capped[torque]),
+        "capped_positions": count(highest >= CAPPED * result.max_pressure),
     }
+
+
+def _edge_place(result: MeshCycle, torque: int, edge: tuple[int, int] | None) -> tuple[float, float]:
+    """Radius and axial coordinate on the pinion [mm] of the cell with the edge pressure of a contact."""
+    one = None if edge is None else result.maps[torque][edge[0]][edge[1]]
+    if one is None:
+        return math.nan, math.nan
+    across, along = one.edge_cell
+    return one.place(one.x[across], one.y[along])
 
 
 def _error_figures(name: str, error: Array, length: float) -> dict[str, float]:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
+from loaded_tca.compliance.torsion import body_torsion
 from loaded_tca.errors import InputError, require
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.files import Buffer, FilePath, Part, arrays_of, netcdf_of, read_dataset, replacing, variables_of
@@ -24,8 +25,6 @@ from loaded_tca.unloaded import ContactPath
 if TYPE_CHECKING:
     import xarray
 
-CAPPED = 1.0 - 1e-6
-"""Part of the cap on the pressure from which a peak equals it."""
 CYCLE = ("torque", "position")
 PAIRS = (*CYCLE, "pair")
 
@@ -37,6 +36,8 @@ QUANTITIES: dict[str, Part] = {
     "face_width": ((), "mm", "common face width"),
     "max_pressure": ((), "MPa", "cap on the pressure; NaN: elastic"),
     "unloaded_transmission_error": (("position",), "rad", "unloaded transmission error, absolute"),
+    "face_load_factor": (("torque",), "1", "face load factor K_Hbeta, from 30 strips of the face"),
+    "transverse_load_factor": (("torque",), "1", "transverse load factor K_Halpha; NaN for bevel gears"),
     "transmission_error": (CYCLE, "rad", "loaded transmission error, absolute"),
     "mesh_stiffness": (CYCLE, "N/(mm um)", "tangent of the force over the face width to the transmission error"),
     "secant_stiffness": (CYCLE, "N/(mm um)", "force over the face width, over the transmission error it adds"),
@@ -46,14 +47,20 @@ QUANTITIES: dict[str, Part] = {
     "peak_pressure": (
         PAIRS,
         "MPa",
-        "peak contact pressure; at an edge or relief start the mesh-dependent largest cell",
+        "peak contact pressure; where the contact reaches a sharp edge or a relief start, the largest of its slices",
     ),
+    "edge_pressure": (PAIRS, "MPa", "largest pressure of a cell at an edge; NaN where none is reached"),
+    "edge_is_rounded": (PAIRS, "1", "whether that edge is rounded; the pressure at a sharp one is mesh-dependent"),
     "central_pressure": (PAIRS, "MPa", "contact pressure beside the unloaded contact point"),
-    "peak_radius": (PAIRS, "mm", "radius on the pinion of the cell with the largest pressure"),
-    "peak_axial": (PAIRS, "mm", "axial coordinate on the pinion of the cell with the largest pressure"),
-    "hertz_pressure": (PAIRS, "MPa", "peak pressure after Hertz at the contact point; NaN where Hertz does not hold"),
-    "hertz_semi_minor": (PAIRS, "mm", "semi-axis of the Hertz ellipse across the contact"),
-    "hertz_semi_major": (PAIRS, "mm", "semi-axis of the Hertz ellipse along the contact"),
+    "peak_radius": (PAIRS, "mm", "radius on the pinion of the peak pressure"),
+    "peak_axial": (PAIRS, "mm", "axial coordinate on the pinion of the peak pressure"),
+    "hertz_pressure": (
+        PAIRS,
+        "MPa",
+        "peak pressure after Hertz at the contact point or of the line; NaN where Hertz does not hold",
+    ),
+    "hertz_semi_minor": (PAIRS, "mm", "half width across the contact after Hertz"),
+    "hertz_semi_major": (PAIRS, "mm", "half length of the Hertz ellipse, or of the loaded line"),
     "contact_width": (PAIRS, "mm", "full width of the contact across, from the pressure map"),
     "contact_length": (PAIRS, "mm", "full length of the contact, from the pressure map, but not beyond the face"),
     "line_load": (PAIRS, "N/mm", "largest force per length along the contact; at a face end mesh-dependent"),
@@ -71,10 +78,11 @@ QUANTITIES: dict[str, Part] = {
 COORDINATES = ("torque", "pinion_angle", "pair")
 
 OF_THE_PEAK = frozenset(
-    {"peak_pressure", "peak_radius", "peak_axial", "peak_at_edge", "capped", "on_edge", "on_relief_start"}
+    {"peak_pressure", "peak_radius", "peak_axial", "on_edge", "on_relief_start"}
     | {"cells_across", "cells_along", "iterations", "residual"}
 )
 """Numbers whose value at a position is that of the pair with the highest peak pressure."""
+OF_THE_EDGE = frozenset({"edge_pressure", "edge_is_rounded"})
 
 PATH_PARTS: dict[str, Part] = {
     "pinion_angle": ((), "rad", "angle of the pinion phi1"),
@@ -154,7 +162,7 @@ class MeshCycle:
         return [*super().__dir__(), *QUANTITIES]
 
     def __repr__(self) -> str:
-        peak = np.nanmax(self.mesh_independent_pressure, initial=0.0)
+        peak = np.nanmax(self.peak_pressure, initial=0.0)
         torques = f"{len(self.torque)} torque" + "s" * (len(self.torque) > 1)
         return f"MeshCycle({len(self.path)} positions, {torques}, peak {peak:.6g} MPa)"
 
@@ -168,56 +176,39 @@ class MeshCycle:
         """The gears of the scene in space."""
         return self.scene.pair()
 
+    def without_body_torsion(self, stiffness: float) -> float:
+        """Mesh stiffness that is left without the twist of the gear bodies, as c_gamma of ISO 6336-1 has none.
+
+        Parameters
+        ----------
+        stiffness : float [N/(mm um)]
+            With it, for instance a mean of ``mesh_stiffness``.
+
+        Returns
+        -------
+        float [N/(mm um)]
+            NaN where teeth do not bend.
+        """
+        if self.scene.analysis.compliance == "contact" or not stiffness > 0.0:
+            return math.nan
+        return 1.0 / (1.0 / stiffness - 1e3 * self.face_width * sum(body_torsion(self.gear_pair)))
+
     @property
     def bending(self) -> str:
         """Whether teeth bend, in words."""
         return "teeth do not bend" if self.scene.analysis.compliance == "contact" else "teeth bend"
 
     @property
-    def peak_at_edge(self) -> Array:
-        """Whether the largest cell lies where a flank ends, or a relief start in the contact: (torque, position, pair).
-
-        There theory has an infinite pressure, and the peak is mesh-dependent, up to a cap if there is one.
-        """
-        at_end = [[[one is not None and one.peak_is_at_end for one in row] for row in rows] for rows in self.maps]
-        return np.array(at_end, dtype=bool) | self.on_relief_start
-
-    @property
-    def capped(self) -> Array:
-        """Whether the peak equals the cap on the pressure: bool, (torque, position, pair)."""
-        return np.asarray(self.peak_pressure >= CAPPED * self.max_pressure)
-
-    @property
-    def mesh_independent_pressure(self) -> Array:
-        """Highest mesh-independent pressure [MPa], (torque, position, pair).
-
-        The peak; where that is mesh-dependent, the pressure beside the contact point; NaN where the contact point
-        itself lies on an edge or a relief start, or nearer to an edge than half the contact is wide: the spike reaches
-        it.
-        """
-        held = np.stack([path.on_edge | path.on_relief_start for path in self.paths], axis=1)
-        within = np.broadcast_to(held, self.on_edge.shape).copy()
-        for t, n, k in np.argwhere(self.on_edge):
-            one = self.maps[t][n][k]
-            within[t, n, k] |= one is not None and one.flank_ends_within(0.5 * self.contact_width[t, n, k])
-        return np.where(self.peak_at_edge, np.where(within, math.nan, self.central_pressure), self.peak_pressure)
-
-    @property
     def peak_column(self) -> NDArray[np.int_]:
-        """Index of the pair with the highest mesh-independent pressure, if none has one of the highest peak: (m, n)."""
-        known = np.nan_to_num(self.mesh_independent_pressure, nan=-math.inf)
-        return np.where(np.isfinite(known).any(axis=-1), known.argmax(axis=-1), self._highest_column)
-
-    @property
-    def _highest_column(self) -> NDArray[np.int_]:
-        return np.asarray(np.where(np.isfinite(self.peak_pressure), self.peak_pressure, -math.inf).argmax(axis=-1))
+        """Index of the pair with the highest peak pressure, (torque, position)."""
+        return _column_of_largest(self.peak_pressure)
 
     def at_position(self, name: str) -> Array:
         """Return the number of every position, of one of its pairs: (torque, position).
 
-        Numbers of ``OF_THE_PEAK`` belong to the pair with the highest peak pressure, ``mesh_independent_pressure`` is
-        the highest of all pairs. All others belong to the pair with the largest force: a tip corner may have the
-        highest peak under next to none.
+        Numbers of ``OF_THE_PEAK`` belong to the pair with the highest peak pressure, those of the edge to the pair with
+        the highest edge pressure, all others to the pair with the largest force: a tip corner may have the highest
+        edge pressure under next to none.
 
         Parameters
         ----------
@@ -233,10 +224,10 @@ class MeshCycle:
         if not isinstance(values, np.ndarray) or values.ndim != len(PAIRS):
             known = f"; result.{name} has its numbers as they are" if name in QUANTITIES else ""
             raise InputError(f"name: {name!r} is no array (torque, position, pair) of the result{known}")
-        if name == "mesh_independent_pressure":
+        if name in OF_THE_PEAK:
             columns = self.peak_column
-        elif name in OF_THE_PEAK:
-            columns = self._highest_column
+        elif name in OF_THE_EDGE:
+            columns = _column_of_largest(self.edge_pressure)
         else:  # without load, of the pair in contact
             columns = np.where(np.isnan(self.peak_pressure), -1.0, self.normal_force).argmax(axis=-1)
         return np.take_along_axis(values, columns[..., None], axis=-1)[..., 0]
@@ -261,19 +252,13 @@ class MeshCycle:
         return np.stack([harmonic_amplitudes(e if periodic else e[:0], count) for e in self.transmission_error])
 
     def peak_contact(self, torque: int, *, where_hertz_holds: bool = False) -> tuple[int, int] | None:
-        """Return indices of position and pair with the highest pressure, of those asked for; None if there is none.
-
-        By default that of ``mesh_independent_pressure``, or of the central pressure where every contact point lies on
-        an edge.
-        """
-        if where_hertz_holds:
-            return _place_of_largest(np.where(np.isfinite(self.hertz_pressure), self.peak_pressure, math.nan)[torque])
-        place = _place_of_largest(self.mesh_independent_pressure[torque])
-        return _place_of_largest(self.central_pressure[torque]) if place is None else place
+        """Return indices of position and pair with the highest peak pressure of those asked for; None if none is."""
+        known = np.isfinite(self.hertz_pressure) | (not where_hertz_holds)
+        return _place_of_largest(np.where(known, self.peak_pressure, math.nan)[torque])
 
     def edge_contact(self, torque: int) -> tuple[int, int] | None:
-        """Return indices of position and pair with the highest peak at an edge or relief start; None without one."""
-        return _place_of_largest(np.where(self.peak_at_edge, self.peak_pressure, math.nan)[torque])
+        """Return indices of position and pair with the highest edge pressure; None where no edge is reached."""
+        return _place_of_largest(self.edge_pressure[torque])
 
     def most_loaded_contact(self, torque: int) -> tuple[int, int] | None:
         """Return indices of position and pair with the largest force; None if nothing is in contact."""
@@ -282,8 +267,8 @@ class MeshCycle:
     def key_figures(self) -> tuple[dict[str, float], ...]:
         """Return the figures of the whole cycle for each torque, by names that end in their unit.
 
-        ``peak_pressure_MPa`` is the highest ``mesh_independent_pressure``; "at_peak": at its position; "at_edge": at
-        that of the highest peak at an edge or relief start; "there": at that of the highest pressure where Hertz holds.
+        ``peak_pressure_MPa`` is the highest ``peak_pressure``; "at_peak": at its position; "at_edge": at that of the
+        highest edge pressure; "there": at that of the highest peak where Hertz holds.
         Means are over the positions. NaN: not known.
         """
         return tuple(key_figures(self, torque) for torque in range(len(self.torque)))
@@ -353,6 +338,11 @@ class MeshCycle:
             paths=tuple(paths),
             maps=maps_from({name: arrays[f"map_{name}"] for name in MAP_PARTS}),
         )
+
+
+def _column_of_largest(values: Array) -> NDArray[np.int_]:
+    """Index along the last axis of the largest finite value; the first one where none is."""
+    return np.asarray(np.where(np.isfinite(values), values, -math.inf).argmax(axis=-1))
 
 
 def _place_of_largest(values: Array) -> tuple[int, int] | None:

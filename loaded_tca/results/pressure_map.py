@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from scipy.ndimage import binary_dilation
 
 from loaded_tca.arrays import Array
 from loaded_tca.results.files import Part
@@ -55,12 +56,17 @@ class PressureMap:
         return self.origin + x[:, None, None] * self.axes[0] + y[:, None] * self.axes[1]
 
     @cached_property
-    def peak_is_at_end(self) -> bool:
-        """Whether the largest cell lies beside cells without material, or at the end of the grid."""
-        across, along = np.unravel_index(int(self.pressure.argmax()), self.pressure.shape)
-        inside = 0 < across < len(self.x) - 1 and 0 < along < len(self.y) - 1
-        around = self.gap[max(across - 1, 0) : across + 2, max(along - 1, 0) : along + 2]
-        return bool(self.pressure.any() and (not inside or np.isinf(around).any()))
+    def edge_cell(self) -> tuple[int, int]:
+        """Indices of the cell with the largest pressure of those beside the end of the material or of the grid."""
+        beyond = np.pad(np.isinf(self.gap), 1, constant_values=True)
+        beside = binary_dilation(beyond, np.ones((3, 3), dtype=bool))[1:-1, 1:-1]
+        across, along = np.unravel_index(int(np.where(beside, self.pressure, -1.0).argmax()), beside.shape)
+        return int(across), int(along)
+
+    def place(self, x: float, y: float) -> tuple[float, float]:
+        """Radius and axial coordinate on the pinion [mm] of a point of the tangent plane."""
+        point = self.origin + x * self.axes[0] + y * self.axes[1]
+        return math.hypot(point[0], point[1]), float(point[2])
 
     def flank_ends_within(self, distance: float) -> bool:
         """Whether a cell without material, its edges counted, lies nearer to the contact point than a distance [mm]."""

@@ -117,10 +117,15 @@ class StressBelow:
     def beside_spike(self) -> int | None:
         """Slice of the map through the contact point where the peak lies at an edge and is mesh-dependent.
 
-        There the stresses are those below the peak pressure of the summary. None where the peak is no spike, or where
-        the contact point itself lies within it.
+        None where the largest cell is no spike, or where the contact point itself lies within one: on an edge or a
+        relief start, or nearer to an edge than half the contact is wide.
         """
-        if not self.result.peak_at_edge[self._at] or math.isnan(self.result.mesh_independent_pressure[self._at]):
+        result, one, path = self.result, self.pressure_map, self.result.paths[self.column]
+        at_edge = result.on_edge[self._at] and one.pressure[one.edge_cell] == one.pressure.max()
+        near = path.on_edge[self.position] or path.on_relief_start[self.position]
+        if not (at_edge or result.on_relief_start[self._at]) or near:
+            return None
+        if result.on_edge[self._at] and one.flank_ends_within(0.5 * float(result.contact_width[self._at])):
             return None
         return int(np.argmin(np.abs(self.pressure_map.y)))
 
@@ -161,24 +166,20 @@ class StressBelow:
         """Greatest shear after Hertz, with its depth and the pressure and half width of the same contact.
 
         Of the contact ellipse, from 0.31 p_0 at 0.48 a below a circle to 0.300 p_0 at 0.786 b below a slender one;
-        below a line contact, of a long line with the line load and the pressure of the section that holds the greatest
-        shear. None where Hertz does not hold.
+        below a line contact, of a long line. None where Hertz does not hold.
         """
         result, at = self.result, self._at
-        pressure = float(result.hertz_pressure[at])
-        if math.isfinite(pressure):
-            minor, major = float(result.hertz_semi_minor[at]), float(result.hertz_semi_major[at])
-            # The stresses follow from the pressure and the axes; modulus and approach do not matter for them.
-            ellipse = PointContact(float(result.normal_force[at]), math.nan, major, minor, pressure, math.nan)
-            return HertzShear(*ellipse.subsurface_shear(self.stress.poisson_ratio), pressure, minor)
-        if not bool(result.paths[self.column].on_line[self.position]) or result.on_relief_start[at]:
+        names = ("normal_force", "hertz_semi_major", "hertz_semi_minor", "hertz_pressure")
+        load, major, minor, pressure = (float(getattr(result, name)[at]) for name in names)
+        if math.isnan(pressure):
             return None
-        one = self.pressure_map
-        beside = self.beside_spike
-        section = one.pressure[:, self.stress.max_shear_at[2] if beside is None else beside]
-        line_load, pressure = float(section.sum()) * one.spacing[0], float(section.max())
-        line = LineContact(line_load, math.nan, 2.0 * line_load / (math.pi * pressure), pressure)
-        return HertzShear(*line.subsurface_shear(), pressure, line.half_width)
+        # The stresses follow from the pressure and the axes; line load, modulus and approach do not matter for them.
+        if result.paths[self.column].on_line[self.position]:
+            shear = LineContact(math.nan, math.nan, minor, pressure).subsurface_shear()
+        else:
+            ellipse = PointContact(load, math.nan, major, minor, pressure, math.nan)
+            shear = ellipse.subsurface_shear(self.stress.poisson_ratio)
+        return HertzShear(*shear, pressure, minor)
 
     @property
     def where(self) -> tuple[str, str]:
@@ -241,8 +242,7 @@ def stress_below(
         Index along the path; default: that of the peak pressure of the summary, of the pair if one is asked
         for.
     pair : int, optional
-        Number of the tooth pair, one of ``result.pair``; default: that with the highest mesh-independent
-        pressure.
+        Number of the tooth pair, one of ``result.pair``; default: that with the highest peak pressure.
     gear : {"pinion", "wheel"}
         Below whose flank.
     depths : int
@@ -338,7 +338,6 @@ def _place(result: MeshCycle, torque: int | None, position: int | None, pair: in
             raise InputError("no stress: nothing is in contact at any position")
         return torque, *place
     column = pairs.index(pair)
-    if position is None:  # where the pair has its highest mesh-independent pressure, or else its highest peak
-        known = (values[torque, :, column] for values in (result.mesh_independent_pressure, result.peak_pressure))
-        position = next((int(np.nanargmax(one)) for one in known if np.isfinite(one).any()), 0)
+    if position is None:
+        position = int(np.where(np.isfinite(peak := result.peak_pressure[torque, :, column]), peak, -1.0).argmax())
     return torque, position, column

@@ -21,8 +21,9 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("  normal force of that tooth pair [N]", ("normal_force_at_peak_N",)),
     ("  pinion diameter | axial place [mm]", ("pinion_diameter_at_peak_mm", "pinion_axial_at_peak_mm")),
     ("  contact length | width [mm]", ("contact_length_at_peak_mm", "contact_width_at_peak_mm")),
-    ("at an edge or relief start [MPa] | angle [deg]", ("edge_pressure_MPa", "pinion_angle_at_edge_deg")),
-    ("highest of smooth contacts | Hertz [MPa]", ("peak_pressure_where_hertz_holds_MPa", "hertz_pressure_there_MPa")),
+    ("at an edge, mesh-dependent if sharp [MPa] | its force [N]", ("edge_pressure_MPa", "normal_force_at_edge_N")),
+    ("  pinion diameter | axial place [mm]", ("pinion_diameter_at_edge_mm", "pinion_axial_at_edge_mm")),
+    ("highest where Hertz holds | Hertz [MPa]", ("peak_pressure_where_hertz_holds_MPa", "hertz_pressure_there_MPa")),
     ("  length | width after Hertz [mm]", ("hertz_length_there_mm", "hertz_width_there_mm")),
     ("transmission error, mean [arcsec | um]", ("transmission_error_mean_arcsec", "transmission_error_mean_um")),
     ("  peak to peak [arcsec | um]", ("transmission_error_span_arcsec", "transmission_error_span_um")),
@@ -35,8 +36,12 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
         "mesh stiffness, mean, tangent | secant [N/(mm um)]",
         ("mesh_stiffness_mean_N_per_mm_um", "secant_stiffness_mean_N_per_mm_um"),
     ),
-    ("line load of the most loaded pair [N/mm]", ("line_load_at_largest_force_N_per_mm",)),
-    ("  line load ratio", ("line_load_ratio_at_largest_force",)),
+    (
+        "  tangent, without body torsion [N/(mm um)]",
+        ("mesh_stiffness_without_body_torsion_mean_N_per_mm_um",),
+    ),
+    ("load factors K_Hbeta | K_Halpha", ("face_load_factor", "transverse_load_factor")),
+    ("largest line load, mesh-dependent at sharp ends [N/mm]", ("line_load_at_largest_force_N_per_mm",)),
     (
         "tooth pairs under load, mean | fewest | most",
         ("loaded_contact_ratio", "fewest_loaded_pairs", "most_loaded_pairs"),
@@ -45,18 +50,22 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
 )
 """Label and key figures of each line of the summary."""
 
-ONLY_IF_KNOWN = ("_at_edge_", "edge_pressure", "_order_", "loaded_contact_ratio", "_where_hertz_holds_", "_there_")
+ONLY_IF_KNOWN = (
+    "_without_body_torsion_",
+    "_at_edge_",
+    "edge_pressure",
+    "_order_",
+    "load_factor",
+    "loaded_contact_ratio",
+    "_where_hertz_holds_",
+    "_there_",
+)
 """Figures whose line is left out where no torque has them."""
 
 NOTES = (
     ("line_positions", "the unloaded contact is a line"),
-    ("edge_positions", "the contact reaches an edge of a flank: no Hertz there"),
+    ("edge_positions", "the contact reaches an edge of a flank"),
     ("relief_start_positions", "the start of a linear relief lies in the contact: no Hertz there"),
-    (
-        "edge_peak_positions",
-        "the largest cell lies at an edge or relief start, where it is mesh-dependent: "
-        "what counts there is the pressure beside the contact point",
-    ),
 )
 """Key figure that counts positions, and what holds at these."""
 
@@ -110,21 +119,10 @@ def _notes(figures: Sequence[Figures]) -> Iterator[str]:
     yield from _counted(figures, apart, "no tooth pair is in contact")
     for name, sentence in NOTES:
         yield from _counted(figures, [entry[name] for entry in figures], sentence)
-    at_edge = [bool(entry["contact_point_is_at_edge"]) for entry in figures]
-    if any(at_edge):
-        where = "the contact point itself lies on an edge or relief start"
-        yield f"{where}{_for_torques(figures, at_edge)}: the peak pressure given is mesh-dependent too"
-    grows = [bool(entry["largest_force_is_at_edge"]) for entry in figures]
-    if any(grows):
-        what = f"the most loaded contact has its peak at an edge or relief start{_for_torques(figures, grows)}"
-        yield (
-            f"{what}: where that is a face end, line load and line load ratio are mesh-dependent without the "
-            "compliance of free edges (analysis.free_edges = true)"
-        )
     cap = figures[0]["max_pressure_MPa"]
     if math.isfinite(cap):
         counts = [entry["capped_positions"] for entry in figures]
-        yield from _counted(figures, counts, f"the peak equals the cap on the pressure, {cap:.6g} MPa")
+        yield from _counted(figures, counts, f"the pressure equals the cap on the pressure, {cap:.6g} MPa")
         if not any(counts):
             yield f"the cap on the pressure, {cap:.6g} MPa, is not reached"
 

@@ -9,7 +9,6 @@ import numpy as np
 
 from loaded_tca.errors import AccuracyWarning
 from loaded_tca.loaded.cycle import Carried
-from loaded_tca.loaded.free_edges import oblique_ends
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.tooth_cycle import REACH
@@ -79,12 +78,12 @@ def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[st
     solution = loaded.solution
     found = []
     if loaded.at_edge:
-        edge = "the contact reaches an edge of a flank: Hertz does not hold, and pressure there is mesh-dependent"
+        edge = "the contact reaches an edge of a flank, where the pressure of the map is mesh-dependent"
         found.append(edge + ("" if grid.free_edges else "; the free edge is left out (analysis.free_edges)"))
-        oblique = oblique_ends(pair, loaded.contact, loaded.separation) if grid.free_edges else ()
-        found += [f"the {end} is oblique to the contact and taken for that of a half-space" for end in oblique]
     if loaded.at_relief_start:
-        found.append("the contact lies across the start of a linear relief: its peak pressure is mesh-dependent")
+        found.append(
+            "the contact lies across the start of a linear relief, where the pressure of the map is mesh-dependent"
+        )
     smooth = not (loaded.at_edge or loaded.at_relief_start)
     if grid.cells is None and smooth and solution.error_estimate.peak_pressure > grid.accuracy:
         found.append(f"the estimated error stays above the accuracy of {grid.accuracy:g}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
@@ -158,6 +158,18 @@ class CylindricalScene(BlankScene):
         """Return the roll lengths at which the active profiles of pinion and wheel start [mm]."""
         mesh = self.mesh()
         return mesh.pinion_active_profile.start_roll_length, mesh.wheel_active_profile.start_roll_length
+
+    @property
+    def path_points(self) -> Mapping[str, float]:
+        """Points A to E of the path of contact after ISO 21771, as roll lengths of the pinion: from T1 on [mm]."""
+        path = self.mesh().path_of_contact
+        return {letter: getattr(path, letter) for letter in "ABCDE"}
+
+    @property
+    def mean_contact_length(self) -> float:
+        """Mean length of all contact lines over a pitch, eps_alpha b/cos(beta_b) [mm]."""
+        mesh = self.mesh()
+        return mesh.transverse_contact_ratio * mesh.common_face_width / math.cos(mesh.pinion.base_helix_angle)
 
     def geometry_rows(self) -> Sequence[Row]:
         """Return centre distance, contact ratios and diameters."""

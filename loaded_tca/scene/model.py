@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -147,7 +148,7 @@ class Scene(Section, ABC):
 
     @property
     def rigid_bores(self) -> tuple[float, float] | None:
-        """Bore diameters of pinion and wheel [mm] that are held where teeth bend; None where they do not.
+        """Diameters of bores or journals of both gears [mm] that are held where teeth bend; None where they do not.
 
         See :attr:`GearPair.rigid_bores`.
         """
@@ -160,6 +161,16 @@ class Scene(Section, ABC):
     @abstractmethod
     def geometry_rows(self) -> Sequence[Row]:
         """Return what there is to tell of the geometry: of the mesh, then of pinion and wheel."""
+
+    @property
+    def path_points(self) -> Mapping[str, float]:
+        """Points A to E of the path of contact after ISO 21771, as roll lengths of the pinion; none of bevel gears."""
+        return {}
+
+    @property
+    def mean_contact_length(self) -> float:
+        """Mean length of all contact lines over a pitch [mm]; NaN for gears of which ISO 6336-1 does not speak."""
+        return math.nan
 
     @abstractmethod
     def force_rows(self, torques: Sequence[float]) -> Sequence[Row]:

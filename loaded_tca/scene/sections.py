@@ -173,7 +173,10 @@ class GearSection(Section):
 
     teeth: int = key(Whole(3, 10000), "number of teeth z")
     bore_diameter_mm: float | None = key(
-        DIAMETER_mm, "bore diameter, held rigid", None, "0.55 of the root diameter where teeth bend"
+        Number(0.0, 100000.0),
+        "bore diameter, held rigid; 0: a solid gear, held by journals of 0.55 of the root diameter at both faces",
+        None,
+        "0.55 of the root diameter where teeth bend",
     )
     modifications: Modifications = subsection(Modifications, "material removed from the flanks")
     flank: FlankForm = subsection(FlankForm, "how the flanks are described")

@@ -13,7 +13,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.flanks.base import Flank
-from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
 from loaded_tca.unloaded import ContactPoint
 
 STEP_ROUNDING = 1e-13
@@ -95,11 +95,7 @@ class NormalGap:
 
     def with_edges(self, x: Array, y: Array) -> tuple[Array, list[Array]]:
         """Gap [mm], and distances to each edge of both flanks [mm], at points that broadcast; signed as of ``at``."""
-        rays = []
-        for flank, origin, axes, turn in self._views:
-            across, along, normal = axes.tolist()
-            start = tuple(o + (x * a + y * b) for o, a, b in zip(origin.tolist(), across, along, strict=True))
-            rays.append(_Rays(flank, start, tuple(normal), turn))
+        rays = self._rays(x, y)
         met = [self._meet(ray, np.zeros(ray.start[0].shape)) for ray in rays]
         missed = None
         if not (met[0].settled & met[1].settled).all():
@@ -109,6 +105,33 @@ class NormalGap:
         if missed is not None:
             distances = [np.where(missed, -np.inf, distance) for distance in distances]
         return met[1].height - met[0].height, distances
+
+    def curvature_across(self, x: Array, y: Array) -> Array:
+        """Second derivative of the gap by x [1/mm] at points that broadcast: the relative curvature across.
+
+        On a relief start it is that of the side on which the point lies.
+        """
+        bends = []
+        for rays, (_, _, axes, _) in zip(self._rays(x, y), self._views, strict=True):
+            met = self._meet(rays, np.zeros(rays.start[0].shape))
+            at_x, at_y = (part + met.height * n for part, n in zip(rays.start[:2], rays.normal[:2], strict=True))
+            basis = cylindrical_basis(np.arctan2(at_y, at_x))
+            gradient, hessian = _theta_less_flank(rays.flank, met.rho, met.z)
+            out = basis @ axes[2]
+            steep = (gradient * out).sum(axis=-1)
+            across = basis @ axes[0]
+            tangent = across - ((gradient * across).sum(axis=-1) / steep)[..., None] * out
+            bends.append(-np.einsum("...i,...ij,...j", tangent, hessian, tangent) / steep)
+        return np.asarray(bends[1] - bends[0])
+
+    def _rays(self, x: Array, y: Array) -> list[_Rays]:
+        """Rays of pinion and wheel at points of the tangent plane."""
+        rays = []
+        for flank, origin, axes, turn in self._views:
+            across, along, normal = axes.tolist()
+            start = tuple(o + (x * a + y * b) for o, a, b in zip(origin.tolist(), across, along, strict=True))
+            rays.append(_Rays(flank, start, tuple(normal), turn))
+        return rays
 
     def _meet_rest(self, rays: _Rays, met: _Meeting, mating: _Meeting) -> Mask:
         """Take further steps as long as they shrink, where the mating gear is met; return where that is in vain."""
@@ -148,3 +171,14 @@ class NormalGap:
                 return _Meeting(height, rho, z, length, np.ones(length.shape, dtype=bool))
             before = min(largest, longest)
         return _Meeting(height, rho, z, length, length <= NO_MORE * self._rounding)
+
+
+def _theta_less_flank(flank: Flank, rho: Array, z: Array) -> tuple[Array, Array]:
+    """Gradient (..., 3) and Hessian (..., 3, 3) of theta - Theta(rho, z) along e_rho, e_theta, e_z."""
+    jet, shape = flank.theta(rho, z), np.shape(rho)
+    gradient, hessian = np.zeros((*shape, 3)), np.zeros((*shape, 3, 3))
+    gradient[..., 0], gradient[..., 1], gradient[..., 2] = -jet.rho, 1.0 / rho, -jet.z
+    hessian[..., 0, 0], hessian[..., 2, 2], hessian[..., 1, 1] = -jet.rho_rho, -jet.z_z, -jet.rho / rho
+    hessian[..., 0, 1] = hessian[..., 1, 0] = -1.0 / rho**2
+    hessian[..., 0, 2] = hessian[..., 2, 0] = -jet.rho_z
+    return gradient, hessian

@@ -18,7 +18,7 @@ from loaded_tca.scene.build import described_gear
 from tests.samples.bodies import pinion, spur_mesh
 
 DENSITY = MeshDensity(2, 2, 1, 1, 2, 1, 1)
-CHANGES = "side density neighbours bore modulus poisson width thickness tip fillet"
+CHANGES = "side density neighbours bore solid modulus poisson width thickness tip fillet"
 ARRAYS = "heights", "lengths", "displacement", "depth", "local_height", "local_value"
 
 
@@ -86,6 +86,7 @@ def test_model_cannot_be_written_to():
         lambda: frame_of(density=replace(DENSITY, rim=3)),
         lambda: frame_of(density=replace(DENSITY, neighbours=2)),
         lambda: frame_of(pinion(bore_diameter=36.0)),
+        lambda: frame_of(pinion(bore_diameter=0.0)),
         lambda: frame_of(pinion(material=Material(205000.0, 0.3))),
         lambda: frame_of(pinion(material=Material(206000.0, 0.29))),
         lambda: frame_of(pinion(width=20.001)),
@@ -148,29 +149,10 @@ def cut(**axes):
     return lambda arrays: {name: np.delete(arrays[name], -1, axis) for name, axis in axes.items()}
 
 
-def with_one_height_less(arrays):
-    """Arrays that fit each other, of a table with other places."""
-    size = arrays["depth"][:-1].size
-    return {**cut(heights=0, depth=0)(arrays), "displacement": arrays["displacement"][:, :size, :size]}
-
-
 @pytest.mark.parametrize(
-    "other",
-    [
-        cut(heights=0),
-        cut(lengths=0),
-        cut(displacement=0),
-        cut(displacement=1),
-        cut(local_value=0),
-        cut(local_value=0, local_height=0),
-        with_one_height_less,
-        lambda arrays: {"depth": arrays["depth"].T},
-        lambda arrays: {"heights": arrays["heights"][::-1]},
-        lambda arrays: {"depth": 1.01 * arrays["depth"]},
-        lambda arrays: {"local_height": 0.5 * arrays["local_height"]},
-    ],
+    "other", [cut(heights=0), cut(displacement=0), lambda arrays: {"depth": 1.01 * arrays["depth"]}]
 )
-def test_a_valid_file_with_other_shapes_or_places_is_made_anew(other, made, folder):
+def test_a_valid_file_with_other_numbers_is_made_anew(other, made, folder):
     first = kept_flexibility(frame_of())
     (path,) = folder.iterdir()
     arrays = dict(np.load(path))
@@ -194,9 +176,9 @@ def test_a_damaged_file_is_made_anew(damage, made, folder):
         middle = len(whole) // 2
         path.write_bytes(whole[:middle] + bytes([whole[middle] ^ 255]) + whole[middle + 1 :])
     elif damage == "foreign":
-        np.savez(path, key=arrays["key"], pressure=np.ones(3))
+        np.savez(path, digest=arrays["digest"], pressure=np.ones(3))
     elif damage == "renamed":
-        np.savez(path, **arrays | {"key": "of another gear"})
+        np.savez(path, **arrays | {"digest": "of another gear"})
     else:
         np.savez(path, **arrays | {"depth": np.nan * arrays["depth"]})
     kept.forget()

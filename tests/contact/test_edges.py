@@ -12,7 +12,6 @@ from loaded_tca.contact import (
     ContactStatus,
     FreeEdge,
     contact_stiffness,
-    edge_of_plane,
     quarter_space_factor,
     solve_contact,
     solve_to_accuracy,
@@ -303,26 +302,6 @@ def test_contact_at_a_sharp_or_blunt_edge_converges_and_yields_more_the_sharper_
 def test_wedges_that_no_factor_is_known_for_are_refused(angle):
     with pytest.raises(InputError, match=r"angle: .* is not between 30 and 180 degrees"):
         wedge_factor(angle, 0.3)
-
-
-def test_plane_square_to_an_axis_is_an_edge_at_its_distance():
-    below = edge_of_plane((1.0, 0.0, 0.0), 0.3, (0.1, 0.5), (10, 20), PSI)
-    assert below == FreeEdge(0, 0.8, "below", PSI)
-    above = edge_of_plane((0.0, -1.0, 0.0), 2.0, (0.1, 0.5), (10, 20), PSI)
-    assert above == FreeEdge(1, 3.0, "above", PSI)
-
-
-def test_oblique_plane_is_taken_where_it_crosses_the_nearer_axis():
-    angle = math.radians(20.0)
-    edge = edge_of_plane((math.sin(angle), math.cos(angle), 0.0), 2.0, (0.1, 0.5), (10, 20), PSI)
-    assert (edge.axis, edge.material) == (1, "below")
-    assert_allclose(edge.position, 5.0 + 2.0 / math.cos(angle))
-
-
-@pytest.mark.parametrize("normal", [(1.0, 0.7, 0.0), (0.7, -1.0, 0.0), (0.0, 0.0, 1.0)])
-def test_plane_between_the_axes_or_along_the_grid_is_refused(normal):
-    with pytest.raises(InputError, match="30 degrees are allowed"):
-        edge_of_plane(normal, 1.0, (0.1, 0.1), (10, 10), PSI)
 
 
 @pytest.mark.parametrize(

@@ -485,26 +485,26 @@ def test_circular_crowning_of_more_than_half_the_face_is_refused():
 @pytest.mark.parametrize(
     "amounts",
     [
-        {"polynomial": (25.1, 0.0, 0.0, 0.0, 0.0, 0.0)},
-        {"polynomial": (0.0, -25.1 / HALF, 0.0, 0.0, 0.0, 0.0)},
+        {"polynomial": (50.1, 0.0, 0.0, 0.0, 0.0, 0.0)},
+        {"polynomial": (0.0, -50.1 / HALF, 0.0, 0.0, 0.0, 0.0)},
         {"polynomial": (100.0,) * 6},
         {"polynomial": (0.0, 0.0, 0.0, -100.0, 100.0, 100.0)},
-        {"lead_crowning": 25.1},
-        {"lead_crowning": 20.0, "end_relief": 5.1, "end_relief_length": 5.0},
+        {"lead_crowning": 50.1},
+        {"lead_crowning": 45.0, "end_relief": 5.1, "end_relief_length": 5.0},
     ],
 )
-def test_more_than_the_longer_side_of_the_flank_is_no_modification(amounts):
-    told = r"^pinion.modifications: together they remove or add up to .* mm; allowed up to 25 mm, the longer side"
+def test_more_than_twice_the_longer_side_of_the_flank_is_no_modification(amounts):
+    told = r"^pinion.modifications: together they remove or add up to .* mm; allowed up to 50 mm, 2 longer sides"
     with pytest.raises(InputError, match=told):
         modified(**amounts)
-    modified(polynomial=(24.9, *[0.0] * 5))
+    modified(polynomial=(49.9, *[0.0] * 5))
 
 
 @pytest.mark.parametrize(
     ("name", "amount"), [("lead_crowning", 5.0), ("helix_slope", -1.001), ("twist", 1.001), ("end_relief_upper", 1.5)]
 )
 def test_micrometres_given_as_millimetres_are_doubted(name, amount):
-    told = rf"^pinion.{name}: {amount:g} mm is more than 1 mm: an amount in um given as mm\?$"
+    told = rf"^pinion.{name}: {amount:g} mm is more than 1 mm; is its unit right\?$"
     with pytest.warns(AccuracyWarning, match=told):
         modified(**{name: amount}, end_relief_length=5.0)
     assert modified(**{name: 0.999}, end_relief_length=5.0).terms  # and no warning

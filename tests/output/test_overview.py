@@ -212,6 +212,33 @@ def test_analysis_is_shown_as_it_is_asked_for():
 
 
 def test_bores_are_shown_where_teeth_bend():
-    given, default = cells(described("mesh_cycle_finite_elements", pinion__bore_diameter_mm=30.0), "bores held rigid")
+    text = described("mesh_cycle_finite_elements", pinion__bore_diameter_mm=30.0)
+    given, default = cells(text, "bores or journals held rigid")
     assert given == "30.0000"
     assert_allclose(float(default), 0.55 * 103.5, rtol=1e-6)  # m (z - 2.5)
+
+
+def test_path_of_contact_has_the_points_of_iso_21771_beside_those_of_the_flanks():
+    """Without relief they are the same; relief of the wheel's tip moves A up the pinion's flank, and with it D."""
+    modifications = {f"{gear}__modifications__tip_relief_um": 0.0 for gear in ("pinion", "wheel")}
+    path = read_scene(SCENES / "mesh_cycle_spur.toml").mesh().path_of_contact
+    base = 0.5 * 34 * 3.0 * math.cos(math.radians(20.0))
+    plain, relieved = described("mesh_cycle_spur", **modifications), described("mesh_cycle_spur")
+    for letter in "ABCDE":
+        length = getattr(path, letter)
+        expected = [length, math.degrees(length / base), 2.0 * math.hypot(length, base)]
+        for text in (plain, relieved):
+            found = [float(cell) for cell in cells(text, f"  {letter}, ISO 21771")]
+            assert_allclose(found, expected, atol=1e-4)  # four decimals
+        if letter != "C":
+            found = [float(cell) for cell in cells(plain, f"  {letter}, these flanks")]
+            assert_allclose(found, expected, rtol=2e-3)  # ends found to 5e-5 of four pitches
+    for letter in "AD":
+        assert float(cells(relieved, f"  {letter}, these flanks")[0]) > getattr(path, letter) + 0.1
+
+
+def test_path_of_contact_that_lies_on_an_edge_has_nominal_points_alone():
+    text = described("misaligned")
+    assert cells(text, "  A, ISO 21771")
+    assert "these flanks" not in text
+    assert "path of contact of the pinion" not in described("straight_bevel")

@@ -91,7 +91,7 @@ def test_contacts_name_the_tip_that_comes_first_into_mesh():
 
 def test_every_column_of_the_contacts_is_in_the_reference_or_tells_its_unit():
     described = describe_results()
-    known = {"position", "tooth_pair", "load_share", "peak_at_edge", "edges"}
+    known = {"position", "tooth_pair", "load_share", "edges"}
     units = ("_mm", "_deg", "_Nm")
     for name in contact_rows(shared())[0]:
         assert f"`{name}`" in described or name in known or name.endswith(units)
@@ -145,7 +145,7 @@ def test_table_agrees_with_the_result():
 
 def test_every_column_with_a_unit_tells_it():
     pure = {"position", "iterations", "residual", "load_share_pair_0", "cells_across", "cells_along"}
-    pure |= {"on_edge", "on_relief_start", "peak_at_edge", "line_load_ratio", "loaded_pairs"}
+    pure |= {"on_edge", "on_relief_start", "edge_is_rounded", "line_load_ratio", "loaded_pairs"}
     units = ("_mm", "_MPa", "_N", "_N_per_mm", "_Nm", "_deg", "_arcsec", "_um", "_N_per_mm_um")
     assert all(name.endswith(units) or name in pure for name in table(result())[0])
 
@@ -174,9 +174,12 @@ def test_line_contact_is_no_longer_than_the_face():
     assert float(row["contact_length_mm"]) <= 14.0
 
 
-def test_peaks_at_a_edge_are_marked_in_the_table():
-    assert {row["peak_at_edge"] for row in table(result("misaligned", positions=2))} == {"1"}
-    assert {row["peak_at_edge"] for row in table(result(positions=1))} == {"0"}
+def test_table_has_the_pressure_at_an_edge_where_one_is_reached():
+    cycle = result("misaligned", positions=2)
+    for row, pressure in zip(table(cycle), cycle.edge_pressure[0, :, 0], strict=True):
+        assert_allclose(float(row["edge_pressure_MPa"]), pressure, rtol=1e-8)
+        assert row["edge_is_rounded"] == "0"
+    assert {row["edge_pressure_MPa"] for row in table(result(positions=1))} == {""}
 
 
 def test_table_and_summary_agree():
@@ -286,7 +289,7 @@ def test_every_column_is_in_the_reference():
     described = describe_results()
     own = [name for name in table(result())[0] if "contact_point" not in name and "load_share" not in name]
     derived = {"position", "pinion_angle_deg", "unloaded_transmission_error_arcsec", "unloaded_transmission_error_um"}
-    derived |= {"transmission_error_um", "peak_at_edge"}
+    derived |= {"transmission_error_um"}
     assert [name for name in own if f"`{name}`" not in described and name not in derived] == []
 
 

@@ -112,7 +112,16 @@ def test_smallest_bore_is_a_part_of_the_root_circle_at_the_toe(name):
     assert_allclose(gear.smallest_bore, 0.55 * 2.0 * root, rtol=1e-12)
 
 
-@pytest.mark.parametrize("diameter", [-1.0, 0.0, 0.1, 3.2])
+@pytest.mark.parametrize("name", ["spur", "straight bevel"])
+def test_journals_of_a_solid_gear_are_as_thick_as_the_default_bore(name):
+    gear = gear_of(MESHES[name])
+    solid = replace(gear, bore_diameter=0.0)
+    assert solid.is_solid
+    assert not gear.is_solid
+    assert solid.smallest_bore == gear.smallest_bore
+
+
+@pytest.mark.parametrize("diameter", [-1.0, 0.1, 3.2])
 def test_bore_too_thin_to_hold_the_gear_is_refused(diameter):
     with pytest.raises(InputError, match=r"bore_diameter: .* mm is not between 0.05 and 0.98 times .* so thin a bore"):
         _ = replace(gear_of(MESHES["spur"]), bore_diameter=diameter).smallest_bore

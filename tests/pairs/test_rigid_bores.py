@@ -22,6 +22,16 @@ def test_bores_are_those_given_or_a_part_of_the_root():
     assert bending(pinion=30.0, wheel=40.0).rigid_bores == (30.0, 40.0)
 
 
+def test_a_solid_gear_is_held_by_journals_of_the_default_diameter():
+    assert_allclose(bending(pinion=0.0, wheel=40.0).rigid_bores, [0.55 * ROOTS[0], 40.0], rtol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["mesh_cycle_finite_elements", "mesh_cycle_bevel", "face_milled_19x62_matched"])
+def test_a_bore_is_not_negative(name):
+    with pytest.raises(InputError, match=r"pinion\.bore_diameter_mm: found -1\.0; allowed a number from 0 to 100000"):
+        bending(name, pinion=-1.0)
+
+
 def test_no_bore_is_held_where_the_flanks_alone_yield():
     scene = bending(pinion=67.4).with_changes({"analysis.compliance": "contact"})
     assert scene.rigid_bores is None

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from numpy.testing import assert_allclose
+from matplotlib.patches import Rectangle
+from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import InputError
 from loaded_tca.plots import (
@@ -17,6 +18,7 @@ from loaded_tca.plots import (
     plot_transmission_error,
     save_figure,
 )
+from loaded_tca.plots.style import over_a_stretch
 from loaded_tca.results.key_figures import ARCSEC
 from loaded_tca.results.stress_below import stress_below
 from tests.samples.results import PER_PAIR, PER_POSITION, changed, changed_scene, result, with_a_gap
@@ -160,15 +162,14 @@ def test_edge_contacts_are_marked_and_no_hertz_is_drawn():
     crosses = [*drawn(axes, "x"), *drawn(axes, "^")]
     assert sum(len(line.get_xdata()) for line in crosses) == 2
     assert {line.get_linestyle() for line in crosses} == {"None"}
-    assert any("at an edge or relief start (mesh-dependent)" in label for label in labels)
-    assert np.isnan(axes.get_lines()[0].get_ydata()).all()
-    assert_allclose(axes.get_lines()[1].get_ydata(), result("misaligned", positions=2).central_pressure[0, :, 0])
+    assert any("at an edge (mesh-dependent if sharp)" in label for label in labels)
+    assert_allclose(axes.get_lines()[0].get_ydata(), result("misaligned", positions=2).peak_pressure[0, :, 0])
 
 
 def test_high_peaks_at_a_edge_do_not_rule_the_axis():
-    cycle = result("fzg_c14", positions=3)
+    cycle = result("mesh_cycle_helical", positions=5, torques=(260.0,))
     (axes,) = plot_peak_pressure(cycle).axes
-    assert axes.get_ylim()[1] < cycle.peak_pressure.max()
+    assert axes.get_ylim()[1] < np.nanmax(cycle.edge_pressure)
     assert "above" in axes.get_lines()[-1].get_label()
     (arrows,) = drawn(axes, "^")
     assert (arrows.get_ydata() < axes.get_ylim()[1]).all()
@@ -287,9 +288,23 @@ def test_lines_of_a_title_are_no_wider_than_the_picture_and_none_is_a_mere_end()
     assert min(len(line) for line in title.get_text().splitlines()) > 10
 
 
-def test_pressure_beside_an_edge_says_where_it_is():
-    labels = plot_peak_pressure(result("misaligned", positions=2)).axes[0].get_legend_handles_labels()[1]
-    assert "at the contact point, where the peak is mesh-dependent" in labels
+def test_hertz_is_drawn_where_it_holds_over_a_stretch_alone():
+    assert_array_equal(over_a_stretch(np.array([1.0, np.nan, 2.0, 3.0])), [np.nan] * 4)
+    assert_array_equal(over_a_stretch(np.array([1.0, np.nan, 2.0, 3.0, 4.0])), [np.nan, np.nan, 2.0, 3.0, 4.0])
+    assert_array_equal(over_a_stretch(np.array([1.0, 2.0])), [1.0, 2.0])  # there are no more positions
+    assert_array_equal(over_a_stretch(np.array([1.0, np.nan])), [np.nan, np.nan])
+    cycle = result()
+    single = np.where(np.arange(5) == 2, cycle.hertz_pressure[0, :, 0], np.nan)[None, :, None]
+    labels = plot_peak_pressure(changed(cycle, hertz_pressure=single)).axes[0].get_legend_handles_labels()[1]
+    assert "after Hertz" not in labels
+
+
+def test_area_of_a_line_after_hertz_is_a_strip():
+    cycle = result("fzg_c14", positions=1)
+    (strip,) = plot_pressure_map(cycle).axes[0].patches
+    assert isinstance(strip, Rectangle)
+    assert_allclose(strip.get_width(), 14.0, rtol=1e-6)
+    assert_allclose(strip.get_height(), 2.0 * cycle.hertz_semi_minor.item())
 
 
 def test_pictures_touch_no_global_state():
@@ -303,14 +318,16 @@ def test_picture_that_cannot_be_written_is_told(tmp_path):
         save_figure(Figure(), tmp_path / "absent" / "a.png")
 
 
-def test_colours_of_a_edge_map_do_not_follow_its_spike():
-    cycle = result("fzg_c14", positions=3)
+@pytest.mark.parametrize(("name", "torques"), [("fzg_c14", None), ("mesh_cycle_helical", (260.0,))])
+def test_colours_of_a_edge_map_do_not_follow_its_spike(name, torques):
+    """A line that ends at the faces, and a tip corner, whose cells are nearly all above its peak pressure."""
+    cycle = result(name, positions=3, torques=torques)
     at = cycle.edge_contact(0)
     bar = plot_pressure_map(cycle, at[0], 0, at[1]).axes[-1]
     one = cycle.maps[0][at[0]][at[1]].pressure
-    assert np.nanmax(cycle.mesh_independent_pressure) <= bar.get_ylim()[1] < 0.9 * cycle.peak_pressure.max()
+    assert cycle.peak_pressure[0][at] <= bar.get_ylim()[1] < one.max()
     assert (one > bar.get_ylim()[1]).sum() <= 0.05 * (one > 0.0).sum() + 1
-    assert f"up to {cycle.peak_pressure.max():.0f}" in bar.get_ylabel()
+    assert f"up to {one.max():.0f}" in bar.get_ylabel()
 
 
 @pytest.mark.parametrize(("part", "told"), [(0.001, False), (0.1, True)])

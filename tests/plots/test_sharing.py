@@ -1,12 +1,10 @@
 """Pictures of the shared load: what is drawn is what the result holds."""
 
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection
-from matplotlib.colors import same_color
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError
@@ -20,7 +18,8 @@ from loaded_tca.plots import (
     plot_pressure_envelope,
     sharing,
 )
-from tests.samples.results import changed, changed_scene, result
+from loaded_tca.unloaded import contact_span
+from tests.samples.results import changed_scene, result
 
 
 def shared(name="mesh_cycle_helical", torques=(260.0,)):
@@ -77,16 +76,15 @@ def test_pair_at_the_pitch_point_has_no_sign():
 
 def test_colours_of_the_flanks_do_not_follow_the_spikes_of_edges():
     cycle = shared()
-    assert cycle.peak_at_edge.any()
     bar = plot_contact_path(cycle).axes[-1]
-    assert_allclose(bar.get_ylim()[1], np.nanmax(cycle.mesh_independent_pressure), rtol=1e-12)
+    assert_allclose(bar.get_ylim()[1], np.nanmax(cycle.peak_pressure), rtol=1e-12)
 
 
 def test_side_on_which_nothing_touches_has_no_mark(monkeypatch):
     def nothing_touches(*_, **__):
         raise GeometryError("no common flank")
 
-    monkeypatch.setattr(sharing, "trace_contact", nothing_touches)
+    monkeypatch.setattr(contact_span, "trace_contact", nothing_touches)
     assert set(marks(plot_path_pressure(shared(torques=(40.0,))))) == {"C"}
 
 
@@ -110,20 +108,34 @@ def test_load_shares_of_many_torques_stay_few():
     assert len(titles) == 4
 
 
-def test_contacts_at_an_edge_have_a_panel_of_their_own_without_a_pressure():
+def test_path_has_the_peak_pressure_of_every_contact():
+    """In the order of the angles from the pitch point of each pair."""
     cycle = shared(torques=(40.0, 260.0))
-    axes, below = plot_path_pressure(cycle).axes
-    assert axes.get_legend_handles_labels()[1][-1] == sharing.EDGE
-    assert not [line for line in axes.lines if line.get_linestyle() == "None" and len(line.get_xdata())]
-    assert not below.get_yticks().size
-    angle = np.degrees(cycle.pinion_angle[:, None] - cycle.gear_pair.pitch * cycle.pair)
-    no_number = np.isfinite(cycle.peak_pressure) & np.isnan(cycle.mesh_independent_pressure)
-    assert no_number.any()
-    colours = [line.get_color() for line in axes.lines if line.get_label().startswith("pinion torque")]
-    for row, flags, colour in zip(below.collections, no_number, colours, strict=True):
-        assert_allclose(sorted(row.get_positions()), sorted(angle[flags]))
-        assert same_color(row.get_color(), colour)
-    assert below.get_xlim() == axes.get_xlim()
+    lines = [line for line in plot_path_pressure(cycle).axes[0].lines if line.get_label().startswith("pinion torque")]
+    for line, peaks in zip(lines, cycle.peak_pressure, strict=True):
+        assert (np.diff(line.get_xdata()) >= 0.0).all()
+        assert_allclose(sorted(line.get_ydata()), sorted(peaks[np.isfinite(peaks)]))
+
+
+def test_table_of_the_path_has_lengths_roll_angles_and_diameters_beside_those_of_iso():
+    """Without modifications both are those of the involutes: E is the tip of the pinion, A that of the wheel."""
+    changes = {f"{gear}.modifications.tip_relief_um": 0.0 for gear in ("pinion", "wheel")}
+    cycle = changed_scene(shared("mesh_cycle_spur"), changes)
+    (table,) = plot_path_pressure(cycle).axes[1].tables
+    cells = {at: cell.get_text().get_text() for at, cell in table.get_celld().items()}
+    assert [cells[0, k] for k in range(5)] == list("ABCDE")
+    assert [cells[row, -1] for row in (1, 2, 3)] == ["from T1 [mm]", "roll angle [deg]", "diameter [mm]"]
+    base = 102.0 * np.cos(np.radians(20.0))  # 34 teeth of module 3
+    distance, pitch = 0.5 * 91 * 3.0, np.pi * base / 34
+    last = 0.5 * np.sqrt(108.0**2 - base**2)
+    first = distance * np.sin(np.radians(20.0)) - 0.5 * np.sqrt(177.0**2 - (base * 57 / 34) ** 2)
+    lengths = np.array([first, last - pitch, 51.0 * np.sin(np.radians(20.0)), first + pitch, last])
+    rows = lengths, np.degrees(2.0 * lengths / base), 2.0 * np.hypot(lengths, 0.5 * base)
+    for row, expected in enumerate(rows, start=1):
+        for k, value in enumerate(expected):
+            own, nominal = cells[row, k].split()
+            assert nominal == f"({value:.3f})"
+            assert_allclose(float(own), value, atol=5e-3)  # to 5e-5 of four pitches, and three digits
 
 
 @pytest.mark.parametrize(
@@ -136,19 +148,8 @@ def test_legends_are_no_wider_than_the_picture(plot):
     assert figure.bbox.x0 <= legend.x0 < legend.x1 <= figure.bbox.x1
 
 
-def test_path_without_contacts_at_edges_has_one_panel():
-    assert len(plot_path_pressure(shared("mesh_cycle_spur", torques=(40.0,))).axes) == 1
-
-
-def test_path_whose_every_contact_lies_at_an_edge_says_so():
-    cycle = shared()
-    held = changed(cycle, on_relief_start=np.ones(cycle.load_share.shape, dtype=bool))
-    paths = tuple(replace(path, on_relief_start=np.ones(len(path), dtype=bool)) for path in cycle.paths)
-    axes, _ = plot_path_pressure(replace(held, paths=paths)).axes
-    assert "every contact lies at an edge or relief start: its pressure is mesh-dependent" in [
-        text.get_text() for text in axes.texts
-    ]
-    assert not axes.get_yticks().size
+def test_path_of_bevel_gears_has_no_table():
+    assert len(plot_path_pressure(result("mesh_cycle_bevel", positions=5, torques=(0.2,))).axes) == 1
 
 
 def test_orders_of_the_tooth_mesh_are_whole_numbers():
@@ -207,30 +208,20 @@ def test_envelope_reaches_the_highest_pressure_of_every_map_and_none_above(name)
         assert around.max() >= cycle.maps[0][n][k].pressure.max()
 
 
-def test_scale_of_the_envelope_ends_at_the_highest_mesh_independent_pressure():
+def test_scale_of_the_envelope_ends_at_the_highest_peak_pressure():
     cycle = shared()
-    assert cycle.peak_pressure[cycle.peak_at_edge].max() > 1.2 * np.nanmax(cycle.mesh_independent_pressure)
+    assert np.nanmax(cycle.edge_pressure) > 1.2 * np.nanmax(cycle.peak_pressure)
     _, _, bar, limits = envelope(cycle)
-    assert_allclose(limits, (0.0, np.nanmax(cycle.mesh_independent_pressure)), rtol=1e-12)
+    assert_allclose(limits, (0.0, np.nanmax(cycle.peak_pressure)), rtol=1e-12)
     assert bar._colorbar.extend == "max"
     assert envelope(shared("mesh_cycle_spur", torques=(40.0,)))[2]._colorbar.extend == "neither"
-
-
-def test_scale_without_any_mesh_independent_pressure_leaves_the_spikes_out():
-    cycle = shared()
-    paths = tuple(replace(path, on_edge=np.ones(len(path), dtype=bool)) for path in cycle.paths)
-    spikes = changed(replace(cycle, paths=paths), on_relief_start=np.ones(cycle.load_share.shape, dtype=bool))
-    assert np.isnan(spikes.mesh_independent_pressure).all()
-    _, top = envelope(spikes)[3]
-    cells = np.concatenate([one.pressure.ravel() for row in cycle.maps[0] for one in row if one is not None])
-    assert 0.04 < (cells > top).sum() / (cells > 0.0).sum() < 0.06
 
 
 def test_letters_say_what_they_are_and_do_not_cover_each_other():
     figure = plot_path_pressure(shared())
     figure.draw_without_rendering()
-    axes, below = figure.axes
-    assert sharing.WHAT_LETTERS_ARE in below.get_xlabel()
+    axes, _ = figure.axes
+    assert sharing.WHAT_LETTERS_ARE in axes.get_xlabel()
     boxes = sorted((text.get_window_extent() for text in axes.texts), key=lambda box: box.x0)
     assert len(boxes) == 5
     assert all(one.x1 <= other.x0 for one, other in pairwise(boxes))

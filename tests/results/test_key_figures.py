@@ -50,9 +50,25 @@ def test_line_load_and_its_ratio_are_of_the_most_loaded_pair():
     assert figures["line_load_max_N_per_mm"] >= cycle.line_load[at]
 
 
-def test_line_load_at_an_end_of_the_face_is_marked():
-    (line,), (point,) = result("fzg_c14", positions=3).key_figures(), result().key_figures()
-    assert (line["largest_force_is_at_edge"], point["largest_force_is_at_edge"]) == (True, False)
-    told = "line load and line load ratio are mesh-dependent without the compliance of free edges"
-    assert told in result("fzg_c14", positions=3).summary()
-    assert told not in result().summary()
+def test_edge_pressure_stands_with_its_force_and_place():
+    cycle = result("misaligned", positions=5)
+    (figures,) = cycle.key_figures()
+    at = np.unravel_index(int(np.nanargmax(cycle.edge_pressure)), cycle.edge_pressure.shape)
+    assert figures["edge_pressure_MPa"] == cycle.edge_pressure[at] > figures["peak_pressure_MPa"]
+    assert figures["normal_force_at_edge_N"] == cycle.normal_force[at]
+    assert_allclose(figures["pinion_angle_at_edge_deg"], np.degrees(cycle.pinion_angle[at[1]]))
+    assert 0.5 * cycle.face_width - 1.0 < figures["pinion_axial_at_edge_mm"] < 0.5 * cycle.face_width  # mm
+    assert figures["edge_is_rounded"] is False
+    (smooth,) = result(positions=1).key_figures()
+    assert np.isnan([smooth["edge_pressure_MPa"], smooth["normal_force_at_edge_N"]]).all()
+
+
+def test_load_factors_of_the_figures_are_those_of_the_result():
+    cycle = result("mesh_cycle_helical", positions=5, torques=(130.0, 260.0))
+    for figures, face, transverse in zip(
+        cycle.key_figures(), cycle.face_load_factor, cycle.transverse_load_factor, strict=True
+    ):
+        assert (figures["face_load_factor"], figures["transverse_load_factor"]) == (face, transverse)
+    row = next(row for row in cycle.summary().splitlines() if row.startswith("load factors K_Hbeta | K_Halpha"))
+    assert row.split()[-3:] == [f"{face:.4g}", "|", f"{transverse:.4g}"]
+    assert "K_Hbeta" not in result(positions=1).summary()

@@ -14,6 +14,7 @@ from loaded_tca.output.report import positions_csv, summary_json
 from loaded_tca.output.teeth_in_space import teeth_in_space
 from loaded_tca.pairs import mating_teeth
 from loaded_tca.plots import PICTURES, plot_all
+from loaded_tca.reference.weber_banaschek import ring_torsion
 from loaded_tca.results.files import read_dataset, write_dataset
 from loaded_tca.results.key_figures import harmonic_amplitudes
 from tests.samples.results import PER_PAIR, SCENES, assert_same
@@ -121,7 +122,7 @@ def test_numbers_of_the_cycle_are_those_of_the_highest_pair():
     assert_array_equal(result.at_position("peak_pressure"), np.nanmax(result.peak_pressure, axis=-1))
     for torque, position in np.ndindex(result.transmission_error.shape):
         column = np.nanargmax(result.peak_pressure[torque, position])
-        for name in ("peak_radius", "peak_axial", "iterations", "on_edge", "peak_at_edge"):
+        for name in ("peak_radius", "peak_axial", "iterations", "on_edge"):
             assert result.at_position(name)[torque, position] == getattr(result, name)[torque, position, column]
 
 
@@ -135,19 +136,20 @@ def test_forces_of_the_cycle_are_those_of_the_pair_that_carries_most():
             assert result.at_position(name)[torque, position] == getattr(result, name)[torque, position, column]
 
 
-def test_mesh_independent_pressure_of_a_position_is_the_highest_of_its_pairs():
-    result = helical()
-    assert_array_equal(
-        result.at_position("mesh_independent_pressure"), np.fmax.reduce(result.mesh_independent_pressure, axis=-1)
-    )
+def test_edge_pressure_of_a_position_is_the_highest_of_its_pairs():
+    result = cycle("helical", 9, (260.0,))
+    assert_array_equal(result.at_position("edge_pressure"), np.fmax.reduce(result.edge_pressure, axis=-1))
+    assert np.isfinite(result.at_position("edge_pressure")).any()
 
 
-def test_peak_at_the_end_of_a_grid_is_one_at_a_edge():
+def test_edge_pressure_is_that_of_the_cells_beside_no_material():
     one = next(one for row in cycle().maps[0] for one in row if one is not None)
-    pressure = np.zeros_like(one.pressure)
-    assert not replace(one, gap=np.zeros_like(one.gap)).peak_is_at_end
-    pressure[5, 0] = 1.0
-    assert replace(one, pressure=pressure, gap=np.zeros_like(one.gap)).peak_is_at_end
+    pressure, gap = np.zeros_like(one.pressure), np.zeros_like(one.gap)
+    gap[:, 15:] = np.inf
+    pressure[5, 14], pressure[6, 14], pressure[5, 10] = 2.0, 3.0, 9.0
+    assert replace(one, pressure=pressure, gap=gap).edge_cell == (6, 14)
+    pressure[7, 0] = 4.0  # at the end of the grid
+    assert replace(one, pressure=pressure, gap=gap).edge_cell == (7, 0)
 
 
 def test_pair_that_is_apart_has_no_map_and_no_force():
@@ -222,13 +224,13 @@ def test_figures_tell_the_pairs():
     assert figures["unloaded_transmission_error_span_um"] > 0.0
 
 
-def test_peak_of_the_figures_is_the_highest_mesh_independent_pressure_of_any_pair():
+def test_peak_of_the_figures_is_the_highest_of_any_pair():
     result = helical()
     (figures,) = result.key_figures()
-    assert figures["peak_pressure_MPa"] == np.nanmax(result.mesh_independent_pressure)
+    assert figures["peak_pressure_MPa"] == np.nanmax(result.peak_pressure)
     position, column = result.peak_contact(0)
     assert figures["normal_force_at_peak_N"] == result.normal_force[0, position, column]
-    assert figures["peak_pressure_MPa"] == result.mesh_independent_pressure[0, position, column]
+    assert figures["peak_pressure_MPa"] == result.peak_pressure[0, position, column]
 
 
 def test_summary_names_the_pairs_and_whether_teeth_bend():
@@ -290,9 +292,20 @@ def bending(load_sharing):
     return analyse(scene.with_changes({**narrow, **coarse, **how}))
 
 
+@cache
+def bending_face_milled(load_sharing, compliance="contact+tooth"):
+    scene = read_scene(SCENES / "face_milled_19x62_matched.toml")
+    coarse = {"analysis.positions": 2, "analysis.cells": (20, 20), "analysis.accuracy": None}
+    how = {"analysis.load_sharing": load_sharing, "analysis.compliance": compliance, "analysis.free_edges": False}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # contacts at tips are wanted here
+        return analyse(scene.with_changes({**coarse, **how}))
+
+
 @pytest.mark.parametrize("load_sharing", [False, True])
-def test_transmission_error_of_teeth_that_bend_is_their_deflection(load_sharing):
-    result = bending(load_sharing)
+@pytest.mark.parametrize("make", [bending, bending_face_milled])
+def test_transmission_error_of_teeth_that_bend_is_their_deflection(make, load_sharing):
+    result = make(load_sharing)
     added = result.path.transmission_error - result.transmission_error[0]
     for column, path in enumerate(result.paths):
         loaded = result.normal_force[0, :, column] > 0.0
@@ -310,6 +323,37 @@ def test_bending_teeth_are_half_as_stiff_as_their_contacts():
     assert (bending(True).mesh_stiffness > 1.2 * alone).all()  # two pairs at both ends of the pitch
 
 
+def test_face_milled_teeth_that_bend_are_softer_and_share_more_evenly():
+    """Both ends of a pitch are one state of the mesh, with and without bending."""
+    bends, stiff = (bending_face_milled(True, compliance) for compliance in ("contact+tooth", "contact"))
+    assert (bends.mesh_stiffness < 0.7 * stiff.mesh_stiffness).all()
+    assert bends.load_share[0, 0].max() < stiff.load_share[0, 0].max()
+    for result in (bends, stiff):
+        assert_allclose(result.transmission_error[0, 0], result.transmission_error[0, 1], rtol=PERIOD)
+
+
+def test_mesh_stiffness_without_body_torsion_is_told_beside_the_whole_one():
+    """The twist of two rings, 0.55 of the root circles, in series with the rest; bodies of solid gears twist, too."""
+    result = bending(True)
+    (figures,) = result.key_figures()
+    gears = result.scene.mesh().pinion, result.scene.mesh().wheel
+    rings = [gear.base_radius**2 * ring_torsion(0.55 * gear.root_radius, gear.root_radius) for gear in gears]
+    whole = figures["mesh_stiffness_mean_N_per_mm_um"]
+    without = figures["mesh_stiffness_without_body_torsion_mean_N_per_mm_um"]
+    assert_allclose(1.0 / whole - 1.0 / without, 1e3 * sum(rings), rtol=1e-9)
+    assert without > 1.02 * whole
+    assert "without body torsion [N/(mm um)]" in result.summary()
+    solid = replace(result, scene=result.scene.with_changes({"pinion.bore_diameter_mm": 0.0}))
+    assert solid.without_body_torsion(whole) > without
+
+
+def test_flanks_that_deform_alone_have_no_body_torsion():
+    bends = bending(True)
+    result = replace(bends, scene=bends.scene.with_changes({"analysis.compliance": "contact"}))
+    assert np.isnan(result.key_figures()[0]["mesh_stiffness_without_body_torsion_mean_N_per_mm_um"])
+    assert "without body torsion" not in result.summary()
+
+
 def test_progress_is_told_after_every_torque_and_position():
     told = []
     scene = read_scene(SCENES / "mesh_cycle_spur.toml")
@@ -320,18 +364,14 @@ def test_progress_is_told_after_every_torque_and_position():
     assert told == [(1, 4), (2, 4), (3, 4), (4, 4)]
 
 
-def test_pressure_beside_a_tip_is_none_of_the_flank():
-    """The pair that leaves the mesh: its contact point comes to the tip, and the spike there is its peak."""
+def test_pressure_of_a_tip_corner_is_none_of_the_flank():
+    """The spike at the tip of the pair that leaves the mesh is not its peak, nor that of the cycle."""
     result = cycle_at_the_tip()
-    column = result.pair.tolist().index(-1)
-    near = result.peak_at_edge[0, :, column] & ~result.paths[column].on_edge
-    central = np.where(near, result.central_pressure[0, :, column], 0.0)
-    spiked = int(central.argmax())
-    smooth = np.fmax.reduce(np.where(result.peak_at_edge, np.nan, result.peak_pressure), axis=None)
-    assert result.peak_pressure[0, spiked, column] > smooth
-    assert np.isnan(result.mesh_independent_pressure[0, spiked, column])
     (figures,) = result.key_figures()
-    assert figures["peak_pressure_MPa"] == smooth
+    position, column = result.edge_contact(0)
+    assert result.load_share[0, position, column] < 0.25
+    assert result.edge_pressure[0, position, column] > 2.0 * figures["peak_pressure_MPa"]
+    assert result.peak_pressure[0, position, column] < figures["peak_pressure_MPa"]
 
 
 @cache

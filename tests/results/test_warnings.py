@@ -12,6 +12,10 @@ from numpy.testing import assert_allclose
 from loaded_tca import AccuracyWarning, InputError, analyse, read_scene
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
+NET_FORCE = 1.0325
+"""Displacement that a bore of 6 instead of 37.125 mm adds, over the twist of the ring between: the net force of the
+teeth moves the body, too. Of a plane disc of the root diameter under such a force, by 128 quadratic elements around it
+and as long as wide: 1.0318 in plane strain, 1.0333 in plane stress."""
 COARSE = {"analysis.accuracy": None, "analysis.cells": (20, 20), "analysis.positions": 3}
 
 
@@ -67,12 +71,15 @@ def test_twist_about_a_thin_bore_is_told():
     assert sum("twist of the gear bodies about their bores, 6 and" in sentence for sentence in sentences) == 1
     usual, sentences = told(scene)
     assert not any("twist" in sentence for sentence in sentences)
-    # in closed form: the twist of the ring that is added, at the base circle, over the face of 20 mm
+    # In closed form: the twist of the ring that is added, at the base circle, over the face of 20 mm. Whatever is
+    # outside, its stress is T/(2 pi r^2), so that no bending of the body takes anything off it.
     base, width, modulus = 0.5 * 75.0 * math.cos(math.radians(20.0)), 20.0, 206000.0 / 2.6
     added = base**2 / (4.0 * math.pi * modulus * width) * (1.0 / 3.0**2 - 1.0 / (0.275 * 67.5) ** 2)
     force = 20e3 / base
     turned = (usual.transmission_error - thin.transmission_error) * usual.wheel_base_radius
-    assert_allclose(turned, force * added, rtol=0.1)  # four layers, and one force bends the body, too: 6 %
+    assert (turned > force * added).all()
+    # half the way from plane strain to plane stress is 0.07 %, four layers of rim are 0.1 %
+    assert_allclose(turned, NET_FORCE * force * added, rtol=3e-3)
 
 
 def test_pair_that_fills_its_grid_at_the_cap_gets_a_larger_one():

@@ -90,3 +90,26 @@ def test_steps_end_where_the_next_one_is_rounding():
     moved._rounding = 1e-3 * STEP_ROUNDING * sum(pair.base_radii)
     assert (there > 0.0).all()
     assert_allclose(finer, moved.at(x, y)[0], rtol=0, atol=GAP)
+
+
+@pytest.mark.parametrize(
+    "name", ["helical", "misaligned", "measured_flank", "straight_bevel", "spiral_bevel", "face_milled_19x62_matched"]
+)
+def test_curvature_across_is_the_second_difference_of_the_gap(name):
+    pair = read_scene(SCENES / f"{name}.toml").pair()
+    contact = trace_contact(pair, [0.1 * pair.pitch])[0]
+    curvature = relative_curvature(pair, contact)
+    gap, step = NormalGap(pair, contact, curvature.axes), 2e-3 * pair.module
+    x, y = 0.01 * pair.module * np.array([1.0, 0.0, -1.0]), 0.6 * pair.module * np.array([-1.0, 0.0, 1.0])
+    before, here, after = (gap.at(x + side * step, y)[0] for side in (-1.0, 0.0, 1.0))
+    found = gap.curvature_across(x, y)
+    assert_allclose(found, (before - 2.0 * here + after) / step**2, rtol=1e-4)  # of the step's square
+    assert_allclose(found[1], curvature.across, rtol=1e-9)
+
+
+def test_curvature_across_a_relief_start_has_no_spike():
+    """A linear relief adds a slope: on either side the curvature is nearly that without it."""
+    start = FlankModifications(lead_crowning=0.005, tip_relief=0.03, tip_relief_start=102.0, tip_relief_form="linear")
+    plain, relieved = (gap_of(gear_pair(one)) for one in (FlankModifications(lead_crowning=0.005), start))
+    x = np.linspace(-0.05, 0.05, 101)
+    assert_allclose(relieved.curvature_across(x, np.zeros(1)), plain.curvature_across(x, np.zeros(1)), rtol=2e-2)

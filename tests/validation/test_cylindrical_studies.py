@@ -21,6 +21,9 @@ from validation.unloaded.spur_trends import trends_of_spur_pressure, trends_with
 STEP = 0.01  # mm; of the differences in the middle of the face
 SAME_CURVATURE = 1e-4  # of those differences: the fourth derivatives of the circle and of the logarithm
 
+# The dissertation's crownings are as thick as a tooth.
+pytestmark = pytest.mark.filterwarnings("ignore:.*is more than 1 mm:loaded_tca.errors.AccuracyWarning")
+
 
 def judged(trends, words):
     """The one statement with these words."""

@@ -17,6 +17,9 @@ from validation.loaded import limits
 from validation.table import Row, moved, render
 from validation.unloaded import reduced_tca_tables
 
+# The dissertation's crownings are as thick as a tooth.
+pytestmark = pytest.mark.filterwarnings("ignore:.*is more than 1 mm:loaded_tca.errors.AccuracyWarning")
+
 
 @pytest.fixture(scope="module")
 def rows():

@@ -2,5 +2,7 @@
 
 - ``limits``: balance, energy, no load, conjugate teeth, published stiffnesses;
 - ``cut_contacts``: scatter of contacts that end at faces and tips;
+- ``mesh_stiffness``: beside ISO 6336-1, over helix angle, bore, face width, torque and crowning;
+- ``local_term``: how far the local term of a tooth reaches along the face;
 - ``speed``: time against error of whole analyses.
 """

@@ -1,11 +1,10 @@
 """Time against error of the whole line, from a scene to the loaded mesh cycle.
 
 Nine positions of a pitch of each mesh cycle in ``examples/scenes``, one torque, teeth that do not bend. Errors are
-those against the finest cells: the largest of any position relative in the pressure (``mesh_independent_pressure``:
-peaks at edges have no limit) and absolute in the load shares, and relative in the peak to peak of the loaded
-transmission error. Times are medians of whole runs, unloaded contact included. A second table has the time of whole
-cycles: 32 positions, three torques, accuracy 1e-2, with and without teeth that bend, and of making the models of the
-teeth.
+those against the finest cells: the largest of any position relative in the peak pressure and absolute in the load
+shares, and relative in the peak to peak of the loaded transmission error. Times are medians of whole runs, unloaded
+contact included. A second table has the time of whole cycles: 32 positions, three torques, accuracy 1e-2, with and
+without teeth that bend, and of making the models of the teeth.
 
 Run from the root of the repository: ``python -m validation.loaded.speed``; prints the table that
 ``validation.contact.speed_against_error`` writes.
@@ -135,7 +134,7 @@ def _timed(scene: Scene, key: str, value: Any, runs: int) -> tuple[MeshCycle, fl
 
 def _errors(cycle: MeshCycle, finest: MeshCycle) -> tuple[float, float, float]:
     """Of pressure, load share and peak to peak of the transmission error."""
-    own, exact = (one.at_position("mesh_independent_pressure") for one in (cycle, finest))
+    own, exact = (one.at_position("peak_pressure") for one in (cycle, finest))
     shares = [{int(k): one.load_share[..., n] for n, k in enumerate(one.pair)} for one in (cycle, finest)]
     share = max(
         np.abs(shares[0].get(k, 0.0) - shares[1].get(k, 0.0)).max() for k in shares[0].keys() | shares[1].keys()

@@ -1,0 +1,110 @@
+r"""Load factors of a mesh cycle with the meanings of ISO 6336-1: along the face, and among the tooth pairs.
+
+The common face is cut into strips of equal width along the pinion's lengthwise coordinate: its axis, or the cone
+distance. With W the normal force of all tooth pairs in each strip, the mean over the positions, and w the force of one
+pair in a strip at one position over the length of the contact line across the strip,
+
+.. math:: K_{H\beta} = \frac{\max W}{\operatorname{mean} W}, \qquad
+          K_{H\alpha} = \frac{\max w}{K_{H\beta}} \frac{\varepsilon_\alpha b}{\cos\beta_b\, F_n} .
+
+The last position is the first one a pitch later and does not count. A factor of the force in so many strips does not
+depend on the grid; it does on their number.
+
+References
+----------
+ISO 6336-1:2019, Calculation of load capacity of spur and helical gears - Part 1, clauses 7 and 8.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.pressure_map import Maps, PressureMap
+from loaded_tca.unloaded import ContactPath
+
+STRIPS = 30
+ROUNDING = 1e-12
+"""Extent of a cell, over the width of a strip, that is none: the cell lies beyond the face."""
+
+
+def load_factors(pair: GearPair, path: ContactPath, maps: Maps, mean_length: float) -> tuple[Array, Array]:
+    """Face load factor K_Hbeta and transverse load factor K_Halpha under each torque.
+
+    Parameters
+    ----------
+    pair : GearPair
+    path : ContactPath
+        Unloaded contact, of n positions.
+    maps : tuple
+        Pressure maps by m torques, n positions and tooth pairs.
+    mean_length : float [mm]
+        Mean length of all contact lines, eps_alpha b/cos(beta_b); NaN where it is not defined.
+
+    Returns
+    -------
+    face_load_factor, transverse_load_factor : (m,) array
+        NaN with one position and without load; the latter without a mean length too.
+    """
+    borders = np.linspace(*_common_face(pair, path), STRIPS + 1)
+    factors = np.full((2, len(maps)), math.nan)
+    for torque, positions in enumerate(maps):
+        strips, largest = np.zeros(STRIPS), 0.0
+        for one in (one for row in positions[:-1] for one in row if one is not None):
+            force, length = strip_forces(pair, one, borders)
+            strips += force
+            largest = max(largest, float(force.max()) / length)
+        if strips.any():
+            face = strips.max() / strips.mean()
+            factors[:, torque] = face, largest / face * mean_length * (len(positions) - 1) / strips.sum()
+    return factors[0], factors[1]
+
+
+def strip_forces(pair: GearPair, one: PressureMap, borders: Array) -> tuple[Array, float]:
+    """Force of a pressure map in strips of the face, and the length of a contact line that crosses a strip.
+
+    Parameters
+    ----------
+    pair : GearPair
+    one : PressureMap
+    borders : (n + 1,) array [mm]
+        Of the strips, ascending, along the pinion's lengthwise coordinate.
+
+    Returns
+    -------
+    force : (n,) array [N]
+        That of a cell is shared out by the overlap of its extent along the contact; all of it is within the strips.
+    length : float [mm]
+    """
+    dx, dy = one.spacing
+    across, along = np.nonzero(one.pressure)
+    middles = one.origin + one.x[across, None] * one.axes[0] + one.y[along, None] * one.axes[1]
+    ends = [_lengthwise(pair, middles + side * dy * one.axes[1])[0] for side in (-0.5, 0.5)]
+    slope = np.abs(ends[1] - ends[0]).mean() / dy if across.size else 1.0
+    width = float(borders[1] - borders[0])
+    low, high = np.sort(np.clip(ends, borders[0], borders[-1]), axis=0)
+    shares = np.clip((borders[1:-1, None] - low) / np.maximum(high - low, ROUNDING * width), 0.0, 1.0)
+    force = one.pressure[across, along] * dx * dy
+    return np.diff(shares @ force, prepend=0.0, append=force.sum()), width / slope if slope else math.inf
+
+
+def _common_face(pair: GearPair, path: ContactPath) -> tuple[float, float]:
+    """Ends of the part of the face that both gears cover, along the pinion's lengthwise coordinate [mm]."""
+    own, other = _lengthwise(pair, path.point[path.in_contact])
+    shift = float(np.mean(own - other))
+    spans = []
+    for flank in (pair.pinion.flank, pair.wheel.flank):
+        place = flank.lengthwise_coordinate(*flank.grid(2, 2)).value
+        spans.append((float(place.min()), float(place.max())))
+    (first, last), (low, high) = spans
+    return max(first, low + shift), min(last, high + shift)
+
+
+def _lengthwise(pair: GearPair, points: Array) -> tuple[Array, Array]:
+    """Lengthwise coordinates of points (..., 3) on pinion and wheel [mm]."""
+    radius, _, axial = pair.to_wheel(points)
+    own = pair.pinion.flank.lengthwise_coordinate(np.hypot(points[..., 0], points[..., 1]), points[..., 2]).value
+    return own, pair.wheel.flank.lengthwise_coordinate(radius, axial).value

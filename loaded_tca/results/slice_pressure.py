@@ -1,0 +1,88 @@
+r"""Pressure of the slices of a contact: the mesh-independent peak where a contact ends at a sharp edge.
+
+At a sharp edge and at a relief start the half-space has an infinite pressure, and the largest cell grows with the
+grid. The force is finite: averaged over a length that does not depend on the grid it is a line load q, which a Hertz
+line contact of the curvature k of that slice carries with the pressure
+
+.. math:: p = \sqrt{q E^* k / \pi} .
+
+On smooth contacts that is less than the peak: 0.886 of it on a circle, 0.984 on an ellipse of an aspect of 5, 0.994 of
+10.
+
+References
+----------
+Johnson 1985, Contact Mechanics, eqs. 4.43 to 4.45.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.loaded.tooth_contact import LoadedContact
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.separation.normal_gap import NormalGap
+
+AVERAGED_OVER = 0.25
+"""Length along the contact over which a line load is averaged, over the normal module."""
+
+
+def averaged_line_load(force: Array, borders: Array, length: float) -> tuple[Array, Array]:
+    """Line load averaged over a length along the contact, where it may be largest.
+
+    Parameters
+    ----------
+    force : (ny,) array [N]
+        Of the slices.
+    borders : (ny + 1,) array [mm]
+        Of the slices along the contact, ascending.
+    length : float [mm]
+        Over which the line load is averaged: beyond the slices there is none.
+
+    Returns
+    -------
+    places, line_load : (2 ny + 2,) array [mm], [N/mm]
+        Middles of the stretches that begin or end at a border, and their line loads; between them it changes linearly.
+
+    Examples
+    --------
+    >>> places, line_load = averaged_line_load(np.array([1.0, 3.0]), np.array([0.0, 1.0, 2.0]), 1.0)
+    >>> places, line_load
+    (array([-0.5,  0.5,  0.5,  1.5,  1.5,  2.5]), array([0., 1., 1., 3., 3., 0.]))
+    """
+    places = np.sort(np.concatenate([borders - 0.5 * length, borders + 0.5 * length]))
+    carried = np.concatenate([[0.0], np.cumsum(force)])
+    below, above = (np.interp(places + half, borders, carried) for half in (-0.5 * length, 0.5 * length))
+    return places, (above - below) / length
+
+
+def largest_slice_pressure(pair: GearPair, loaded: LoadedContact) -> tuple[float, tuple[float, float]]:
+    """Largest pressure of the slices of a contact under load, and its place.
+
+    Parameters
+    ----------
+    pair : GearPair
+    loaded : LoadedContact
+        Under a load > 0.
+
+    Returns
+    -------
+    pressure : float [MPa]
+        Not above the cap on the pressure.
+    place : (float, float) [mm]
+        Across and along the contact, from the contact point.
+    """
+    separation, pressure = loaded.separation, loaded.solution.pressure
+    sums, dy = pressure.sum(axis=0), separation.spacing[1]
+    carrying = np.flatnonzero(sums)
+    borders = np.append(separation.y, separation.y[-1] + dy) - 0.5 * dy
+    y, line_load = averaged_line_load(loaded.slice_force, borders, AVERAGED_OVER * pair.module)
+    y = np.clip(y, borders[carrying[0]], borders[carrying[-1] + 1])
+    x = np.interp(y, separation.y[carrying], separation.x @ pressure[:, carrying] / sums[carrying])
+    curvature = NormalGap(pair, loaded.contact, separation.axes).curvature_across(x, y)
+    pressures = np.sqrt(line_load * pair.contact_modulus * np.maximum(curvature, 0.0) / math.pi)
+    top = int(pressures.argmax())
+    cap = math.inf if pair.max_pressure is None else pair.max_pressure
+    return min(float(pressures[top]), cap), (float(x[top]), float(y[top]))

@@ -1,0 +1,157 @@
+"""Load factors: forces in strips of the face, against even loads and against integrals known beforehand."""
+
+import warnings
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca import AccuracyWarning, analyse, read_scene
+from loaded_tca.results.load_factors import load_factors, strip_forces
+from tests.samples.results import SCENES, result
+
+
+def evenly_loaded(line_load=200.0, shape=(8, 50), face_part=1.0):
+    """Maps of an unmodified spur pair whose contact carries so many N/mm over part of its face."""
+    cycle = result("fzg_c14", positions=3)
+    (one,) = cycle.maps[0][1]
+    length = face_part * cycle.face_width
+    dx, dy = 0.05, length / shape[1]
+    even = replace(
+        one,
+        x=(np.arange(shape[0]) - 0.5 * (shape[0] - 1)) * dx,
+        y=(np.arange(shape[1]) - 0.5 * (shape[1] - 1)) * dy,
+        spacing=(dx, dy),
+        pressure=np.full(shape, line_load / (shape[0] * dx)),
+        gap=np.zeros(shape),
+    )
+    return cycle, even
+
+
+def test_even_load_has_a_face_load_factor_of_one():
+    cycle, even = evenly_loaded()
+    face, transverse = load_factors(cycle.gear_pair, cycle.path, (((even,),) * 3,), 14.0)
+    assert_allclose(face, 1.0, rtol=1e-12)
+    assert_allclose(transverse, 1.0, rtol=1e-12)  # one pair alone, its whole face: the mean length of the lines
+
+
+def test_pair_that_carries_half_the_load_of_a_longer_mesh_is_told_by_the_transverse_factor():
+    """Two pairs with 3/4 and 1/4 of the force: the largest line load is 1.5 times the mean over both lines."""
+    cycle, even = evenly_loaded()
+    heavy, light = (replace(even, pressure=factor * even.pressure) for factor in (1.5, 0.5))
+    _, transverse = load_factors(cycle.gear_pair, cycle.path, (((heavy, light),) * 3,), 28.0)
+    assert_allclose(transverse, 1.5, rtol=1e-12)
+
+
+def test_strips_share_the_force_of_a_cell_by_its_overlap():
+    """Cells of 0.28 mm on strips of 0.4667 mm: an even load is even in the strips, and no force is lost."""
+    cycle, even = evenly_loaded(line_load=300.0)
+    borders = np.linspace(-7.0, 7.0, 30 + 1)
+    force, length = strip_forces(cycle.gear_pair, even, borders)
+    assert_allclose(force, 300.0 * 14.0 / 30, rtol=1e-12)
+    assert_allclose(length, 14.0 / 30, rtol=1e-12)
+    beyond = replace(even, origin=even.origin + np.array([0.0, 0.0, 1.0]))
+    force, _ = strip_forces(cycle.gear_pair, beyond, borders)
+    assert_allclose(force.sum(), 300.0 * 14.0, rtol=1e-12)
+    assert force[0] == force[1] == 0.0
+
+
+def test_contact_line_across_a_strip_is_as_long_as_its_helix_says():
+    cycle = result(positions=1)
+    _, length = strip_forces(cycle.gear_pair, cycle.maps[0][0][0], np.linspace(-12.5, 12.5, 31))
+    base_helix = cycle.scene.mesh().pinion.base_helix_angle
+    assert base_helix > 0.1
+    assert_allclose(length, 25.0 / 30.0 / np.cos(base_helix), rtol=1e-3)  # crowning turns the contact a little
+
+
+def test_load_that_grows_linearly_along_the_face_has_the_factor_of_its_last_strip():
+    """Line load proportional to the distance from one end: the strip at the other has 2 - 1/30 of the mean."""
+    cycle, even = evenly_loaded(shape=(8, 3000))
+    part = (even.y - even.y[0] + 0.5 * even.spacing[1]) / 14.0
+    rising = replace(even, pressure=even.pressure * part)
+    face, _ = load_factors(cycle.gear_pair, cycle.path, (((rising,),) * 3,), 14.0)
+    assert_allclose(face, 2.0 - 1.0 / 30, rtol=1e-6)
+
+
+def test_last_position_does_not_count():
+    cycle, even = evenly_loaded()
+    half = np.where(even.y > 0.0, 2.0, 0.0) * even.pressure
+    maps = (((even,), (even,), (replace(even, pressure=half),)),)
+    assert_allclose(load_factors(cycle.gear_pair, cycle.path, maps, 14.0), 1.0, rtol=1e-12)
+
+
+def test_factors_are_unknown_with_one_position_and_without_load():
+    one = result(positions=1)
+    assert np.isnan([one.face_load_factor, one.transverse_load_factor]).all()
+    several = result(torques=(0.0, 40.0), positions=2)
+    assert np.isnan(several.face_load_factor).tolist() == [True, False]
+    assert np.isnan(several.transverse_load_factor).tolist() == [True, False]
+
+
+@pytest.mark.parametrize("name", ["mesh_cycle_bevel", "face_milled_19x62_matched"])
+def test_bevel_gears_have_a_face_load_factor_alone(name):
+    cycle = result(name, positions=3)
+    assert np.isfinite(cycle.face_load_factor).all()
+    assert (cycle.face_load_factor > 1.0).all()
+    assert np.isnan(cycle.transverse_load_factor).all()
+
+
+def test_axial_offset_of_the_wheel_moves_the_common_face():
+    """Half the face is shared: an even load on that half alone is even, on the whole face it is not."""
+    scene = read_scene(SCENES / "fzg_c14.toml").with_changes(
+        {"mounting.axial_offset_mm": 7.0, "analysis.positions": 2, "analysis.cells": (16, 16)}
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # a line that ends at the faces
+        cycle = analyse(scene)
+    _, even = evenly_loaded(face_part=0.5)
+    shared = replace(even, origin=cycle.maps[0][0][0].origin)
+    face, _ = load_factors(cycle.gear_pair, cycle.path, (((shared,),) * 2,), 14.0)
+    assert_allclose(face, 1.0, rtol=1e-6)
+
+
+@cache
+def crowned(out_of_plane_deg, cells=32):
+    """A spur pair whose crowning keeps the load off the face ends; flanks alone, without free edges."""
+    scene = read_scene(SCENES / "mesh_cycle_spur.toml").with_changes(
+        {
+            "analysis.positions": 5,
+            "analysis.accuracy": None,
+            "analysis.cells": (cells, cells),
+            "analysis.torques_Nm": (130.0,),
+            "analysis.load_sharing": True,
+            "analysis.compliance": "contact",
+            "analysis.free_edges": False,
+            "pinion.modifications.lead_crowning_um": 15.0,
+            "mounting.out_of_plane_deg": out_of_plane_deg,
+        }
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # misaligned far enough, the contact comes to the face end
+        return analyse(scene)
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_face_load_factor_rises_with_misalignment_on_both_sides(sign):
+    factors = [crowned(sign * error).face_load_factor.item() for error in (0.0, 0.04, 0.08, 0.12)]
+    assert (np.diff(factors) > 0.0).all()
+
+
+@pytest.mark.parametrize("error", [0.0, 0.04])
+def test_face_load_factor_does_not_depend_on_the_grid(error):
+    coarse, fine = (crowned(error, cells).face_load_factor.item() for cells in (32, 64))
+    assert abs(fine / coarse - 1.0) < 0.03
+
+
+def test_face_load_factor_of_a_crowned_pair_is_that_of_its_mean_parabola():
+    """Hertz's ellipse has the line load 1 - (y/a)^2: its strip in the middle over the mean of the face, weighted."""
+    cycle = crowned(0.0, 64)
+    borders = np.linspace(-12.5, 12.5, 30 + 1)
+    mean = np.zeros(30)
+    for n, k in np.argwhere(cycle.normal_force[0, :-1] > 0.0):
+        half = cycle.hertz_semi_major[0, n, k]
+        inside = np.clip(borders / half, -1.0, 1.0)
+        mean += cycle.normal_force[0, n, k] * np.diff(0.75 * (inside - inside**3 / 3.0))
+    assert_allclose(cycle.face_load_factor, mean.max() / mean.mean(), rtol=5e-3)  # of a cell at either end

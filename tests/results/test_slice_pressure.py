@@ -1,0 +1,169 @@
+"""Pressure of slices: that of Hertz on smooth contacts, and without spikes where a contact ends at a sharp edge."""
+
+import math
+import warnings
+from functools import cache
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca import AccuracyWarning, analyse, read_scene
+from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
+from loaded_tca.reference.hertz import point_contact
+from loaded_tca.results.slice_pressure import averaged_line_load, largest_slice_pressure
+from loaded_tca.separation.normal_gap import NormalGap
+from loaded_tca.unloaded import trace_contact
+from tests.samples.gear_pairs import sam_paper
+from tests.samples.results import SCENES
+
+MODULUS = 113187.0  # MPa
+
+
+@pytest.mark.parametrize(("aspect", "part"), [(1.0, 0.886), (5.0, 0.984), (10.0, 0.994)])
+def test_slice_pressure_of_an_ellipse_is_the_known_part_of_its_peak(aspect, part):
+    """sqrt(q E* k/pi) in the middle of Hertz's ellipse, q = pi/2 p0 a: sqrt(pi)/2 of the peak for a circle."""
+    across = 0.1
+    low, high = 0.0, math.log(aspect) * 2.0 + 1e-9  # of the ratio of the curvatures
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        ellipse = point_contact(1000.0, (across, across * math.exp(-middle)), MODULUS)
+        low, high = (middle, high) if ellipse.ratio < aspect else (low, middle)
+    y = np.linspace(-1.2, 1.2, 2401) * ellipse.semi_major
+    borders = np.append(y, y[-1] + (y[1] - y[0])) - 0.5 * (y[1] - y[0])
+    line_load = 0.5 * math.pi * ellipse.max_pressure * ellipse.semi_minor
+    force = line_load * np.maximum(1.0 - (y / ellipse.semi_major) ** 2, 0.0) * (y[1] - y[0])
+    _, averaged = averaged_line_load(force, borders, 0.01 * ellipse.semi_major)
+    pressure = math.sqrt(averaged.max() * MODULUS * across / math.pi)
+    assert_allclose(pressure / ellipse.max_pressure, part, atol=1e-3)  # three digits
+
+
+def test_line_load_over_a_length_is_the_mean_of_what_it_covers():
+    places, line_load = averaged_line_load(np.array([2.0, 0.0, 6.0]), np.array([0.0, 1.0, 2.0, 3.0]), 2.0)
+    there = dict(zip(places.tolist(), line_load.tolist(), strict=True))
+    assert there == {-1.0: 0.0, 0.0: 1.0, 1.0: 1.0, 2.0: 3.0, 3.0: 3.0, 4.0: 0.0}
+
+
+def test_line_load_over_a_length_does_not_follow_a_spike():
+    """The same forces, those of the last millimetre in ever fewer cells."""
+    found = []
+    for cells in (1, 10, 100):
+        borders = np.concatenate([np.linspace(0.0, 9.0, 10), 9.0 + np.linspace(0.0, 1.0, cells + 1)[1:]])
+        force = np.concatenate([np.ones(9), np.diff(-np.sqrt(np.linspace(1.0, 0.0, cells + 1)))])
+        found.append(averaged_line_load(force, borders, 1.0)[1].max())
+    assert_allclose(found, 1.0, rtol=1e-9)
+
+
+@cache
+def loaded(pair, cells=(48, 48), load=2700.0, position=0.0):
+    return solve_under_load(pair, trace_contact(pair, [position])[0], load, GridChoice(cells=cells, tolerance=1e-8))
+
+
+@pytest.mark.parametrize("helix_deg", [0.0, 20.0])
+def test_slice_pressure_is_the_peak_of_a_slender_contact(helix_deg):
+    """Where both exist they agree: the ellipse is 80 times as long as wide, and longer than the 0.75 mm averaged."""
+    pair = sam_paper(helix_deg)
+    contact = loaded(pair)
+    pressure, (x, y) = largest_slice_pressure(pair, contact)
+    assert_allclose(pressure, contact.solution.peak_pressure, rtol=2e-3)  # that of Hertz on 48 cells
+    assert abs(x) < contact.separation.spacing[0]
+    assert abs(y) < 0.05 * contact.extent[1]
+
+
+def test_slice_pressure_takes_line_load_and_curvature_of_its_own_place():
+    """At the heel of a bevel pair: line load cell by cell, curvature across from differences of the gap."""
+    cycle = bevel_at_the_heel()
+    (one,), pair = cycle.maps[0][0], cycle.gear_pair
+    dx, dy = one.spacing
+    contact = cycle.path[0]
+    gap = NormalGap(pair, contact, one.axes)
+    step, half, highest = 1e-3, 0.125 * pair.module, 0.0
+    loaded = np.flatnonzero(one.pressure.any(axis=0))
+    ends = one.borders[1][[loaded[0], loaded[-1] + 1]] + [half, -half]
+    for middle in np.linspace(*ends, 201):
+        cover = np.clip(
+            np.minimum(one.y + 0.5 * dy, middle + half) - np.maximum(one.y - 0.5 * dy, middle - half), 0, None
+        )
+        line_load = float(one.pressure.sum(axis=0) @ cover) * dx / (2.0 * half)
+        nearest = loaded[np.abs(one.y[loaded] - middle).argmin()]
+        x = float(one.x @ one.pressure[:, nearest] / one.pressure[:, nearest].sum())
+        heights = gap.at(x + step * np.array([-1.0, 0.0, 1.0]), np.array(middle))[0]
+        curvature = float(heights[0] - 2.0 * heights[1] + heights[2]) / step**2
+        highest = max(highest, math.sqrt(line_load * pair.contact_modulus * curvature / math.pi))
+    assert_allclose(cycle.peak_pressure.item(), highest, rtol=5e-3)  # the place across is that of the nearest slice
+
+
+@cache
+def bevel_at_the_heel():
+    scene = read_scene(SCENES / "straight_bevel.toml").with_changes(
+        {"analysis.positions": 1, "analysis.cells": (48, 48), "mounting.offset_mm": 0.15}
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # an edge contact is wanted here
+        cycle = analyse(scene)
+    assert cycle.on_edge.all()
+    return cycle
+
+
+@pytest.mark.parametrize("name", ["misaligned", "fzg_c14"])
+def test_peak_at_a_sharp_edge_does_not_depend_on_the_grid(name):
+    """The force beside the edge converges with the root of the cell, as its pressure grows: 3 % here, the largest cell
+    by more than 15 %."""
+    peaks, cells = [], []
+    for count in (32, 64):
+        cycle = on_cells(name, count)
+        assert cycle.on_edge.all()
+        peaks.append(cycle.peak_pressure.item())
+        cells.append(cycle.edge_pressure.item())
+    assert abs(peaks[1] / peaks[0] - 1.0) < 0.03
+    assert cells[1] / cells[0] > 1.15
+    assert peaks[1] < cells[1]
+
+
+@cache
+def on_cells(name, count):
+    scene = read_scene(SCENES / f"{name}.toml")
+    changes = {"analysis.positions": 1, "analysis.cells": (count, count), "analysis.accuracy": None}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # edge contacts are wanted here
+        return analyse(scene.with_changes(changes))
+
+
+def test_peak_at_an_edge_is_never_above_the_cap():
+    scene = read_scene(SCENES / "misaligned.toml").with_changes(
+        {"analysis.positions": 1, "analysis.cells": (24, 24), "material.max_pressure_MPa": 900.0}
+    )
+    with pytest.warns(AccuracyWarning, match="reaches an edge"):
+        cycle = analyse(scene)
+    assert cycle.peak_pressure.item() == 900.0
+    assert_allclose(cycle.edge_pressure.item(), 900.0, rtol=1e-9)
+
+
+def test_peak_across_a_relief_start_does_not_depend_on_the_grid():
+    """A linear tip relief that begins at the pitch point: the largest cell goes on growing."""
+    scene = read_scene(SCENES / "helical.toml")
+    changes = {"analysis.positions": 1, "analysis.accuracy": None, "pinion.modifications.tip_relief_form": "linear"}
+    changes |= {
+        "pinion.modifications.tip_relief_um": 20.0,
+        "load.pinion_torque_Nm": 60.0,
+        "pinion.modifications.tip_relief_start_mm": 105.6,
+    }
+    peaks, largest = [], []
+    for count in (48, 96):
+        with pytest.warns(AccuracyWarning, match="start of a linear relief"):
+            cycle = analyse(scene.with_changes({**changes, "analysis.cells": (count, count)}))
+        assert cycle.on_relief_start.all()
+        assert np.isnan(cycle.edge_pressure).all()
+        peaks.append(cycle.peak_pressure.item())
+        largest.append(cycle.maps[0][0][0].pressure.max())
+    assert abs(peaks[1] / peaks[0] - 1.0) < 0.01
+    assert largest[1] / largest[0] > 1.02
+    assert peaks[1] < largest[1]
+
+
+def test_place_of_the_peak_is_that_of_its_slice():
+    """The contact is at the upper face end, and its largest line load lies within half a window of it."""
+    cycle = on_cells("misaligned", 64)
+    window = 0.25 * cycle.gear_pair.module
+    end = 0.5 * cycle.face_width
+    assert end - window - 0.1 <= abs(cycle.peak_axial.item()) <= end
