@@ -89,8 +89,16 @@ MAP_PARTS: dict[str, Part] = {
     "x": (("across",), "mm", "cell centres across the contact, from the contact point"),
     "y": (("along",), "mm", "cell centres along the contact, from the contact point"),
     "spacing": (("axis",), "mm", "cell sizes across and along"),
-    "pressure": (("across", "along"), "MPa", "contact pressure, NaN beyond the grid of the position"),
-    "gap": (("across", "along"), "mm", "deformed gap, infinite where a flank ends, NaN beyond the grid"),
+    "pressure": (
+        ("across", "along"),
+        "MPa",
+        "contact pressure, the mean over the whole cell where an edge cuts it; NaN beyond the grid of the position",
+    ),
+    "gap": (
+        ("across", "along"),
+        "mm",
+        "deformed gap, infinite where a flank ends before the middle of the cell, NaN beyond the grid",
+    ),
     "origin": (("vector",), "mm", "contact point in the fixed frame"),
     "axes": (("row", "vector"), "1", "directions across, along and normal out of the pinion, in rows"),
 }

@@ -78,6 +78,10 @@ def largest_slice_pressure(pair: GearPair, loaded: LoadedContact) -> tuple[float
     sums, dy = pressure.sum(axis=0), separation.spacing[1]
     carrying = np.flatnonzero(sums)
     borders = np.append(separation.y, separation.y[-1] + dy) - 0.5 * dy
+    if carrying.size > 1:  # the last slices end where their material does
+        first, last = carrying[[0, -1]]
+        part = np.where(pressure > 0.0, separation.cover, 0.0).max(axis=0)
+        borders[first], borders[last + 1] = borders[first + 1] - part[first] * dy, borders[last] + part[last] * dy
     y, line_load = averaged_line_load(loaded.slice_force, borders, AVERAGED_OVER * pair.module)
     y = np.clip(y, borders[carrying[0]], borders[carrying[-1] + 1])
     x = np.interp(y, separation.y[carrying], separation.x @ pressure[:, carrying] / sums[carrying])
