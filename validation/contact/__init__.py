@@ -1,7 +1,8 @@
 """The contact solver by itself, without gears.
 
 - ``sphere``, ``subsurface``: Hertz, and the stresses below;
-- ``free_edge``, ``wedge``, ``free_edge_fem``: contact beside a free edge against Hetenyi and finite elements;
+- ``free_edge``, ``wedge``, ``free_edge_fem``, ``free_block``: contact beside a free edge against Hetenyi and finite
+  elements;
 - ``hard_cases``: contacts on which solvers fail, each with its answer;
 - ``speed_against_error``: time against error beside two other solvers; writes a page.
 """
