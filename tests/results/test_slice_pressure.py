@@ -79,12 +79,12 @@ def test_slice_pressure_takes_line_load_and_curvature_of_its_own_place():
     gap = NormalGap(pair, contact, one.axes)
     step, half, highest = 1e-3, 0.125 * pair.module, 0.0
     loaded = np.flatnonzero(one.pressure.any(axis=0))
-    ends = one.borders[1][[loaded[0], loaded[-1] + 1]] + [half, -half]
-    for middle in np.linspace(*ends, 201):
-        cover = np.clip(
-            np.minimum(one.y + 0.5 * dy, middle + half) - np.maximum(one.y - 0.5 * dy, middle - half), 0, None
-        )
-        line_load = float(one.pressure.sum(axis=0) @ cover) * dx / (2.0 * half)
+    along = np.linspace(*one.borders[1][[loaded[0], loaded[-1] + 1]], 4001)
+    inside = along[gap.at(one.x[one.pressure.any(axis=1), None], along)[1].max(axis=0) >= 0.0]
+    low, high = (np.clip(one.y[loaded] + side * dy, inside[0], inside[-1]) for side in (-0.5, 0.5))
+    for middle in np.linspace(inside[0] + half, inside[-1] - half, 201):
+        within = np.clip(np.minimum(high, middle + half) - np.maximum(low, middle - half), 0, None) / (high - low)
+        line_load = float(one.pressure.sum(axis=0)[loaded] @ within) * dx * dy / (2.0 * half)
         nearest = loaded[np.abs(one.y[loaded] - middle).argmin()]
         x = float(one.x @ one.pressure[:, nearest] / one.pressure[:, nearest].sum())
         heights = gap.at(x + step * np.array([-1.0, 0.0, 1.0]), np.array(middle))[0]
