@@ -19,10 +19,11 @@ import numpy as np
 from loaded_tca import AccuracyWarning, analyse, read_scene
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.loaded.load_sharing import SharedLoad, share_load, tooth_pairs_at
+from loaded_tca.loaded.load_sharing import Share, SharedLoad, share_load, tooth_pairs_at
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact
 from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.reference.hertz import line_contact
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.unloaded import trace_teeth
 from validation.cylindrical import iso_tr_6336_30
@@ -124,13 +125,20 @@ def _no_load() -> list[Row]:
     ]
 
 
+def _hertz_width(share: Share, length: float) -> float:
+    """Width of a line contact of a length under the force of a tooth pair, even along it [mm]."""
+    loaded = share.loaded
+    load, modulus = loaded.solution.load / length, loaded.solution.problem.contact_modulus
+    return 2.0 * line_contact(load, loaded.separation.curvatures[0], modulus).half_width
+
+
 def _lines() -> list[Row]:
     """Share of the longest line of a helical pair without crowning; shown too: by the lengths alone."""
     found = []
     for part in (-0.25, 0.1):
         shares = _shared(_pair(NONE), part).shares
         lengths = np.array([np.linalg.norm(np.diff(share.tooth_pair.contact.line_ends, axis=0)) for share in shares])
-        widths = np.array([share.loaded.extent[0] for share in shares])
+        widths = np.array([_hertz_width(share, length) for share, length in zip(shares, lengths, strict=True)])
         stiffness = lengths / (np.log(4.0 * lengths / widths) - 1.0)
         longest = int(lengths.argmax())
         obtained, where = shares[longest].torque / TORQUE, f"share of the longest of {len(shares)} lines"
