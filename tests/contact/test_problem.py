@@ -75,3 +75,12 @@ def test_refusal_names_every_problem_and_comes_before_the_solution():
     assert len(caught.value.problems) == 4
     with pytest.raises(InputError, match="exactly one"):
         ContactProblem(ball(), (0.03, 0.03), E_STAR)
+
+
+@pytest.mark.parametrize("argument", ["load", "approach", "max_pressure"])
+def test_masked_number_is_none(argument):
+    options = {"load": 10.0, argument: np.ma.masked}
+    if argument == "approach":
+        del options["load"]
+    with pytest.raises(InputError, match=f"^{argument}: "):
+        solve_contact(ball(), (0.03, 0.03), E_STAR, **options)
