@@ -20,7 +20,6 @@ from scipy.sparse import diags_array
 from scipy.sparse.linalg import cg, splu
 from skfem import (
     Basis,
-    BilinearForm,
     ElementHex2,
     ElementQuad2,
     ElementVector,
@@ -29,7 +28,7 @@ from skfem import (
     MeshHex,
     MeshQuad,
 )
-from skfem.helpers import ddot, sym_grad, trace
+from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 from loaded_tca.compliance.half_space import depth_displacement
 from loaded_tca.loaded.free_edges import DEPTH, edge_compliance
@@ -44,6 +43,7 @@ from validation.table import Row
 Array = NDArray[np.float64]
 
 STEEL = Material(206000.0, 0.3)
+ENERGY = linear_elasticity(*lame_parameters(STEEL.youngs_modulus, STEEL.poisson_ratio))
 MODULE, HALF_LENGTH, WIDTH, HALF_WIDTH = 3.0, 10.0, 14.0, 0.15
 """Module of the gears whose teeth the block stands for; half length of the block, its half width and depth; half width
 of the Hertz profile [mm]."""
@@ -76,15 +76,6 @@ def profile(x: Array) -> Array:
     return 2.0 / (math.pi * HALF_WIDTH) * np.sqrt(np.maximum(0.0, 1.0 - (x / HALF_WIDTH) ** 2))
 
 
-@BilinearForm
-def elasticity(u, v, _):  # type: ignore[no-untyped-def]
-    """Strain energy, plane strain in two dimensions."""
-    nu, modulus = STEEL.poisson_ratio, STEEL.youngs_modulus
-    lame, shear = modulus * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), 0.5 * modulus / (1.0 + nu)
-    strain, virtual = sym_grad(u), sym_grad(v)
-    return lame * trace(strain) * trace(virtual) + 2.0 * shear * ddot(strain, virtual)
-
-
 def block() -> Array:
     """Displacement of the loaded face less that in the middle under line loads on single parts: (n, n) [mm per N/mm].
 
@@ -105,7 +96,7 @@ def block() -> Array:
         )
     )
     free = basis.complement_dofs(held)
-    stiffness = elasticity.assemble(basis)[free][:, free]
+    stiffness = ENERGY.assemble(basis)[free][:, free]
     inverse = diags_array(1.0 / stiffness.diagonal())
     places = basis.doflocs
     dofs = np.concatenate([part[2] for part in (basis.nodal_dofs, basis.facet_dofs, basis.interior_dofs)])
@@ -138,7 +129,11 @@ def plane() -> float:
     base = basis.get_dofs(lambda x: np.isclose(x[1], WIDTH)).all()
     free = basis.complement_dofs(np.union1d(base, basis.get_dofs(lambda x: np.isclose(x[0], 0.0)).all("u^1")))
     moved = np.zeros(basis.N)
-    moved[free] = splu(elasticity.assemble(basis)[free][:, free].tocsc()).solve(load[free])
+    moved[free] = splu(
+        linear_elasticity(*lame_parameters(STEEL.youngs_modulus, STEEL.poisson_ratio))
+        .assemble(basis)[free][:, free]
+        .tocsc()
+    ).solve(load[free])
     places = basis.doflocs
     middle = np.isclose(places[0], 0.0) & np.isclose(places[1], MIDDLE)  # moves down alone
     return float(2.0 * load @ moved - moved[middle].max())

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import cg
-from skfem import Basis, BilinearForm, ElementHex1, ElementVector, FacetBasis, LinearForm, MeshHex
-from skfem.helpers import ddot, sym_grad, trace
+from skfem import Basis, ElementHex1, ElementVector, FacetBasis, LinearForm, MeshHex
+from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 from loaded_tca.contact import quarter_space_factor
 
@@ -36,7 +36,7 @@ def displacement(across: Array, poisson_ratio: float) -> tuple[float, float]:
     element = ElementVector(ElementHex1())
     basis = Basis(mesh, element)
     top = FacetBasis(mesh, element, facets=mesh.facets_satisfying(lambda x: np.isclose(x[2], 0.0)), intorder=8)
-    stiffness, load = _elasticity(poisson_ratio).assemble(basis), _pressure.assemble(top)
+    stiffness, load = linear_elasticity(*lame_parameters(1.0, poisson_ratio)).assemble(basis), _pressure.assemble(top)
     far = outward[-1] - 1e-9
     held = basis.get_dofs(lambda x: (x[0] > far) | (np.abs(x[1]) > far) | (x[2] > far)).all()
     symmetric = basis.get_dofs(lambda x: np.isclose(x[0], 0.0)).all("u^1")
@@ -48,18 +48,6 @@ def displacement(across: Array, poisson_ratio: float) -> tuple[float, float]:
     moved[free] = solved
     middle = int(np.argmin((mesh.p**2).sum(axis=0)))
     return float(moved[basis.nodal_dofs[2, middle]]), float(load @ moved)
-
-
-def _elasticity(nu: float) -> BilinearForm:
-    """Linear elasticity with E = 1."""
-    lame, shear = nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), 0.5 / (1.0 + nu)
-
-    @BilinearForm
-    def energy(u, v, _):  # type: ignore[no-untyped-def]
-        strain, virtual = sym_grad(u), sym_grad(v)
-        return lame * trace(strain) * trace(virtual) + 2.0 * shear * ddot(strain, virtual)
-
-    return energy
 
 
 @LinearForm

@@ -14,8 +14,10 @@ from scipy.integrate import quad
 from scipy.sparse.linalg import splu
 from scipy.special import j1, k0
 from skfem import Basis, BilinearForm, ElementQuad2, ElementVector, FacetBasis, LinearForm, MeshQuad
+from skfem.models.elasticity import lame_parameters
 
 from loaded_tca.contact import wedge_factor
+from loaded_tca.material import Material
 from validation.table import Row
 
 Array = NDArray[np.float64]
@@ -76,19 +78,27 @@ class Wedge:
         face = FacetBasis(mesh, element, facets=loaded, intorder=12)
         held = basis.get_dofs(lambda x: np.hypot(x[0], x[1]) > (1.0 - 1e-6) * FARTHEST).all()
         free = basis.complement_dofs(held)
-        inverse = splu(_elasticity(self.poisson_ratio).assemble(basis)[free][:, free].tocsc())
+        stiffness = elasticity_of_waves(Material(1.0, self.poisson_ratio), 1.0).assemble(basis)
+        inverse = splu(stiffness[free][:, free].tocsc())
         forces = [LinearForm(lambda v, w, load=load: load(w.x[0]) * v[2]).assemble(face)[free] for load in loads]
         return np.array([force @ inverse.solve(force) for force in forces])
 
 
-def _elasticity(nu: float) -> BilinearForm:
-    """Energy of displacements (U sin x, V cos x, W cos x) with x along the edge; E = 1."""
-    lame, shear = nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), 0.5 / (1.0 + nu)
+def elasticity_of_waves(material: Material, wave: float) -> BilinearForm:
+    """Energy of displacements (U sin kz, V cos kz, W cos kz) over a section, z the axis along which they go on.
+
+    Parameters
+    ----------
+    material : Material
+    wave : float [1/mm]
+        k.
+    """
+    lame, shear = lame_parameters(material.youngs_modulus, material.poisson_ratio)
 
     def strains(u):  # type: ignore[no-untyped-def]
         slope = u.grad
-        normal = (u[0], slope[1, 0], slope[2, 1])
-        return normal, (slope[2, 0] + slope[1, 1], slope[0, 0] - u[1], slope[0, 1] - u[2])
+        normal = (wave * u[0], slope[1, 0], slope[2, 1])
+        return normal, (slope[2, 0] + slope[1, 1], slope[0, 0] - wave * u[1], slope[0, 1] - wave * u[2])
 
     @BilinearForm
     def energy(u, v, _):  # type: ignore[no-untyped-def]

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.linalg import splu
 from scipy.special import k0, k1
-from skfem import Basis, BilinearForm, ElementTriP2, ElementVector, FacetBasis, LinearForm, MeshTri
+from skfem import Basis, ElementTriP2, ElementVector, FacetBasis, LinearForm, MeshTri
 
 from loaded_tca.compliance import MeshDensity
 from loaded_tca.compliance.body import ToothFrame, gear_nodes
@@ -31,6 +31,7 @@ from loaded_tca.material import Material
 from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.tooth.profile import polar
+from validation.contact.wedge import elasticity_of_waves
 from validation.table import Row
 
 Array = NDArray[np.float64]
@@ -150,7 +151,7 @@ class _Section:
         bore = radius.min() * 1.001
         held = basis.get_dofs(lambda x: np.hypot(*x) < bore).all()
         free = basis.complement_dofs(held)
-        stiffness = _elasticity(wave).assemble(basis)[free][:, free].tocsc()
+        stiffness = elasticity_of_waves(STEEL, wave).assemble(basis)[free][:, free].tocsc()
         factor = splu(stiffness, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.0)
         found = []
         for point, normal, depth in zip(self.points, self.normals, self.depths, strict=True):
@@ -184,26 +185,6 @@ class _Section:
         forces = LinearForm(lambda v, w: pressure(w.x) * (normal[0] * v[1] + normal[1] * v[2])).assemble(face)
         plain = FacetBasis(self.mesh, ElementTriP2(), facets=near, intorder=12)
         return np.asarray(forces / LinearForm(lambda v, w: pressure(w.x) * v).assemble(plain).sum())
-
-
-def _elasticity(wave: float) -> BilinearForm:
-    """Energy of displacements (U sin kz, V cos kz, W cos kz), z along the face."""
-    shear = 0.5 * STEEL.youngs_modulus / (1.0 + STEEL.poisson_ratio)
-    lame = 2.0 * shear * STEEL.poisson_ratio / (1.0 - 2.0 * STEEL.poisson_ratio)
-
-    def strains(u):  # type: ignore[no-untyped-def]
-        slope = u.grad
-        normal = (wave * u[0], slope[1, 0], slope[2, 1])
-        return normal, (slope[2, 0] + slope[1, 1], slope[0, 0] - wave * u[1], slope[0, 1] - wave * u[2])
-
-    @BilinearForm
-    def energy(u, v, _):  # type: ignore[no-untyped-def]
-        (normal, sheared), (also, beside) = strains(u), strains(v)
-        stretch = sum(a * b for a, b in zip(normal, also, strict=True))
-        slide = sum(a * b for a, b in zip(sheared, beside, strict=True))
-        return lame * sum(normal) * sum(also) + shear * (2.0 * stretch + slide)
-
-    return energy
 
 
 def surface_under_wave(wave: float, points: int = 400) -> float:
