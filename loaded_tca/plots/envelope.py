@@ -15,7 +15,7 @@ from loaded_tca.plots import style
 from loaded_tca.plots.flanks import both_flanks, colour_scale, loaded_maps
 from loaded_tca.plots.style import COLOURS, highest_torque, load, range_of_positions
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.results.pressure_map import PressureMap
+from loaded_tca.results.pressure_map import PressureMap, slice_middles
 
 FIELDS = 240
 """Fields of the picture of a flank in each direction, each coloured by the highest pressure in it."""
@@ -103,10 +103,8 @@ def _ridge(one: PressureMap) -> tuple[Array, Array]:
 
     The ends are those of the cells, not their centres, so that no stripe is left at the end of a face.
     """
-    sums = one.pressure.sum(axis=0)
-    loaded = np.nonzero(sums)[0]
+    loaded, across = slice_middles(one.x, one.pressure)
     half = 0.5 * one.spacing[1]
     y = np.linspace(one.y[loaded[0]] - half, one.y[loaded[-1]] + half, 2 * FIELDS)
-    across = one.x @ one.pressure[:, loaded] / sums[loaded]
     x, height = (np.interp(y, one.y[loaded], values) for values in (across, one.pressure[:, loaded].max(axis=0)))
     return one.origin + x[:, None] * one.axes[0] + y[:, None] * one.axes[1], height

@@ -28,6 +28,7 @@ from loaded_tca.plots.style import (
     torque_styles,
 )
 from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.pressure_map import slice_middles
 from loaded_tca.results.summary import signed
 from loaded_tca.unloaded.contact_span import contact_span, path_letters, roll_lengths_of_flanks
 
@@ -183,11 +184,9 @@ def plot_line_load_distribution(result: MeshCycle, torque: int | None = None) ->
     torque = highest_torque(result) if torque is None else torque
     segments, values, highest = [np.zeros((0, 2, 3))], [np.zeros(0)], 0.0
     for one in loaded_maps(result, torque):
-        sums = one.pressure.sum(axis=0)
-        loaded = sums > 0.0
-        across = one.x @ one.pressure[:, loaded] / sums[loaded]
+        loaded, across = slice_middles(one.x, one.pressure)
         points = one.origin + across[:, None] * one.axes[0] + one.y[loaded, None] * one.axes[1]
-        line_load = sums[loaded] * one.spacing[0]
+        line_load = one.pressure[:, loaded].sum(axis=0) * one.spacing[0]
         segments.append(np.stack([points[:-1], points[1:]], axis=1))
         values.append(0.5 * (line_load[:-1] + line_load[1:]))
         highest = max(highest, float(line_load.max()))

@@ -15,6 +15,24 @@ from loaded_tca.arrays import Array
 from loaded_tca.results.files import Part
 
 
+def slice_middles(x: Array, pressure: Array) -> tuple[Array, Array]:
+    """Slices of a grid that carry load, and where across the contact the middle of their pressure lies.
+
+    Parameters
+    ----------
+    x : (nx,) array [mm]
+        Cell centres across.
+    pressure : (nx, ny) array [MPa]
+
+    Returns
+    -------
+    (n,) array of int, (n,) array [mm]
+    """
+    carrying = np.flatnonzero(pressure.any(axis=0))
+    loaded = pressure[:, carrying]
+    return carrying, x @ loaded / loaded.sum(axis=0)
+
+
 @dataclass(frozen=True, eq=False)
 class PressureMap:
     """Pressure and gap of one tooth pair at one position on its grid.

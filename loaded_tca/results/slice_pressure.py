@@ -23,6 +23,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.loaded.tooth_contact import LoadedContact
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.pressure_map import slice_middles
 from loaded_tca.separation.normal_gap import NormalGap
 
 AVERAGED_OVER = 0.25
@@ -75,8 +76,7 @@ def largest_slice_pressure(pair: GearPair, loaded: LoadedContact) -> tuple[float
         Across and along the contact, from the contact point.
     """
     separation, pressure = loaded.separation, loaded.solution.pressure
-    sums, dy = pressure.sum(axis=0), separation.spacing[1]
-    carrying = np.flatnonzero(sums)
+    dy, (carrying, middles) = separation.spacing[1], slice_middles(separation.x, pressure)
     borders = np.append(separation.y, separation.y[-1] + dy) - 0.5 * dy
     if carrying.size > 1:  # the last slices end where their material does
         first, last = carrying[[0, -1]]
@@ -84,7 +84,7 @@ def largest_slice_pressure(pair: GearPair, loaded: LoadedContact) -> tuple[float
         borders[first], borders[last + 1] = borders[first + 1] - part[first] * dy, borders[last] + part[last] * dy
     y, line_load = averaged_line_load(loaded.slice_force, borders, AVERAGED_OVER * pair.module)
     y = np.clip(y, borders[carrying[0]], borders[carrying[-1] + 1])
-    x = np.interp(y, separation.y[carrying], separation.x @ pressure[:, carrying] / sums[carrying])
+    x = np.interp(y, separation.y[carrying], middles)
     curvature = NormalGap(pair, loaded.contact, separation.axes).curvature_across(x, y)
     pressures = np.sqrt(line_load * pair.contact_modulus * np.maximum(curvature, 0.0) / math.pi)
     top = int(pressures.argmax())
