@@ -94,8 +94,7 @@ def edge_compliance(pair: GearPair, separation: Separation) -> Array | None:
         nearest = [end[-1] for end in ends]
         normals = outward_normal(gear.flank, rho[nearest], z[nearest]).tolist()
         for (edge, reach, distance, near, end), (out_rho, _, out_z) in zip(ends, normals, strict=True):
-            slopes = (float(np.broadcast_to(part, rho.shape)[end]) for part in (jets[edge].rho, jets[edge].z))
-            in_rho, in_z = slopes
+            in_rho, in_z = (float(np.broadcast_to(by, rho.shape)[end]) for by in (jets[edge].rho, jets[edge].z))
             cosine = (out_rho * in_rho + out_z * in_z) / math.hypot(in_rho, in_z)
             with named(f"analysis.free_edges: {gear.flank.frame.edges[edge]} of the {name}"):
                 factor = wedge_factor(math.acos(min(max(cosine, -1.0), 1.0)), gear.material.poisson_ratio)
