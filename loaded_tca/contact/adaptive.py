@@ -2,8 +2,9 @@
 
 import math
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 from numpy.typing import ArrayLike
 
@@ -15,6 +16,15 @@ from loaded_tca.contact.solver import solve_problem
 from loaded_tca.errors import AccuracyWarning, require
 
 Cells = tuple[int, int]
+
+
+class NextGrid(NamedTuple):
+    """Cells on which a contact is to be solved next, how closely, and a pressure to start from or none."""
+
+    cells: Cells
+    tolerance: float
+    start: ArrayLike | None = None
+
 
 # The residual of the iteration is kept this far below the accuracy, so that the grid alone limits it.
 TOLERANCE_SHARE = 1e-2
@@ -93,24 +103,42 @@ def solve_to_accuracy(
             f"first_cells: {first_cells!r:.60} are not two whole numbers from 1 on",
         ),
     )
-    closely, refined = TOLERANCE_SHARE * accuracy, max(first_cells) < MOST_CELLS_AT_A_BORDER
-    tolerance, first = min(closely, tolerance), closely if refined else min(closely, tolerance)
-    cells = first_cells
-    solution = solve_problem(problem(cells), tolerance=first, initial_pressure=initial_pressure, threads=threads)
+    refining = refinement(accuracy, tolerance, smooth, first_cells, initial_pressure)
+    grid = next(refining)
     while True:
-        # What ends a contact inside the box makes the peak grow with the grid without end.
-        peaked, estimate = smooth and not solution.bounded, solution.error_estimate
-        error = estimate.peak_pressure if peaked else estimate.approach
-        if error <= accuracy or max(cells) >= (MOST_CELLS if peaked else MOST_CELLS_AT_A_BORDER):
+        own, start = problem(grid.cells), grid.start
+        found = solve_problem(own, tolerance=grid.tolerance, initial_pressure=start, threads=threads)
+        try:
+            grid = refining.send(found)
+        except StopIteration as end:
+            solution, error = end.value
             break
-        coarse, cells = solution, (2 * cells[0], 2 * cells[1])
-        start = prolong(coarse.pressure, cells, (2, 2))
-        solution = solve_problem(problem(cells), tolerance=tolerance, initial_pressure=start, threads=threads)
-        if coarse.pressure.any():
-            solution = replace(solution, coarser=CoarserGrid(float(coarse.pressure.max()), coarse.approach))
     if warn:
         error = math.inf if math.isnan(error) else error
         late = () if error <= accuracy else (f"estimated error {error:.1e} is above the accuracy {accuracy:.1e}",)
         for sentence in late + solution.accuracy_warnings:
             warnings.warn(sentence, AccuracyWarning, stacklevel=2)
     return solution
+
+
+def refinement(
+    accuracy: float, tolerance: float, smooth: bool, first_cells: Cells, initial_pressure: ArrayLike | None
+) -> Generator[NextGrid, ContactSolution, tuple[ContactSolution, float]]:
+    """Ask for the solutions on finer and finer grids; return the last one and its estimated error.
+
+    For parameters see :func:`solve_to_accuracy`.
+    """
+    closely, refined = TOLERANCE_SHARE * accuracy, max(first_cells) < MOST_CELLS_AT_A_BORDER
+    tolerance, first = min(closely, tolerance), closely if refined else min(closely, tolerance)
+    cells = first_cells
+    solution = yield NextGrid(cells, first, initial_pressure)
+    while True:
+        # What ends a contact inside the box makes the peak grow with the grid without end.
+        peaked, estimate = smooth and not solution.bounded, solution.error_estimate
+        error = estimate.peak_pressure if peaked else estimate.approach
+        if error <= accuracy or max(cells) >= (MOST_CELLS if peaked else MOST_CELLS_AT_A_BORDER):
+            return solution, error
+        coarse, cells = solution, (2 * cells[0], 2 * cells[1])
+        solution = yield NextGrid(cells, tolerance, prolong(coarse.pressure, cells, (2, 2)))
+        if coarse.pressure.any():
+            solution = replace(solution, coarser=CoarserGrid(float(coarse.pressure.max()), coarse.approach))

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError, named
-from loaded_tca.loaded.load_sharing import Laws, SharedLoad, share_load, tooth_pairs_at
+from loaded_tca.loaded.load_sharing import SharedLoad, tooth_pairs_at, torque_shared
 from loaded_tca.loaded.pair_coupling import BendingModel
-from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, solve_under_load
+from loaded_tca.loaded.together import Result, Steps, found_together
+from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, contact_under_load
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded import ContactPath, MeshPath
 
@@ -85,15 +86,21 @@ def carried_by_one(
     shape = len(torques), len(path)
     contacts: Contacts = [[[None] for _ in range(shape[1])] for _ in range(shape[0])]
     rotation, rate, deflection = np.full((3, *shape), math.nan)
-    for t, n in _told(shape, progress):
+
+    def steps(t: int, n: int) -> Steps[LoadedContact | None]:
         contact = path[n]
-        if contact.in_contact:
-            with _told_where(torques[t], contact.pinion_angle):
-                loaded = solve_under_load(pair, contact, torques[t] / contact.pinion_lever, grid, bending)
-            contacts[t][n][0] = loaded
+        if not contact.in_contact:
+            return None
+        with _told_where(torques[t], contact.pinion_angle):
+            loaded = yield from contact_under_load(pair, contact, torques[t] / contact.pinion_lever, grid, bending)
+            return (yield from loaded.with_stiffness())
+
+    for (t, n), loaded in _found(pair, shape, steps, progress):
+        contacts[t][n][0] = loaded
+        if loaded is not None:
             deflection[t, n] = loaded.own_tooth_deflection
-            rotation[t, n] = loaded.solution.approach / contact.wheel_lever
-            rate[t, n] = contact.pinion_lever * contact.wheel_lever * loaded.stiffness
+            rotation[t, n] = loaded.solution.approach / loaded.contact.wheel_lever
+            rate[t, n] = loaded.contact.pinion_lever * loaded.contact.wheel_lever * loaded.stiffness
     share = np.broadcast_to(np.where(path.in_contact, 1.0, math.nan)[:, None], (*shape, 1)).copy()
     number = np.zeros(1, dtype=int)
     return Carried(path, torques, number, (path,), contacts, rotation, rate, share, deflection[..., None])
@@ -117,24 +124,23 @@ def carried_by_all(
         As of :func:`carried_by_one`.
     """
     angles, shape = mesh.pinion_angle, (len(torques), len(mesh))
-    shared: list[list[SharedLoad]] = [[] for _ in torques]
     tooth_pairs = [tooth_pairs_at(mesh, n) for n in range(len(mesh))]
-    laws = Laws()
-    for t, n in _told(shape, progress):
+
+    def steps(t: int, n: int) -> Steps[SharedLoad]:
         with _told_where(torques[t], angles[n]):
-            found = share_load(pair, tooth_pairs[n], float(torques[t]), grid, bending=bending, start=laws)
-        laws = laws.updated(found.laws)
-        shared[t].append(found)
-    carrying = {0} | {share.tooth_pair.pair for row in shared for one in row for share in one.shares}
+            return (yield from torque_shared(pair, tooth_pairs[n], float(torques[t]), grid, bending))
+
+    shared = dict(_found(pair, shape, steps, progress))
+    carrying = {0} | {share.tooth_pair.pair for one in shared.values() for share in one.shares}
     columns = [column for column, number in enumerate(mesh.pairs.tolist()) if number in carrying]
     pairs = mesh.pairs[columns].tolist()
     contacts: Contacts = [[[None] * len(pairs) for _ in tooth_pairs] for _ in torques]
     share, deflection = np.zeros((2, *shape, len(pairs)))
     for t, n in np.ndindex(shape):
-        for part in shared[t][n].shares:
+        for part in shared[t, n].shares:
             place = t, n, pairs.index(part.tooth_pair.pair)
             contacts[t][n][place[2]], deflection[place] = part.loaded, part.tooth_deflection
-            share[place] = part.torque / torques[t] if shared[t][n].torque > 0.0 else 1.0
+            share[place] = part.torque / torques[t] if shared[t, n].torque > 0.0 else 1.0
     in_gear_angles = []
     for path in (mesh.paths[column] for column in columns):
         turned = pair.ratio * (angles - path.pinion_angle)
@@ -145,20 +151,24 @@ def carried_by_all(
         pairs=mesh.pairs[columns],
         paths=tuple(in_gear_angles),
         contacts=contacts,
-        rotation=np.array([[one.rotation for one in row] for row in shared]),
-        torque_rate=np.array([[one.torque_rate for one in row] for row in shared]),
+        rotation=np.array([one.rotation for one in shared.values()]).reshape(shape),
+        torque_rate=np.array([one.torque_rate for one in shared.values()]).reshape(shape),
         share=share,
         tooth_deflection=deflection,
     )
 
 
-def _told(shape: tuple[int, int], progress: Progress | None) -> Iterator[tuple[int, int]]:
-    """Torque and position one after the other; the progress is told after each."""
-    total = math.prod(shape)
-    for done, (t, n) in enumerate(np.ndindex(shape), start=1):
-        yield t, n
-        if progress is not None:
-            progress(done, total)
+def _found(
+    pair: GearPair,
+    shape: tuple[int, int],
+    steps: Callable[[int, int], Steps[Result]],
+    progress: Progress | None,
+) -> list[tuple[tuple[int, int], Result]]:
+    """Results of all torques and positions, worked on together, with their indices; the progress is told."""
+    states = list(np.ndindex(shape))
+    told = None if progress is None else lambda done: progress(done, len(states))
+    found = found_together(pair, [steps(*state) for state in states], told)
+    return list(zip(states, found, strict=True))
 
 
 @contextmanager

@@ -10,8 +10,8 @@ deformation and the tooth deflection under all forces:
 A pair that is not in contact carries nothing. The torque grows with the rotation, so that there is one answer.
 
 The contact law delta_k(F) is known from solved contacts alone. Between them it is a power of the force, 2/3 for points
-and nearly 1 for lines, its exponent that of the tangent in a neighbouring position, or between two solutions that lie
-far enough apart: balance the powers, solve every pair under its force, correct the powers, until the deformations agree
+and nearly 1 for lines, at first after Hertz, its exponent later that between two solutions that lie far enough apart:
+balance the powers, solve every pair under its force, correct the powers, until the deformations agree
 and the rotation closes no pair that was left apart. The forces of the last solutions fulfil the balance of the torque
 to rounding; what is left is a difference in the rotation that each pair asks for, ``residual``.
 
@@ -27,22 +27,24 @@ Meth. Eng. 31, 525-545 (contact by the half-space, teeth by finite elements); Jo
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import cache, partial
-from itertools import combinations, product
+from itertools import combinations
 
 import numpy as np
 from scipy.optimize import brentq
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError, InputError, named
-from loaded_tca.loaded.balance import EXPONENTS, PowerLaw, balance
+from loaded_tca.loaded.balance import PowerLaw, balance
 from loaded_tca.loaded.pair_coupling import BendingModel
-from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, solve_under_load
+from loaded_tca.loaded.together import Steps, found_alone
+from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, contact_under_load
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.reference.hertz import point_contact
 from loaded_tca.separation import Separation
-from loaded_tca.unloaded import ContactPoint, MeshPath
+from loaded_tca.unloaded import ContactPoint, MeshPath, relative_curvature
 
 SMALLEST_SHARED = 1e-12
 """Forces below this times E* m_n^2 are not shared, but taken for none: what the pairs deform then is near the rounding
@@ -61,8 +63,8 @@ SETTLED = 10.0
 """Change of how the slices of a pair are displaced, over its deflection, in agreements: it only moves force about."""
 SAME_BOX = (0.75, 1.25)
 """Loads over the one a box was made for, between which the contact still fills it well, if it does not reach it."""
-SOFTEST_START = 4.0
-"""First guess of a contact deformation: so many times F/(E* b), as slender contacts of gears have it."""
+SLENDER, LINE_EXPONENT = 4.0, 0.9
+"""First guess of the deformation of a contact along the face: so many times F/(E* b), and its growth with the force."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,42 +114,10 @@ class Share:
         return float(self.force * self.tooth_pair.contact.pinion_lever)
 
     @property
-    def law(self) -> PowerLaw:
-        """Contact deformation near its force, which must not be zero."""
-        slope = 1.0 / self.loaded.stiffness - self.loaded.own_tooth_deflection / self.force
-        deformation = self.loaded.contact_deformation
-        return PowerLaw(self.force, deformation, float(np.clip(slope * self.force / deformation, *EXPONENTS)))
-
-    @property
     def rotation(self) -> float:
         """Rotation that its deflection asks for [rad]."""
         deflection = self.loaded.contact_deformation + self.tooth_deflection
         return float(self.tooth_pair.initial_separation + deflection / self.tooth_pair.contact.wheel_lever)
-
-
-@dataclass(frozen=True)
-class Laws:
-    """Deformation and bending of tooth pairs near the forces that they carry.
-
-    Attributes
-    ----------
-    contact : mapping of int to PowerLaw
-        Contact deformation over the force, by the number of the pair.
-    bending : mapping of (int, int) to float [mm/N]
-        Mean compliance of the teeth of the first pair under the second.
-    """
-
-    contact: Mapping[int, PowerLaw] = field(default_factory=dict)
-    bending: Mapping[tuple[int, int], float] = field(default_factory=dict)
-
-    def compliance(self, one: int, other: int) -> float:
-        """Mean compliance of two pairs [mm/N]; of unknown ones the least known, so that the matrix stays definite."""
-        alike = (value for (a, b), value in self.bending.items() if (a == b) == (one == other))
-        return self.bending.get((one, other), min(alike, default=0.0))
-
-    def updated(self, later: Laws) -> Laws:
-        """Return these laws and later ones, which count where both know a pair."""
-        return Laws({**self.contact, **later.contact}, {**self.bending, **later.bending})
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,13 +148,6 @@ class SharedLoad:
     balances: int
 
     @property
-    def laws(self) -> Laws:
-        """What a neighbouring position or torque may start from."""
-        numbers = [share.tooth_pair.pair for share in self.shares]
-        bending = dict(zip(product(numbers, numbers), self.compliance.ravel().tolist(), strict=True))
-        return Laws({share.tooth_pair.pair: share.law for share in self.shares if share.force > 0.0}, bending)
-
-    @property
     def torque_rate(self) -> float:
         """Tangent dT1/d rotation of the whole mesh [N mm/rad]; zero where a load is next to none."""
         stiffness = np.array([share.loaded.stiffness for share in self.shares])
@@ -204,7 +167,6 @@ def share_load(
     grid: GridChoice,
     *,
     bending: BendingModel | None = None,
-    start: Laws = Laws(),
 ) -> SharedLoad:
     """Share a torque over the tooth pairs of one position.
 
@@ -220,8 +182,6 @@ def share_load(
         How finely each contact is resolved.
     bending : BendingModel, optional
         Of the teeth beneath the contacts; default: none.
-    start : Laws
-        Those of a neighbouring position or torque; default: none are known.
 
     Returns
     -------
@@ -250,6 +210,17 @@ def share_load(
     >>> [round(share.torque / 130e3, 3) for share in shared.shares]
     [0.5, 0.5]
     """
+    return found_alone(pair, torque_shared(pair, tooth_pairs, torque, grid, bending))
+
+
+def torque_shared(
+    pair: GearPair,
+    tooth_pairs: Sequence[ToothPair],
+    torque: float,
+    grid: GridChoice,
+    bending: BendingModel | None = None,
+) -> Steps[SharedLoad]:
+    """Share a torque over the tooth pairs of one position, step by step; see :func:`share_load`."""
     if not 0.0 <= torque < math.inf:
         raise InputError(f"torque: {torque!r} N mm is not a finite number >= 0")
     if not tooth_pairs:
@@ -257,9 +228,14 @@ def share_load(
     leading = min(tooth_pairs, key=lambda tooth_pair: tooth_pair.initial_separation)
     smallest = SMALLEST_SHARED * pair.contact_modulus * pair.module**2
     if torque <= smallest * leading.contact.pinion_lever:
-        share = Share(leading, solve_under_load(pair, leading.contact, 0.0, grid), 0.0)
+        loaded = yield from contact_under_load(pair, leading.contact, 0.0, grid)
+        share = Share(leading, (yield from loaded.with_stiffness()), 0.0)
         return SharedLoad(0.0, 0.0, (share,), np.zeros((1, 1)), 0.0, 0)
-    return _Balance(pair, tooth_pairs, torque, grid, bending, start).run()
+    found = yield from _Balance(pair, tooth_pairs, torque, grid, bending).steps()
+    shares = []
+    for share in found.shares:
+        shares.append(replace(share, loaded=(yield from share.loaded.with_stiffness())))
+    return replace(found, shares=tuple(shares))
 
 
 class _Balance:
@@ -272,7 +248,6 @@ class _Balance:
         torque: float,
         grid: GridChoice,
         bending: BendingModel | None,
-        start: Laws,
     ) -> None:
         self.pair, self.tooth_pairs, self.torque, self.grid = pair, tuple(tooth_pairs), torque, grid
         self.bending = bending
@@ -280,33 +255,35 @@ class _Balance:
         self.separations = np.array([tooth_pair.initial_separation for tooth_pair in tooth_pairs])
         contacts = [tooth_pair.contact for tooth_pair in tooth_pairs]
         self.levers = np.array([(contact.pinion_lever, contact.wheel_lever) for contact in contacts]).T
-        numbers = [tooth_pair.pair for tooth_pair in tooth_pairs]
-        self.laws = [self._first_law(start.contact, tooth_pair) for tooth_pair in tooth_pairs]
+        self.laws = [self._first_law(contact) for contact in contacts]
         self.solved: list[LoadedContact | None] = [None] * len(tooth_pairs)
-        self.compliance = np.array([[start.compliance(one, other) for other in numbers] for one in numbers])
+        self.compliance = np.zeros((len(contacts), len(contacts)))
         self.agreement = AGREEMENT_ON_CELLS if grid.cells is not None else AGREEMENT * grid.accuracy
 
-    def _first_law(self, start: Mapping[int, PowerLaw], tooth_pair: ToothPair) -> PowerLaw:
-        """Law of the pair or else of the nearest that has one; else that of a slender contact over the face."""
-        if start:
-            return start[min(start, key=lambda other: abs(other - tooth_pair.pair))]
-        load = self.torque / tooth_pair.contact.pinion_lever
-        return PowerLaw(load, SOFTEST_START * load / (self.pair.contact_modulus * self.pair.face_width))
+    def _first_law(self, contact: ContactPoint) -> PowerLaw:
+        """Hertz's law of the curvatures at the contact point, or of a slender contact over the face."""
+        load, modulus = self.torque / contact.pinion_lever, self.pair.contact_modulus
+        curvature = relative_curvature(self.pair, contact)
+        if curvature.across >= curvature.along > 0.0:
+            ellipse = point_contact(load, (curvature.across, curvature.along), modulus)
+            if 2.0 * ellipse.semi_major < self.pair.face_width:
+                return PowerLaw(load, ellipse.approach)
+        return PowerLaw(load, SLENDER * load / (modulus * self.pair.face_width), LINE_EXPONENT)
 
-    def run(self) -> SharedLoad:
+    def steps(self) -> Steps[SharedLoad]:
         shared: SharedLoad | None = None
         forces = np.zeros(len(self.laws))
         for count in range(1, MOST_BALANCES + 1):
             capped = self.pair.max_pressure is not None
             if capped and shared is not None and count > SWINGING and count % SWINGING != 1:
-                forces = self._solve_at_common_rotation(shared)
+                forces = yield from self._solve_at_common_rotation(shared)
             else:  # also now and then there, since pairs that are apart may come under load
                 before = forces
                 forces = balance(self.laws, self.separations, self.levers, self.torque, self.compliance)
                 if count > SWINGING and not capped:
                     forces = 0.5 * (before + forces)
                 for index in np.flatnonzero(forces).tolist():
-                    self._solve(index, forces)
+                    yield from self._solve(index, forces)
             self.compliance = self._corrected()
             shared = self._shared(forces, count)
             if shared.residual <= self.agreement and self._settled(forces, shared.rotation):
@@ -320,19 +297,22 @@ class _Balance:
             last=shared,
         )
 
-    def _solve(self, index: int, forces: Array) -> None:
+    def _solve(self, index: int, forces: Array) -> Steps[None]:
         """Solve a pair under its force, on the grid it has if that still fits, and correct its law."""
         force, before, law = float(forces[index]), self.solved[index], self.laws[index]
         tooth_pair, coupling = self.tooth_pairs[index], partial(self._coupling, index, forces)
         try:
-            loaded = None
+            loaded: LoadedContact | None = None
             if before is not None and not before.solution.reaches_border:
                 least, most = (factor * before.solution.load for factor in SAME_BOX)
-                loaded = before.under(force, coupling(before.separation)) if least <= force <= most else None
+                if least <= force <= most:
+                    loaded = yield from before.under(force, coupling(before.separation))
             if loaded is None or loaded.solution.reaches_border:
                 contact, number = tooth_pair.contact, tooth_pair.pair
                 with named(f"tooth pair {number:+d}"):
-                    loaded = solve_under_load(self.pair, contact, force, self.grid, self.bending, number, coupling)
+                    loaded = yield from contact_under_load(
+                        self.pair, contact, force, self.grid, self.bending, number, coupling
+                    )
         except ConvergenceError as error:
             raise ConvergenceError(f"tooth pair {tooth_pair.pair:+d}: {error}", error.last) from error
         self.solved[index] = loaded
@@ -341,7 +321,7 @@ class _Balance:
             first = replace(law, load=force, deformation=deformation)
             self.laws[index] = first if before is None else law.through(force, deformation)
 
-    def _solve_at_common_rotation(self, shared: SharedLoad) -> Array:
+    def _solve_at_common_rotation(self, shared: SharedLoad) -> Steps[Array]:
         """Solve the carrying pairs on their grids at the rotation that balances the torque; forces (k,).
 
         At a cap whole rows of cells yield at once: the deformation jumps as the force grows, so that forces swing to
@@ -372,7 +352,7 @@ class _Balance:
             self.solved[index], forces[index] = loaded, loaded.solution.load
         for index, loaded in self._loaded():
             if loaded.solution.reaches_border:
-                self._solve(index, forces)  # in a larger box
+                yield from self._solve(index, forces)  # in a larger box
         return forces
 
     def _loaded(self) -> Iterator[tuple[int, LoadedContact]]:

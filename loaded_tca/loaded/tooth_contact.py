@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Generator
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cached_property
 
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.contact import ContactProblem, ContactSolution, solve_problem, solve_to_accuracy
-from loaded_tca.contact.adaptive import TOLERANCE_SHARE
+from loaded_tca.contact import ContactProblem, ContactSolution, solve_problem
+from loaded_tca.contact.adaptive import TOLERANCE_SHARE, NextGrid, refinement
 from loaded_tca.contact.checks import memory_problem
 from loaded_tca.contact.levels import under_other_load
 from loaded_tca.contact.patch import values_at_ends
@@ -18,9 +19,10 @@ from loaded_tca.contact.solution import CoarserGrid
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.free_edges import edge_compliance
 from loaded_tca.loaded.pair_coupling import BendingModel, Coupling
+from loaded_tca.loaded.together import Gap, Steps, Task, found_alone
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import PointContact, point_contact
-from loaded_tca.separation import Separation, sample_separation
+from loaded_tca.separation import Separation
 from loaded_tca.unloaded import ContactPoint
 
 FIRST_CELLS = (16, 16)
@@ -77,6 +79,8 @@ class LoadedContact:
         Displacement of the slices under the load of other tooth pairs, if there are any.
     bending : (ny, ny) array or None [mm/N]
         Slice compliance of the teeth, without that of free edges.
+    stiffness : float [N/mm]
+        dF/d deflection, see :func:`with_stiffness`; zero without load, NaN where it was not asked for.
     """
 
     contact: ContactPoint
@@ -86,6 +90,7 @@ class LoadedContact:
     tolerance: float = 1e-6
     coupling_deflection: Array | None = None
     bending: Array | None = None
+    stiffness: float = math.nan
 
     @property
     def at_edge(self) -> bool:
@@ -191,9 +196,8 @@ class LoadedContact:
             return deflection
         return float(deflection - self.coupling_deflection @ force / force.sum())
 
-    @cached_property
-    def stiffness(self) -> float:
-        """Stiffness dF/d deflection [N/mm], of the power law through the load and 0.8 of it; zero without load.
+    def with_stiffness(self) -> Steps[LoadedContact]:
+        """Return the contact with its stiffness, of the power law through the load and 0.8 of it.
 
         The deflection is that of the flanks and of the teeth beneath them, under other loads as they are. A contact
         grows by whole cells, so that the exact tangent of the discrete problem (``contact_stiffness``) scatters by a
@@ -201,13 +205,13 @@ class LoadedContact:
         """
         solution = self.solution
         if solution.load <= 0.0:
-            return 0.0
+            return replace(self, stiffness=0.0)
         problem = replace(solution.problem, load=CHORD * solution.load)
-        less = self._solved(problem, max(self.tolerance, CHORD_TOLERANCE)).approach_under_load
+        less = (yield self._task(problem, max(self.tolerance, CHORD_TOLERANCE))).approach_under_load
         exponent = math.log(less / solution.approach_under_load) / math.log(CHORD)
-        return solution.load / (exponent * solution.approach_under_load)
+        return replace(self, stiffness=solution.load / (exponent * solution.approach_under_load))
 
-    def under(self, load: float, coupling: Array | None = None) -> LoadedContact:
+    def under(self, load: float, coupling: Array | None = None) -> Steps[LoadedContact]:
         """Return the contact under another load > 0 [N] near this one, on the same grid and as closely solved.
 
         ``coupling``: displacement of the slices under the load of other pairs, if anything bends, (ny,) [mm].
@@ -216,7 +220,7 @@ class LoadedContact:
         """
         gap, before = self.separation.cut_gap, self.solution
         problem = replace(before.problem, load=load, gap=gap if coupling is None else gap + coupling)
-        solution, coarser = self._solved(problem, self.tolerance), before.coarser
+        solution, coarser = (yield self._task(problem, self.tolerance)), before.coarser
         if coarser is not None:
             first, higher = before.problem.first_contact, float(solution.pressure.max() / before.pressure.max())
             deeper = solution.approach_under_load / before.approach_under_load
@@ -240,11 +244,10 @@ class LoadedContact:
         solution = replace(solution, problem=problem, coarser=before.coarser)
         return replace(self, solution=solution, coupling_deflection=coupling)
 
-    def _solved(self, problem: ContactProblem, tolerance: float) -> ContactSolution:
-        """Solve a problem on the same grid, starting from this pressure."""
+    def _task(self, problem: ContactProblem, tolerance: float) -> Task:
+        """A problem on the same grid, to be solved from this pressure."""
         assert problem.load is not None
-        start = under_other_load(self.solution.pressure, problem.load / self.solution.load)
-        return solve_problem(problem, tolerance=tolerance, initial_pressure=start)
+        return Task(problem, tolerance, under_other_load(self.solution.pressure, problem.load / self.solution.load))
 
 
 def solve_under_load(
@@ -254,9 +257,29 @@ def solve_under_load(
     grid: GridChoice,
     bending: BendingModel | None = None,
     number: int = 0,
-    coupling: Coupling | None = None,
 ) -> LoadedContact:
-    """Contact of one tooth pair at one position under a normal force.
+    """Contact of one tooth pair at one position under a normal force, with its stiffness.
+
+    For parameters and errors see :func:`contact_under_load`.
+    """
+
+    def steps() -> Steps[LoadedContact]:
+        loaded = yield from contact_under_load(pair, contact, load, grid, bending, number)
+        return (yield from loaded.with_stiffness())
+
+    return found_alone(pair, steps())
+
+
+def contact_under_load(
+    pair: GearPair,
+    contact: ContactPoint,
+    load: float,
+    grid: GridChoice,
+    bending: BendingModel | None = None,
+    number: int = 0,
+    coupling: Coupling | None = None,
+) -> Steps[LoadedContact]:
+    """Contact of one tooth pair at one position under a normal force, step by step.
 
     The box is the estimated one, made larger as long as the contact reaches it.
 
@@ -289,26 +312,26 @@ def solve_under_load(
     if (problem := memory_problem(cells)) is not None:
         raise InputError(f"cells: {problem}")
     load = 0.0 if 0.0 < load <= SMALLEST_LOAD * pair.contact_modulus * pair.module**2 else load
-    separation = _box_for_cap(pair, contact, load, sample_separation(pair, contact, cells=cells, load=load))
+    separation = yield from _box_for_cap(pair, contact, load, (yield Gap(contact, cells, load=load)))
     for _ in range(MOST_BOXES):
-        loaded = _solve_in_box(pair, contact, load, grid, separation, bending, number, coupling)
+        loaded = yield from _solve_in_box(pair, contact, load, grid, separation, bending, number, coupling)
         pressure = loaded.solution.pressure
         filled = [bool((np.take(pressure, [0, -1], axis=axis) > 0.0).any()) for axis in (0, 1)]
         if not any(filled):
             break
         lengths = zip(loaded.separation.half_lengths, filled, strict=True)
         across, along = (length * (GROWTH if grow else 1.0) for length, grow in lengths)
-        separation = sample_separation(pair, contact, cells=cells, box=(across, along))
+        separation = yield Gap(contact, cells, box=(across, along))
     return loaded
 
 
-def _box_for_cap(pair: GearPair, contact: ContactPoint, load: float, separation: Separation) -> Separation:
+def _box_for_cap(pair: GearPair, contact: ContactPoint, load: float, separation: Separation) -> Steps[Separation]:
     """A box whose material carries the load at the cap on the pressure, if the flank has so much."""
     cap = math.inf if pair.max_pressure is None else pair.max_pressure
     while load > CAP_USE * separation.material_area * cap:
         across, along = separation.half_lengths
         box = (GROWTH * across, min(GROWTH * along, pair.face_width))
-        wider = sample_separation(pair, contact, cells=separation.gap.shape, box=box)
+        wider = yield Gap(contact, (separation.gap.shape[0], separation.gap.shape[1]), box=box)
         if wider.material_area <= separation.material_area:
             most = CAP_USE * separation.material_area * cap
             raise InputError(
@@ -327,20 +350,24 @@ def _solve_in_box(
     bending: BendingModel | None,
     number: int,
     coupling: Coupling | None,
-) -> LoadedContact:
+) -> Steps[LoadedContact]:
     """Solve in the box of ``first``, on its grid if cells were given, else on finer and finer ones."""
-
-    @cache
-    def sampled(cells: tuple[int, int]) -> tuple[Separation, Array | None, Array | None]:
-        box, given = first.half_lengths, first.gap.shape == cells
-        separation = first if given else sample_separation(pair, contact, cells=cells, box=box)
+    refining: Generator[NextGrid, ContactSolution, tuple[ContactSolution, float]]
+    if grid.cells is not None:
+        tolerance, refining = grid.tolerance, _on_cells(grid.cells, grid.tolerance)
+    else:
+        tolerance, expected = min(grid.tolerance, TOLERANCE_SHARE * grid.accuracy), _expected(first)
+        smooth = not _crosses_relief_start(pair, contact, first, expected)
+        refining = refinement(grid.accuracy, grid.tolerance, smooth, FIRST_CELLS, expected)
+    wanted = next(refining)
+    while True:
+        separation = first
+        if first.gap.shape != wanted.cells:
+            separation = yield Gap(contact, wanted.cells, box=first.half_lengths)
         displaced = None if coupling is None else coupling(separation)
-        return separation, displaced, None if bending is None else bending.within(number, separation)
-
-    def problem(cells: tuple[int, int]) -> ContactProblem:
-        separation, displaced, bent = sampled(cells)
+        bent = None if bending is None else bending.within(number, separation)
         ends = edge_compliance(pair, separation) if grid.free_edges else None
-        return ContactProblem(
+        problem = ContactProblem(
             separation.cut_gap if displaced is None else separation.cut_gap + displaced,
             separation.spacing,
             pair.contact_modulus,
@@ -349,24 +376,21 @@ def _solve_in_box(
             slice_compliance=bent if ends is None else ends if bent is None else bent + ends,
             cover=separation.cover,
         )
-
-    if grid.cells is not None:
-        tolerance = grid.tolerance
-        solution = solve_problem(problem(grid.cells), tolerance=tolerance)
-    else:
-        tolerance, expected = min(grid.tolerance, TOLERANCE_SHARE * grid.accuracy), _expected(first)
-        solution = solve_to_accuracy(
-            problem,
-            accuracy=grid.accuracy,
-            tolerance=grid.tolerance,
-            smooth=not _crosses_relief_start(pair, contact, first, expected),
-            first_cells=FIRST_CELLS,
-            initial_pressure=expected,
-            warn=False,
-        )
-    separation, displaced, bent = sampled(solution.problem.cells)
+        found = yield Task(problem, wanted.tolerance, wanted.start)
+        try:
+            wanted = refining.send(found)
+        except StopIteration as end:
+            solution, _ = end.value
+            break
     at_relief_start = _crosses_relief_start(pair, contact, separation, solution.pressure_on_material)
     return LoadedContact(contact, separation, solution, at_relief_start, tolerance, displaced, bent)
+
+
+def _on_cells(
+    cells: tuple[int, int], tolerance: float
+) -> Generator[NextGrid, ContactSolution, tuple[ContactSolution, float]]:
+    """A single grid, as :func:`refinement` asks for several."""
+    return (yield NextGrid(cells, tolerance)), math.nan
 
 
 def _crosses_relief_start(pair: GearPair, contact: ContactPoint, separation: Separation, pressure: Array) -> bool:

@@ -1,0 +1,118 @@
+"""Work on many contacts at once: each asks for gaps and pressures, and what all ask for is found together.
+
+A contact, or the tooth pairs of a position that share a torque, is a generator. It yields what it needs next, a
+:class:`Gap` or a :class:`Task`, is sent the separation or the solution, and returns its result. So it reads as if it
+were alone, and its numbers do not depend on what stands beside it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, NamedTuple, TypeVar
+
+from loaded_tca.arrays import Array
+from loaded_tca.contact import ContactProblem
+from loaded_tca.contact.solution import ContactSolution, ContactStatus
+from loaded_tca.contact.solver import not_converged, solve_problems
+from loaded_tca.errors import LoadedTCAError
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.separation import Separation, sample_separation
+from loaded_tca.unloaded import ContactPoint
+
+Result = TypeVar("Result")
+
+
+@dataclass(frozen=True, eq=False)
+class Gap:
+    """A separation to sample, in the box that a load needs or in a given one; see :func:`sample_separation`."""
+
+    contact: ContactPoint
+    cells: tuple[int, int]
+    load: float | None = None
+    box: tuple[float, float] | None = None
+
+
+class Task(NamedTuple):
+    """A contact problem to solve to a tolerance, from a pressure to start from or none."""
+
+    problem: ContactProblem
+    tolerance: float
+    start: Array | None = None
+
+
+Steps = Generator[Gap | Task, Any, Result]
+
+
+def found_together(
+    pair: GearPair, all_steps: Sequence[Steps[Result]], told: Callable[[int], None] | None = None
+) -> list[Result]:
+    """Answer what generators ask for, in rounds, until all have returned.
+
+    In a round all gaps that are asked for are sampled, or else all problems on the coarsest grid are solved.
+
+    Parameters
+    ----------
+    pair : GearPair
+    all_steps : sequence of generators
+    told : callable, optional
+        Called with how many have returned, whenever one does.
+
+    Returns
+    -------
+    list
+        What they return, in their order.
+
+    Raises
+    ------
+    InputError, GeometryError, ConvergenceError
+        The first one that a generator does not deal with.
+    """
+    results: dict[int, Result] = {}
+    asked: dict[int, Gap | Task] = {}
+
+    def advance(index: int, step: Callable[[], Gap | Task]) -> None:
+        try:
+            asked[index] = step()
+        except StopIteration as end:
+            results[index] = end.value
+            if told is not None:
+                told(len(results))
+
+    for index, steps in enumerate(all_steps):
+        advance(index, partial(next, steps))
+    while asked:
+        for index, answer in _answers(pair, asked).items():
+            del asked[index]
+            steps = all_steps[index]
+            failed = isinstance(answer, LoadedTCAError)
+            advance(index, partial(steps.throw, answer) if failed else partial(steps.send, answer))
+    return [results[index] for index in range(len(all_steps))]
+
+
+def found_alone(pair: GearPair, steps: Steps[Result]) -> Result:
+    """Answer what one generator asks for, until it returns."""
+    return found_together(pair, [steps])[0]
+
+
+def _answers(pair: GearPair, asked: dict[int, Gap | Task]) -> dict[int, Separation | ContactSolution | LoadedTCAError]:
+    """Answer the gaps that are asked for, or else the problems on the coarsest grid; an error is an answer, too."""
+    gaps = {index: request for index, request in asked.items() if isinstance(request, Gap)}
+    if gaps:
+        return {index: _sampled(pair, gap) for index, gap in gaps.items()}
+    tasks = {index: task for index, task in asked.items() if isinstance(task, Task)}
+    coarsest = min(task.problem.gap.size for task in tasks.values())
+    chosen = {index: task for index, task in tasks.items() if task.problem.gap.size == coarsest}
+    solutions = solve_problems(*zip(*chosen.values(), strict=True), on_failure="return")
+    return {
+        index: not_converged(solution, task.tolerance) if solution.status is ContactStatus.NOT_CONVERGED else solution
+        for (index, task), solution in zip(chosen.items(), solutions, strict=True)
+    }
+
+
+def _sampled(pair: GearPair, gap: Gap) -> Separation | LoadedTCAError:
+    try:
+        return sample_separation(pair, gap.contact, cells=gap.cells, load=gap.load, box=gap.box)
+    except LoadedTCAError as error:
+        return error
