@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -52,11 +53,14 @@ class CutCells:
 
     Attributes
     ----------
+    shape : (int, int)
+        Of the grid.
     row, column : (n,) array of int
     crowding : (n, n) array
         Displacement under a unit pressure on each, in the units of the influence coefficients.
     """
 
+    shape: tuple[int, int]
     row: Indices
     column: Indices
     crowding: Array
@@ -65,23 +69,31 @@ class CutCells:
     def of(cls, cover: Array, aspect: float) -> CutCells:
         """Those of a grid with the parts ``cover`` (nx, ny), and cells of an aspect dy/dx."""
         row, column = np.nonzero(is_cut(cover))
-        own, inverse = influence_coefficients((cover.shape[0], 1), aspect)[:, 0], 1.0 / cover[row, column]
+        own, inverse = _in_one_slice(cover.shape[0], aspect), 1.0 / cover[row, column]
         crowding = CROWDING * (np.minimum(inverse[:, None], inverse) - 1.0)
         crowding *= own[np.abs(row[:, None] - row)] * (column[:, None] == column)
-        return cls(row, column, crowding)
+        return cls((cover.shape[0], cover.shape[1]), row, column, crowding)
 
     def operator(self, window: Window | None, dtype: str) -> Callable[[Array, Array], None] | None:
         """What adds the displacement under a pressure on a window to that of the grid; None if it holds no cut cell."""
-        under, crowding = (self.row, self.column), self.crowding
+        to = under = self.row * self.shape[1] + self.column  # one index is twice as quick as two
+        crowding = self.crowding
         if window is not None:
-            (rows, columns), (row, column) = window, under
+            (rows, columns), (row, column) = window, (self.row, self.column)
             inside = (row >= rows.start) & (row < rows.stop) & (column >= columns.start) & (column < columns.stop)
-            under, crowding = (row[inside] - rows.start, column[inside] - columns.start), crowding[:, inside]
+            under = (row[inside] - rows.start) * (columns.stop - columns.start) + column[inside] - columns.start
+            crowding = crowding[:, inside]
         if not crowding.size:
             return None
         matrix = crowding.astype(dtype)
 
         def add(pressure: Array, out: Array) -> None:
-            out[self.row, self.column] += matrix @ pressure[under].astype(dtype, copy=False)
+            out.flat[to] += matrix @ pressure.take(under).astype(dtype, copy=False)
 
         return add
+
+
+@lru_cache(maxsize=64)
+def _in_one_slice(cells: int, aspect: float) -> Array:
+    """Influence coefficients (cells,) of the cells of one slice: those of a grid solved again under another load."""
+    return influence_coefficients((cells, 1), aspect)[:, 0]

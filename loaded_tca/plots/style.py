@@ -49,7 +49,8 @@ def save_figure(figure: Figure, path: FilePath) -> None:
 
 def png_of(figure: Figure) -> bytes:
     """Return a figure as the content of a PNG file."""
-    content, canvas, shown = io.BytesIO(), FigureCanvasAgg(figure), figure.get_dpi()
+    content, shown = io.BytesIO(), figure.get_dpi()
+    canvas: Any = FigureCanvasAgg(figure)
     figure.set_dpi(DOTS_PER_INCH)
     canvas.draw()  # once: savefig would draw the figure to lay it out, and then again
     imsave(content, canvas.buffer_rgba(), format="png", dpi=DOTS_PER_INCH)

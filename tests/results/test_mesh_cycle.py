@@ -15,7 +15,7 @@ from loaded_tca.errors import InputError
 from loaded_tca.results.files import read_dataset, write_dataset
 from loaded_tca.results.mesh_cycle import QUANTITIES, MeshCycle
 from loaded_tca.scene import read_scene
-from tests.samples.results import PER_PAIR, PER_POSITION, SCENES, assert_same, changed, result, with_a_gap
+from tests.samples.results import ONE_PAIR, PER_PAIR, PER_POSITION, SCENES, assert_same, changed, result, with_a_gap
 
 SCENE = str(SCENES / "helical.toml")
 
@@ -374,7 +374,7 @@ def test_cap_that_is_reached_at_an_edge_alone_is_told():
 
 def test_cap_of_a_scene_reaches_the_result():
     scene = read_scene(SCENES / "helical.toml")
-    changes = {"analysis.positions": 1, "analysis.cells": (20, 24), "material.max_pressure_MPa": 500.0}
+    changes = {**ONE_PAIR, "analysis.positions": 1, "analysis.cells": (20, 24), "material.max_pressure_MPa": 500.0}
     cycle = analyse(scene.with_changes(changes))
     assert cycle.max_pressure == 500.0
     assert cycle.key_figures()[0]["peak_pressure_MPa"] == pytest.approx(500.0)
