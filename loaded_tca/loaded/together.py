@@ -28,6 +28,7 @@ Result = TypeVar("Result")
 class Gap:
     """A separation to sample, in the box that a load needs or in a given one; see :func:`sample_separation`."""
 
+    pair: GearPair
     contact: ContactPoint
     cells: tuple[int, int]
     load: float | None = None
@@ -45,16 +46,13 @@ class Task(NamedTuple):
 Steps = Generator[Gap | Task, Any, Result]
 
 
-def found_together(
-    pair: GearPair, all_steps: Sequence[Steps[Result]], told: Callable[[int], None] | None = None
-) -> list[Result]:
+def found_together(all_steps: Sequence[Steps[Result]], told: Callable[[int], None] | None = None) -> list[Result]:
     """Answer what generators ask for, in rounds, until all have returned.
 
     In a round all gaps that are asked for are sampled, or else all problems on the coarsest grid are solved.
 
     Parameters
     ----------
-    pair : GearPair
     all_steps : sequence of generators
     told : callable, optional
         Called with how many have returned, whenever one does.
@@ -83,7 +81,7 @@ def found_together(
     for index, steps in enumerate(all_steps):
         advance(index, partial(next, steps))
     while asked:
-        for index, answer in _answers(pair, asked).items():
+        for index, answer in _answers(asked).items():
             del asked[index]
             steps = all_steps[index]
             failed = isinstance(answer, LoadedTCAError)
@@ -91,16 +89,16 @@ def found_together(
     return [results[index] for index in range(len(all_steps))]
 
 
-def found_alone(pair: GearPair, steps: Steps[Result]) -> Result:
+def found_alone(steps: Steps[Result]) -> Result:
     """Answer what one generator asks for, until it returns."""
-    return found_together(pair, [steps])[0]
+    return found_together([steps])[0]
 
 
-def _answers(pair: GearPair, asked: dict[int, Gap | Task]) -> dict[int, Separation | ContactSolution | LoadedTCAError]:
+def _answers(asked: dict[int, Gap | Task]) -> dict[int, Separation | ContactSolution | LoadedTCAError]:
     """Answer the gaps that are asked for, or else the problems on the coarsest grid; an error is an answer, too."""
     gaps = {index: request for index, request in asked.items() if isinstance(request, Gap)}
     if gaps:
-        return {index: _sampled(pair, gap) for index, gap in gaps.items()}
+        return {index: _sampled(gap) for index, gap in gaps.items()}
     tasks = {index: task for index, task in asked.items() if isinstance(task, Task)}
     coarsest = min(task.problem.gap.size for task in tasks.values())
     chosen = {index: task for index, task in tasks.items() if task.problem.gap.size == coarsest}
@@ -111,8 +109,8 @@ def _answers(pair: GearPair, asked: dict[int, Gap | Task]) -> dict[int, Separati
     }
 
 
-def _sampled(pair: GearPair, gap: Gap) -> Separation | LoadedTCAError:
+def _sampled(gap: Gap) -> Separation | LoadedTCAError:
     try:
-        return sample_separation(pair, gap.contact, cells=gap.cells, load=gap.load, box=gap.box)
+        return sample_separation(gap.pair, gap.contact, cells=gap.cells, load=gap.load, box=gap.box)
     except LoadedTCAError as error:
         return error
