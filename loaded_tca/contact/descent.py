@@ -2,14 +2,14 @@
 
 from dataclasses import dataclass
 from itertools import count
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.contact.convolution import Preconditioner
-from loaded_tca.contact.grid import Grids, by_problem, highest, lowest, sums
+from loaded_tca.contact.grid import ALL, CELLS, Grids, Rows, ratio, total_of
 
 Single = NDArray[np.float32]
 
@@ -26,24 +26,19 @@ PART_LEFT = 0.75
 
 
 def dots(one: NDArray[Any], other: NDArray[Any]) -> Array:
-    """Scalar products of every problem, (count,): without BLAS, whose threads wait for each other on a busy machine."""
-    return np.einsum("ki,ki->k", one.reshape(len(one), -1), other.reshape(len(other), -1)).astype(np.float64, copy=False)
-
-
-def ratio(above: Array, below: Array, where: Mask) -> Array:
-    """Quotients of numbers for each problem, zero where there is none to be taken."""
-    return np.divide(above, below, out=np.zeros(len(below)), where=where)
+    """Scalar products of every problem, (count, 1, 1); not by BLAS: its threads wait for each other when it is busy."""
+    return np.einsum("kij,kij->k", one, other).astype(np.float64, copy=False)[:, None, None]
 
 
 @dataclass
 class Judgement:
-    """How far pressures are from solving their problems.
+    """How far pressures are from solving their problems; the numbers of each are (count, 1, 1).
 
     Parameters
     ----------
-    approach : (count,) array [mm]
+    approach : array [mm]
         Mean of u + h over the cells strictly between the bounds, or as prescribed.
-    residual : (count,) array
+    residual : array
         Largest of: mean excess where the pressure is between the bounds, weighted with it; deepest penetration
         where the pressure is zero; widest gap where it is at the cap. All over the approach.
     free : (count, nx, ny) array of bool
@@ -54,43 +49,36 @@ class Judgement:
     residual: Array
     free: Mask
 
-    def select(self, rows: Indices) -> Self:
-        """That of some of the problems."""
-        return type(self)(self.approach[rows], self.residual[rows], self.free[rows])
-
 
 def judge(grids: Grids, pressure: Array, excess: Array) -> Judgement:
     """Check the Kuhn-Tucker conditions; turns ``excess``, given as u + h, into u + h - approach in place."""
-    inner = loaded = pressure > by_problem(grids.slack)
+    inner = loaded = pressure > grids.slack
     capped: Mask | None = None
-    if grids.capped.any():
-        capped = pressure >= grids.limit - by_problem(grids.slack)
+    if grids.any_capped:
+        capped = pressure >= grids.limit - grids.slack
         inner = loaded & ~capped
+    room = inner.astype(np.float64)  # arrays of double precision are dear: one has to do
     approach = grids.approach
     if grids.loaded.any():
-        approach = np.where(grids.loaded, _mean_level(excess, loaded, inner, capped), approach)
-    excess -= by_problem(approach)
+        cells = total_of(room)
+        approach = np.where(grids.loaded, dots(excess, room) / np.maximum(cells, 1.0), approach)
+        for k in np.flatnonzero(grids.loaded & (cells == 0.0)) if capped is not None else ():
+            # With every cell at a bound any value between two limits is right.
+            lower, outside = float(excess[k][capped[k]].max()), excess[k][~loaded[k]]
+            approach[k] = 0.5 * (lower + float(outside.min(initial=2.0 * np.abs(excess[k]).max() - lower)))
+    excess -= approach
     free = inner | (excess < 0.0)
-    misfit = np.abs(excess)
-    worst = np.maximum(0.0, highest(np.where(loaded, 0.0, -excess)))
+    np.multiply(excess, room, out=room)
+    np.abs(room, out=room)
+    worst = dots(pressure, room) / np.maximum(total_of(pressure), TINY)
+    # Where nothing presses.
+    np.multiply(excess, loaded if capped is not None else inner, out=room)
+    np.subtract(room, excess, out=room)
+    worst = np.maximum(worst, room.max(axis=CELLS, keepdims=True))
     if capped is not None:
-        worst = np.maximum(worst, highest(np.where(capped, excess, 0.0)))
+        worst = np.maximum(worst, np.where(capped, excess, 0.0).max(axis=CELLS, keepdims=True))
         free = free & ~capped | (capped & (excess > 0.0))
-        misfit *= inner
-    worst = np.maximum(worst, dots(pressure, misfit) / np.maximum(sums(pressure), TINY))
-    residual = np.divide(worst, approach, out=np.full(len(worst), np.inf), where=approach > 0.0)
-    return Judgement(approach, residual, free)
-
-
-def _mean_level(level: Array, loaded: Mask, inner: Mask, capped: Mask | None) -> Array:
-    """Approaches that fit u + h best; with every cell at a bound any value between two limits is right."""
-    cells = np.count_nonzero(inner, axis=(1, 2))
-    mean = sums(np.where(inner, level, 0.0)) / np.maximum(cells, 1)
-    for k in np.flatnonzero(cells == 0) if capped is not None else ():
-        if capped[k].any():
-            lower = float(level[k][capped[k]].max())
-            mean[k] = 0.5 * (lower + float(level[k][~loaded[k]].min(initial=2.0 * np.abs(level[k]).max() - lower)))
-    return np.asarray(mean)
+    return Judgement(approach, ratio(worst, approach, approach > 0.0, otherwise=np.inf), free)
 
 
 class Descent:
@@ -118,7 +106,9 @@ class Descent:
     ----------
     pressure : (count, nx, ny) array [mm]
         The solutions, once it has run.
-    iterations, convolutions : (count,) arrays of int
+    approach, residual : (count,) array
+        See :class:`Judgement`.
+    iterations, convolutions : (count,) array of int
 
     References
     ----------
@@ -134,62 +124,55 @@ class Descent:
         threads: int = 2,
         exact: bool = True,
     ) -> None:
-        shape = pressure.shape
-        self.pressure = pressure
+        self.pressure = np.empty(pressure.shape)
+        self.approach, self.residual = np.empty((2, len(grids)))
         self.iterations, self.convolutions = np.zeros((2, len(grids)), dtype=int)
+        # From here on only the problems that have not ended, ``rows`` of the stack.
         self._grids, self._rows, self._threads = grids, np.arange(len(grids)), threads
         self._fast = grids.operator(dtype="float32", threads=threads)
         self._precondition = Preconditioner(grids.shape, grids.aspects, threads)
         # Cut cells are about so much stiffer, the part being its square.
         self._root = None if grids.cover is None else np.sqrt(grids.cover).astype(np.float32)
-        self._now = pressure
+        self._now, self._next, self._excess = pressure, np.empty(pressure.shape), np.empty(pressure.shape)
         self._displacement = self._displaced(exact) if displacement is None else displacement
-        self._excess = np.empty(shape)
-        self._scale = np.ones(len(grids))
-        self._last_descent = np.zeros(len(grids))  # zero: the next direction is a restart
-        self._last, self._residual, self._direction, self._preconditioned, self._image = np.zeros(
-            (5, *shape), dtype=np.float32
-        )
+        self._scale = np.ones((len(grids), 1, 1))
+        self._last_descent = np.zeros((len(grids), 1, 1))  # zero: the next direction is a restart
+        self._direction, self._last = np.zeros((2, *pressure.shape), dtype=np.float32)
+        self._residual, self._preconditioned, self._image, self._free = np.empty((4, *pressure.shape), dtype=np.float32)
 
-    def run(self, tolerance: Array, limit: Array) -> Judgement:
+    def run(self, tolerance: Array, limit: Array) -> None:
         """Iterate each problem until its residual is below its tolerance or its ``limit`` of iterations is reached."""
-        running, found = np.ones(len(self._rows), dtype=bool), self._judged()
-        self.pressure, state = np.empty_like(self._now), found
+        running = np.ones((len(self._rows), 1, 1), dtype=bool)
         for step in count():
-            if step:
-                state = self._judged()
-            ended = running & ((state.residual <= tolerance[self._rows]) | (step >= limit[self._rows]))
+            np.add(self._displacement, self._grids.gap, out=self._excess)
+            state = judge(self._grids, self._now, self._excess)
+            ended = (state.residual[:, 0, 0] <= tolerance[self._rows]) | (step >= limit[self._rows])
+            ended &= running[:, 0, 0]
             if ended.any():
                 rows = self._rows[ended]
                 self.pressure[rows], self.iterations[rows] = self._now[ended], step
-                found.approach[rows], found.residual[rows] = state.approach[ended], state.residual[ended]
-                found.free[rows] = state.free[ended]
-                running &= ~ended
-                if not running.any():
-                    return found
-                if np.count_nonzero(running) <= PART_LEFT * len(running):
-                    kept = np.flatnonzero(running)
-                    self._keep(kept)
-                    running, state = running[kept], state.select(kept)
+                self.approach[rows], self.residual[rows] = state.approach[ended, 0, 0], state.residual[ended, 0, 0]
+                running[ended] = False
+                left = np.flatnonzero(running)
+                if not left.size:
+                    return
+                if left.size <= PART_LEFT * len(running):
+                    self._keep(left)
+                    running, state = running[left], Judgement(state.approach[left], state.residual[left], state.free[left])
             self._iterate(state, running)
             if (step + 1) % REFRESH == 0:
                 self._displacement = self._displaced(exact=True)
                 self._last_descent[:] = 0.0
-        raise AssertionError
 
-    def _judged(self) -> Judgement:
-        np.add(self._displacement, self._grids.gap, out=self._excess)
-        return judge(self._grids, self._now, self._excess)
-
-    def _keep(self, rows: Indices) -> None:
+    def _keep(self, left: Indices) -> None:
         """Go on with some of the problems."""
-        self._grids, self._fast = self._grids.select(rows), self._fast.select(rows)
-        self._precondition, self._rows = self._precondition.select(rows), self._rows[rows]
-        self._root = None if self._root is None else self._root[rows]
-        self._now, self._displacement, self._excess = self._now[rows], self._displacement[rows], self._excess[rows]
-        self._scale, self._last_descent = self._scale[rows], self._last_descent[rows]
-        self._last, self._residual, self._direction = self._last[rows], self._residual[rows], self._direction[rows]
-        self._preconditioned, self._image = self._preconditioned[: len(rows)], self._image[: len(rows)]
+        self._grids, self._fast = self._grids.select(left), self._fast.select(left)
+        self._precondition, self._rows = self._precondition.select(left), self._rows[left]
+        for name in ("_root", "_now", "_displacement", "_excess", "_scale", "_last_descent", "_last", "_direction"):
+            array = getattr(self, name)
+            setattr(self, name, None if array is None else array[left])
+        for name in ("_next", "_residual", "_preconditioned", "_image", "_free"):  # filled anew before they are read
+            setattr(self, name, getattr(self, name)[: left.size])
 
     def _displaced(self, exact: bool) -> Array:
         """Displacement of the pressures, in double precision or in single."""
@@ -204,80 +187,93 @@ class Descent:
 
     def _iterate(self, state: Judgement, running: Mask) -> None:
         """One step along the conjugate directions, projected where it leaves the bounds; none for those that ended."""
-        self._scale = np.where(state.approach > 0.0, state.approach, 1.0)
+        scale = self._scale = np.where(state.approach > 0.0, state.approach, 1.0)
         for k in np.flatnonzero(state.approach <= 0.0):
-            self._scale[k] = np.abs(self._displacement[k]).max()
-        free = state.free.astype(np.float32)
-        residual = np.multiply(self._excess, by_problem(1.0 / self._scale), out=self._residual, casting="same_kind")
-        self._level(residual, free)
-        direction = self._conjugate(residual, free)
-        self.convolutions[self._rows[running]] += 1
-        image = self._fast(direction, self._image)
-        curvature = dots(direction, image)
+            scale[k] = np.abs(self._displacement[k]).max()
+        np.copyto(self._free, state.free)
+        np.multiply(self._excess, 1.0 / scale, out=self._residual, casting="same_kind")
+        cells = np.maximum(total_of(self._free), 1.0)
+        self._level(self._residual, cells)
+        slope = self._conjugate(cells)
+        self.convolutions[self._rows[running[:, 0, 0]]] += 1
+        image = self._fast(self._direction, self._image)
+        curvature = dots(self._direction, image)
         bent = curvature > 0.0
         self._last_descent[~bent] = 0.0
-        length = by_problem(ratio(self._scale * dots(direction, residual), curvature, bent & running))
-        trial = self._now - length * direction
-        outside = lowest(trial) < 0.0
-        if self._grids.capped.any():
-            outside |= (trial > self._grids.limit).any(axis=(1, 2))
-        rows = np.flatnonzero(outside & bent & running)
-        target = trial[rows]
-        trial[rows], length[rows] = self._now[rows], 0.0
-        self._displacement -= length * image
-        self._now = trial
+        bent &= running
+        length = ratio(scale * slope, curvature, bent).astype(np.float32)
+        # The array of the preconditioned residual is free to take the step.
+        step, trial = np.multiply(self._direction, length, out=self._preconditioned), self._next
+        np.subtract(self._now, step, out=trial)
+        outside = trial.min(axis=CELLS, keepdims=True) < 0.0
+        if self._grids.any_capped:
+            outside |= (trial > self._grids.limit).any(axis=CELLS, keepdims=True)
+        rows = np.flatnonzero(outside & bent)
         if rows.size:
-            rows = self._move(rows, self._grids.clip(target, state.free[rows], rows))
+            target = self._grids.clip(trial[rows], state.free[rows], rows)
+            trial[rows], length[rows] = self._now[rows], 0.0
+        image *= length
+        self._displacement -= image
+        self._now, self._next = trial, self._now
+        if rows.size:
+            rows = self._move(rows, target)
             self._last_descent[rows] = 0.0
         if rows.size:
             rows = rows[~self._drop_dust(rows)]
         if rows.size:
             self._project_gradient(rows, state.free)
-        # What has just been used is the last from here on; its array takes the next.
+        # The residual is the last one from here on, and the array of that takes the next.
         self._last, self._residual = self._residual, self._last
 
-    def _conjugate(self, residual: Single, free: Single) -> Single:
-        """Direction of Polak and Ribiere from the preconditioned residual; a restart where it does not descend."""
-        root, preconditioned, direction = self._root, self._preconditioned, self._direction
-        self._precondition(residual if root is None else root * residual, preconditioned)
-        if root is not None:
-            preconditioned *= root
-        self._level(preconditioned, free)
-        descent = dots(preconditioned, residual)
-        again = self._last_descent > 0.0
-        ahead = np.maximum(0.0, ratio(descent - dots(preconditioned, self._last), self._last_descent, again))
-        direction *= by_problem(ahead.astype(np.float32))
-        direction += preconditioned
-        self._level(direction, free)
-        uphill = ~(dots(direction, residual) > 0.0)
-        direction[uphill] = preconditioned[uphill]
-        self._last_descent = np.maximum(descent, 0.0)
-        return direction
+    def _conjugate(self, cells: Single) -> Array:
+        """Directions of Polak and Ribiere from the preconditioned residual, restarts where they do not descend.
 
-    def _level(self, values: Single, free: Single) -> None:
+        Returns their products with the residual.
+        """
+        residual, preconditioned, direction = self._residual, self._preconditioned, self._direction
+        if self._root is None:
+            self._precondition(residual, preconditioned)
+        else:
+            self._precondition(self._root * residual, preconditioned)
+            preconditioned *= self._root
+        self._level(preconditioned, cells)
+        descent = dots(preconditioned, residual)
+        ahead = np.maximum(0.0, descent - dots(preconditioned, self._last))
+        direction *= ratio(ahead, self._last_descent, self._last_descent > 0.0).astype(np.float32)
+        direction += preconditioned
+        self._level(direction, cells)
+        slope = dots(direction, residual)
+        uphill = np.flatnonzero(~(slope > 0.0))
+        direction[uphill], slope[uphill] = preconditioned[uphill], descent[uphill]
+        self._last_descent = np.maximum(descent, 0.0)
+        return slope
+
+    def _level(self, values: Single, cells: Single) -> None:
         """Leave nothing outside the free cells; with a given sum, take the mean off them, so that the sum stays."""
-        values *= free
-        loaded = self._grids.loaded
-        if loaded.any():
-            mean = np.where(loaded, sums(values), 0.0) / np.maximum(sums(free), 1.0)
-            values -= by_problem(mean.astype(np.float32))
-            values *= free
+        values *= self._free
+        if self._grids.loaded.any():
+            values -= np.where(self._grids.loaded, total_of(values) / cells, np.float32(0.0))
+            values *= self._free
 
     def _move(self, rows: Indices, target: Array) -> Indices:
         """Go towards pressures within the bounds as far as the energy falls; returns where it does not fall at all."""
-        start, scale = self._now[rows], self._scale[rows]
-        step = target - start
-        single = (step / by_problem(scale)).astype(np.float32)
+        chosen: Rows = ALL if rows.size == len(self._rows) else rows
+        scale, step = self._scale[rows], target - self._now[chosen]
+        single = np.multiply(step, 1.0 / scale, out=np.empty(step.shape, dtype=np.float32), casting="same_kind")
         image = self._convolved(single, rows)
-        slope, curvature = dots(step, self._excess[rows]) / scale**2, dots(single, image)
+        # The residual is the excess over the scale where a step goes, but for a constant, which a sum of zero meets.
+        slope, curvature = dots(single, self._residual[chosen]), dots(single, image)
         falls = (slope < 0.0) & (curvature > 0.0)
-        best = ratio(-slope, curvature, falls)
-        searched = best < WHOLE_STEP
-        part = by_problem(np.where(searched, best, 1.0))
-        moved = np.where(by_problem(searched), start + part * step, target)
-        self._now[rows[falls]] = moved[falls]
-        self._displacement[rows[falls]] += (part * by_problem(scale) * image)[falls]
-        return rows[~falls]
+        part = ratio(-slope, curvature, falls)
+        part[part >= WHOLE_STEP] = 1.0
+        step *= part
+        step += self._now[chosen]
+        whole = np.flatnonzero(part == 1.0)
+        step[whole] = target[whole]  # to the last digit
+        self._now[chosen] = step
+        image *= (part * scale).astype(np.float32)
+        self._displacement[chosen] += image
+        return rows[~falls[:, 0, 0]]
 
     def _drop_dust(self, rows: Indices) -> Mask:
         """Set pressures to zero that are next to none over an open gap; returns the problems that had some.
@@ -285,16 +281,17 @@ class Descent:
         What that gains is lost in the rounding of single precision, so that no step would find it.
         """
         pressure = self._now[rows]
-        dust = (self._excess[rows] > 0.0) & (pressure > 0.0) & (pressure < by_problem(DUST * highest(pressure)))
+        dust = (self._excess[rows] > 0.0) & (pressure > 0.0)
+        dust &= pressure < DUST * pressure.max(axis=CELLS, keepdims=True)
         self._now[rows] = np.where(dust, 0.0, pressure)
-        return np.asarray(dust.any(axis=(1, 2)))
+        return np.asarray(dust.any(axis=CELLS))
 
     def _project_gradient(self, rows: Indices, free: Mask) -> None:
         """One projected step down the plain gradient, which always descends."""
         residual = self._residual[rows]
         curvature = dots(residual, self._convolved(residual, rows))
-        bent = curvature > 0.0
-        length = by_problem(ratio(self._scale[rows] * dots(residual, residual), curvature, bent))
-        rows, target = rows[bent], (self._now[rows] - length * residual)[bent]
-        if rows.size:
-            self._move(rows, self._grids.project(target, free[rows], rows))
+        bent = np.flatnonzero(curvature > 0.0)
+        if bent.size:
+            rows, residual = rows[bent], residual[bent]
+            length = self._scale[rows] * dots(residual, residual) / curvature[bent]
+            self._move(rows, self._grids.project(self._now[rows] - length * residual, free[rows], rows))

@@ -34,31 +34,26 @@ Rows = Indices | slice
 ALL = slice(None)
 
 
-def by_problem(values: Array) -> Array:
-    """One number for each problem, (count,), as it goes with arrays (count, nx, ny)."""
-    return values[:, None, None]
+CELLS = (1, 2)
+"""Axes of the cells of a stack."""
 
 
-def sums(values: Array) -> Array:
-    """Sum over the cells of every problem, in double precision, (count,)."""
-    return np.asarray(values.reshape(len(values), -1).astype(np.float64, copy=False).sum(axis=1))
+def each(values: Sequence[float] | Array) -> Array:
+    """One number for each problem, (count, 1, 1), as it goes with arrays (count, nx, ny)."""
+    return np.asarray(values, dtype=np.float64)[:, None, None]
 
 
-def highest(values: Array) -> Array:
-    """Largest value of every problem, (count,)."""
-    return np.asarray(values.reshape(len(values), -1).max(axis=1))
-
-
-def lowest(values: Array) -> Array:
-    """Smallest value of every problem, (count,)."""
-    return np.asarray(values.reshape(len(values), -1).min(axis=1))
+def total_of(values: Array) -> Array:
+    """Sum over the cells of every problem, (count, 1, 1)."""
+    return np.add.reduce(values, axis=CELLS, keepdims=True)
 
 
 @dataclass(frozen=True, eq=False)
 class Grids:
     """A stack of contact problems on grids of one shape: minimise p.Kp/2 + h.p over 0 <= p <= cap, each for itself.
 
-    Pressures are p dx/E* here, a length, so that K depends on the shape of a cell only.
+    Pressures are p dx/E* here, a length, so that K depends on the shape of a cell only. What is one number for each
+    problem has the shape (count, 1, 1), as it goes with the cells.
 
     Parameters
     ----------
@@ -66,11 +61,11 @@ class Grids:
         Gap h before loading, its smallest value near 0; infinite, or too large to close, where there is no material.
     spacing : (count, 2) array [mm]
         Width of a cell.
-    total : (count,) array [mm]
+    total : (count, 1, 1) array [mm]
         Sum of the pressures; NaN if the approach is prescribed.
-    approach : (count,) array [mm]
+    approach : (count, 1, 1) array [mm]
         Prescribed approach, counted as ``gap`` is; of no meaning if the total is given.
-    cap : (count,) array [mm]
+    cap : (count, 1, 1) array [mm]
         Largest pressure, infinity if there is none; of the material of a cut cell, see ``limit``.
     free_edges : tuple of FreeEdge
         Where the bodies end; K holds their images of the pressure too. Of stacks of one only.
@@ -100,31 +95,28 @@ class Grids:
         """
         first = problems[0]
         spacing = np.array([problem.spacing for problem in problems])
-        modulus, contact = (
-            np.array([getattr(problem, name) for problem in problems]) for name in ("contact_modulus", "first_contact")
+        dx, dy = each(spacing[:, 0]), each(spacing[:, 1])
+        modulus, contact, load, approach, cap = (
+            each([np.nan if (value := getattr(problem, name)) is None else value for problem in problems])
+            for name in ("contact_modulus", "first_contact", "load", "approach", "max_pressure")
         )
-        total, approach, cap = (
-            np.array([np.nan if (value := getattr(problem, name)) is None else value for problem in problems], float)
-            for name in ("load", "approach", "max_pressure")
+        total, approach, cap = load / (dy * modulus), approach - contact, cap * (dx / modulus)
+        cover, slices = (
+            None if getattr(first, name) is None else np.stack([getattr(problem, name) for problem in problems])
+            for name in ("cover", "slice_compliance")
         )
-        unit = spacing[:, 1] * modulus
-        total, approach, cap = total / unit, approach - contact, cap * (spacing[:, 0] / modulus)
-        cover = None if first.cover is None else np.stack([problem.cover for problem in problems])  # type: ignore[misc]
         # One cell that takes all of the load, or of the approach, has the highest pressure there can be.
-        own = influence_coefficients((1, 1), spacing[:, 1] / spacing[:, 0])[:, 0, 0]
-        most = np.where(np.isnan(total), approach / own, total)
+        most = np.where(np.isnan(total), approach / influence_coefficients((1, 1), spacing[:, 1] / spacing[:, 0]), total)
         if cover is not None:
-            most /= np.where(cover > 0.0, cover, 1.0).min(axis=(1, 2))
+            most /= np.where(cover > 0.0, cover, 1.0).min(axis=CELLS, keepdims=True)
         return cls(
-            gap=np.stack([problem.gap for problem in problems]) - by_problem(contact),
+            gap=np.stack([problem.gap for problem in problems]) - contact,
             spacing=spacing,
             total=total,
             approach=approach,
             cap=np.where(cap < most, cap, np.inf),
             free_edges=tuple(first.free_edges),
-            slices=None
-            if first.slice_compliance is None
-            else np.stack([problem.slice_compliance for problem in problems]) * by_problem(unit),  # type: ignore[misc]
+            slices=None if slices is None else slices * (dy * modulus),
             cover=cover,
         )
 
@@ -150,13 +142,18 @@ class Grids:
 
     @cached_property
     def loaded(self) -> Mask:
-        """Problems whose load is given, (count,); that of the others follows from their approach."""
+        """Problems whose load is given, (count, 1, 1); that of the others follows from their approach."""
         return ~np.isnan(self.total)
 
     @cached_property
     def capped(self) -> Mask:
-        """Problems with a cap on the pressure, (count,)."""
+        """Problems with a cap on the pressure, (count, 1, 1)."""
         return np.isfinite(self.cap)
+
+    @cached_property
+    def any_capped(self) -> bool:
+        """Whether there is one with a cap."""
+        return bool(self.capped.any())
 
     @cached_property
     def slack(self) -> Array:
@@ -166,35 +163,33 @@ class Grids:
     @cached_property
     def limit(self) -> Array:
         """Largest pressure of the cells, (count, 1, 1) or (count, nx, ny)."""
-        cap = by_problem(self.cap)
-        return cap if self.cover is None else limits(cap, self.cover)
+        return self.cap if self.cover is None else limits(self.cap, self.cover)
 
     @cached_property
     def reach(self) -> Array:
-        """Gap beyond which no cell can come into contact [mm], (count,).
+        """Gap beyond which no cell can come into contact [mm], (count, 1, 1).
 
         No displacement of a cell exceeds that of the whole load on it. The approach is at most the sum of its gap and
         that displacement for some cell below the cap: one of the lowest sums, as many as the load fills to the cap and
         one more.
         """
-        own = amplification(self.free_edges) * influence_coefficients((1, 1), self.aspects)[:, 0, 0]
+        own = amplification(self.free_edges) * influence_coefficients((1, 1), self.aspects)
         if self.slices is not None:
-            own = own + np.abs(self.slices).max(axis=(1, 2))
-        most = by_problem(np.where(self.loaded, self.total, 0.0) * own)
+            own = own + np.abs(self.slices).max(axis=CELLS, keepdims=True)
+        most = np.where(self.loaded, self.total, 0.0) * own
         level = self.gap + (most if self.cover is None else most / np.maximum(self.cover, LEAST_COVER))
-        level = level.reshape(len(self), -1)
-        reach = np.where(self.loaded, level.min(axis=1), self.approach)
+        reach = np.where(self.loaded, level.min(axis=CELLS, keepdims=True), self.approach)
         for k in np.flatnonzero(self.loaded & self.capped):
-            order = np.argsort(level[k])
+            order = np.argsort(level[k], axis=None)
             held = np.cumsum(np.broadcast_to(self.limit[k], self.shape).ravel()[order])
-            rank = np.searchsorted(held, self.total[k], side="right")
-            reach[k] = level[k, order[min(rank, np.isfinite(level[k]).sum() - 1)]]
+            rank = int(np.searchsorted(held, self.total[k, 0, 0], side="right"))
+            reach[k] = level[k].ravel()[order[min(rank, np.isfinite(level[k]).sum() - 1)]]
         return np.asarray(reach)
 
     @cached_property
     def reachable(self) -> Mask:
         """Cells that might come into contact, (count, nx, ny)."""
-        return np.asarray(self.gap <= by_problem(self.reach))
+        return np.asarray(self.gap <= self.reach)
 
     def part(self, window: Window) -> Grids:
         """Return the problems on a window of the grid, their gaps cut where they are out of reach."""
@@ -202,7 +197,7 @@ class Grids:
         cut = self.cover is not None and is_cut(self.cover[:, rows, columns]).any()
         return replace(
             self,
-            gap=np.minimum(self.gap[:, rows, columns], by_problem(OUT_OF_REACH * self.reach)),
+            gap=np.minimum(self.gap[:, rows, columns], OUT_OF_REACH * self.reach),
             slices=None if self.slices is None else self.slices[:, columns, columns],
             start=(rows.start, columns.start),
             cover=self.cover[:, rows, columns] if self.cover is not None and cut else None,
@@ -255,14 +250,16 @@ class Grids:
     def fitted(self, pressure: Array) -> Array:
         """Return pressures within the bounds and with the right sums, zero where no contact is possible."""
         pressure = np.where(self.reachable, np.minimum(pressure, self.limit), 0.0)
-        empty = self.loaded & ~pressure.any(axis=(1, 2))
-        pressure[empty] = self.reachable[empty]
-        total = np.where(self.loaded, self.total, 1.0)
-        pressure *= by_problem(total / np.where(self.loaded, sums(pressure), 1.0))
-        above = np.flatnonzero((pressure > self.limit).any(axis=(1, 2)))
+        pressure += self.reachable * (self.loaded & ~pressure.any(axis=CELLS, keepdims=True))
+        pressure *= ratio(self.total, total_of(pressure), self.loaded, otherwise=1.0)
+        above = np.flatnonzero((pressure > self.limit).any(axis=CELLS))
         if above.size:
             pressure[above] = self.project(pressure[above], self.reachable[above], above)
         return pressure
+
+    def settled(self, pressure: Array) -> Array:
+        """Pressures without the rounding errors that steps leave in their sums."""
+        return self.clip(pressure, (pressure > 0.0) & (pressure < self.limit))
 
     def clip(self, pressure: Array, movable: Mask, rows: Rows = ALL) -> Array:
         """Pressures of some of the problems within the bounds and with the right sums.
@@ -271,15 +268,11 @@ class Grids:
         """
         scaled = (self.loaded & ~self.capped)[rows]
         clipped = np.maximum(pressure, 0.0)
-        clipped *= by_problem(np.where(scaled, self.total[rows], 1.0) / np.where(scaled, sums(clipped), 1.0))
+        clipped *= ratio(self.total[rows], total_of(clipped), scaled, otherwise=1.0)
         if not scaled.all():
             others = np.flatnonzero(~scaled)
             clipped[others] = self.project(pressure[others], movable[others], np.arange(len(self))[rows][others])
         return clipped
-
-    def settled(self, pressure: Array) -> Array:
-        """Pressures without the rounding errors that steps leave in their sums."""
-        return self.clip(pressure, (pressure > 0.0) & (pressure < self.limit))
 
     def project(self, pressure: Array, movable: Mask, rows: Rows = ALL) -> Array:
         """Nearest pressures of some of the problems within the bounds and with the right sums.
@@ -288,13 +281,12 @@ class Grids:
         """
         total, limit = self.total[rows], self.limit[rows]
         projected = np.clip(pressure, 0.0, limit)
-        summed = np.flatnonzero(self.loaded[rows] & movable.any(axis=(1, 2)))
+        summed = np.flatnonzero(self.loaded[rows] & movable.any(axis=CELLS, keepdims=True))
         if summed.size:
             movable, total = movable[summed], total[summed]
             fixed = np.where(movable, 0.0, projected[summed])
-            limit = np.where(movable, np.minimum(limit[summed], by_problem(total)), 0.0)
-            moved = shifted_to_sum(pressure[summed], total - sums(fixed), limit, movable)
-            projected[summed] = moved + fixed
+            limit = np.where(movable, np.minimum(limit[summed], total), 0.0)
+            projected[summed] = fixed + shifted_to_sum(pressure[summed], total - total_of(fixed), limit, movable)
         return projected
 
 
@@ -329,22 +321,27 @@ class Operator:
         )
 
 
+def ratio(above: Array, below: Array, where: Mask, otherwise: float = 0.0) -> Array:
+    """Quotients of one number for each problem where they are to be taken."""
+    return np.divide(above, below, out=np.full(below.shape, otherwise), where=where)
+
+
 def shifted_to_sum(values: Array, total: Array, cap: Array, movable: Mask) -> Array:
     """Project onto 0 <= p <= cap, sum p = total: p = clip(values - shift), the shift by safeguarded Newton steps.
 
     Each problem (count, nx, ny) for itself; cells that are not movable have a cap of zero.
     """
-    low = -highest(np.where(movable, cap - values, -np.inf))
-    high = highest(np.where(movable, values, -np.inf))
-    shift, searching = np.zeros(len(values)), np.ones(len(values), dtype=bool)
+    low = np.where(movable, values - cap, np.inf).min(axis=CELLS, keepdims=True)
+    high = np.where(movable, values, -np.inf).max(axis=CELLS, keepdims=True)
+    shift, searching = np.zeros(low.shape), np.ones(low.shape, dtype=bool)
     for _ in range(MOST_PROJECTIONS):
-        projected = np.clip(values - by_problem(shift), 0.0, cap)
-        surplus = sums(projected) - total
+        projected = np.clip(values - shift, 0.0, cap)
+        surplus = total_of(projected) - total
         searching &= np.abs(surplus) > SUMMED * total
         if not searching.any():
             break
         low, high = np.where(surplus > 0.0, shift, low), np.where(surplus > 0.0, high, shift)
-        inner = ((projected > 0.0) & (projected < cap)).sum(axis=(1, 2))
+        inner = np.count_nonzero((projected > 0.0) & (projected < cap), axis=CELLS, keepdims=True)
         new = np.where(inner > 0, shift + surplus / np.maximum(inner, 1), low)
         new = np.where((low < new) & (new < high), new, 0.5 * (low + high))
         shift = np.where(searching, new, shift)

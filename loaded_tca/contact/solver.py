@@ -30,7 +30,7 @@ from loaded_tca.arrays import Array, Indices, numbers
 from loaded_tca.contact import checks
 from loaded_tca.contact.descent import Descent, judge
 from loaded_tca.contact.edges import FreeEdge
-from loaded_tca.contact.grid import AT_BOUND, LARGEST_WHOLE, OUT_OF_REACH, Grids, highest
+from loaded_tca.contact.grid import AT_BOUND, CELLS, LARGEST_WHOLE, OUT_OF_REACH, Grids, each
 from loaded_tca.contact.levels import coarsening, prolong, window_around
 from loaded_tca.contact.problem import ContactProblem, Spacing
 from loaded_tca.contact.solution import CoarserGrid, ContactSolution, ContactStatus
@@ -231,7 +231,9 @@ def solve_problems(
         chosen = [problems[k] for k in stack], np.array([tolerances[k] for k in stack]), [starts[k] for k in stack]
         found |= zip(stack, _solve_stack(*chosen, threads), strict=True)
     for k, problem in enumerate(problems):
-        solution = found.setdefault(k, _without_load(problem))
+        if k not in found:
+            found[k] = _without_load(problem)
+        solution = found[k]
         if solution.status is ContactStatus.NOT_CONVERGED and on_failure == "raise":
             name = f"contact {k}" if len(problems) > 1 else "contact"
             raise ConvergenceError(
@@ -273,9 +275,10 @@ def contact_stiffness(solution: ContactSolution, tolerance: float = 1e-6) -> flo
     window = window_around(active)
     # A flat punch of the shape of the cells between the bounds, moved in by one: its load is the stiffness.
     gap = np.where(active[window], 0.0, OUT_OF_REACH)[None]
-    of_one = {"total": np.array([np.nan]), "approach": np.ones(1), "cap": np.array([np.inf])}
+    of_one = {"total": each([np.nan]), "approach": each([1.0]), "cap": each([np.inf])}
     descent = Descent(replace(Grids.of([problem]).part(window), gap=gap, **of_one), np.zeros(gap.shape))
-    residual = float(descent.run(np.array([tolerance]), np.array([MOST_ITERATIONS])).residual[0])
+    descent.run(np.array([tolerance]), np.array([MOST_ITERATIONS]))
+    residual = float(descent.residual[0])
     if residual > tolerance:
         raise ConvergenceError(f"contact_stiffness: residual {residual:.1e} > tolerance {tolerance:.1e}")
     return float(descent.pressure.sum()) * problem.spacing[1] * problem.contact_modulus
@@ -365,9 +368,9 @@ def _start_from_coarser(grids: Grids, tolerance: Array, threads: int) -> tuple[A
         some, own = coarse.select(rows), start[rows]
         window = some.window(own)
         descent = Descent(some.part(window), own[:, *window], threads=threads, exact=False)
-        approach[rows] = descent.run(tolerance[rows], np.full(len(rows), MOST_ITERATIONS)).approach
-        pressure[rows, *window] = descent.pressure / merge[0]
-    return grids.fitted(prolong(pressure, grids.shape, merge)), np.stack((highest(pressure), approach), axis=1)
+        descent.run(tolerance[rows], np.full(len(rows), MOST_ITERATIONS))
+        approach[rows], pressure[rows, *window] = descent.approach, descent.pressure / merge[0]
+    return grids.fitted(prolong(pressure, grids.shape, merge)), np.stack((pressure.max(axis=CELLS), approach), axis=1)
 
 
 def _solve_on_finest(
@@ -389,10 +392,10 @@ def _solve_on_finest(
         image = whole.operator(window, threads=threads)(settled, np.empty(now.shape))
         state = judge(whole, now, image + whole.gap)
         pressure[rows], displacement[rows] = now, image + grids.gap
-        approach[rows], residual[rows] = state.approach, state.residual
+        approach[rows], residual[rows] = state.approach[:, 0, 0], state.residual[:, 0, 0]
         iterations[rows] += descent.iterations
         convolutions[rows] += descent.convolutions + 1
-        left = np.flatnonzero((state.residual > tolerance[rows]) & (iterations[rows] < MOST_ITERATIONS))
+        left = np.flatnonzero((residual[rows] > tolerance[rows]) & (iterations[rows] < MOST_ITERATIONS))
         if not left.size:
             break
         rows, grids, now = rows[left], grids.select(left), now[left]
