@@ -157,6 +157,9 @@ class _Transform:
 
         All have an axis of problems first. ``symbol`` is a quadrant of an even one, (count, second, first direction).
         """
+        if len(values) <= self.block:
+            self._filter_block(values, corner, symbol, out)
+            return
         for start in range(0, len(values), self.block):
             block = slice(start, start + self.block)
             self._filter_block(values[block], corner, symbol[block], out[block])
@@ -166,9 +169,8 @@ class _Transform:
         bottom, right = top + values.shape[1], left + values.shape[2]
         loaded, back = self._kept[:count, :, : self._rows[0]], self._kept[:count, :, : self._rows[1]]
         middle = symbol.shape[2]
-        for work in self._works:
-            while len(work.plans) < count:
-                self._plan(work)
+        while len(self._works[0].plans) < count:
+            self._plan(self._works[0])
 
         def inward(part: slice, work: _Work) -> None:
             given, rows = values[:, part], work.given[:count]
@@ -302,6 +304,8 @@ class Convolution:
 
     def select(self, rows: Indices) -> Self:
         """The same for some problems of the stack."""
+        if len(rows) == len(self._symbol):
+            return self
         chosen = copy(self)
         chosen._symbol = self._symbol[rows]
         return chosen

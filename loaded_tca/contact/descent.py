@@ -20,14 +20,19 @@ REFRESH = 25
 WHOLE_STEP = 0.5
 # Pressures below this part of the largest one move nothing by more than single precision resolves.
 DUST = 1e-8
+# BLAS starts threads for products of vectors from this length.
+THREADED_BLAS = 10_000
 TINY = float(np.finfo(np.float64).tiny)
 # Problems that are solved leave the stack once no more than this part of it is left: copying costs less than they do.
 PART_LEFT = 0.75
 
 
 def dots(one: NDArray[Any], other: NDArray[Any]) -> Array:
-    """Scalar products of every problem, (count, 1, 1); not by BLAS: its threads wait for each other when it is busy."""
-    return np.einsum("kij,kij->k", one, other).astype(np.float64, copy=False)[:, None, None]
+    """Scalar products of every problem, (count, 1, 1); large ones without BLAS, whose threads wait for each other."""
+    count, cells = len(one), one.shape[1] * one.shape[2]
+    if cells < THREADED_BLAS:
+        return np.matmul(one.reshape(count, 1, cells), other.reshape(count, cells, 1))
+    return np.einsum("kij,kij->k", one, other)[:, None, None]
 
 
 @dataclass
@@ -58,11 +63,11 @@ def judge(grids: Grids, pressure: Array, excess: Array) -> Judgement:
         capped = pressure >= grids.limit - grids.slack
         inner = loaded & ~capped
     room = inner.astype(np.float64)  # arrays of double precision are dear: one has to do
-    approach = grids.approach
-    if grids.loaded.any():
-        cells = total_of(room)
-        approach = np.where(grids.loaded, dots(excess, room) / np.maximum(cells, 1.0), approach)
-        for k in np.flatnonzero(grids.loaded & (cells == 0.0)) if capped is not None else ():
+    cells = total_of(room)
+    mean = dots(excess, room) / np.maximum(cells, 1.0)
+    approach = mean if grids.all_loaded else np.where(grids.loaded, mean, grids.approach)
+    if capped is not None:
+        for k in np.flatnonzero(grids.loaded & (cells == 0.0)):
             # With every cell at a bound any value between two limits is right.
             lower, outside = float(excess[k][capped[k]].max()), excess[k][~loaded[k]]
             approach[k] = 0.5 * (lower + float(outside.min(initial=2.0 * np.abs(excess[k]).max() - lower)))
@@ -129,6 +134,7 @@ class Descent:
         self.iterations, self.convolutions = np.zeros((2, len(grids)), dtype=int)
         # From here on only the problems that have not ended, ``rows`` of the stack.
         self._grids, self._rows, self._threads = grids, np.arange(len(grids)), threads
+        self._used = self.convolutions.copy()
         self._fast = grids.operator(dtype="float32", threads=threads)
         self._precondition = Preconditioner(grids.shape, grids.aspects, threads)
         # Cut cells are about so much stiffer, the part being its square.
@@ -142,18 +148,19 @@ class Descent:
 
     def run(self, tolerance: Array, limit: Array) -> None:
         """Iterate each problem until its residual is below its tolerance or its ``limit`` of iterations is reached."""
-        running = np.ones((len(self._rows), 1, 1), dtype=bool)
+        running = np.ones(len(self._rows), dtype=bool)
         for step in count():
             np.add(self._displacement, self._grids.gap, out=self._excess)
             state = judge(self._grids, self._now, self._excess)
-            ended = (state.residual[:, 0, 0] <= tolerance[self._rows]) | (step >= limit[self._rows])
-            ended &= running[:, 0, 0]
-            if ended.any():
+            solved = state.residual[:, 0, 0] <= tolerance[self._rows]
+            (ended,) = (running & (solved | (step >= limit[self._rows]))).nonzero()
+            if ended.size:
                 rows = self._rows[ended]
                 self.pressure[rows], self.iterations[rows] = self._now[ended], step
                 self.approach[rows], self.residual[rows] = state.approach[ended, 0, 0], state.residual[ended, 0, 0]
+                self.convolutions[rows] = self._used[ended]
                 running[ended] = False
-                left = np.flatnonzero(running)
+                (left,) = running.nonzero()
                 if not left.size:
                     return
                 if left.size <= PART_LEFT * len(running):
@@ -168,7 +175,7 @@ class Descent:
         """Go on with some of the problems."""
         self._grids, self._fast = self._grids.select(left), self._fast.select(left)
         self._precondition, self._rows = self._precondition.select(left), self._rows[left]
-        for name in ("_root", "_now", "_displacement", "_excess", "_scale", "_last_descent", "_last", "_direction"):
+        for name in ("_root", "_now", "_displacement", "_excess", "_used", "_last_descent", "_last", "_direction"):
             array = getattr(self, name)
             setattr(self, name, None if array is None else array[left])
         for name in ("_next", "_residual", "_preconditioned", "_image", "_free"):  # filled anew before they are read
@@ -176,31 +183,31 @@ class Descent:
 
     def _displaced(self, exact: bool) -> Array:
         """Displacement of the pressures, in double precision or in single."""
-        self.convolutions[self._rows] += 1
+        self._used += 1
         operator = self._grids.operator(threads=self._threads) if exact else self._fast
         return operator(self._now, np.empty(self._now.shape))
 
     def _convolved(self, values: Single, rows: Indices) -> Single:
         """Displacement of values of some of the problems in single precision."""
-        self.convolutions[self._rows[rows]] += 1
+        self._used[rows] += 1
         return self._fast.select(rows)(values, np.empty_like(values))
 
     def _iterate(self, state: Judgement, running: Mask) -> None:
         """One step along the conjugate directions, projected where it leaves the bounds; none for those that ended."""
-        scale = self._scale = np.where(state.approach > 0.0, state.approach, 1.0)
-        for k in np.flatnonzero(state.approach <= 0.0):
+        scale = self._scale = state.approach.copy()
+        for k in (scale <= 0.0)[:, 0, 0].nonzero()[0]:
             scale[k] = np.abs(self._displacement[k]).max()
         np.copyto(self._free, state.free)
         np.multiply(self._excess, 1.0 / scale, out=self._residual, casting="same_kind")
         cells = np.maximum(total_of(self._free), 1.0)
         self._level(self._residual, cells)
         slope = self._conjugate(cells)
-        self.convolutions[self._rows[running[:, 0, 0]]] += 1
+        self._used += 1
         image = self._fast(self._direction, self._image)
         curvature = dots(self._direction, image)
         bent = curvature > 0.0
         self._last_descent[~bent] = 0.0
-        bent &= running
+        bent &= running[:, None, None]
         length = ratio(scale * slope, curvature, bent).astype(np.float32)
         # The array of the preconditioned residual is free to take the step.
         step, trial = np.multiply(self._direction, length, out=self._preconditioned), self._next
@@ -208,7 +215,7 @@ class Descent:
         outside = trial.min(axis=CELLS, keepdims=True) < 0.0
         if self._grids.any_capped:
             outside |= (trial > self._grids.limit).any(axis=CELLS, keepdims=True)
-        rows = np.flatnonzero(outside & bent)
+        (rows,) = (outside & bent)[:, 0, 0].nonzero()
         if rows.size:
             target = self._grids.clip(trial[rows], state.free[rows], rows)
             trial[rows], length[rows] = self._now[rows], 0.0
@@ -243,17 +250,20 @@ class Descent:
         direction += preconditioned
         self._level(direction, cells)
         slope = dots(direction, residual)
-        uphill = np.flatnonzero(~(slope > 0.0))
-        direction[uphill], slope[uphill] = preconditioned[uphill], descent[uphill]
+        (uphill,) = (slope <= 0.0)[:, 0, 0].nonzero()
+        if uphill.size:
+            direction[uphill], slope[uphill] = preconditioned[uphill], descent[uphill]
         self._last_descent = np.maximum(descent, 0.0)
         return slope
 
     def _level(self, values: Single, cells: Single) -> None:
         """Leave nothing outside the free cells; with a given sum, take the mean off them, so that the sum stays."""
         values *= self._free
-        if self._grids.loaded.any():
-            values -= np.where(self._grids.loaded, total_of(values) / cells, np.float32(0.0))
-            values *= self._free
+        mean = total_of(values) / cells
+        if not self._grids.all_loaded:
+            mean *= self._grids.loaded
+        values -= mean
+        values *= self._free
 
     def _move(self, rows: Indices, target: Array) -> Indices:
         """Go towards pressures within the bounds as far as the energy falls; returns where it does not fall at all."""
@@ -268,7 +278,7 @@ class Descent:
         part[part >= WHOLE_STEP] = 1.0
         step *= part
         step += self._now[chosen]
-        whole = np.flatnonzero(part == 1.0)
+        (whole,) = (part == 1.0)[:, 0, 0].nonzero()
         step[whole] = target[whole]  # to the last digit
         self._now[chosen] = step
         image *= (part * scale).astype(np.float32)

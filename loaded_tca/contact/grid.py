@@ -13,7 +13,7 @@ from loaded_tca.contact.convolution import Convolution, Window
 from loaded_tca.contact.cuts import CutCells, is_cut, limits, merged_cover
 from loaded_tca.contact.edges import FreeEdge, MirroredConvolution, amplification, mirrors
 from loaded_tca.contact.levels import coarsen, window_around
-from loaded_tca.contact.love import influence_coefficients
+from loaded_tca.contact.love import own_coefficient
 from loaded_tca.contact.problem import ContactProblem
 from loaded_tca.contact.slices import merge_slices
 
@@ -106,7 +106,7 @@ class Grids:
             for name in ("cover", "slice_compliance")
         )
         # One cell that takes all of the load, or of the approach, has the highest pressure there can be.
-        most = np.where(np.isnan(total), approach / influence_coefficients((1, 1), spacing[:, 1] / spacing[:, 0]), total)
+        most = np.where(np.isnan(total), approach / own_coefficient(dy / dx), total)
         if cover is not None:
             most /= np.where(cover > 0.0, cover, 1.0).min(axis=CELLS, keepdims=True)
         return cls(
@@ -156,6 +156,11 @@ class Grids:
         return bool(self.capped.any())
 
     @cached_property
+    def all_loaded(self) -> bool:
+        """Whether the load of every one is given."""
+        return bool(self.loaded.all())
+
+    @cached_property
     def slack(self) -> Array:
         """Distance from a bound that is a rounding error: a cell that the last digits keep off the cap is at it."""
         return AT_BOUND * np.where(self.capped, self.cap, 0.0)
@@ -173,7 +178,7 @@ class Grids:
         that displacement for some cell below the cap: one of the lowest sums, as many as the load fills to the cap and
         one more.
         """
-        own = amplification(self.free_edges) * influence_coefficients((1, 1), self.aspects)
+        own = amplification(self.free_edges) * own_coefficient(each(self.aspects))
         if self.slices is not None:
             own = own + np.abs(self.slices).max(axis=CELLS, keepdims=True)
         most = np.where(self.loaded, self.total, 0.0) * own
@@ -323,7 +328,7 @@ class Operator:
 
 def ratio(above: Array, below: Array, where: Mask, otherwise: float = 0.0) -> Array:
     """Quotients of one number for each problem where they are to be taken."""
-    return np.divide(above, below, out=np.full(below.shape, otherwise), where=where)
+    return np.asarray(np.where(where, above, otherwise) / np.where(where, below, 1.0))
 
 
 def shifted_to_sum(values: Array, total: Array, cap: Array, movable: Mask) -> Array:

@@ -1,5 +1,7 @@
 """Surface displacement of a half-space under uniform pressure on a rectangle (Love 1929)."""
 
+from typing import Any
+
 import numpy as np
 
 from loaded_tca.arrays import Array
@@ -58,6 +60,11 @@ def influence_coefficients(shape: tuple[int, int], aspect: float | Array) -> Arr
         coefficients[rows] = _far_field(rows, shape[1], aspect)
     coefficients[: near[0], : near[1]] = _near_field(near, aspect)
     return coefficients
+
+
+def own_coefficient(aspect: float | Array) -> Any:
+    """Displacement [dx/E*] at the centre of a cell by unit pressure on itself; of one aspect dy/dx or of several."""
+    return (2.0 / np.pi) * (np.arcsinh(aspect) + aspect * np.arcsinh(1.0 / aspect))
 
 
 def _near_field(shape: tuple[int, int], aspect: float | Array) -> Array:

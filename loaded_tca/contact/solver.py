@@ -384,7 +384,8 @@ def _solve_on_finest(
     # Those still to be solved, and where they go on from.
     rows, start, displaced = np.arange(len(grids)), np.ascontiguousarray(start[:, *window]), None
     for _ in range(MOST_CHECKS):
-        part, whole = grids.part(window), grids.part(grids.whole)
+        whole = grids.part(grids.whole)
+        part = whole if window == grids.whole else grids.part(window)
         descent = Descent(part, start, displaced, threads, exact)
         descent.run(RESERVE * tolerance[rows], MOST_ITERATIONS - iterations[rows])
         settled, now = part.settled(descent.pressure), np.zeros(whole.gap.shape)

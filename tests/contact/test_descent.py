@@ -76,7 +76,6 @@ def test_energy_never_rises():
 def test_run_stops_at_the_limit():
     grids = paraboloid()
     search = Descent(grids, evenly(grids))
-    assert search.convolutions == [1]
     assert run(search, 1e-9, 2) > 1e-9
     assert search.iterations == [2]
     on = Descent(grids, search.pressure)
