@@ -62,7 +62,7 @@ def judge(grids: Grids, pressure: Array, excess: Array) -> Judgement:
     if grids.any_capped:
         capped = pressure >= grids.limit - grids.slack
         inner = loaded & ~capped
-    room = inner.astype(np.float64)  # arrays of double precision are dear: one has to do
+    room = inner.astype(np.float64)  # arrays of double precision are dear: one has to do for all
     cells = total_of(room)
     mean = dots(excess, room) / np.maximum(cells, 1.0)
     approach = mean if grids.all_loaded else np.where(grids.loaded, mean, grids.approach)
@@ -73,16 +73,16 @@ def judge(grids: Grids, pressure: Array, excess: Array) -> Judgement:
             approach[k] = 0.5 * (lower + float(outside.min(initial=2.0 * np.abs(excess[k]).max() - lower)))
     excess -= approach
     free = inner | (excess < 0.0)
-    np.multiply(excess, room, out=room)
-    np.abs(room, out=room)
-    worst = dots(pressure, room) / np.maximum(total_of(pressure), TINY)
-    # Where nothing presses.
-    np.multiply(excess, loaded if capped is not None else inner, out=room)
-    np.subtract(room, excess, out=room)
-    worst = np.maximum(worst, room.max(axis=CELLS, keepdims=True))
     if capped is not None:
-        worst = np.maximum(worst, np.where(capped, excess, 0.0).max(axis=CELLS, keepdims=True))
         free = free & ~capped | (capped & (excess > 0.0))
+    room *= excess
+    np.subtract(room, excess, out=room)  # but for its sign the excess where the pressure is zero, or at the cap
+    outside = room if capped is None else np.where(capped, excess, room)
+    worst = np.maximum.reduce(outside, axis=CELLS, keepdims=True)
+    room += excess
+    np.abs(room, out=room)
+    weighted = dots(pressure, room) / np.maximum(total_of(pressure), TINY)
+    worst = np.maximum(np.maximum(worst, weighted), 0.0)
     return Judgement(approach, ratio(worst, approach, approach > 0.0, otherwise=np.inf), free)
 
 
@@ -142,7 +142,7 @@ class Descent:
         self._now, self._next, self._excess = pressure, np.empty(pressure.shape), np.empty(pressure.shape)
         self._displacement = self._displaced(exact) if displacement is None else displacement
         self._scale = np.ones((len(grids), 1, 1))
-        self._last_descent = np.zeros((len(grids), 1, 1))  # zero: the next direction is a restart
+        self._last_descent = np.full((len(grids), 1, 1), np.inf)  # infinite: the next direction is a restart
         self._direction, self._last = np.zeros((2, *pressure.shape), dtype=np.float32)
         self._residual, self._preconditioned, self._image, self._free = np.empty((4, *pressure.shape), dtype=np.float32)
 
@@ -169,7 +169,7 @@ class Descent:
             self._iterate(state, running)
             if (step + 1) % REFRESH == 0:
                 self._displacement = self._displaced(exact=True)
-                self._last_descent[:] = 0.0
+                self._last_descent[:] = np.inf
 
     def _keep(self, left: Indices) -> None:
         """Go on with some of the problems."""
@@ -206,13 +206,13 @@ class Descent:
         image = self._fast(self._direction, self._image)
         curvature = dots(self._direction, image)
         bent = curvature > 0.0
-        self._last_descent[~bent] = 0.0
+        self._last_descent[~bent] = np.inf
         bent &= running[:, None, None]
-        length = ratio(scale * slope, curvature, bent).astype(np.float32)
+        length = (scale * slope / np.where(bent, curvature, np.inf)).astype(np.float32)
         # The array of the preconditioned residual is free to take the step.
         step, trial = np.multiply(self._direction, length, out=self._preconditioned), self._next
         np.subtract(self._now, step, out=trial)
-        outside = trial.min(axis=CELLS, keepdims=True) < 0.0
+        outside = np.minimum.reduce(trial, axis=CELLS, keepdims=True) < 0.0
         if self._grids.any_capped:
             outside |= (trial > self._grids.limit).any(axis=CELLS, keepdims=True)
         (rows,) = (outside & bent)[:, 0, 0].nonzero()
@@ -224,7 +224,7 @@ class Descent:
         self._now, self._next = trial, self._now
         if rows.size:
             rows = self._move(rows, target)
-            self._last_descent[rows] = 0.0
+            self._last_descent[rows] = np.inf
         if rows.size:
             rows = rows[~self._drop_dust(rows)]
         if rows.size:
@@ -246,14 +246,14 @@ class Descent:
         self._level(preconditioned, cells)
         descent = dots(preconditioned, residual)
         ahead = np.maximum(0.0, descent - dots(preconditioned, self._last))
-        direction *= ratio(ahead, self._last_descent, self._last_descent > 0.0).astype(np.float32)
+        direction *= (ahead / self._last_descent).astype(np.float32)
         direction += preconditioned
         self._level(direction, cells)
         slope = dots(direction, residual)
         (uphill,) = (slope <= 0.0)[:, 0, 0].nonzero()
         if uphill.size:
             direction[uphill], slope[uphill] = preconditioned[uphill], descent[uphill]
-        self._last_descent = np.maximum(descent, 0.0)
+        self._last_descent = np.where(descent > 0.0, descent, np.inf).astype(np.float64)
         return slope
 
     def _level(self, values: Single, cells: Single) -> None:
@@ -268,13 +268,13 @@ class Descent:
     def _move(self, rows: Indices, target: Array) -> Indices:
         """Go towards pressures within the bounds as far as the energy falls; returns where it does not fall at all."""
         chosen: Rows = ALL if rows.size == len(self._rows) else rows
-        scale, step = self._scale[rows], target - self._now[chosen]
+        scale, step = self._scale[chosen], target - self._now[chosen]
         single = np.multiply(step, 1.0 / scale, out=np.empty(step.shape, dtype=np.float32), casting="same_kind")
         image = self._convolved(single, rows)
         # The residual is the excess over the scale where a step goes, but for a constant, which a sum of zero meets.
         slope, curvature = dots(single, self._residual[chosen]), dots(single, image)
         falls = (slope < 0.0) & (curvature > 0.0)
-        part = ratio(-slope, curvature, falls)
+        part = -slope / np.where(falls, curvature, np.inf)
         part[part >= WHOLE_STEP] = 1.0
         step *= part
         step += self._now[chosen]

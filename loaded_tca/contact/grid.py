@@ -161,6 +161,11 @@ class Grids:
         return bool(self.loaded.all())
 
     @cached_property
+    def all_scaled(self) -> bool:
+        """Whether every one has a load and none a cap, so that its pressures may be scaled to their sum."""
+        return self.all_loaded and not self.any_capped
+
+    @cached_property
     def slack(self) -> Array:
         """Distance from a bound that is a rounding error: a cell that the last digits keep off the cap is at it."""
         return AT_BOUND * np.where(self.capped, self.cap, 0.0)
@@ -271,11 +276,14 @@ class Grids:
 
         Scaled where the load is given and there is no cap, projected otherwise.
         """
-        scaled = (self.loaded & ~self.capped)[rows]
         clipped = np.maximum(pressure, 0.0)
+        if self.all_scaled:
+            clipped *= self.total[rows] / total_of(clipped)
+            return clipped
+        scaled = (self.loaded & ~self.capped)[rows]
         clipped *= ratio(self.total[rows], total_of(clipped), scaled, otherwise=1.0)
-        if not scaled.all():
-            others = np.flatnonzero(~scaled)
+        others = np.flatnonzero(~scaled)
+        if others.size:
             clipped[others] = self.project(pressure[others], movable[others], np.arange(len(self))[rows][others])
         return clipped
 
