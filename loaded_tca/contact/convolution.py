@@ -13,7 +13,6 @@ from collections import OrderedDict, deque
 from collections.abc import Callable, Hashable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from copy import copy
-from dataclasses import dataclass, field
 from typing import Any, Self
 
 import numpy as np
@@ -94,140 +93,147 @@ def fast_length(least: int) -> int:
     return next(length for length in lengths if length >= least and length % 2 == 0)
 
 
-class _Transform:
-    """Planned transforms of rows of real data in a periodic box, and back, of several problems or in pieces.
+class _SmallTransforms:
+    """Planned transforms of the rows of several small problems in periodic boxes, and back.
 
-    ``rows`` counts those that hold data on the way forth and on the way back: no others are transformed or kept. What
-    is worked on at a time fits the cache: a block of small problems at once, or a piece of a large one after the other.
-    The doubled box of a large one itself exists in pieces only, one at a time in the work arrays of each thread: that
-    takes 14 % off a solve on 512 x 512 cells and 20 % off one on 1024 x 1024, and threads need not wait for each other
-    within a piece. Every problem of a block has plans of its own, all alike, so that its result is the same to the last
-    bit wherever it stands and whatever stands beside it.
+    Every problem has plans of its own, all alike, so that its result is the same to the last bit wherever it stands
+    and whatever stands beside it. ``rows`` counts those that hold data on the way forth and on the way back.
     """
 
-    def __init__(self, rows: tuple[int, int], box: tuple[int, int], dtype: str, threads: int) -> None:
-        # The second direction first, so that transforms along the first run over contiguous data. Rows a power of two
-        # apart share their place in the cache: a few unused ones keep them apart.
-        compound = np.result_type(dtype, np.complex64)
-        row_bytes, line_bytes = box[1] * np.dtype(dtype).itemsize, box[0] * compound.itemsize
-        inward, outward = (_pieces(count, row_bytes, 8) for count in rows)  # whole eights of rows are aligned
-        across = _pieces(box[1] // 2 + 1, line_bytes)
-        room = (max(inward[-1].stop, outward[-1].stop) + 15) // 8 * 8
-        self._parts = inward, across, outward
-        self._rows, self._box, self._dtype, self._compound = rows, box, dtype, compound
-        each = (inward[0].stop + outward[0].stop) * row_bytes + across[0].stop * (line_bytes + room * compound.itemsize)
-        self._whole = len(inward) == len(across) == len(outward) == 1
-        self.block = min(LARGEST_BLOCK, max(1, BLOCK_BYTES // each)) if self._whole else 1
-        self._kept = _aligned((self.block, across[-1].stop, room), compound)
-        self._spectrum = self._kept[:, : box[1] // 2 + 1].transpose(0, 2, 1)
-        self._works = [self._work() for _ in range(threads)]
-        self.nbytes = self._kept.nbytes + threads * self.block * each
+    def __init__(self, rows: tuple[int, int], columns: int, box: tuple[int, int], dtype: str) -> None:
+        # Rows a power of two apart share their place in the cache: a few unused ones keep them apart.
+        lines = (box[1] // 2 + 1, box[0] + 8)
+        self._rows, self._box, self._columns = rows, box, columns
+        self.nbytes = _small_bytes(rows, box, dtype)
+        self._block = min(LARGEST_BLOCK, max(1, BLOCK_BYTES // self.nbytes))
+        self.nbytes *= self._block
+        # What is beside the data in the first two stays zero: transforms leave their source as it is, but the last.
+        self._given, self._found = (_aligned((self._block, count, box[1]), dtype) for count in rows)
+        self._loaded, self._moved = (_aligned((self._block, *lines), np.result_type(dtype, "c8")) for _ in "12")
+        self._forth: list[tuple[Callable[[], None], ...]] = []
+        self._back: list[tuple[Callable[[], None], ...]] = []
 
-    def _work(self) -> "_Work":
-        """Work arrays of one thread, and the plans of the first problem; those of others are made when needed."""
-        inward, across, outward = self._parts
-        work = _Work(
-            _aligned((self.block, inward[0].stop, self._box[1]), self._dtype),
-            _aligned((self.block, across[0].stop, self._box[0]), self._compound),
-            _aligned((self.block, outward[0].stop, self._box[1]), self._dtype),
-        )
-        self._plan(work)
-        return work
-
-    def _plan(self, work: "_Work") -> None:
-        """Plans of the next problem of a block."""
-        k = len(work.plans)
-        forth, back = (self._spectrum[k, part[0]] for part in self._parts[::2])
-
-        def plan(source: Array, target: Array, direction: str) -> Any:
-            return pyfftw.FFTW(source, target, axes=(1,), direction=direction, flags=("FFTW_ESTIMATE",))
-
-        lines = work.lines[k]
-        work.plans.append(
-            (
-                plan(work.given[k], forth, "FFTW_FORWARD"),
-                plan(lines, lines, "FFTW_FORWARD"),
-                plan(lines, lines, "FFTW_BACKWARD"),
-                plan(back, work.found[k], "FFTW_BACKWARD"),
+    def _plan(self, k: int) -> None:
+        """Plans of one more problem, made when it is needed."""
+        given, found, loaded, moved = self._given[k], self._found[k], self._loaded[k], self._moved[k]
+        within, inward, outward = slice(0, self._box[0]), slice(0, self._rows[0]), slice(0, self._rows[1])
+        plans = [
+            pyfftw.FFTW(source, target, axes=(1,), direction="FFTW_" + direction, flags=("FFTW_ESTIMATE",)).execute
+            for source, target, direction in (
+                (given, loaded.T[inward], "FORWARD"),
+                (loaded[:, within], moved[:, within], "FORWARD"),
+                (moved[:, within], moved[:, within], "BACKWARD"),
+                (moved.T[outward], found, "BACKWARD"),
             )
-        )
+        ]
+        self._forth.append(tuple(plans[:2]))
+        self._back.append(tuple(plans[2:]))
 
-    def filter(self, values: Array, corner: tuple[int, int], symbol: Array, out: Array) -> None:
-        """Transform values placed at a corner of the box, multiply by the symbol, transform back into ``out``.
+    def filter(self, values: Array, symbol: Array, out: Array) -> None:
+        """Transform values (count, rows, columns), multiply by the symbols, transform back into ``out``.
 
-        All have an axis of problems first. ``symbol`` is a quadrant of an even one, (count, second, first direction).
+        A symbol is a quadrant of an even one, (second, first direction).
         """
-        if len(values) <= self.block:
-            self._filter_block(values, corner, symbol, out)
-            return
-        for start in range(0, len(values), self.block):
-            block = slice(start, start + self.block)
-            self._filter_block(values[block], corner, symbol[block], out[block])
-
-    def _filter_block(self, values: Array, corner: tuple[int, int], symbol: Array, out: Array) -> None:
-        count, top, left = len(values), *corner
-        bottom, right = top + values.shape[1], left + values.shape[2]
-        loaded, back = self._kept[:count, :, : self._rows[0]], self._kept[:count, :, : self._rows[1]]
-        middle = symbol.shape[2]
-        while len(self._works[0].plans) < count:
-            self._plan(self._works[0])
-
-        def inward(part: slice, work: _Work) -> None:
-            given, rows = values[:, part], work.given[:count]
-            if left:
-                rows[:, :, :left] = 0.0
-            rows[:, : given.shape[1], left:right] = given
-            rows[:, :, right:] = 0.0
-            for k in range(count):
-                forth = work.plans[k][0]
-                if not self._whole:
-                    forth.update_arrays(work.given[k], self._spectrum[k, part])
-                forth.execute()
-
-        def across(part: slice, work: _Work) -> None:
-            quadrant, lines = symbol[:, part], work.lines[:count]
-            if top:
-                lines[:, :, :top] = 0.0
-            lines[:, :, top:bottom] = loaded[:, part]
-            lines[:, :, bottom:] = 0.0
-            for k in range(count):
-                work.plans[k][1].execute()
-            used = lines[:, : quadrant.shape[1]]
-            used[:, :, :middle] *= quadrant
-            used[:, :, middle:] *= quadrant[:, :, middle - 2 : 0 : -1]
-            for k in range(count):
-                work.plans[k][2].execute()
-            back[:, part] = lines[:, :, : back.shape[2]]
-
-        def outward(part: slice, work: _Work) -> None:
-            target = out[:, part]
-            for k in range(count):
-                again = work.plans[k][3]
-                if not self._whole:
-                    again.update_arrays(self._spectrum[k, part], work.found[k])
-                again.execute()
-            found = work.found[:count, : target.shape[1], : out.shape[2]]
-            np.copyto(target, found, casting="same_kind")
-
-        _share(inward, self._parts[0], self._works)
-        _share(across, self._parts[1], self._works)
-        _share(outward, self._parts[2], self._works)
+        for start in range(0, len(values), self._block):
+            block = slice(start, start + self._block)
+            given, quadrant, target = values[block], symbol[block], out[block]
+            count, middle = len(given), symbol.shape[2]
+            while len(self._forth) < count:
+                self._plan(len(self._forth))
+            self._given[:count, :, : self._columns] = given
+            for rows_forth, lines_forth in self._forth[:count]:
+                rows_forth()
+                lines_forth()
+            self._moved[:count, :, :middle] *= quadrant
+            self._moved[:count, :, middle : self._box[0]] *= quadrant[:, :, middle - 2 : 0 : -1]
+            for lines_back, rows_back in self._back[:count]:
+                lines_back()
+                rows_back()
+            np.copyto(target, self._found[:count, :, : target.shape[2]], casting="same_kind")
 
 
-@dataclass
-class _Work:
-    """Arrays of one thread, (block, ...), and the plans of every problem of a block."""
-
-    given: Array
-    lines: Array
-    found: Array
-    plans: list[tuple[Any, ...]] = field(default_factory=list)
+def _small_bytes(rows: tuple[int, int], box: tuple[int, int], dtype: str) -> int:
+    """Bytes of the work arrays of one problem."""
+    return (sum(rows) * box[1] + 4 * (box[1] // 2 + 1) * (box[0] + 8)) * np.dtype(dtype).itemsize
 
 
 def _aligned(shape: tuple[int, int, int], dtype: Any) -> Array:
     """Zeros of which every problem begins as FFTW likes it, so that the plans of all are alike."""
     size = -(-shape[1] * shape[2] // 16) * 16
     return pyfftw.zeros_aligned((shape[0], size), dtype)[:, : shape[1] * shape[2]].reshape(shape)
+
+
+class _LargeTransform:
+    """Planned transforms of rows of real data in a periodic box, and back, in pieces that fit the cache.
+
+    ``rows`` counts those that hold data on the way forth and on the way back: no others are transformed or kept. The
+    doubled box itself exists in pieces only, one at a time in the work arrays of each thread. That takes 14 % off a
+    solve on 512 x 512 cells and 20 % off one on 1024 x 1024, and threads need not wait for each other within a piece.
+    """
+
+    def __init__(self, rows: tuple[int, int], box: tuple[int, int], dtype: str, threads: int) -> None:
+        # The second direction first, so that transforms along the first run over contiguous data. Rows a power of two
+        # apart share their place in the cache: a few unused ones keep them apart.
+        row_bytes, compound = box[1] * np.dtype(dtype).itemsize, np.result_type(dtype, np.complex64)
+        inward, outward = (_pieces(count, row_bytes, 8) for count in rows)  # whole eights of rows are aligned
+        across = _pieces(box[1] // 2 + 1, box[0] * compound.itemsize)
+        room = (max(inward[-1].stop, outward[-1].stop) + 15) // 8 * 8
+        self._kept = pyfftw.zeros_aligned((across[-1].stop, room), compound)
+        self._spectrum = self._kept[: box[1] // 2 + 1].T
+        self._rows, self._parts, self._plans, self.nbytes = rows, (inward, across, outward), [], self._kept.nbytes
+
+        def plan(source: Array, target: Array, direction: str) -> Any:
+            return pyfftw.FFTW(source, target, axes=(1,), direction=direction, flags=("FFTW_ESTIMATE",))
+
+        for _ in range(threads):
+            given, found = (pyfftw.zeros_aligned((part[0].stop, box[1]), dtype) for part in (inward, outward))
+            lines = pyfftw.zeros_aligned((across[0].stop, box[0]), compound)
+            forth = plan(given, self._spectrum[inward[0]], "FFTW_FORWARD")
+            back = plan(self._spectrum[outward[0]], found, "FFTW_BACKWARD")
+            self._plans.append((forth, plan(lines, lines, "FFTW_FORWARD"), plan(lines, lines, "FFTW_BACKWARD"), back))
+            self.nbytes += given.nbytes + found.nbytes + lines.nbytes
+
+    def filter(self, values: Array, corner: tuple[int, int], symbol: Array, out: Array) -> None:
+        """Transform values placed at a corner of the box, multiply by the symbol, transform back into ``out``.
+
+        ``symbol`` is a quadrant of an even one, (second, first direction).
+        """
+        top, left = corner
+        bottom, right = top + values.shape[0], left + values.shape[1]
+        loaded, back = self._kept[:, : self._rows[0]], self._kept[:, : self._rows[1]]
+        middle = symbol.shape[1]
+
+        def inward(part: slice, forth: Any, *_: Any) -> None:
+            given, rows = values[part], forth.input_array
+            if left:
+                rows[:, :left] = 0.0
+            rows[: len(given), left:right] = given
+            rows[:, right:] = 0.0
+            forth.update_arrays(rows, self._spectrum[part])
+            forth.execute()
+
+        def across(part: slice, _: Any, forth: Any, again: Any, __: Any) -> None:
+            quadrant, lines = symbol[part], forth.input_array
+            if top:
+                lines[:, :top] = 0.0
+            lines[:, top:bottom] = loaded[part]
+            lines[:, bottom:] = 0.0
+            forth.execute()
+            used = lines[: len(quadrant)]
+            used[:, :middle] *= quadrant
+            used[:, middle:] *= quadrant[:, middle - 2 : 0 : -1]
+            again.execute()
+            back[part] = lines[:, : back.shape[1]]
+
+        def outward(part: slice, *plans: Any) -> None:
+            target, again = out[part], plans[-1]
+            again.update_arrays(self._spectrum[part], again.output_array)
+            again.execute()
+            np.copyto(target, again.output_array[: len(target), : out.shape[1]], casting="same_kind")
+
+        _share(inward, self._parts[0], self._plans)
+        _share(across, self._parts[1], self._plans)
+        _share(outward, self._parts[2], self._plans)
 
 
 def _pieces(count: int, row_bytes: int, multiple: int = 1) -> list[slice]:
@@ -237,30 +243,79 @@ def _pieces(count: int, row_bytes: int, multiple: int = 1) -> list[slice]:
     return [slice(start, start + size) for start in range(0, count, size)]
 
 
-def _share(do: Callable[[slice, _Work], None], parts: list[slice], works: Sequence[_Work]) -> None:
-    """Do it on every piece; helpers take pieces too, and nobody waits for a helper that has not begun."""
-    if len(works) == 1 or len(parts) == 1:
+def _share(work: Callable[..., None], parts: list[slice], plans: Sequence[tuple[Any, ...]]) -> None:
+    """Do the work on every piece; helpers take pieces too, and nobody waits for a helper that has not begun."""
+    if len(plans) == 1 or len(parts) == 1:
         for part in parts:
-            do(part, works[0])
+            work(part, *plans[0])
         return
     waiting = deque(parts)
 
-    def drain(own: _Work) -> None:
+    def drain(own: tuple[Any, ...]) -> None:
         while waiting:
             try:
                 part = waiting.popleft()
             except IndexError:
                 return
-            do(part, own)
+            work(part, *own)
 
-    helpers = [_cache.pool(len(works)).submit(drain, own) for own in works[1 : len(parts)]]
-    drain(works[0])
+    helpers = [_cache.pool(len(plans)).submit(drain, own) for own in plans[1 : len(parts)]]
+    drain(plans[0])
     for helper in helpers:
         if not helper.cancel():
             helper.result()
 
 
-class Convolution:
+class _Filter:
+    """Product of stacks of problems with even symbols in the Fourier space: small ones together, large ones by turns.
+
+    Parameters
+    ----------
+    corner : (int, int)
+        Where in the box the values begin.
+    columns : int
+        Of the values; their rows and those asked for are ``rows``.
+    symbol : (count, second, first direction) array
+    """
+
+    def __init__(
+        self,
+        rows: tuple[int, int],
+        columns: int,
+        corner: tuple[int, int],
+        box: tuple[int, int],
+        symbol: Array,
+        threads: int,
+    ) -> None:
+        dtype, threads = symbol.dtype.name, useful_threads(box, threads)
+        self._symbol, self._corner = symbol, corner
+        self._small: _SmallTransforms | None = None
+        if corner == (0, 0) and _small_bytes(rows, box, dtype) <= BLOCK_BYTES:
+            self._small = _cache.get(
+                (rows, columns, box, dtype), lambda: _SmallTransforms(rows, columns, box, dtype)
+            )
+        else:
+            self._large = _cache.get((rows, box, dtype, threads), lambda: _LargeTransform(rows, box, dtype, threads))
+
+    def __call__(self, values: Array, out: Array) -> Array:
+        """Write the product (count, nx, ny) into ``out`` and return it."""
+        if self._small is not None:
+            self._small.filter(values, self._symbol, out)
+            return out
+        for given, symbol, target in zip(values, self._symbol, out, strict=True):
+            self._large.filter(given, self._corner, symbol, target)
+        return out
+
+    def select(self, rows: Indices) -> Self:
+        """The same for some problems of the stack."""
+        if len(rows) == len(self._symbol):
+            return self
+        chosen = copy(self)
+        chosen._symbol = self._symbol[rows]
+        return chosen
+
+
+class Convolution(_Filter):
     """Displacement of ``target`` cells under the pressure on a window of them, of a stack of problems; in dx/E* and E*.
 
     Parameters
@@ -291,36 +346,16 @@ class Convolution:
         # The kernel is even: it may wrap once the box is twice the greatest distance of two cells.
         reach = [max(end, n - start) - 1 for start, end, n in zip(first, last, target, strict=True)]
         box = (fast_length(max(2 * reach[0], target[0])), fast_length(max(2 * reach[1], target[1])))
-        threads = useful_threads(box, threads)
-        rows = (last[0] - first[0], target[0])
-        self.corner = first
-        self._symbol = _kernels("love", box, aspects, dtype)
-        self._transform = _cache.get((rows, box, dtype, threads), lambda: _Transform(rows, box, dtype, threads))
-
-    def __call__(self, pressure: Array, out: Array) -> Array:
-        """Write the displacement (count, nx, ny) into ``out`` and return it."""
-        self._transform.filter(pressure, self.corner, self._symbol, out)
-        return out
-
-    def select(self, rows: Indices) -> Self:
-        """The same for some problems of the stack."""
-        if len(rows) == len(self._symbol):
-            return self
-        chosen = copy(self)
-        chosen._symbol = self._symbol[rows]
-        return chosen
+        rows, columns = (last[0] - first[0], target[0]), last[1] - first[1]
+        super().__init__(rows, columns, first, box, _kernels("love", box, aspects, dtype), threads)
 
 
-class Preconditioner(Convolution):
+class Preconditioner(_Filter):
     """Approximate inverse of the convolution of a stack: that of the periodic kernel, in single precision."""
 
     def __init__(self, shape: tuple[int, int], aspects: ArrayLike, threads: int = 2) -> None:
-        box = (fast_length(shape[0]), fast_length(shape[1]))
-        threads = useful_threads(box, threads)
-        rows = (shape[0], shape[0])
-        self.corner = (0, 0)
-        self._symbol = _kernels("inverse", box, aspects, "float32")
-        self._transform = _cache.get((rows, box, "float32", threads), lambda: _Transform(rows, box, "float32", threads))
+        box, rows = (fast_length(shape[0]), fast_length(shape[1])), (shape[0], shape[0])
+        super().__init__(rows, shape[1], (0, 0), box, _kernels("inverse", box, aspects, "float32"), threads)
 
 
 def useful_threads(box: tuple[int, int], wanted: int) -> int:
