@@ -156,7 +156,11 @@ class Descent:
             (ended,) = (running & (solved | (step >= limit[self._rows]))).nonzero()
             if ended.size:
                 rows = self._rows[ended]
-                self.pressure[rows], self.iterations[rows] = self._now[ended], step
+                if rows.size == len(self.pressure):
+                    self.pressure = self._now
+                else:
+                    self.pressure[rows] = self._now[ended]
+                self.iterations[rows] = step
                 self.approach[rows], self.residual[rows] = state.approach[ended, 0, 0], state.residual[ended, 0, 0]
                 self.convolutions[rows] = self._used[ended]
                 running[ended] = False
@@ -188,9 +192,9 @@ class Descent:
         return operator(self._now, np.empty(self._now.shape))
 
     def _convolved(self, values: Single, rows: Indices) -> Single:
-        """Displacement of values of some of the problems in single precision."""
+        """Displacement of values of some of the problems in single precision; it stands until the next."""
         self._used[rows] += 1
-        return self._fast.select(rows)(values, np.empty_like(values))
+        return self._fast.select(rows)(values, self._image[: rows.size])
 
     def _iterate(self, state: Judgement, running: Mask) -> None:
         """One step along the conjugate directions, projected where it leaves the bounds; none for those that ended."""
@@ -217,11 +221,13 @@ class Descent:
             outside |= (trial > self._grids.limit).any(axis=CELLS, keepdims=True)
         (rows,) = (outside & bent)[:, 0, 0].nonzero()
         if rows.size:
-            target = self._grids.clip(trial[rows], state.free[rows], rows)
+            leaving = self._chosen(rows)
+            target = self._grids.clip(trial[leaving], state.free[leaving], leaving)
+        if rows.size < len(trial):
             trial[rows], length[rows] = self._now[rows], 0.0
-        image *= length
-        self._displacement -= image
-        self._now, self._next = trial, self._now
+            image *= length
+            self._displacement -= image
+            self._now, self._next = trial, self._now
         if rows.size:
             rows = self._move(rows, target)
             self._last_descent[rows] = np.inf
@@ -265,11 +271,15 @@ class Descent:
         values -= mean
         values *= self._free
 
+    def _chosen(self, rows: Indices) -> Rows:
+        """Rows as an index that does not copy if they are all."""
+        return ALL if rows.size == len(self._rows) else rows
+
     def _move(self, rows: Indices, target: Array) -> Indices:
         """Go towards pressures within the bounds as far as the energy falls; returns where it does not fall at all."""
-        chosen: Rows = ALL if rows.size == len(self._rows) else rows
+        chosen = self._chosen(rows)
         scale, step = self._scale[chosen], target - self._now[chosen]
-        single = np.multiply(step, 1.0 / scale, out=np.empty(step.shape, dtype=np.float32), casting="same_kind")
+        single = np.multiply(step, 1.0 / scale, out=self._preconditioned[: rows.size], casting="same_kind")
         image = self._convolved(single, rows)
         # The residual is the excess over the scale where a step goes, but for a constant, which a sum of zero meets.
         slope, curvature = dots(single, self._residual[chosen]), dots(single, image)

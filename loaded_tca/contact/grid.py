@@ -109,8 +109,10 @@ class Grids:
         most = np.where(np.isnan(total), approach / own_coefficient(dy / dx), total)
         if cover is not None:
             most /= np.where(cover > 0.0, cover, 1.0).min(axis=CELLS, keepdims=True)
+        gap = np.stack([problem.gap for problem in problems])
+        gap -= contact
         return cls(
-            gap=np.stack([problem.gap for problem in problems]) - contact,
+            gap=gap,
             spacing=spacing,
             total=total,
             approach=approach,
@@ -123,9 +125,9 @@ class Grids:
     def __len__(self) -> int:
         return len(self.gap)
 
-    def select(self, rows: Indices) -> Grids:
+    def select(self, rows: Rows) -> Grids:
         """Return some of the problems, in ascending order."""
-        if len(rows) == len(self):
+        if rows == ALL if isinstance(rows, slice) else len(rows) == len(self):
             return self
         stacked = {name: getattr(self, name) for name in ("gap", "spacing", "total", "approach", "cap", "slices", "cover")}
         return replace(self, **{name: None if array is None else array[rows] for name, array in stacked.items()})
@@ -259,10 +261,15 @@ class Grids:
 
     def fitted(self, pressure: Array) -> Array:
         """Return pressures within the bounds and with the right sums, zero where no contact is possible."""
-        pressure = np.where(self.reachable, np.minimum(pressure, self.limit), 0.0)
-        pressure += self.reachable * (self.loaded & ~pressure.any(axis=CELLS, keepdims=True))
-        pressure *= ratio(self.total, total_of(pressure), self.loaded, otherwise=1.0)
-        above = np.flatnonzero((pressure > self.limit).any(axis=CELLS))
+        pressure = np.minimum(pressure, self.limit)
+        pressure *= self.reachable
+        total = total_of(pressure)
+        empty = np.flatnonzero(self.loaded & (total == 0.0))
+        if empty.size:
+            pressure[empty] = self.reachable[empty]
+            total[empty] = total_of(pressure[empty])
+        pressure *= ratio(self.total, total, self.loaded, otherwise=1.0)
+        above = np.flatnonzero((pressure > self.limit).any(axis=CELLS)) if self.any_capped else empty[:0]
         if above.size:
             pressure[above] = self.project(pressure[above], self.reachable[above], above)
         return pressure

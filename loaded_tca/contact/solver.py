@@ -26,7 +26,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from loaded_tca.arrays import Array, Indices, numbers
+from loaded_tca.arrays import Array, numbers
 from loaded_tca.contact import checks
 from loaded_tca.contact.descent import Descent, judge
 from loaded_tca.contact.edges import FreeEdge
@@ -226,8 +226,9 @@ def solve_problems(
         name = f"problem {k}: " if len(problems) > 1 else ""
         wrong += [name + each for each in checks.check_run(tolerance, on_failure, start, problem.cells, threads)]
     checks.raise_if(wrong)
+    starts = [None if start is None or not start.any() else start for start in starts]
     found: dict[int, ContactSolution] = {}
-    for stack in _stacks(problems, tolerances):
+    for stack in _stacks(problems, tolerances, starts):
         chosen = [problems[k] for k in stack], np.array([tolerances[k] for k in stack]), [starts[k] for k in stack]
         found |= zip(stack, _solve_stack(*chosen, threads), strict=True)
     for k, problem in enumerate(problems):
@@ -284,15 +285,17 @@ def contact_stiffness(solution: ContactSolution, tolerance: float = 1e-6) -> flo
     return float(descent.pressure.sum()) * problem.spacing[1] * problem.contact_modulus
 
 
-def _stacks(problems: Sequence[ContactProblem], tolerances: Sequence[float]) -> list[list[int]]:
+def _stacks(
+    problems: Sequence[ContactProblem], tolerances: Sequence[float], starts: Sequence[Array | None]
+) -> list[list[int]]:
     """Numbers of the problems that are solved together; those without load are in none."""
     alike: dict[Hashable, list[int]] = {}
-    for k, (problem, tolerance) in enumerate(zip(problems, tolerances, strict=True)):
+    for k, (problem, tolerance, start) in enumerate(zip(problems, tolerances, starts, strict=True)):
         approach = problem.approach
         if problem.load == 0.0 or (approach is not None and approach <= problem.first_contact):
             continue
         parts = problem.slice_compliance is None, problem.cover is None, k if problem.free_edges else None
-        alike.setdefault((problem.cells, tolerance < SINGLE_PRECISION, *parts), []).append(k)
+        alike.setdefault((problem.cells, tolerance < SINGLE_PRECISION, start is None, *parts), []).append(k)
     stacks = []
     for numbers_of in alike.values():
         size = max(1, STACK_CELLS // math.prod(problems[numbers_of[0]].cells))
@@ -326,30 +329,26 @@ def _solve_stack(
 ) -> list[ContactSolution]:
     """Solve problems on grids of one shape: from the pressures given, or from the solutions on coarser grids."""
     grids = Grids.of(problems)
-    pressure = np.empty(grids.gap.shape)
-    coarser: dict[int, CoarserGrid] = {}
-    given = np.array([start is not None and bool(start.any()) for start in starts])
-    if given.any():
-        warm = np.flatnonzero(given)
-        pressure[warm] = grids.select(warm).fitted(np.stack([starts[k] * _unit(problems[k]) for k in warm]))
-    if not given.all():
-        cold = np.flatnonzero(~given)
-        pressure[cold], found = _start_from_coarser(grids.select(cold), tolerance[cold], threads)
-        for k, (largest, approach) in zip(cold, found, strict=False):
+    coarser: list[CoarserGrid | None] = [None] * len(problems)
+    given = [start * _unit(problem) for start, problem in zip(starts, problems, strict=True) if start is not None]
+    if given:
+        pressure = grids.fitted(np.stack(given))
+    else:
+        pressure, found = _start_from_coarser(grids, tolerance, threads)
+        for k, (largest, approach) in enumerate(found.tolist()):
             if largest > 0.0:
-                first = problems[k].first_contact
-                coarser[k] = CoarserGrid(float(largest) / _unit(problems[k]), first + float(approach))
+                coarser[k] = CoarserGrid(largest / _unit(problems[k]), problems[k].first_contact + approach)
     solutions = []
     for rows in _together(grids):
-        some = [problems[k] for k in rows]
-        solutions += _solve_on_finest(some, grids.select(rows), tolerance[rows], pressure[rows], threads)
-    return [replace(solution, coarser=coarser.get(k)) for k, solution in enumerate(solutions)]
+        solutions += _solve_on_finest(problems[rows], grids.select(rows), tolerance[rows], pressure[rows], threads)
+    return [replace(solution, coarser=each) for solution, each in zip(solutions, coarser, strict=True)]
 
 
-def _together(grids: Grids) -> list[Indices]:
+def _together(grids: Grids) -> list[slice]:
     """Problems of a stack that are iterated together: all if they are small, else one after the other."""
-    small = math.prod(grids.shape) <= LARGEST_WHOLE
-    return np.split(np.arange(len(grids)), 1 if small else len(grids))
+    if len(grids) == 1 or math.prod(grids.shape) <= LARGEST_WHOLE:
+        return [slice(None)]
+    return [slice(k, k + 1) for k in range(len(grids))]
 
 
 def _start_from_coarser(grids: Grids, tolerance: Array, threads: int) -> tuple[Array, Array]:
@@ -368,7 +367,7 @@ def _start_from_coarser(grids: Grids, tolerance: Array, threads: int) -> tuple[A
         some, own = coarse.select(rows), start[rows]
         window = some.window(own)
         descent = Descent(some.part(window), own[:, *window], threads=threads, exact=False)
-        descent.run(tolerance[rows], np.full(len(rows), MOST_ITERATIONS))
+        descent.run(tolerance[rows], np.full(len(own), MOST_ITERATIONS))
         approach[rows], pressure[rows, *window] = descent.approach, descent.pressure / merge[0]
     return grids.fitted(prolong(pressure, grids.shape, merge)), np.stack((pressure.max(axis=CELLS), approach), axis=1)
 
@@ -378,47 +377,47 @@ def _solve_on_finest(
 ) -> list[ContactSolution]:
     """Solve in a window around the contact, check on the whole grid, widen the window where the check says so."""
     window, exact = grids.window(start), bool(tolerance[0] < SINGLE_PRECISION)
-    pressure, displacement = np.zeros(grids.gap.shape), np.empty(grids.gap.shape)
     iterations, convolutions = np.zeros((2, len(grids)), dtype=int)
-    approach, residual = np.empty((2, len(grids)))
+    found: dict[int, ContactSolution] = {}
     # Those still to be solved, and where they go on from.
     rows, start, displaced = np.arange(len(grids)), np.ascontiguousarray(start[:, *window]), None
-    for _ in range(MOST_CHECKS):
+    for check in range(MOST_CHECKS):
         whole = grids.part(grids.whole)
         part = whole if window == grids.whole else grids.part(window)
         descent = Descent(part, start, displaced, threads, exact)
         descent.run(RESERVE * tolerance[rows], MOST_ITERATIONS - iterations[rows])
-        settled, now = part.settled(descent.pressure), np.zeros(whole.gap.shape)
-        now[:, *window] = settled
-        image = whole.operator(window, threads=threads)(settled, np.empty(now.shape))
-        state = judge(whole, now, image + whole.gap)
-        pressure[rows], displacement[rows] = now, image + grids.gap
-        approach[rows], residual[rows] = state.approach[:, 0, 0], state.residual[:, 0, 0]
+        settled, pressure = part.settled(descent.pressure), np.zeros(whole.gap.shape)
+        pressure[:, *window] = settled
+        displacement = whole.operator(window, threads=threads)(settled, np.empty(pressure.shape))
+        state = judge(whole, pressure, displacement + whole.gap)
+        approach, residual = state.approach[:, 0, 0], state.residual[:, 0, 0]
         iterations[rows] += descent.iterations
         convolutions[rows] += descent.convolutions + 1
-        left = np.flatnonzero((residual[rows] > tolerance[rows]) & (iterations[rows] < MOST_ITERATIONS))
-        if not left.size:
-            break
-        rows, grids, now = rows[left], grids.select(left), now[left]
-        if window != grids.whole:
-            window = window_around(state.free[0] | (now[0] > 0.0))
-        start, displaced = (np.ascontiguousarray(array[:, *window]) for array in (now, image[left]))
-    solutions = []
-    for k, problem in enumerate(problems):
-        own = pressure[k] / _unit(problem)
-        if problem.max_pressure is not None:  # what is at the cap but for rounding is exactly at it from here on
-            own = np.where((own > 0.0) & (own >= (1.0 - AT_BOUND) * problem.cap), problem.cap, own)
-        solutions.append(
-            ContactSolution(
-                pressure=own,
-                gap=displacement[k] - approach[k],
+        ended = (residual <= tolerance[rows]) | (iterations[rows] >= MOST_ITERATIONS) | (check == MOST_CHECKS - 1)
+        for k in np.flatnonzero(ended).tolist():
+            problem = problems[rows[k]]
+            gap = np.add(displacement[k], grids.gap[k], out=displacement[k])
+            gap -= approach[k]
+            own = pressure[k]
+            own /= _unit(problem)
+            if problem.max_pressure is not None:  # what is at the cap but for rounding is exactly at it from here on
+                own = np.where((own > 0.0) & (own >= (1.0 - AT_BOUND) * problem.cap), problem.cap, own)
+            found[rows[k]] = ContactSolution(
+                pressure=own if len(grids) == 1 else own.copy(),
+                gap=gap if len(grids) == 1 else gap.copy(),
                 approach=problem.first_contact + float(approach[k]),
                 load=float(own.sum()) * problem.cell_area if problem.load is None else problem.load,
-                iterations=int(iterations[k]),
-                convolutions=int(convolutions[k]),
+                iterations=int(iterations[rows[k]]),
+                convolutions=int(convolutions[rows[k]]),
                 residual=float(residual[k]),
-                status=ContactStatus.CONVERGED if residual[k] <= tolerance[k] else ContactStatus.NOT_CONVERGED,
+                status=ContactStatus.CONVERGED if residual[k] <= tolerance[rows[k]] else ContactStatus.NOT_CONVERGED,
                 problem=problem,
             )
-        )
-    return solutions
+        left = np.flatnonzero(~ended)
+        if not left.size:
+            break
+        rows, grids, pressure, displacement = rows[left], grids.select(left), pressure[left], displacement[left]
+        if window != grids.whole:
+            window = window_around(state.free[0] | (pressure[0] > 0.0))
+        start, displaced = (np.ascontiguousarray(array[:, *window]) for array in (pressure, displacement))
+    return [found[k] for k in range(len(problems))]
