@@ -55,14 +55,18 @@ class Judgement:
     free: Mask
 
 
-def judge(grids: Grids, pressure: Array, excess: Array) -> Judgement:
-    """Check the Kuhn-Tucker conditions; turns ``excess``, given as u + h, into u + h - approach in place."""
+def judge(grids: Grids, pressure: Array, excess: Array, room: Array | None = None) -> Judgement:
+    """Check the Kuhn-Tucker conditions; turns ``excess``, given as u + h, into u + h - approach in place.
+
+    ``room``: an array like these to work in, new arrays of double precision being dear.
+    """
     inner = loaded = pressure > grids.slack
     capped: Mask | None = None
     if grids.any_capped:
         capped = pressure >= grids.limit - grids.slack
         inner = loaded & ~capped
-    room = inner.astype(np.float64)  # arrays of double precision are dear: one has to do for all
+    room = np.empty(pressure.shape) if room is None else room
+    np.copyto(room, inner)
     cells = total_of(room)
     mean = dots(excess, room) / np.maximum(cells, 1.0)
     approach = mean if grids.all_loaded else np.where(grids.loaded, mean, grids.approach)
@@ -151,7 +155,7 @@ class Descent:
         running = np.ones(len(self._rows), dtype=bool)
         for step in count():
             np.add(self._displacement, self._grids.gap, out=self._excess)
-            state = judge(self._grids, self._now, self._excess)
+            state = judge(self._grids, self._now, self._excess, self._next)
             solved = state.residual[:, 0, 0] <= tolerance[self._rows]
             (ended,) = (running & (solved | (step >= limit[self._rows]))).nonzero()
             if ended.size:
@@ -285,11 +289,10 @@ class Descent:
         slope, curvature = dots(single, self._residual[chosen]), dots(single, image)
         falls = (slope < 0.0) & (curvature > 0.0)
         part = -slope / np.where(falls, curvature, np.inf)
-        part[part >= WHOLE_STEP] = 1.0
+        part = np.where(part < WHOLE_STEP, part, 1.0)
         step *= part
         step += self._now[chosen]
-        (whole,) = (part == 1.0)[:, 0, 0].nonzero()
-        step[whole] = target[whole]  # to the last digit
+        np.copyto(step, target, where=part == 1.0)  # to the last digit
         self._now[chosen] = step
         image *= (part * scale).astype(np.float32)
         self._displacement[chosen] += image
