@@ -51,19 +51,24 @@ class _Cache(threading.local):
         self.pools: dict[int, ThreadPoolExecutor] = {}
         self.bytes = 0
 
-    def get(self, key: Hashable, make: Callable[[], Any] | None = None) -> Any:
-        """Return what is kept under the key; otherwise make and keep it, or None if nothing is given to make it."""
+    def find(self, key: Hashable) -> Any:
+        """Return what is kept under the key, None if nothing is."""
         if key in self.items:
             self.items.move_to_end(key)
-            return self.items[key]
-        if make is None:
-            return None
-        made = make()
+        return self.items.get(key)
+
+    def keep(self, key: Hashable, made: Any) -> Any:
+        """Keep something new under a key, and return it."""
         self.items[key] = made
         self.bytes += made.nbytes
         while self.bytes > CACHE_BYTES and len(self.items) > 1:
             self.bytes -= self.items.popitem(last=False)[1].nbytes
         return made
+
+    def get(self, key: Hashable, make: Callable[[], Any]) -> Any:
+        """Return what is kept under the key; make and keep it otherwise."""
+        kept = self.find(key)
+        return self.keep(key, make()) if kept is None else kept
 
     def pool(self, threads: int) -> ThreadPoolExecutor:
         """Helpers of this thread, made when first needed."""
@@ -291,9 +296,7 @@ class _Filter:
         self._symbol, self._corner = symbol, corner
         self._small: _SmallTransforms | None = None
         if corner == (0, 0) and _small_bytes(rows, box, dtype) <= BLOCK_BYTES:
-            self._small = _cache.get(
-                (rows, columns, box, dtype), lambda: _SmallTransforms(rows, columns, box, dtype)
-            )
+            self._small = _cache.get((rows, columns, box, dtype), lambda: _SmallTransforms(rows, columns, box, dtype))
         else:
             self._large = _cache.get((rows, box, dtype, threads), lambda: _LargeTransform(rows, box, dtype, threads))
 
@@ -367,12 +370,12 @@ def useful_threads(box: tuple[int, int], wanted: int) -> int:
 def _kernels(kind: str, box: tuple[int, int], aspects: ArrayLike, dtype: str) -> Array:
     """Kernels (count, second, first direction) of a stack, those not kept from before computed together."""
     keys = [(kind, box, aspect, dtype) for aspect in np.asarray(aspects, dtype=np.float64).tolist()]
-    kept = {key: _cache.get(key) for key in keys}
+    kept = {key: _cache.find(key) for key in keys}
     missing = [key for key, kernel in kept.items() if kernel is None]
     if missing:
         made = _MAKERS[kind](box, [key[2] for key in missing], dtype)
-        for key, own in zip(missing, made if len(made) == 1 else [*map(np.array, made)], strict=True):
-            kept[key] = _cache.get(key, lambda own=own: own)
+        for key, own in zip(missing, made, strict=True):
+            kept[key] = _cache.keep(key, own if len(made) == 1 else own.copy())
     return np.stack([kept[key] for key in keys]) if len(keys) > 1 else kept[keys[0]][None]
 
 

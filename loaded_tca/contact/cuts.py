@@ -76,7 +76,7 @@ class CutCells:
 
         ``aspects`` (count,) are dy/dx.
         """
-        count, nx, ny = cover.shape
+        nx, ny = cover.shape[1:]
         problem, column, row = np.nonzero(is_cut(cover).transpose(0, 2, 1))
         # Cells of one slice stand together: every cell is paired with all of its slice.
         _, slice_start, place, members = np.unique(

@@ -173,7 +173,10 @@ class Descent:
                     return
                 if left.size <= PART_LEFT * len(running):
                     self._keep(left)
-                    running, state = running[left], Judgement(state.approach[left], state.residual[left], state.free[left])
+                    running, state = (
+                        running[left],
+                        Judgement(state.approach[left], state.residual[left], state.free[left]),
+                    )
             self._iterate(state, running)
             if (step + 1) % REFRESH == 0:
                 self._displacement = self._displaced(exact=True)

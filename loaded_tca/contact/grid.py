@@ -129,8 +129,16 @@ class Grids:
         """Return some of the problems, in ascending order."""
         if rows == ALL if isinstance(rows, slice) else len(rows) == len(self):
             return self
-        stacked = {name: getattr(self, name) for name in ("gap", "spacing", "total", "approach", "cap", "slices", "cover")}
-        return replace(self, **{name: None if array is None else array[rows] for name, array in stacked.items()})
+        return replace(
+            self,
+            gap=self.gap[rows],
+            spacing=self.spacing[rows],
+            total=self.total[rows],
+            approach=self.approach[rows],
+            cap=self.cap[rows],
+            slices=None if self.slices is None else self.slices[rows],
+            cover=None if self.cover is None else self.cover[rows],
+        )
 
     @property
     def shape(self) -> tuple[int, int]:

@@ -1,5 +1,7 @@
 """From grid to grid: coarser gaps, pressures carried to a finer grid, windows around a contact."""
 
+from typing import Any
+
 import numpy as np
 
 from loaded_tca.arrays import Array, Mask
@@ -90,18 +92,21 @@ def split(values: Array, axis: int) -> Array:
     Quadratic between three positive values, linear elsewhere: the cells at an edge carry the error of their grid,
     which a quadratic would magnify.
     """
-    lines = np.moveaxis(values, axis, 0)
-    padded = np.concatenate((lines[:1], lines, lines[-1:]))
-    before, after = padded[:-2], padded[2:]
+
+    def at(start: int, stop: int | None, step: int = 1) -> tuple[Any, ...]:
+        return (..., slice(start, stop, step)) if axis == -1 else (..., slice(start, stop, step), slice(None))
+
+    padded = np.concatenate((values[at(0, 1)], values, values[at(-1, None)]), axis=axis)
+    before, after = padded[at(0, -2)], padded[at(2, None)]
     # (5 before + 30 own - 3 after)/32 = (3 own + before)/4 - (before - 2 own + after) 3/32
     bend = before + after
-    bend -= 2.0 * lines
-    bend *= 0.09375 * ((before > 0.0) & (lines > 0.0) & (after > 0.0))
-    np.subtract(0.75 * lines, bend, out=bend)
-    fine = np.empty((2 * lines.shape[0], *lines.shape[1:]))
-    np.add(bend, 0.25 * before, out=fine[0::2])
-    np.add(bend, 0.25 * after, out=fine[1::2])
-    return np.moveaxis(fine, 0, axis)
+    bend -= 2.0 * values
+    bend *= 0.09375 * ((before > 0.0) & (values > 0.0) & (after > 0.0))
+    np.subtract(0.75 * values, bend, out=bend)
+    fine = np.empty([2 * n if k == values.ndim + axis else n for k, n in enumerate(values.shape)])
+    np.add(bend, 0.25 * before, out=fine[at(0, None, 2)])
+    np.add(bend, 0.25 * after, out=fine[at(1, None, 2)])
+    return fine
 
 
 def window_around(cells: Mask) -> Window:

@@ -46,10 +46,10 @@ def influence_coefficients(shape: tuple[int, int], aspect: float | Array) -> Arr
     ----------
     Love 1929, Phil. Trans. R. Soc. A 228, 377-420; Johnson 1985, Contact Mechanics, section 3.6.
     """
-    if np.ndim(aspect):
+    if isinstance(aspect, np.ndarray):
         if max(shape) <= FAR_FIELD:
             return _near_field(shape, aspect)
-        return np.stack([influence_coefficients(shape, each) for each in np.asarray(aspect).tolist()])
+        return np.stack([influence_coefficients(shape, each) for each in aspect.tolist()])
     reach = FAR_FIELD * max(1.0, aspect)
     near = (min(shape[0], int(reach) + 1), min(shape[1], int(reach / aspect) + 1))
     if near == shape:

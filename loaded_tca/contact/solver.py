@@ -5,9 +5,10 @@ The pressures p, constant on a cell, minimise
 .. math:: \tfrac12 p^T K p + h^T p,\qquad 0 \le p \le p_Y,\qquad \sum p\,dA = F
 
 (K: Love's influence coefficients, h: gap before loading). The multiplier of the last condition is the approach
-of the bodies. The problems of a stack are solved together, each for itself. The minimum is found on nested grids, the coarser ones giving the start of the finer ones, each by
+of the bodies. The minimum is found on nested grids, the coarser ones giving the start of the finer ones, each by
 projected conjugate gradients in the neighbourhood of the contact; the contact conditions are checked with one
-convolution on the whole grid before a result is believed.
+convolution on the whole grid before a result is believed. Problems on small grids of one shape are stacked: each is
+solved for itself, but all in the same arrays.
 
 References
 ----------
@@ -276,8 +277,9 @@ def contact_stiffness(solution: ContactSolution, tolerance: float = 1e-6) -> flo
     window = window_around(active)
     # A flat punch of the shape of the cells between the bounds, moved in by one: its load is the stiffness.
     gap = np.where(active[window], 0.0, OUT_OF_REACH)[None]
-    of_one = {"total": each([np.nan]), "approach": each([1.0]), "cap": each([np.inf])}
-    descent = Descent(replace(Grids.of([problem]).part(window), gap=gap, **of_one), np.zeros(gap.shape))
+    part, prescribed = Grids.of([problem]).part(window), each([np.nan])
+    punch = replace(part, gap=gap, total=prescribed, approach=each([1.0]), cap=each([np.inf]))
+    descent = Descent(punch, np.zeros(gap.shape))
     descent.run(np.array([tolerance]), np.array([MOST_ITERATIONS]))
     residual = float(descent.residual[0])
     if residual > tolerance:
