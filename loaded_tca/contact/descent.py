@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from itertools import count
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,6 +53,10 @@ class Judgement:
     approach: Array
     residual: Array
     free: Mask
+
+    def select(self, rows: Indices) -> Self:
+        """That of some of the problems."""
+        return type(self)(self.approach[rows], self.residual[rows], self.free[rows])
 
 
 def judge(grids: Grids, pressure: Array, excess: Array, room: Array | None = None) -> Judgement:
@@ -173,10 +177,7 @@ class Descent:
                     return
                 if left.size <= PART_LEFT * len(running):
                     self._keep(left)
-                    running, state = (
-                        running[left],
-                        Judgement(state.approach[left], state.residual[left], state.free[left]),
-                    )
+                    running, state = running[left], state.select(left)
             self._iterate(state, running)
             if (step + 1) % REFRESH == 0:
                 self._displacement = self._displaced(exact=True)
