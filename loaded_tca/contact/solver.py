@@ -342,8 +342,9 @@ def _solve_stack(
                 coarser[k] = CoarserGrid(largest / _unit(problems[k]), problems[k].first_contact + approach)
     solutions = []
     for rows in _together(grids):
-        solutions += _solve_on_finest(problems[rows], grids.select(rows), tolerance[rows], pressure[rows], threads)
-    return [replace(solution, coarser=each) for solution, each in zip(solutions, coarser, strict=True)]
+        some = problems[rows], grids.select(rows), tolerance[rows], pressure[rows], coarser[rows]
+        solutions += _solve_on_finest(*some, threads)
+    return solutions
 
 
 def _together(grids: Grids) -> list[slice]:
@@ -375,7 +376,12 @@ def _start_from_coarser(grids: Grids, tolerance: Array, threads: int) -> tuple[A
 
 
 def _solve_on_finest(
-    problems: Sequence[ContactProblem], grids: Grids, tolerance: Array, start: Array, threads: int
+    problems: Sequence[ContactProblem],
+    grids: Grids,
+    tolerance: Array,
+    start: Array,
+    coarser: Sequence[CoarserGrid | None],
+    threads: int,
 ) -> list[ContactSolution]:
     """Solve in a window around the contact, check on the whole grid, widen the window where the check says so."""
     window, exact = grids.window(start), bool(tolerance[0] < SINGLE_PRECISION)
@@ -414,6 +420,7 @@ def _solve_on_finest(
                 residual=float(residual[k]),
                 status=ContactStatus.CONVERGED if residual[k] <= tolerance[rows[k]] else ContactStatus.NOT_CONVERGED,
                 problem=problem,
+                coarser=coarser[rows[k]],
             )
         left = np.flatnonzero(~ended)
         if not left.size:
