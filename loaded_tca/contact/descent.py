@@ -106,7 +106,7 @@ class Descent:
     grids : Grids
         The problems.
     pressure : (count, nx, ny) array [mm]
-        Start, within the bounds and with the right sum.
+        Start, within the bounds and with the right sum; worked on in place.
     displacement : (count, nx, ny) array [mm], optional
         K times the start, if known.
     threads : int
@@ -150,7 +150,9 @@ class Descent:
         self._now, self._next, self._excess = pressure, np.empty(pressure.shape), np.empty(pressure.shape)
         self._displacement = self._displaced(exact) if displacement is None else displacement
         self._scale = np.ones((len(grids), 1, 1))
-        self._last_descent = np.full((len(grids), 1, 1), np.inf)  # infinite: the next direction is a restart
+        self._last_descent = np.full(
+            (len(grids), 1, 1), np.inf, dtype=np.float32
+        )  # infinite: the next direction is a restart
         self._direction, self._last = np.zeros((2, *pressure.shape), dtype=np.float32)
         self._residual, self._preconditioned, self._image, self._free = np.empty((4, *pressure.shape), dtype=np.float32)
 
@@ -206,9 +208,11 @@ class Descent:
 
     def _iterate(self, state: Judgement, running: Mask) -> None:
         """One step along the conjugate directions, projected where it leaves the bounds; none for those that ended."""
-        scale = self._scale = state.approach.copy()
-        for k in (scale <= 0.0)[:, 0, 0].nonzero()[0]:
-            scale[k] = np.abs(self._displacement[k]).max()
+        scale = self._scale = state.approach
+        if scale.min() <= 0.0:
+            scale = self._scale = np.where(
+                scale > 0.0, scale, np.abs(self._displacement).max(axis=CELLS, keepdims=True)
+            )
         np.copyto(self._free, state.free)
         np.multiply(self._excess, 1.0 / scale, out=self._residual, casting="same_kind")
         cells = np.maximum(total_of(self._free), 1.0)
@@ -260,14 +264,14 @@ class Descent:
         self._level(preconditioned, cells)
         descent = dots(preconditioned, residual)
         ahead = np.maximum(0.0, descent - dots(preconditioned, self._last))
-        direction *= (ahead / self._last_descent).astype(np.float32)
+        direction *= ahead / self._last_descent
         direction += preconditioned
         self._level(direction, cells)
         slope = dots(direction, residual)
         (uphill,) = (slope <= 0.0)[:, 0, 0].nonzero()
         if uphill.size:
             direction[uphill], slope[uphill] = preconditioned[uphill], descent[uphill]
-        self._last_descent = np.where(descent > 0.0, descent, np.inf).astype(np.float64)
+        self._last_descent = np.where(descent > 0.0, descent, np.float32(np.inf))
         return slope
 
     def _level(self, values: Single, cells: Single) -> None:
