@@ -12,7 +12,7 @@ SCENE = Path(__file__).parent / "scenes" / "helical.toml"
 
 
 def main() -> float:
-    """Return the force that the pressure map carries, over the one that the torque asks for."""
+    """Return the torque that the pressure maps of all tooth pairs carry, over that of the scene."""
     scene = read_scene(SCENE).with_changes(
         {
             "analysis.positions": 1,  # the pitch point alone
@@ -24,10 +24,11 @@ def main() -> float:
     print(result.summary())
     save_figure(plot_pressure_map(result), "pressure_distribution.png")
 
-    one = result.maps[0][0][0]  # torque, position, tooth pair
-    carried = one.pressure.sum() * one.spacing[0] * one.spacing[1]  # N
-    wanted = result.torque[0] / result.path.pinion_lever[0]  # N mm / mm
-    return carried / wanted
+    carried = 0.0  # N mm, by the tooth pairs under the first torque at the first position
+    for one, path in zip(result.maps[0][0], result.paths, strict=True):
+        if one is not None:
+            carried += one.pressure.sum() * one.spacing[0] * one.spacing[1] * path.pinion_lever[0]
+    return carried / result.torque[0]
 
 
 if __name__ == "__main__":

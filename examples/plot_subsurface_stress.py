@@ -1,4 +1,4 @@
-"""Greatest shear stress below the contact of a crowned helical pair at the pitch point, where pitting may start.
+"""Greatest shear stress below the contact of a crowned spur pair at the pitch point, where pitting may start.
 
 Writes subsurface_stress.png and prints depth and place beside what Hertz says.
 """
@@ -9,7 +9,7 @@ from loaded_tca import analyse, read_scene
 from loaded_tca.plots import plot_stress_below, save_figure
 from loaded_tca.results import stress_below
 
-SCENE = Path(__file__).parent / "scenes" / "helical.toml"
+SCENE = Path(__file__).parent / "scenes" / "spur.toml"
 
 
 def main() -> float:

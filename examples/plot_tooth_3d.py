@@ -33,7 +33,7 @@ def main() -> float:
 
     sizes = np.linalg.norm(shown.pressure.normals, axis=1)  # mm2
     carried = float((sizes * shown.pressure.cell_data["pressure_MPa"]).sum())  # N
-    return carried / float(result.normal_force[0, middle, 0])
+    return carried / float(result.normal_force[0, middle, shown.column])
 
 
 if __name__ == "__main__":

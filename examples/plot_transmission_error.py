@@ -1,4 +1,4 @@
-"""Transmission error of a crowned helical pair under three torques.
+"""Transmission error of a crowned spur pair under three torques.
 
 Writes transmission_error.png. The transmission error is the contact deformation of the flanks, which grows with the
 load to the power 2/3 as long as the contact reaches no edge.
@@ -10,7 +10,7 @@ from pathlib import Path
 from loaded_tca import analyse, read_scene
 from loaded_tca.plots import plot_transmission_error, save_figure
 
-SCENE = Path(__file__).parent / "scenes" / "helical.toml"
+SCENE = Path(__file__).parent / "scenes" / "spur.toml"
 TORQUES = (10.0, 25.0, 60.0)  # N m
 
 

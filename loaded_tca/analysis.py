@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from loaded_tca.compliance import ToothCompliance, tooth_compliance
+from loaded_tca.compliance import ToothCompliance, require_teeth, tooth_compliance
 from loaded_tca.errors import require
 from loaded_tca.loaded.cycle import Progress, carried_by_all, carried_by_one, farthest_apart
 from loaded_tca.loaded.effort import expected_effort
@@ -41,7 +41,8 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
     Warns
     -----
     AccuracyWarning
-        If the contact reaches an edge of a flank, or the model is at another limit.
+        If the contact reaches an edge of a flank, modifications leave a pointed tooth, or the model is at another
+        limit.
     """
     pair, wanted, effort = scene.pair(), scene.analysis, expected_effort(scene)
     require((not effort.is_refused, f"analysis.cells: {wanted.cells}: {effort}"))
@@ -70,4 +71,5 @@ def _bending(scene: Scene, pair: GearPair, neighbours: int) -> ToothCompliance |
     """Bending of the teeth, where loaded ones are up to so many pitches apart; None if the scene asks for none."""
     if scene.analysis.compliance == "contact":
         return None
+    require_teeth(pair)
     return tooth_compliance(pair, neighbours=max(neighbours, 1))

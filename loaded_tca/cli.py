@@ -185,7 +185,7 @@ def _parser() -> argparse.ArgumentParser:
         added.set_defaults(command=run)
         return added
 
-    demo = command("demo", _demo, "analyse a crowned helical pair; writes its scene file too")
+    demo = command("demo", _demo, "analyse a helical pair; writes its scene file too")
     demo.add_argument("--out", metavar="DIR", type=_path, default=DEMO_DIRECTORY, help=f"default: ./{DEMO_DIRECTORY}")
     run = command("run", _run, "analyse a scene; writes result.nc, summary.json, positions.csv and pictures")
     run.add_argument("scene", metavar="SCENE.toml", help="scene file")

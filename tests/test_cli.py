@@ -11,7 +11,6 @@ from importlib.metadata import version
 from pathlib import Path
 
 import pytest
-from matplotlib.figure import Figure
 
 import loaded_tca.analysis
 import loaded_tca.plots
@@ -22,6 +21,7 @@ SCENES = Path(__file__).parents[1] / "examples" / "scenes"
 HELICAL = str(SCENES / "helical.toml")
 REPORT = {"result.nc", "summary.json", "positions.csv"}
 LONG = 300 * "a"
+ONE_PAIR = '\nload_sharing = false\ncompliance = "contact"\nfree_edges = false\n'
 PICTURES = {"contact_path.png", "transmission_error.png", "peak_pressure.png", "pressure_map.png"}
 
 
@@ -45,7 +45,7 @@ def run(capsys):
 def scene(name="quick", **changes):
     """A scene file that takes a moment, with other values where asked."""
     text = (SCENES / "helical.toml").read_text(encoding="utf-8")
-    quick = {"positions = 21": "positions = 3", "accuracy = 1e-3": "cells = [16, 16]"}
+    quick = {"positions = 21": "positions = 3", "accuracy = 1e-3": f"cells = [16, 16]{ONE_PAIR}"}
     changes = {**quick, "pinion_torque_Nm = 130.0": "pinion_torque_Nm = 40.0", **changes}
     for old, new in changes.items():
         assert old in text
@@ -155,7 +155,8 @@ def test_check_tells_teeth_that_overlap(run):
 @pytest.mark.parametrize("name", ["straight_bevel", "spiral_bevel"])
 def test_bevel_scene_is_run_and_drawn_as_any_other(run, name):
     text = (SCENES / f"{name}.toml").read_text(encoding="utf-8")
-    Path("quick.toml").write_text(text.replace("positions = 21", "positions = 2\ncells = [16, 16]"), encoding="utf-8")
+    text = text.replace("positions = 21", f"positions = 2\ncells = [16, 16]{ONE_PAIR}")
+    Path("quick.toml").write_text(text, encoding="utf-8")
     code, _, err = run("run", "quick.toml", "--out", "out")
     assert (code, err) == (0, [])
     assert set(os.listdir("out")) == REPORT | PICTURES
@@ -306,15 +307,15 @@ def test_failure_while_drawing_leaves_the_numbers_without_old_pictures(run, monk
     assert run("run", scene("earlier", **changes), "--out", "out")[0] == 0
     earlier = Path("out", "result.nc").read_bytes()
 
-    def fail_at_the_third(figure, file, **_):
-        drawn.append(figure)
+    def fail_at_the_third(file, image, **_):
+        drawn.append(image)
         file.write(b"half a picture")
         if len(drawn) == 3:
             raise failure
 
     drawn = []
     with monkeypatch.context() as patch:
-        patch.setattr(Figure, "savefig", fail_at_the_third)
+        patch.setattr("loaded_tca.plots.style.imsave", fail_at_the_third)
         found, _, err = run("run", scene(), "--out", "out")
     assert found == code
     assert err[-1] == "loaded-tca: out: the numbers are new, all pictures are missing: 'loaded-tca plot out' draws them"
@@ -327,7 +328,7 @@ def test_failure_while_drawing_leaves_the_numbers_without_old_pictures(run, monk
 def test_failure_while_drawing_again_keeps_the_pictures(run, monkeypatch):
     run("run", scene(), "--out", "out")
     before = {name: Path("out", name).read_bytes() for name in os.listdir("out")}
-    monkeypatch.setattr(Figure, "savefig", lambda *_, **__: os.kill(os.getpid(), signal.SIGINT))
+    monkeypatch.setattr("loaded_tca.plots.style.imsave", lambda *_, **__: os.kill(os.getpid(), signal.SIGINT))
     for command in ("plot", "subsurface", "tooth"):
         assert run(command, "out")[0] == 130
         assert {name: Path("out", name).read_bytes() for name in os.listdir("out")} == before

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from loaded_tca.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from loaded_tca.compliance.compliance import ToothCompliance, default_density, tooth_compliance
+    from loaded_tca.compliance.compliance import ToothCompliance, default_density, require_teeth, tooth_compliance
     from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_compliance
     from loaded_tca.compliance.layout import MeshDensity
 else:
@@ -18,5 +18,6 @@ __all__ = [
     "ToothCompliance",
     "default_density",
     "gear_compliance",
+    "require_teeth",
     "tooth_compliance",
 ]

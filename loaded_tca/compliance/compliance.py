@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,7 +11,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_compliance
 from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.compliance.torsion import body_torsion
-from loaded_tca.errors import named, require
+from loaded_tca.errors import AccuracyWarning, GeometryError, InputError, named, require
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
@@ -21,7 +22,7 @@ LAYERS_PER_HEIGHT = 2.5
 """Layers of elements across a face as wide as the teeth are high; between the two numbers below."""
 FEWEST_LAYERS, MOST_LAYERS = 6, 24
 CHECKED = Resolution(flank=9, fillet=5, land=3, lengthwise=5)
-"""Points of a tooth with its modifications, which must exist though the finite elements follow the one without."""
+"""Points of a tooth that is built to see whether it exists."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,8 +99,44 @@ class ToothCompliance:
         return on_pinion, FlankLine(tooth, radius, axial)
 
 
+def require_teeth(pair: GearPair) -> None:
+    """Refuse gears whose teeth cannot be built, so that an analysis cannot let them bend.
+
+    Parameters
+    ----------
+    pair : GearPair
+
+    Raises
+    ------
+    InputError
+        If a bore reaches the teeth, or a cutter has no blade for their backs.
+    GeometryError
+        If a tooth is pointed or cut off without its modifications.
+
+    Warns
+    -----
+    AccuracyWarning
+        If a tooth is so with its modifications alone: it bends as the one without them.
+    """
+    gears = (("pinion", pair.pinion), ("wheel", pair.wheel))
+    try:
+        for name, gear in gears:
+            with named(name):
+                build_tooth(gear.nominal_flanks, gear.form, CHECKED)
+        _ = pair.rigid_bores
+    except (InputError, GeometryError) as error:
+        raise type(error)(f'{error}; or set analysis.compliance = "contact"') from None
+    for name, gear in gears:
+        if gear.flank is not gear.nominal_flank:
+            try:
+                build_tooth(gear.flanks, gear.form, CHECKED)
+            except GeometryError as error:
+                sentence = f"{name}, with its modifications: {error}; it bends like the tooth without them"
+                warnings.warn(sentence, AccuracyWarning, stacklevel=3)
+
+
 def tooth_compliance(pair: GearPair, *, neighbours: int = 1, density: MeshDensity | None = None) -> ToothCompliance:
-    """Make the finite element models of both gears.
+    """Make the finite element models of both gears, from their flanks without modifications.
 
     Parameters
     ----------
@@ -135,8 +172,6 @@ def tooth_compliance(pair: GearPair, *, neighbours: int = 1, density: MeshDensit
             ratio = gear.material.poisson_ratio
             bends = ratio <= LARGEST_RATIO_IN_BENDING
             require((bends, f"poisson_ratio: {ratio} is above {LARGEST_RATIO_IN_BENDING}: finite elements would lock"))
-            if gear.flank is not gear.nominal_flank:  # modifications may leave a pointed tooth, or none
-                build_tooth(gear.flanks, gear.form, CHECKED)
             found.append(gear_compliance(gear, replace(density or default_density(gear), neighbours=neighbours)))
     return ToothCompliance(pair, *found)
 

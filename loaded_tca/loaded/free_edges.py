@@ -24,7 +24,7 @@ import math
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.half_space import depth_displacement
 from loaded_tca.contact.edges import quarter_space_factor, wedge_factor
 from loaded_tca.errors import named
@@ -83,22 +83,24 @@ def edge_compliance(pair: GearPair, separation: Separation) -> Array | None:
     places = (np.hypot(points[:, 0], points[:, 1]), points[:, 2]), (radius, axial)
     there, found = separation.cover.any(axis=0), np.zeros((separation.y.size,) * 2)
     for name, gear, (rho, z) in zip(("pinion", "wheel"), (pair.pinion, pair.wheel), places, strict=True):
-        jets = gear.flank.edges(rho, z)
+        jets, ends = gear.flank.edges(rho, z), []
         for edge, reach in REACHES.items():
-            value, slope_rho, slope_z = np.broadcast_arrays(jets[edge].value, jets[edge].rho, jets[edge].z)
-            steep = np.hypot(slope_rho, slope_z)
-            distance = value / steep
+            distance = jets[edge].value / np.hypot(jets[edge].rho, jets[edge].z)
             near = np.flatnonzero(there & (np.abs(distance) < reach * pair.module))
-            if not near.size:
-                continue
-            end = near[np.abs(distance[near]).argmin()]
-            inwards = np.array([slope_rho[end], 0.0, slope_z[end]]) / steep[end]
-            angle = math.acos(float(np.clip(outward_normal(gear.flank, rho[end], z[end]) @ inwards, -1.0, 1.0)))
+            if near.size:
+                ends.append((edge, reach, distance, near, near[np.abs(distance[near]).argmin()]))
+        if not ends:
+            continue
+        nearest = [end[-1] for end in ends]
+        normals = outward_normal(gear.flank, rho[nearest], z[nearest]).tolist()
+        for (edge, reach, distance, near, end), (out_rho, _, out_z) in zip(ends, normals, strict=True):
+            in_rho, in_z = (float(np.broadcast_to(by, rho.shape)[end]) for by in (jets[edge].rho, jets[edge].z))
+            cosine = (out_rho * in_rho + out_z * in_z) / math.hypot(in_rho, in_z)
             with named(f"analysis.free_edges: {gear.flank.frame.edges[edge]} of the {name}"):
-                factor = wedge_factor(angle, gear.material.poisson_ratio)
-            slices = distance[near], separation.y[near], separation.spacing[1]
+                factor = wedge_factor(math.acos(min(max(cosine, -1.0), 1.0)), gear.material.poisson_ratio)
+            added = _added(distance, near, separation, pair.module, factor, gear.material)
             faded = _faded(np.maximum(distance[near], 0.0) / (reach * pair.module))
-            found[np.ix_(near, near)] += faded[:, None] * _added(*slices, pair.module, factor, gear.material) * faded
+            found[near[:, None], near] += faded[:, None] * added * faded
     return found if found.any() else None
 
 
@@ -107,18 +109,23 @@ def _faded(part: Array) -> Array:
     return np.asarray(1.0 - part**2 * (3.0 - 2.0 * part))
 
 
-def _added(distance: Array, y: Array, length: float, module: float, factor: float, material: Material) -> Array:
-    """What an edge adds to the deflection of slices (n,) of a ``length`` at distances from it: (n, n) [mm/N].
+def _added(
+    distance: Array, near: Indices, separation: Separation, module: float, factor: float, material: Material
+) -> Array:
+    """What an edge at distances (ny,) adds to the deflection of the slices (n,) near it: (n, n) [mm/N].
 
     The image of a slice is a straight line, so that 1/R has its mean over it in closed form; the mean over the slice
     that it displaces is taken at three places.
     """
-    scale = factor / quarter_space_factor(material.poisson_ratio)
-    rise = np.clip(np.gradient(distance, y), -1.0, 1.0) if y.size > 1 else np.zeros(1)
-    inside = np.maximum(distance, 0.0)  # a contact on an edge is beside it by rounding, or curves beyond it
+    scale, length = factor / quarter_space_factor(material.poisson_ratio), separation.spacing[1]
+    y, rise, first = separation.y[near], np.zeros(near.size), near[0]
+    if near.size > 1:
+        rise = np.gradient(distance[first : near[-1] + 1], length)[near - first]
+        rise = np.minimum(np.maximum(rise, -1.0), 1.0)
+    inside = np.maximum(distance[near], 0.0)  # a contact on an edge is beside it by rounding, or curves beyond it
     width = WIDTH * module
     offset = 0.5 * length * NODES[:, None, None]  # (3, 1, 1) of the places in the slice that is displaced
-    own = np.maximum(distance[:, None] + rise[:, None] * offset, 0.0)
+    own = np.maximum(distance[near][:, None] + rise[:, None] * offset, 0.0)
     apart, both = y[:, None] + offset - y, own + inside
     aside = apart**2 * (1.0 - rise**2)
     along = apart * (1.0 - rise**2) - both * rise  # of the place, from the middle of the image along it
@@ -129,5 +136,5 @@ def _added(distance: Array, y: Array, length: float, module: float, factor: floa
     below = factor + scale * VARIATION * (PLACE_BELOW - MEAN_PLACE)
     surface = depth_displacement(np.asarray(0.0), np.asarray(1.0), material) * inverse
     middle = depth_displacement(np.asarray(DEPTH * module), np.sqrt(square), material)
-    mean = np.tensordot(0.5 * WEIGHTS, varied * surface - below * middle, axes=1)
+    mean = ((0.5 * WEIGHTS) @ (varied * surface - below * middle).reshape(3, -1)).reshape(near.size, near.size)
     return np.asarray(0.5 * (mean + mean.T))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from loaded_tca.compliance import require_teeth
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
 from loaded_tca.loaded.effort import expected_effort, rounded
 from loaded_tca.pairs.gear_pair import GearPair
@@ -24,7 +25,7 @@ def describe_scene(scene: Scene) -> str:
     Raises
     ------
     InputError, GeometryError
-        If the gears of the scene cannot exist or cannot mesh.
+        If the gears of the scene cannot exist or cannot mesh, or their teeth cannot be built though they bend.
     """
     pair = scene.pair()
     rows = [
@@ -69,6 +70,7 @@ def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     effort = expected_effort(scene)
     yield "analysis, roughly: time [s], memory [GiB]", rounded(effort.seconds), rounded(effort.gibibytes)
     if wanted.compliance != "contact":
+        require_teeth(pair)
         yield "bores or journals held rigid, diameter [mm]", *(f"{bore:.4f}" for bore in pair.rigid_bores)
 
 

@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from matplotlib.image import imsave
 from scipy.ndimage import label
 
 from loaded_tca.arrays import Array
@@ -47,8 +49,12 @@ def save_figure(figure: Figure, path: FilePath) -> None:
 
 def png_of(figure: Figure) -> bytes:
     """Return a figure as the content of a PNG file."""
-    content = io.BytesIO()
-    figure.savefig(content, format="png", dpi=DOTS_PER_INCH)
+    content, shown = io.BytesIO(), figure.get_dpi()
+    canvas: Any = FigureCanvasAgg(figure)
+    figure.set_dpi(DOTS_PER_INCH)
+    canvas.draw()  # once: savefig would draw the figure to lay it out, and then again
+    imsave(content, canvas.buffer_rgba(), format="png", dpi=DOTS_PER_INCH)
+    figure.set_dpi(shown)
     return content.getvalue()
 
 

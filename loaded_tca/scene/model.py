@@ -77,7 +77,7 @@ class Scene(Section, ABC):
                 (f"{place}.poisson_ratio", "analysis.compliance"),
                 lambda ratio, compliance: compliance == "contact" or ratio <= LARGEST_RATIO_IN_BENDING,
                 f'found {{0:g}}; allowed up to {LARGEST_RATIO_IN_BENDING} with analysis.compliance = "{{1}}": finite '
-                "elements of a material that keeps its volume lock",
+                'elements of a material that keeps its volume lock; or set analysis.compliance = "contact"',
             )
             for place in ("material", "pinion.material", "wheel.material")
         ),

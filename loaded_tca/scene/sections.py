@@ -211,19 +211,18 @@ class Analysis(Section):
     tolerance: float = key(Number(1e-14, 0.1), "relative tolerance of the contact solver", 1e-6)
     free_edges: bool = key(
         Choice((False, True)),
-        "whether the tips and face ends of the teeth deflect more than a half-space, by mirrored pressure: "
-        "what a mesh cycle without crowning or end relief wants",
-        False,
+        "whether the tips and face ends of the teeth deflect more than a half-space, by mirrored pressure",
+        True,
     )
     load_sharing: bool = key(
         Choice((False, True)),
         "whether several tooth pairs share the torque; false: one carries all",
-        False,
+        True,
     )
     compliance: str = key(
         Choice(("contact", "contact+tooth")),
         "what deforms under load: the flanks, or the teeth and bodies, too",
-        "contact",
+        "contact+tooth",
     )
     torques_Nm: tuple[float, ...] | None = key(
         List(TORQUE_Nm, 1, 1000), "several pinion torques, all analysed", None, "the one of [load]"

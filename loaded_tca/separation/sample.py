@@ -166,8 +166,9 @@ def sample_separation(
     x, y = ((np.arange(n) - 0.5 * (n - 1)) * step for n, step in zip(shape, spacing, strict=True))
     curvatures = (curvature.across, curvature.along)
     heights, distances = gap.with_edges(x[:, None], y)
-    cover = _cover(distances, spacing)
-    whole, cut = (np.where(there, heights, np.inf) for there in (reduce(np.minimum, distances) >= 0.0, cover > 0.0))
+    room = reduce(np.minimum, distances)
+    cover = _cover(distances, spacing) if room.min() < sum(spacing) else np.ones(shape)
+    whole, cut = (np.where(there, heights, np.inf) for there in (room >= 0.0, cover > 0.0))
     return Separation(whole, x, y, spacing, contact.point.copy(), curvature.axes, curvatures, cover, cut)
 
 

@@ -5,7 +5,7 @@ import pytest
 from loaded_tca import InputError, analyse, read_scene
 from loaded_tca.loaded import effort
 from loaded_tca.loaded.effort import expected_effort
-from tests.samples.results import result
+from tests.samples.results import ONE_PAIR, result
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
 
@@ -16,7 +16,7 @@ def effort_of(name="helical", **changes):
 
 def scene(name="helical", **changes):
     changed = {f"analysis.{key}": value for key, value in changes.items()}
-    return read_scene(SCENES / f"{name}.toml").with_changes(changed)
+    return read_scene(SCENES / f"{name}.toml").with_changes({**ONE_PAIR, **changed})
 
 
 def test_contacts_are_those_of_the_result_where_one_pair_carries_all():

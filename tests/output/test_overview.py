@@ -47,12 +47,12 @@ def test_no_single_contact_where_two_pairs_touch_always():
 
 def test_estimate_is_shown_and_noted_where_it_exceeds_the_memory(monkeypatch):
     label = "analysis, roughly: time [s], memory [GiB]"
-    few, many = (described(analysis__positions=count) for count in (20, 2000))
+    few, many = (described(analysis__compliance="contact", analysis__positions=count) for count in (20, 2000))
     assert float(cells(many, label)[0]) == pytest.approx(100.0 * float(cells(few, label)[0]), rel=0.05)  # two digits
     assert float(cells(many, label)[1]) > float(cells(few, label)[1])
     monkeypatch.setattr("loaded_tca.loaded.effort.machine_memory", lambda: 2.0**29)
     assert any(
-        "2000 contacts of" in note and "the machine has 0.5 GiB" in note
+        "4000 contacts of" in note and "the machine has 0.5 GiB" in note
         for note in notes(described(analysis__positions=2000))
     )
 
@@ -204,11 +204,12 @@ def test_measured_flank_shows_its_points_and_deviations():
 
 def test_analysis_is_shown_as_it_is_asked_for():
     text = described("mesh_cycle_helical")
-    assert cells(text, "load sharing, free edges, compliance")[0] == "on"
-    assert cells(text, "load sharing, free edges, compliance")[2] == "contact"
+    assert cells(text, "load sharing, free edges, compliance") == ["on", "on", "contact+tooth"]
     assert cells(text, "positions, torques") == ["33", "3"]
+    assert "bores" in text
+    text = described("spur")
+    assert cells(text, "load sharing, free edges, compliance") == ["off", "off", "contact"]
     assert "bores" not in text  # nothing is held where the flanks alone yield
-    assert cells(described(), "load sharing, free edges, compliance") == ["off", "off", "contact"]
 
 
 def test_bores_are_shown_where_teeth_bend():

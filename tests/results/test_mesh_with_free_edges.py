@@ -9,7 +9,9 @@ from numpy.testing import assert_allclose
 from loaded_tca import analyse, read_scene
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
-STEP = 0.02
+STEP = 0.05
+"""Of the torque, to either side. The law of the rotation bends by 1e-4 of its slope within it; where lines end at tips
+and faces, the rotations scatter by 2e-4 of themselves on these grids, and the slope by 1 % over a narrower step."""
 
 
 def solved(name, torque, free_edges):
@@ -36,8 +38,6 @@ def test_state_repeats_after_a_pitch_and_stiffness_is_that_of_the_rotations(name
     assert_allclose(error[1, -1], error[1, 0], rtol=1e-3)
     shares = np.nan_to_num(result.load_share[1])
     assert_allclose(shares[-1, 1:], shares[0, :-1], atol=1e-3)
-    if name == "helical":
-        return  # its lines end at tips that cut cells: derivatives over 4 % of the torque scatter by 4 %
     turned = np.abs(error[2] - error[0]) * result.wheel_base_radius * 1e3  # um
     force = 2.0 * STEP * torque * 1e3 / result.gear_pair.base_radii[0] / result.face_width
     assert_allclose(result.mesh_stiffness[1], force / turned, rtol=2e-2)

@@ -17,7 +17,7 @@ from loaded_tca.plots import PICTURES, plot_all
 from loaded_tca.reference.weber_banaschek import ring_torsion
 from loaded_tca.results.files import read_dataset, write_dataset
 from loaded_tca.results.key_figures import harmonic_amplitudes
-from tests.samples.results import PER_PAIR, SCENES, assert_same
+from tests.samples.results import FLANKS_ALONE, ONE_PAIR, PER_PAIR, SCENES, assert_same
 
 EQUILIBRIUM = 1e-8
 """Asked for: the torques of the pairs sum up to that of the pinion."""
@@ -28,7 +28,12 @@ PERIOD = 1e-3
 @cache
 def cycle(name="spur", positions=5, torques=(40.0, 130.0)):
     scene = read_scene(SCENES / f"mesh_cycle_{name}.toml")
-    changes = {"analysis.positions": positions, "analysis.cells": (20, 20), "analysis.accuracy": None}
+    changes = {
+        **FLANKS_ALONE,
+        "analysis.positions": positions,
+        "analysis.cells": (20, 20),
+        "analysis.accuracy": None,
+    }
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)  # contacts at tips are wanted here
         return analyse(scene.with_changes({**changes, "analysis.torques_Nm": torques}))
@@ -69,7 +74,7 @@ def test_cycle_repeats_after_a_pitch(make):
 def test_driving_wheel_sees_the_same_cycle_backwards():
     """Time reversed: the same contacts in the opposite order, the transmission error of the other sign."""
     scene = read_scene(SCENES / "mesh_cycle_spur.toml").with_changes(
-        {"analysis.positions": 5, "analysis.cells": (16, 16), "analysis.torques_Nm": (40.0,)}
+        {**FLANKS_ALONE, "analysis.positions": 5, "analysis.cells": (16, 16), "analysis.torques_Nm": (40.0,)}
     )
     forwards, backwards = (analyse(scene.with_changes({"pair.driving": gear})) for gear in ("pinion", "wheel"))
     assert_allclose(backwards.load_share[0, ::-1, 1], forwards.load_share[0, :, 1], atol=PERIOD)
@@ -86,7 +91,7 @@ def test_sharing_lowers_the_force_and_raises_the_stiffness():
                 "analysis.cells": (20, 20),
                 "analysis.accuracy": None,
                 "analysis.torques_Nm": (130.0,),
-                "analysis.load_sharing": False,
+                **ONE_PAIR,
                 "pinion.modifications.tip_relief_um": 0.0,
                 "wheel.modifications.tip_relief_um": 0.0,
             }
@@ -288,7 +293,7 @@ def bending(load_sharing):
     scene = read_scene(SCENES / "mesh_cycle_spur.toml")
     narrow = {"pinion.face_width_mm": 6.0, "wheel.face_width_mm": 6.0, "analysis.torques_Nm": (30.0,)}
     coarse = {"analysis.positions": 2, "analysis.cells": (16, 16), "analysis.accuracy": None}
-    how = {"analysis.load_sharing": load_sharing, "analysis.compliance": "contact+tooth"}
+    how = {"analysis.load_sharing": load_sharing, "analysis.free_edges": False}
     return analyse(scene.with_changes({**narrow, **coarse, **how}))
 
 
@@ -379,6 +384,7 @@ def cycle_at_the_tip():
     """At one of its positions the contact point of pair -1 lies a tenth of a millimetre from the tip."""
     scene = read_scene(SCENES / "mesh_cycle_helical.toml").with_changes(
         {
+            **FLANKS_ALONE,
             "analysis.positions": 33,
             "analysis.cells": (20, 20),
             "analysis.accuracy": None,

@@ -15,7 +15,7 @@ from loaded_tca.results.slice_pressure import averaged_line_load, largest_slice_
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import trace_contact
 from tests.samples.gear_pairs import sam_paper
-from tests.samples.results import SCENES
+from tests.samples.results import ONE_PAIR, SCENES
 
 MODULUS = 113187.0  # MPa
 
@@ -96,7 +96,7 @@ def test_slice_pressure_takes_line_load_and_curvature_of_its_own_place():
 @cache
 def bevel_at_the_heel():
     scene = read_scene(SCENES / "straight_bevel.toml").with_changes(
-        {"analysis.positions": 1, "analysis.cells": (48, 48), "mounting.offset_mm": 0.15}
+        {**ONE_PAIR, "analysis.positions": 1, "analysis.cells": (48, 48), "mounting.offset_mm": 0.15}
     )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)  # an edge contact is wanted here
@@ -123,7 +123,7 @@ def test_peak_at_a_sharp_edge_does_not_depend_on_the_grid(name):
 @cache
 def on_cells(name, count):
     scene = read_scene(SCENES / f"{name}.toml")
-    changes = {"analysis.positions": 1, "analysis.cells": (count, count), "analysis.accuracy": None}
+    changes = {**ONE_PAIR, "analysis.positions": 1, "analysis.cells": (count, count), "analysis.accuracy": None}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)  # edge contacts are wanted here
         return analyse(scene.with_changes(changes))
@@ -131,7 +131,7 @@ def on_cells(name, count):
 
 def test_peak_at_an_edge_is_never_above_the_cap():
     scene = read_scene(SCENES / "misaligned.toml").with_changes(
-        {"analysis.positions": 1, "analysis.cells": (24, 24), "material.max_pressure_MPa": 900.0}
+        {**ONE_PAIR, "analysis.positions": 1, "analysis.cells": (24, 24), "material.max_pressure_MPa": 900.0}
     )
     with pytest.warns(AccuracyWarning, match="reaches an edge"):
         cycle = analyse(scene)
@@ -142,8 +142,11 @@ def test_peak_at_an_edge_is_never_above_the_cap():
 def test_peak_across_a_relief_start_does_not_depend_on_the_grid():
     """A linear tip relief that begins at the pitch point: the largest cell goes on growing."""
     scene = read_scene(SCENES / "helical.toml")
-    changes = {"analysis.positions": 1, "analysis.accuracy": None, "pinion.modifications.tip_relief_form": "linear"}
-    changes |= {
+    changes = {
+        **ONE_PAIR,
+        "analysis.positions": 1,
+        "analysis.accuracy": None,
+        "pinion.modifications.tip_relief_form": "linear",
         "pinion.modifications.tip_relief_um": 20.0,
         "load.pinion_torque_Nm": 60.0,
         "pinion.modifications.tip_relief_start_mm": 105.6,

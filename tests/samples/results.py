@@ -15,13 +15,18 @@ from loaded_tca.results.mesh_cycle import CYCLE, PAIRS, QUANTITIES
 from loaded_tca.scene import Scene, read_scene
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
+FLANKS_ALONE = {"analysis.compliance": "contact", "analysis.free_edges": False}
+"""Half-spaces: nothing but the contact, as Hertz has it."""
+ONE_PAIR = {**FLANKS_ALONE, "analysis.load_sharing": False}
+"""And one tooth pair that carries the whole load."""
 PER_POSITION, PER_PAIR = ([name for name, (axes, *_) in QUANTITIES.items() if axes == one] for one in (CYCLE, PAIRS))
 
 
 @cache
 def result(name="helical", positions=5, torques=None, title=None):
-    """Analysis of an example scene on a coarse grid."""
+    """Analysis of an example scene on a coarse grid, of half-spaces; the load is shared in mesh cycles alone."""
     changes = {
+        **(FLANKS_ALONE if name.startswith("mesh_cycle") else ONE_PAIR),
         "analysis.positions": positions,
         "analysis.accuracy": None,
         "analysis.cells": (20, 24),

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from loaded_tca.analysis import analyse
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.base import outward_normal
@@ -529,13 +530,21 @@ def test_teeth_that_would_jam_are_noted(scene):
 
 
 def test_one_blade_is_enough_for_contact_and_told_in_the_overview(scene):
-    single = scene.with_changes({"pinion.cutter.convex": None})
+    single = scene.with_changes({"pinion.cutter.convex": None, "analysis.compliance": "contact"})
     assert told(single)["mean normal tooth thickness s_mn"][0] == "one flank"
     assert told(single)["mean normal backlash"] == ("one flank",)
     assert single.notes() == ()
     assert "pinion: fit between them, largest" in describe_scene(single)  # the B-spline of the exact flank
     with pytest.raises(InputError, match=r"pinion\.cutter\.convex: missing"):
         single.pair("positive")
+
+
+def test_one_blade_makes_no_teeth_that_bend(scene):
+    single = scene.with_changes({"pinion.cutter.convex": None})
+    told = r'^pinion: cutter\.convex: missing; .*; or set analysis\.compliance = "contact"$'
+    for asked in (describe_scene, analyse):
+        with pytest.raises(InputError, match=told):
+            asked(single)
 
 
 def test_overview_of_a_missing_blade_is_an_input_error(scene):

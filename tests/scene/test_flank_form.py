@@ -12,6 +12,7 @@ from loaded_tca import AccuracyWarning, InputError, analyse, load_result, read_s
 from loaded_tca.flanks import FlankModifications, SplineFlank, measured, read_topography
 from loaded_tca.scene import CylindricalScene, FlankForm, Measurement, parse_scene, scene_from_table
 from loaded_tca.scene.build import build_modifications
+from tests.samples.results import ONE_PAIR
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
 FITTED = 1e-10  # rad; a B-spline through 33 x 33 points is within 1e-6 um of the flank
@@ -190,7 +191,7 @@ def test_scene_needs_the_file_no_more_once_it_is_read(small, scene, tmp_path):
 
 def test_result_of_a_measured_flank_opens_without_the_file(small, scene, tmp_path):
     path = written(tmp_path / "there", small + MEASURED, csv_of(deviations(scene)))
-    first = read_scene(path).with_changes({"analysis.positions": 1, "analysis.cells": (16, 16)})
+    first = read_scene(path).with_changes({**ONE_PAIR, "analysis.positions": 1, "analysis.cells": (16, 16)})
     analyse(first).save(tmp_path / "result.nc")
     (path.parent / "wheel.csv").unlink()
     assert load_result(tmp_path / "result.nc").scene == first

@@ -69,7 +69,7 @@ ONE_PROBLEM = [
     (
         {"material.poisson_ratio": 0.5, "analysis.compliance": "contact+tooth"},
         'material.poisson_ratio: found 0.5; allowed up to 0.49 with analysis.compliance = "contact+tooth": finite '
-        "elements of a material that keeps its volume lock",
+        'elements of a material that keeps its volume lock; or set analysis.compliance = "contact"',
     ),
     ({"pinion.teeth": -34}, "pinion.teeth: found -34; allowed a whole number from 3 to 10000"),
     ({"pinion.teeth": 10001}, "pinion.teeth: found 10001; allowed a whole number from 3 to 10000"),

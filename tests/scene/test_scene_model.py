@@ -101,7 +101,13 @@ def test_defaults_are_those_of_the_documentation(scene):
     assert scene.pinion.modifications == Modifications()
     assert scene.mounting == MountingErrors()
     assert scene.analysis == Analysis(
-        positions=21, accuracy=1e-3, cells=None, tolerance=1e-6, load_sharing=False, compliance="contact"
+        positions=21,
+        accuracy=1e-3,
+        cells=None,
+        tolerance=1e-6,
+        load_sharing=True,
+        compliance="contact+tooth",
+        free_edges=True,
     )
 
 

@@ -31,6 +31,7 @@ NAMES = ("mesh_cycle_spur", "mesh_cycle_helical", "mesh_cycle_bevel")
 POSITIONS, RUNS = 9, 3
 ACCURACIES, CELLS, FINEST = (1e-1, 1e-2, 1e-3, 1e-4), (16, 32, 64, 128), 256
 CYCLE_POSITIONS, CYCLE_LOADS, CYCLE_ACCURACY = 32, (0.3, 1.0, 2.0), 1e-2
+FLANKS_ALONE: dict[str, Any] = {"analysis.compliance": "contact", "analysis.free_edges": False}
 NEIGHBOURS = 2
 """Pitches between loaded pairs that the timed models of teeth know."""
 
@@ -73,8 +74,8 @@ def cycles(names: tuple[str, ...] = NAMES, runs: int = RUNS) -> str:
         scene = read_scene(SCENES / f"{name}.toml")
         load = 1e-3 * float(np.median(scene.torques))
         torques = [factor * load for factor in CYCLE_LOADS]
-        changes = {"positions": CYCLE_POSITIONS, "torques_Nm": torques, "compliance": "contact"}
-        scene = scene.with_changes({f"analysis.{key}": value for key, value in changes.items()})
+        changes = {"analysis.positions": CYCLE_POSITIONS, "analysis.torques_Nm": torques}
+        scene = scene.with_changes({**FLANKS_ALONE, **changes})
         first = _timed(scene, "accuracy", CYCLE_ACCURACY, 1)[1]
         again = _timed(scene, "accuracy", CYCLE_ACCURACY, runs)[1]
         bending = scene.with_changes({"analysis.compliance": "contact+tooth"})
@@ -110,7 +111,8 @@ def heading() -> str:
 def _measured(name: str, runs: int) -> list[WholeLine]:
     scene = read_scene(SCENES / f"{name}.toml")
     middle = 1e-3 * float(np.median(scene.torques))
-    scene = scene.with_changes({"analysis.positions": POSITIONS, "analysis.torques_Nm": [middle]})
+    changes = {"analysis.positions": POSITIONS, "analysis.torques_Nm": [middle]}
+    scene = scene.with_changes({**FLANKS_ALONE, **changes})
     finest, _ = _timed(scene, "cells", (FINEST, FINEST), 1)
     settings: list[tuple[str, str, Any]] = [(f"accuracy {value:.0e}", "accuracy", value) for value in ACCURACIES]
     settings += [(f"{n} x {n} cells", "cells", (n, n)) for n in CELLS]
