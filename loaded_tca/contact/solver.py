@@ -238,14 +238,18 @@ def solve_problems(
             found[k] = _without_load(problem)
         solution = found[k]
         if solution.status is ContactStatus.NOT_CONVERGED and on_failure == "raise":
-            name = f"contact {k}" if len(problems) > 1 else "contact"
-            raise ConvergenceError(
-                f"{name} not converged: residual {solution.residual:.1e} > tolerance {tolerances[k]:.1e} after "
-                f"{solution.iterations} iterations; try a larger tolerance (in scenes: analysis.tolerance), or "
-                "on_failure='return' to look at it",
-                last=solution,
-            )
+            raise not_converged(solution, tolerances[k], f"contact {k}" if len(problems) > 1 else "contact")
     return [found[k] for k in range(len(problems))]
+
+
+def not_converged(solution: ContactSolution, tolerance: float, name: str = "contact") -> ConvergenceError:
+    """Error that tells of a contact that is not solved to its tolerance."""
+    return ConvergenceError(
+        f"{name} not converged: residual {solution.residual:.1e} > tolerance {tolerance:.1e} after "
+        f"{solution.iterations} iterations; try a larger tolerance (in scenes: analysis.tolerance), or "
+        "on_failure='return' to look at it",
+        last=solution,
+    )
 
 
 def contact_stiffness(solution: ContactSolution, tolerance: float = 1e-6) -> float:
