@@ -8,7 +8,6 @@ were alone, and its numbers do not depend on what stands beside it.
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
@@ -18,14 +17,14 @@ from loaded_tca.contact.solution import ContactSolution, ContactStatus
 from loaded_tca.contact.solver import not_converged, solve_problems
 from loaded_tca.errors import LoadedTCAError
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.separation import Separation, sample_separation
+from loaded_tca.separation import Separation
+from loaded_tca.separation.sample import sample_separations
 from loaded_tca.unloaded import ContactPoint
 
 Result = TypeVar("Result")
 
 
-@dataclass(frozen=True, eq=False)
-class Gap:
+class Gap(NamedTuple):
     """A separation to sample, in the box that a load needs or in a given one; see :func:`sample_separation`."""
 
     contact: ContactPoint
@@ -100,7 +99,9 @@ def _answers(pair: GearPair, asked: dict[int, Gap | Task]) -> dict[int, Separati
     """Answer the gaps that are asked for, or else the problems on the coarsest grid; an error is an answer, too."""
     gaps = {index: request for index, request in asked.items() if isinstance(request, Gap)}
     if gaps:
-        return {index: _sampled(pair, gap) for index, gap in gaps.items()}
+        contacts, cells, loads, boxes = zip(*gaps.values(), strict=True)
+        found = sample_separations(pair, contacts, cells=cells, loads=loads, boxes=boxes)
+        return dict(zip(gaps, found, strict=True))
     tasks = {index: task for index, task in asked.items() if isinstance(task, Task)}
     coarsest = min(task.problem.gap.size for task in tasks.values())
     chosen = {index: task for index, task in tasks.items() if task.problem.gap.size == coarsest}
@@ -110,9 +111,3 @@ def _answers(pair: GearPair, asked: dict[int, Gap | Task]) -> dict[int, Separati
         for (index, task), solution in zip(chosen.items(), solutions, strict=True)
     }
 
-
-def _sampled(pair: GearPair, gap: Gap) -> Separation | LoadedTCAError:
-    try:
-        return sample_separation(pair, gap.contact, cells=gap.cells, load=gap.load, box=gap.box)
-    except LoadedTCAError as error:
-        return error
