@@ -110,4 +110,3 @@ def _answers(pair: GearPair, asked: dict[int, Gap | Task]) -> dict[int, Separati
         index: not_converged(solution, task.tolerance) if solution.status is ContactStatus.NOT_CONVERGED else solution
         for (index, task), solution in zip(chosen.items(), solutions, strict=True)
     }
-

@@ -56,38 +56,40 @@ def estimate_boxes(
     curvatures, modulus = relative_curvatures(pair, contacts), pair.contact_modulus
     gap = NormalGap(pair, contacts, np.array([curvature.axes for curvature in curvatures]))
     longest = math.hypot(pair.face_width, *(flank.extent[0] for flank in (pair.pinion.flank, pair.wheel.flank)))
-    windows = np.empty((len(contacts), 2))
-    for window, contact, curvature, load, guess in zip(windows, contacts, curvatures, loads, guesses, strict=True):
-        if guess is not None and contact.on_edge:  # a window that a contact with this box fills to two thirds
-            window[:] = ROOM / EDGE_MARGIN * guess[0], ROOM / MARGIN * guess[1]
-        else:
-            window[:] = _first_window(curvature, load, pair)
+    windows, forces = _first_windows(curvatures, np.asarray(loads), pair), np.asarray(loads)
+    on_edge = np.array([contact.on_edge for contact in contacts])
+    for row, guess in enumerate(guesses):
+        if guess is not None and on_edge[row]:  # a window that a contact with this box fills to two thirds
+            windows[row] = ROOM / EDGE_MARGIN * guess[0], ROOM / MARGIN * guess[1]
     windows[:, 1] = np.minimum(windows[:, 1], longest)
-    on_edge, forces = np.array([contact.on_edge for contact in contacts]), np.asarray(loads)
-    boxes, rows = np.full(windows.shape, np.nan), np.arange(len(contacts))
-    for left in reversed(range(MOST_PROBES)):
-        here, have = gap.of(rows), windows[rows]
-        x, y = (np.linspace(-half, half, count, axis=-1) for half, count in zip(have.T, PROBE, strict=True))
-        fall, room = here.at(x[:, :, None], y[:, None])
-        bare = room.max(axis=(1, 2)) < 0.0
-        there = (room >= 0.0) | bare[:, None, None]  # what is found of the bare ones is not used
-        needed, end, growth = _strip_extents(np.where(there, fall, np.inf), x, y, forces[rows], modulus)
-        fits = (0.4 * have <= needed) & (needed <= have / MARGIN)
-        fits[:, 1] |= (needed[:, 1] > have[:, 1] / MARGIN) & (have[:, 1] == longest)
-        done = ~bare & (fits.all(axis=1) | (left == 0))
-        if done.any():
-            along = MARGIN * needed[done, 1]
-            material = _material_lengths(here.of(done), room[done], x[done], y[done], along)
-            spiked = end[done] > CERTAINLY_INSIDE * material
-            margin = np.where(on_edge[rows[done]], EDGE_MARGIN, np.where(spiked, SPIKE_MARGIN, MARGIN))
-            boxes[rows[done], 0] = margin * needed[done, 0]
-            beyond = material * (cells / (cells - 2) if cells > 2 else 1.0)
-            boxes[rows[done], 1] = np.where(material < along, beyond, along)
-        resized = np.where(bare[:, None], 2.0 * have, _resized(needed, have, growth[:, None]))
-        windows[rows] = np.stack([resized[:, 0], np.minimum(resized[:, 1], longest)], axis=1)
-        rows = rows[~done]
+    count, rows = len(contacts), np.arange(len(contacts))
+    x, y, room = np.empty((count, PROBE[0])), np.empty((count, PROBE[1])), np.empty((count, *PROBE))
+    needed, end = np.empty((count, 2)), np.empty(count)
+    for _ in range(MOST_PROBES):
+        have = windows[rows]
+        x[rows], y[rows] = (np.linspace(-half, half, n, axis=-1) for half, n in zip(have.T, PROBE, strict=True))
+        fall, room[rows] = gap.of(rows).at(x[rows][:, :, None], y[rows][:, None])
+        bare = room[rows].max(axis=(1, 2)) < 0.0
+        there = (room[rows] >= 0.0) | bare[:, None, None]  # what is found of the bare ones is not used
+        needed[rows], end[rows], growth = _strip_extents(
+            np.where(there, fall, np.inf), x[rows], y[rows], forces[rows], modulus
+        )
+        need = needed[rows]
+        fits = (0.4 * have <= need) & (need <= have / MARGIN)
+        fits[:, 1] |= (need[:, 1] > have[:, 1] / MARGIN) & (have[:, 1] == longest)
+        on = bare | ~fits.all(axis=1)
+        resized = np.where(bare[:, None], 2.0 * have, _resized(need, have, growth[:, None]))
+        windows[rows] = np.minimum(resized, [np.inf, longest])
+        rows = rows[on]
         if not rows.size:
             break
+    held, along = np.flatnonzero(room.max(axis=(1, 2)) >= 0.0), MARGIN * needed[:, 1]
+    material = along.copy()
+    material[held] = _material_lengths(gap.of(held), room[held], x[held], y[held], along[held])
+    margin = np.where(on_edge, EDGE_MARGIN, np.where(end > CERTAINLY_INSIDE * material, SPIKE_MARGIN, MARGIN))
+    beyond = material * (cells / (cells - 2) if cells > 2 else 1.0)
+    boxes = np.full((count, 2), np.nan)
+    boxes[held] = np.stack([margin * needed[:, 0], np.where(material < along, beyond, along)], axis=1)[held]
     missing = "no flank around the contact point at pinion angle {:.6g} rad"
     return [
         GeometryError(missing.format(contact.pinion_angle)) if math.isnan(across) else (across, along)
@@ -95,13 +97,19 @@ def estimate_boxes(
     ]
 
 
-def _first_window(curvature: RelativeCurvature, load: float, pair: GearPair) -> tuple[float, float]:
-    """A window that a Hertzian ellipse would fill to two thirds, or across a line that the face cuts off."""
-    across = max(curvature.across, 1e-6 / pair.face_width)
-    along = max(curvature.along, 1e-8 * across)
-    ellipse = point_contact(load, (across, along), pair.contact_modulus)
-    line = line_contact(load / pair.face_width, across, pair.contact_modulus)
-    return ROOM * max(ellipse.semi_minor, line.half_width), ROOM * ellipse.semi_major
+def _first_windows(curvatures: Sequence[RelativeCurvature], loads: Array, pair: GearPair) -> Array:
+    """Windows (n, 2) that Hertzian ellipses would fill to two thirds, or across lines that the face cuts off.
+
+    The axes of an ellipse grow with the cube root of the load, the width of a line with its square root.
+    """
+    under_one = {}
+    for curvature in dict.fromkeys(curvatures):
+        across = max(curvature.across, 1e-6 / pair.face_width)
+        ellipse = point_contact(1.0, (across, max(curvature.along, 1e-8 * across)), pair.contact_modulus)
+        line = line_contact(1.0 / pair.face_width, across, pair.contact_modulus)
+        under_one[curvature] = ellipse.semi_minor, ellipse.semi_major, line.half_width
+    minor, major, half_width = np.array([under_one[curvature] for curvature in curvatures]).T
+    return ROOM * np.stack([np.maximum(np.cbrt(loads) * minor, np.sqrt(loads) * half_width), np.cbrt(loads) * major], 1)
 
 
 def _resized(needed: Array, window: Array, growth: Array) -> Array:
@@ -157,7 +165,7 @@ def _ends_of_parabolas(distance: Array, penetration: Array, closed: Mask) -> Arr
 
 
 def _water_level(ordered: Array, sums: Array, total: Array) -> Array:
-    """The deltas (n, 1) at which (delta - floor)_+ adds up to ``total``; the floors in order, and their running sums."""
+    """The deltas (n, 1) at which (delta - floor)_+ adds up to ``total``, of floors in order and their running sums."""
     levels = (total[:, None] + sums) / np.arange(1, ordered.shape[1] + 1)
     above = np.append(ordered[:, 1:], np.full((len(ordered), 1), np.inf), axis=1)
     return np.take_along_axis(levels, (levels <= above).argmax(axis=1)[:, None], axis=1)

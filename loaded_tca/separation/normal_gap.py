@@ -6,6 +6,7 @@ of the flank. Two steps are the rule: the third is known beforehand, since the s
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass
@@ -25,12 +26,14 @@ BEND = 100.0
 NO_MORE = 1e3
 """Steps shorter than this times rounding are the last: the next one shrinks quadratically."""
 STEPS_TOGETHER = 4
-"""Newton steps of all points of a contact; those that need more, near or beyond the end of an involute, go on alone from where
-they meet the other flank, for as many again, as long as the steps shrink to less than half."""
+"""Newton steps of all points of a contact; those that need more, near or beyond the end of an involute, go on alone
+from where they meet the other flank, for as many again, as long as the steps shrink to less than half."""
 FLATTEST = 1e-6
 """Change of theta along the normal, times the sum of the base radii, below which a flank bends away from it."""
 ON_EDGE = 1e-9
 """Distance from an edge, over the module, up to which a flank has not ended."""
+TOGETHER = 16_000
+"""Points that are sampled at once: arrays of more leave the cache, and their memory goes back to the system."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,16 +48,16 @@ class _Rays:
     normal: tuple[Array, ...]
     turn: Array
 
-    def single(self, places: tuple[Indices, ...]) -> _Rays:
-        """Some of the rays, each as if it were all of a contact."""
-        rows = places[0]
-        start, normal = tuple(part[places][:, None] for part in self.start), tuple(part[rows] for part in self.normal)
-        return _Rays(self.flank, start, normal, self.turn[rows])
+    def single(self, places: tuple[Indices, ...], height: Array) -> _Rays:
+        """Some of the rays (k,), from these heights on, each as if it were all of a contact."""
+        normal = tuple(part[places[0]] for part in self.normal)
+        start = (part[places][:, None] + height[:, None] * n for part, n in zip(self.start, normal, strict=True))
+        return _Rays(self.flank, tuple(start), normal, self.turn[places[0]])
 
 
 @dataclass(frozen=True, eq=False)
 class _Meeting:
-    """Where rays meet a flank: heights (n, points), place (rho, z), length of the last step, whether it was the last."""
+    """Where rays meet a flank: height above the start, (rho, z), length of the last step, whether it was the last."""
 
     height: Array
     rho: Array
@@ -101,7 +104,7 @@ class NormalGap:
         self._size = sum(pair.base_radii)
         self._rounding = STEP_ROUNDING * self._size
 
-    def of(self, rows: Indices | Mask) -> NormalGap:
+    def of(self, rows: Indices | Mask | slice) -> NormalGap:
         """Some of the contacts, or the same ones more than once."""
         part = copy(self)
         part._views = tuple((flank, *(values[rows] for values in of_each)) for flank, *of_each in self._views)
@@ -112,13 +115,19 @@ class NormalGap:
 
         The distance is negative where a flank has ended, and -inf where the normal does not meet it.
         """
+        count, shape = len(self._views[0][-1]), np.broadcast_shapes(x.shape, y.shape)
+        size = max(1, count * TOGETHER // math.prod(shape))
+        if size < count:
+            parts = [slice(first, first + size) for first in range(0, count, size)]
+            found = zip(*(self.of(part).at(x[part], y[part]) for part in parts), strict=True)
+            return tuple(np.concatenate(values) for values in found)
         gap, distances = self.with_edges(x, y)
         return gap, reduce(np.minimum, distances)
 
     def with_edges(self, x: Array, y: Array) -> tuple[Array, list[Array]]:
         """Gap [mm], and distances to each edge of both flanks [mm], at points that broadcast; signed as of ``at``."""
         shape, rays = np.broadcast_shapes(x.shape, y.shape), self._rays(x, y)
-        met = [self._meet(ray, np.zeros(ray.start[0].shape)) for ray in rays]
+        met = [self._meet(ray) for ray in rays]
         missed = None
         if not (met[0].settled & met[1].settled).all():
             missed = np.logical_or(*(self._meet_rest(rays[own], met[own], met[1 - own]) for own in (0, 1)))
@@ -135,7 +144,7 @@ class NormalGap:
         """
         bends = []
         for rays, (_, _, axes, _) in zip(self._rays(x, y), self._views, strict=True):
-            met = self._meet(rays, np.zeros(rays.start[0].shape))
+            met = self._meet(rays)
             at_x, at_y = (part + met.height * n for part, n in zip(rays.start[:2], rays.normal[:2], strict=True))
             basis = cylindrical_basis(np.arctan2(at_y, at_x))
             gradient, hessian = _theta_less_flank(rays.flank, met.rho, met.z)
@@ -151,7 +160,7 @@ class NormalGap:
         for flank, origins, axes, turns in self._views:
             count = len(turns)
             start = (
-                (o.reshape(count, *beside) + (x * a.reshape(count, *beside) + y * b.reshape(count, *beside)))
+                (o.reshape(count, *beside) + x * a.reshape(count, *beside)) + y * b.reshape(count, *beside)
                 for o, a, b in zip(origins.T, axes[:, 0].T, axes[:, 1].T, strict=True)
             )
             normal = tuple(axes[:, 2, :, None].swapaxes(0, 1))
@@ -167,27 +176,27 @@ class NormalGap:
         rest = tuple(part[on] for part in rest)
         height, step = np.where(mating.settled, mating.height, met.height)[rest], np.full(rest[0].shape, np.inf)
         while step.size:
-            found = self._meet(rays.single(rest), height[:, None])
-            late = _Meeting(found.height[:, 0], found.rho[:, 0], found.z[:, 0], found.step[:, 0], found.settled[:, 0])
-            place = rays.flank.room(late.rho, late.z)
-            for part, later in ((met.height, late.height), (met.rho, late.rho), (met.z, late.z)):
-                part[rest] = later
-            missed[rest] = ~late.settled
-            on = ~late.settled & (place > -2.0 * late.step) & (late.step < 0.5 * step)
-            rest, height, step = tuple(part[on] for part in rest), late.height[on], late.step[on]
+            found = self._meet(rays.single(rest, height))
+            height, before, step = height + found.height[:, 0], step, found.step[:, 0]
+            met.height[rest], met.rho[rest], met.z[rest] = height, found.rho[:, 0], found.z[:, 0]
+            missed[rest] = ~found.settled[:, 0]
+            room = rays.flank.room(met.rho[rest], met.z[rest])
+            on = missed[rest] & (room > -2.0 * step) & (step < 0.5 * before)
+            rest, height, step = tuple(part[on] for part in rest), height[on], step[on]
         return missed
 
-    def _meet(self, rays: _Rays, height: Array) -> _Meeting:
-        """Newton steps from heights (n, points), of each contact until its longest is rounding or the next would be."""
-        (nx, ny, nz), longest = rays.normal, 0.25 * self.pair.module
-        settled, before = np.zeros((len(height), 1), dtype=bool), np.zeros((len(height), 1))
-        x, y, z = (part + height * n for part, n in zip(rays.start, rays.normal, strict=True))
+    def _meet(self, rays: _Rays) -> _Meeting:
+        """Newton steps (n, points), of each contact until the longest of its points is rounding or the next would be."""
+        (nx, ny, nz), (x, y, z), longest = rays.normal, rays.start, 0.25 * self.pair.module
+        height, before, settled = 0.0, 0.0, np.zeros(rays.turn.shape, dtype=bool)
         for _ in range(STEPS_TOGETHER):
             square = x * x + y * y
             rho = np.sqrt(square)
             jet = rays.flank.theta(rho, z)
             slope = (x * ny - y * nx) / square - jet.rho * ((x * nx + y * ny) / rho) - jet.z * nz
-            slope = np.where(np.abs(slope) > FLATTEST / self._size, slope, np.inf)
+            flat = np.abs(slope) <= FLATTEST / self._size
+            if flat.any():
+                slope[flat] = np.inf
             step = (jet.value + rays.turn - np.arctan2(y, x)) / slope
             length = np.abs(step)
             largest = length.max(axis=1, keepdims=True)

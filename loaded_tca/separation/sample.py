@@ -30,8 +30,8 @@ from loaded_tca.arrays import Array
 from loaded_tca.contact.checks import memory_problem
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.separation.box import MARGIN, PROBE, estimate_boxes
-from loaded_tca.separation.normal_gap import NormalGap
+from loaded_tca.separation.box import MARGIN, estimate_boxes
+from loaded_tca.separation.normal_gap import TOGETHER, NormalGap
 from loaded_tca.unloaded.curvature import relative_curvatures
 from loaded_tca.unloaded.path import ContactPoint, require_contact
 
@@ -42,8 +42,6 @@ LOAD_OF_UNLOADED_BOX = 1e-6
 """Load [N] that sizes the box of an unloaded contact: small enough for its smallest gap to be rounding."""
 SLIVER = 0.01
 """Part of a cell that does not count: below it a cell has no material, and one that lacks no more is whole."""
-TOGETHER = 16_000
-"""Points that are sampled at once: more leave the cache."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,23 +202,20 @@ def sample_separations(
     relative_curvatures(pair, [contacts[index] for indices in alike.values() for index in indices])  # kept
     for shape, indices in alike.items():
         sized = {index: boxes[index] for index in indices}
-        for part in _chunks([index for index, box in sized.items() if box is None], PROBE):
-            on = [contacts[index] for index in part]
-            forces = [loads[index] or LOAD_OF_UNLOADED_BOX for index in part]
-            fitting = estimate_boxes(pair, on, forces, [guesses[index] for index in part], shape[1])
-            sized.update(zip(part, fitting, strict=True))
-        failed = {index: error for index, error in sized.items() if isinstance(error, GeometryError)}
-        found.update(failed)
-        for part in _chunks([index for index in indices if index not in failed], shape):
-            gaps = _sampled(pair, [contacts[index] for index in part], np.array([sized[index] for index in part]), shape)
-            found.update(zip(part, gaps, strict=True))
+        open_ = [index for index, box in sized.items() if box is None]
+        if open_:
+            forces = [loads[index] or LOAD_OF_UNLOADED_BOX for index in open_]
+            on = [contacts[index] for index in open_]
+            fitting = estimate_boxes(pair, on, forces, [guesses[index] for index in open_], shape[1])
+            sized.update(zip(open_, fitting, strict=True))
+        found.update((index, error) for index, error in sized.items() if isinstance(error, GeometryError))
+        rest, size = [index for index in indices if index not in found], max(1, TOGETHER // math.prod(shape))
+        for part in (rest[first : first + size] for first in range(0, len(rest), size)):
+            half_lengths = np.array([sized[index] for index in part])
+            found.update(
+                zip(part, _sampled(pair, [contacts[index] for index in part], half_lengths, shape), strict=True)
+            )
     return [found[index] for index in range(len(contacts))]
-
-
-def _chunks(indices: list[int], shape: tuple[int, int]) -> Iterator[list[int]]:
-    """Contacts whose grids of this shape are sampled at once."""
-    size = max(1, TOGETHER // math.prod(shape))
-    return (indices[first : first + size] for first in range(0, len(indices), size))
 
 
 def _sampled(
