@@ -95,7 +95,7 @@ def carried_by_one(
             loaded = yield from contact_under_load(pair, contact, torques[t] / contact.pinion_lever, grid, bending)
             return (yield from loaded.with_stiffness())
 
-    for (t, n), loaded in _found(shape, steps, progress):
+    for (t, n), loaded in _found(pair, shape, steps, progress):
         contacts[t][n][0] = loaded
         if loaded is not None:
             deflection[t, n] = loaded.own_tooth_deflection
@@ -130,7 +130,7 @@ def carried_by_all(
         with _told_where(torques[t], angles[n]):
             return (yield from torque_shared(pair, tooth_pairs[n], float(torques[t]), grid, bending))
 
-    shared = dict(_found(shape, steps, progress))
+    shared = dict(_found(pair, shape, steps, progress))
     carrying = {0} | {share.tooth_pair.pair for one in shared.values() for share in one.shares}
     columns = [column for column, number in enumerate(mesh.pairs.tolist()) if number in carrying]
     pairs = mesh.pairs[columns].tolist()
@@ -159,12 +159,15 @@ def carried_by_all(
 
 
 def _found(
-    shape: tuple[int, int], steps: Callable[[int, int], Steps[Result]], progress: Progress | None
+    pair: GearPair,
+    shape: tuple[int, int],
+    steps: Callable[[int, int], Steps[Result]],
+    progress: Progress | None,
 ) -> list[tuple[tuple[int, int], Result]]:
     """Results of all torques and positions, worked on together, with their indices; the progress is told."""
     states = list(np.ndindex(shape))
     told = None if progress is None else lambda done: progress(done, len(states))
-    found = found_together([steps(*state) for state in states], told)
+    found = found_together(pair, [steps(*state) for state in states], told)
     return list(zip(states, found, strict=True))
 
 

@@ -210,7 +210,7 @@ def share_load(
     >>> [round(share.torque / 130e3, 3) for share in shared.shares]
     [0.5, 0.5]
     """
-    return found_alone(torque_shared(pair, tooth_pairs, torque, grid, bending))
+    return found_alone(pair, torque_shared(pair, tooth_pairs, torque, grid, bending))
 
 
 def torque_shared(

@@ -8,7 +8,6 @@ were alone, and its numbers do not depend on what stands beside it.
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
@@ -18,17 +17,16 @@ from loaded_tca.contact.solution import ContactSolution, ContactStatus
 from loaded_tca.contact.solver import not_converged, solve_problems
 from loaded_tca.errors import LoadedTCAError
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.separation import Separation, sample_separation
+from loaded_tca.separation import Separation
+from loaded_tca.separation.sample import sample_separations
 from loaded_tca.unloaded import ContactPoint
 
 Result = TypeVar("Result")
 
 
-@dataclass(frozen=True, eq=False)
-class Gap:
+class Gap(NamedTuple):
     """A separation to sample, in the box that a load needs or in a given one; see :func:`sample_separation`."""
 
-    pair: GearPair
     contact: ContactPoint
     cells: tuple[int, int]
     load: float | None = None
@@ -46,13 +44,16 @@ class Task(NamedTuple):
 Steps = Generator[Gap | Task, Any, Result]
 
 
-def found_together(all_steps: Sequence[Steps[Result]], told: Callable[[int], None] | None = None) -> list[Result]:
+def found_together(
+    pair: GearPair, all_steps: Sequence[Steps[Result]], told: Callable[[int], None] | None = None
+) -> list[Result]:
     """Answer what generators ask for, in rounds, until all have returned.
 
     In a round all gaps that are asked for are sampled, or else all problems on the coarsest grid are solved.
 
     Parameters
     ----------
+    pair : GearPair
     all_steps : sequence of generators
     told : callable, optional
         Called with how many have returned, whenever one does.
@@ -81,7 +82,7 @@ def found_together(all_steps: Sequence[Steps[Result]], told: Callable[[int], Non
     for index, steps in enumerate(all_steps):
         advance(index, partial(next, steps))
     while asked:
-        for index, answer in _answers(asked).items():
+        for index, answer in _answers(pair, asked).items():
             del asked[index]
             steps = all_steps[index]
             failed = isinstance(answer, LoadedTCAError)
@@ -89,16 +90,18 @@ def found_together(all_steps: Sequence[Steps[Result]], told: Callable[[int], Non
     return [results[index] for index in range(len(all_steps))]
 
 
-def found_alone(steps: Steps[Result]) -> Result:
+def found_alone(pair: GearPair, steps: Steps[Result]) -> Result:
     """Answer what one generator asks for, until it returns."""
-    return found_together([steps])[0]
+    return found_together(pair, [steps])[0]
 
 
-def _answers(asked: dict[int, Gap | Task]) -> dict[int, Separation | ContactSolution | LoadedTCAError]:
+def _answers(pair: GearPair, asked: dict[int, Gap | Task]) -> dict[int, Separation | ContactSolution | LoadedTCAError]:
     """Answer the gaps that are asked for, or else the problems on the coarsest grid; an error is an answer, too."""
     gaps = {index: request for index, request in asked.items() if isinstance(request, Gap)}
     if gaps:
-        return {index: _sampled(gap) for index, gap in gaps.items()}
+        contacts, cells, loads, boxes = zip(*gaps.values(), strict=True)
+        found = sample_separations(pair, contacts, cells=cells, loads=loads, boxes=boxes)
+        return dict(zip(gaps, found, strict=True))
     tasks = {index: task for index, task in asked.items() if isinstance(task, Task)}
     coarsest = min(task.problem.gap.size for task in tasks.values())
     chosen = {index: task for index, task in tasks.items() if task.problem.gap.size == coarsest}
@@ -107,10 +110,3 @@ def _answers(asked: dict[int, Gap | Task]) -> dict[int, Separation | ContactSolu
         index: not_converged(solution, task.tolerance) if solution.status is ContactStatus.NOT_CONVERGED else solution
         for (index, task), solution in zip(chosen.items(), solutions, strict=True)
     }
-
-
-def _sampled(gap: Gap) -> Separation | LoadedTCAError:
-    try:
-        return sample_separation(gap.pair, gap.contact, cells=gap.cells, load=gap.load, box=gap.box)
-    except LoadedTCAError as error:
-        return error

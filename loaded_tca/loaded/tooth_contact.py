@@ -269,7 +269,7 @@ def solve_under_load(
         loaded = yield from contact_under_load(pair, contact, load, grid, bending, number)
         return (yield from loaded.with_stiffness())
 
-    return found_alone(steps())
+    return found_alone(pair, steps())
 
 
 def contact_under_load(
@@ -314,7 +314,7 @@ def contact_under_load(
     if (problem := memory_problem(cells)) is not None:
         raise InputError(f"cells: {problem}")
     load = 0.0 if 0.0 < load <= SMALLEST_LOAD * pair.contact_modulus * pair.module**2 else load
-    separation = yield from _box_for_cap(pair, contact, load, (yield Gap(pair, contact, cells, load=load)))
+    separation = yield from _box_for_cap(pair, contact, load, (yield Gap(contact, cells, load=load)))
     for _ in range(MOST_BOXES):
         loaded = yield from _solve_in_box(pair, contact, load, grid, separation, bending, number, coupling)
         pressure = loaded.solution.pressure
@@ -323,7 +323,7 @@ def contact_under_load(
             break
         lengths = zip(loaded.separation.half_lengths, filled, strict=True)
         across, along = (length * (GROWTH if grow else 1.0) for length, grow in lengths)
-        separation = yield Gap(pair, contact, cells, box=(across, along))
+        separation = yield Gap(contact, cells, box=(across, along))
     return loaded
 
 
@@ -333,7 +333,7 @@ def _box_for_cap(pair: GearPair, contact: ContactPoint, load: float, separation:
     while load > CAP_USE * separation.material_area * cap:
         across, along = separation.half_lengths
         box = (GROWTH * across, min(GROWTH * along, pair.face_width))
-        wider = yield Gap(pair, contact, (separation.gap.shape[0], separation.gap.shape[1]), box=box)
+        wider = yield Gap(contact, (separation.gap.shape[0], separation.gap.shape[1]), box=box)
         if wider.material_area <= separation.material_area:
             most = CAP_USE * separation.material_area * cap
             raise InputError(
@@ -365,7 +365,7 @@ def _solve_in_box(
     while True:
         separation = first
         if first.gap.shape != wanted.cells:
-            separation = yield Gap(pair, contact, wanted.cells, box=first.half_lengths)
+            separation = yield Gap(contact, wanted.cells, box=first.half_lengths)
         displaced = None if coupling is None else coupling(separation)
         bent = None if bending is None else bending.within(number, separation)
         ends = edge_compliance(pair, separation) if grid.free_edges else None

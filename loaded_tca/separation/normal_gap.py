@@ -6,12 +6,15 @@ of the flank. Two steps are the rule: the third is known beforehand, since the s
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import math
+from collections.abc import Sequence
+from copy import copy
+from dataclasses import dataclass
 from functools import reduce
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Mask
+from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.flanks.base import Flank
 from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
 from loaded_tca.unloaded import ContactPoint
@@ -23,27 +26,38 @@ BEND = 100.0
 NO_MORE = 1e3
 """Steps shorter than this times rounding are the last: the next one shrinks quadratically."""
 STEPS_TOGETHER = 4
-"""Newton steps of all points; those that need more, near or beyond the end of an involute, go on alone from where
-they meet the other flank, for as many again, as long as the steps shrink to less than half."""
+"""Newton steps of all points of a contact; those that need more, near or beyond the end of an involute, go on alone
+from where they meet the other flank, for as many again, as long as the steps shrink to less than half."""
 FLATTEST = 1e-6
 """Change of theta along the normal, times the sum of the base radii, below which a flank bends away from it."""
 ON_EDGE = 1e-9
 """Distance from an edge, over the module, up to which a flank has not ended."""
+TOGETHER = 16_000
+"""Points that are sampled at once: arrays of more leave the cache, and their memory goes back to the system."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Rays:
-    """Rays along the normal, in the frame of one gear turned back by ``turn``: start (3 of (...)), normal (3,)."""
+    """Rays along the normals of n contacts, in the frame of one gear turned back.
+
+    Starts (3 of (n, points)), normals (3 of (n, 1)), turns (n, 1).
+    """
 
     flank: Flank
     start: tuple[Array, ...]
-    normal: tuple[float, ...]
-    turn: float
+    normal: tuple[Array, ...]
+    turn: Array
+
+    def single(self, places: tuple[Indices, ...], height: Array) -> _Rays:
+        """Some of the rays (k,), from these heights on, each as if it were all of a contact."""
+        normal = tuple(part[places[0]] for part in self.normal)
+        start = (part[places][:, None] + height[:, None] * n for part, n in zip(self.start, normal, strict=True))
+        return _Rays(self.flank, tuple(start), normal, self.turn[places[0]])
 
 
 @dataclass(frozen=True, eq=False)
 class _Meeting:
-    """Where rays meet a flank: heights (...), place (rho, z), length of the last step, whether it was the last."""
+    """Where rays meet a flank: height above the start, (rho, z), length of the last step, whether it was the last."""
 
     height: Array
     rho: Array
@@ -55,11 +69,13 @@ class _Meeting:
 class NormalGap:
     """Distance of the two flanks of a contact along its normal, in coordinates of its tangent plane.
 
+    Of several contacts at once points and results have the contacts as their first axis; none depends on the others.
+
     Parameters
     ----------
     pair : GearPair
-    contact : ContactPoint
-    axes : (3, 3) array
+    contact : ContactPoint or sequence of n
+    axes : (3, 3) or (n, 3, 3) array
         Rows: the directions of x and y, and the normal out of the pinion.
 
     Examples
@@ -75,28 +91,43 @@ class NormalGap:
     [0.0018, 0.5]
     """
 
-    def __init__(self, pair: GearPair, contact: ContactPoint, axes: Array) -> None:
+    def __init__(self, pair: GearPair, contact: ContactPoint | Sequence[ContactPoint], axes: Array) -> None:
         self.pair = pair
-        in_wheel, origin = pair.wheel_axes.T, (contact.point - pair.wheel_origin) @ pair.wheel_axes.T
+        contacts = [contact] if isinstance(contact, ContactPoint) else contact
+        axes, points = axes.reshape(-1, 3, 3), np.array([one.point for one in contacts])
+        angles = np.array([(one.pinion_angle, one.wheel_angle) for one in contacts])
+        in_wheel, origins = pair.wheel_axes.T, points[:, None] - pair.wheel_origin  # a product for each contact
         self._views = (
-            (pair.pinion.flank, contact.point, axes, pair.sense * contact.pinion_angle),
-            (pair.wheel.flank, origin, axes @ in_wheel, -pair.sense * contact.wheel_angle),
+            (pair.pinion.flank, points, axes, pair.sense * angles[:, 0]),
+            (pair.wheel.flank, (origins @ in_wheel)[:, 0], axes @ in_wheel, -pair.sense * angles[:, 1]),
         )
         self._size = sum(pair.base_radii)
         self._rounding = STEP_ROUNDING * self._size
+
+    def of(self, rows: Indices | Mask | slice) -> NormalGap:
+        """Some of the contacts, or the same ones more than once."""
+        part = copy(self)
+        part._views = tuple((flank, *(values[rows] for values in of_each)) for flank, *of_each in self._views)
+        return part
 
     def at(self, x: Array, y: Array) -> tuple[Array, Array]:
         """Gap [mm], and distance to the nearest edge of either flank [mm], at points that broadcast.
 
         The distance is negative where a flank has ended, and -inf where the normal does not meet it.
         """
+        count, shape = len(self._views[0][-1]), np.broadcast_shapes(x.shape, y.shape)
+        size = max(1, count * TOGETHER // math.prod(shape))
+        if size < count:
+            parts = [slice(first, first + size) for first in range(0, count, size)]
+            found = zip(*(self.of(part).at(x[part], y[part]) for part in parts), strict=True)
+            return tuple(np.concatenate(values) for values in found)
         gap, distances = self.with_edges(x, y)
         return gap, reduce(np.minimum, distances)
 
     def with_edges(self, x: Array, y: Array) -> tuple[Array, list[Array]]:
         """Gap [mm], and distances to each edge of both flanks [mm], at points that broadcast; signed as of ``at``."""
-        rays = self._rays(x, y)
-        met = [self._meet(ray, np.zeros(ray.start[0].shape)) for ray in rays]
+        shape, rays = np.broadcast_shapes(x.shape, y.shape), self._rays(x, y)
+        met = [self._meet(ray) for ray in rays]
         missed = None
         if not (met[0].settled & met[1].settled).all():
             missed = np.logical_or(*(self._meet_rest(rays[own], met[own], met[1 - own]) for own in (0, 1)))
@@ -104,7 +135,7 @@ class NormalGap:
         distances = [jet.value + ON_EDGE * self.pair.module for jet in jets]
         if missed is not None:
             distances = [np.where(missed, -np.inf, distance) for distance in distances]
-        return met[1].height - met[0].height, distances
+        return (met[1].height - met[0].height).reshape(shape), [distance.reshape(shape) for distance in distances]
 
     def curvature_across(self, x: Array, y: Array) -> Array:
         """Second derivative of the gap by x [1/mm] at points that broadcast: the relative curvature across.
@@ -113,64 +144,73 @@ class NormalGap:
         """
         bends = []
         for rays, (_, _, axes, _) in zip(self._rays(x, y), self._views, strict=True):
-            met = self._meet(rays, np.zeros(rays.start[0].shape))
+            met = self._meet(rays)
             at_x, at_y = (part + met.height * n for part, n in zip(rays.start[:2], rays.normal[:2], strict=True))
             basis = cylindrical_basis(np.arctan2(at_y, at_x))
             gradient, hessian = _theta_less_flank(rays.flank, met.rho, met.z)
-            out = basis @ axes[2]
+            across, out = ((basis @ axes[:, None, row, :, None])[..., 0] for row in (0, 2))
             steep = (gradient * out).sum(axis=-1)
-            across = basis @ axes[0]
             tangent = across - ((gradient * across).sum(axis=-1) / steep)[..., None] * out
             bends.append(-np.einsum("...i,...ij,...j", tangent, hessian, tangent) / steep)
-        return np.asarray(bends[1] - bends[0])
+        return np.asarray(bends[1] - bends[0]).reshape(np.broadcast_shapes(x.shape, y.shape))
 
     def _rays(self, x: Array, y: Array) -> list[_Rays]:
-        """Rays of pinion and wheel at points of the tangent plane."""
-        rays = []
-        for flank, origin, axes, turn in self._views:
-            across, along, normal = axes.tolist()
-            start = tuple(o + (x * a + y * b) for o, a, b in zip(origin.tolist(), across, along, strict=True))
-            rays.append(_Rays(flank, start, tuple(normal), turn))
+        """Rays of pinion and wheel at points of the tangent planes, those of a contact in a row."""
+        rays, beside = [], (1,) * (max(x.ndim, y.ndim) - 1)
+        for flank, origins, axes, turns in self._views:
+            count = len(turns)
+            start = (
+                (o.reshape(count, *beside) + x * a.reshape(count, *beside)) + y * b.reshape(count, *beside)
+                for o, a, b in zip(origins.T, axes[:, 0].T, axes[:, 1].T, strict=True)
+            )
+            normal = tuple(axes[:, 2, :, None].swapaxes(0, 1))
+            rays.append(_Rays(flank, tuple(part.reshape(count, -1) for part in start), normal, turns[:, None]))
         return rays
 
     def _meet_rest(self, rays: _Rays, met: _Meeting, mating: _Meeting) -> Mask:
         """Take further steps as long as they shrink, where the mating gear is met; return where that is in vain."""
-        room = rays.flank.room(met.rho, met.z)
-        rest = np.nonzero(~met.settled & (mating.settled | (room > -2.0 * met.step)))
         missed = ~met.settled
+        rest = np.nonzero(missed)
+        room = rays.flank.room(met.rho[rest], met.z[rest])
+        on = mating.settled[rest] | (room > -2.0 * met.step[rest])
+        rest = tuple(part[on] for part in rest)
         height, step = np.where(mating.settled, mating.height, met.height)[rest], np.full(rest[0].shape, np.inf)
         while step.size:
-            late = self._meet(replace(rays, start=tuple(part[rest] for part in rays.start)), height)
-            place = rays.flank.room(late.rho, late.z)
-            for part, later in ((met.height, late.height), (met.rho, late.rho), (met.z, late.z)):
-                part[rest] = later
-            missed[rest] = ~late.settled
-            on = ~late.settled & (place > -2.0 * late.step) & (late.step < 0.5 * step)
-            rest, height, step = tuple(part[on] for part in rest), late.height[on], late.step[on]
+            found = self._meet(rays.single(rest, height))
+            height, before, step = height + found.height[:, 0], step, found.step[:, 0]
+            met.height[rest], met.rho[rest], met.z[rest] = height, found.rho[:, 0], found.z[:, 0]
+            missed[rest] = ~found.settled[:, 0]
+            room = rays.flank.room(met.rho[rest], met.z[rest])
+            on = missed[rest] & (room > -2.0 * step) & (step < 0.5 * before)
+            rest, height, step = tuple(part[on] for part in rest), height[on], step[on]
         return missed
 
-    def _meet(self, rays: _Rays, height: Array) -> _Meeting:
-        """Newton steps from ``height``, until the longest is rounding or the next one would be."""
-        (nx, ny, nz), longest, before = rays.normal, 0.25 * self.pair.module, 0.0
-        x, y, z = (part + height * n for part, n in zip(rays.start, rays.normal, strict=True))
+    def _meet(self, rays: _Rays) -> _Meeting:
+        """Newton steps (n, points), of each contact until the longest of its points is rounding or the next would be."""
+        (nx, ny, nz), (x, y, z), longest = rays.normal, rays.start, 0.25 * self.pair.module
+        height, before, settled = 0.0, 0.0, np.zeros(rays.turn.shape, dtype=bool)
         for _ in range(STEPS_TOGETHER):
             square = x * x + y * y
             rho = np.sqrt(square)
             jet = rays.flank.theta(rho, z)
-            outwards = (x * nx + y * ny) / rho
-            slope = (x * ny - y * nx) / square - jet.rho * outwards - jet.z * nz
-            slope = np.where(np.abs(slope) > FLATTEST / self._size, slope, np.inf)
+            slope = (x * ny - y * nx) / square - jet.rho * ((x * nx + y * ny) / rho) - jet.z * nz
+            flat = np.abs(slope) <= FLATTEST / self._size
+            if flat.any():
+                slope[flat] = np.inf
             step = (jet.value + rays.turn - np.arctan2(y, x)) / slope
             length = np.abs(step)
-            largest = float(length.max())
-            if largest > longest:
+            largest = length.max(axis=1, keepdims=True)
+            if (largest > longest).any():
                 step = np.clip(step, -longest, longest)
+            if settled.any():  # in an earlier step: a contact stays where it stood
+                step = np.where(settled, 0.0, step)
             height = height + step
-            x, y, z, rho = x + step * nx, y + step * ny, z + step * nz, rho + step * outwards
-            if largest <= self._rounding or BEND * largest**3 <= self._rounding * before**2:
-                return _Meeting(height, rho, z, length, np.ones(length.shape, dtype=bool))
-            before = min(largest, longest)
-        return _Meeting(height, rho, z, length, length <= NO_MORE * self._rounding)
+            x, y, z = x + step * nx, y + step * ny, z + step * nz
+            settled = settled | (largest <= self._rounding) | (BEND * largest**3 <= self._rounding * before**2)
+            if settled.all():
+                break
+            before = np.minimum(largest, longest)
+        return _Meeting(height, np.sqrt(x * x + y * y), z, length, settled | (length <= NO_MORE * self._rounding))
 
 
 def _theta_less_flank(flank: Flank, rho: Array, z: Array) -> tuple[Array, Array]:

@@ -20,6 +20,7 @@ Johnson 1985, Contact Mechanics, eqs. 4.24 to 4.28 (slender ellipse), 4.45 (line
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import reduce
 
@@ -27,11 +28,11 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.contact.checks import memory_problem
-from loaded_tca.errors import InputError
+from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.separation.box import MARGIN, estimate_box
-from loaded_tca.separation.normal_gap import NormalGap
-from loaded_tca.unloaded.curvature import relative_curvature
+from loaded_tca.separation.box import MARGIN, estimate_boxes
+from loaded_tca.separation.normal_gap import TOGETHER, NormalGap
+from loaded_tca.unloaded.curvature import relative_curvatures
 from loaded_tca.unloaded.path import ContactPoint, require_contact
 
 PEAK_ERROR = 0.26
@@ -155,47 +156,106 @@ def sample_separation(
     >>> [round(k, 6) for k in separation.curvatures]
     [0.091526, 6.4e-05]
     """
-    require_contact(contact)
-    _check(cells, load, accuracy, {"box": box, "guess": guess})
-    curvature = relative_curvature(pair, contact)
-    gap = NormalGap(pair, contact, curvature.axes)
-    shape = (int(cells[0]), int(cells[1])) if cells is not None else (cells_for_accuracy(accuracy),) * 2
-    if box is None:
-        box = estimate_box(gap, contact, load or LOAD_OF_UNLOADED_BOX, guess, shape[1])
-    spacing = (2.0 * box[0] / shape[0], 2.0 * box[1] / shape[1])
-    x, y = ((np.arange(n) - 0.5 * (n - 1)) * step for n, step in zip(shape, spacing, strict=True))
-    curvatures = (curvature.across, curvature.along)
-    heights, distances = gap.with_edges(x[:, None], y)
-    room = reduce(np.minimum, distances)
-    cover = _cover(distances, spacing) if room.min() < sum(spacing) else np.ones(shape)
-    whole, cut = (np.where(there, heights, np.inf) for there in (room >= 0.0, cover > 0.0))
-    return Separation(whole, x, y, spacing, contact.point.copy(), curvature.axes, curvatures, cover, cut)
+    (found,) = sample_separations(
+        pair, [contact], cells=[cells], loads=[load], boxes=[box], guesses=[guess], accuracy=accuracy
+    )
+    if isinstance(found, Separation):
+        return found
+    raise found
 
 
-def _cover(distances: list[Array], spacing: tuple[float, float]) -> Array:
-    """Part of every cell that has material (nx, ny), of the distances of the middles of the cells to each edge.
+def sample_separations(
+    pair: GearPair,
+    contacts: Sequence[ContactPoint],
+    *,
+    cells: Sequence[tuple[int, int] | None],
+    loads: Sequence[float | None],
+    boxes: Sequence[tuple[float, float] | None],
+    guesses: Sequence[tuple[float, float] | None] | None = None,
+    accuracy: float = 1e-3,
+) -> list[Separation | InputError | GeometryError]:
+    """Gaps of n contacts: of each what :func:`sample_separation` returns or raises, whatever stands beside it.
+
+    Parameters
+    ----------
+    pair : GearPair
+    contacts : sequence of n ContactPoint
+    cells, loads, boxes, guesses : sequences of n
+        For each contact, as of :func:`sample_separation`.
+    accuracy : float
+        Of all contacts whose cells are None.
+    """
+    found: dict[int, Separation | InputError | GeometryError] = {}
+    alike: dict[tuple[int, int], list[int]] = {}
+    guesses = [None] * len(contacts) if guesses is None else guesses
+    for index, (contact, shape, load, box, guess) in enumerate(
+        zip(contacts, cells, loads, boxes, guesses, strict=True)
+    ):
+        try:
+            require_contact(contact)
+            _check(shape, load, accuracy, {"box": box, "guess": guess})
+        except (InputError, GeometryError) as error:
+            found[index] = error
+        else:
+            across, along = shape or (cells_for_accuracy(accuracy),) * 2
+            alike.setdefault((int(across), int(along)), []).append(index)
+    relative_curvatures(pair, [contacts[index] for indices in alike.values() for index in indices])  # kept
+    for shape, indices in alike.items():
+        sized = {index: boxes[index] for index in indices}
+        open_ = [index for index, box in sized.items() if box is None]
+        if open_:
+            forces = [loads[index] or LOAD_OF_UNLOADED_BOX for index in open_]
+            on = [contacts[index] for index in open_]
+            fitting = estimate_boxes(pair, on, forces, [guesses[index] for index in open_], shape[1])
+            sized.update(zip(open_, fitting, strict=True))
+        found.update((index, error) for index, error in sized.items() if isinstance(error, GeometryError))
+        rest, size = [index for index in indices if index not in found], max(1, TOGETHER // math.prod(shape))
+        for part in (rest[first : first + size] for first in range(0, len(rest), size)):
+            half_lengths = np.array([sized[index] for index in part])
+            found.update(
+                zip(part, _sampled(pair, [contacts[index] for index in part], half_lengths, shape), strict=True)
+            )
+    return [found[index] for index in range(len(contacts))]
+
+
+def _sampled(
+    pair: GearPair, contacts: Sequence[ContactPoint], boxes: Array, shape: tuple[int, int]
+) -> Iterator[Separation]:
+    """Gaps of n contacts in boxes of half lengths (n, 2), on grids of one shape."""
+    curvatures = relative_curvatures(pair, contacts)
+    spacings = 2.0 * boxes / shape
+    x, y = ((np.arange(n) - 0.5 * (n - 1)) * step[:, None] for n, step in zip(shape, spacings.T, strict=True))
+    gap = NormalGap(pair, contacts, np.array([curvature.axes for curvature in curvatures]))
+    heights, distances = gap.with_edges(x[:, :, None], y[:, None])
+    covers = _covers(distances, spacings)
+    whole, cut = (np.where(there, heights, np.inf) for there in (reduce(np.minimum, distances) >= 0.0, covers > 0.0))
+    for k, (contact, curvature, (dx, dy)) in enumerate(zip(contacts, curvatures, spacings.tolist(), strict=True)):
+        principal = curvature.across, curvature.along
+        grid, origin = (whole[k].copy(), x[k], y[k], (dx, dy)), contact.point.copy()
+        yield Separation(*grid, origin, curvature.axes, principal, covers[k].copy(), cut[k].copy())
+
+
+def _covers(distances: list[Array], spacings: Array) -> Array:
+    """Part of every cell that has material (n, nx, ny), of the distances of the middles of the cells to each edge.
 
     From one cell to the next the distance grows by a and b: with a straight edge along an axis of the grid the part is
     1/2 + distance/(|a| + |b|), from 0 to 1; with an oblique one nearly so.
     """
-    cover = np.ones(distances[0].shape)
+    covers = np.ones(distances[0].shape)
     for distance in distances:
-        least = float(distance.min())
-        if least >= sum(spacing):
+        near = np.flatnonzero(distance.min(axis=(1, 2)) < spacings.sum(axis=1))
+        if not near.size:
             continue
-        growth, met = np.zeros(distance.shape), distance
-        if not math.isfinite(least):
-            met = np.where(np.isfinite(distance), distance, np.nan)
-        for lines, sums in ((met, growth), (met.T, growth.T)):
-            if len(lines) > 1:
-                steps = np.abs(lines[1:] - lines[:-1])
-                sums[:-1] += steps
-                sums[-1] += steps[-1]
-        parts = np.divide(distance, growth, out=np.copysign(1.0, distance), where=growth > 0.0)
-        np.minimum(cover, 0.5 + parts, out=cover)
-    if cover.min() >= 1.0:
-        return cover
-    return np.where(cover < SLIVER, 0.0, np.where(cover > 1.0 - SLIVER, 1.0, cover))
+        ends, growth = distance[near], np.zeros((near.size, *covers.shape[1:]))
+        met = np.where(np.isfinite(ends), ends, np.nan)
+        for lines, sums in ((met, growth), (met.swapaxes(1, 2), growth.swapaxes(1, 2))):
+            if lines.shape[1] > 1:
+                steps = np.abs(lines[:, 1:] - lines[:, :-1])
+                sums[:, :-1] += steps
+                sums[:, -1] += steps[:, -1]
+        parts = np.divide(ends, growth, out=np.copysign(1.0, ends), where=growth > 0.0)
+        covers[near] = np.minimum(covers[near], 0.5 + parts)
+    return np.where(covers < SLIVER, 0.0, np.where(covers > 1.0 - SLIVER, 1.0, covers))
 
 
 def _check(

@@ -10,6 +10,7 @@ is the difference of the curvature tensors of the two flanks (Johnson 1985, eq. 
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from weakref import ReferenceType, WeakKeyDictionary, ref
 
@@ -46,41 +47,51 @@ _KEPT: WeakKeyDictionary[ContactPoint, tuple[ReferenceType[GearPair], RelativeCu
 
 def relative_curvature(pair: GearPair, contact: ContactPoint) -> RelativeCurvature:
     """Principal relative curvatures at a contact point; kept as long as the contact point is."""
-    kept = _KEPT.get(contact)
-    if kept is None or kept[0]() is not pair:
-        kept = _KEPT[contact] = ref(pair), _curvature(pair, contact)
-    return kept[1]
+    return relative_curvatures(pair, [contact])[0]
 
 
-def _curvature(pair: GearPair, contact: ContactPoint) -> RelativeCurvature:
-    lengthwise = heelwards(pair, contact)
-    second = lengthwise - (contact.normal @ lengthwise) * contact.normal
-    second /= np.linalg.norm(second)
-    plane = np.stack([_cross(second, contact.normal), second])
+def relative_curvatures(pair: GearPair, contacts: Sequence[ContactPoint]) -> list[RelativeCurvature]:
+    """Principal relative curvatures at many contact points at once; see :func:`relative_curvature`."""
+    kept = [_KEPT.get(contact) for contact in contacts]
+    missing = {c: None for c, known in zip(contacts, kept, strict=True) if known is None or known[0]() is not pair}
+    if missing:
+        for contact, found in zip(missing, _curvatures(pair, [*missing]), strict=True):
+            _KEPT[contact] = ref(pair), found
+    return [_KEPT[contact][1] for contact in contacts]
+
+
+def _curvatures(pair: GearPair, contacts: list[ContactPoint]) -> Iterator[RelativeCurvature]:
+    """Curvatures of n contact points, each in a row of its own, so that none depends on the others."""
+    point, normal = np.array([c.point for c in contacts]), np.array([c.normal for c in contacts])
+    places = [(c.pinion_angle, c.pinion_radius, c.pinion_axial, c.wheel_lever) for c in contacts]
+    angle, rho, z, lever = np.array(places).T[..., None]  # (n, 1) each
+    lengthwise = _heelwards(pair, point[:, None], rho, z)[:, 0]
+    second = lengthwise - (normal * lengthwise).sum(axis=-1, keepdims=True) * normal
+    second /= np.linalg.norm(second, axis=-1, keepdims=True)
+    plane = np.stack([np.cross(second, normal), second], axis=1)
     field = EaseOff(pair)
-    angle, rho, z = (np.atleast_1d(v) for v in (contact.pinion_angle, contact.pinion_radius, contact.pinion_axial))
     station = field.station(angle, rho, z)
-    in_wheel = plane @ station.wheel_basis[0].T
-    inverse, drifts = np.linalg.inv(in_wheel @ station.slopes[..., 0]), in_wheel @ station.bends[..., 0]
-    drift = inverse.T @ field.gradient(station)[0] @ drifts
-    bend = field.hessian(station)[0] - np.array([[drift[0], drift[1]], [drift[1], drift[2]]])
-    tensor = -(contact.wheel_lever / pair.base_radii[1]) * (inverse.T @ bend @ inverse)
-    values, vectors = np.linalg.eigh(0.5 * (tensor + tensor.T))
-    along = vectors[:, 0] @ plane
-    along = along if along @ lengthwise >= 0.0 else -along
-    axes = np.stack([_cross(along, contact.normal), along, contact.normal])
-    axes.flags.writeable = False  # every grid of the contact shares them
-    return RelativeCurvature(float(values[1]), float(values[0]), axes)
+    in_wheel = plane @ station.wheel_basis[:, 0].mT
+    slopes, bends = (np.moveaxis(parts[..., 0], -1, 0) for parts in (station.slopes, station.bends))
+    inverse = np.linalg.inv(in_wheel @ slopes)
+    drift = field.gradient(station) @ inverse @ (in_wheel @ bends)
+    bend = field.hessian(station)[:, 0] - drift[:, 0, [[0, 1], [1, 2]]]
+    tensor = -(lever / pair.base_radii[1])[..., None] * (inverse.mT @ bend @ inverse)
+    values, vectors = np.linalg.eigh(0.5 * (tensor + tensor.mT))
+    along = (vectors[:, None, :, 0] @ plane)[:, 0]
+    along *= np.where((along * lengthwise).sum(axis=-1, keepdims=True) >= 0.0, 1.0, -1.0)
+    all_axes = np.stack([np.cross(along, normal), along, normal], axis=1)
+    for (smallest, largest), axes in zip(values.tolist(), all_axes, strict=True):
+        axes.flags.writeable = False  # every grid of the contact shares them
+        yield RelativeCurvature(largest, smallest, axes)
 
 
 def heelwards(pair: GearPair, contact: ContactPoint) -> Array:
     """Direction (3,) in the fixed frame in which the pinion's lengthwise coordinate grows by one mm per mm."""
-    basis = cylindrical_basis(np.arctan2(contact.point[1], contact.point[0]))
-    rho, z = np.array(contact.pinion_radius), np.array(contact.pinion_axial)
-    return lengthwise_direction(pair.pinion.flank, rho, z) @ basis
+    return _heelwards(pair, contact.point, np.array(contact.pinion_radius), np.array(contact.pinion_axial))
 
 
-def _cross(a: Array, b: Array) -> Array:
-    """Cross product of two single vectors."""
-    (a1, a2, a3), (b1, b2, b3) = a.tolist(), b.tolist()
-    return np.array([a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1])
+def _heelwards(pair: GearPair, point: Array, rho: Array, z: Array) -> Array:
+    """That direction at points (..., 3) of the pinion flank."""
+    basis = cylindrical_basis(np.arctan2(point[..., 1], point[..., 0]))
+    return np.asarray((lengthwise_direction(pair.pinion.flank, rho, z)[..., None, :] @ basis)[..., 0, :])

@@ -253,7 +253,7 @@ def test_length_of_a_contact_at_an_edge_does_not_follow_whole_cells():
 def test_contact_at_another_approach_is_that_under_its_load():
     loaded = solved(sam_paper(), 2700.0)
     deeper = loaded.at(1.1 * loaded.solution.approach)
-    found = found_alone(loaded.under(deeper.solution.load))
+    found = found_alone(sam_paper(), loaded.under(deeper.solution.load))
     assert_allclose(found.solution.approach, deeper.solution.approach, rtol=1e-5)
     assert deeper.solution.problem.load == deeper.solution.load > 2700.0
 
