@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -25,6 +26,10 @@ LAYERS_PER_HEIGHT = 2.5
 FEWEST_LAYERS, MOST_LAYERS = 6, 24
 CHECKED = Resolution(flank=9, fillet=5, land=3, lengthwise=5)
 """Points of a tooth that is built to see whether it exists."""
+
+
+_LINES: WeakKeyDictionary[Separation, dict[int, tuple[FlankLine, FlankLine]]] = WeakKeyDictionary()
+"""Lines of the grids, by the numbers of the tooth pairs, on pinion and wheel."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +98,13 @@ class ToothCompliance:
         return self.pinion.between(there[0], here[0]) + self.wheel.between(there[1], here[1])
 
     def _lines(self, number: int, separation: Separation) -> tuple[FlankLine, FlankLine]:
-        """Middles of the slices of a grid on both flanks."""
+        """Middles of the slices of a grid on both flanks; kept as long as the grid is."""
+        known = _LINES.setdefault(separation, {})
+        if number not in known:
+            known[number] = self._lines_of(number, separation)
+        return known[number]
+
+    def _lines_of(self, number: int, separation: Separation) -> tuple[FlankLine, FlankLine]:
         points = separation.origin + separation.y[:, None] * separation.axes[1]
         radius, _, axial = self.pair.to_wheel(points)
         tooth = self.pair.sense * number

@@ -23,6 +23,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from weakref import WeakKeyDictionary, ref
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
@@ -98,7 +99,14 @@ class GearCompliance:
                 f"tooth: two loaded teeth are {abs(away)} pitches apart, the model has {self.neighbours} neighbours of "
                 "a loaded tooth; ask for more neighbours"
             )
-        return self._displaced(away, _Places.of(self, at), _Places.of(self, under))
+        return self._displaced(away, self._places(at), self._places(under))
+
+    def _places(self, line: FlankLine) -> _Places:
+        """Places of a line among those of the table; kept as long as the line is."""
+        kept = _KEPT.get(line)
+        if kept is None or kept[0]() is not self:
+            kept = _KEPT[line] = ref(self), _Places.of(self, line)
+        return kept[1]
 
     def _displaced(self, away: int, at: _Places, under: _Places) -> Array:
         """Displacements at places of a tooth under forces at places of the one that stands so many pitches before."""
@@ -114,7 +122,7 @@ class GearCompliance:
         distance : (m, m) array [mm]
             Between them, along the line.
         """
-        places = _Places.of(self, line)
+        places = self._places(line)
         depth = np.einsum("ma,ab,mb->m", places.across, self.table.depth, places.along)[:, None]
         width = float(np.ptp(self.frame.nodes.coordinate))
         from_start = width * (places.length[:, None] + places.length)  # of mirror images beyond the ends of the face
@@ -180,3 +188,7 @@ def gear_compliance(gear: Gear, density: MeshDensity = MeshDensity()) -> GearCom
     """
     frame = ToothFrame(gear, gear_nodes(gear, density))
     return GearCompliance(frame, kept_flexibility(frame))
+
+
+_KEPT: WeakKeyDictionary[FlankLine, tuple[ref[GearCompliance], _Places]] = WeakKeyDictionary()
+"""Places of lines that are asked for again and again, under every force of the other tooth pairs."""

@@ -30,7 +30,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 from scipy.optimize import brentq
@@ -39,8 +39,14 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError, InputError, named
 from loaded_tca.loaded.balance import PowerLaw, balance
 from loaded_tca.loaded.pair_coupling import BendingModel
-from loaded_tca.loaded.together import Steps, found_alone
-from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, contact_under_load
+from loaded_tca.loaded.together import Gap, Steps, found_alone
+from loaded_tca.loaded.tooth_contact import (
+    FIRST_CELLS,
+    GridChoice,
+    LoadedContact,
+    contact_under_load,
+    expected_pressure,
+)
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import point_contact
 from loaded_tca.separation import Separation
@@ -273,6 +279,8 @@ class _Balance:
     def steps(self) -> Steps[SharedLoad]:
         shared: SharedLoad | None = None
         forces = np.zeros(len(self.laws))
+        if self.bending is not None:
+            self.compliance = yield from self._first_compliance(self.bending)
         for count in range(1, MOST_BALANCES + 1):
             capped = self.pair.max_pressure is not None
             if capped and shared is not None and count > SWINGING and count % SWINGING != 1:
@@ -296,6 +304,22 @@ class _Balance:
             f"{self.agreement:.1e} of the rotation after {MOST_BALANCES} balances{limit}",
             last=shared,
         )
+
+    def _first_compliance(self, bending: BendingModel) -> Steps[Array]:
+        """Compliance (k, k) [mm/N] of the pairs under line loads that fall to both ends, as of ellipses."""
+        numbers = [tooth_pair.pair for tooth_pair in self.tooth_pairs]
+        lines: list[tuple[int, Separation]] = []
+        shares: list[Array] = []
+        for number, law, tooth_pair in zip(numbers, self.laws, self.tooth_pairs, strict=True):
+            separation: Separation = yield Gap(tooth_pair.contact, FIRST_CELLS, load=law.load)
+            force = expected_pressure(separation).sum(axis=0)
+            lines.append((number, separation))
+            shares.append(force / force.sum())
+        found = np.empty((len(lines),) * 2)
+        for (i, one), (j, other) in product(enumerate(lines), repeat=2):
+            matrix = bending.within(*one) if i == j else bending.between(one, other)
+            found[i, j] = shares[i] @ matrix @ shares[j]
+        return 0.5 * (found + found.T)
 
     def _solve(self, index: int, forces: Array) -> Steps[None]:
         """Solve a pair under its force, on the grid it has if that still fits, and correct its law."""

@@ -358,7 +358,7 @@ def _solve_in_box(
     if grid.cells is not None:
         tolerance, refining = grid.tolerance, _on_cells(grid.cells, grid.tolerance)
     else:
-        tolerance, expected = min(grid.tolerance, TOLERANCE_SHARE * grid.accuracy), _expected(first)
+        tolerance, expected = min(grid.tolerance, TOLERANCE_SHARE * grid.accuracy), expected_pressure(first)
         smooth = not _crosses_relief_start(pair, contact, first, expected)
         refining = refinement(grid.accuracy, grid.tolerance, smooth, FIRST_CELLS, expected)
     wanted = next(refining)
@@ -410,7 +410,7 @@ def _crosses_relief_start(pair: GearPair, contact: ContactPoint, separation: Sep
     return False
 
 
-def _expected(separation: Separation) -> Array:
+def expected_pressure(separation: Separation) -> Array:
     """Pressure over the ellipse that the contact is expected to fill, (nx, ny), the highest one 1."""
     across, along = (MARGIN_LEFT * length for length in separation.half_lengths)
     square = 1.0 - (separation.x[:, None] / across) ** 2 - (separation.y / along) ** 2
