@@ -186,7 +186,7 @@ class NormalGap:
         return missed
 
     def _meet(self, rays: _Rays) -> _Meeting:
-        """Newton steps (n, points), of each contact until the longest of its points is rounding or the next would be."""
+        """Newton steps, of each contact until the longest of its points is rounding or the next one would be."""
         (nx, ny, nz), (x, y, z), longest = rays.normal, rays.start, 0.25 * self.pair.module
         height, before, settled = 0.0, 0.0, np.zeros(rays.turn.shape, dtype=bool)
         for _ in range(STEPS_TOGETHER):
