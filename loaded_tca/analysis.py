@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from loaded_tca.compliance import ToothCompliance, require_teeth, tooth_compliance
+from loaded_tca.compliance import ToothCompliance, require_teeth, tooth_compliance, way_out_told
 from loaded_tca.errors import require
 from loaded_tca.loaded.cycle import Progress, carried_by_all, carried_by_one, farthest_apart
 from loaded_tca.loaded.effort import expected_effort
@@ -72,4 +72,5 @@ def _bending(scene: Scene, pair: GearPair, neighbours: int) -> ToothCompliance |
     if scene.analysis.compliance == "contact":
         return None
     require_teeth(pair)
-    return tooth_compliance(pair, neighbours=max(neighbours, 1))
+    with way_out_told():
+        return tooth_compliance(pair, neighbours=max(neighbours, 1))

@@ -43,6 +43,7 @@ CASES = (
     "loaded.cut_contacts",
     "loaded.mesh_stiffness",
     "loaded.local_term",
+    "loaded.numbers_to_copy",
     "calculix.mesh_cycle",
     "contact.subsurface",
     "contact.free_edge",

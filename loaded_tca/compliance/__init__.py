@@ -5,7 +5,13 @@ from typing import TYPE_CHECKING
 from loaded_tca.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from loaded_tca.compliance.compliance import ToothCompliance, default_density, require_teeth, tooth_compliance
+    from loaded_tca.compliance.compliance import (
+        ToothCompliance,
+        default_density,
+        require_teeth,
+        tooth_compliance,
+        way_out_told,
+    )
     from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_compliance
     from loaded_tca.compliance.layout import MeshDensity
 else:
@@ -20,4 +26,5 @@ __all__ = [
     "gear_compliance",
     "require_teeth",
     "tooth_compliance",
+    "way_out_told",
 ]

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -99,6 +101,15 @@ class ToothCompliance:
         return on_pinion, FlankLine(tooth, radius, axial)
 
 
+@contextmanager
+def way_out_told() -> Iterator[None]:
+    """Say how an analysis can do without teeth that bend, after whatever these do not allow."""
+    try:
+        yield
+    except (InputError, GeometryError) as error:
+        raise type(error)(f'{error}; or set analysis.compliance = "contact"') from None
+
+
 def require_teeth(pair: GearPair) -> None:
     """Refuse gears whose teeth cannot be built, so that an analysis cannot let them bend.
 
@@ -119,13 +130,11 @@ def require_teeth(pair: GearPair) -> None:
         If a tooth is so with its modifications alone: it bends as the one without them.
     """
     gears = (("pinion", pair.pinion), ("wheel", pair.wheel))
-    try:
+    with way_out_told():
         for name, gear in gears:
             with named(name):
                 build_tooth(gear.nominal_flanks, gear.form, CHECKED)
         _ = pair.rigid_bores
-    except (InputError, GeometryError) as error:
-        raise type(error)(f'{error}; or set analysis.compliance = "contact"') from None
     for name, gear in gears:
         if gear.flank is not gear.nominal_flank:
             try:

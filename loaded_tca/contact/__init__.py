@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from loaded_tca.contact.edges import FreeEdge, quarter_space_factor, wedge_factor
     from loaded_tca.contact.problem import ContactProblem
     from loaded_tca.contact.solution import ContactSolution, ContactStatus, ErrorEstimate
-    from loaded_tca.contact.solver import contact_stiffness, solve_contact, solve_problem
+    from loaded_tca.contact.solver import contact_stiffness, solve_contact, solve_problem, solve_problems
     from loaded_tca.contact.subsurface import SubsurfaceStress, depths_below, subsurface_stress
 else:
     __getattr__, __dir__ = lazy_names(__name__)
@@ -26,6 +26,7 @@ __all__ = [
     "quarter_space_factor",
     "solve_contact",
     "solve_problem",
+    "solve_problems",
     "solve_to_accuracy",
     "subsurface_stress",
     "wedge_factor",

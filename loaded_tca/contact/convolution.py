@@ -12,13 +12,15 @@ import threading
 from collections import OrderedDict, deque
 from collections.abc import Callable, Hashable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any
+from copy import copy
+from typing import Any, Self
 
 import numpy as np
 import pyfftw
+from numpy.typing import ArrayLike
 from scipy.fft import dctn
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices
 from loaded_tca.contact.love import influence_coefficients
 
 Window = tuple[slice, slice]
@@ -28,6 +30,9 @@ CACHE_BYTES = 192 * 2**20
 THREADED_POINTS = 2**17
 # A piece of a transform, with its part of the kernel, should stay in the cache of a core.
 PIECE_BYTES = 2**18
+# So should the work arrays of the small problems that are transformed together; more problems than this save nothing.
+BLOCK_BYTES = 2**18
+LARGEST_BLOCK = 16
 _forked = False
 
 
@@ -46,17 +51,24 @@ class _Cache(threading.local):
         self.pools: dict[int, ThreadPoolExecutor] = {}
         self.bytes = 0
 
-    def get(self, key: Hashable, make: Callable[[], Any]) -> Any:
-        """Return what is kept under the key; make and keep it otherwise."""
+    def find(self, key: Hashable) -> Any:
+        """Return what is kept under the key, None if nothing is."""
         if key in self.items:
             self.items.move_to_end(key)
-            return self.items[key]
-        made = make()
+        return self.items.get(key)
+
+    def keep(self, key: Hashable, made: Any) -> Any:
+        """Keep something new under a key, and return it."""
         self.items[key] = made
         self.bytes += made.nbytes
         while self.bytes > CACHE_BYTES and len(self.items) > 1:
             self.bytes -= self.items.popitem(last=False)[1].nbytes
         return made
+
+    def get(self, key: Hashable, make: Callable[[], Any]) -> Any:
+        """Return what is kept under the key; make and keep it otherwise."""
+        kept = self.find(key)
+        return self.keep(key, make()) if kept is None else kept
 
     def pool(self, threads: int) -> ThreadPoolExecutor:
         """Helpers of this thread, made when first needed."""
@@ -86,7 +98,77 @@ def fast_length(least: int) -> int:
     return next(length for length in lengths if length >= least and length % 2 == 0)
 
 
-class _Transform:
+class _SmallTransforms:
+    """Planned transforms of the rows of several small problems in periodic boxes, and back.
+
+    Every problem has plans of its own, all alike, so that its result is the same to the last bit wherever it stands
+    and whatever stands beside it. ``rows`` counts those that hold data on the way forth and on the way back.
+    """
+
+    def __init__(self, rows: tuple[int, int], columns: int, box: tuple[int, int], dtype: str) -> None:
+        # Rows a power of two apart share their place in the cache: a few unused ones keep them apart.
+        lines = (box[1] // 2 + 1, box[0] + 8)
+        self._rows, self._box, self._columns = rows, box, columns
+        self.nbytes = _small_bytes(rows, box, dtype)
+        self._block = min(LARGEST_BLOCK, max(1, BLOCK_BYTES // self.nbytes))
+        self.nbytes *= self._block
+        # What is beside the data in the first two stays zero: transforms leave their source as it is, but the last.
+        self._given, self._found = (_aligned((self._block, count, box[1]), dtype) for count in rows)
+        self._loaded, self._moved = (_aligned((self._block, *lines), np.result_type(dtype, "c8")) for _ in "12")
+        self._forth: list[tuple[Callable[[], None], ...]] = []
+        self._back: list[tuple[Callable[[], None], ...]] = []
+
+    def _plan(self, k: int) -> None:
+        """Plans of one more problem, made when it is needed."""
+        given, found, loaded, moved = self._given[k], self._found[k], self._loaded[k], self._moved[k]
+        within, inward, outward = slice(0, self._box[0]), slice(0, self._rows[0]), slice(0, self._rows[1])
+        plans = [
+            pyfftw.FFTW(source, target, axes=(1,), direction="FFTW_" + direction, flags=("FFTW_ESTIMATE",)).execute
+            for source, target, direction in (
+                (given, loaded.T[inward], "FORWARD"),
+                (loaded[:, within], moved[:, within], "FORWARD"),
+                (moved[:, within], moved[:, within], "BACKWARD"),
+                (moved.T[outward], found, "BACKWARD"),
+            )
+        ]
+        self._forth.append(tuple(plans[:2]))
+        self._back.append(tuple(plans[2:]))
+
+    def filter(self, values: Array, symbol: Array, out: Array) -> None:
+        """Transform values (count, rows, columns), multiply by the symbols, transform back into ``out``.
+
+        A symbol is a quadrant of an even one, (second, first direction).
+        """
+        for start in range(0, len(values), self._block):
+            block = slice(start, start + self._block)
+            given, quadrant, target = values[block], symbol[block], out[block]
+            count, middle = len(given), symbol.shape[2]
+            while len(self._forth) < count:
+                self._plan(len(self._forth))
+            self._given[:count, :, : self._columns] = given
+            for rows_forth, lines_forth in self._forth[:count]:
+                rows_forth()
+                lines_forth()
+            self._moved[:count, :, :middle] *= quadrant
+            self._moved[:count, :, middle : self._box[0]] *= quadrant[:, :, middle - 2 : 0 : -1]
+            for lines_back, rows_back in self._back[:count]:
+                lines_back()
+                rows_back()
+            np.copyto(target, self._found[:count, :, : target.shape[2]], casting="same_kind")
+
+
+def _small_bytes(rows: tuple[int, int], box: tuple[int, int], dtype: str) -> int:
+    """Bytes of the work arrays of one problem."""
+    return (sum(rows) * box[1] + 4 * (box[1] // 2 + 1) * (box[0] + 8)) * np.dtype(dtype).itemsize
+
+
+def _aligned(shape: tuple[int, int, int], dtype: Any) -> Array:
+    """Zeros of which every problem begins as FFTW likes it, so that the plans of all are alike."""
+    size = -(-shape[1] * shape[2] // 16) * 16
+    return pyfftw.zeros_aligned((shape[0], size), dtype)[:, : shape[1] * shape[2]].reshape(shape)
+
+
+class _LargeTransform:
     """Planned transforms of rows of real data in a periodic box, and back, in pieces that fit the cache.
 
     ``rows`` counts those that hold data on the way forth and on the way back: no others are transformed or kept. The
@@ -189,15 +271,62 @@ def _share(work: Callable[..., None], parts: list[slice], plans: Sequence[tuple[
             helper.result()
 
 
-class Convolution:
-    """Displacement of ``target`` cells under the pressure on a window of them, in dx/E* and E*.
+class _Filter:
+    """Product of stacks of problems with even symbols in the Fourier space: small ones together, large ones by turns.
+
+    Parameters
+    ----------
+    corner : (int, int)
+        Where in the box the values begin.
+    columns : int
+        Of the values; their rows and those asked for are ``rows``.
+    symbol : (count, second, first direction) array
+    """
+
+    def __init__(
+        self,
+        rows: tuple[int, int],
+        columns: int,
+        corner: tuple[int, int],
+        box: tuple[int, int],
+        symbol: Array,
+        threads: int,
+    ) -> None:
+        dtype, threads = symbol.dtype.name, useful_threads(box, threads)
+        self._symbol, self._corner = symbol, corner
+        self._small: _SmallTransforms | None = None
+        if corner == (0, 0) and _small_bytes(rows, box, dtype) <= BLOCK_BYTES:
+            self._small = _cache.get((rows, columns, box, dtype), lambda: _SmallTransforms(rows, columns, box, dtype))
+        else:
+            self._large = _cache.get((rows, box, dtype, threads), lambda: _LargeTransform(rows, box, dtype, threads))
+
+    def __call__(self, values: Array, out: Array) -> Array:
+        """Write the product (count, nx, ny) into ``out`` and return it."""
+        if self._small is not None:
+            self._small.filter(values, self._symbol, out)
+            return out
+        for given, symbol, target in zip(values, self._symbol, out, strict=True):
+            self._large.filter(given, self._corner, symbol, target)
+        return out
+
+    def select(self, rows: Indices) -> Self:
+        """The same for some problems of the stack."""
+        if len(rows) == len(self._symbol):
+            return self
+        chosen = copy(self)
+        chosen._symbol = self._symbol[rows]
+        return chosen
+
+
+class Convolution(_Filter):
+    """Displacement of ``target`` cells under the pressure on a window of them, of a stack of problems; in dx/E* and E*.
 
     Parameters
     ----------
     target : (int, int)
-        Shape of the grid.
-    aspect : float
-        dy/dx.
+        Shape of the grids.
+    aspects : (count,) array_like
+        dy/dx of every problem.
     window : (slice, slice), optional
         Where the pressure is; the whole grid if absent.
     dtype : {"float64", "float32"}
@@ -209,7 +338,7 @@ class Convolution:
     def __init__(
         self,
         target: tuple[int, int],
-        aspect: float,
+        aspects: ArrayLike,
         window: Window | None = None,
         dtype: str = "float64",
         threads: int = 2,
@@ -220,34 +349,16 @@ class Convolution:
         # The kernel is even: it may wrap once the box is twice the greatest distance of two cells.
         reach = [max(end, n - start) - 1 for start, end, n in zip(first, last, target, strict=True)]
         box = (fast_length(max(2 * reach[0], target[0])), fast_length(max(2 * reach[1], target[1])))
-        threads = useful_threads(box, threads)
-        rows = (last[0] - first[0], target[0])
-        self.target = target
-        self.corner = first
-        self._symbol = _cache.get(("love", box, aspect, dtype), lambda: _kernel(box, aspect, dtype))
-        self._transform = _cache.get((rows, box, dtype, threads), lambda: _Transform(rows, box, dtype, threads))
-
-    def __call__(self, pressure: Array, out: Array) -> Array:
-        """Write the displacement into ``out`` and return it."""
-        self._transform.filter(pressure, self.corner, self._symbol, out)
-        return out
+        rows, columns = (last[0] - first[0], target[0]), last[1] - first[1]
+        super().__init__(rows, columns, first, box, _kernels("love", box, aspects, dtype), threads)
 
 
-class Preconditioner:
-    """Approximate inverse of the convolution: that of the periodic kernel, in single precision."""
+class Preconditioner(_Filter):
+    """Approximate inverse of the convolution of a stack: that of the periodic kernel, in single precision."""
 
-    def __init__(self, shape: tuple[int, int], aspect: float, threads: int = 2) -> None:
-        box = (fast_length(shape[0]), fast_length(shape[1]))
-        threads = useful_threads(box, threads)
-        rows = (shape[0], shape[0])
-        self.shape = shape
-        self._symbol = _cache.get(("inverse", box, aspect), lambda: _inverse_kernel(box, aspect))
-        self._transform = _cache.get((rows, box, "float32", threads), lambda: _Transform(rows, box, "float32", threads))
-
-    def __call__(self, residual: Array, out: Array) -> Array:
-        """Write the preconditioned residual into ``out`` and return it."""
-        self._transform.filter(residual, (0, 0), self._symbol, out)
-        return out
+    def __init__(self, shape: tuple[int, int], aspects: ArrayLike, threads: int = 2) -> None:
+        box, rows = (fast_length(shape[0]), fast_length(shape[1])), (shape[0], shape[0])
+        super().__init__(rows, shape[1], (0, 0), box, _kernels("inverse", box, aspects, "float32"), threads)
 
 
 def useful_threads(box: tuple[int, int], wanted: int) -> int:
@@ -256,21 +367,36 @@ def useful_threads(box: tuple[int, int], wanted: int) -> int:
     return 1 if worker or box[0] * box[1] < THREADED_POINTS else min(wanted, os.cpu_count() or 1)
 
 
-def _kernel(box: tuple[int, int], aspect: float, dtype: str = "float64") -> Array:
+def _kernels(kind: str, box: tuple[int, int], aspects: ArrayLike, dtype: str) -> Array:
+    """Kernels (count, second, first direction) of a stack, those not kept from before computed together."""
+    keys = [(kind, box, aspect, dtype) for aspect in np.asarray(aspects, dtype=np.float64).tolist()]
+    kept = {key: _cache.find(key) for key in keys}
+    missing = [key for key, kernel in kept.items() if kernel is None]
+    if missing:
+        made = _MAKERS[kind](box, [key[2] for key in missing], dtype)
+        for key, own in zip(missing, made, strict=True):
+            kept[key] = _cache.keep(key, own if len(made) == 1 else own.copy())
+    return np.stack([kept[key] for key in keys]) if len(keys) > 1 else kept[keys[0]][None]
+
+
+def _love_kernels(box: tuple[int, int], aspects: Sequence[float], dtype: str = "float64") -> Array:
     """Transform of Love's coefficients wrapped into the box, over its points, a quadrant as the kept spectrum lies.
 
     In single precision the kept one rounded.
     """
     if dtype != "float64":
-        exact = _cache.get(("love", box, aspect, "float64"), lambda: _kernel(box, aspect))
-        return np.asarray(exact.astype(dtype))
-    symbol = dctn(influence_coefficients((box[0] // 2 + 1, box[1] // 2 + 1), aspect), type=1, overwrite_x=True)
+        return _kernels("love", box, aspects, "float64").astype(dtype)
+    quadrant = (box[0] // 2 + 1, box[1] // 2 + 1)
+    symbol = dctn(influence_coefficients(quadrant, np.array(aspects)), type=1, axes=(1, 2), overwrite_x=True)
     symbol /= box[0] * box[1]
-    return np.ascontiguousarray(symbol.T)
+    return np.ascontiguousarray(symbol.transpose(0, 2, 1))
 
 
-def _inverse_kernel(box: tuple[int, int], aspect: float) -> Array:
+def _inverse_kernels(box: tuple[int, int], aspects: Sequence[float], dtype: str = "float32") -> Array:
     """Reciprocal of the transform of the wrapped coefficients, over the number of points of the box."""
-    transformed = _kernel(box, aspect) * (box[0] * box[1])
-    floor = transformed.max() * np.finfo(np.float32).eps
-    return np.asarray(1.0 / (np.maximum(transformed, floor) * (box[0] * box[1])), dtype=np.float32)
+    transformed = _kernels("love", box, aspects, "float64") * (box[0] * box[1])
+    floor = transformed.max(axis=(1, 2), keepdims=True) * np.finfo(np.float32).eps
+    return np.asarray(1.0 / (np.maximum(transformed, floor) * (box[0] * box[1])), dtype=dtype)
+
+
+_MAKERS = {"love": _love_kernels, "inverse": _inverse_kernels}

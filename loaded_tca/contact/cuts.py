@@ -13,9 +13,7 @@ min(1/c_i, 1/c_j) is, and so is its product with K, element by element.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -30,8 +28,8 @@ within 0.02 % on 16 and 32 cells (with 1: 0.09 %)."""
 
 
 def merged_cover(cover: Array, merge: tuple[int, int]) -> Array:
-    """Parts of the cells that have material where so many cells along each axis are one."""
-    for axis in (0, 1):
+    """Parts of the cells that have material where so many cells along the last two axes are one."""
+    for axis in (-2, -1):
         if merge[axis] == 2:
             cover = merged(cover, axis)
     return cover
@@ -42,58 +40,84 @@ def is_cut(cover: Array) -> Mask:
     return np.asarray((cover > 0.0) & (cover < 1.0))
 
 
-def limits(cap: float, cover: Array) -> Array:
-    """Largest pressure of every cell (nx, ny) where its material carries the cap at most."""
+def limits(cap: float | Array, cover: Array) -> Array:
+    """Largest pressure of every cell where its material carries the cap at most; caps and covers may be stacked."""
     return np.where(cover > 0.0, cover, 1.0) * cap
 
 
 @dataclass(frozen=True, eq=False)
 class CutCells:
-    """Cells (n,) of a grid that edges cut, and their displacement on top of that of half-spaces.
+    """Displacement of the cells that edges cut, on top of that of half-spaces, for a stack of problems.
 
     Attributes
     ----------
-    shape : (int, int)
-        Of the grid.
-    row, column : (n,) array of int
-    crowding : (n, n) array
-        Displacement under a unit pressure on each, in the units of the influence coefficients.
+    size, loaded : int
+        Cells of a grid, and of the window under pressure.
+    cell : (n,) array of int
+        Cut cells, counted through the stack problem by problem.
+    start : (n,) array of int
+        Where the cells under pressure begin that displace each of them.
+    under : (pairs,) array of int
+        These, counted through the windows of the stack.
+    crowding : (pairs,) array
+        Displacement under a unit pressure on them, in the units of the influence coefficients.
     """
 
-    shape: tuple[int, int]
-    row: Indices
-    column: Indices
+    size: int
+    loaded: int
+    cell: Indices
+    start: Indices
+    under: Indices
     crowding: Array
 
     @classmethod
-    def of(cls, cover: Array, aspect: float) -> CutCells:
-        """Those of a grid with the parts ``cover`` (nx, ny), and cells of an aspect dy/dx."""
-        row, column = np.nonzero(is_cut(cover))
-        own, inverse = _in_one_slice(cover.shape[0], aspect), 1.0 / cover[row, column]
-        crowding = CROWDING * (np.minimum(inverse[:, None], inverse) - 1.0)
-        crowding *= own[np.abs(row[:, None] - row)] * (column[:, None] == column)
-        return cls((cover.shape[0], cover.shape[1]), row, column, crowding)
+    def of(cls, cover: Array, aspects: Array, window: Window | None = None, dtype: str = "float64") -> CutCells | None:
+        """Those of grids with the parts ``cover`` (count, nx, ny), under pressure on a window; None if there are none.
 
-    def operator(self, window: Window | None, dtype: str) -> Callable[[Array, Array], None] | None:
-        """What adds the displacement under a pressure on a window to that of the grid; None if it holds no cut cell."""
-        to = under = self.row * self.shape[1] + self.column  # one index is twice as quick as two
-        crowding = self.crowding
-        if window is not None:
-            (rows, columns), (row, column) = window, (self.row, self.column)
-            inside = (row >= rows.start) & (row < rows.stop) & (column >= columns.start) & (column < columns.stop)
-            under = (row[inside] - rows.start) * (columns.stop - columns.start) + column[inside] - columns.start
-            crowding = crowding[:, inside]
-        if not crowding.size:
+        ``aspects`` (count,) are dy/dx.
+        """
+        nx, ny = cover.shape[1:]
+        problem, column, row = np.nonzero(is_cut(cover).transpose(0, 2, 1))
+        # Cells of one slice stand together: every cell is paired with all of its slice.
+        _, slice_start, place, members = np.unique(
+            problem * ny + column, return_index=True, return_inverse=True, return_counts=True
+        )
+        partners = members[place]
+        one = np.repeat(np.arange(row.size), partners)
+        other = np.arange(one.size) + np.repeat(slice_start[place] - (np.cumsum(partners) - partners), partners)
+        rows, columns = (slice(0, nx), slice(0, ny)) if window is None else window
+        inside = (row[other] >= rows.start) & (row[other] < rows.stop)
+        inside &= (column[other] >= columns.start) & (column[other] < columns.stop)
+        one, other = one[inside], other[inside]
+        if not one.size:
             return None
-        matrix = crowding.astype(dtype)
+        width, height = columns.stop - columns.start, rows.stop - rows.start
+        inverse, own = 1.0 / cover[problem, row, column], influence_coefficients((nx, 1), aspects)[:, :, 0]
+        crowding = CROWDING * (np.minimum(inverse[one], inverse[other]) - 1.0)
+        crowding *= own[problem[one], np.abs(row[one] - row[other])]
+        under = (problem * height + row - rows.start) * width + column - columns.start
+        start = np.flatnonzero(np.diff(one, prepend=-1))
+        cell = ((problem * nx + row) * ny + column)[one[start]]
+        return cls(nx * ny, height * width, cell, start, under[other], crowding.astype(dtype))
 
-        def add(pressure: Array, out: Array) -> None:
-            out.flat[to] += matrix @ pressure.take(under).astype(dtype, copy=False)
+    def add(self, pressure: Array, out: Array) -> None:
+        """Add the displacement under a pressure (count, ...) on the windows to that of the grids."""
+        moved = np.add.reduceat(self.crowding * pressure.ravel()[self.under], self.start)
+        out.reshape(-1)[self.cell] += moved.astype(out.dtype, copy=False)
 
-        return add
-
-
-@lru_cache(maxsize=64)
-def _in_one_slice(cells: int, aspect: float) -> Array:
-    """Influence coefficients (cells,) of the cells of one slice: those of a grid solved again under another load."""
-    return influence_coefficients((cells, 1), aspect)[:, 0]
+    def select(self, rows: Indices) -> CutCells | None:
+        """Those of some problems of the stack, in ascending order."""
+        problem, pairs = self.cell // self.size, np.diff(self.start, append=self.under.size)
+        chosen = np.isin(problem, rows)
+        if not chosen.any():
+            return None
+        paired = np.repeat(chosen, pairs)
+        problem = problem[chosen]
+        shift = np.searchsorted(rows, problem) - problem
+        return replace(
+            self,
+            cell=self.cell[chosen] + shift * self.size,
+            start=np.cumsum(pairs[chosen]) - pairs[chosen],
+            under=self.under[paired] + np.repeat(shift, pairs[chosen]) * self.loaded,
+            crowding=self.crowding[paired],
+        )

@@ -1,15 +1,15 @@
-"""Projected, preconditioned conjugate gradients for a contact problem on one grid."""
+"""Projected, preconditioned conjugate gradients for a stack of contact problems on grids of one shape."""
 
-import math
 from dataclasses import dataclass
-from typing import Any
+from itertools import count
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from loaded_tca.arrays import Array, Mask
+from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.contact.convolution import Preconditioner
-from loaded_tca.contact.grid import Grid
+from loaded_tca.contact.grid import ALL, CELLS, Grids, Rows, ratio, total_of
 
 Single = NDArray[np.float32]
 
@@ -20,88 +20,108 @@ REFRESH = 25
 WHOLE_STEP = 0.5
 # Pressures below this part of the largest one move nothing by more than single precision resolves.
 DUST = 1e-8
-TINY = float(np.finfo(np.float64).tiny)
 # BLAS starts threads for products of vectors from this length.
 THREADED_BLAS = 10_000
+TINY = float(np.finfo(np.float64).tiny)
+# Problems that are solved leave the stack once no more than this part of it is left: copying costs less than they do.
+PART_LEFT = 0.75
 
 
-def dot(one: NDArray[Any], other: NDArray[Any]) -> float:
-    """Scalar product; large ones without BLAS, whose threads wait for each other on a busy machine."""
-    if one.size < THREADED_BLAS:
-        return float(np.vdot(one, other))
-    return float(np.einsum("ij,ij->", one, other))
+def dots(one: NDArray[Any], other: NDArray[Any]) -> Array:
+    """Scalar products of every problem, (count, 1, 1); large ones without BLAS, whose threads wait for each other."""
+    count, cells = len(one), one.shape[1] * one.shape[2]
+    if cells < THREADED_BLAS:
+        return np.matmul(one.reshape(count, 1, cells), other.reshape(count, cells, 1))
+    return np.einsum("kij,kij->k", one, other)[:, None, None]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Judgement:
-    """How far a pressure is from solving its problem.
+    """How far pressures are from solving their problems; the numbers of each are (count, 1, 1).
 
     Parameters
     ----------
-    approach : float [mm]
+    approach : array [mm]
         Mean of u + h over the cells strictly between the bounds, or as prescribed.
-    residual : float
+    residual : array
         Largest of: mean excess where the pressure is between the bounds, weighted with it; deepest penetration
         where the pressure is zero; widest gap where it is at the cap. All over the approach.
-    free : (nx, ny) array of bool
+    free : (count, nx, ny) array of bool
         Cells between the bounds, and cells that the excess pushes off a bound.
     """
 
-    approach: float
-    residual: float
+    approach: Array
+    residual: Array
     free: Mask
 
+    def select(self, rows: Indices) -> Self:
+        """That of some of the problems."""
+        return type(self)(self.approach[rows], self.residual[rows], self.free[rows])
 
-def judge(grid: Grid, pressure: Array, excess: Array) -> Judgement:
-    """Check the Kuhn-Tucker conditions; turns ``excess``, given as u + h, into u + h - approach in place."""
-    inner = loaded = pressure > grid.slack
+
+def judge(grids: Grids, pressure: Array, excess: Array, room: Array | None = None) -> Judgement:
+    """Check the Kuhn-Tucker conditions; turns ``excess``, given as u + h, into u + h - approach in place.
+
+    ``room``: an array like these to work in, new arrays of double precision being dear.
+    """
+    inner = loaded = pressure > grids.slack
     capped: Mask | None = None
-    if not math.isinf(grid.cap):
-        capped = pressure >= grid.limit - grid.slack
+    if grids.any_capped:
+        capped = pressure >= grids.limit - grids.slack
         inner = loaded & ~capped
-    approach = grid.approach if grid.total is None else _mean_level(excess, loaded, inner, capped)
+    room = np.empty(pressure.shape) if room is None else room
+    np.copyto(room, inner)
+    cells = total_of(room)
+    mean = dots(excess, room) / np.maximum(cells, 1.0)
+    approach = mean if grids.all_loaded else np.where(grids.loaded, mean, grids.approach)
+    if capped is not None:
+        for k in np.flatnonzero(grids.loaded & (cells == 0.0)):
+            # With every cell at a bound any value between two limits is right.
+            lower, outside = float(excess[k][capped[k]].max()), excess[k][~loaded[k]]
+            approach[k] = 0.5 * (lower + float(outside.min(initial=2.0 * np.abs(excess[k]).max() - lower)))
     excess -= approach
     free = inner | (excess < 0.0)
-    widest = 0.0
-    misfit = np.abs(excess)
     if capped is not None:
-        widest = float(excess[capped].max(initial=0.0))
         free = free & ~capped | (capped & (excess > 0.0))
-        misfit *= inner
-    deepest = -float(excess[free & ~loaded].min(initial=0.0))
-    weighted = dot(pressure, misfit) / max(float(pressure.sum()), TINY)
-    residual = max(weighted, deepest, widest) / approach if approach > 0.0 else np.inf
-    return Judgement(approach, residual, free)
-
-
-def _mean_level(level: Array, loaded: Mask, inner: Mask, capped: Mask | None) -> float:
-    """Approach that fits u + h best; with every cell at a bound any value between two limits is right."""
-    count = np.count_nonzero(inner)
-    if count or capped is None:
-        return float((level * inner).sum() / count)
-    lower = float(level[capped].max())
-    return 0.5 * (lower + float(level[~loaded].min(initial=2.0 * np.abs(level).max() - lower)))
+    room *= excess
+    np.subtract(room, excess, out=room)  # but for its sign the excess where the pressure is zero, or at the cap
+    outside = room if capped is None else np.where(capped, excess, room)
+    worst = np.maximum.reduce(outside, axis=CELLS, keepdims=True)
+    room += excess
+    np.abs(room, out=room)
+    weighted = dots(pressure, room) / np.maximum(total_of(pressure), TINY)
+    worst = np.maximum(np.maximum(worst, weighted), 0.0)
+    return Judgement(approach, ratio(worst, approach, approach > 0.0, otherwise=np.inf), free)
 
 
 class Descent:
-    """Projected conjugate gradients on one grid; :meth:`run` goes on from where it stands.
+    """Projected conjugate gradients on a stack of problems, each until it is solved; run once.
 
     Directions and their convolutions are in single precision, relative to the approach: they correct a
-    displacement that is computed in double precision, so their rounding errors shrink with the residual.
+    displacement that is computed in double precision, so their rounding errors shrink with the residual. Nothing of
+    a problem depends on what stands beside it in the stack.
 
     Parameters
     ----------
-    grid : Grid
-        The problem.
-    pressure : (nx, ny) array [mm]
-        Start, within the bounds and with the right sum.
-    displacement : (nx, ny) array [mm], optional
+    grids : Grids
+        The problems.
+    pressure : (count, nx, ny) array [mm]
+        Start, within the bounds and with the right sum; worked on in place.
+    displacement : (count, nx, ny) array [mm], optional
         K times the start, if known.
     threads : int
         Threads of a transform.
     exact : bool
         Whether the displacement of the start is computed in double precision; else its errors, some 1e-7 of the
         approach, stay in it until the next refreshment.
+
+    Attributes
+    ----------
+    pressure : (count, nx, ny) array [mm]
+        The solutions, once it has run.
+    approach, residual : (count,) array
+        See :class:`Judgement`.
+    iterations, convolutions : (count,) array of int
 
     References
     ----------
@@ -111,136 +131,198 @@ class Descent:
 
     def __init__(
         self,
-        grid: Grid,
+        grids: Grids,
         pressure: Array,
         displacement: Array | None = None,
         threads: int = 2,
         exact: bool = True,
     ) -> None:
-        shape = pressure.shape
-        self.grid = grid
-        self.pressure = pressure
-        self.iterations = self.convolutions = 0
-        self._threads = threads
-        self._fast = grid.operator(dtype="float32", threads=threads)
-        self._precondition = Preconditioner(shape, grid.aspect, threads)
-        self._cover_root = None if grid.cover is None else np.sqrt(grid.cover).astype(np.float32)
-        self._displacement = displacement if displacement is not None else self._displaced(exact)
-        self._excess = np.empty(shape)
-        self._scale = 0.0
-        self._direction = np.zeros(shape, dtype=np.float32)
-        self._image = np.empty(shape, dtype=np.float32)
-        self._last: tuple[Single, float] | None = None
+        self.pressure = np.empty(pressure.shape)
+        self.approach, self.residual = np.empty((2, len(grids)))
+        self.iterations, self.convolutions = np.zeros((2, len(grids)), dtype=int)
+        # From here on only the problems that have not ended, ``rows`` of the stack.
+        self._grids, self._rows, self._threads = grids, np.arange(len(grids)), threads
+        self._used = self.convolutions.copy()
+        self._fast = grids.operator(dtype="float32", threads=threads)
+        self._precondition = Preconditioner(grids.shape, grids.aspects, threads)
+        # Cut cells are about so much stiffer, the part being its square.
+        self._root = None if grids.cover is None else np.sqrt(grids.cover).astype(np.float32)
+        self._now, self._next, self._excess = pressure, np.empty(pressure.shape), np.empty(pressure.shape)
+        self._displacement = self._displaced(exact) if displacement is None else displacement
+        self._scale = np.ones((len(grids), 1, 1))
+        self._last_descent = np.full(
+            (len(grids), 1, 1), np.inf, dtype=np.float32
+        )  # infinite: the next direction is a restart
+        self._direction, self._last = np.zeros((2, *pressure.shape), dtype=np.float32)
+        self._residual, self._preconditioned, self._image, self._free = np.empty((4, *pressure.shape), dtype=np.float32)
 
-    def run(self, tolerance: float, limit: int) -> Judgement:
-        """Iterate until the residual is below the tolerance or ``limit`` iterations are done."""
-        for step in range(limit + 1):
-            np.add(self._displacement, self.grid.gap, out=self._excess)
-            state = judge(self.grid, self.pressure, self._excess)
-            if state.residual <= tolerance or step == limit:
-                break
-            self._scale = state.approach if state.approach > 0.0 else float(np.abs(self._displacement).max())
-            self._iterate(state.free)
-            self.iterations += 1
+    def run(self, tolerance: Array, limit: Array) -> None:
+        """Iterate each problem until its residual is below its tolerance or its ``limit`` of iterations is reached."""
+        running = np.ones(len(self._rows), dtype=bool)
+        for step in count():
+            np.add(self._displacement, self._grids.gap, out=self._excess)
+            state = judge(self._grids, self._now, self._excess, self._next)
+            solved = state.residual[:, 0, 0] <= tolerance[self._rows]
+            (ended,) = (running & (solved | (step >= limit[self._rows]))).nonzero()
+            if ended.size:
+                rows = self._rows[ended]
+                if rows.size == len(self.pressure):
+                    self.pressure = self._now
+                else:
+                    self.pressure[rows] = self._now[ended]
+                self.iterations[rows] = step
+                self.approach[rows], self.residual[rows] = state.approach[ended, 0, 0], state.residual[ended, 0, 0]
+                self.convolutions[rows] = self._used[ended]
+                running[ended] = False
+                (left,) = running.nonzero()
+                if not left.size:
+                    return
+                if left.size <= PART_LEFT * len(running):
+                    self._keep(left)
+                    running, state = running[left], state.select(left)
+            self._iterate(state, running)
             if (step + 1) % REFRESH == 0:
                 self._displacement = self._displaced(exact=True)
-                self._last = None
-        return state
+                self._last_descent[:] = np.inf
+
+    def _keep(self, left: Indices) -> None:
+        """Go on with some of the problems."""
+        self._grids, self._fast = self._grids.select(left), self._fast.select(left)
+        self._precondition, self._rows = self._precondition.select(left), self._rows[left]
+        for name in ("_root", "_now", "_displacement", "_excess", "_used", "_last_descent", "_last", "_direction"):
+            array = getattr(self, name)
+            setattr(self, name, None if array is None else array[left])
+        for name in ("_next", "_residual", "_preconditioned", "_image", "_free"):  # filled anew before they are read
+            setattr(self, name, getattr(self, name)[: left.size])
 
     def _displaced(self, exact: bool) -> Array:
-        """Displacement of the pressure, in double precision or in single."""
-        self.convolutions += 1
-        operator = self.grid.operator(threads=self._threads) if exact else self._fast
-        return operator(self.pressure, np.empty(self.pressure.shape))
+        """Displacement of the pressures, in double precision or in single."""
+        self._used += 1
+        operator = self._grids.operator(threads=self._threads) if exact else self._fast
+        return operator(self._now, np.empty(self._now.shape))
 
-    def _convolved(self, values: Single) -> Array:
-        """Displacement of values in single precision; it stands until the next is asked for."""
-        self.convolutions += 1
-        return self._fast(values, self._image)
+    def _convolved(self, values: Single, rows: Indices) -> Single:
+        """Displacement of values of some of the problems in single precision; it stands until the next."""
+        self._used[rows] += 1
+        return self._fast.select(rows)(values, self._image[: rows.size])
 
-    def settle(self) -> Array:
-        """Take the rounding errors of the steps off the sum of the pressures; return these."""
-        self.pressure = self.grid.clip(self.pressure, (self.pressure > 0.0) & (self.pressure < self.grid.limit))
-        return self.pressure
+    def _iterate(self, state: Judgement, running: Mask) -> None:
+        """One step along the conjugate directions, projected where it leaves the bounds; none for those that ended."""
+        scale = self._scale = state.approach
+        if scale.min() <= 0.0:
+            scale = self._scale = np.where(
+                scale > 0.0, scale, np.abs(self._displacement).max(axis=CELLS, keepdims=True)
+            )
+        np.copyto(self._free, state.free)
+        np.multiply(self._excess, 1.0 / scale, out=self._residual, casting="same_kind")
+        cells = np.maximum(total_of(self._free), 1.0)
+        self._level(self._residual, cells)
+        slope = self._conjugate(cells)
+        self._used += 1
+        image = self._fast(self._direction, self._image)
+        curvature = dots(self._direction, image)
+        bent = curvature > 0.0
+        self._last_descent[~bent] = np.inf
+        bent &= running[:, None, None]
+        length = (scale * slope / np.where(bent, curvature, np.inf)).astype(np.float32)
+        # The array of the preconditioned residual is free to take the step.
+        step, trial = np.multiply(self._direction, length, out=self._preconditioned), self._next
+        np.subtract(self._now, step, out=trial)
+        outside = np.minimum.reduce(trial, axis=CELLS, keepdims=True) < 0.0
+        if self._grids.any_capped:
+            outside |= (trial > self._grids.limit).any(axis=CELLS, keepdims=True)
+        (rows,) = (outside & bent)[:, 0, 0].nonzero()
+        if rows.size:
+            leaving = self._chosen(rows)
+            target = self._grids.clip(trial[leaving], state.free[leaving], leaving)
+        if rows.size < len(trial):
+            trial[rows], length[rows] = self._now[rows], 0.0
+            image *= length
+            self._displacement -= image
+            self._now, self._next = trial, self._now
+        if rows.size:
+            rows = self._move(rows, target)
+            self._last_descent[rows] = np.inf
+        if rows.size:
+            rows = rows[~self._drop_dust(rows)]
+        if rows.size:
+            self._project_gradient(rows, state.free)
+        # The residual is the last one from here on, and the array of that takes the next.
+        self._last, self._residual = self._residual, self._last
 
-    def _iterate(self, free: Mask) -> None:
-        """One step along the conjugate direction, projected where it leaves the bounds."""
-        residual = (self._excess * (1.0 / self._scale)).astype(np.float32)
-        direction = self._conjugate(self._level(residual, free), free)
-        image = self._convolved(direction)
-        curvature = dot(direction, image)
-        if not curvature > 0.0:
-            self._last = None
-            return
-        length = self._scale * dot(direction, residual) / curvature
-        trial = self.pressure - length * direction
-        if float(trial.min()) >= 0.0 and (math.isinf(self.grid.cap) or bool((trial <= self.grid.limit).all())):
-            self.pressure = trial
-            self._displacement -= length * image
-        elif not self._move(self.grid.clip(trial, free)):
-            self._last = None
-            if not self._drop_dust():
-                self._project_gradient(residual, free)
+    def _conjugate(self, cells: Single) -> Array:
+        """Directions of Polak and Ribiere from the preconditioned residual, restarts where they do not descend.
 
-    def _conjugate(self, residual: Single, free: Mask) -> Single:
-        """Direction of Polak and Ribiere from the preconditioned residual; a restart where it does not descend."""
-        root = self._cover_root  # cut cells are about so much stiffer, the part being its square
-        preconditioned = self._precondition(residual if root is None else root * residual, np.empty_like(residual))
-        if root is not None:
-            preconditioned *= root
-        self._level(preconditioned, free)
-        descent = dot(preconditioned, residual)
-        direction = self._direction
-        if self._last is None:
-            direction[:] = preconditioned
+        Returns their products with the residual.
+        """
+        residual, preconditioned, direction = self._residual, self._preconditioned, self._direction
+        if self._root is None:
+            self._precondition(residual, preconditioned)
         else:
-            ahead = descent - dot(preconditioned, self._last[0])
-            direction *= np.float32(max(0.0, ahead / self._last[1]))
-            direction += preconditioned
-            self._level(direction, free)
-            if not dot(direction, residual) > 0.0:
-                direction[:] = preconditioned
-        self._last = (residual, descent) if descent > 0.0 else None
-        return direction
+            self._precondition(self._root * residual, preconditioned)
+            preconditioned *= self._root
+        self._level(preconditioned, cells)
+        descent = dots(preconditioned, residual)
+        ahead = np.maximum(0.0, descent - dots(preconditioned, self._last))
+        direction *= ahead / self._last_descent
+        direction += preconditioned
+        self._level(direction, cells)
+        slope = dots(direction, residual)
+        (uphill,) = (slope <= 0.0)[:, 0, 0].nonzero()
+        if uphill.size:
+            direction[uphill], slope[uphill] = preconditioned[uphill], descent[uphill]
+        self._last_descent = np.where(descent > 0.0, descent, np.float32(np.inf))
+        return slope
 
-    def _level(self, values: Single, free: Mask) -> Single:
+    def _level(self, values: Single, cells: Single) -> None:
         """Leave nothing outside the free cells; with a given sum, take the mean off them, so that the sum stays."""
-        values *= free
-        if self.grid.total is not None:
-            values -= np.float32(values.sum(dtype=np.float64) / np.count_nonzero(free))
-            values *= free
-        return values
+        values *= self._free
+        mean = total_of(values) / cells
+        if not self._grids.all_loaded:
+            mean *= self._grids.loaded
+        values -= mean
+        values *= self._free
 
-    def _move(self, target: Array) -> bool:
-        """Go towards a pressure within the bounds as far as the energy falls; False if it does not fall at all."""
-        step = ((target - self.pressure) / self._scale).astype(np.float32)
-        image = self._convolved(step)
-        slope = dot(step, self._excess) / self._scale
-        curvature = dot(step, image)
-        if not (slope < 0.0 < curvature):
-            return False
-        best = -slope / curvature
-        if best < WHOLE_STEP:
-            self.pressure = self.pressure + best * (target - self.pressure)
-            self._displacement += (best * self._scale) * image
-        else:
-            self.pressure = target
-            self._displacement += self._scale * image
-        return True
+    def _chosen(self, rows: Indices) -> Rows:
+        """Rows as an index that does not copy if they are all."""
+        return ALL if rows.size == len(self._rows) else rows
 
-    def _drop_dust(self) -> bool:
-        """Set pressures to zero that are next to none over an open gap; False if there are none.
+    def _move(self, rows: Indices, target: Array) -> Indices:
+        """Go towards pressures within the bounds as far as the energy falls; returns where it does not fall at all."""
+        chosen = self._chosen(rows)
+        scale, step = self._scale[chosen], target - self._now[chosen]
+        single = np.multiply(step, 1.0 / scale, out=self._preconditioned[: rows.size], casting="same_kind")
+        image = self._convolved(single, rows)
+        # The residual is the excess over the scale where a step goes, but for a constant, which a sum of zero meets.
+        slope, curvature = dots(single, self._residual[chosen]), dots(single, image)
+        falls = (slope < 0.0) & (curvature > 0.0)
+        part = -slope / np.where(falls, curvature, np.inf)
+        part = np.where(part < WHOLE_STEP, part, 1.0)
+        step *= part
+        step += self._now[chosen]
+        np.copyto(step, target, where=part == 1.0)  # to the last digit
+        self._now[chosen] = step
+        image *= (part * scale).astype(np.float32)
+        self._displacement[chosen] += image
+        return rows[~falls[:, 0, 0]]
+
+    def _drop_dust(self, rows: Indices) -> Mask:
+        """Set pressures to zero that are next to none over an open gap; returns the problems that had some.
 
         What that gains is lost in the rounding of single precision, so that no step would find it.
         """
-        dust = (self._excess > 0.0) & (self.pressure > 0.0) & (self.pressure < DUST * self.pressure.max())
-        self.pressure = np.where(dust, 0.0, self.pressure)
-        return bool(dust.any())
+        pressure = self._now[rows]
+        dust = (self._excess[rows] > 0.0) & (pressure > 0.0)
+        dust &= pressure < DUST * pressure.max(axis=CELLS, keepdims=True)
+        self._now[rows] = np.where(dust, 0.0, pressure)
+        return np.asarray(dust.any(axis=CELLS))
 
-    def _project_gradient(self, residual: Single, free: Mask) -> None:
+    def _project_gradient(self, rows: Indices, free: Mask) -> None:
         """One projected step down the plain gradient, which always descends."""
-        image = self._convolved(residual)
-        curvature = dot(residual, image)
-        if curvature > 0.0:
-            length = self._scale * dot(residual, residual) / curvature
-            self._move(self.grid.project(self.pressure - length * residual, free))
+        residual = self._residual[rows]
+        curvature = dots(residual, self._convolved(residual, rows))
+        bent = np.flatnonzero(curvature > 0.0)
+        if bent.size:
+            rows, residual = rows[bent], residual[bent]
+            length = self._scale[rows] * dots(residual, residual) / curvature[bent]
+            self._move(rows, self._grids.project(self._now[rows] - length * residual, free[rows], rows))

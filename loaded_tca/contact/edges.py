@@ -23,12 +23,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from loaded_tca.arrays import Array, real
+from loaded_tca.arrays import Array, Indices, real
 from loaded_tca.contact.convolution import Convolution, Window
 from loaded_tca.errors import InputError
 
@@ -213,15 +213,15 @@ def amplification(edges: tuple[FreeEdge, ...]) -> float:
 
 
 class MirroredConvolution:
-    """Displacement of ``target`` cells under the pressure on a window of them and its images in free edges.
+    """Displacement of ``target`` cells under the pressure on a window of them and its images: of a stack of one.
 
     A corner of two edges across different axes mirrors the image too; edges across the same axis give one image
     each.
 
     Parameters
     ----------
-    target, aspect, window, dtype, threads
-        As for :class:`Convolution`.
+    target, aspects, window, dtype, threads
+        As for :class:`Convolution`, of one problem.
     edges : tuple of Mirror
         Counted from the first cell of the target.
     """
@@ -229,7 +229,7 @@ class MirroredConvolution:
     def __init__(
         self,
         target: tuple[int, int],
-        aspect: float,
+        aspects: ArrayLike,
         edges: tuple[Mirror, ...],
         window: Window | None = None,
         dtype: str = "float64",
@@ -241,24 +241,28 @@ class MirroredConvolution:
         least = [min(place[axis][0] for place, _, _ in self._images) for axis in (0, 1)]
         most = [max(place[axis][1] for place, _, _ in self._images) for axis in (0, 1)]
         self._least, self._dtype = least, dtype
-        self._loaded = np.zeros((most[0] - least[0], most[1] - least[1]), dtype=dtype)
+        self._loaded = np.zeros((1, most[0] - least[0], most[1] - least[1]), dtype=dtype)
         # Images below the first cell: the grid is counted from the first of them.
         shift = [max(0, -first) for first in least]
         extended = (target[0] + shift[0], target[1] + shift[1])
         within = tuple(slice(a + s, b + s) for a, b, s in zip(least, most, shift, strict=True))
-        self._convolve = Convolution(extended, aspect, (within[0], within[1]), dtype, threads)
-        self._displaced = np.empty(extended, dtype=dtype)
-        self._target = (slice(shift[0], None), slice(shift[1], None))
+        self._convolve = Convolution(extended, aspects, (within[0], within[1]), dtype, threads)
+        self._displaced = np.empty((1, *extended), dtype=dtype)
+        self._target = (slice(None), slice(shift[0], None), slice(shift[1], None))
 
     def __call__(self, pressure: Array, out: Array) -> Array:
         """Write the displacement into ``out`` and return it."""
         self._loaded[:] = 0.0
         for place, flips, factor in self._images:
             rows, columns = (slice(a - first, b - first) for (a, b), first in zip(place, self._least, strict=True))
-            self._loaded[rows, columns] += factor * pressure[:: flips[0], :: flips[1]]
+            self._loaded[:, rows, columns] += factor * pressure[:, :: flips[0], :: flips[1]]
         self._convolve(self._loaded, self._displaced)
         np.copyto(out, self._displaced[self._target], casting="same_kind")
         return out
+
+    def select(self, _: Indices) -> Self:
+        """The same: there is one problem only."""
+        return self
 
 
 Image = tuple[tuple[tuple[int, int], tuple[int, int]], tuple[int, int], float]

@@ -1,24 +1,21 @@
-"""A contact problem in the terms of the iteration: on the grid of one level, or on a window of it."""
+"""Contact problems in the terms of the iteration: a stack of them on the grids of one level, or on windows of these."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Mask
+from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.contact.convolution import Convolution, Window
 from loaded_tca.contact.cuts import CutCells, is_cut, limits, merged_cover
 from loaded_tca.contact.edges import FreeEdge, MirroredConvolution, amplification, mirrors
 from loaded_tca.contact.levels import coarsen, window_around
-from loaded_tca.contact.love import influence_coefficients
-from loaded_tca.contact.problem import ContactProblem, Spacing
+from loaded_tca.contact.love import own_coefficient
+from loaded_tca.contact.problem import ContactProblem
 from loaded_tca.contact.slices import merge_slices
-
-Operator = Callable[[Array, Array], Array]
 
 # Gaps are cut at this multiple of the largest that could close, to stay far from the limits of single precision.
 OUT_OF_REACH = 2.0
@@ -29,215 +26,351 @@ SUMMED = 1e-15
 LEAST_COVER = 1e-6
 # Part of the cap by which a pressure at a bound may be off it by rounding.
 AT_BOUND = 1e-12
+# A window around the contact saves more than it costs on grids of more cells than this; smaller ones stay whole, so
+# that they can be stacked.
+LARGEST_WHOLE = 2048
+
+Rows = Indices | slice
+ALL = slice(None)
+
+
+CELLS = (1, 2)
+"""Axes of the cells of a stack."""
+
+
+def each(values: Sequence[float] | Array) -> Array:
+    """One number for each problem, (count, 1, 1), as it goes with arrays (count, nx, ny)."""
+    return np.asarray(values, dtype=np.float64)[:, None, None]
+
+
+def total_of(values: Array) -> Array:
+    """Sum over the cells of every problem, (count, 1, 1)."""
+    return np.add.reduce(values, axis=CELLS, keepdims=True)
 
 
 @dataclass(frozen=True, eq=False)
-class Grid:
-    """A contact problem on one grid: minimise p.Kp/2 + h.p over 0 <= p <= cap.
+class Grids:
+    """A stack of contact problems on grids of one shape: minimise p.Kp/2 + h.p over 0 <= p <= cap, each for itself.
 
-    Pressures are p dx/E* here, a length, so that K depends on the shape of a cell only.
+    Pressures are p dx/E* here, a length, so that K depends on the shape of a cell only. What is one number for each
+    problem has the shape (count, 1, 1), as it goes with the cells.
 
     Parameters
     ----------
-    gap : (nx, ny) array [mm]
+    gap : (count, nx, ny) array [mm]
         Gap h before loading, its smallest value near 0; infinite, or too large to close, where there is no material.
-    spacing : (float, float) [mm]
+    spacing : (count, 2) array [mm]
         Width of a cell.
-    total : float or None [mm]
-        Sum of the pressures; None if the approach is prescribed.
-    approach : float [mm]
+    total : (count, 1, 1) array [mm]
+        Sum of the pressures; NaN if the approach is prescribed.
+    approach : (count, 1, 1) array [mm]
         Prescribed approach, counted as ``gap`` is; of no meaning if the total is given.
-    cap : float [mm]
+    cap : (count, 1, 1) array [mm]
         Largest pressure, infinity if there is none; of the material of a cut cell, see ``limit``.
     free_edges : tuple of FreeEdge
-        Where the bodies end; K holds their images of the pressure too.
-    slices : (ny, ny) array, optional
+        Where the bodies end; K holds their images of the pressure too. Of stacks of one only.
+    slices : (count, ny, ny) array, optional
         Displacement of every slice under a unit sum of pressures on each, a part of K too.
     start : (int, int)
         First cell on the grid that the free edges are counted on.
-    cover : (nx, ny) array, optional
+    cover : (count, nx, ny) array, optional
         Part of every cell that has material; None: all of it.
     """
 
     gap: Array
-    spacing: Spacing
-    total: float | None
-    approach: float
-    cap: float
+    spacing: Array
+    total: Array
+    approach: Array
+    cap: Array
     free_edges: tuple[FreeEdge, ...] = ()
     slices: Array | None = None
     start: tuple[int, int] = (0, 0)
     cover: Array | None = None
 
     @classmethod
-    def of(cls, problem: ContactProblem) -> Grid:
-        """Return the whole finest grid of a problem, its gap and approach counted from first contact."""
-        (dx, dy), modulus, slices = problem.spacing, problem.contact_modulus, problem.slice_compliance
-        total = None if problem.load is None else problem.load / (dy * modulus)
-        approach = 0.0 if problem.approach is None else problem.approach - problem.first_contact
-        cap = math.inf if problem.max_pressure is None else problem.max_pressure * (dx / modulus)
+    def of(cls, problems: Sequence[ContactProblem]) -> Grids:
+        """Return the whole finest grids of problems, their gaps and approaches counted from first contact.
+
+        They have one number of cells; slices and cover all of them or none, and free edges one alone.
+        """
+        first = problems[0]
+        spacing = np.array([problem.spacing for problem in problems])
+        dx, dy = each(spacing[:, 0]), each(spacing[:, 1])
+        modulus, contact, load, approach, cap = (
+            each([np.nan if (value := getattr(problem, name)) is None else value for problem in problems])
+            for name in ("contact_modulus", "first_contact", "load", "approach", "max_pressure")
+        )
+        total, approach, cap = load / (dy * modulus), approach - contact, cap * (dx / modulus)
+        cover, slices = (
+            None if getattr(first, name) is None else np.stack([getattr(problem, name) for problem in problems])
+            for name in ("cover", "slice_compliance")
+        )
         # One cell that takes all of the load, or of the approach, has the highest pressure there can be.
-        highest = approach / float(influence_coefficients((1, 1), dy / dx)[0, 0]) if total is None else total
-        if problem.cover is not None:
-            highest /= float(problem.cover[problem.cover > 0.0].min())
+        most = np.where(np.isnan(total), approach / own_coefficient(dy / dx), total)
+        if cover is not None:
+            most /= np.where(cover > 0.0, cover, 1.0).min(axis=CELLS, keepdims=True)
+        gap = np.stack([problem.gap for problem in problems])
+        gap -= contact
         return cls(
-            gap=problem.gap - problem.first_contact,
-            spacing=problem.spacing,
+            gap=gap,
+            spacing=spacing,
             total=total,
             approach=approach,
-            cap=cap if cap < highest else math.inf,
-            free_edges=tuple(problem.free_edges),
+            cap=np.where(cap < most, cap, np.inf),
+            free_edges=tuple(first.free_edges),
             slices=None if slices is None else slices * (dy * modulus),
-            cover=problem.cover,
+            cover=cover,
+        )
+
+    def __len__(self) -> int:
+        return len(self.gap)
+
+    def select(self, rows: Rows) -> Grids:
+        """Return some of the problems, in ascending order."""
+        if rows == ALL if isinstance(rows, slice) else len(rows) == len(self):
+            return self
+        return replace(
+            self,
+            gap=self.gap[rows],
+            spacing=self.spacing[rows],
+            total=self.total[rows],
+            approach=self.approach[rows],
+            cap=self.cap[rows],
+            slices=None if self.slices is None else self.slices[rows],
+            cover=None if self.cover is None else self.cover[rows],
         )
 
     @property
     def shape(self) -> tuple[int, int]:
         """Cells along the two axes."""
-        return self.gap.shape[0], self.gap.shape[1]
+        return self.gap.shape[1], self.gap.shape[2]
 
     @property
-    def aspect(self) -> float:
-        """dy/dx of a cell."""
-        return self.spacing[1] / self.spacing[0]
+    def aspects(self) -> Array:
+        """dy/dx of the cells, (count,)."""
+        return np.asarray(self.spacing[:, 1] / self.spacing[:, 0])
 
-    @property
-    def slack(self) -> float:
+    @cached_property
+    def loaded(self) -> Mask:
+        """Problems whose load is given, (count, 1, 1); that of the others follows from their approach."""
+        return ~np.isnan(self.total)
+
+    @cached_property
+    def capped(self) -> Mask:
+        """Problems with a cap on the pressure, (count, 1, 1)."""
+        return np.isfinite(self.cap)
+
+    @cached_property
+    def any_capped(self) -> bool:
+        """Whether there is one with a cap."""
+        return bool(self.capped.any())
+
+    @cached_property
+    def all_loaded(self) -> bool:
+        """Whether the load of every one is given."""
+        return bool(self.loaded.all())
+
+    @cached_property
+    def all_scaled(self) -> bool:
+        """Whether every one has a load and none a cap, so that its pressures may be scaled to their sum."""
+        return self.all_loaded and not self.any_capped
+
+    @cached_property
+    def slack(self) -> Array:
         """Distance from a bound that is a rounding error: a cell that the last digits keep off the cap is at it."""
-        return 0.0 if math.isinf(self.cap) else AT_BOUND * self.cap
+        return AT_BOUND * np.where(self.capped, self.cap, 0.0)
 
     @cached_property
-    def limit(self) -> float | Array:
-        """Largest pressure of the cells."""
-        return self.cap if self.cover is None or math.isinf(self.cap) else limits(self.cap, self.cover)
+    def limit(self) -> Array:
+        """Largest pressure of the cells, (count, 1, 1) or (count, nx, ny)."""
+        return self.cap if self.cover is None else limits(self.cap, self.cover)
 
     @cached_property
-    def reach(self) -> float:
-        """Gap beyond which no cell can come into contact [mm].
+    def reach(self) -> Array:
+        """Gap beyond which no cell can come into contact [mm], (count, 1, 1).
 
         No displacement of a cell exceeds that of the whole load on it. The approach is at most the sum of its gap and
         that displacement for some cell below the cap: one of the lowest sums, as many as the load fills to the cap and
         one more.
         """
-        if self.total is None:
-            return self.approach
-        own = amplification(self.free_edges) * float(influence_coefficients((1, 1), self.aspect)[0, 0])
-        most = self.total * (own + (0.0 if self.slices is None else float(np.abs(self.slices).max())))
-        sums = self.gap + (most if self.cover is None else most / np.maximum(self.cover, LEAST_COVER))
-        if math.isinf(self.cap):
-            return float(sums.min())
-        order = np.argsort(sums, axis=None)
-        held = np.cumsum(np.broadcast_to(self.limit, self.shape).ravel()[order])
-        rank = min(int(np.searchsorted(held, self.total, side="right")), int(np.isfinite(sums).sum()) - 1)
-        return float(sums.ravel()[order[rank]])
+        own = amplification(self.free_edges) * own_coefficient(each(self.aspects))
+        if self.slices is not None:
+            own = own + np.abs(self.slices).max(axis=CELLS, keepdims=True)
+        most = np.where(self.loaded, self.total, 0.0) * own
+        level = self.gap + (most if self.cover is None else most / np.maximum(self.cover, LEAST_COVER))
+        reach = np.where(self.loaded, level.min(axis=CELLS, keepdims=True), self.approach)
+        for k in np.flatnonzero(self.loaded & self.capped):
+            order = np.argsort(level[k], axis=None)
+            held = np.cumsum(np.broadcast_to(self.limit[k], self.shape).ravel()[order])
+            rank = int(np.searchsorted(held, self.total[k, 0, 0], side="right"))
+            reach[k] = level[k].ravel()[order[min(rank, np.isfinite(level[k]).sum() - 1)]]
+        return np.asarray(reach)
 
     @cached_property
     def reachable(self) -> Mask:
-        """Cells that might come into contact."""
+        """Cells that might come into contact, (count, nx, ny)."""
         return np.asarray(self.gap <= self.reach)
 
-    def part(self, window: Window) -> Grid:
-        """Return the problem on a window of the grid, its gap cut where it is out of reach."""
+    def part(self, window: Window) -> Grids:
+        """Return the problems on a window of the grid, their gaps cut where they are out of reach."""
         rows, columns = window
+        cut = self.cover is not None and is_cut(self.cover[:, rows, columns]).any()
         return replace(
             self,
-            gap=np.minimum(self.gap[window], OUT_OF_REACH * self.reach),
-            slices=None if self.slices is None else self.slices[columns, columns],
+            gap=np.minimum(self.gap[:, rows, columns], OUT_OF_REACH * self.reach),
+            slices=None if self.slices is None else self.slices[:, columns, columns],
             start=(rows.start, columns.start),
-            cover=None if self.cover is None or not is_cut(self.cover[window]).any() else self.cover[window],
+            cover=self.cover[:, rows, columns] if self.cover is not None and cut else None,
         )
 
-    def coarser(self, merge: tuple[int, int]) -> Grid:
-        """Return the same problem with so many cells merged along each axis."""
+    @property
+    def whole(self) -> Window:
+        """Window of all cells."""
+        return slice(0, self.shape[0]), slice(0, self.shape[1])
+
+    def window(self, pressure: Array) -> Window:
+        """Return a window around the contact; around all that is in reach where nothing is in contact yet.
+
+        All of a small grid: there only one problem of a stack differs from another.
+        """
+        if self.shape[0] * self.shape[1] <= LARGEST_WHOLE:
+            return self.whole
+        pressed = pressure[0] > 0.0
+        return window_around(pressed if pressed.any() else self.reachable[0])
+
+    def coarser(self, merge: tuple[int, int]) -> Grids:
+        """Return the same problems with so many cells merged along each axis."""
         slices = self.slices
         if slices is not None and merge[1] == 2:
             slices = merge_slices(slices) * 2.0
         return replace(
             self,
             gap=coarsen(np.where(self.reachable, self.gap, np.inf), merge),
-            spacing=(self.spacing[0] * merge[0], self.spacing[1] * merge[1]),
-            total=None if self.total is None else self.total / merge[1],
+            spacing=self.spacing * merge,
+            total=self.total / merge[1],
             cap=self.cap * merge[0],
             slices=slices,
             cover=None if self.cover is None else merged_cover(self.cover, merge),
         )
 
-    def window(self, pressure: Array) -> Window:
-        """Return a window around the contact; around all that is in reach where nothing is in contact yet."""
-        loaded = pressure > 0.0
-        return window_around(loaded if loaded.any() else self.reachable)
-
-    @cached_property
-    def _cut_cells(self) -> CutCells:
-        assert self.cover is not None
-        return CutCells.of(self.cover, self.aspect)
-
     def operator(self, window: Window | None = None, dtype: str = "float64", threads: int = 2) -> Operator:
-        """K for pressures on a window of the grid, or on all of it; it fills its second argument and returns it."""
+        """K for pressures on a window of the grids, or on all of them."""
         convolve: Convolution | MirroredConvolution
         if self.free_edges:
-            edges = mirrors(self.free_edges, self.spacing, self.start)
-            convolve = MirroredConvolution(self.shape, self.aspect, edges, window, dtype, threads)
+            edges = mirrors(self.free_edges, tuple(self.spacing[0].tolist()), self.start)
+            convolve = MirroredConvolution(self.shape, self.aspects, edges, window, dtype, threads)
         else:
-            convolve = Convolution(self.shape, self.aspect, window, dtype, threads)
-        cuts = None if self.cover is None else self._cut_cells.operator(window, dtype)
-        if self.slices is None and cuts is None:
-            return convolve
+            convolve = Convolution(self.shape, self.aspects, window, dtype, threads)
         slices = self.slices
         if slices is not None:
-            slices = (slices if window is None else slices[:, window[1]]).astype(dtype)
-
-        def displaced(pressure: Array, out: Array) -> Array:
-            convolve(pressure, out)
-            if slices is not None:
-                out += slices @ pressure.sum(axis=0, dtype=slices.dtype)
-            if cuts is not None:
-                cuts(pressure, out)
-            return out
-
-        return displaced
+            slices = (slices if window is None else slices[:, :, window[1]]).astype(dtype, copy=False)
+        cuts = None if self.cover is None else CutCells.of(self.cover, self.aspects, window, dtype)
+        return Operator(len(self), convolve, slices, cuts)
 
     def fitted(self, pressure: Array) -> Array:
-        """Return a pressure within the bounds and with the right sum, zero where no contact is possible."""
-        bounded = not math.isinf(self.cap)
-        pressure = np.where(self.reachable, np.minimum(pressure, self.limit) if bounded else pressure, 0.0)
-        if self.total is None:
-            return pressure
-        if not pressure.any():
-            pressure = self.reachable.astype(np.float64)
-        pressure *= self.total / float(pressure.sum())
-        return self.project(pressure, self.reachable) if bounded and (pressure > self.limit).any() else pressure
+        """Return pressures within the bounds and with the right sums, zero where no contact is possible."""
+        pressure = np.minimum(pressure, self.limit)
+        pressure *= self.reachable
+        total = total_of(pressure)
+        empty = np.flatnonzero(self.loaded & (total == 0.0))
+        if empty.size:
+            pressure[empty] = self.reachable[empty]
+            total[empty] = total_of(pressure[empty])
+        pressure *= ratio(self.total, total, self.loaded, otherwise=1.0)
+        above = np.flatnonzero((pressure > self.limit).any(axis=CELLS)) if self.any_capped else empty[:0]
+        if above.size:
+            pressure[above] = self.project(pressure[above], self.reachable[above], above)
+        return pressure
 
-    def clip(self, pressure: Array, movable: Mask) -> Array:
-        """Pressure within the bounds and with the right sum: scaled where there is no cap, projected otherwise."""
-        if self.total is None or not math.isinf(self.cap):
-            return self.project(pressure, movable)
+    def settled(self, pressure: Array) -> Array:
+        """Pressures without the rounding errors that steps leave in their sums."""
+        return self.clip(pressure, (pressure > 0.0) & (pressure < self.limit))
+
+    def clip(self, pressure: Array, movable: Mask, rows: Rows = ALL) -> Array:
+        """Pressures of some of the problems within the bounds and with the right sums.
+
+        Scaled where the load is given and there is no cap, projected otherwise.
+        """
         clipped = np.maximum(pressure, 0.0)
-        clipped *= self.total / clipped.sum()
+        if self.all_scaled:
+            clipped *= self.total[rows] / total_of(clipped)
+            return clipped
+        scaled = (self.loaded & ~self.capped)[rows]
+        clipped *= ratio(self.total[rows], total_of(clipped), scaled, otherwise=1.0)
+        others = np.flatnonzero(~scaled)
+        if others.size:
+            clipped[others] = self.project(pressure[others], movable[others], np.arange(len(self))[rows][others])
         return clipped
 
-    def project(self, pressure: Array, movable: Mask) -> Array:
-        """Nearest pressure within the bounds and with the right sum that moves only the movable cells."""
-        projected = np.clip(pressure, 0.0, self.limit)
-        if self.total is not None and movable.any():
-            rest = self.total - float(projected[~movable].sum())
-            limit = np.broadcast_to(np.minimum(self.limit, self.total), self.shape)[movable]
-            projected[movable] = shifted_to_sum(pressure[movable], rest, limit)
+    def project(self, pressure: Array, movable: Mask, rows: Rows = ALL) -> Array:
+        """Nearest pressures of some of the problems within the bounds and with the right sums.
+
+        Only the movable cells move for the sums.
+        """
+        total, limit = self.total[rows], self.limit[rows]
+        projected = np.clip(pressure, 0.0, limit)
+        summed = np.flatnonzero(self.loaded[rows] & movable.any(axis=CELLS, keepdims=True))
+        if summed.size:
+            movable, total = movable[summed], total[summed]
+            fixed = np.where(movable, 0.0, projected[summed])
+            limit = np.where(movable, np.minimum(limit[summed], total), 0.0)
+            projected[summed] = fixed + shifted_to_sum(pressure[summed], total - total_of(fixed), limit, movable)
         return projected
 
 
-def shifted_to_sum(values: Array, total: float, cap: float | Array) -> Array:
-    """Project onto 0 <= p <= cap, sum p = total: p = clip(values - shift), the shift by safeguarded Newton steps."""
-    low, high = float((values - cap).min()), float(values.max())
-    shift = 0.0
+@dataclass(eq=False)
+class Operator:
+    """K of a stack of problems: displacement (count, nx, ny) of grids under the pressure on a window of them."""
+
+    count: int
+    convolve: Convolution | MirroredConvolution
+    slices: Array | None
+    cuts: CutCells | None
+
+    def __call__(self, pressure: Array, out: Array) -> Array:
+        """Write the displacement into ``out`` and return it."""
+        self.convolve(pressure, out)
+        if self.slices is not None:
+            forces = pressure.sum(axis=1, dtype=self.slices.dtype)
+            out += np.matmul(self.slices, forces[:, :, None])[:, None, :, 0]
+        if self.cuts is not None:
+            self.cuts.add(pressure, out)
+        return out
+
+    def select(self, rows: Indices) -> Operator:
+        """The same for some of the problems, in ascending order."""
+        if len(rows) == self.count:
+            return self
+        return Operator(
+            len(rows),
+            self.convolve.select(rows),
+            None if self.slices is None else self.slices[rows],
+            None if self.cuts is None else self.cuts.select(rows),
+        )
+
+
+def ratio(above: Array, below: Array, where: Mask, otherwise: float = 0.0) -> Array:
+    """Quotients of one number for each problem where they are to be taken."""
+    return np.asarray(np.where(where, above, otherwise) / np.where(where, below, 1.0))
+
+
+def shifted_to_sum(values: Array, total: Array, cap: Array, movable: Mask) -> Array:
+    """Project onto 0 <= p <= cap, sum p = total: p = clip(values - shift), the shift by safeguarded Newton steps.
+
+    Each problem (count, nx, ny) for itself; cells that are not movable have a cap of zero.
+    """
+    low = np.where(movable, values - cap, np.inf).min(axis=CELLS, keepdims=True)
+    high = np.where(movable, values, -np.inf).max(axis=CELLS, keepdims=True)
+    shift, searching = np.zeros(low.shape), np.ones(low.shape, dtype=bool)
     for _ in range(MOST_PROJECTIONS):
         projected = np.clip(values - shift, 0.0, cap)
-        surplus = float(projected.sum()) - total
-        if abs(surplus) <= SUMMED * total:
+        surplus = total_of(projected) - total
+        searching &= np.abs(surplus) > SUMMED * total
+        if not searching.any():
             break
-        low, high = (shift, high) if surplus > 0.0 else (low, shift)
-        inner = np.count_nonzero((projected > 0.0) & (projected < cap))
-        shift = shift + surplus / inner if inner else low
-        if not low < shift < high:
-            shift = 0.5 * (low + high)
+        low, high = np.where(surplus > 0.0, shift, low), np.where(surplus > 0.0, high, shift)
+        inner = np.count_nonzero((projected > 0.0) & (projected < cap), axis=CELLS, keepdims=True)
+        new = np.where(inner > 0, shift + surplus / np.maximum(inner, 1), low)
+        new = np.where((low < new) & (new < high), new, 0.5 * (low + high))
+        shift = np.where(searching, new, shift)
     return projected

@@ -1,5 +1,7 @@
 """From grid to grid: coarser gaps, pressures carried to a finer grid, windows around a contact."""
 
+from typing import Any
+
 import numpy as np
 
 from loaded_tca.arrays import Array, Mask
@@ -17,16 +19,15 @@ def coarsening(shape: tuple[int, int]) -> tuple[int, int]:
 
 
 def coarsen(gap: Array, merge: tuple[int, int]) -> Array:
-    """Gap at the centres of the merged cells; infinite only where a whole block has no material.
+    """Gap (..., nx, ny) at the centres of the merged cells; infinite only where a whole block has no material.
 
     Cubic interpolation inside, so that a smooth gap is sampled rather than blurred; the mean at borders and beside
     cells without material. An odd last row or column makes a block of its own.
     """
-    for axis in (0, 1):
+    for axis in (-2, -1):
         if merge[axis] == 2:
-            gap = _merge_pairs(gap if axis == 0 else gap.T)
-            gap = gap if axis == 0 else gap.T
-    return gap
+            gap = np.moveaxis(_merge_pairs(np.moveaxis(gap, axis, 0)), 0, axis)
+    return np.ascontiguousarray(gap)
 
 
 def _merge_pairs(gap: Array) -> Array:
@@ -44,15 +45,15 @@ def _merge_pairs(gap: Array) -> Array:
 
 
 def prolong(pressure: Array, shape: tuple[int, int], merge: tuple[int, int]) -> Array:
-    """Pressure on the next finer grid: its square interpolated, continued below zero across the edge.
+    """Pressure (..., nx, ny) on the next finer grid: its square interpolated, continued below zero across the edge.
 
     Near a smooth edge the pressure grows as the root of the distance to it, so that its square is smooth there.
     """
     square = continue_outside(pressure * pressure)
-    for axis in (0, 1):
+    for axis in (-2, -1):
         if merge[axis] == 2:
             square = split(square, axis)
-    return np.asarray(np.sqrt(np.maximum(square[: shape[0], : shape[1]], 0.0)))
+    return np.ascontiguousarray(np.sqrt(np.maximum(square[..., : shape[0], : shape[1]], 0.0)))
 
 
 def under_other_load(pressure: Array, ratio: float) -> Array:
@@ -73,35 +74,39 @@ def under_other_load(pressure: Array, ratio: float) -> Array:
 
 def continue_outside(square: Array) -> Array:
     """Give cells beside the contact the lowest value of the lines through two neighbours in it, zero at most."""
-    padded = np.pad(square, 2)
-    rows, columns = square.shape
+    rows, columns = square.shape[-2:]
+    padded = np.zeros((*square.shape[:-2], rows + 4, columns + 4))
+    padded[..., 2:-2, 2:-2] = square
     line = np.zeros(square.shape)
     for down, right in ((1, 0), (-1, 0), (0, 1), (0, -1)):
         near, far = (
-            padded[2 + k * down : 2 + k * down + rows, 2 + k * right : 2 + k * right + columns] for k in (1, 2)
+            padded[..., 2 + k * down : 2 + k * down + rows, 2 + k * right : 2 + k * right + columns] for k in (1, 2)
         )
         np.minimum(line, 2.0 * near - far, out=line, where=near > 0.0)
     return np.where(square > 0.0, square, line)
 
 
 def split(values: Array, axis: int) -> Array:
-    """Interpolation to the centres of half cells along an axis, constant beyond the last centres.
+    """Interpolation to the centres of half cells along the axis -2 or -1, constant beyond the last centres.
 
     Quadratic between three positive values, linear elsewhere: the cells at an edge carry the error of their grid,
     which a quadratic would magnify.
     """
-    lines = values if axis == 0 else values.T
-    padded = np.concatenate((lines[:1], lines, lines[-1:]))
-    before, after = padded[:-2], padded[2:]
+
+    def at(start: int, stop: int | None, step: int = 1) -> tuple[Any, ...]:
+        return (..., slice(start, stop, step)) if axis == -1 else (..., slice(start, stop, step), slice(None))
+
+    padded = np.concatenate((values[at(0, 1)], values, values[at(-1, None)]), axis=axis)
+    before, after = padded[at(0, -2)], padded[at(2, None)]
     # (5 before + 30 own - 3 after)/32 = (3 own + before)/4 - (before - 2 own + after) 3/32
     bend = before + after
-    bend -= 2.0 * lines
-    bend *= 0.09375 * ((before > 0.0) & (lines > 0.0) & (after > 0.0))
-    np.subtract(0.75 * lines, bend, out=bend)
-    fine = np.empty((2 * lines.shape[0], lines.shape[1]))
-    np.add(bend, 0.25 * before, out=fine[0::2])
-    np.add(bend, 0.25 * after, out=fine[1::2])
-    return fine if axis == 0 else fine.T
+    bend -= 2.0 * values
+    bend *= 0.09375 * ((before > 0.0) & (values > 0.0) & (after > 0.0))
+    np.subtract(0.75 * values, bend, out=bend)
+    fine = np.empty([2 * n if k == values.ndim + axis else n for k, n in enumerate(values.shape)])
+    np.add(bend, 0.25 * before, out=fine[at(0, None, 2)])
+    np.add(bend, 0.25 * after, out=fine[at(1, None, 2)])
+    return fine
 
 
 def window_around(cells: Mask) -> Window:

@@ -1,5 +1,7 @@
 """Surface displacement of a half-space under uniform pressure on a rectangle (Love 1929)."""
 
+from typing import Any
+
 import numpy as np
 
 from loaded_tca.arrays import Array
@@ -11,7 +13,7 @@ FAR_FIELD = 60.0
 ROWS = 64
 
 
-def influence_coefficients(shape: tuple[int, int], aspect: float) -> Array:
+def influence_coefficients(shape: tuple[int, int], aspect: float | Array) -> Array:
     r"""Displacement at the centres of a quadrant of cells, caused by unit pressure on the cell at its corner.
 
     Lengths are counted in cell widths dx, and the result in dx/E*, so that one array serves every size of cell:
@@ -32,18 +34,22 @@ def influence_coefficients(shape: tuple[int, int], aspect: float) -> Array:
     ----------
     shape : (int, int)
         Cells of the quadrant (nx, ny), both at least 1.
-    aspect : float
-        dy/dx.
+    aspect : float or (count,) array
+        dy/dx; of several grids at once.
 
     Returns
     -------
-    (nx, ny) array [dx/E*]
+    (nx, ny) or (count, nx, ny) array [dx/E*]
         Displacement at the cell (i, j) by unit pressure on the cell (0, 0).
 
     References
     ----------
     Love 1929, Phil. Trans. R. Soc. A 228, 377-420; Johnson 1985, Contact Mechanics, section 3.6.
     """
+    if isinstance(aspect, np.ndarray):
+        if max(shape) <= FAR_FIELD:
+            return _near_field(shape, aspect)
+        return np.stack([influence_coefficients(shape, each) for each in aspect.tolist()])
     reach = FAR_FIELD * max(1.0, aspect)
     near = (min(shape[0], int(reach) + 1), min(shape[1], int(reach / aspect) + 1))
     if near == shape:
@@ -56,12 +62,17 @@ def influence_coefficients(shape: tuple[int, int], aspect: float) -> Array:
     return coefficients
 
 
-def _near_field(shape: tuple[int, int], aspect: float) -> Array:
+def own_coefficient(aspect: float | Array) -> Any:
+    """Displacement [dx/E*] at the centre of a cell by unit pressure on itself; of one aspect dy/dx or of several."""
+    return (2.0 / np.pi) * (np.arcsinh(aspect) + aspect * np.arcsinh(1.0 / aspect))
+
+
+def _near_field(shape: tuple[int, int], aspect: float | Array) -> Array:
     """Love's formula: the double difference of F over the corners of the cells."""
     x = (np.arange(shape[0] + 1) - 0.5)[:, None]
-    y = (np.arange(shape[1] + 1) - 0.5)[None, :] * aspect
+    y = (np.arange(shape[1] + 1) - 0.5) * np.asarray(aspect)[..., None, None]
     corner = x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))
-    return np.asarray(np.diff(np.diff(corner, axis=0), axis=1) / np.pi, dtype=np.float64)
+    return np.asarray(np.diff(np.diff(corner, axis=-2), axis=-1) / np.pi, dtype=np.float64)
 
 
 def _far_field(rows: slice, columns: int, aspect: float) -> Array:

@@ -53,7 +53,7 @@ def area_and_semi_axes(pressure: Array, spacing: tuple[float, float]) -> tuple[f
     window = window_around(pressure > 0.0)
     square = continue_outside(pressure[window] ** 2)
     for _ in range(HALVINGS):
-        square = split(split(square, 0), 1)
+        square = split(split(square, -2), -1)
     inside = square > 0.0
     width, length = spacing[0] / 2**HALVINGS, spacing[1] / 2**HALVINGS
     count = np.count_nonzero(inside)

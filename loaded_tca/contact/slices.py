@@ -15,14 +15,14 @@ SYMMETRY = 1e-9
 
 def merge_slices(compliance: Array) -> Array:
     """Compliance where pairs of slices are one: the mean over both; an odd last one stays alone."""
-    return merged(merged(compliance, 0), 1)
+    return merged(merged(compliance, -2), -1)
 
 
 def merged(values: Array, axis: int) -> Array:
-    """Means over pairs along an axis; an odd last one stays alone."""
+    """Means over pairs along one of the last two axes, -2 or -1; an odd last one stays alone."""
     starts = np.arange(0, values.shape[axis], 2)
     sizes = np.diff(np.append(starts, values.shape[axis]))
-    return np.asarray(np.add.reduceat(values, starts, axis=axis) / (sizes[:, None] if axis == 0 else sizes))
+    return np.asarray(np.add.reduceat(values, starts, axis=axis) / (sizes[:, None] if axis == -2 else sizes))
 
 
 def check_slices(compliance: Array | None, shape: tuple[int, ...]) -> list[str]:

@@ -7,7 +7,8 @@ The pressures p, constant on a cell, minimise
 (K: Love's influence coefficients, h: gap before loading). The multiplier of the last condition is the approach
 of the bodies. The minimum is found on nested grids, the coarser ones giving the start of the finer ones, each by
 projected conjugate gradients in the neighbourhood of the contact; the contact conditions are checked with one
-convolution on the whole grid before a result is believed.
+convolution on the whole grid before a result is believed. Problems on small grids of one shape are stacked: each is
+solved for itself, but all in the same arrays.
 
 References
 ----------
@@ -19,7 +20,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import replace
 from typing import Literal
 
@@ -30,7 +31,7 @@ from loaded_tca.arrays import Array, numbers
 from loaded_tca.contact import checks
 from loaded_tca.contact.descent import Descent, judge
 from loaded_tca.contact.edges import FreeEdge
-from loaded_tca.contact.grid import AT_BOUND, OUT_OF_REACH, Grid
+from loaded_tca.contact.grid import AT_BOUND, CELLS, LARGEST_WHOLE, OUT_OF_REACH, Grids, each
 from loaded_tca.contact.levels import coarsening, prolong, window_around
 from loaded_tca.contact.problem import ContactProblem, Spacing
 from loaded_tca.contact.solution import CoarserGrid, ContactSolution, ContactStatus
@@ -46,6 +47,8 @@ COARSE_FACTOR = 2.0
 COARSE_TOLERANCE = 1e-3
 # The iteration stops a little below the tolerance, so that the check in double precision finds it kept.
 RESERVE = 0.8
+# Cells of the problems in one stack at most: more arrays of it than that do not fit the cache of a core.
+STACK_CELLS = 2**15
 # Above this tolerance the first displacement on a grid may be in single precision; the check is in double always.
 SINGLE_PRECISION = 1e-6
 
@@ -181,27 +184,72 @@ def solve_problem(
     InputError, ConvergenceError
         As :func:`solve_contact` does.
     """
-    given = None if initial_pressure is None else numbers("initial_pressure", initial_pressure)
-    checks.raise_if(checks.check_run(tolerance, on_failure, given, problem.gap.shape, threads))
-    grid = Grid.of(problem)
-    if problem.load == 0.0 or (problem.load is None and grid.approach <= 0.0):
-        return _without_load(problem, grid.approach)
-    if given is not None and given.any():
-        start, coarser = grid.fitted(given * _unit(problem)), None
-    else:
-        start, coarser = _start_from_coarser(grid, tolerance, threads)
-    solution = _solve_on_finest(problem, grid, tolerance, start, threads)
-    if coarser is not None:
-        coarser = CoarserGrid(coarser.largest / _unit(problem), problem.first_contact + coarser.approach)
-        solution = replace(solution, coarser=coarser)
-    if solution.status is ContactStatus.NOT_CONVERGED and on_failure == "raise":
-        raise ConvergenceError(
-            f"contact not converged: residual {solution.residual:.1e} > tolerance {tolerance:.1e} after "
-            f"{solution.iterations} iterations; try a larger tolerance (in scenes: analysis.tolerance), or "
-            "on_failure='return' to look at it",
-            last=solution,
-        )
-    return solution
+    return solve_problems([problem], [tolerance], [initial_pressure], on_failure=on_failure, threads=threads)[0]
+
+
+def solve_problems(
+    problems: Sequence[ContactProblem],
+    tolerances: Sequence[float],
+    initial_pressures: Sequence[ArrayLike | None],
+    *,
+    on_failure: OnFailure = "raise",
+    threads: int = 2,
+) -> list[ContactSolution]:
+    """Solve contact problems together, each to its own tolerance, without warnings about their accuracy.
+
+    Small grids of one shape are worked on in one array: from some ten problems on that takes a third of the time of one
+    after the other, or less. What is found for a problem is the same to the last bit whatever the others are.
+
+    Parameters
+    ----------
+    problems : sequence of ContactProblem
+    tolerances : sequence of float
+    initial_pressures : sequence of array_like or None
+        Where to start from; nested grids where there is none.
+    on_failure, threads
+        As in :func:`solve_contact`.
+
+    Returns
+    -------
+    list of ContactSolution
+        In the order of the problems.
+
+    Raises
+    ------
+    InputError
+        Before work starts, with every problem of the arguments.
+    ConvergenceError
+        When all have ended, for the first one that is not solved; ``last`` holds its last iterate. With
+        ``on_failure="return"`` the status of each tells.
+    """
+    starts = [None if start is None else numbers("initial_pressure", start) for start in initial_pressures]
+    wrong = []
+    for k, (problem, tolerance, start) in enumerate(zip(problems, tolerances, starts, strict=True)):
+        name = f"problem {k}: " if len(problems) > 1 else ""
+        wrong += [name + told for told in checks.check_run(tolerance, on_failure, start, problem.cells, threads)]
+    checks.raise_if(wrong)
+    starts = [None if start is None or not start.any() else start for start in starts]
+    found: dict[int, ContactSolution] = {}
+    for stack in _stacks(problems, tolerances, starts):
+        chosen = [problems[k] for k in stack], np.array([tolerances[k] for k in stack]), [starts[k] for k in stack]
+        found |= zip(stack, _solve_stack(*chosen, threads), strict=True)
+    for k, problem in enumerate(problems):
+        if k not in found:
+            found[k] = _without_load(problem)
+        solution = found[k]
+        if solution.status is ContactStatus.NOT_CONVERGED and on_failure == "raise":
+            raise not_converged(solution, tolerances[k], f"contact {k}" if len(problems) > 1 else "contact")
+    return [found[k] for k in range(len(problems))]
+
+
+def not_converged(solution: ContactSolution, tolerance: float, name: str = "contact") -> ConvergenceError:
+    """Error that tells of a contact that is not solved to its tolerance."""
+    return ConvergenceError(
+        f"{name} not converged: residual {solution.residual:.1e} > tolerance {tolerance:.1e} after "
+        f"{solution.iterations} iterations; try a larger tolerance (in scenes: analysis.tolerance), or "
+        "on_failure='return' to look at it",
+        last=solution,
+    )
 
 
 def contact_stiffness(solution: ContactSolution, tolerance: float = 1e-6) -> float:
@@ -233,13 +281,33 @@ def contact_stiffness(solution: ContactSolution, tolerance: float = 1e-6) -> flo
         return 0.0
     window = window_around(active)
     # A flat punch of the shape of the cells between the bounds, moved in by one: its load is the stiffness.
-    gap = np.where(active[window], 0.0, OUT_OF_REACH)
-    punch = replace(Grid.of(problem).part(window), gap=gap, total=None, approach=1.0, cap=math.inf)
+    gap = np.where(active[window], 0.0, OUT_OF_REACH)[None]
+    part, prescribed = Grids.of([problem]).part(window), each([np.nan])
+    punch = replace(part, gap=gap, total=prescribed, approach=each([1.0]), cap=each([np.inf]))
     descent = Descent(punch, np.zeros(gap.shape))
-    state = descent.run(tolerance, MOST_ITERATIONS)
-    if state.residual > tolerance:
-        raise ConvergenceError(f"contact_stiffness: residual {state.residual:.1e} > tolerance {tolerance:.1e}")
+    descent.run(np.array([tolerance]), np.array([MOST_ITERATIONS]))
+    residual = float(descent.residual[0])
+    if residual > tolerance:
+        raise ConvergenceError(f"contact_stiffness: residual {residual:.1e} > tolerance {tolerance:.1e}")
     return float(descent.pressure.sum()) * problem.spacing[1] * problem.contact_modulus
+
+
+def _stacks(
+    problems: Sequence[ContactProblem], tolerances: Sequence[float], starts: Sequence[Array | None]
+) -> list[list[int]]:
+    """Numbers of the problems that are solved together; those without load are in none."""
+    alike: dict[Hashable, list[int]] = {}
+    for k, (problem, tolerance, start) in enumerate(zip(problems, tolerances, starts, strict=True)):
+        approach = problem.approach
+        if problem.load == 0.0 or (approach is not None and approach <= problem.first_contact):
+            continue
+        parts = problem.slice_compliance is None, problem.cover is None, k if problem.free_edges else None
+        alike.setdefault((problem.cells, tolerance < SINGLE_PRECISION, start is None, *parts), []).append(k)
+    stacks = []
+    for numbers_of in alike.values():
+        size = max(1, STACK_CELLS // math.prod(problems[numbers_of[0]].cells))
+        stacks += [numbers_of[start : start + size] for start in range(0, len(numbers_of), size)]
+    return stacks
 
 
 def _unit(problem: ContactProblem) -> float:
@@ -247,9 +315,9 @@ def _unit(problem: ContactProblem) -> float:
     return problem.spacing[0] / problem.contact_modulus
 
 
-def _without_load(problem: ContactProblem, approach: float) -> ContactSolution:
+def _without_load(problem: ContactProblem) -> ContactSolution:
     """Zero pressure; the approach is the smallest gap, or as prescribed."""
-    approach += problem.first_contact
+    approach = problem.first_contact if problem.approach is None else float(problem.approach)
     return ContactSolution(
         pressure=np.zeros(problem.gap.shape),
         gap=problem.gap - approach,
@@ -263,60 +331,107 @@ def _without_load(problem: ContactProblem, approach: float) -> ContactSolution:
     )
 
 
-def _start_from_coarser(grid: Grid, tolerance: float, threads: int) -> tuple[Array, CoarserGrid | None]:
-    """Start for a grid from the solution on the next coarser one, solved in the same way; what that one found."""
-    merge = coarsening(grid.shape)
+def _solve_stack(
+    problems: Sequence[ContactProblem], tolerance: Array, starts: Sequence[Array | None], threads: int
+) -> list[ContactSolution]:
+    """Solve problems on grids of one shape: from the pressures given, or from the solutions on coarser grids."""
+    grids = Grids.of(problems)
+    coarser: list[CoarserGrid | None] = [None] * len(problems)
+    given = [start * _unit(problem) for start, problem in zip(starts, problems, strict=True) if start is not None]
+    if given:
+        pressure = grids.fitted(np.stack(given))
+    else:
+        pressure, found = _start_from_coarser(grids, tolerance, threads)
+        for k, (largest, approach) in enumerate(found.tolist()):
+            if largest > 0.0:
+                coarser[k] = CoarserGrid(largest / _unit(problems[k]), problems[k].first_contact + approach)
+    solutions = []
+    for rows in _together(grids):
+        some = problems[rows], grids.select(rows), tolerance[rows], pressure[rows], coarser[rows]
+        solutions += _solve_on_finest(*some, threads)
+    return solutions
+
+
+def _together(grids: Grids) -> list[slice]:
+    """Problems of a stack that are iterated together: all if they are small, else one after the other."""
+    if len(grids) == 1 or math.prod(grids.shape) <= LARGEST_WHOLE:
+        return [slice(None)]
+    return [slice(k, k + 1) for k in range(len(grids))]
+
+
+def _start_from_coarser(grids: Grids, tolerance: Array, threads: int) -> tuple[Array, Array]:
+    """Start for grids from the solutions on the next coarser ones, solved in the same way.
+
+    Also returns what was found there, (count, 2): the largest pressure and the approach; (0, 2) without coarser ones.
+    """
+    merge = coarsening(grids.shape)
     if merge == (1, 1):
-        return grid.fitted(np.zeros(grid.shape)), None
-    coarse = grid.coarser(merge)
-    tolerance = max(tolerance, min(COARSE_TOLERANCE, COARSE_FACTOR * tolerance))
+        return grids.fitted(np.zeros(grids.gap.shape)), np.empty((0, 2))
+    coarse = grids.coarser(merge)
+    tolerance = np.maximum(tolerance, np.minimum(COARSE_TOLERANCE, COARSE_FACTOR * tolerance))
     start, _ = _start_from_coarser(coarse, tolerance, threads)
-    window = coarse.window(start)
-    descent = Descent(coarse.part(window), start[window], threads=threads, exact=False)
-    state = descent.run(tolerance, MOST_ITERATIONS)
-    pressure = np.zeros(coarse.shape)
-    pressure[window] = descent.pressure / merge[0]
-    largest = float(pressure.max())
-    found = CoarserGrid(largest, state.approach) if largest > 0.0 else None
-    return grid.fitted(prolong(pressure, grid.shape, merge)), found
+    pressure, approach = np.zeros(start.shape), np.empty(len(grids))
+    for rows in _together(coarse):
+        some, own = coarse.select(rows), start[rows]
+        window = some.window(own)
+        descent = Descent(some.part(window), own[:, *window], threads=threads, exact=False)
+        descent.run(tolerance[rows], np.full(len(own), MOST_ITERATIONS))
+        approach[rows], pressure[rows, *window] = descent.approach, descent.pressure / merge[0]
+    return grids.fitted(prolong(pressure, grids.shape, merge)), np.stack((pressure.max(axis=CELLS), approach), axis=1)
 
 
 def _solve_on_finest(
-    problem: ContactProblem, grid: Grid, tolerance: float, start: Array, threads: int
-) -> ContactSolution:
+    problems: Sequence[ContactProblem],
+    grids: Grids,
+    tolerance: Array,
+    start: Array,
+    coarser: Sequence[CoarserGrid | None],
+    threads: int,
+) -> list[ContactSolution]:
     """Solve in a window around the contact, check on the whole grid, widen the window where the check says so."""
-    window = grid.window(start)
-    whole = grid.part((slice(0, grid.shape[0]), slice(0, grid.shape[1])))
-    descent = Descent(grid.part(window), start[window], threads=threads, exact=tolerance < SINGLE_PRECISION)
-    iterations = convolutions = 0
-    excess = np.empty(grid.shape)
-    for _ in range(MOST_CHECKS):
-        descent.run(RESERVE * tolerance, MOST_ITERATIONS - iterations)
-        displacement = whole.operator(window, threads=threads)(descent.settle(), np.empty(grid.shape))
-        pressure = np.zeros(grid.shape)
-        pressure[window] = descent.pressure
-        state = judge(whole, pressure, np.add(displacement, whole.gap, out=excess))
-        iterations += descent.iterations
-        convolutions += descent.convolutions + 1
-        if state.residual <= tolerance or iterations >= MOST_ITERATIONS:
+    window, exact = grids.window(start), bool(tolerance[0] < SINGLE_PRECISION)
+    iterations, convolutions = np.zeros((2, len(grids)), dtype=int)
+    found: dict[int, ContactSolution] = {}
+    # Those still to be solved, and where they go on from.
+    rows, start, displaced = np.arange(len(grids)), np.ascontiguousarray(start[:, *window]), None
+    for check in range(MOST_CHECKS):
+        whole = grids.part(grids.whole)
+        part = whole if window == grids.whole else grids.part(window)
+        descent = Descent(part, start, displaced, threads, exact)
+        descent.run(RESERVE * tolerance[rows], MOST_ITERATIONS - iterations[rows])
+        settled, pressure = part.settled(descent.pressure), np.zeros(whole.gap.shape)
+        pressure[:, *window] = settled
+        displacement = whole.operator(window, threads=threads)(settled, np.empty(pressure.shape))
+        state = judge(whole, pressure, displacement + whole.gap)
+        approach, residual = state.approach[:, 0, 0], state.residual[:, 0, 0]
+        iterations[rows] += descent.iterations
+        convolutions[rows] += descent.convolutions + 1
+        ended = (residual <= tolerance[rows]) | (iterations[rows] >= MOST_ITERATIONS) | (check == MOST_CHECKS - 1)
+        for k in np.flatnonzero(ended).tolist():
+            problem = problems[rows[k]]
+            gap = np.add(displacement[k], grids.gap[k], out=displacement[k])
+            gap -= approach[k]
+            own = pressure[k]
+            own /= _unit(problem)
+            if problem.max_pressure is not None:  # what is at the cap but for rounding is exactly at it from here on
+                own = np.where((own > 0.0) & (own >= (1.0 - AT_BOUND) * problem.cap), problem.cap, own)
+            found[rows[k]] = ContactSolution(
+                pressure=own if len(grids) == 1 else own.copy(),
+                gap=gap if len(grids) == 1 else gap.copy(),
+                approach=problem.first_contact + float(approach[k]),
+                load=float(own.sum()) * problem.cell_area if problem.load is None else problem.load,
+                iterations=int(iterations[rows[k]]),
+                convolutions=int(convolutions[rows[k]]),
+                residual=float(residual[k]),
+                status=ContactStatus.CONVERGED if residual[k] <= tolerance[rows[k]] else ContactStatus.NOT_CONVERGED,
+                problem=problem,
+                coarser=coarser[rows[k]],
+            )
+        left = np.flatnonzero(~ended)
+        if not left.size:
             break
-        window = window_around(state.free | (pressure > 0.0))
-        part = np.ascontiguousarray(displacement[window])
-        descent = Descent(grid.part(window), pressure[window], part, threads)
-    displacement += grid.gap
-    displacement -= state.approach
-    pressure[window] /= _unit(problem)
-    if problem.max_pressure is not None:  # what is at the cap but for rounding is exactly at it from here on
-        near = (pressure > 0.0) & (pressure >= (1.0 - AT_BOUND) * problem.cap)
-        pressure = np.where(near, problem.cap, pressure)
-    return ContactSolution(
-        pressure=pressure,
-        gap=displacement,
-        approach=problem.first_contact + state.approach,
-        load=float(pressure.sum()) * problem.cell_area if problem.load is None else problem.load,
-        iterations=iterations,
-        convolutions=convolutions,
-        residual=state.residual,
-        status=ContactStatus.CONVERGED if state.residual <= tolerance else ContactStatus.NOT_CONVERGED,
-        problem=problem,
-    )
+        rows, grids, pressure, displacement = rows[left], grids.select(left), pressure[left], displacement[left]
+        if window != grids.whole:
+            window = window_around(state.free[0] | (pressure[0] > 0.0))
+        start, displaced = (np.ascontiguousarray(array[:, *window]) for array in (pressure, displacement))
+    return [found[k] for k in range(len(problems))]

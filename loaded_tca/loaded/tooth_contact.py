@@ -143,19 +143,21 @@ class LoadedContact:
         return ellipse
 
     def _misfit(self, ellipse: PointContact) -> float:
-        """How far the gap leaves the paraboloid of the contact point, weighted with Hertz's pressure, over its mean.
+        """How far the gap leaves the paraboloid of the contact point, over its mean, both weighted with the pressure.
 
+        The larger one of that after Hertz and the one found: a contact ends before its ellipse, or goes on far beyond.
         Infinite where no cell of the grid tells, the ellipse being smaller than one.
         """
         grid = self.separation
         x, y = grid.x[:, None], grid.y
         below = 1.0 - (x / ellipse.semi_minor) ** 2 - (y / ellipse.semi_major) ** 2
-        weight = np.sqrt(np.maximum(below, 0.0))
         paraboloid = 0.5 * (grid.curvatures[0] * x**2 + grid.curvatures[1] * y**2)
-        inside = weight > 0.0
-        gap = np.abs(grid.gap - paraboloid)
-        mean = float(weight[inside] @ paraboloid[inside])
-        return float(weight[inside] @ gap[inside]) / mean if mean > 0.0 else math.inf
+        gap, largest = np.abs(grid.gap - paraboloid), 0.0
+        for weight in (np.sqrt(np.maximum(below, 0.0)), self.solution.pressure):
+            inside = weight > 0.0
+            mean = float(weight[inside] @ paraboloid[inside])
+            largest = max(largest, float(weight[inside] @ gap[inside]) / mean if mean > 0.0 else math.inf)
+        return largest
 
     @property
     def extent(self) -> tuple[float, float]:

@@ -137,13 +137,18 @@ def cylindrical_pair(
         driving=drive,
         module=mesh.pinion.normal_module,
         base_radii=(mesh.pinion.base_radius, mesh.wheel.base_radius),
-        face_width=min(mesh.pinion.face_width, mesh.wheel.face_width),
+        face_width=common_face_width(mesh, mounting.axial_offset),
     )
+
+
+def common_face_width(mesh: CylindricalMesh, axial_offset: float) -> float:
+    """Face width that both gears cover, the wheel moved along its axis [mm]; negative where the faces are apart."""
+    return min(mesh.common_face_width, 0.5 * (mesh.pinion.face_width + mesh.wheel.face_width) - abs(axial_offset))
 
 
 def _require_common_face(mesh: CylindricalMesh, offset: float) -> None:
     """Refuse faces that the offset [mm] of the wheel leaves next to nothing in common; apart, they never touch."""
-    common = 0.5 * (mesh.pinion.face_width + mesh.wheel.face_width) - abs(offset)
+    common = common_face_width(mesh, offset)
     least = LEAST_FACE * mesh.pinion.normal_module
     if abs(common) < least:
         raise GeometryError(

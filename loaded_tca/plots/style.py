@@ -53,7 +53,7 @@ def png_of(figure: Figure) -> bytes:
     canvas: Any = FigureCanvasAgg(figure)
     figure.set_dpi(DOTS_PER_INCH)
     canvas.draw()  # once: savefig would draw the figure to lay it out, and then again
-    imsave(content, canvas.buffer_rgba(), format="png", dpi=DOTS_PER_INCH)
+    imsave(content, canvas.buffer_rgba(), format="png", dpi=DOTS_PER_INCH, pil_kwargs={"compress_level": 3})
     figure.set_dpi(shown)
     return content.getvalue()
 

@@ -7,8 +7,8 @@ pair in a strip at one position over the length of the contact line across the s
 .. math:: K_{H\beta} = \frac{\max W}{\operatorname{mean} W}, \qquad
           K_{H\alpha} = \frac{\max w}{K_{H\beta}} \frac{\varepsilon_\alpha b}{\cos\beta_b\, F_n} .
 
-The last position is the first one a pitch later and does not count. A factor of the force in so many strips does not
-depend on the grid; it does on their number.
+The last position is the first one a pitch later and does not count. The factors depend on the number of strips;
+on the grid, which shares out the force of its cells, by some per cent where the load crowds at an end.
 
 References
 ----------

@@ -1,7 +1,8 @@
 r"""Pressure of the slices of a contact: the mesh-independent peak where a contact ends at a sharp edge.
 
 At a sharp edge and at a relief start the half-space has an infinite pressure, and the largest cell grows with the
-grid. The force is finite: averaged over a length that does not depend on the grid it is a line load q, which a Hertz
+grid. The force is finite: averaged over a length that does not depend on the grid, or over the contact where that is
+shorter, it is a line load q, which a Hertz
 line contact of the curvature k of that slice carries with the pressure
 
 .. math:: p = \sqrt{q E^* k / \pi} .
@@ -59,6 +60,21 @@ def averaged_line_load(force: Array, borders: Array, length: float) -> tuple[Arr
     return places, (above - below) / length
 
 
+def loaded_length(force: Array, borders: Array) -> float:
+    """Length of an even line load with the scatter of the given one, at most that of the slices that carry it [mm].
+
+    Examples
+    --------
+    >>> round(loaded_length(np.array([0.0, 2.0, 2.0, 2.0]), np.arange(5.0)), 12)
+    3.0
+    """
+    middles, widths = 0.5 * (borders[:-1] + borders[1:]), np.diff(borders)
+    share = force / force.sum()
+    scatter = share @ ((middles - share @ middles) ** 2 + widths**2 / 12.0)
+    carrying = np.flatnonzero(force)
+    return min(math.sqrt(12.0 * float(scatter)), float(borders[carrying[-1] + 1] - borders[carrying[0]]))
+
+
 def largest_slice_pressure(pair: GearPair, loaded: LoadedContact) -> tuple[float, tuple[float, float]]:
     """Largest pressure of the slices of a contact under load, and its place.
 
@@ -82,7 +98,8 @@ def largest_slice_pressure(pair: GearPair, loaded: LoadedContact) -> tuple[float
         first, last = carrying[[0, -1]]
         part = np.where(pressure > 0.0, separation.cover, 0.0).max(axis=0)
         borders[first], borders[last + 1] = borders[first + 1] - part[first] * dy, borders[last] + part[last] * dy
-    y, line_load = averaged_line_load(loaded.slice_force, borders, AVERAGED_OVER * pair.module)
+    length = min(AVERAGED_OVER * pair.module, loaded_length(loaded.slice_force, borders))
+    y, line_load = averaged_line_load(loaded.slice_force, borders, length)
     y = np.clip(y, borders[carrying[0]], borders[carrying[-1] + 1])
     x = np.interp(y, separation.y[carrying], middles)
     curvature = NormalGap(pair, loaded.contact, separation.axes).curvature_across(x, y)

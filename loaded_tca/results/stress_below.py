@@ -118,7 +118,7 @@ class StressBelow:
         """Slice of the map through the contact point where the peak lies at an edge and is mesh-dependent.
 
         None where the largest cell is no spike, or where the contact point itself lies within one: on an edge or a
-        relief start, or nearer to an edge than half the contact is wide.
+        relief start, or nearer to an edge than half the contact is wide; or where its slice carries nothing.
         """
         result, one, path = self.result, self.pressure_map, self.result.paths[self.column]
         at_edge = result.on_edge[self._at] and one.pressure[one.edge_cell] == one.pressure.max()
@@ -127,7 +127,8 @@ class StressBelow:
             return None
         if result.on_edge[self._at] and one.flank_ends_within(0.5 * float(result.contact_width[self._at])):
             return None
-        return int(np.argmin(np.abs(self.pressure_map.y)))
+        along = int(np.argmin(np.abs(one.y)))
+        return along if one.pressure[:, along].any() else None
 
     @property
     def highest_pressure(self) -> tuple[int, int]:

@@ -21,7 +21,7 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("  normal force of that tooth pair [N]", ("normal_force_at_peak_N",)),
     ("  pinion diameter | axial place [mm]", ("pinion_diameter_at_peak_mm", "pinion_axial_at_peak_mm")),
     ("  contact length | width [mm]", ("contact_length_at_peak_mm", "contact_width_at_peak_mm")),
-    ("at an edge, mesh-dependent if sharp [MPa] | its force [N]", ("edge_pressure_MPa", "normal_force_at_edge_N")),
+    ("at a sharp edge, mesh-dependent [MPa] | its force [N]", ("edge_pressure_MPa", "normal_force_at_edge_N")),
     ("  pinion diameter | axial place [mm]", ("pinion_diameter_at_edge_mm", "pinion_axial_at_edge_mm")),
     ("highest where Hertz holds | Hertz [MPa]", ("peak_pressure_where_hertz_holds_MPa", "hertz_pressure_there_MPa")),
     ("  length | width after Hertz [mm]", ("hertz_length_there_mm", "hertz_width_there_mm")),
@@ -41,7 +41,10 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
         ("mesh_stiffness_without_body_torsion_mean_N_per_mm_um",),
     ),
     ("load factors K_Hbeta | K_Halpha", ("face_load_factor", "transverse_load_factor")),
-    ("largest line load, mesh-dependent at sharp ends [N/mm]", ("line_load_at_largest_force_N_per_mm",)),
+    (
+        "line load under the largest force; mesh-dependent at sharp ends [N/mm]",
+        ("line_load_at_largest_force_N_per_mm",),
+    ),
     (
         "tooth pairs under load, mean | fewest | most",
         ("loaded_contact_ratio", "fewest_loaded_pairs", "most_loaded_pairs"),

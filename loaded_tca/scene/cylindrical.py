@@ -9,7 +9,7 @@ from typing import ClassVar, Literal
 
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, cylindrical_pair
+from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, common_face_width, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
@@ -63,7 +63,8 @@ class MountingErrors(Section):
     in_plane_deg: float = key(ERROR_deg, "axis error in the plane of the axes; positive: the axes part at z > 0", 0.0)
     out_of_plane_deg: float = key(
         ERROR_deg,
-        "axis error across that plane; positive: at z > 0 the wheel moves against the driving flank",
+        "axis error across that plane; positive: at z > 0 the wheel moves towards -y, against the driving flank of the "
+        'sense "positive"',
         0.0,
     )
     misalignment_um: float = key(
@@ -142,7 +143,7 @@ class CylindricalScene(BlankScene):
     def _mounting(self, mesh: CylindricalMesh) -> Mounting:
         """Mounting errors, the misalignment in the plane of action as the axis error that makes it."""
         errors = in_base_units(self.mounting)
-        width = mesh.common_face_width
+        width = common_face_width(mesh, self.mounting.axial_offset_mm)
         errors["out_of_plane"] += errors.pop("misalignment") / (width * math.cos(mesh.working_pressure_angle))
         require(
             (
@@ -169,7 +170,8 @@ class CylindricalScene(BlankScene):
     def mean_contact_length(self) -> float:
         """Mean length of all contact lines over a pitch, eps_alpha b/cos(beta_b) [mm]."""
         mesh = self.mesh()
-        return mesh.transverse_contact_ratio * mesh.common_face_width / math.cos(mesh.pinion.base_helix_angle)
+        width = common_face_width(mesh, self.mounting.axial_offset_mm)
+        return mesh.transverse_contact_ratio * width / math.cos(mesh.pinion.base_helix_angle)
 
     def geometry_rows(self) -> Sequence[Row]:
         """Return centre distance, contact ratios and diameters."""
@@ -184,7 +186,7 @@ class CylindricalScene(BlankScene):
             ("overlap ratio eps_beta", f"{mesh.overlap_ratio:.4f}"),
             ("total contact ratio eps_gamma", f"{mesh.total_contact_ratio:.4f}"),
             ("path of contact: length AE, approach AC [mm]", f"{path.AE:.4f}", f"{path.AC:.4f}"),
-            ("common face width b [mm]", f"{mesh.common_face_width:.4f}"),
+            ("common face width b [mm]", f"{common_face_width(mesh, self.mounting.axial_offset_mm):.4f}"),
             ("", "pinion", "wheel"),
             ("teeth z", f"{mesh.pinion.teeth}", f"{mesh.wheel.teeth}"),
             ("hand of the helix", *(self.hands if mesh.pinion.helix_angle else ("none", "none"))),

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.contact import ContactProblem, contact_stiffness, solve_problem
 from loaded_tca.contact.cuts import CROWDING
-from loaded_tca.contact.grid import Grid
+from loaded_tca.contact.grid import Grids
 from loaded_tca.contact.love import influence_coefficients
 from loaded_tca.errors import InputError
 
@@ -105,21 +105,21 @@ def test_contact_conditions_hold_on_cut_cells(cells, angle, distance, cap, ragge
 
 def test_influence_matrix_of_cut_cells_is_symmetric_and_positive_definite():
     gap, spacing, cover = oblique(9, 1.2, 0.1, np.random.default_rng(3))
-    grid = Grid.of(ContactProblem(gap, spacing, MODULUS, load=LOAD, cover=cover))
+    grids = Grids.of([ContactProblem(gap, spacing, MODULUS, load=LOAD, cover=cover)])
     unit = np.eye(cover.size).reshape(-1, *cover.shape)
-    displaced = grid.operator()
-    matrix = np.array([displaced(one, np.empty(cover.shape)).ravel() for one in unit])
+    displaced = grids.operator()
+    matrix = np.array([displaced(one[None], np.empty((1, *cover.shape))).ravel() for one in unit])
     assert_allclose(matrix, matrix.T, rtol=0.0, atol=1e-12 * np.abs(matrix).max())
     assert np.linalg.eigvalsh(matrix)[0] > 0.0
 
 
 def test_window_of_a_grid_has_the_displacements_of_the_whole():
     gap, spacing, cover = oblique(24, 1.2, 0.1)
-    grid = Grid.of(ContactProblem(gap, spacing, MODULUS, load=LOAD, cover=cover))
-    window, pressure = (slice(3, 20), slice(2, 15)), np.zeros(cover.shape)
-    pressure[window] = np.random.default_rng(1).random((17, 13))
-    whole = grid.operator()(pressure, np.empty(cover.shape))
-    part = grid.operator(window)(np.ascontiguousarray(pressure[window]), np.empty(cover.shape))
+    grids = Grids.of([ContactProblem(gap, spacing, MODULUS, load=LOAD, cover=cover)])
+    window, pressure = (slice(3, 20), slice(2, 15)), np.zeros((1, *cover.shape))
+    pressure[:, *window] = np.random.default_rng(1).random((17, 13))
+    whole = grids.operator()(pressure, np.empty(pressure.shape))
+    part = grids.operator(window)(pressure[:, *window], np.empty(pressure.shape))
     assert_allclose(part, whole, rtol=1e-12)
 
 

@@ -6,21 +6,37 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from loaded_tca.contact import descent
 from loaded_tca.contact.convolution import Convolution
-from loaded_tca.contact.descent import Descent, judge
-from loaded_tca.contact.grid import Grid, shifted_to_sum
+from loaded_tca.contact.descent import Descent, dots, judge
+from loaded_tca.contact.grid import Grids, each, shifted_to_sum
+
+
+def one_grid(gap, total=np.nan, cap=np.inf, approach=0.0):
+    return Grids(gap[None], np.ones((1, 2)), *(each([value]) for value in (total, approach, cap)))
 
 
 def paraboloid(n=24, total=1.0, cap=np.inf, approach=0.0):
     x = (np.arange(n) - (n - 1) / 2) / n
-    return Grid(x[:, None] ** 2 + x**2, (1.0, 1.0), total, approach, cap)
+    return one_grid(x[:, None] ** 2 + x**2, total, cap, approach)
 
 
-def energy(grid, pressure):
-    image = Convolution(grid.gap.shape, grid.aspect)(pressure, np.empty(grid.gap.shape))
-    level = grid.gap if grid.total is not None else grid.gap - grid.approach
-    return float((pressure * (0.5 * image + level)).sum())
+def evenly(grids):
+    """Pressure of the right sum, the same everywhere."""
+    return np.full(grids.gap.shape, np.nan_to_num(grids.total) / grids.gap.size)
+
+
+def run(search, tolerance, limit):
+    search.run(np.array([tolerance]), np.array([limit]))
+    return float(search.residual[0])
+
+
+def displaced(grids, pressure):
+    return Convolution(grids.shape, grids.aspects)(pressure, np.empty(pressure.shape))
+
+
+def energy(grids, pressure):
+    level = grids.gap if grids.loaded[0] else grids.gap - grids.approach[0]
+    return float((pressure * (0.5 * displaced(grids, pressure) + level)).sum())
 
 
 @given(
@@ -32,7 +48,8 @@ def test_projection_is_the_nearest_point(values, cap, fill):
     """Bounds and sum hold, and p - values is one constant where p is between the bounds: the conditions of it."""
     values = np.array(values)
     total = fill * cap * values.size
-    projected = shifted_to_sum(values, total, cap)
+    everywhere = np.ones((1, 1, values.size), dtype=bool)
+    projected = shifted_to_sum(values[None, None], each([total]), np.where(everywhere, cap, 0.0), everywhere)[0, 0]
     assert projected.min() >= 0.0
     assert projected.max() <= cap
     assert_allclose(projected.sum(), total, rtol=1e-12, atol=1e-15 * np.abs(values).sum())
@@ -46,74 +63,71 @@ def test_projection_is_the_nearest_point(values, cap, fill):
 
 
 def test_energy_never_rises():
-    for grid in (paraboloid(total=0.3), paraboloid(total=0.3, cap=0.002), paraboloid(total=None, approach=0.1)):
-        start = np.zeros(grid.gap.shape)
-        if grid.total is not None:
-            start[:] = grid.total / start.size
-        search = Descent(grid, start)
-        energies = [energy(grid, start)]
-        for _ in range(12):
-            search.run(0.0, 1)
-            energies.append(energy(grid, search.pressure))
+    for grids in (paraboloid(total=0.3), paraboloid(total=0.3, cap=0.002), paraboloid(total=np.nan, approach=0.1)):
+        energies = [energy(grids, evenly(grids))]
+        for steps in range(1, 13):
+            search = Descent(grids, evenly(grids))
+            run(search, 0.0, steps)
+            energies.append(energy(grids, search.pressure))
         # single precision of the steps is all that may show
         assert (np.diff(energies) <= 1e-6 * abs(energies[-1])).all()
 
 
-def test_run_stops_at_the_limit_and_goes_on():
-    search = Descent(paraboloid(), np.full((24, 24), 1.0 / 576))
-    first = search.run(1e-9, 2)
-    assert search.iterations == 2
-    assert first.residual > 1e-9
-    assert search.run(1e-9, 100).residual <= 1e-9
-    assert search.convolutions > search.iterations
-    assert Descent(paraboloid(), np.full((24, 24), 1.0 / 576)).convolutions == 1
+def test_run_stops_at_the_limit():
+    grids = paraboloid()
+    search = Descent(grids, evenly(grids))
+    assert run(search, 1e-9, 2) > 1e-9
+    assert search.iterations == [2]
+    on = Descent(grids, search.pressure)
+    assert run(on, 1e-9, 100) <= 1e-9
+    assert on.convolutions[0] > on.iterations[0]
 
 
 def test_judgement_of_a_penetrating_start():
-    grid = paraboloid(n=4)
-    pressure = np.zeros((4, 4))
-    pressure[0, 0] = 1.0
-    excess = Convolution((4, 4), 1.0)(pressure, np.empty((4, 4))) + grid.gap
-    state = judge(grid, pressure, excess)
-    assert state.free[0, 0]
+    grids = paraboloid(n=4)
+    pressure = np.zeros((1, 4, 4))
+    pressure[0, 0, 0] = 1.0
+    excess = displaced(grids, pressure) + grids.gap
+    state = judge(grids, pressure, excess)
+    assert state.free[0, 0, 0]
     assert state.free.sum() > 1
-    assert state.residual == pytest.approx(-excess.min() / state.approach)
+    assert state.residual[0] == pytest.approx(-excess.min() / state.approach[0])
 
 
 def test_judgement_with_every_cell_at_a_bound():
     """Any approach between the two limits is right; nothing is violated."""
-    grid = Grid(np.array([[0.0, 5.0]]), (1.0, 1.0), 1.0, 0.0, 1.0)
-    pressure = np.array([[1.0, 0.0]])
-    level = Convolution((1, 2), 1.0)(pressure, np.empty((1, 2))) + grid.gap
-    low, high = level[0]
-    state = judge(grid, pressure, level)
-    assert low <= state.approach <= high
-    assert state.residual == 0.0
+    grids = one_grid(np.array([[0.0, 5.0]]), total=1.0, cap=1.0)
+    pressure = np.array([[[1.0, 0.0]]])
+    level = displaced(grids, pressure) + grids.gap
+    low, high = level[0, 0]
+    state = judge(grids, pressure, level)
+    assert low <= state.approach[0] <= high
+    assert state.residual[0] == 0.0
 
 
 def test_settled_pressure_has_the_sum_and_keeps_the_cap():
     for cap in (np.inf, 0.003):
-        grid = paraboloid(total=0.5, cap=cap)
-        search = Descent(grid, np.full((24, 24), 0.5 / 576))
-        search.run(1e-6, 50)
-        settled = search.settle()
+        grids = paraboloid(total=0.5, cap=cap)
+        search = Descent(grids, evenly(grids))
+        run(search, 1e-6, 50)
+        settled = grids.settled(search.pressure)
         assert_allclose(settled.sum(), 0.5, rtol=1e-14)
         assert settled.max() <= cap
 
 
-def test_scalar_product_is_the_same_with_and_without_blas(rng):
-    small, large = (rng.random((2, n, n)) for n in (20, 200))
-    for one, other in (small, large):
-        assert_allclose(descent.dot(one, other), (one * other).sum(), rtol=1e-12)
+def test_scalar_products_are_those_of_each_problem(rng):
+    one, other = rng.random((2, 5, 20, 30))
+    assert_allclose(dots(one, other)[:, 0, 0], (one * other).sum(axis=(1, 2)), rtol=1e-12)
 
 
 def test_next_to_no_pressure_over_an_open_gap_is_dropped():
     """Its share in the energy is below the rounding of single precision: no step would find it."""
-    grid = paraboloid(total=0.1)
-    found = Descent(grid, np.full(grid.gap.shape, 0.1 / grid.gap.size))
-    found.run(1e-6, 50)
-    assert found.pressure[0, 0] == 0.0
-    assert not found._drop_dust()
-    found.pressure[0, 0] = 1e-10 * found.pressure.max()
-    assert found._drop_dust()
-    assert found.pressure[0, 0] == 0.0
+    grids = paraboloid(total=0.1)
+    found = Descent(grids, evenly(grids))
+    run(found, 1e-6, 50)
+    first = np.array([0])
+    assert found._now[0, 0, 0] == 0.0
+    assert not found._drop_dust(first).any()
+    found._now[0, 0, 0] = 1e-10 * found._now.max()
+    assert found._drop_dust(first).all()
+    assert found._now[0, 0, 0] == 0.0

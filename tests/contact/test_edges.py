@@ -78,7 +78,7 @@ EDGES = [
 def test_displacement_is_the_sum_over_pressures_and_images(edges, dtype, error):
     shape, aspect = (6, 7), 1.7
     pressure = np.random.default_rng(1).random(shape).astype(dtype)
-    found = MirroredConvolution(shape, aspect, edges, dtype=dtype)(pressure, np.empty(shape))
+    found = MirroredConvolution(shape, [aspect], edges, dtype=dtype)(pressure[None], np.empty((1, *shape)))
     expected = matrix(shape, aspect, edges) @ pressure.ravel()
     assert_allclose(found.ravel(), expected, atol=error * expected.max())
 
@@ -87,11 +87,11 @@ def test_displacement_is_the_sum_over_pressures_and_images(edges, dtype, error):
 def test_displacement_of_a_window_is_that_of_the_whole_pressure(edges):
     pressure, window = np.zeros((6, 7)), (slice(1, 4), slice(2, 6))
     pressure[window] = np.random.default_rng(2).random((3, 4))
-    whole = MirroredConvolution((6, 7), 0.6, edges)(pressure, np.empty((6, 7)))
-    convolve, calls = MirroredConvolution((6, 7), 0.6, edges, window), []
+    whole = MirroredConvolution((6, 7), [0.6], edges)(pressure[None], np.empty((1, 6, 7)))
+    convolve, calls = MirroredConvolution((6, 7), [0.6], edges, window), []
     once = convolve._convolve
     convolve._convolve = lambda *given: calls.append(given) or once(*given)
-    part = convolve(np.ascontiguousarray(pressure[window]), np.empty((6, 7)))
+    part = convolve(pressure[None, *window], np.empty((1, 6, 7)))
     assert_allclose(part, whole, atol=ROUNDING * whole.max())
     assert len(calls) == 1
 

@@ -112,6 +112,16 @@ def test_axial_offset_of_the_wheel_moves_the_common_face():
     assert_allclose(face, 1.0, rtol=1e-6)
 
 
+def test_lines_of_contact_are_as_long_as_the_faces_in_common():
+    """FZG C14: eps_alpha of GEARpie, 14 mm of face, the wheel 6 mm wider and moved by 9 mm: 8 mm in common."""
+    scene = read_scene(SCENES / "fzg_c14.toml")
+    moved = scene.with_changes({"mounting.axial_offset_mm": 9.0, "wheel.face_width_mm": 20.0})
+    assert_allclose(moved.mean_contact_length / scene.mean_contact_length, 8.0 / 14.0, rtol=1e-12)
+    assert moved.pair().face_width == 8.0
+    along = [one.with_changes({"mounting.misalignment_um": 8.0}).pair().wheel_axes[2, 1] for one in (scene, moved)]
+    assert_allclose(along[1] / along[0], 14.0 / 8.0, rtol=1e-6)  # the tilt that parts the common face by 8 um
+
+
 @cache
 def crowned(out_of_plane_deg, cells=32):
     """A spur pair whose crowning keeps the load off the face ends; flanks alone, without free edges."""

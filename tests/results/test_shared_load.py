@@ -71,6 +71,15 @@ def test_cycle_repeats_after_a_pitch(make):
     assert_allclose(share[:, 0, 0], share[:, -1, 1], atol=PERIOD)
 
 
+def test_no_number_depends_on_the_other_torques():
+    """Each torque starts from its own Hertz law: alone, in another order, or beside others it is the same."""
+    alone, beside = cycle(torques=(130.0,)), cycle(torques=(260.0, 130.0, 40.0))
+    for name in PER_PAIR:
+        one, other = getattr(alone, name), getattr(beside, name)[1:2]
+        assert_allclose(one, other[..., np.isin(beside.pair, alone.pair)], rtol=1e-12)
+    assert_allclose(alone.transmission_error, beside.transmission_error[1:2], rtol=1e-12)
+
+
 def test_driving_wheel_sees_the_same_cycle_backwards():
     """Time reversed: the same contacts in the opposite order, the transmission error of the other sign."""
     scene = read_scene(SCENES / "mesh_cycle_spur.toml").with_changes(

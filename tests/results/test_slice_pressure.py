@@ -44,6 +44,26 @@ def test_line_load_over_a_length_is_the_mean_of_what_it_covers():
     assert there == {-1.0: 0.0, 0.0: 1.0, 1.0: 1.0, 2.0: 3.0, 3.0: 3.0, 4.0: 0.0}
 
 
+@pytest.mark.parametrize("width", [0.25, 0.5])
+def test_contact_shorter_than_the_average_has_the_pressure_of_its_own_length(width):
+    """Faces below a quarter of the module: a line of an even load has Hertz's pressure, its ends not counted."""
+    scene = read_scene(SCENES / "fzg_c14.toml").with_changes(
+        {
+            **ONE_PAIR,
+            "pinion.face_width_mm": width,
+            "wheel.face_width_mm": width,
+            "load.pinion_torque_Nm": 200.0 * width / 14.0,
+            "analysis.positions": 1,
+            "analysis.accuracy": None,
+            "analysis.cells": (32, 32),
+        }
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # it ends at both faces
+        cycle = analyse(scene)
+    assert_allclose(cycle.peak_pressure.item(), 1347.3, rtol=0.05)  # that of GEARpie on 14 mm
+
+
 def test_line_load_over_a_length_does_not_follow_a_spike():
     """The same forces, those of the last millimetre in ever fewer cells."""
     found = []

@@ -1,6 +1,7 @@
 """Stresses below a pressure map of a result: Hertz, where they are asked for, their files, the command."""
 
 import csv
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -273,3 +274,13 @@ def test_what_does_not_fit_is_told_in_one_line(run, directory, options, told):
     assert len(errors) == 1
     assert told in errors[0]
     assert {path.name for path in directory.iterdir()} == {"result.nc"}
+
+
+def test_spike_beside_a_slice_without_load_is_itself_looked_at():
+    """A face of a quarter millimetre: the load stands at its end, and none in the slice of the contact point."""
+    whole = result("misaligned", positions=1)
+    one = whole.maps[0][0][0]
+    bare = replace(one, pressure=np.where(np.abs(one.y) <= one.spacing[1], 0.0, one.pressure))
+    below = stress_below(replace(whole, maps=(((bare,),),)))
+    assert below.beside_spike is None
+    assert "of the pressure at" in below.summary()

@@ -17,7 +17,7 @@ def test_numbers_are_plain_up_to_any_size():
     text = summary(peak_pressure_MPa=11783.2, normal_force_at_peak_N=9999.6, line_load_at_largest_force_N_per_mm=9999.4)
     assert cells(text, "peak pressure [MPa] | pinion angle [deg]")[0] == "11783"
     assert cells(text, "  normal force of that tooth pair [N]") == ["10000"]
-    assert cells(text, "largest line load, mesh-dependent at sharp ends [N/mm]") == ["9999"]
+    assert cells(text, "line load under the largest force; mesh-dependent at sharp ends [N/mm]") == ["9999"]
     assert "e+" not in text
 
 
@@ -31,7 +31,7 @@ def test_first_figure_is_the_peak_pressure_and_an_edge_stands_apart_with_its_for
     text = summary(edge_pressure_MPa=20070.0, normal_force_at_edge_N=0.06)
     first = next(row for row in text.splitlines() if "[MPa]" in row)
     assert first.startswith("peak pressure [MPa]")
-    assert cells(text, "at an edge, mesh-dependent if sharp [MPa] | its force [N]") == ["20070", "|", "0.06"]
+    assert cells(text, "at a sharp edge, mesh-dependent [MPa] | its force [N]") == ["20070", "|", "0.06"]
     assert "at an edge" not in summary()
 
 

@@ -8,7 +8,7 @@ from loaded_tca.contact.convolution import Convolution
 def contact_conditions(solution, gap):
     """Largest violation of the contact conditions on the whole grid, over the approach from first touch."""
     aspect = solution.spacing[1] / solution.spacing[0]
-    displacement = Convolution(gap.shape, aspect)(solution.pressure, np.empty(gap.shape))
+    displacement = Convolution(gap.shape, [aspect])(solution.pressure[None], np.empty((1, *gap.shape)))[0]
     displacement *= solution.spacing[0] / solution.problem.contact_modulus
     excess = displacement + gap - solution.approach
     scale = solution.approach - gap.min()

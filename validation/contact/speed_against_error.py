@@ -160,8 +160,8 @@ CODES: dict[str, Callable[[Problem], Run]] = {
 def judged(problem: Problem, pressure: Array) -> tuple[float, float]:
     """Residual of the contact conditions on the whole grid, and the approach, of any pressure."""
     aspect = problem.spacing[1] / problem.spacing[0]
-    displacement = Convolution(problem.gap.shape, aspect)(np.ascontiguousarray(pressure), np.empty(problem.gap.shape))
-    level = displacement * problem.spacing[0] / E_STAR + problem.gap
+    displacement = Convolution(problem.gap.shape, [aspect])(pressure[None], np.empty((1, *problem.gap.shape)))
+    level = displacement[0] * problem.spacing[0] / E_STAR + problem.gap
     touching = pressure > 0.0
     approach = float(level[touching].mean())
     misfit = float((pressure * np.abs(level - approach)).sum() / pressure.sum())

@@ -16,8 +16,7 @@ from loaded_tca.compliance import MeshDensity, tooth_compliance
 from loaded_tca.compliance.body import ToothFrame, gear_body, gear_nodes
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.loaded.cycle import farthest_apart
-from loaded_tca.loaded.load_sharing import Laws, share_load, tooth_pairs_at
+from loaded_tca.loaded.cycle import carried_by_all, farthest_apart
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.pairs.gear import Gear
@@ -74,12 +73,8 @@ def mean_stiffness(
     cycle = trace_teeth(pair, pair.pitch * np.linspace(-0.5, 0.5, POSITIONS, endpoint=False))
     density = MeshDensity(lengthwise=layers or round(pair.face_width / LAYER))
     teeth = tooth_compliance(pair, neighbours=max(farthest_apart(cycle), 1), density=density)
-    rates, laws = [], Laws()
-    for position in range(POSITIONS):
-        found = share_load(pair, tooth_pairs_at(cycle, position), torque, GRID, bending=teeth, start=laws)
-        laws = found.laws
-        rates.append(found.torque_rate)
-    whole = float(np.mean(rates) / (1e3 * pair.base_radii[0] * pair.base_radii[1] * pair.face_width))
+    carried = carried_by_all(pair, cycle, np.array([torque]), GRID, teeth)
+    whole = float(np.mean(carried.torque_rate) / (1e3 * pair.base_radii[0] * pair.base_radii[1] * pair.face_width))
     return whole, 1.0 / (1.0 / whole - 1e3 * pair.face_width * sum(teeth.body_torsion))
 
 
