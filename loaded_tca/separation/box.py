@@ -137,7 +137,7 @@ def _strip_extents(gap: Array, x: Array, y: Array, loads: Array, modulus: float)
         penetration = _water_level(ordered, sums, loads / (stiffness * dy)) - floor
         closed = penetration > 0.0
         lifted = np.where(closed, (2.0 * stiffness / (math.pi * modulus))[:, None] * penetration, -1.0)
-        loaded = (depth <= lifted[:, None]).any(axis=2)
+        loaded = (depth <= lifted[:, None]).max(axis=2)
         width = _farthest(across, loaded) + 0.5 * dx
         length = _farthest(reach, closed) + 0.5 * dy
     deepest = penetration.max(axis=1)
