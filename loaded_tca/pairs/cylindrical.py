@@ -142,13 +142,14 @@ def cylindrical_pair(
 
 
 def common_face_width(mesh: CylindricalMesh, axial_offset: float) -> float:
-    """Face width that both gears cover, the wheel moved along its axis [mm]; negative where the faces are apart."""
-    return min(mesh.common_face_width, 0.5 * (mesh.pinion.face_width + mesh.wheel.face_width) - abs(axial_offset))
+    """Face width that both gears cover, the wheel moved along its axis [mm]; of faces apart the narrower one."""
+    covered = 0.5 * (mesh.pinion.face_width + mesh.wheel.face_width) - abs(axial_offset)
+    return min(mesh.common_face_width, covered) if covered > 0.0 else mesh.common_face_width
 
 
 def _require_common_face(mesh: CylindricalMesh, offset: float) -> None:
     """Refuse faces that the offset [mm] of the wheel leaves next to nothing in common; apart, they never touch."""
-    common = common_face_width(mesh, offset)
+    common = 0.5 * (mesh.pinion.face_width + mesh.wheel.face_width) - abs(offset)
     least = LEAST_FACE * mesh.pinion.normal_module
     if abs(common) < least:
         raise GeometryError(

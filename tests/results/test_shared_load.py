@@ -384,7 +384,7 @@ def test_pressure_of_a_tip_corner_is_none_of_the_flank():
     (figures,) = result.key_figures()
     position, column = result.edge_contact(0)
     assert result.load_share[0, position, column] < 0.25
-    assert result.edge_pressure[0, position, column] > 1.5 * figures["peak_pressure_MPa"]
+    assert result.edge_pressure[0, position, column] > 1.2 * figures["peak_pressure_MPa"]
     assert result.peak_pressure[0, position, column] < figures["peak_pressure_MPa"]
 
 
