@@ -67,6 +67,7 @@ def estimate_boxes(
     needed, end = np.empty((count, 2)), np.empty(count)
     for _ in range(MOST_PROBES):
         have = windows[rows]
+        # Symmetric to the bit: which end of a contact is the farther one is no matter of rounding.
         x[rows], y[rows] = (half[:, None] * np.linspace(-1.0, 1.0, n) for half, n in zip(have.T, PROBE, strict=True))
         fall, room[rows] = gap.of(rows).at(x[rows][:, :, None], y[rows][:, None])
         bare = room[rows].max(axis=(1, 2)) < 0.0
