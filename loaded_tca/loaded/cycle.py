@@ -18,6 +18,7 @@ from loaded_tca.loaded.together import Result, Steps, found_together
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, contact_under_load
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded import ContactPath, MeshPath
+from loaded_tca.unloaded.curvature import relative_curvatures
 
 Progress = Callable[[int, int], None]
 """Called with what is done and what there is to do, in torques times positions."""
@@ -125,6 +126,7 @@ def carried_by_all(
     """
     angles, shape = mesh.pinion_angle, (len(torques), len(mesh))
     tooth_pairs = [tooth_pairs_at(mesh, n) for n in range(len(mesh))]
+    relative_curvatures(pair, [one.contact for all_at in tooth_pairs for one in all_at])  # kept for all torques
 
     def steps(t: int, n: int) -> Steps[SharedLoad]:
         with _told_where(torques[t], angles[n]):

@@ -159,7 +159,7 @@ class LoadedContact:
             largest = max(largest, float(weight[inside] @ gap[inside]) / mean if mean > 0.0 else math.inf)
         return largest
 
-    @property
+    @cached_property
     def extent(self) -> tuple[float, float]:
         """Width across and length along [mm]: of the contact ellipse; at an edge between its ends, within the cells."""
         if not self.at_edge:
@@ -399,6 +399,10 @@ def _crosses_relief_start(pair: GearPair, contact: ContactPoint, separation: Sep
     """Whether the start of a linear relief, of either flank, runs through the contact, whose ends lie within cells."""
     if contact.on_relief_start:
         return True
+    places = (contact.pinion_radius, contact.pinion_axial), (contact.wheel_radius, contact.wheel_axial)
+    flanks = pair.pinion.flank, pair.wheel.flank
+    if not any(flank.relief_starts(*map(np.array, place)) for flank, place in zip(flanks, places, strict=True)):
+        return False  # neither flank has one
     x, y, z = np.moveaxis(separation.points, -1, 0)
     radius, _, axial = pair.to_wheel(separation.points)
     jets = (*pair.pinion.flank.relief_starts(np.hypot(x, y), z), *pair.wheel.flank.relief_starts(radius, axial))

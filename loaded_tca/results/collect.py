@@ -16,7 +16,7 @@ from loaded_tca.reference.hertz import line_contact
 from loaded_tca.results.load_factors import load_factors
 from loaded_tca.results.mesh_cycle import MeshCycle, dataset_of
 from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.results.slice_pressure import largest_slice_pressure
+from loaded_tca.results.slice_pressure import largest_slice_pressures
 from loaded_tca.scene import Scene
 from loaded_tca.unloaded import heelwards
 
@@ -36,11 +36,13 @@ def mesh_cycle(scene: Scene, pair: GearPair, carried: Carried) -> MeshCycle:
     contacts = {(t, n, k): carried.contacts[t][n][order[k]] for t, n, k in np.ndindex(share.shape)}
     numbers: dict[str, Array] = {}
     maps: dict[tuple[int, ...], PressureMap | None] = dict.fromkeys(contacts)
+    rough = {place: loaded for place, loaded in contacts.items() if loaded is not None and _is_rough(loaded)}
+    peaks = dict(zip(rough, largest_slice_pressures(pair, [*rough.values()]), strict=True)) if rough else {}
     for place, loaded in contacts.items():
         if loaded is None:
             continue
         one = maps[place] = _pressure_map(loaded)
-        for name, number in _numbers(pair, loaded, one).items():
+        for name, number in _numbers(pair, loaded, one, peaks.get(place)).items():
             missing = math.nan if isinstance(number, float) else type(number)()
             numbers.setdefault(name, np.full(share.shape, missing))[place] = number
     apart = np.isnan(numbers["contact_deformation"])
@@ -84,12 +86,19 @@ def _pressure_map(loaded: LoadedContact) -> PressureMap:
     return PressureMap(grid.x, grid.y, grid.spacing, solution.pressure, gap, grid.origin, grid.axes)
 
 
-def _numbers(pair: GearPair, loaded: LoadedContact, one: PressureMap) -> dict[str, float | bool | int]:
-    """What a result has of one loaded contact, by the names of its dataset."""
+def _is_rough(loaded: LoadedContact) -> bool:
+    """Whether the largest cell of a contact is no mesh-independent peak."""
+    return loaded.solution.load > 0.0 and (loaded.at_edge or loaded.at_relief_start)
+
+
+def _numbers(
+    pair: GearPair, loaded: LoadedContact, one: PressureMap, of_slices: tuple[float, tuple[float, float]] | None
+) -> dict[str, float | bool | int]:
+    """What a result has of one loaded contact, by the names of its dataset; the peak is ``of_slices`` if given."""
     solution = loaded.solution
     width, length = loaded.extent
-    if solution.load > 0.0 and (loaded.at_edge or loaded.at_relief_start):
-        peak, place = largest_slice_pressure(pair, loaded)
+    if of_slices is not None:
+        peak, place = of_slices
         radius, axial = one.place(*place)
     else:
         peak, (radius, axial) = solution.peak_pressure, loaded.peak_place

@@ -18,6 +18,7 @@ Johnson 1985, Contact Mechanics, eqs. 4.43 to 4.45.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -75,22 +76,37 @@ def loaded_length(force: Array, borders: Array) -> float:
     return min(math.sqrt(12.0 * float(scatter)), float(borders[carrying[-1] + 1] - borders[carrying[0]]))
 
 
-def largest_slice_pressure(pair: GearPair, loaded: LoadedContact) -> tuple[float, tuple[float, float]]:
-    """Largest pressure of the slices of a contact under load, and its place.
+def largest_slice_pressures(
+    pair: GearPair, contacts: Sequence[LoadedContact]
+) -> list[tuple[float, tuple[float, float]]]:
+    """Largest pressure of the slices of each of several contacts under load, and its place.
 
     Parameters
     ----------
     pair : GearPair
-    loaded : LoadedContact
-        Under a load > 0.
+    contacts : sequence of LoadedContact
+        At least one, each under a load > 0.
 
     Returns
     -------
-    pressure : float [MPa]
-        Not above the cap on the pressure.
-    place : (float, float) [mm]
-        Across and along the contact, from the contact point.
+    list of (float, (float, float)) [MPa], [mm]
+        The pressure, not above the cap, and the place across and along the contact, from the contact point.
     """
+    slices = [_slices(pair, loaded) for loaded in contacts]
+    count = max(len(y) for _, y, _ in slices)
+    rows = [np.pad(row, ((0, 0), (0, count - row.shape[1])), "edge") for row in slices]
+    x, y, line_load = np.stack(rows, axis=1)
+    axes = np.array([loaded.separation.axes for loaded in contacts])
+    curvature = NormalGap(pair, [loaded.contact for loaded in contacts], axes).curvature_across(x, y)
+    pressure = np.sqrt(line_load * pair.contact_modulus * np.maximum(curvature, 0.0) / math.pi)
+    top = np.arange(len(slices)), pressure.argmax(axis=1)
+    cap = math.inf if pair.max_pressure is None else pair.max_pressure
+    found = np.minimum(pressure[top], cap), x[top], y[top]
+    return [(highest, (across, along)) for highest, across, along in zip(*map(np.ndarray.tolist, found), strict=True)]
+
+
+def _slices(pair: GearPair, loaded: LoadedContact) -> Array:
+    """Places across and along where the line load may be largest, and the line load there: (3, n) [mm], [N/mm]."""
     separation, pressure = loaded.separation, loaded.solution.pressure
     dy, (carrying, middles) = separation.spacing[1], slice_middles(separation.x, pressure)
     borders = np.append(separation.y, separation.y[-1] + dy) - 0.5 * dy
@@ -101,9 +117,4 @@ def largest_slice_pressure(pair: GearPair, loaded: LoadedContact) -> tuple[float
     length = min(AVERAGED_OVER * pair.module, loaded_length(loaded.slice_force, borders))
     y, line_load = averaged_line_load(loaded.slice_force, borders, length)
     y = np.clip(y, borders[carrying[0]], borders[carrying[-1] + 1])
-    x = np.interp(y, separation.y[carrying], middles)
-    curvature = NormalGap(pair, loaded.contact, separation.axes).curvature_across(x, y)
-    pressures = np.sqrt(line_load * pair.contact_modulus * np.maximum(curvature, 0.0) / math.pi)
-    top = int(pressures.argmax())
-    cap = math.inf if pair.max_pressure is None else pair.max_pressure
-    return min(float(pressures[top]), cap), (float(x[top]), float(y[top]))
+    return np.stack([np.interp(y, separation.y[carrying], middles), y, line_load])

@@ -67,7 +67,8 @@ def estimate_boxes(
     needed, end = np.empty((count, 2)), np.empty(count)
     for _ in range(MOST_PROBES):
         have = windows[rows]
-        x[rows], y[rows] = (np.linspace(-half, half, n, axis=-1) for half, n in zip(have.T, PROBE, strict=True))
+        # Symmetric to the bit: which end of a contact is the farther one is no matter of rounding.
+        x[rows], y[rows] = (half[:, None] * np.linspace(-1.0, 1.0, n) for half, n in zip(have.T, PROBE, strict=True))
         fall, room[rows] = gap.of(rows).at(x[rows][:, :, None], y[rows][:, None])
         bare = room[rows].max(axis=(1, 2)) < 0.0
         there = (room[rows] >= 0.0) | bare[:, None, None]  # what is found of the bare ones is not used
@@ -137,7 +138,7 @@ def _strip_extents(gap: Array, x: Array, y: Array, loads: Array, modulus: float)
         penetration = _water_level(ordered, sums, loads / (stiffness * dy)) - floor
         closed = penetration > 0.0
         lifted = np.where(closed, (2.0 * stiffness / (math.pi * modulus))[:, None] * penetration, -1.0)
-        loaded = (depth <= lifted[:, None]).any(axis=2)
+        loaded = (depth <= lifted[:, None]).max(axis=2)
         width = _farthest(across, loaded) + 0.5 * dx
         length = _farthest(reach, closed) + 0.5 * dy
     deepest = penetration.max(axis=1)

@@ -97,7 +97,7 @@ class NormalGap:
         axes, points = axes.reshape(-1, 3, 3), np.array([one.point for one in contacts])
         angles = np.array([(one.pinion_angle, one.wheel_angle) for one in contacts])
         in_wheel, origins = pair.wheel_axes.T, points[:, None] - pair.wheel_origin  # a product for each contact
-        self._views = (
+        self._views: tuple[tuple[Flank, Array, Array, Array], ...] = (
             (pair.pinion.flank, points, axes, pair.sense * angles[:, 0]),
             (pair.wheel.flank, (origins @ in_wheel)[:, 0], axes @ in_wheel, -pair.sense * angles[:, 1]),
         )
@@ -107,7 +107,7 @@ class NormalGap:
     def of(self, rows: Indices | Mask | slice) -> NormalGap:
         """Some of the contacts, or the same ones more than once."""
         part = copy(self)
-        part._views = tuple((flank, *(values[rows] for values in of_each)) for flank, *of_each in self._views)
+        part._views = tuple((flank, o[rows], axes[rows], turns[rows]) for flank, o, axes, turns in self._views)
         return part
 
     def at(self, x: Array, y: Array) -> tuple[Array, Array]:
@@ -119,8 +119,8 @@ class NormalGap:
         size = max(1, count * TOGETHER // math.prod(shape))
         if size < count:
             parts = [slice(first, first + size) for first in range(0, count, size)]
-            found = zip(*(self.of(part).at(x[part], y[part]) for part in parts), strict=True)
-            return tuple(np.concatenate(values) for values in found)
+            gaps, rooms = zip(*(self.of(part).at(x[part], y[part]) for part in parts), strict=True)
+            return np.concatenate(gaps), np.concatenate(rooms)
         gap, distances = self.with_edges(x, y)
         return gap, reduce(np.minimum, distances)
 
@@ -186,9 +186,10 @@ class NormalGap:
         return missed
 
     def _meet(self, rays: _Rays) -> _Meeting:
-        """Newton steps (n, points), of each contact until the longest of its points is rounding or the next would be."""
+        """Newton steps, of each contact until the longest of its points is rounding or the next one would be."""
         (nx, ny, nz), (x, y, z), longest = rays.normal, rays.start, 0.25 * self.pair.module
-        height, before, settled = 0.0, 0.0, np.zeros(rays.turn.shape, dtype=bool)
+        height, before = np.zeros((2, *rays.turn.shape))
+        settled: Mask = np.zeros(rays.turn.shape, dtype=bool)
         for _ in range(STEPS_TOGETHER):
             square = x * x + y * y
             rho = np.sqrt(square)

@@ -197,24 +197,25 @@ def sample_separations(
         except (InputError, GeometryError) as error:
             found[index] = error
         else:
-            across, along = shape or (cells_for_accuracy(accuracy),) * 2
+            across, along = shape if shape is not None else (cells_for_accuracy(accuracy),) * 2
             alike.setdefault((int(across), int(along)), []).append(index)
     relative_curvatures(pair, [contacts[index] for indices in alike.values() for index in indices])  # kept
     for shape, indices in alike.items():
-        sized = {index: boxes[index] for index in indices}
-        open_ = [index for index, box in sized.items() if box is None]
-        if open_:
-            forces = [loads[index] or LOAD_OF_UNLOADED_BOX for index in open_]
-            on = [contacts[index] for index in open_]
-            fitting = estimate_boxes(pair, on, forces, [guesses[index] for index in open_], shape[1])
-            sized.update(zip(open_, fitting, strict=True))
-        found.update((index, error) for index, error in sized.items() if isinstance(error, GeometryError))
-        rest, size = [index for index in indices if index not in found], max(1, TOGETHER // math.prod(shape))
-        for part in (rest[first : first + size] for first in range(0, len(rest), size)):
-            half_lengths = np.array([sized[index] for index in part])
-            found.update(
-                zip(part, _sampled(pair, [contacts[index] for index in part], half_lengths, shape), strict=True)
-            )
+        half_lengths = {index: box for index in indices if (box := boxes[index]) is not None}
+        to_size = [index for index in indices if index not in half_lengths]
+        if to_size:
+            forces = [loads[index] or LOAD_OF_UNLOADED_BOX for index in to_size]
+            starts = [guesses[index] for index in to_size]
+            fitting = estimate_boxes(pair, [contacts[index] for index in to_size], forces, starts, shape[1])
+            for index, one in zip(to_size, fitting, strict=True):
+                if isinstance(one, GeometryError):
+                    found[index] = one
+                else:
+                    half_lengths[index] = one
+        sized, size = [*half_lengths.items()], max(1, TOGETHER // math.prod(shape))
+        for part in (dict(sized[first : first + size]) for first in range(0, len(sized), size)):
+            gaps = _sampled(pair, [contacts[index] for index in part], np.array([*part.values()]), shape)
+            found.update(zip(part, gaps, strict=True))
     return [found[index] for index in range(len(contacts))]
 
 

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from loaded_tca import AccuracyWarning, analyse, read_scene
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.reference.hertz import point_contact
-from loaded_tca.results.slice_pressure import averaged_line_load, largest_slice_pressure
+from loaded_tca.results.slice_pressure import averaged_line_load, largest_slice_pressures
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import trace_contact
 from tests.samples.gear_pairs import sam_paper
@@ -84,10 +84,19 @@ def test_slice_pressure_is_the_peak_of_a_slender_contact(helix_deg):
     """Where both exist they agree: the ellipse is 80 times as long as wide, and longer than the 0.75 mm averaged."""
     pair = sam_paper(helix_deg)
     contact = loaded(pair)
-    pressure, (x, y) = largest_slice_pressure(pair, contact)
+    ((pressure, (x, y)),) = largest_slice_pressures(pair, [contact])
     assert_allclose(pressure, contact.solution.peak_pressure, rtol=2e-3)  # that of Hertz on 48 cells
     assert abs(x) < contact.separation.spacing[0]
     assert abs(y) < 0.05 * contact.extent[1]
+
+
+def test_slice_pressures_of_several_contacts_are_those_of_each():
+    """To the bit, on grids of any number of slices."""
+    pair = sam_paper(20.0)
+    contacts = [loaded(pair, cells, position=position) for cells, position in (((24, 16), 0.1), ((16, 48), 0.0))]
+    each = [largest_slice_pressures(pair, [contact])[0] for contact in contacts]
+    assert largest_slice_pressures(pair, contacts) == each
+    assert largest_slice_pressures(pair, contacts[::-1]) == each[::-1]
 
 
 def test_slice_pressure_takes_line_load_and_curvature_of_its_own_place():

@@ -15,6 +15,7 @@ from loaded_tca import (
     AccuracyWarning,
     GeometryError,
     InputError,
+    read_scene,
     sample_separation,
     solve_contact,
     trace_contact,
@@ -27,6 +28,7 @@ from loaded_tca.reference import hertz
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.separation.sample import cells_for_accuracy
 from tests.samples.gear_pairs import SAM_PAPER_TORQUE, cylindrical_mesh, gear_pair, pairs, sam_paper
+from tests.samples.results import SCENES
 
 GAP = 1e-11  # mm: rounding of coordinates of 100 mm, thrown together over some operations
 
@@ -226,6 +228,15 @@ def test_box_ends_one_cell_beyond_the_end_of_the_material(name, load):
     assert before >= 0.0 > beyond
     assert np.isinf(separation.gap[:, [0, -1]]).all()
     assert np.isfinite(separation.gap[:, [1, -2]]).any()
+
+
+def test_box_does_not_change_with_the_rounding_of_the_load():
+    """Of a contact that is estimated to be as long to the one side as to the other, but ends with the flank on one."""
+    pair = read_scene(SCENES / "mesh_cycle_helical.toml").pair()
+    contact = trace_contact(pair, [-0.71875 * pair.pitch])[0]
+    loads = 1975.78 * (1.0 + np.finfo(float).eps * np.arange(-12, 13))
+    boxes = [sample_separation(pair, contact, cells=(16, 16), load=load).half_lengths for load in loads.tolist()]
+    assert_allclose(boxes, np.broadcast_to(boxes[0], (len(boxes), 2)), rtol=1e-9)  # far above rounding, below a cell
 
 
 def test_end_of_the_material_of_a_spur_pair_is_that_of_the_face():
