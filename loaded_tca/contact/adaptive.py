@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from numpy.typing import ArrayLike
 
-from loaded_tca.arrays import count_problems, real
+from loaded_tca.arrays import Array, count_problems, numbers, real
 from loaded_tca.contact.levels import prolong
 from loaded_tca.contact.problem import ContactProblem
 from loaded_tca.contact.solution import CoarserGrid, ContactSolution
@@ -23,7 +23,7 @@ class NextGrid(NamedTuple):
 
     cells: Cells
     tolerance: float
-    start: ArrayLike | None = None
+    start: Array | None = None
 
 
 # The residual of the iteration is kept this far below the accuracy, so that the grid alone limits it.
@@ -103,11 +103,12 @@ def solve_to_accuracy(
             f"first_cells: {first_cells!r:.60} are not two whole numbers from 1 on",
         ),
     )
-    refining = refinement(accuracy, tolerance, smooth, first_cells, initial_pressure)
+    start = None if initial_pressure is None else numbers("initial_pressure", initial_pressure)
+    refining = refinement(accuracy, tolerance, smooth, first_cells, start)
     grid = next(refining)
     while True:
-        own, start = problem(grid.cells), grid.start
-        found = solve_problem(own, tolerance=grid.tolerance, initial_pressure=start, threads=threads)
+        own = problem(grid.cells)
+        found = solve_problem(own, tolerance=grid.tolerance, initial_pressure=grid.start, threads=threads)
         try:
             grid = refining.send(found)
         except StopIteration as end:
@@ -122,7 +123,7 @@ def solve_to_accuracy(
 
 
 def refinement(
-    accuracy: float, tolerance: float, smooth: bool, first_cells: Cells, initial_pressure: ArrayLike | None
+    accuracy: float, tolerance: float, smooth: bool, first_cells: Cells, initial_pressure: Array | None
 ) -> Generator[NextGrid, ContactSolution, tuple[ContactSolution, float]]:
     """Ask for the solutions on finer and finer grids; return the last one and its estimated error.
 
