@@ -33,10 +33,10 @@ def depth_displacement(depth: Array, distance: Array, material: Material) -> Arr
     >>> float(depth_displacement(np.array(1e-9), np.array(2.0), steel))  # at the surface: (1 - nu^2)/(pi E s)
     7.030...e-07
     """
-    radius = np.hypot(depth, distance)
+    square = depth * depth + distance * distance
     nu = material.poisson_ratio
     scale = (1.0 + nu) / (2.0 * math.pi * material.youngs_modulus)
-    return scale * (depth**2 / radius**3 + 2.0 * (1.0 - nu) / radius)
+    return np.asarray(scale * (depth * depth / square + 2.0 * (1.0 - nu)) / np.sqrt(square))
 
 
 def line_force(points: Array, material: Material) -> tuple[Array, Array]:

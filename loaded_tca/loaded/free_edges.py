@@ -21,13 +21,15 @@ Hetenyi 1960, J. Appl. Mech. 27, 289-296; Guilbault 2011, J. Tribol. 133, 031402
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple, Self
 
 import numpy as np
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.half_space import depth_displacement
 from loaded_tca.contact.edges import quarter_space_factor, wedge_factor
-from loaded_tca.errors import named
+from loaded_tca.errors import InputError, named
 from loaded_tca.flanks.base import outward_normal
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear_pair import GearPair
@@ -43,6 +45,8 @@ VARIATION, MEAN_PLACE, PLACE_BELOW = 0.4, 0.9, 0.5
 WIDTH = 0.02
 """Distance across the contact that stands for its width, over the module. It is that of a half width of a twentieth
 module, and matters within such a length from the end."""
+PAIRS = 8192
+"""Pairs of slices worked on at once; more do not fit the cache."""
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(3)
 
 
@@ -78,63 +82,123 @@ def edge_compliance(pair: GearPair, separation: Separation) -> Array | None:
     >>> float(added[1, 1].round(8)), float(added[8, 8])  # the first slice of the face, and that in its middle
     (1.4e-06, 0.0)
     """
-    points = separation.origin + separation.y[:, None] * separation.axes[1]
+    found = edge_compliances(pair, [separation])[0]
+    if isinstance(found, InputError):
+        raise found
+    return found
+
+
+def edge_compliances(pair: GearPair, separations: Sequence[Separation]) -> list[Array | InputError | None]:
+    """Return :func:`edge_compliance` of many grids, found together; an error stands in the place of what raises it."""
+    points = np.concatenate([one.origin + one.y[:, None] * one.axes[1] for one in separations])
+    there = np.concatenate([one.cover.any(axis=0) for one in separations])
+    slices, problems = _Slices.of(separations), dict[int, InputError]()
     radius, _, axial = pair.to_wheel(points)
     places = (np.hypot(points[:, 0], points[:, 1]), points[:, 2]), (radius, axial)
-    there, found = separation.cover.any(axis=0), np.zeros((separation.y.size,) * 2)
+    found = np.zeros(sum(one.y.size**2 for one in separations))
     for name, gear, (rho, z) in zip(("pinion", "wheel"), (pair.pinion, pair.wheel), places, strict=True):
-        jets, ends = gear.flank.edges(rho, z), []
-        for edge, reach in REACHES.items():
-            distance = jets[edge].value / np.hypot(jets[edge].rho, jets[edge].z)
-            near = np.flatnonzero(there & (np.abs(distance) < reach * pair.module))
-            if near.size:
-                ends.append((edge, reach, distance, near, near[np.abs(distance[near]).argmin()]))
-        if not ends:
-            continue
-        nearest = [end[-1] for end in ends]
-        normals = outward_normal(gear.flank, rho[nearest], z[nearest]).tolist()
-        for (edge, reach, distance, near, end), (out_rho, _, out_z) in zip(ends, normals, strict=True):
-            in_rho, in_z = (float(np.broadcast_to(by, rho.shape)[end]) for by in (jets[edge].rho, jets[edge].z))
-            cosine = (out_rho * in_rho + out_z * in_z) / math.hypot(in_rho, in_z)
-            with named(f"analysis.free_edges: {gear.flank.frame.edges[edge]} of the {name}"):
-                factor = wedge_factor(math.acos(min(max(cosine, -1.0), 1.0)), gear.material.poisson_ratio)
-            added = _added(distance, near, separation, pair.module, factor, gear.material)
-            faded = _faded(np.maximum(distance[near], 0.0) / (reach * pair.module))
-            found[near[:, None], near] += faded[:, None] * added * faded
-    return found if found.any() else None
+        jets = gear.flank.edges(rho, z)
+        for edge, part in REACHES.items():
+            in_rho, in_z = (np.broadcast_to(by, rho.shape) for by in (jets[edge].rho, jets[edge].z))
+            distance, reach = jets[edge].value / np.hypot(in_rho, in_z), part * pair.module
+            near = (there & (np.abs(distance) < reach)).nonzero()[0]
+            if not near.size:
+                continue
+            numbers, first, count = np.unique(slices.grid[near], return_index=True, return_counts=True)
+            end = near[np.lexsort((np.abs(distance[near]), slices.grid[near]))][first]  # of each grid, the nearest one
+            normal, size = outward_normal(gear.flank, rho[end], z[end]), np.hypot(in_rho[end], in_z[end])
+            cosine = (normal[:, 0] * in_rho[end] + normal[:, 2] * in_z[end]) / size
+            factor = np.zeros(count.size)
+            for run, angle in enumerate(np.arccos(np.clip(cosine, -1.0, 1.0)).tolist()):
+                try:
+                    with named(f"analysis.free_edges: {gear.flank.frame.edges[edge]} of the {name}"):
+                        factor[run] = wedge_factor(angle, gear.material.poisson_ratio)
+                except InputError as error:
+                    problems.setdefault(int(numbers[run]), error)
+            runs = _Runs(near, first, count, factor)
+            _add(found, slices, runs, distance, reach, pair.module, gear.material)
+    ends = np.cumsum([one.y.size**2 for one in separations])[:-1]
+    matrices = [one.reshape(math.isqrt(one.size), -1) for one in np.split(found, ends)]
+    return [problems.get(number, 0.5 * (one + one.T) if one.any() else None) for number, one in enumerate(matrices)]
 
 
-def _faded(part: Array) -> Array:
-    """From 1 at an edge to 0 at the end of its reach, without a kink."""
-    return np.asarray(1.0 - part**2 * (3.0 - 2.0 * part))
+class _Slices(NamedTuple):
+    """Slices (n,) of all grids in one row.
+
+    Attributes
+    ----------
+    grid, column : (n,) int array
+        Number of the grid, and of the slice in it.
+    row : (n,) int array
+        Where its row begins if the matrices of all grids stand in one row.
+    y, length : (n,) array [mm]
+        Place along the contact, and length of the slices there.
+    """
+
+    grid: Indices
+    column: Indices
+    row: Indices
+    y: Array
+    length: Array
+
+    @classmethod
+    def of(cls, separations: Sequence[Separation]) -> Self:
+        size = np.array([one.y.size for one in separations])
+        grid = np.repeat(np.arange(size.size), size)
+        row = np.cumsum(size[grid]) - size[grid]
+        y, length = np.concatenate([one.y for one in separations]), np.array([one.spacing[1] for one in separations])
+        return cls(grid, np.arange(grid.size) - (np.cumsum(size) - size)[grid], row, y, length[grid])
 
 
-def _added(
-    distance: Array, near: Indices, separation: Separation, module: float, factor: float, material: Material
-) -> Array:
-    """What an edge at distances (ny,) adds to the deflection of the slices (n,) near it: (n, n) [mm/N].
+class _Runs(NamedTuple):
+    """Slices ``near`` (n,) an edge, grid after grid: where each grid (k,) begins, how many it has, and its psi."""
+
+    near: Indices
+    first: Indices
+    count: Indices
+    factor: Array
+
+
+def _add(
+    found: Array, slices: _Slices, runs: _Runs, distance: Array, reach: float, module: float, material: Material
+) -> None:
+    """Add to ``found``, matrices in one row [mm/N], what an edge at distances (n,) adds to the slices near it.
 
     The image of a slice is a straight line, so that 1/R has its mean over it in closed form; the mean over the slice
     that it displaces is taken at three places.
     """
-    scale, length = factor / quarter_space_factor(material.poisson_ratio), separation.spacing[1]
-    y, rise, first = separation.y[near], np.zeros(near.size), near[0]
-    if near.size > 1:
-        rise = np.gradient(distance[first : near[-1] + 1], length)[near - first]
-        rise = np.minimum(np.maximum(rise, -1.0), 1.0)
-    inside = np.maximum(distance[near], 0.0)  # a contact on an edge is beside it by rounding, or curves beyond it
-    width = WIDTH * module
-    offset = 0.5 * length * NODES[:, None, None]  # (3, 1, 1) of the places in the slice that is displaced
-    own = np.maximum(distance[near][:, None] + rise[:, None] * offset, 0.0)
-    apart, both = y[:, None] + offset - y, own + inside
-    aside = apart**2 * (1.0 - rise**2)
-    along = apart * (1.0 - rise**2) - both * rise  # of the place, from the middle of the image along it
-    square = both**2 + aside + width**2
-    off = np.sqrt(np.maximum(square - along**2, width**2))
-    inverse = (np.arcsinh((0.5 * length - along) / off) + np.arcsinh((0.5 * length + along) / off)) / length
-    varied = factor + scale * VARIATION * (4.0 * own * inside / square - MEAN_PLACE)
-    below = factor + scale * VARIATION * (PLACE_BELOW - MEAN_PLACE)
-    surface = depth_displacement(np.asarray(0.0), np.asarray(1.0), material) * inverse
-    middle = depth_displacement(np.asarray(DEPTH * module), np.sqrt(square), material)
-    mean = ((0.5 * WEIGHTS) @ (varied * surface - below * middle).reshape(3, -1)).reshape(near.size, near.size)
-    return np.asarray(0.5 * (mean + mean.T))
+    near, run = runs.near, np.repeat(np.arange(runs.count.size), runs.count)
+    begin, end = near[runs.first][run], near[runs.first + runs.count - 1][run]
+    before, after = np.maximum(near - 1, begin), np.minimum(near + 1, end)
+    y, length, distance_there = slices.y[near], slices.length[near], distance[near]
+    rise = (distance[after] - distance[before]) / (np.maximum(after - before, 1) * length)
+    rise = np.minimum(np.maximum(rise, -1.0), 1.0)
+    inside = np.maximum(distance_there, 0.0)  # a contact on an edge is beside it by rounding, or curves beyond it
+    part = inside / reach
+    faded = 1.0 - part**2 * (3.0 - 2.0 * part)  # from 1 at an edge to 0 at the end of its reach, without a kink
+    own = np.maximum(distance_there + 0.5 * length * rise * NODES[:, None], 0.0)  # (3, n), in the slice displaced
+    scale = VARIATION / quarter_space_factor(material.poisson_ratio)
+    surface = depth_displacement(np.asarray(0.0), np.asarray(1.0), material)
+    for at, under in _pairs(runs.first[run], runs.count[run]):
+        half, image, slope = 0.5 * length[at], inside[under], rise[under]
+        apart, both, flat = (y[at] - y[under]) + half * NODES[:, None], own[:, at] + image, 1.0 - slope**2
+        along = apart * flat - both * slope  # of the place, from the middle of the image along it
+        square = both**2 + apart**2 * flat + (WIDTH * module) ** 2
+        off = np.sqrt(np.maximum(square - along**2, (WIDTH * module) ** 2))
+        inverse = (np.arcsinh((half - along) / off) + np.arcsinh((half + along) / off)) / (2.0 * half)
+        varied = 1.0 + scale * (4.0 * own[:, at] * image / square - MEAN_PLACE)
+        below = 1.0 + scale * (PLACE_BELOW - MEAN_PLACE)
+        middle = depth_displacement(np.asarray(DEPTH * module), np.sqrt(square), material)
+        mean = (0.5 * WEIGHTS) @ (varied * surface * inverse - below * middle)
+        place = slices.row[near[at]] + slices.column[near[under]]
+        found[place] += mean * runs.factor[run[at]] * faded[at] * faded[under]  # no pair stands there twice
+
+
+def _pairs(first: Indices, count: Indices) -> Iterator[tuple[Indices, Indices]]:
+    """Every place (n,) of a row with each of the ``count`` ones from the ``first`` of its run on, in parts."""
+    ends = np.cumsum(count)
+    for part in np.split(np.arange(count.size), np.searchsorted(ends, np.arange(PAIRS, ends[-1], PAIRS))):
+        if part.size:
+            number = count[part]
+            begin = np.cumsum(number) - number
+            yield np.repeat(part, number), np.arange(number.sum()) + np.repeat(first[part] - begin, number)

@@ -1,7 +1,7 @@
 """Work on many contacts at once: each asks for gaps and pressures, and what all ask for is found together.
 
 A contact, or the tooth pairs of a position that share a torque, is a generator. It yields what it needs next, a
-:class:`Gap` or a :class:`Task`, is sent the separation or the solution, and returns its result. So it reads as if it
+:class:`Gap`, :class:`Ends` or a :class:`Task`, is sent the answer, and returns its result. So it reads as if it
 were alone, and its numbers do not depend on what stands beside it.
 """
 
@@ -16,6 +16,7 @@ from loaded_tca.contact import ContactProblem
 from loaded_tca.contact.solution import ContactSolution, ContactStatus
 from loaded_tca.contact.solver import not_converged, solve_problems
 from loaded_tca.errors import LoadedTCAError
+from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
 from loaded_tca.separation.sample import sample_separations
@@ -41,7 +42,13 @@ class Task(NamedTuple):
     start: Array | None = None
 
 
-Steps = Generator[Gap | Task, Any, Result]
+class Ends(NamedTuple):
+    """Compliance that free edges add to the slices of a grid; see :func:`loaded_tca.loaded.free_edges`."""
+
+    separation: Separation
+
+
+Steps = Generator[Gap | Ends | Task, Any, Result]
 
 
 def found_together(
@@ -49,7 +56,8 @@ def found_together(
 ) -> list[Result]:
     """Answer what generators ask for, in rounds, until all have returned.
 
-    In a round all gaps that are asked for are sampled, or else all problems on the coarsest grid are solved.
+    In a round all gaps that are asked for are sampled, or else all free edges found, or else all problems on the
+    coarsest grid solved.
 
     Parameters
     ----------
@@ -69,9 +77,9 @@ def found_together(
         The first one that a generator does not deal with.
     """
     results: dict[int, Result] = {}
-    asked: dict[int, Gap | Task] = {}
+    asked: dict[int, Gap | Ends | Task] = {}
 
-    def advance(index: int, step: Callable[[], Gap | Task]) -> None:
+    def advance(index: int, step: Callable[[], Gap | Ends | Task]) -> None:
         try:
             asked[index] = step()
         except StopIteration as end:
@@ -95,13 +103,18 @@ def found_alone(pair: GearPair, steps: Steps[Result]) -> Result:
     return found_together(pair, [steps])[0]
 
 
-def _answers(pair: GearPair, asked: dict[int, Gap | Task]) -> dict[int, Separation | ContactSolution | LoadedTCAError]:
-    """Answer the gaps that are asked for, or else the problems on the coarsest grid; an error is an answer, too."""
+def _answers(
+    pair: GearPair, asked: dict[int, Gap | Ends | Task]
+) -> dict[int, Separation | Array | ContactSolution | LoadedTCAError | None]:
+    """Answer the gaps asked for, or else the free edges, or the problems on the coarsest grid; errors are answers."""
     gaps = {index: request for index, request in asked.items() if isinstance(request, Gap)}
     if gaps:
         contacts, cells, loads, boxes = zip(*gaps.values(), strict=True)
         found = sample_separations(pair, contacts, cells=cells, loads=loads, boxes=boxes)
         return dict(zip(gaps, found, strict=True))
+    ends = {index: request.separation for index, request in asked.items() if isinstance(request, Ends)}
+    if ends:
+        return dict(zip(ends, edge_compliances(pair, [*ends.values()]), strict=True))
     tasks = {index: task for index, task in asked.items() if isinstance(task, Task)}
     coarsest = min(task.problem.gap.size for task in tasks.values())
     chosen = {index: task for index, task in tasks.items() if task.problem.gap.size == coarsest}

@@ -17,9 +17,8 @@ from loaded_tca.contact.levels import under_other_load
 from loaded_tca.contact.patch import values_at_ends
 from loaded_tca.contact.solution import CoarserGrid
 from loaded_tca.errors import InputError
-from loaded_tca.loaded.free_edges import edge_compliance
 from loaded_tca.loaded.pair_coupling import BendingModel, Coupling
-from loaded_tca.loaded.together import Gap, Steps, Task, found_alone
+from loaded_tca.loaded.together import Ends, Gap, Steps, Task, found_alone
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import PointContact, point_contact
 from loaded_tca.separation import Separation
@@ -368,7 +367,7 @@ def _solve_in_box(
             separation = yield Gap(contact, wanted.cells, box=first.half_lengths)
         displaced = None if coupling is None else coupling(separation)
         bent = None if bending is None else bending.within(number, separation)
-        ends = edge_compliance(pair, separation) if grid.free_edges else None
+        ends = (yield Ends(separation)) if grid.free_edges else None
         problem = ContactProblem(
             separation.cut_gap if displaced is None else separation.cut_gap + displaced,
             separation.spacing,
