@@ -137,7 +137,8 @@ class ToothFrame:
         where = sections.coordinate(rho, z)
         low, high = self._flank_ends(where)
         length = (where - coordinate[0]) / (coordinate[-1] - coordinate[0])
-        return np.clip((sections.radius(rho, z) - low) / (high - low), 0.0, 1.0), np.clip(length, 0.0, 1.0)
+        height = (sections.radius(rho, z) - low) / (high - low)
+        return np.minimum(np.maximum(height, 0.0), 1.0), np.minimum(np.maximum(length, 0.0), 1.0)
 
     def places(self, height: Array, length: Array) -> FlankPlaces:
         """Points at parts (m,) of the flank's height and of the face width."""

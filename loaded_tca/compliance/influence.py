@@ -123,17 +123,21 @@ class GearCompliance:
             Between them, along the line.
         """
         places = self._places(line)
-        depth = np.einsum("ma,ab,mb->m", places.across, self.table.depth, places.along)[:, None]
-        width = float(np.ptp(self.frame.nodes.coordinate))
+        depth = (places.across @ self.table.depth * places.along).sum(axis=1)[:, None]
+        width, deviation = self._spread
         from_start = width * (places.length[:, None] + places.length)  # of mirror images beyond the ends of the face
-        aside = (distance, from_start, 2.0 * width - from_start)
+        away = np.array([distance, from_start, 2.0 * width - from_start]) / deviation
         # Line density [1/mm], whose integral over the distances of a line is 1.
-        deviation = SPREAD * float(self.table.depth.mean())
-        spread = sum(np.exp(-0.5 * (away / deviation) ** 2) for away in aside) / (math.sqrt(2.0 * math.pi) * deviation)
+        spread = np.exp(-0.5 * away * away).sum(axis=0) / (math.sqrt(2.0 * math.pi) * deviation)
         half_space = depth_displacement(depth, distance, self.frame.gear.material)
         local = np.interp(places.height, self.table.local_height, self.table.local_value)
         found = local[:, None] * spread - half_space
         return self._displaced(0, places, places) + 0.5 * (found + found.T)
+
+    @cached_property
+    def _spread(self) -> tuple[float, float]:
+        """Face width, and standard deviation of the spread of the local term along it [mm]."""
+        return float(np.ptp(self.frame.nodes.coordinate)), SPREAD * float(self.table.depth.mean())
 
     @cached_property
     def _mutual(self) -> Array:
@@ -161,8 +165,10 @@ class _Places:
     def of(cls, gear: GearCompliance, line: FlankLine) -> _Places:
         """Where a line lies among the places of a gear's table."""
         height, length = gear.frame.parts(line.rho, line.z)
-        parts = zip((height, length), gear.interpolation, strict=True)
-        across, along = (chebvander(2.0 * part - 1.0, len(to) - 1) @ to for part, to in parts)
+        across, along = gear.interpolation
+        angle = np.arccos(2.0 * np.array([height, length]) - 1.0)
+        polynomials = np.cos(angle[..., None] * np.arange(max(len(across), len(along))))  # of Chebyshev
+        across, along = polynomials[0, :, : len(across)] @ across, polynomials[1, :, : len(along)] @ along
         return cls(height, length, across, along)
 
     @cached_property

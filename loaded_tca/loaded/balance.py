@@ -126,20 +126,21 @@ def _newton_step(
     so that a pair parts once its force is little and the rotation less the coupling does not close it.
     """
     load, deformation, exponent = given
-    loaded = forces > 0.0
-    part = np.ix_(loaded, loaded)
-    own = deformation[loaded] * (forces[loaded] / load[loaded]) ** exponent[loaded]
-    tangent = np.diag(exponent[loaded] * own / forces[loaded]) + compliance[part]
-    missing = -own - compliance[part] @ forces[loaded] - levers[1, loaded] * separations[loaded]
-    by_rotation, by_rest = np.linalg.solve(tangent, np.stack([levers[1, loaded], missing], axis=-1)).T
-    rotation = (torque - levers[0, loaded] @ (forces[loaded] + by_rest)) / (levers[0, loaded] @ by_rotation)
+    loaded = forces.nonzero()[0]
+    carried, lever, wheel_lever = forces[loaded], levers[0, loaded], levers[1, loaded]
+    tangent = compliance[loaded][:, loaded]
+    own = deformation[loaded] * (carried / load[loaded]) ** exponent[loaded]
+    missing = -own - tangent @ carried - wheel_lever * separations[loaded]
+    tangent.flat[:: loaded.size + 1] += exponent[loaded] * own / carried
+    by_rotation, by_rest = np.linalg.solve(tangent, np.array([wheel_lever, missing]).T).T
+    rotation = (torque - lever @ (carried + by_rest)) / (lever @ by_rotation)
     target = forces.copy()
-    wanted = forces[loaded] + rotation * by_rotation + by_rest
-    target[loaded] = np.clip(wanted, LARGEST_FALL * forces[loaded], torque / levers[0, loaded])
-    deflection = levers[1] * (rotation - separations) - compliance @ target + np.diag(compliance) * target
+    wanted = carried + rotation * by_rotation + by_rest
+    target[loaded] = np.minimum(np.maximum(wanted, LARGEST_FALL * carried), torque / lever)
+    deflection = levers[1] * (rotation - separations) - compliance @ target + compliance.diagonal() * target
     target[(target < LITTLE * target.max()) & (deflection <= 0.0)] = 0.0
-    comes = ~loaded & (deflection > 0.0)
-    target[comes] = np.minimum(load * (np.maximum(deflection, 0.0) / deformation) ** (1.0 / exponent), target.max())[
-        comes
-    ]
+    comes = (forces == 0.0) & (deflection > 0.0)
+    if comes.any():
+        given_force = load[comes] * (deflection[comes] / deformation[comes]) ** (1.0 / exponent[comes])
+        target[comes] = np.minimum(given_force, target.max())
     return target

@@ -30,7 +30,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
-from itertools import combinations, product
+from itertools import combinations, combinations_with_replacement
 
 import numpy as np
 from scipy.optimize import brentq
@@ -316,10 +316,10 @@ class _Balance:
             lines.append((number, separation))
             shares.append(force / force.sum())
         found = np.empty((len(lines),) * 2)
-        for (i, one), (j, other) in product(enumerate(lines), repeat=2):
+        for (i, one), (j, other) in combinations_with_replacement(enumerate(lines), 2):
             matrix = bending.within(*one) if i == j else bending.between(one, other)
-            found[i, j] = shares[i] @ matrix @ shares[j]
-        return 0.5 * (found + found.T)
+            found[i, j] = found[j, i] = shares[i] @ matrix @ shares[j]
+        return found
 
     def _solve(self, index: int, forces: Array) -> Steps[None]:
         """Solve a pair under its force, on the grid it has if that still fits, and correct its law."""
@@ -390,12 +390,18 @@ class _Balance:
         """
         if self.between is None:
             return None
-        own, found = (self.tooth_pairs[index].pair, separation), np.zeros(len(separation.y))
+        found = np.zeros(len(separation.y))
         for n, other in self._loaded():
             if n != index and forces[n] > 0.0:
-                matrix = self.between(own, (self.tooth_pairs[n].pair, other.separation))
-                found += matrix @ (forces[n] * other.slice_shares)
+                found += self._between((index, separation), (n, other.separation)) @ (forces[n] * other.slice_shares)
         return found
+
+    def _between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
+        """Deflection (m, n) [mm/N] of the slices of a pair's grid under those of another; one way is the other's."""
+        assert self.between is not None
+        if at[0] > under[0]:
+            return self._between(under, at).T
+        return self.between(*((self.tooth_pairs[index].pair, separation) for index, separation in (at, under)))
 
     def _corrected(self) -> Array:
         """Compliance (k, k) [mm/N], that of the pairs solved so far the mean over the forces on their slices."""
@@ -405,8 +411,7 @@ class _Balance:
         for index, loaded in self._loaded():
             compliance[index, index] = loaded.own_tooth_deflection / loaded.solution.load
         for (index, one), (other, two) in combinations(self._loaded(), 2):
-            numbers = self.tooth_pairs[index].pair, self.tooth_pairs[other].pair
-            matrix = self.between((numbers[0], one.separation), (numbers[1], two.separation))
+            matrix = self._between((index, one.separation), (other, two.separation))
             compliance[index, other] = compliance[other, index] = one.slice_shares @ matrix @ two.slice_shares
         return compliance
 
