@@ -6,6 +6,7 @@ A solid gear (bore diameter 0) is that ring and its core, held where its journal
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.optimize.elementwise import bracket_root, find_root
@@ -128,8 +129,13 @@ class ToothFrame:
 
     def _flank_ends(self, where: Array) -> list[Array]:
         """Radii (m,) of the images of root and tip of the flank, at coordinates (m,) of sections."""
+        return [np.interp(where, self.nodes.coordinate, radii) for radii in self._end_radii]
+
+    @cached_property
+    def _end_radii(self) -> tuple[Array, Array]:
+        """Radii (k,) of the images of root and tip of the flank, at the sections of nodes."""
         radii = self.nodes.radius[self._column(0.5 + 0.5 * self.side), self._flank_rows()]
-        return [np.interp(where, self.nodes.coordinate, radii[end]) for end in (0, -1)]
+        return radii[0], radii[-1]
 
     def parts(self, rho: Array, z: Array) -> tuple[Array, Array]:
         """Parts (m,) of the flank's height and of the face width, of points of the flank or just beyond it."""

@@ -128,10 +128,12 @@ def body_nodes(tooth: ToothSurface, sections: Sections, bore_radius: Array, layo
     bore = find_root(beyond_bore, (0.0 * lowest, lowest), args=circles).x
     sides = _side(tooth, images, 1), _side(tooth, images, -1)
     radius, angle = np.full((2, *layout.shape, len(coordinate)), np.nan)
+    unlike = {sector.density: sector for sector in layout.sectors}
+    blocks = {density: _sector(sector, layout, sides, bore) for density, sector in unlike.items()}
     for sector in layout.sectors:
         turn = 2.0 * math.pi / tooth.teeth * sector.number
         columns = slice(sector.first, sector.first + 2 * sector.columns)
-        block = _sector(sector, layout, sides, bore)
+        block = blocks[sector.density]
         radius[columns], angle[columns] = block[0][:-1], block[1][:-1] + turn
     return BodyNodes(layout, sections, coordinate, radius, angle, outline)
 

@@ -82,7 +82,7 @@ def strip_forces(pair: GearPair, one: PressureMap, borders: Array) -> tuple[Arra
     dx, dy = one.spacing
     across, along = np.nonzero(one.pressure)
     middles = one.origin + one.x[across, None] * one.axes[0] + one.y[along, None] * one.axes[1]
-    ends = [_lengthwise(pair, middles + side * dy * one.axes[1])[0] for side in (-0.5, 0.5)]
+    ends = [_lengthwise(pair, middles + side * dy * one.axes[1]) for side in (-0.5, 0.5)]
     slope = np.abs(ends[1] - ends[0]).mean() / dy if across.size else 1.0
     width = float(borders[1] - borders[0])
     low, high = np.sort(np.clip(ends, borders[0], borders[-1]), axis=0)
@@ -93,8 +93,10 @@ def strip_forces(pair: GearPair, one: PressureMap, borders: Array) -> tuple[Arra
 
 def _common_face(pair: GearPair, path: ContactPath) -> tuple[float, float]:
     """Ends of the part of the face that both gears cover, along the pinion's lengthwise coordinate [mm]."""
-    own, other = _lengthwise(pair, path.point[path.in_contact])
-    shift = float(np.mean(own - other))
+    points = path.point[path.in_contact]
+    radius, _, axial = pair.to_wheel(points)
+    other = pair.wheel.flank.lengthwise_coordinate(radius, axial).value
+    shift = float(np.mean(_lengthwise(pair, points) - other))
     spans = []
     for flank in (pair.pinion.flank, pair.wheel.flank):
         place = flank.lengthwise_coordinate(*flank.grid(2, 2)).value
@@ -103,8 +105,7 @@ def _common_face(pair: GearPair, path: ContactPath) -> tuple[float, float]:
     return max(first, low + shift), min(last, high + shift)
 
 
-def _lengthwise(pair: GearPair, points: Array) -> tuple[Array, Array]:
-    """Lengthwise coordinates of points (..., 3) on pinion and wheel [mm]."""
-    radius, _, axial = pair.to_wheel(points)
-    own = pair.pinion.flank.lengthwise_coordinate(np.hypot(points[..., 0], points[..., 1]), points[..., 2]).value
-    return own, pair.wheel.flank.lengthwise_coordinate(radius, axial).value
+def _lengthwise(pair: GearPair, points: Array) -> Array:
+    """Lengthwise coordinate of points (..., 3) on the pinion [mm]."""
+    radius = np.hypot(points[..., 0], points[..., 1])
+    return np.asarray(pair.pinion.flank.lengthwise_coordinate(radius, points[..., 2]).value)
