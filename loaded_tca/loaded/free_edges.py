@@ -106,8 +106,8 @@ def edge_compliances(pair: GearPair, separations: Sequence[Separation]) -> list[
                 continue
             numbers, first, count = np.unique(slices.grid[near], return_index=True, return_counts=True)
             end = near[np.lexsort((np.abs(distance[near]), slices.grid[near]))][first]  # of each grid, the nearest one
-            normal, size = outward_normal(gear.flank, rho[end], z[end]), np.hypot(in_rho[end], in_z[end])
-            cosine = (normal[:, 0] * in_rho[end] + normal[:, 2] * in_z[end]) / size
+            normal, slope = outward_normal(gear.flank, rho[end], z[end]), np.hypot(in_rho[end], in_z[end])
+            cosine = (normal[:, 0] * in_rho[end] + normal[:, 2] * in_z[end]) / slope
             factor = np.zeros(count.size)
             for run, angle in enumerate(np.arccos(np.clip(cosine, -1.0, 1.0)).tolist()):
                 try:
@@ -155,7 +155,7 @@ class _Runs(NamedTuple):
 
     near: Indices
     first: Indices
-    count: Indices
+    size: Indices
     factor: Array
 
 
@@ -167,8 +167,8 @@ def _add(
     The image of a slice is a straight line, so that 1/R has its mean over it in closed form; the mean over the slice
     that it displaces is taken at three places.
     """
-    near, run = runs.near, np.repeat(np.arange(runs.count.size), runs.count)
-    begin, end = near[runs.first][run], near[runs.first + runs.count - 1][run]
+    near, run = runs.near, np.repeat(np.arange(runs.size.size), runs.size)
+    begin, end = near[runs.first][run], near[runs.first + runs.size - 1][run]
     before, after = np.maximum(near - 1, begin), np.minimum(near + 1, end)
     y, length, distance_there = slices.y[near], slices.length[near], distance[near]
     rise = (distance[after] - distance[before]) / (np.maximum(after - before, 1) * length)
@@ -179,7 +179,7 @@ def _add(
     own = np.maximum(distance_there + 0.5 * length * rise * NODES[:, None], 0.0)  # (3, n), in the slice displaced
     scale = VARIATION / quarter_space_factor(material.poisson_ratio)
     surface = depth_displacement(np.asarray(0.0), np.asarray(1.0), material)
-    for at, under in _pairs(runs.first[run], runs.count[run]):
+    for at, under in _pairs(runs.first[run], runs.size[run]):
         half, image, slope = 0.5 * length[at], inside[under], rise[under]
         apart, both, flat = (y[at] - y[under]) + half * NODES[:, None], own[:, at] + image, 1.0 - slope**2
         along = apart * flat - both * slope  # of the place, from the middle of the image along it

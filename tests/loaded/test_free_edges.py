@@ -13,7 +13,7 @@ from loaded_tca.contact import quarter_space_factor, solve_contact, wedge_factor
 from loaded_tca.errors import InputError
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, bevel_mesh
-from loaded_tca.loaded.free_edges import DEPTH, REACHES, edge_compliance
+from loaded_tca.loaded.free_edges import DEPTH, REACHES, edge_compliance, edge_compliances
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.material import Material
 from loaded_tca.pairs.bevel import bevel_pair
@@ -171,6 +171,34 @@ def test_end_that_is_too_sharp_is_named_with_the_key_that_makes_it_an_edge(monke
     told = r"^analysis.free_edges: end of the face at z [<>] 0 of the (pinion|wheel): angle: 7\d\.\d+ degrees is not"
     with pytest.raises(InputError, match=told):
         added_of(gear_pair(helix_deg=15.0))
+
+
+def test_grids_found_together_are_as_each_alone(monkeypatch):
+    """Of other sizes and places, some with no end in reach, and worked on in parts."""
+    pair = gear_pair(helix_deg=15.0)
+    grids = [
+        *(
+            grid_of(pair, pitches, cells=cells)
+            for pitches, cells in ((-0.7, (16, 9)), (0.0, (16, 34)), (0.8, (16, 16)))
+        ),
+        grid_of(pair, box=(0.3, 1.0)),
+    ]
+    alone = [edge_compliance(pair, grid) for grid in grids]
+    monkeypatch.setattr("loaded_tca.loaded.free_edges.PAIRS", 50)
+    together = edge_compliances(pair, grids)
+    assert [one is None for one in together] == [False, False, False, True]
+    for found, expected in zip(together[:3], alone[:3], strict=True):
+        assert_allclose(found, expected, rtol=1e-12, atol=1e-18)
+
+
+def test_end_that_is_too_sharp_is_told_of_its_own_grid_alone(monkeypatch):
+    pair = gear_pair(helix_deg=15.0)
+    sharp, inside = grid_of(pair), grid_of(pair, box=(0.3, 1.0))
+    monkeypatch.setattr("loaded_tca.contact.edges.SHARPEST", math.radians(80.0))
+    before, told, after = edge_compliances(pair, [inside, sharp, inside])
+    assert before is None
+    assert after is None
+    assert isinstance(told, InputError)
 
 
 @pytest.mark.parametrize(("pitches", "member"), [(0.82, 0), (-0.86, 1)])
