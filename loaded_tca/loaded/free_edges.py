@@ -29,7 +29,7 @@ import numpy as np
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.half_space import depth_displacement
 from loaded_tca.contact.edges import quarter_space_factor, wedge_factor
-from loaded_tca.errors import InputError, named
+from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import outward_normal
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear_pair import GearPair
@@ -111,10 +111,11 @@ def edge_compliances(pair: GearPair, separations: Sequence[Separation]) -> list[
             factor = np.zeros(count.size)
             for run, angle in enumerate(np.arccos(np.clip(cosine, -1.0, 1.0)).tolist()):
                 try:
-                    with named(f"analysis.free_edges: {gear.flank.frame.edges[edge]} of the {name}"):
-                        factor[run] = wedge_factor(angle, gear.material.poisson_ratio)
+                    factor[run] = wedge_factor(angle, gear.material.poisson_ratio)
                 except InputError as error:
-                    problems.setdefault(int(numbers[run]), error)
+                    end_name = f"analysis.free_edges: {gear.flank.frame.edges[edge]} of the {name}"
+                    told = InputError(f"{end_name}: {problem}" for problem in error.problems)
+                    problems.setdefault(int(numbers[run]), told)
             runs = _Runs(near, first, count, factor)
             _add(found, slices, runs, distance, reach, pair.module, gear.material)
     ends = np.cumsum([one.y.size**2 for one in separations])[:-1]
