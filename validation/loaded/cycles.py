@@ -42,7 +42,9 @@ PARTS = {
     "teeth and edges": ("loaded_tca/compliance/", "loaded/free_edges.py"),
     "balance": ("loaded/balance.py", "loaded/load_sharing.py"),
 }
-"""Where a function stands, the first that fits; NumPy's count where they are called from."""
+"""Where a function stands, the first that fits; those of libraries count where they are called from."""
+REST, DEEPEST = "the rest", 4
+Function = tuple[str, int, str]
 
 
 def measure(name: str, setting: str, profiled: bool) -> dict[str, Any]:
@@ -65,35 +67,30 @@ def measure(name: str, setting: str, profiled: bool) -> dict[str, Any]:
 
 
 def _shares(profile: cProfile.Profile) -> dict[str, float]:
-    """Parts of the time by where the functions stand; built-in and library functions by their callers."""
+    """Parts of the time by where the functions stand."""
     stats: Any = pstats.Stats(profile)
-    own = dict.fromkeys((*PARTS, "the rest"), 0.0)
-    known: dict[Any, dict[str, float]] = {}
-
-    def parts_of(function: Any, depth: int = 0) -> dict[str, float]:
-        if function in known:
-            return known[function]
-        file = function[0]
-        for part, places in PARTS.items():
-            if any(place in file for place in places):
-                return {part: 1.0}
-        callers = stats.stats[function][4] if function in stats.stats else {}
-        total = sum(entry[2] for entry in callers.values())
-        if "loaded_tca" in file or depth > 8 or not total:
-            return {"the rest": 1.0}
-        found: dict[str, float] = {}
-        for caller, entry in callers.items():
-            for part, share in parts_of(caller, depth + 1).items():
-                found[part] = found.get(part, 0.0) + share * entry[2] / total
-        if depth == 0:
-            known[function] = found
-        return found
-
+    own = dict.fromkeys((*PARTS, REST), 0.0)
     for function, (_, _, seconds, _, _) in stats.stats.items():
-        for part, share in parts_of(function).items():
+        for part, share in _parts_of(function, stats.stats).items():
             own[part] += share * seconds
     total = sum(own.values())
     return {part: seconds / total for part, seconds in own.items()}
+
+
+def _parts_of(function: Function, stats: dict[Function, Any], depth: int = 0) -> dict[str, float]:
+    """Parts to which a function belongs, with their shares: those of its callers if it is none of the package."""
+    for part, places in PARTS.items():
+        if any(place in function[0] for place in places):
+            return {part: 1.0}
+    callers = stats[function][4] if function in stats else {}
+    total = sum(entry[2] for entry in callers.values())
+    if "loaded_tca" in function[0] or depth == DEEPEST or not total:
+        return {REST: 1.0}
+    found = dict.fromkeys((*PARTS, REST), 0.0)
+    for caller, entry in callers.items():
+        for part, share in _parts_of(caller, stats, depth + 1).items():
+            found[part] += share * entry[2] / total
+    return found
 
 
 def _run(tree: Path, name: str, setting: str, profiled: bool = False) -> dict[str, Any]:
@@ -122,7 +119,7 @@ def page(trees: dict[str, Path]) -> str:
             rows.append(f"| {name} | {setting} | " + " | ".join(cells) + " |")
             print(rows[-1], flush=True)
     heads = [f"{word} [s]" for word in trees] + ["ratio"] * (len(trees) == 2)
-    columns = ["scene", "setting", *heads, "peak memory [MiB]", *PARTS, "the rest"]
+    columns = ["scene", "setting", *heads, "peak memory [MiB]", *PARTS, REST]
     lines = [
         "# Time of a mesh cycle",
         "",
