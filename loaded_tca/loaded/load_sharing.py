@@ -30,7 +30,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
-from itertools import combinations, product
+from itertools import combinations
 
 import numpy as np
 from scipy.optimize import brentq
@@ -315,11 +315,11 @@ class _Balance:
             force = expected_pressure(separation).sum(axis=0)
             lines.append((number, separation))
             shares.append(force / force.sum())
-        found = np.empty((len(lines),) * 2)
-        for (i, one), (j, other) in product(enumerate(lines), repeat=2):
-            matrix = bending.within(*one) if i == j else bending.between(one, other)
-            found[i, j] = shares[i] @ matrix @ shares[j]
-        return 0.5 * (found + found.T)
+        found = np.diag([own @ bending.within(*line) @ own for line, own in zip(lines, shares, strict=True)])
+        for (i, one), (j, other) in combinations(enumerate(lines), 2):
+            if abs(one[0] - other[0]) == 1:  # farther ones may not be loaded at all, nor in the model of the teeth
+                found[i, j] = found[j, i] = shares[i] @ bending.between(one, other) @ shares[j]
+        return found
 
     def _solve(self, index: int, forces: Array) -> Steps[None]:
         """Solve a pair under its force, on the grid it has if that still fits, and correct its law."""
