@@ -7,8 +7,10 @@ were alone, and its numbers do not depend on what stands beside it.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Generator, Sequence
 from functools import partial
+from itertools import islice
 from typing import Any, NamedTuple, TypeVar
 
 from loaded_tca.arrays import Array
@@ -22,6 +24,8 @@ from loaded_tca.separation import Separation
 from loaded_tca.separation.sample import sample_separations
 from loaded_tca.unloaded import ContactPoint
 
+UNDER_WAY = 64
+"""Generators under way at the same time; stacks of contacts gain little beyond 32."""
 Result = TypeVar("Result")
 
 
@@ -56,8 +60,10 @@ def found_together(
 ) -> list[Result]:
     """Answer what generators ask for, in rounds, until all have returned.
 
-    In a round all gaps that are asked for are sampled, or else all free edges found, or else all problems on the
-    coarsest grid solved.
+    In a round all gaps that are asked for are sampled, or else all free edges found, or else the problems on the grid
+    that most ask for are solved.
+    Whenever one returns, another one begins: so many are under way that stacks are full, and no more, so that memory
+    stays bounded and progress steady.
 
     Parameters
     ----------
@@ -87,10 +93,11 @@ def found_together(
             if told is not None:
                 told(len(results))
 
-    for index, steps in enumerate(all_steps):
-        advance(index, partial(next, steps))
-    while asked:
-        for index, answer in _answers(pair, asked).items():
+    waiting = iter(enumerate(all_steps))
+    while len(results) < len(all_steps):
+        for index, steps in islice(waiting, UNDER_WAY - len(asked)):
+            advance(index, partial(next, steps))
+        for index, answer in _answers(pair, asked).items() if asked else ():
             del asked[index]
             steps = all_steps[index]
             failed = isinstance(answer, LoadedTCAError)
@@ -106,7 +113,7 @@ def found_alone(pair: GearPair, steps: Steps[Result]) -> Result:
 def _answers(
     pair: GearPair, asked: dict[int, Gap | Ends | Task]
 ) -> dict[int, Separation | Array | ContactSolution | LoadedTCAError | None]:
-    """Answer the gaps asked for, or else the free edges, or the problems on the coarsest grid; errors are answers."""
+    """Answer the gaps that are asked for, or else the free edges, or the problems on one grid; errors are answers."""
     gaps = {index: request for index, request in asked.items() if isinstance(request, Gap)}
     if gaps:
         contacts, cells, loads, boxes = zip(*gaps.values(), strict=True)
@@ -116,8 +123,8 @@ def _answers(
     if ends:
         return dict(zip(ends, edge_compliances(pair, [*ends.values()]), strict=True))
     tasks = {index: task for index, task in asked.items() if isinstance(task, Task)}
-    coarsest = min(task.problem.gap.size for task in tasks.values())
-    chosen = {index: task for index, task in tasks.items() if task.problem.gap.size == coarsest}
+    (cells, _), *_ = Counter(task.problem.cells for task in tasks.values()).most_common(1)
+    chosen = {index: task for index, task in tasks.items() if task.problem.cells == cells}
     solutions = solve_problems(*zip(*chosen.values(), strict=True), on_failure="return")
     return {
         index: not_converged(solution, task.tolerance) if solution.status is ContactStatus.NOT_CONVERGED else solution

@@ -3,14 +3,12 @@
 Nine positions of a pitch of each mesh cycle in ``examples/scenes``, one torque, teeth that do not bend. Errors are
 those against the finest cells: the largest of any position relative in the peak pressure and absolute in the load
 shares, and relative in the peak to peak of the loaded transmission error. Times are medians of whole runs, unloaded
-contact included. A second table has the time of whole cycles: 32 positions, three torques, accuracy 1e-2, with and
-without teeth that bend, and of making the models of the teeth.
+contact included. What whole cycles take is in ``validation.loaded.cycles``.
 
 Run from the root of the repository: ``python -m validation.loaded.speed``; prints the table that
 ``validation.contact.speed_against_error`` writes.
 """
 
-import os
 import statistics
 import time
 import warnings
@@ -21,8 +19,6 @@ from typing import Any
 import numpy as np
 
 from loaded_tca import AccuracyWarning, analyse, read_scene
-from loaded_tca.compliance import tooth_compliance
-from loaded_tca.compliance.flexibility import FOLDER, forget
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
 
@@ -30,10 +26,7 @@ SCENES = Path(__file__).parents[2] / "examples" / "scenes"
 NAMES = ("mesh_cycle_spur", "mesh_cycle_helical", "mesh_cycle_bevel")
 POSITIONS, RUNS = 9, 3
 ACCURACIES, CELLS, FINEST = (1e-1, 1e-2, 1e-3, 1e-4), (16, 32, 64, 128), 256
-CYCLE_POSITIONS, CYCLE_LOADS, CYCLE_ACCURACY = 32, (0.3, 1.0, 2.0), 1e-2
 FLANKS_ALONE: dict[str, Any] = {"analysis.compliance": "contact", "analysis.free_edges": False}
-NEIGHBOURS = 2
-"""Pitches between loaded pairs that the timed models of teeth know."""
 
 
 @dataclass(frozen=True)
@@ -62,42 +55,6 @@ def table(found: list[WholeLine]) -> str:
         for m in found
     ]
     return "\n".join(lines)
-
-
-def cycles(names: tuple[str, ...] = NAMES, runs: int = RUNS) -> str:
-    """Markdown of the time of whole cycles [s], a line for each scene."""
-    lines = [
-        "| scene | contact, first run | again | both tooth models | contact and teeth, models known |",
-        "|---|---|---|---|---|",
-    ]
-    for name in names:
-        scene = read_scene(SCENES / f"{name}.toml")
-        load = 1e-3 * float(np.median(scene.torques))
-        torques = [factor * load for factor in CYCLE_LOADS]
-        changes = {"analysis.positions": CYCLE_POSITIONS, "analysis.torques_Nm": torques}
-        scene = scene.with_changes({**FLANKS_ALONE, **changes})
-        first = _timed(scene, "accuracy", CYCLE_ACCURACY, 1)[1]
-        again = _timed(scene, "accuracy", CYCLE_ACCURACY, runs)[1]
-        bending = scene.with_changes({"analysis.compliance": "contact+tooth"})
-        models = _seconds_of_models(bending)
-        known = _timed(bending, "accuracy", CYCLE_ACCURACY, runs)[1]
-        lines.append(f"| {name} | {first:.2f} | {again:.2f} | {models:.2f} | {known:.2f} |")
-    return "\n".join(lines)
-
-
-def _seconds_of_models(scene: Scene) -> float:
-    """Time of making the models of both gears anew."""
-    pair = scene.pair()
-    kept = os.environ.get(FOLDER)
-    os.environ[FOLDER] = "off"
-    forget()
-    begin = time.perf_counter()
-    tooth_compliance(pair, neighbours=NEIGHBOURS)
-    seconds = time.perf_counter() - begin
-    os.environ.pop(FOLDER)
-    if kept is not None:
-        os.environ[FOLDER] = kept
-    return seconds
 
 
 def heading() -> str:
@@ -148,5 +105,3 @@ def _errors(cycle: MeshCycle, finest: MeshCycle) -> tuple[float, float, float]:
 if __name__ == "__main__":
     print(heading())
     print(table(measure()))
-    print()
-    print(cycles())
