@@ -267,6 +267,18 @@ class Grids:
         cuts = None if self.cover is None else CutCells.of(self.cover, self.aspects, window, dtype)
         return Operator(len(self), convolve, slices, cuts)
 
+    def guess(self) -> Array:
+        """Return pressures to start from without others: where the gap is below a level, as the root of what it lacks.
+
+        The level is that of a sphere under this load whose contact has as many cells: the approach is twice as much.
+        Nothing where the approach is prescribed.
+        """
+        levels = np.sort(self.gap.reshape(len(self), 1, -1), axis=2)
+        radius = np.sqrt(np.arange(1, levels.shape[2] + 1) * (each(self.aspects) / np.pi))
+        closed = levels * radius < 0.375 * self.total * each(self.aspects)
+        level = np.where(closed, levels, 0.0).max(axis=2, keepdims=True)
+        return self.fitted(np.sqrt(np.maximum(level - self.gap, 0.0)) * self.loaded)
+
     def fitted(self, pressure: Array) -> Array:
         """Return pressures within the bounds and with the right sums, zero where no contact is possible."""
         pressure = np.minimum(pressure, self.limit)
