@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.contact.convolution import Preconditioner
-from loaded_tca.contact.grid import ALL, CELLS, Grids, Rows, ratio, total_of
+from loaded_tca.contact.grid import ALL, CELLS, Grids, Rows, total_of
 
 Single = NDArray[np.float32]
 
@@ -22,6 +22,8 @@ WHOLE_STEP = 0.5
 DUST = 1e-8
 # BLAS starts threads for products of vectors from this length.
 THREADED_BLAS = 10_000
+# In place of the last product of residual and preconditioned residual: nothing is left of the last direction.
+RESTART = np.float32(np.inf)
 TINY = float(np.finfo(np.float64).tiny)
 # Problems that are solved leave the stack once no more than this part of it is left: copying costs less than they do.
 PART_LEFT = 0.75
@@ -86,12 +88,13 @@ def judge(grids: Grids, pressure: Array, excess: Array, room: Array | None = Non
     room *= excess
     np.subtract(room, excess, out=room)  # but for its sign the excess where the pressure is zero, or at the cap
     outside = room if capped is None else np.where(capped, excess, room)
-    worst = np.maximum.reduce(outside, axis=CELLS, keepdims=True)
+    worst = np.maximum.reduce(outside, axis=CELLS, keepdims=True, initial=0.0)
     room += excess
     np.abs(room, out=room)
     weighted = dots(pressure, room) / np.maximum(total_of(pressure), TINY)
-    worst = np.maximum(np.maximum(worst, weighted), 0.0)
-    return Judgement(approach, ratio(worst, approach, approach > 0.0, otherwise=np.inf), free)
+    residual = np.full(worst.shape, np.inf)
+    np.divide(np.maximum(worst, weighted), approach, out=residual, where=approach > 0.0)
+    return Judgement(approach, residual, free)
 
 
 class Descent:
@@ -150,9 +153,7 @@ class Descent:
         self._now, self._next, self._excess = pressure, np.empty(pressure.shape), np.empty(pressure.shape)
         self._displacement = self._displaced(exact) if displacement is None else displacement
         self._scale = np.ones((len(grids), 1, 1))
-        self._last_descent = np.full(
-            (len(grids), 1, 1), np.inf, dtype=np.float32
-        )  # infinite: the next direction is a restart
+        self._last_descent = np.full((len(grids), 1, 1), RESTART)
         self._direction, self._last = np.zeros((2, *pressure.shape), dtype=np.float32)
         self._residual, self._preconditioned, self._image, self._free = np.empty((4, *pressure.shape), dtype=np.float32)
 
@@ -183,7 +184,7 @@ class Descent:
             self._iterate(state, running)
             if (step + 1) % REFRESH == 0:
                 self._displacement = self._displaced(exact=True)
-                self._last_descent[:] = np.inf
+                self._last_descent[:] = RESTART
 
     def _keep(self, left: Indices) -> None:
         """Go on with some of the problems."""
@@ -217,13 +218,12 @@ class Descent:
         np.multiply(self._excess, 1.0 / scale, out=self._residual, casting="same_kind")
         cells = np.maximum(total_of(self._free), 1.0)
         self._level(self._residual, cells)
-        slope = self._conjugate(cells)
+        slope, descent = self._conjugate(cells)
         self._used += 1
         image = self._fast(self._direction, self._image)
         curvature = dots(self._direction, image)
-        bent = curvature > 0.0
-        self._last_descent[~bent] = np.inf
-        bent &= running[:, None, None]
+        bent = (curvature > 0.0) & running[:, None, None]
+        self._last_descent = np.where(bent & (descent > 0.0), descent, RESTART)
         length = (scale * slope / np.where(bent, curvature, np.inf)).astype(np.float32)
         # The array of the preconditioned residual is free to take the step.
         step, trial = np.multiply(self._direction, length, out=self._preconditioned), self._next
@@ -231,29 +231,29 @@ class Descent:
         outside = np.minimum.reduce(trial, axis=CELLS, keepdims=True) < 0.0
         if self._grids.any_capped:
             outside |= (trial > self._grids.limit).any(axis=CELLS, keepdims=True)
-        (rows,) = (outside & bent)[:, 0, 0].nonzero()
+        rows = (outside & bent)[:, 0, 0].nonzero()[0]
         if rows.size:
-            leaving = self._chosen(rows)
-            target = self._grids.clip(trial[leaving], state.free[leaving], leaving)
+            chosen = self._chosen(rows)
+            target = self._grids.clip(trial[chosen], state.free[chosen], chosen)
+            trial[chosen], length[chosen] = self._now[chosen], 0.0
         if rows.size < len(trial):
-            trial[rows], length[rows] = self._now[rows], 0.0
             image *= length
             self._displacement -= image
-            self._now, self._next = trial, self._now
+        self._now, self._next = trial, self._now
         if rows.size:
-            rows = self._move(rows, target)
-            self._last_descent[rows] = np.inf
-        if rows.size:
-            rows = rows[~self._drop_dust(rows)]
-        if rows.size:
-            self._project_gradient(rows, state.free)
+            stuck = self._move(rows, target)
+            if stuck.size:
+                self._last_descent[stuck] = RESTART
+                stuck = stuck[~self._drop_dust(stuck)]
+            if stuck.size:
+                self._project_gradient(stuck, state.free)
         # The residual is the last one from here on, and the array of that takes the next.
         self._last, self._residual = self._residual, self._last
 
-    def _conjugate(self, cells: Single) -> Array:
+    def _conjugate(self, cells: Single) -> tuple[Array, Array]:
         """Directions of Polak and Ribiere from the preconditioned residual, restarts where they do not descend.
 
-        Returns their products with the residual.
+        Returns the products of the residual with them, and with the preconditioned residual.
         """
         residual, preconditioned, direction = self._residual, self._preconditioned, self._direction
         if self._root is None:
@@ -261,18 +261,17 @@ class Descent:
         else:
             self._precondition(self._root * residual, preconditioned)
             preconditioned *= self._root
-        self._level(preconditioned, cells)
+        # A constant in it, and what it has outside the free cells, is orthogonal to the residual.
         descent = dots(preconditioned, residual)
-        ahead = np.maximum(0.0, descent - dots(preconditioned, self._last))
-        direction *= ahead / self._last_descent
+        direction *= np.maximum(0.0, descent - dots(preconditioned, self._last)) / self._last_descent
         direction += preconditioned
         self._level(direction, cells)
         slope = dots(direction, residual)
-        (uphill,) = (slope <= 0.0)[:, 0, 0].nonzero()
+        uphill = (slope <= 0.0)[:, 0, 0].nonzero()[0]
         if uphill.size:
-            direction[uphill], slope[uphill] = preconditioned[uphill], descent[uphill]
-        self._last_descent = np.where(descent > 0.0, descent, np.float32(np.inf))
-        return slope
+            direction[uphill] = residual[uphill]
+            slope[uphill] = dots(residual[uphill], residual[uphill])
+        return slope, descent
 
     def _level(self, values: Single, cells: Single) -> None:
         """Leave nothing outside the free cells; with a given sum, take the mean off them, so that the sum stays."""
@@ -290,7 +289,8 @@ class Descent:
     def _move(self, rows: Indices, target: Array) -> Indices:
         """Go towards pressures within the bounds as far as the energy falls; returns where it does not fall at all."""
         chosen = self._chosen(rows)
-        scale, step = self._scale[chosen], target - self._now[chosen]
+        now, scale = self._now[chosen], self._scale[chosen]
+        step = target - now
         single = np.multiply(step, 1.0 / scale, out=self._preconditioned[: rows.size], casting="same_kind")
         image = self._convolved(single, rows)
         # The residual is the excess over the scale where a step goes, but for a constant, which a sum of zero meets.
@@ -298,10 +298,8 @@ class Descent:
         falls = (slope < 0.0) & (curvature > 0.0)
         part = -slope / np.where(falls, curvature, np.inf)
         part = np.where(part < WHOLE_STEP, part, 1.0)
-        step *= part
-        step += self._now[chosen]
-        np.copyto(step, target, where=part == 1.0)  # to the last digit
-        self._now[chosen] = step
+        step *= 1.0 - part
+        self._now[chosen] = np.subtract(target, step, out=step)  # a whole step to the last digit
         image *= (part * scale).astype(np.float32)
         self._displacement[chosen] += image
         return rows[~falls[:, 0, 0]]
