@@ -261,7 +261,7 @@ class Descent:
         else:
             self._precondition(self._root * residual, preconditioned)
             preconditioned *= self._root
-        # A constant in it, and what it has outside the free cells, is orthogonal to the residual.
+        preconditioned *= self._free  # a constant in it is orthogonal to the residual
         descent = dots(preconditioned, residual)
         direction *= np.maximum(0.0, descent - dots(preconditioned, self._last)) / self._last_descent
         direction += preconditioned
