@@ -24,7 +24,8 @@ DUST = 1e-8
 THREADED_BLAS = 10_000
 # In place of the last product of residual and preconditioned residual: nothing is left of the last direction.
 RESTART = np.float32(np.inf)
-TINY = float(np.finfo(np.float64).tiny)
+# What residuals refer to where the approach is none, as it cannot be in a solution [mm].
+LEAST_APPROACH = 1e-100
 # Problems that are solved leave the stack once no more than this part of it is left: copying costs less than they do.
 PART_LEFT = 0.75
 
@@ -91,10 +92,8 @@ def judge(grids: Grids, pressure: Array, excess: Array, room: Array | None = Non
     worst = np.maximum.reduce(outside, axis=CELLS, keepdims=True, initial=0.0)
     room += excess
     np.abs(room, out=room)
-    weighted = dots(pressure, room) / np.maximum(total_of(pressure), TINY)
-    residual = np.full(worst.shape, np.inf)
-    np.divide(np.maximum(worst, weighted), approach, out=residual, where=approach > 0.0)
-    return Judgement(approach, residual, free)
+    weighted = dots(pressure, room) / grids.sums(pressure)
+    return Judgement(approach, np.maximum(worst, weighted) / np.maximum(approach, LEAST_APPROACH), free)
 
 
 class Descent:
@@ -163,8 +162,8 @@ class Descent:
         for step in count():
             np.add(self._displacement, self._grids.gap, out=self._excess)
             state = judge(self._grids, self._now, self._excess, self._next)
-            solved = state.residual[:, 0, 0] <= tolerance[self._rows]
-            (ended,) = (running & (solved | (step >= limit[self._rows]))).nonzero()
+            solved = state.residual[:, 0, 0] <= tolerance
+            (ended,) = (running & (solved | (step >= limit))).nonzero()
             if ended.size:
                 rows = self._rows[ended]
                 if rows.size == len(self.pressure):
@@ -180,7 +179,7 @@ class Descent:
                     return
                 if left.size <= PART_LEFT * len(running):
                     self._keep(left)
-                    running, state = running[left], state.select(left)
+                    running, state, tolerance, limit = running[left], state.select(left), tolerance[left], limit[left]
             self._iterate(state, running)
             if (step + 1) % REFRESH == 0:
                 self._displacement = self._displaced(exact=True)
@@ -223,7 +222,8 @@ class Descent:
         image = self._fast(self._direction, self._image)
         curvature = dots(self._direction, image)
         bent = (curvature > 0.0) & running[:, None, None]
-        self._last_descent = np.where(bent & (descent > 0.0), descent, RESTART)
+        # Along a direction that does not descend the step goes backwards; the next is a restart.
+        self._last_descent = np.where(bent & (np.minimum(slope, descent) > 0.0), descent, RESTART)
         length = (scale * slope / np.where(bent, curvature, np.inf)).astype(np.float32)
         # The array of the preconditioned residual is free to take the step.
         step, trial = np.multiply(self._direction, length, out=self._preconditioned), self._next
@@ -251,7 +251,7 @@ class Descent:
         self._last, self._residual = self._residual, self._last
 
     def _conjugate(self, cells: Single) -> tuple[Array, Array]:
-        """Directions of Polak and Ribiere from the preconditioned residual, restarts where they do not descend.
+        """Directions of Polak and Ribiere from the preconditioned residual.
 
         Returns the products of the residual with them, and with the preconditioned residual.
         """
@@ -267,10 +267,6 @@ class Descent:
         direction += preconditioned
         self._level(direction, cells)
         slope = dots(direction, residual)
-        uphill = (slope <= 0.0)[:, 0, 0].nonzero()[0]
-        if uphill.size:
-            direction[uphill] = residual[uphill]
-            slope[uphill] = dots(residual[uphill], residual[uphill])
         return slope, descent
 
     def _level(self, values: Single, cells: Single) -> None:

@@ -30,6 +30,8 @@ AT_BOUND = 1e-12
 # that they can be stacked.
 LARGEST_WHOLE = 2048
 
+TINY = float(np.finfo(np.float64).tiny)
+
 Rows = Indices | slice
 ALL = slice(None)
 
@@ -174,6 +176,12 @@ class Grids:
     def all_scaled(self) -> bool:
         """Whether every one has a load and none a cap, so that its pressures may be scaled to their sum."""
         return self.all_loaded and not self.any_capped
+
+    def sums(self, pressure: Array) -> Array:
+        """Sums of pressures that have them right, (count, 1, 1); not zero."""
+        if self.all_loaded:
+            return self.total
+        return np.where(self.loaded, self.total, np.maximum(total_of(pressure), TINY))
 
     @cached_property
     def slack(self) -> Array:
