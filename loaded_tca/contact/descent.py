@@ -151,7 +151,6 @@ class Descent:
         self._root = None if grids.cover is None else np.sqrt(grids.cover).astype(np.float32)
         self._now, self._next, self._excess = pressure, np.empty(pressure.shape), np.empty(pressure.shape)
         self._displacement = self._displaced(exact) if displacement is None else displacement
-        self._scale = np.ones((len(grids), 1, 1))
         self._last_descent = np.full((len(grids), 1, 1), RESTART)
         self._direction, self._last = np.zeros((2, *pressure.shape), dtype=np.float32)
         self._residual, self._preconditioned, self._image, self._free = np.empty((4, *pressure.shape), dtype=np.float32)
@@ -162,6 +161,8 @@ class Descent:
         for step in count():
             np.add(self._displacement, self._grids.gap, out=self._excess)
             state = judge(self._grids, self._now, self._excess, self._next)
+            if step == 0:  # of the excess in single precision
+                self._scale = np.abs(self._excess).max(axis=CELLS, keepdims=True, initial=LEAST_APPROACH)
             solved = state.residual[:, 0, 0] <= tolerance
             (ended,) = (running & (solved | (step >= limit))).nonzero()
             if ended.size:
@@ -189,7 +190,7 @@ class Descent:
         """Go on with some of the problems."""
         self._grids, self._fast = self._grids.select(left), self._fast.select(left)
         self._precondition, self._rows = self._precondition.select(left), self._rows[left]
-        for name in ("_root", "_now", "_displacement", "_excess", "_used", "_last_descent", "_last", "_direction"):
+        for name in ("_root", "_now", "_displacement", "_excess", "_scale", "_used", "_last_descent", "_last", "_direction"):
             array = getattr(self, name)
             setattr(self, name, None if array is None else array[left])
         for name in ("_next", "_residual", "_preconditioned", "_image", "_free"):  # filled anew before they are read
@@ -208,30 +209,25 @@ class Descent:
 
     def _iterate(self, state: Judgement, running: Mask) -> None:
         """One step along the conjugate directions, projected where it leaves the bounds; none for those that ended."""
-        scale = self._scale = state.approach
-        if scale.min() <= 0.0:
-            scale = self._scale = np.where(
-                scale > 0.0, scale, np.abs(self._displacement).max(axis=CELLS, keepdims=True)
-            )
         np.copyto(self._free, state.free)
-        np.multiply(self._excess, 1.0 / scale, out=self._residual, casting="same_kind")
+        np.multiply(self._excess, 1.0 / self._scale, out=self._residual, casting="same_kind")
         cells = np.maximum(total_of(self._free), 1.0)
         self._level(self._residual, cells)
         slope, descent = self._conjugate(cells)
         self._used += 1
         image = self._fast(self._direction, self._image)
         curvature = dots(self._direction, image)
-        bent = (curvature > 0.0) & running[:, None, None]
-        # Along a direction that does not descend the step goes backwards; the next is a restart.
-        self._last_descent = np.where(bent & (np.minimum(slope, descent) > 0.0), descent, RESTART)
-        length = (scale * slope / np.where(bent, curvature, np.inf)).astype(np.float32)
+        good = (np.minimum(np.minimum(slope, descent), curvature) > 0.0) & running[:, None, None]
+        self._last_descent = np.where(good, descent, RESTART)
+        length = np.zeros(good.shape, dtype=np.float32)
+        np.divide(self._scale * slope, curvature, out=length, where=good, casting="same_kind")
         # The array of the preconditioned residual is free to take the step.
         step, trial = np.multiply(self._direction, length, out=self._preconditioned), self._next
         np.subtract(self._now, step, out=trial)
         outside = np.minimum.reduce(trial, axis=CELLS, keepdims=True) < 0.0
         if self._grids.any_capped:
             outside |= (trial > self._grids.limit).any(axis=CELLS, keepdims=True)
-        rows = (outside & bent)[:, 0, 0].nonzero()[0]
+        rows = (outside & good)[:, 0, 0].nonzero()[0]
         if rows.size:
             chosen = self._chosen(rows)
             target = self._grids.clip(trial[chosen], state.free[chosen], chosen)
@@ -292,7 +288,7 @@ class Descent:
         # The residual is the excess over the scale where a step goes, but for a constant, which a sum of zero meets.
         slope, curvature = dots(single, self._residual[chosen]), dots(single, image)
         falls = (slope < 0.0) & (curvature > 0.0)
-        part = -slope / np.where(falls, curvature, np.inf)
+        part = np.divide(-slope, curvature, out=np.zeros(falls.shape), where=falls)
         part = np.where(part < WHOLE_STEP, part, 1.0)
         step *= 1.0 - part
         self._now[chosen] = np.subtract(target, step, out=step)  # a whole step to the last digit

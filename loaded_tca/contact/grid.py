@@ -184,9 +184,9 @@ class Grids:
         return np.where(self.loaded, self.total, np.maximum(total_of(pressure), TINY))
 
     @cached_property
-    def slack(self) -> Array:
+    def slack(self) -> Array | float:
         """Distance from a bound that is a rounding error: a cell that the last digits keep off the cap is at it."""
-        return AT_BOUND * np.where(self.capped, self.cap, 0.0)
+        return AT_BOUND * np.where(self.capped, self.cap, 0.0) if self.any_capped else 0.0
 
     @cached_property
     def limit(self) -> Array:
