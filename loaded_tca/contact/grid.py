@@ -328,7 +328,7 @@ class Grids:
         Only the movable cells move for the sums.
         """
         total, limit = self.total[rows], self.limit[rows]
-        projected = np.clip(pressure, 0.0, limit)
+        projected = np.minimum(np.maximum(pressure, 0.0), limit)
         summed = np.flatnonzero(self.loaded[rows] & movable.any(axis=CELLS, keepdims=True))
         if summed.size:
             movable, total = movable[summed], total[summed]
@@ -383,14 +383,15 @@ def shifted_to_sum(values: Array, total: Array, cap: Array, movable: Mask) -> Ar
     high = np.where(movable, values, -np.inf).max(axis=CELLS, keepdims=True)
     shift, searching = np.zeros(low.shape), np.ones(low.shape, dtype=bool)
     for _ in range(MOST_PROJECTIONS):
-        projected = np.clip(values - shift, 0.0, cap)
+        projected = np.minimum(np.maximum(values - shift, 0.0), cap)
         surplus = total_of(projected) - total
         searching &= np.abs(surplus) > SUMMED * total
         if not searching.any():
             break
-        low, high = np.where(surplus > 0.0, shift, low), np.where(surplus > 0.0, high, shift)
-        inner = np.count_nonzero((projected > 0.0) & (projected < cap), axis=CELLS, keepdims=True)
-        new = np.where(inner > 0, shift + surplus / np.maximum(inner, 1), low)
-        new = np.where((low < new) & (new < high), new, 0.5 * (low + high))
+        over = surplus > 0.0
+        low, high = np.where(over, shift, low), np.where(over, high, shift)
+        inner = np.add.reduce((projected > 0.0) & (projected < cap), axis=CELLS, keepdims=True, dtype=np.float64)
+        new = shift + surplus / np.maximum(inner, 1.0)
+        new = np.where((low < new) & (new < high) & (inner > 0.0), new, 0.5 * (low + high))
         shift = np.where(searching, new, shift)
     return projected
