@@ -204,7 +204,7 @@ class Descent:
 
     def _convolved(self, values: Single, rows: Indices) -> Single:
         """Displacement of values of some of the problems in single precision; it stands until the next."""
-        self._used[rows] += 1
+        self._used[self._chosen(rows)] += 1
         return self._fast.select(rows)(values, self._image[: rows.size])
 
     def _iterate(self, state: Judgement, running: Mask) -> None:

@@ -107,10 +107,14 @@ class Grids:
             None if getattr(first, name) is None else np.stack([getattr(problem, name) for problem in problems])
             for name in ("cover", "slice_compliance")
         )
-        # One cell that takes all of the load, or of the approach, has the highest pressure there can be.
-        most = np.where(np.isnan(total), approach / own_coefficient(dy / dx), total)
-        if cover is not None:
-            most /= np.where(cover > 0.0, cover, 1.0).min(axis=CELLS, keepdims=True)
+        if np.isnan(cap).all():
+            cap = np.full_like(cap, np.inf)
+        else:
+            # One cell that takes all of the load, or of the approach, has the highest pressure there can be.
+            most = np.where(np.isnan(total), approach / own_coefficient(dy / dx), total)
+            if cover is not None:
+                most /= np.where(cover > 0.0, cover, 1.0).min(axis=CELLS, keepdims=True)
+            cap = np.where(cap < most, cap, np.inf)
         gap = np.stack([problem.gap for problem in problems])
         gap -= contact
         return cls(
@@ -118,7 +122,7 @@ class Grids:
             spacing=spacing,
             total=total,
             approach=approach,
-            cap=np.where(cap < most, cap, np.inf),
+            cap=cap,
             free_edges=tuple(first.free_edges),
             slices=None if slices is None else slices * (dy * modulus),
             cover=cover,
@@ -207,7 +211,7 @@ class Grids:
         most = np.where(self.loaded, self.total, 0.0) * own
         level = self.gap + (most if self.cover is None else most / np.maximum(self.cover, LEAST_COVER))
         reach = np.where(self.loaded, level.min(axis=CELLS, keepdims=True), self.approach)
-        for k in np.flatnonzero(self.loaded & self.capped):
+        for k in np.flatnonzero(self.loaded & self.capped) if self.any_capped else ():
             order = np.argsort(level[k], axis=None)
             held = np.cumsum(np.broadcast_to(self.limit[k], self.shape).ravel()[order])
             rank = int(np.searchsorted(held, self.total[k, 0, 0], side="right"))
