@@ -294,7 +294,10 @@ class _Filter:
         dtype: str,
         threads: int,
     ) -> None:
-        threads, small = useful_threads(box, threads), corner == (0, 0) and _small_bytes(rows, box, dtype) <= BLOCK_BYTES
+        threads, small = (
+            useful_threads(box, threads),
+            corner == (0, 0) and _small_bytes(rows, box, dtype) <= BLOCK_BYTES,
+        )
         self._symbol, self._corner = _kernels(kind, box, aspects, dtype, half=small), corner
         self._small: _SmallTransforms | None = None
         if small:

@@ -285,10 +285,12 @@ class Grids:
         The level is that of a sphere under this load whose contact has as many cells: the approach is twice as much.
         Nothing where the approach is prescribed.
         """
-        levels = np.sort(self.gap.reshape(len(self), 1, -1), axis=2)
-        radius = np.sqrt(np.arange(1, levels.shape[2] + 1) * (each(self.aspects) / np.pi))
-        closed = levels * radius < 0.375 * self.total * each(self.aspects)
-        level = np.where(closed, levels, 0.0).max(axis=2, keepdims=True)
+        aspects = each(self.aspects)
+        product = 0.375 * np.where(self.loaded, self.total, 0.0) * aspects  # of level and radius
+        gaps = np.sort(self.gap.reshape(len(self), 1, -1), axis=2)
+        radii = np.sqrt(np.arange(1, gaps.shape[2] + 1) * (aspects / np.pi))
+        closed = np.count_nonzero(gaps * radii < product, axis=2, keepdims=True)
+        level = product / np.sqrt(np.maximum(closed, 1) * (aspects / np.pi))
         return self.fitted(np.sqrt(np.maximum(level - self.gap, 0.0)) * self.loaded)
 
     def fitted(self, pressure: Array) -> Array:
