@@ -137,24 +137,23 @@ class _SmallTransforms:
     def filter(self, values: Array, symbol: Array, out: Array) -> None:
         """Transform values (count, rows, columns), multiply by the symbols, transform back into ``out``.
 
-        A symbol is a quadrant of an even one, (second, first direction).
+        A symbol is the half that the transform of real data has, (second, first direction).
         """
         for start in range(0, len(values), self._block):
-            block = slice(start, start + self._block)
-            given, quadrant, target = values[block], symbol[block], out[block]
-            count, middle = len(given), symbol.shape[2]
+            given = values[start : start + self._block]
+            count = len(given)
             while len(self._forth) < count:
                 self._plan(len(self._forth))
             self._given[:count, :, : self._columns] = given
             for rows_forth, lines_forth in self._forth[:count]:
                 rows_forth()
                 lines_forth()
-            self._moved[:count, :, :middle] *= quadrant
-            self._moved[:count, :, middle : self._box[0]] *= quadrant[:, :, middle - 2 : 0 : -1]
+            moved = self._moved[:count, :, : self._box[0]]
+            np.multiply(moved, symbol[start : start + count], out=moved)
             for lines_back, rows_back in self._back[:count]:
                 lines_back()
                 rows_back()
-            np.copyto(target, self._found[:count, :, : target.shape[2]], casting="same_kind")
+            out[start : start + count] = self._found[:count, :, : out.shape[2]]
 
 
 def _small_bytes(rows: tuple[int, int], box: tuple[int, int], dtype: str) -> int:
@@ -280,7 +279,8 @@ class _Filter:
         Where in the box the values begin.
     columns : int
         Of the values; their rows and those asked for are ``rows``.
-    symbol : (count, second, first direction) array
+    kind, aspects, dtype
+        See :func:`_kernels`, which has the symbols.
     """
 
     def __init__(
@@ -289,13 +289,18 @@ class _Filter:
         columns: int,
         corner: tuple[int, int],
         box: tuple[int, int],
-        symbol: Array,
+        kind: str,
+        aspects: ArrayLike,
+        dtype: str,
         threads: int,
     ) -> None:
-        dtype, threads = symbol.dtype.name, useful_threads(box, threads)
-        self._symbol, self._corner = symbol, corner
+        threads, small = (
+            useful_threads(box, threads),
+            corner == (0, 0) and _small_bytes(rows, box, dtype) <= BLOCK_BYTES,
+        )
+        self._symbol, self._corner = _kernels(kind, box, aspects, dtype, half=small), corner
         self._small: _SmallTransforms | None = None
-        if corner == (0, 0) and _small_bytes(rows, box, dtype) <= BLOCK_BYTES:
+        if small:
             self._small = _cache.get((rows, columns, box, dtype), lambda: _SmallTransforms(rows, columns, box, dtype))
         else:
             self._large = _cache.get((rows, box, dtype, threads), lambda: _LargeTransform(rows, box, dtype, threads))
@@ -350,7 +355,7 @@ class Convolution(_Filter):
         reach = [max(end, n - start) - 1 for start, end, n in zip(first, last, target, strict=True)]
         box = (fast_length(max(2 * reach[0], target[0])), fast_length(max(2 * reach[1], target[1])))
         rows, columns = (last[0] - first[0], target[0]), last[1] - first[1]
-        super().__init__(rows, columns, first, box, _kernels("love", box, aspects, dtype), threads)
+        super().__init__(rows, columns, first, box, "love", aspects, dtype, threads)
 
 
 class Preconditioner(_Filter):
@@ -358,7 +363,7 @@ class Preconditioner(_Filter):
 
     def __init__(self, shape: tuple[int, int], aspects: ArrayLike, threads: int = 2) -> None:
         box, rows = (fast_length(shape[0]), fast_length(shape[1])), (shape[0], shape[0])
-        super().__init__(rows, shape[1], (0, 0), box, _kernels("inverse", box, aspects, "float32"), threads)
+        super().__init__(rows, shape[1], (0, 0), box, "inverse", aspects, "float32", threads)
 
 
 def useful_threads(box: tuple[int, int], wanted: int) -> int:
@@ -367,13 +372,21 @@ def useful_threads(box: tuple[int, int], wanted: int) -> int:
     return 1 if worker or box[0] * box[1] < THREADED_POINTS else min(wanted, os.cpu_count() or 1)
 
 
-def _kernels(kind: str, box: tuple[int, int], aspects: ArrayLike, dtype: str) -> Array:
-    """Kernels (count, second, first direction) of a stack, those not kept from before computed together."""
-    keys = [(kind, box, aspect, dtype) for aspect in np.asarray(aspects, dtype=np.float64).tolist()]
+def _kernels(kind: str, box: tuple[int, int], aspects: ArrayLike, dtype: str, half: bool = False) -> Array:
+    """Kernels (count, second, first direction) of a stack, those not kept from before computed together.
+
+    Quadrants; ``half``: all of the first direction.
+    """
+    keys = [(kind, box, aspect, dtype, half) for aspect in np.asarray(aspects, dtype=np.float64).tolist()]
     kept = {key: _cache.find(key) for key in keys}
     missing = [key for key, kernel in kept.items() if kernel is None]
     if missing:
-        made = _MAKERS[kind](box, [key[2] for key in missing], dtype)
+        own_aspects = [key[2] for key in missing]
+        if half:
+            quadrants = _kernels(kind, box, own_aspects, dtype)
+            made = np.concatenate((quadrants, quadrants[:, :, -2:0:-1]), axis=2)
+        else:
+            made = _MAKERS[kind](box, own_aspects, dtype)
         for key, own in zip(missing, made, strict=True):
             kept[key] = _cache.keep(key, own if len(made) == 1 else own.copy())
     return np.stack([kept[key] for key in keys]) if len(keys) > 1 else kept[keys[0]][None]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.contact.convolution import Preconditioner
-from loaded_tca.contact.grid import ALL, CELLS, Grids, Rows, ratio, total_of
+from loaded_tca.contact.grid import ALL, CELLS, Grids, Rows, total_of
 
 Single = NDArray[np.float32]
 
@@ -22,7 +22,10 @@ WHOLE_STEP = 0.5
 DUST = 1e-8
 # BLAS starts threads for products of vectors from this length.
 THREADED_BLAS = 10_000
-TINY = float(np.finfo(np.float64).tiny)
+# In place of the last product of residual and preconditioned residual: nothing is left of the last direction.
+RESTART = np.float32(np.inf)
+# What residuals refer to where the approach is none, as it cannot be in a solution [mm].
+LEAST_APPROACH = 1e-100
 # Problems that are solved leave the stack once no more than this part of it is left: copying costs less than they do.
 PART_LEFT = 0.75
 
@@ -86,12 +89,11 @@ def judge(grids: Grids, pressure: Array, excess: Array, room: Array | None = Non
     room *= excess
     np.subtract(room, excess, out=room)  # but for its sign the excess where the pressure is zero, or at the cap
     outside = room if capped is None else np.where(capped, excess, room)
-    worst = np.maximum.reduce(outside, axis=CELLS, keepdims=True)
+    worst = np.maximum.reduce(outside, axis=CELLS, keepdims=True, initial=0.0)
     room += excess
     np.abs(room, out=room)
-    weighted = dots(pressure, room) / np.maximum(total_of(pressure), TINY)
-    worst = np.maximum(np.maximum(worst, weighted), 0.0)
-    return Judgement(approach, ratio(worst, approach, approach > 0.0, otherwise=np.inf), free)
+    weighted = dots(pressure, room) / grids.sums(pressure)
+    return Judgement(approach, np.maximum(worst, weighted) / np.maximum(approach, LEAST_APPROACH), free)
 
 
 class Descent:
@@ -149,10 +151,7 @@ class Descent:
         self._root = None if grids.cover is None else np.sqrt(grids.cover).astype(np.float32)
         self._now, self._next, self._excess = pressure, np.empty(pressure.shape), np.empty(pressure.shape)
         self._displacement = self._displaced(exact) if displacement is None else displacement
-        self._scale = np.ones((len(grids), 1, 1))
-        self._last_descent = np.full(
-            (len(grids), 1, 1), np.inf, dtype=np.float32
-        )  # infinite: the next direction is a restart
+        self._last_descent = np.full((len(grids), 1, 1), RESTART)
         self._direction, self._last = np.zeros((2, *pressure.shape), dtype=np.float32)
         self._residual, self._preconditioned, self._image, self._free = np.empty((4, *pressure.shape), dtype=np.float32)
 
@@ -162,8 +161,10 @@ class Descent:
         for step in count():
             np.add(self._displacement, self._grids.gap, out=self._excess)
             state = judge(self._grids, self._now, self._excess, self._next)
-            solved = state.residual[:, 0, 0] <= tolerance[self._rows]
-            (ended,) = (running & (solved | (step >= limit[self._rows]))).nonzero()
+            if step == 0:  # of the excess in single precision
+                self._scale = np.abs(self._excess).max(axis=CELLS, keepdims=True, initial=LEAST_APPROACH)
+            solved = state.residual[:, 0, 0] <= tolerance
+            (ended,) = (running & (solved | (step >= limit))).nonzero()
             if ended.size:
                 rows = self._rows[ended]
                 if rows.size == len(self.pressure):
@@ -179,17 +180,27 @@ class Descent:
                     return
                 if left.size <= PART_LEFT * len(running):
                     self._keep(left)
-                    running, state = running[left], state.select(left)
+                    running, state, tolerance, limit = running[left], state.select(left), tolerance[left], limit[left]
             self._iterate(state, running)
             if (step + 1) % REFRESH == 0:
                 self._displacement = self._displaced(exact=True)
-                self._last_descent[:] = np.inf
+                self._last_descent[:] = RESTART
 
     def _keep(self, left: Indices) -> None:
         """Go on with some of the problems."""
         self._grids, self._fast = self._grids.select(left), self._fast.select(left)
         self._precondition, self._rows = self._precondition.select(left), self._rows[left]
-        for name in ("_root", "_now", "_displacement", "_excess", "_used", "_last_descent", "_last", "_direction"):
+        for name in (
+            "_root",
+            "_now",
+            "_displacement",
+            "_excess",
+            "_scale",
+            "_used",
+            "_last_descent",
+            "_last",
+            "_direction",
+        ):
             array = getattr(self, name)
             setattr(self, name, None if array is None else array[left])
         for name in ("_next", "_residual", "_preconditioned", "_image", "_free"):  # filled anew before they are read
@@ -203,57 +214,52 @@ class Descent:
 
     def _convolved(self, values: Single, rows: Indices) -> Single:
         """Displacement of values of some of the problems in single precision; it stands until the next."""
-        self._used[rows] += 1
+        self._used[self._chosen(rows)] += 1
         return self._fast.select(rows)(values, self._image[: rows.size])
 
     def _iterate(self, state: Judgement, running: Mask) -> None:
         """One step along the conjugate directions, projected where it leaves the bounds; none for those that ended."""
-        scale = self._scale = state.approach
-        if scale.min() <= 0.0:
-            scale = self._scale = np.where(
-                scale > 0.0, scale, np.abs(self._displacement).max(axis=CELLS, keepdims=True)
-            )
         np.copyto(self._free, state.free)
-        np.multiply(self._excess, 1.0 / scale, out=self._residual, casting="same_kind")
+        np.multiply(self._excess, 1.0 / self._scale, out=self._residual, casting="same_kind")
         cells = np.maximum(total_of(self._free), 1.0)
         self._level(self._residual, cells)
-        slope = self._conjugate(cells)
+        slope, descent = self._conjugate(cells)
         self._used += 1
         image = self._fast(self._direction, self._image)
         curvature = dots(self._direction, image)
-        bent = curvature > 0.0
-        self._last_descent[~bent] = np.inf
-        bent &= running[:, None, None]
-        length = (scale * slope / np.where(bent, curvature, np.inf)).astype(np.float32)
+        good = (np.minimum(np.minimum(slope, descent), curvature) > 0.0) & running[:, None, None]
+        self._last_descent = np.where(good, descent, RESTART)
+        length = np.zeros(good.shape, dtype=np.float32)
+        np.divide(self._scale * slope, curvature, out=length, where=good, casting="same_kind")
         # The array of the preconditioned residual is free to take the step.
         step, trial = np.multiply(self._direction, length, out=self._preconditioned), self._next
         np.subtract(self._now, step, out=trial)
         outside = np.minimum.reduce(trial, axis=CELLS, keepdims=True) < 0.0
         if self._grids.any_capped:
             outside |= (trial > self._grids.limit).any(axis=CELLS, keepdims=True)
-        (rows,) = (outside & bent)[:, 0, 0].nonzero()
+        rows = (outside & good)[:, 0, 0].nonzero()[0]
         if rows.size:
-            leaving = self._chosen(rows)
-            target = self._grids.clip(trial[leaving], state.free[leaving], leaving)
+            chosen = self._chosen(rows)
+            target = self._grids.clip(trial[chosen], state.free[chosen], chosen)
+            trial[chosen], length[chosen] = self._now[chosen], 0.0
         if rows.size < len(trial):
-            trial[rows], length[rows] = self._now[rows], 0.0
             image *= length
             self._displacement -= image
-            self._now, self._next = trial, self._now
+        self._now, self._next = trial, self._now
         if rows.size:
-            rows = self._move(rows, target)
-            self._last_descent[rows] = np.inf
-        if rows.size:
-            rows = rows[~self._drop_dust(rows)]
-        if rows.size:
-            self._project_gradient(rows, state.free)
+            stuck = self._move(rows, target)
+            if stuck.size:
+                self._last_descent[stuck] = RESTART
+                stuck = stuck[~self._drop_dust(stuck)]
+            if stuck.size:
+                self._project_gradient(stuck, state.free)
         # The residual is the last one from here on, and the array of that takes the next.
         self._last, self._residual = self._residual, self._last
 
-    def _conjugate(self, cells: Single) -> Array:
-        """Directions of Polak and Ribiere from the preconditioned residual, restarts where they do not descend.
+    def _conjugate(self, cells: Single) -> tuple[Array, Array]:
+        """Directions of Polak and Ribiere from the preconditioned residual.
 
-        Returns their products with the residual.
+        Returns the products of the residual with them, and with the preconditioned residual.
         """
         residual, preconditioned, direction = self._residual, self._preconditioned, self._direction
         if self._root is None:
@@ -261,18 +267,13 @@ class Descent:
         else:
             self._precondition(self._root * residual, preconditioned)
             preconditioned *= self._root
-        self._level(preconditioned, cells)
+        preconditioned *= self._free  # a constant in it is orthogonal to the residual
         descent = dots(preconditioned, residual)
-        ahead = np.maximum(0.0, descent - dots(preconditioned, self._last))
-        direction *= ahead / self._last_descent
+        direction *= np.maximum(0.0, descent - dots(preconditioned, self._last)) / self._last_descent
         direction += preconditioned
         self._level(direction, cells)
         slope = dots(direction, residual)
-        (uphill,) = (slope <= 0.0)[:, 0, 0].nonzero()
-        if uphill.size:
-            direction[uphill], slope[uphill] = preconditioned[uphill], descent[uphill]
-        self._last_descent = np.where(descent > 0.0, descent, np.float32(np.inf))
-        return slope
+        return slope, descent
 
     def _level(self, values: Single, cells: Single) -> None:
         """Leave nothing outside the free cells; with a given sum, take the mean off them, so that the sum stays."""
@@ -290,18 +291,17 @@ class Descent:
     def _move(self, rows: Indices, target: Array) -> Indices:
         """Go towards pressures within the bounds as far as the energy falls; returns where it does not fall at all."""
         chosen = self._chosen(rows)
-        scale, step = self._scale[chosen], target - self._now[chosen]
+        now, scale = self._now[chosen], self._scale[chosen]
+        step = target - now
         single = np.multiply(step, 1.0 / scale, out=self._preconditioned[: rows.size], casting="same_kind")
         image = self._convolved(single, rows)
         # The residual is the excess over the scale where a step goes, but for a constant, which a sum of zero meets.
         slope, curvature = dots(single, self._residual[chosen]), dots(single, image)
         falls = (slope < 0.0) & (curvature > 0.0)
-        part = -slope / np.where(falls, curvature, np.inf)
+        part = np.divide(-slope, curvature, out=np.zeros(falls.shape), where=falls)
         part = np.where(part < WHOLE_STEP, part, 1.0)
-        step *= part
-        step += self._now[chosen]
-        np.copyto(step, target, where=part == 1.0)  # to the last digit
-        self._now[chosen] = step
+        step *= 1.0 - part
+        self._now[chosen] = np.subtract(target, step, out=step)  # a whole step to the last digit
         image *= (part * scale).astype(np.float32)
         self._displacement[chosen] += image
         return rows[~falls[:, 0, 0]]

@@ -30,6 +30,8 @@ AT_BOUND = 1e-12
 # that they can be stacked.
 LARGEST_WHOLE = 2048
 
+TINY = float(np.finfo(np.float64).tiny)
+
 Rows = Indices | slice
 ALL = slice(None)
 
@@ -105,10 +107,14 @@ class Grids:
             None if getattr(first, name) is None else np.stack([getattr(problem, name) for problem in problems])
             for name in ("cover", "slice_compliance")
         )
-        # One cell that takes all of the load, or of the approach, has the highest pressure there can be.
-        most = np.where(np.isnan(total), approach / own_coefficient(dy / dx), total)
-        if cover is not None:
-            most /= np.where(cover > 0.0, cover, 1.0).min(axis=CELLS, keepdims=True)
+        if np.isnan(cap).all():
+            cap = np.full_like(cap, np.inf)
+        else:
+            # One cell that takes all of the load, or of the approach, has the highest pressure there can be.
+            most = np.where(np.isnan(total), approach / own_coefficient(dy / dx), total)
+            if cover is not None:
+                most /= np.where(cover > 0.0, cover, 1.0).min(axis=CELLS, keepdims=True)
+            cap = np.where(cap < most, cap, np.inf)
         gap = np.stack([problem.gap for problem in problems])
         gap -= contact
         return cls(
@@ -116,7 +122,7 @@ class Grids:
             spacing=spacing,
             total=total,
             approach=approach,
-            cap=np.where(cap < most, cap, np.inf),
+            cap=cap,
             free_edges=tuple(first.free_edges),
             slices=None if slices is None else slices * (dy * modulus),
             cover=cover,
@@ -175,10 +181,16 @@ class Grids:
         """Whether every one has a load and none a cap, so that its pressures may be scaled to their sum."""
         return self.all_loaded and not self.any_capped
 
+    def sums(self, pressure: Array) -> Array:
+        """Sums of pressures that have them right, (count, 1, 1); not zero."""
+        if self.all_loaded:
+            return self.total
+        return np.where(self.loaded, self.total, np.maximum(total_of(pressure), TINY))
+
     @cached_property
-    def slack(self) -> Array:
+    def slack(self) -> Array | float:
         """Distance from a bound that is a rounding error: a cell that the last digits keep off the cap is at it."""
-        return AT_BOUND * np.where(self.capped, self.cap, 0.0)
+        return AT_BOUND * np.where(self.capped, self.cap, 0.0) if self.any_capped else 0.0
 
     @cached_property
     def limit(self) -> Array:
@@ -199,7 +211,7 @@ class Grids:
         most = np.where(self.loaded, self.total, 0.0) * own
         level = self.gap + (most if self.cover is None else most / np.maximum(self.cover, LEAST_COVER))
         reach = np.where(self.loaded, level.min(axis=CELLS, keepdims=True), self.approach)
-        for k in np.flatnonzero(self.loaded & self.capped):
+        for k in np.flatnonzero(self.loaded & self.capped) if self.any_capped else ():
             order = np.argsort(level[k], axis=None)
             held = np.cumsum(np.broadcast_to(self.limit[k], self.shape).ravel()[order])
             rank = int(np.searchsorted(held, self.total[k, 0, 0], side="right"))
@@ -267,6 +279,20 @@ class Grids:
         cuts = None if self.cover is None else CutCells.of(self.cover, self.aspects, window, dtype)
         return Operator(len(self), convolve, slices, cuts)
 
+    def guess(self) -> Array:
+        """Return pressures to start from without others: where the gap is below a level, as the root of what it lacks.
+
+        The level is that of a sphere under this load whose contact has as many cells: the approach is twice as much.
+        Nothing where the approach is prescribed.
+        """
+        aspects = each(self.aspects)
+        product = 0.375 * np.where(self.loaded, self.total, 0.0) * aspects  # of level and radius
+        gaps = np.sort(self.gap.reshape(len(self), 1, -1), axis=2)
+        radii = np.sqrt(np.arange(1, gaps.shape[2] + 1) * (aspects / np.pi))
+        closed = np.count_nonzero(gaps * radii < product, axis=2, keepdims=True)
+        level = product / np.sqrt(np.maximum(closed, 1) * (aspects / np.pi))
+        return self.fitted(np.sqrt(np.maximum(level - self.gap, 0.0)) * self.loaded)
+
     def fitted(self, pressure: Array) -> Array:
         """Return pressures within the bounds and with the right sums, zero where no contact is possible."""
         pressure = np.minimum(pressure, self.limit)
@@ -308,7 +334,7 @@ class Grids:
         Only the movable cells move for the sums.
         """
         total, limit = self.total[rows], self.limit[rows]
-        projected = np.clip(pressure, 0.0, limit)
+        projected = np.minimum(np.maximum(pressure, 0.0), limit)
         summed = np.flatnonzero(self.loaded[rows] & movable.any(axis=CELLS, keepdims=True))
         if summed.size:
             movable, total = movable[summed], total[summed]
@@ -363,14 +389,15 @@ def shifted_to_sum(values: Array, total: Array, cap: Array, movable: Mask) -> Ar
     high = np.where(movable, values, -np.inf).max(axis=CELLS, keepdims=True)
     shift, searching = np.zeros(low.shape), np.ones(low.shape, dtype=bool)
     for _ in range(MOST_PROJECTIONS):
-        projected = np.clip(values - shift, 0.0, cap)
+        projected = np.minimum(np.maximum(values - shift, 0.0), cap)
         surplus = total_of(projected) - total
         searching &= np.abs(surplus) > SUMMED * total
         if not searching.any():
             break
-        low, high = np.where(surplus > 0.0, shift, low), np.where(surplus > 0.0, high, shift)
-        inner = np.count_nonzero((projected > 0.0) & (projected < cap), axis=CELLS, keepdims=True)
-        new = np.where(inner > 0, shift + surplus / np.maximum(inner, 1), low)
-        new = np.where((low < new) & (new < high), new, 0.5 * (low + high))
+        over = surplus > 0.0
+        low, high = np.where(over, shift, low), np.where(over, high, shift)
+        inner = np.add.reduce((projected > 0.0) & (projected < cap), axis=CELLS, keepdims=True, dtype=np.float64)
+        new = shift + surplus / np.maximum(inner, 1.0)
+        new = np.where((low < new) & (new < high) & (inner > 0.0), new, 0.5 * (low + high))
         shift = np.where(searching, new, shift)
     return projected

@@ -366,7 +366,7 @@ def _start_from_coarser(grids: Grids, tolerance: Array, threads: int) -> tuple[A
     """
     merge = coarsening(grids.shape)
     if merge == (1, 1):
-        return grids.fitted(np.zeros(grids.gap.shape)), np.empty((0, 2))
+        return grids.guess(), np.empty((0, 2))
     coarse = grids.coarser(merge)
     tolerance = np.maximum(tolerance, np.minimum(COARSE_TOLERANCE, COARSE_FACTOR * tolerance))
     start, _ = _start_from_coarser(coarse, tolerance, threads)

@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.contact.convolution import Convolution
 from loaded_tca.contact.descent import Descent, dots, judge
 from loaded_tca.contact.grid import Grids, each, shifted_to_sum
+from loaded_tca.reference import hertz
 
 
 def one_grid(gap, total=np.nan, cap=np.inf, approach=0.0):
@@ -131,3 +132,25 @@ def test_next_to_no_pressure_over_an_open_gap_is_dropped():
     found._now[0, 0, 0] = 1e-10 * found._now.max()
     assert found._drop_dust(first).all()
     assert found._now[0, 0, 0] == 0.0
+
+
+@pytest.mark.parametrize("total", [0.3, 1.0, 3.0])
+def test_guess_for_a_sphere_is_near_hertz(total):
+    """Off by no more than the cells at the edge; an even start is off by most of the peak."""
+    grids = paraboloid(total=total)
+    guess, contact = grids.guess()[0], hertz.point_contact(total, (2.0 / 24**2,) * 2, 1.0)
+    x = np.arange(24) - 11.5
+    assert_allclose(guess, contact.pressure(x[:, None], x), atol=0.15 * contact.max_pressure)
+    assert_allclose(guess.max(), contact.max_pressure, rtol=0.03)
+    assert_allclose(guess.sum(), total)
+
+
+def test_guess_under_a_given_approach_is_no_pressure():
+    assert not paraboloid(total=np.nan, approach=0.1).guess().any()
+
+
+def test_guess_presses_where_nothing_else_is_said():
+    """Where not one cell closes under so small a load, the lowest ones carry it."""
+    guess = paraboloid(total=1e-9).guess()[0]
+    assert_allclose(guess.sum(), 1e-9)
+    assert guess[11:13, 11:13].min() > 0.0
