@@ -294,10 +294,8 @@ class _Filter:
         dtype: str,
         threads: int,
     ) -> None:
-        threads, small = (
-            useful_threads(box, threads),
-            corner == (0, 0) and _small_bytes(rows, box, dtype) <= BLOCK_BYTES,
-        )
+        threads = useful_threads(box, threads)
+        small = corner == (0, 0) and _small_bytes(rows, box, dtype) <= BLOCK_BYTES
         self._symbol, self._corner = _kernels(kind, box, aspects, dtype, half=small), corner
         self._small: _SmallTransforms | None = None
         if small:

@@ -190,17 +190,8 @@ class Descent:
         """Go on with some of the problems."""
         self._grids, self._fast = self._grids.select(left), self._fast.select(left)
         self._precondition, self._rows = self._precondition.select(left), self._rows[left]
-        for name in (
-            "_root",
-            "_now",
-            "_displacement",
-            "_excess",
-            "_scale",
-            "_used",
-            "_last_descent",
-            "_last",
-            "_direction",
-        ):
+        kept = ("_root", "_now", "_displacement", "_excess", "_scale", "_used", "_last_descent", "_last", "_direction")
+        for name in kept:
             array = getattr(self, name)
             setattr(self, name, None if array is None else array[left])
         for name in ("_next", "_residual", "_preconditioned", "_image", "_free"):  # filled anew before they are read
