@@ -264,6 +264,7 @@ class _Balance:
         self.laws = [self._first_law(contact) for contact in contacts]
         self.solved: list[LoadedContact | None] = [None] * len(tooth_pairs)
         self.compliance = np.zeros((len(contacts), len(contacts)))
+        self.first_grids: list[Separation] = []
         self.agreement = AGREEMENT_ON_CELLS if grid.cells is not None else AGREEMENT * grid.accuracy
 
     def _first_law(self, contact: ContactPoint) -> PowerLaw:
@@ -315,6 +316,7 @@ class _Balance:
             force = expected_pressure(separation).sum(axis=0)
             lines.append((number, separation))
             shares.append(force / force.sum())
+        self.first_grids = [separation for _, separation in lines]
         found = np.diag([own @ bending.within(*line) @ own for line, own in zip(lines, shares, strict=True)])
         for (i, one), (j, other) in combinations(enumerate(lines), 2):
             if abs(one[0] - other[0]) == 1:  # farther ones may not be loaded at all, nor in the model of the teeth
@@ -413,6 +415,21 @@ class _Balance:
         for (index, one), (other, two) in combinations(self._loaded(), 2):
             matrix = self._between((index, one.separation), (other, two.separation))
             compliance[index, other] = compliance[other, index] = one.slice_shares @ matrix @ two.slice_shares
+        loaded_pairs = dict(self._loaded())
+        for index, separation in enumerate(self.first_grids):
+            if index in loaded_pairs:
+                continue
+            bent = {
+                other: self._between((index, separation), (other, two.separation)) @ two.slice_shares
+                for other, two in loaded_pairs.items()
+                if abs(self.tooth_pairs[index].pair - self.tooth_pairs[other].pair) == 1
+            }
+            distance = separation.cut_gap.min(axis=0)
+            for other, displaced in bent.items():
+                distance = distance + loaded_pairs[other].solution.load * displaced
+            place = int(distance.argmin())  # where it comes into contact first, bent away by the others as it is
+            for other, displaced in bent.items():
+                compliance[index, other] = compliance[other, index] = displaced[place]
         return compliance
 
     def _settled(self, forces: Array, rotation: float) -> bool:
