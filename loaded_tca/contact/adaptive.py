@@ -4,7 +4,8 @@ import math
 import warnings
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from functools import partial
+from typing import Any, Never, TypeVar
 
 from numpy.typing import ArrayLike
 
@@ -16,15 +17,7 @@ from loaded_tca.contact.solver import solve_problem
 from loaded_tca.errors import AccuracyWarning, require
 
 Cells = tuple[int, int]
-
-
-class NextGrid(NamedTuple):
-    """Cells on which a contact is to be solved next, how closely, and a pressure to start from or none."""
-
-    cells: Cells
-    tolerance: float
-    start: Array | None = None
-
+Request = TypeVar("Request")
 
 # The residual of the iteration is kept this far below the accuracy, so that the grid alone limits it.
 TOLERANCE_SHARE = 1e-2
@@ -104,16 +97,11 @@ def solve_to_accuracy(
         ),
     )
     start = None if initial_pressure is None else numbers("initial_pressure", initial_pressure)
-    refining = refinement(accuracy, tolerance, smooth, first_cells, start)
-    grid = next(refining)
-    while True:
-        own = problem(grid.cells)
-        found = solve_problem(own, tolerance=grid.tolerance, initial_pressure=grid.start, threads=threads)
-        try:
-            grid = refining.send(found)
-        except StopIteration as end:
-            solution, error = end.value
-            break
+    solve = partial(_solved, problem, threads)
+    try:
+        next(refinement(solve, accuracy, tolerance, smooth, first_cells, start))
+    except StopIteration as end:
+        solution, error = end.value
     if warn:
         error = math.inf if math.isnan(error) else error
         late = () if error <= accuracy else (f"estimated error {error:.1e} is above the accuracy {accuracy:.1e}",)
@@ -122,17 +110,31 @@ def solve_to_accuracy(
     return solution
 
 
-def refinement(
-    accuracy: float, tolerance: float, smooth: bool, first_cells: Cells, initial_pressure: Array | None
-) -> Generator[NextGrid, ContactSolution, tuple[ContactSolution, float]]:
-    """Ask for the solutions on finer and finer grids; return the last one and its estimated error.
+def _solved(
+    problem: Callable[[Cells], ContactProblem], threads: int, cells: Cells, tolerance: float, start: Array | None
+) -> Generator[Never, None, ContactSolution]:
+    """The solution on a grid, at once: a generator that asks for nothing."""
+    yield from ()
+    return solve_problem(problem(cells), tolerance=tolerance, initial_pressure=start, threads=threads)
 
-    For parameters see :func:`solve_to_accuracy`.
+
+def refinement(
+    solved: Callable[[Cells, float, Array | None], Generator[Request, Any, ContactSolution]],
+    accuracy: float,
+    tolerance: float,
+    smooth: bool,
+    first_cells: Cells,
+    initial_pressure: Array | None,
+) -> Generator[Request, Any, tuple[ContactSolution, float]]:
+    """Solve on finer and finer grids; return the last solution and its estimated error.
+
+    ``solved(cells, tolerance, start)`` is a generator that returns the solution on a grid, and may ask for what it
+    needs. For the other parameters see :func:`solve_to_accuracy`.
     """
     closely, refined = TOLERANCE_SHARE * accuracy, max(first_cells) < MOST_CELLS_AT_A_BORDER
     tolerance, first = min(closely, tolerance), closely if refined else min(closely, tolerance)
     cells = first_cells
-    solution = yield NextGrid(cells, first, initial_pressure)
+    solution = yield from solved(cells, first, initial_pressure)
     while True:
         # What ends a contact inside the box makes the peak grow with the grid without end.
         peaked, estimate = smooth and not solution.bounded, solution.error_estimate
@@ -140,6 +142,6 @@ def refinement(
         if error <= accuracy or max(cells) >= (MOST_CELLS if peaked else MOST_CELLS_AT_A_BORDER):
             return solution, error
         coarse, cells = solution, (2 * cells[0], 2 * cells[1])
-        solution = yield NextGrid(cells, tolerance, prolong(coarse.pressure, cells, (2, 2)))
+        solution = yield from solved(cells, tolerance, prolong(coarse.pressure, cells, (2, 2)))
         if coarse.pressure.any():
             solution = replace(solution, coarser=CoarserGrid(float(coarse.pressure.max()), coarse.approach))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Generator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -11,7 +10,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.contact import ContactProblem, ContactSolution, solve_problem
-from loaded_tca.contact.adaptive import TOLERANCE_SHARE, NextGrid, refinement
+from loaded_tca.contact.adaptive import TOLERANCE_SHARE, refinement
 from loaded_tca.contact.checks import memory_problem
 from loaded_tca.contact.levels import under_other_load
 from loaded_tca.contact.patch import values_at_ends
@@ -353,18 +352,15 @@ def _solve_in_box(
     coupling: Coupling | None,
 ) -> Steps[LoadedContact]:
     """Solve in the box of ``first``, on its grid if cells were given, else on finer and finer ones."""
-    refining: Generator[NextGrid, ContactSolution, tuple[ContactSolution, float]]
-    if grid.cells is not None:
-        tolerance, refining = grid.tolerance, _on_cells(grid.cells, grid.tolerance)
-    else:
-        tolerance, expected = min(grid.tolerance, TOLERANCE_SHARE * grid.accuracy), expected_pressure(first)
-        smooth = not _crosses_relief_start(pair, contact, first, expected)
-        refining = refinement(grid.accuracy, grid.tolerance, smooth, FIRST_CELLS, expected)
-    wanted = next(refining)
-    while True:
+    separation = first
+    displaced: Array | None = None
+    bent: Array | None = None
+
+    def solved(cells: tuple[int, int], tolerance: float, start: Array | None = None) -> Steps[ContactSolution]:
+        nonlocal separation, displaced, bent  # of the grid solved last
         separation = first
-        if first.gap.shape != wanted.cells:
-            separation = yield Gap(contact, wanted.cells, box=first.half_lengths)
+        if first.gap.shape != cells:
+            separation = yield Gap(contact, cells, box=first.half_lengths)
         displaced = None if coupling is None else coupling(separation)
         bent = None if bending is None else bending.within(number, separation)
         ends = (yield Ends(separation)) if grid.free_edges else None
@@ -377,21 +373,17 @@ def _solve_in_box(
             slice_compliance=bent if ends is None else ends if bent is None else bent + ends,
             cover=separation.cover,
         )
-        found = yield Task(problem, wanted.tolerance, wanted.start)
-        try:
-            wanted = refining.send(found)
-        except StopIteration as end:
-            solution, _ = end.value
-            break
+        return (yield Task(problem, tolerance, start))
+
+    if grid.cells is not None:
+        tolerance = grid.tolerance
+        solution = yield from solved(grid.cells, tolerance)
+    else:
+        tolerance, expected = min(grid.tolerance, TOLERANCE_SHARE * grid.accuracy), expected_pressure(first)
+        smooth = not _crosses_relief_start(pair, contact, first, expected)
+        solution, _ = yield from refinement(solved, grid.accuracy, grid.tolerance, smooth, FIRST_CELLS, expected)
     at_relief_start = _crosses_relief_start(pair, contact, separation, solution.pressure_on_material)
     return LoadedContact(contact, separation, solution, at_relief_start, tolerance, displaced, bent)
-
-
-def _on_cells(
-    cells: tuple[int, int], tolerance: float
-) -> Generator[NextGrid, ContactSolution, tuple[ContactSolution, float]]:
-    """A single grid, as :func:`refinement` asks for several."""
-    return (yield NextGrid(cells, tolerance)), math.nan
 
 
 def _crosses_relief_start(pair: GearPair, contact: ContactPoint, separation: Separation, pressure: Array) -> bool:
