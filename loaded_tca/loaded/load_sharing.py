@@ -399,7 +399,7 @@ class _Balance:
         return found
 
     def _neighbours(self, index: int, other: int) -> bool:
-        """Whether two pairs follow each other; farther ones may be loaded never, and not be in the model of the teeth."""
+        """Whether two pairs follow each other; farther ones may be neither loaded nor in the model of the teeth."""
         return abs(self.tooth_pairs[index].pair - self.tooth_pairs[other].pair) == 1
 
     def _between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
