@@ -12,8 +12,7 @@ import threading
 from collections import OrderedDict, deque
 from collections.abc import Callable, Hashable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from copy import copy
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 import pyfftw
@@ -24,6 +23,8 @@ from loaded_tca.arrays import Array, Indices
 from loaded_tca.contact.love import influence_coefficients
 
 Window = tuple[slice, slice]
+Rows = Indices | slice
+ALL = slice(None)
 
 CACHE_BYTES = 192 * 2**20
 # Fewer points of a transform than this are not worth a second thread.
@@ -303,22 +304,15 @@ class _Filter:
         else:
             self._large = _cache.get((rows, box, dtype, threads), lambda: _LargeTransform(rows, box, dtype, threads))
 
-    def __call__(self, values: Array, out: Array) -> Array:
-        """Write the product (count, nx, ny) into ``out`` and return it."""
+    def __call__(self, values: Array, out: Array, rows: Rows = ALL) -> Array:
+        """Write the product (count, nx, ny) into ``out`` and return it; of the problems ``rows`` of the stack."""
+        symbol = self._symbol[rows]
         if self._small is not None:
-            self._small.filter(values, self._symbol, out)
+            self._small.filter(values, symbol, out)
             return out
-        for given, symbol, target in zip(values, self._symbol, out, strict=True):
-            self._large.filter(given, self._corner, symbol, target)
+        for given, own, target in zip(values, symbol, out, strict=True):
+            self._large.filter(given, self._corner, own, target)
         return out
-
-    def select(self, rows: Indices) -> Self:
-        """The same for some problems of the stack."""
-        if len(rows) == len(self._symbol):
-            return self
-        chosen = copy(self)
-        chosen._symbol = self._symbol[rows]
-        return chosen
 
 
 class Convolution(_Filter):

@@ -17,8 +17,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Indices, Mask
-from loaded_tca.contact.convolution import Window
+from loaded_tca.arrays import Array, Indices
+from loaded_tca.contact.convolution import ALL, Rows
 from loaded_tca.contact.love import influence_coefficients
 from loaded_tca.contact.slices import merged
 
@@ -35,11 +35,6 @@ def merged_cover(cover: Array, merge: tuple[int, int]) -> Array:
     return cover
 
 
-def is_cut(cover: Array) -> Mask:
-    """Cells that have some material, but not over the whole of them."""
-    return np.asarray((cover > 0.0) & (cover < 1.0))
-
-
 def limits(cap: float | Array, cover: Array) -> Array:
     """Largest pressure of every cell where its material carries the cap at most; caps and covers may be stacked."""
     return np.where(cover > 0.0, cover, 1.0) * cap
@@ -51,73 +46,49 @@ class CutCells:
 
     Attributes
     ----------
-    size, loaded : int
-        Cells of a grid, and of the window under pressure.
+    shape : (int, int, int)
+        Of the stack.
     cell : (n,) array of int
         Cut cells, counted through the stack problem by problem.
     start : (n,) array of int
-        Where the cells under pressure begin that displace each of them.
+        Where the cells begin that displace each of them, all of its slice that are cut.
     under : (pairs,) array of int
-        These, counted through the windows of the stack.
+        These, counted as ``cell`` is.
     crowding : (pairs,) array
         Displacement under a unit pressure on them, in the units of the influence coefficients.
     """
 
-    size: int
-    loaded: int
+    shape: tuple[int, ...]
     cell: Indices
     start: Indices
     under: Indices
     crowding: Array
 
     @classmethod
-    def of(cls, cover: Array, aspects: Array, window: Window | None = None, dtype: str = "float64") -> CutCells | None:
-        """Those of grids with the parts ``cover`` (count, nx, ny), under pressure on a window; None if there are none.
-
-        ``aspects`` (count,) are dy/dx.
-        """
-        nx, ny = cover.shape[1:]
-        problem, column, row = np.nonzero(is_cut(cover).transpose(0, 2, 1))
-        # Cells of one slice stand together: every cell is paired with all of its slice.
-        _, slice_start, place, members = np.unique(
-            problem * ny + column, return_index=True, return_inverse=True, return_counts=True
-        )
-        partners = members[place]
+    def of(cls, cover: Array, aspects: Array) -> CutCells | None:
+        """Those of grids with the parts ``cover`` (count, nx, ny) and the aspects dy/dx (count,); None if none is."""
+        problem, column, row = np.nonzero(((cover > 0.0) & (cover < 1.0)).transpose(0, 2, 1))
+        if not row.size:
+            return None
+        (_, nx, ny), slices = cover.shape, problem * cover.shape[2] + column
+        first = np.searchsorted(slices, slices)
+        partners = np.searchsorted(slices, slices, side="right") - first
+        start = np.cumsum(partners) - partners
         one = np.repeat(np.arange(row.size), partners)
-        other = np.arange(one.size) + np.repeat(slice_start[place] - (np.cumsum(partners) - partners), partners)
-        rows, columns = (slice(0, nx), slice(0, ny)) if window is None else window
-        inside = (row[other] >= rows.start) & (row[other] < rows.stop)
-        inside &= (column[other] >= columns.start) & (column[other] < columns.stop)
-        one, other = one[inside], other[inside]
-        if not one.size:
-            return None
-        width, height = columns.stop - columns.start, rows.stop - rows.start
-        inverse, own = 1.0 / cover[problem, row, column], influence_coefficients((nx, 1), aspects)[:, :, 0]
+        other = np.arange(one.size) + np.repeat(first - start, partners)
+        cell, inverse = (problem * nx + row) * ny + column, 1.0 / cover[problem, row, column]
         crowding = CROWDING * (np.minimum(inverse[one], inverse[other]) - 1.0)
-        crowding *= own[problem[one], np.abs(row[one] - row[other])]
-        under = (problem * height + row - rows.start) * width + column - columns.start
-        start = np.flatnonzero(np.diff(one, prepend=-1))
-        cell = ((problem * nx + row) * ny + column)[one[start]]
-        return cls(nx * ny, height * width, cell, start, under[other], crowding.astype(dtype))
+        crowding *= influence_coefficients((nx, 1), aspects)[problem[one], np.abs(row[one] - row[other]), 0]
+        return cls(cover.shape, cell, start, cell[other], crowding)
 
-    def add(self, pressure: Array, out: Array) -> None:
-        """Add the displacement under a pressure (count, ...) on the windows to that of the grids."""
-        moved = np.add.reduceat(self.crowding * pressure.ravel()[self.under], self.start)
-        out.reshape(-1)[self.cell] += moved.astype(out.dtype, copy=False)
+    def in_precision(self, dtype: str) -> CutCells:
+        """The same in a precision."""
+        return replace(self, crowding=self.crowding.astype(dtype, copy=False))
 
-    def select(self, rows: Indices) -> CutCells | None:
-        """Those of some problems of the stack, in ascending order."""
-        problem, pairs = self.cell // self.size, np.diff(self.start, append=self.under.size)
-        chosen = np.isin(problem, rows)
-        if not chosen.any():
-            return None
-        paired = np.repeat(chosen, pairs)
-        problem = problem[chosen]
-        shift = np.searchsorted(rows, problem) - problem
-        return replace(
-            self,
-            cell=self.cell[chosen] + shift * self.size,
-            start=np.cumsum(pairs[chosen]) - pairs[chosen],
-            under=self.under[paired] + np.repeat(shift, pairs[chosen]) * self.loaded,
-            crowding=self.crowding[paired],
-        )
+    def add(self, pressure: Array, out: Array, rows: Rows = ALL) -> None:
+        """Add the displacement under pressures on some of the problems to that of their grids."""
+        pressures = np.zeros(self.shape, dtype=pressure.dtype)
+        pressures[rows] = pressure
+        moved = np.zeros(self.shape, dtype=out.dtype)
+        moved.reshape(-1)[self.cell] = np.add.reduceat(self.crowding * pressures.reshape(-1)[self.under], self.start)
+        out += moved[rows]

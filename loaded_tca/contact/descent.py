@@ -1,15 +1,14 @@
 """Projected, preconditioned conjugate gradients for a stack of contact problems on grids of one shape."""
 
-from dataclasses import dataclass
 from itertools import count
-from typing import Any, Self
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array, Indices, Mask
-from loaded_tca.contact.convolution import Preconditioner
-from loaded_tca.contact.grid import ALL, CELLS, Grids, Rows, total_of
+from loaded_tca.contact.convolution import ALL, Preconditioner, Rows
+from loaded_tca.contact.grid import CELLS, Grids, total_of
 
 Single = NDArray[np.float32]
 
@@ -38,8 +37,7 @@ def dots(one: NDArray[Any], other: NDArray[Any]) -> Array:
     return np.einsum("kij,kij->k", one, other)[:, None, None]
 
 
-@dataclass
-class Judgement:
+class Judgement(NamedTuple):
     """How far pressures are from solving their problems; the numbers of each are (count, 1, 1).
 
     Parameters
@@ -57,10 +55,6 @@ class Judgement:
     residual: Array
     free: Mask
 
-    def select(self, rows: Indices) -> Self:
-        """That of some of the problems."""
-        return type(self)(self.approach[rows], self.residual[rows], self.free[rows])
-
 
 def judge(grids: Grids, pressure: Array, excess: Array, room: Array | None = None) -> Judgement:
     """Check the Kuhn-Tucker conditions; turns ``excess``, given as u + h, into u + h - approach in place.
@@ -68,7 +62,6 @@ def judge(grids: Grids, pressure: Array, excess: Array, room: Array | None = Non
     ``room``: an array like these to work in, new arrays of double precision being dear.
     """
     inner = loaded = pressure > grids.slack
-    capped: Mask | None = None
     if grids.any_capped:
         capped = pressure >= grids.limit - grids.slack
         inner = loaded & ~capped
@@ -77,21 +70,20 @@ def judge(grids: Grids, pressure: Array, excess: Array, room: Array | None = Non
     cells = total_of(room)
     mean = dots(excess, room) / np.maximum(cells, 1.0)
     approach = mean if grids.all_loaded else np.where(grids.loaded, mean, grids.approach)
-    if capped is not None:
-        for k in np.flatnonzero(grids.loaded & (cells == 0.0)):
-            # With every cell at a bound any value between two limits is right.
-            lower, outside = float(excess[k][capped[k]].max()), excess[k][~loaded[k]]
-            approach[k] = 0.5 * (lower + float(outside.min(initial=2.0 * np.abs(excess[k]).max() - lower)))
+    for k in np.flatnonzero(grids.loaded & (cells == 0.0)) if grids.any_capped else ():
+        # With every cell at a bound any value between two limits is right.
+        lower, outside = float(excess[k][capped[k]].max()), excess[k][~loaded[k]]
+        approach[k] = 0.5 * (lower + float(outside.min(initial=2.0 * np.abs(excess[k]).max() - lower)))
     excess -= approach
     free = inner | (excess < 0.0)
-    if capped is not None:
-        free = free & ~capped | (capped & (excess > 0.0))
     room *= excess
-    np.subtract(room, excess, out=room)  # but for its sign the excess where the pressure is zero, or at the cap
-    outside = room if capped is None else np.where(capped, excess, room)
+    room -= excess  # but for its sign the excess where the pressure is zero, or at the cap
+    outside = np.where(capped, excess, room) if grids.any_capped else room
     worst = np.maximum.reduce(outside, axis=CELLS, keepdims=True, initial=0.0)
-    room += excess
-    np.abs(room, out=room)
+    np.abs(excess, out=room)
+    if grids.any_capped:
+        free = np.where(capped, excess > 0.0, free)
+        room *= inner
     weighted = dots(pressure, room) / grids.sums(pressure)
     return Judgement(approach, np.maximum(worst, weighted) / np.maximum(approach, LEAST_APPROACH), free)
 
@@ -180,7 +172,8 @@ class Descent:
                     return
                 if left.size <= PART_LEFT * len(running):
                     self._keep(left)
-                    running, state, tolerance, limit = running[left], state.select(left), tolerance[left], limit[left]
+                    state = Judgement(*(values[left] for values in state))
+                    running, tolerance, limit = running[left], tolerance[left], limit[left]
             self._iterate(state, running)
             if (step + 1) % REFRESH == 0:
                 self._displacement = self._displaced(exact=True)
@@ -188,8 +181,7 @@ class Descent:
 
     def _keep(self, left: Indices) -> None:
         """Go on with some of the problems."""
-        self._grids, self._fast = self._grids.select(left), self._fast.select(left)
-        self._precondition, self._rows = self._precondition.select(left), self._rows[left]
+        self._grids, self._rows = self._grids.select(left), self._rows[left]
         kept = ("_root", "_now", "_displacement", "_excess", "_scale", "_used", "_last_descent", "_last", "_direction")
         for name in kept:
             array = getattr(self, name)
@@ -206,7 +198,12 @@ class Descent:
     def _convolved(self, values: Single, rows: Indices) -> Single:
         """Displacement of values of some of the problems in single precision; it stands until the next."""
         self._used[self._chosen(rows)] += 1
-        return self._fast.select(rows)(values, self._image[: rows.size])
+        return self._fast(values, self._image[: rows.size], self._places(rows))
+
+    def _places(self, rows: Rows = ALL) -> Rows:
+        """Rows as they are counted at the start."""
+        places = self._rows[rows]
+        return ALL if places.size == len(self.pressure) else places
 
     def _iterate(self, state: Judgement, running: Mask) -> None:
         """One step along the conjugate directions, projected where it leaves the bounds; none for those that ended."""
@@ -216,7 +213,7 @@ class Descent:
         self._level(self._residual, cells)
         slope, descent = self._conjugate(cells)
         self._used += 1
-        image = self._fast(self._direction, self._image)
+        image = self._fast(self._direction, self._image, self._places())
         curvature = dots(self._direction, image)
         good = (np.minimum(np.minimum(slope, descent), curvature) > 0.0) & running[:, None, None]
         self._last_descent = np.where(good, descent, RESTART)
@@ -254,9 +251,9 @@ class Descent:
         """
         residual, preconditioned, direction = self._residual, self._preconditioned, self._direction
         if self._root is None:
-            self._precondition(residual, preconditioned)
+            self._precondition(residual, preconditioned, self._places())
         else:
-            self._precondition(self._root * residual, preconditioned)
+            self._precondition(self._root * residual, preconditioned, self._places())
             preconditioned *= self._root
         preconditioned *= self._free  # a constant in it is orthogonal to the residual
         descent = dots(preconditioned, residual)

@@ -23,13 +23,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Literal, Self
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from loaded_tca.arrays import Array, Indices, real
-from loaded_tca.contact.convolution import Convolution, Window
+from loaded_tca.arrays import Array, real
+from loaded_tca.contact.convolution import ALL, Convolution, Rows, Window
 from loaded_tca.errors import InputError
 
 # psi = c0 + c1 nu + c2 nu^2, between what Hetenyi's solution gives for Hertz circles of radius a centred 0 to 1.5 a
@@ -250,7 +250,7 @@ class MirroredConvolution:
         self._displaced = np.empty((1, *extended), dtype=dtype)
         self._target = (slice(None), slice(shift[0], None), slice(shift[1], None))
 
-    def __call__(self, pressure: Array, out: Array) -> Array:
+    def __call__(self, pressure: Array, out: Array, _: Rows = ALL) -> Array:
         """Write the displacement into ``out`` and return it."""
         self._loaded[:] = 0.0
         for place, flips, factor in self._images:
@@ -259,10 +259,6 @@ class MirroredConvolution:
         self._convolve(self._loaded, self._displaced)
         np.copyto(out, self._displaced[self._target], casting="same_kind")
         return out
-
-    def select(self, _: Indices) -> Self:
-        """The same: there is one problem only."""
-        return self
 
 
 Image = tuple[tuple[tuple[int, int], tuple[int, int]], tuple[int, int], float]

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Indices, Mask
-from loaded_tca.contact.convolution import Convolution, Window
-from loaded_tca.contact.cuts import CutCells, is_cut, limits, merged_cover
+from loaded_tca.arrays import Array, Mask
+from loaded_tca.contact.convolution import ALL, Convolution, Rows, Window
+from loaded_tca.contact.cuts import CutCells, limits, merged_cover
 from loaded_tca.contact.edges import FreeEdge, MirroredConvolution, amplification, mirrors
 from loaded_tca.contact.levels import coarsen, window_around
 from loaded_tca.contact.love import own_coefficient
@@ -32,10 +32,7 @@ LARGEST_WHOLE = 2048
 
 TINY = float(np.finfo(np.float64).tiny)
 
-Rows = Indices | slice
-ALL = slice(None)
-
-
+Operator = Callable[..., Array]
 CELLS = (1, 2)
 """Axes of the cells of a stack."""
 
@@ -135,16 +132,8 @@ class Grids:
         """Return some of the problems, in ascending order."""
         if rows == ALL if isinstance(rows, slice) else len(rows) == len(self):
             return self
-        return replace(
-            self,
-            gap=self.gap[rows],
-            spacing=self.spacing[rows],
-            total=self.total[rows],
-            approach=self.approach[rows],
-            cap=self.cap[rows],
-            slices=None if self.slices is None else self.slices[rows],
-            cover=None if self.cover is None else self.cover[rows],
-        )
+        kept = {name: getattr(self, name) for name in ("gap", "spacing", "total", "approach", "cap", "slices", "cover")}
+        return replace(self, **{name: array[rows] for name, array in kept.items() if array is not None})
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -226,13 +215,12 @@ class Grids:
     def part(self, window: Window) -> Grids:
         """Return the problems on a window of the grid, their gaps cut where they are out of reach."""
         rows, columns = window
-        cut = self.cover is not None and is_cut(self.cover[:, rows, columns]).any()
         return replace(
             self,
             gap=np.minimum(self.gap[:, rows, columns], OUT_OF_REACH * self.reach),
             slices=None if self.slices is None else self.slices[:, columns, columns],
             start=(rows.start, columns.start),
-            cover=self.cover[:, rows, columns] if self.cover is not None and cut else None,
+            cover=None if self.cover is None else self.cover[:, rows, columns],
         )
 
     @property
@@ -265,19 +253,35 @@ class Grids:
             cover=None if self.cover is None else merged_cover(self.cover, merge),
         )
 
+    @cached_property
+    def cut_cells(self) -> CutCells | None:
+        """Cells that edges of the material cut, if there are some."""
+        return None if self.cover is None else CutCells.of(self.cover, self.aspects)
+
     def operator(self, window: Window | None = None, dtype: str = "float64", threads: int = 2) -> Operator:
-        """K for pressures on a window of the grids, or on all of them."""
+        """K for pressures that are zero outside a window, as a function (pressure, out, rows) that returns ``out``.
+
+        The arrays hold the grids of some problems, ``rows``, or of all.
+        """
         convolve: Convolution | MirroredConvolution
         if self.free_edges:
             edges = mirrors(self.free_edges, tuple(self.spacing[0].tolist()), self.start)
             convolve = MirroredConvolution(self.shape, self.aspects, edges, window, dtype, threads)
         else:
             convolve = Convolution(self.shape, self.aspects, window, dtype, threads)
-        slices = self.slices
-        if slices is not None:
-            slices = (slices if window is None else slices[:, :, window[1]]).astype(dtype, copy=False)
-        cuts = None if self.cover is None else CutCells.of(self.cover, self.aspects, window, dtype)
-        return Operator(len(self), convolve, slices, cuts)
+        slices = None if self.slices is None else self.slices.astype(dtype, copy=False)
+        cuts = None if self.cut_cells is None else self.cut_cells.in_precision(dtype)
+
+        def displaced(pressure: Array, out: Array, rows: Rows = ALL) -> Array:
+            convolve(pressure if window is None else pressure[:, *window], out, rows)
+            if slices is not None:
+                forces = pressure.sum(axis=1, dtype=dtype)
+                out += np.matmul(slices[rows], forces[:, :, None])[:, None, :, 0]
+            if cuts is not None:
+                cuts.add(pressure, out, rows)
+            return out
+
+        return displaced
 
     def guess(self) -> Array:
         """Return pressures to start from without others: where the gap is below a level, as the root of what it lacks.
@@ -342,37 +346,6 @@ class Grids:
             limit = np.where(movable, np.minimum(limit[summed], total), 0.0)
             projected[summed] = fixed + shifted_to_sum(pressure[summed], total - total_of(fixed), limit, movable)
         return projected
-
-
-@dataclass(eq=False)
-class Operator:
-    """K of a stack of problems: displacement (count, nx, ny) of grids under the pressure on a window of them."""
-
-    count: int
-    convolve: Convolution | MirroredConvolution
-    slices: Array | None
-    cuts: CutCells | None
-
-    def __call__(self, pressure: Array, out: Array) -> Array:
-        """Write the displacement into ``out`` and return it."""
-        self.convolve(pressure, out)
-        if self.slices is not None:
-            forces = pressure.sum(axis=1, dtype=self.slices.dtype)
-            out += np.matmul(self.slices, forces[:, :, None])[:, None, :, 0]
-        if self.cuts is not None:
-            self.cuts.add(pressure, out)
-        return out
-
-    def select(self, rows: Indices) -> Operator:
-        """The same for some of the problems, in ascending order."""
-        if len(rows) == self.count:
-            return self
-        return Operator(
-            len(rows),
-            self.convolve.select(rows),
-            None if self.slices is None else self.slices[rows],
-            None if self.cuts is None else self.cuts.select(rows),
-        )
 
 
 def ratio(above: Array, below: Array, where: Mask, otherwise: float = 0.0) -> Array:

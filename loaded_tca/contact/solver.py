@@ -401,7 +401,7 @@ def _solve_on_finest(
         descent.run(RESERVE * tolerance[rows], MOST_ITERATIONS - iterations[rows])
         settled, pressure = part.settled(descent.pressure), np.zeros(whole.gap.shape)
         pressure[:, *window] = settled
-        displacement = whole.operator(window, threads=threads)(settled, np.empty(pressure.shape))
+        displacement = whole.operator(window, threads=threads)(pressure, np.empty(pressure.shape))
         state = judge(whole, pressure, displacement + whole.gap)
         approach, residual = state.approach[:, 0, 0], state.residual[:, 0, 0]
         iterations[rows] += descent.iterations
