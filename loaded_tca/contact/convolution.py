@@ -377,31 +377,27 @@ def _kernels(kind: str, box: tuple[int, int], aspects: ArrayLike, dtype: str, ha
         if half:
             quadrants = _kernels(kind, box, own_aspects, dtype)
             made = np.concatenate((quadrants, quadrants[:, :, -2:0:-1]), axis=2)
+        elif kind == "inverse":
+            made = _inverse_kernels(box, own_aspects, dtype)
+        elif dtype == "float64":
+            made = _love_kernels(box, own_aspects)
         else:
-            made = _MAKERS[kind](box, own_aspects, dtype)
+            made = _kernels(kind, box, own_aspects, "float64").astype(dtype)
         for key, own in zip(missing, made, strict=True):
             kept[key] = _cache.keep(key, own if len(made) == 1 else own.copy())
     return np.stack([kept[key] for key in keys]) if len(keys) > 1 else kept[keys[0]][None]
 
 
-def _love_kernels(box: tuple[int, int], aspects: Sequence[float], dtype: str = "float64") -> Array:
-    """Transform of Love's coefficients wrapped into the box, over its points, a quadrant as the kept spectrum lies.
-
-    In single precision the kept one rounded.
-    """
-    if dtype != "float64":
-        return _kernels("love", box, aspects, "float64").astype(dtype)
+def _love_kernels(box: tuple[int, int], aspects: Sequence[float]) -> Array:
+    """Transform of Love's coefficients wrapped into the box, over its points, a quadrant as the kept spectrum lies."""
     quadrant = (box[0] // 2 + 1, box[1] // 2 + 1)
     symbol = dctn(influence_coefficients(quadrant, np.array(aspects)), type=1, axes=(1, 2), overwrite_x=True)
     symbol /= box[0] * box[1]
     return np.ascontiguousarray(symbol.transpose(0, 2, 1))
 
 
-def _inverse_kernels(box: tuple[int, int], aspects: Sequence[float], dtype: str = "float32") -> Array:
+def _inverse_kernels(box: tuple[int, int], aspects: Sequence[float], dtype: str) -> Array:
     """Reciprocal of the transform of the wrapped coefficients, over the number of points of the box."""
     transformed = _kernels("love", box, aspects, "float64") * (box[0] * box[1])
     floor = transformed.max(axis=(1, 2), keepdims=True) * np.finfo(np.float32).eps
     return np.asarray(1.0 / (np.maximum(transformed, floor) * (box[0] * box[1])), dtype=dtype)
-
-
-_MAKERS = {"love": _love_kernels, "inverse": _inverse_kernels}

@@ -62,15 +62,15 @@ def judge(grids: Grids, pressure: Array, excess: Array, room: Array | None = Non
     ``room``: an array like these to work in, new arrays of double precision being dear.
     """
     inner = loaded = pressure > grids.slack
-    if grids.any_capped:
+    if grids.capped:
         capped = pressure >= grids.limit - grids.slack
         inner = loaded & ~capped
     room = np.empty(pressure.shape) if room is None else room
     np.copyto(room, inner)
     cells = total_of(room)
     mean = dots(excess, room) / np.maximum(cells, 1.0)
-    approach = mean if grids.all_loaded else np.where(grids.loaded, mean, grids.approach)
-    for k in np.flatnonzero(grids.loaded & (cells == 0.0)) if grids.any_capped else ():
+    approach = mean if grids.loaded else grids.approach
+    for k in np.flatnonzero(cells == 0.0) if grids.loaded and grids.capped else ():
         # With every cell at a bound any value between two limits is right.
         lower, outside = float(excess[k][capped[k]].max()), excess[k][~loaded[k]]
         approach[k] = 0.5 * (lower + float(outside.min(initial=2.0 * np.abs(excess[k]).max() - lower)))
@@ -78,10 +78,10 @@ def judge(grids: Grids, pressure: Array, excess: Array, room: Array | None = Non
     free = inner | (excess < 0.0)
     room *= excess
     room -= excess  # but for its sign the excess where the pressure is zero, or at the cap
-    outside = np.where(capped, excess, room) if grids.any_capped else room
+    outside = np.where(capped, excess, room) if grids.capped else room
     worst = np.maximum.reduce(outside, axis=CELLS, keepdims=True, initial=0.0)
     np.abs(excess, out=room)
-    if grids.any_capped:
+    if grids.capped:
         free = np.where(capped, excess > 0.0, free)
         room *= inner
     weighted = dots(pressure, room) / grids.sums(pressure)
@@ -223,7 +223,7 @@ class Descent:
         step, trial = np.multiply(self._direction, length, out=self._preconditioned), self._next
         np.subtract(self._now, step, out=trial)
         outside = np.minimum.reduce(trial, axis=CELLS, keepdims=True) < 0.0
-        if self._grids.any_capped:
+        if self._grids.capped:
             outside |= (trial > self._grids.limit).any(axis=CELLS, keepdims=True)
         rows = (outside & good)[:, 0, 0].nonzero()[0]
         if rows.size:
@@ -267,7 +267,7 @@ class Descent:
         """Leave nothing outside the free cells; with a given sum, take the mean off them, so that the sum stays."""
         values *= self._free
         mean = total_of(values) / cells
-        if not self._grids.all_loaded:
+        if not self._grids.loaded:
             mean *= self._grids.loaded
         values -= mean
         values *= self._free

@@ -52,7 +52,8 @@ class Grids:
     """A stack of contact problems on grids of one shape: minimise p.Kp/2 + h.p over 0 <= p <= cap, each for itself.
 
     Pressures are p dx/E* here, a length, so that K depends on the shape of a cell only. What is one number for each
-    problem has the shape (count, 1, 1), as it goes with the cells.
+    problem has the shape (count, 1, 1), as it goes with the cells. A load, a cap, slices and cover are given for all
+    problems or for none.
 
     Parameters
     ----------
@@ -88,40 +89,28 @@ class Grids:
 
     @classmethod
     def of(cls, problems: Sequence[ContactProblem]) -> Grids:
-        """Return the whole finest grids of problems, their gaps and approaches counted from first contact.
-
-        They have one number of cells; slices and cover all of them or none, and free edges one alone.
-        """
+        """Return the whole finest grids of problems alike, their gaps and approaches counted from first contact."""
         first = problems[0]
         spacing = np.array([problem.spacing for problem in problems])
-        dx, dy = each(spacing[:, 0]), each(spacing[:, 1])
         modulus, contact, load, approach, cap = (
             each([np.nan if (value := getattr(problem, name)) is None else value for problem in problems])
             for name in ("contact_modulus", "first_contact", "load", "approach", "max_pressure")
         )
-        total, approach, cap = load / (dy * modulus), approach - contact, cap * (dx / modulus)
         cover, slices = (
             None if getattr(first, name) is None else np.stack([getattr(problem, name) for problem in problems])
             for name in ("cover", "slice_compliance")
         )
-        if np.isnan(cap).all():
-            cap = np.full_like(cap, np.inf)
-        else:
-            # One cell that takes all of the load, or of the approach, has the highest pressure there can be.
-            most = np.where(np.isnan(total), approach / own_coefficient(dy / dx), total)
-            if cover is not None:
-                most /= np.where(cover > 0.0, cover, 1.0).min(axis=CELLS, keepdims=True)
-            cap = np.where(cap < most, cap, np.inf)
+        dx, forces = each(spacing[:, 0]), each(spacing[:, 1]) * modulus
         gap = np.stack([problem.gap for problem in problems])
         gap -= contact
         return cls(
             gap=gap,
             spacing=spacing,
-            total=total,
-            approach=approach,
-            cap=cap,
+            total=load / forces,
+            approach=approach - contact,
+            cap=cap * (dx / modulus) if first.cap_is_near else np.full(cap.shape, np.inf),
             free_edges=tuple(first.free_edges),
-            slices=None if slices is None else slices * (dy * modulus),
+            slices=None if slices is None else slices * forces,
             cover=cover,
         )
 
@@ -146,40 +135,23 @@ class Grids:
         return np.asarray(self.spacing[:, 1] / self.spacing[:, 0])
 
     @cached_property
-    def loaded(self) -> Mask:
-        """Problems whose load is given, (count, 1, 1); that of the others follows from their approach."""
-        return ~np.isnan(self.total)
+    def loaded(self) -> bool:
+        """Whether loads are given; otherwise they follow from the approach."""
+        return not np.isnan(self.total).any()
 
     @cached_property
-    def capped(self) -> Mask:
-        """Problems with a cap on the pressure, (count, 1, 1)."""
-        return np.isfinite(self.cap)
-
-    @cached_property
-    def any_capped(self) -> bool:
-        """Whether there is one with a cap."""
-        return bool(self.capped.any())
-
-    @cached_property
-    def all_loaded(self) -> bool:
-        """Whether the load of every one is given."""
-        return bool(self.loaded.all())
-
-    @cached_property
-    def all_scaled(self) -> bool:
-        """Whether every one has a load and none a cap, so that its pressures may be scaled to their sum."""
-        return self.all_loaded and not self.any_capped
+    def capped(self) -> bool:
+        """Whether the pressures have a cap."""
+        return bool(np.isfinite(self.cap).all())
 
     def sums(self, pressure: Array) -> Array:
         """Sums of pressures that have them right, (count, 1, 1); not zero."""
-        if self.all_loaded:
-            return self.total
-        return np.where(self.loaded, self.total, np.maximum(total_of(pressure), TINY))
+        return self.total if self.loaded else np.maximum(total_of(pressure), TINY)
 
     @cached_property
     def slack(self) -> Array | float:
         """Distance from a bound that is a rounding error: a cell that the last digits keep off the cap is at it."""
-        return AT_BOUND * np.where(self.capped, self.cap, 0.0) if self.any_capped else 0.0
+        return AT_BOUND * self.cap if self.capped else 0.0
 
     @cached_property
     def limit(self) -> Array:
@@ -194,13 +166,15 @@ class Grids:
         that displacement for some cell below the cap: one of the lowest sums, as many as the load fills to the cap and
         one more.
         """
+        if not self.loaded:
+            return self.approach
         own = amplification(self.free_edges) * own_coefficient(each(self.aspects))
         if self.slices is not None:
             own = own + np.abs(self.slices).max(axis=CELLS, keepdims=True)
-        most = np.where(self.loaded, self.total, 0.0) * own
+        most = self.total * own
         level = self.gap + (most if self.cover is None else most / np.maximum(self.cover, LEAST_COVER))
-        reach = np.where(self.loaded, level.min(axis=CELLS, keepdims=True), self.approach)
-        for k in np.flatnonzero(self.loaded & self.capped) if self.any_capped else ():
+        reach = level.min(axis=CELLS, keepdims=True)
+        for k in range(len(self)) if self.capped else ():
             order = np.argsort(level[k], axis=None)
             held = np.cumsum(np.broadcast_to(self.limit[k], self.shape).ravel()[order])
             rank = int(np.searchsorted(held, self.total[k, 0, 0], side="right"))
@@ -289,25 +263,29 @@ class Grids:
         The level is that of a sphere under this load whose contact has as many cells: the approach is twice as much.
         Nothing where the approach is prescribed.
         """
+        if not self.loaded:
+            return np.zeros(self.gap.shape)
         aspects = each(self.aspects)
-        product = 0.375 * np.where(self.loaded, self.total, 0.0) * aspects  # of level and radius
+        product = 0.375 * self.total * aspects  # of level and radius
         gaps = np.sort(self.gap.reshape(len(self), 1, -1), axis=2)
         radii = np.sqrt(np.arange(1, gaps.shape[2] + 1) * (aspects / np.pi))
         closed = np.count_nonzero(gaps * radii < product, axis=2, keepdims=True)
         level = product / np.sqrt(np.maximum(closed, 1) * (aspects / np.pi))
-        return self.fitted(np.sqrt(np.maximum(level - self.gap, 0.0)) * self.loaded)
+        return self.fitted(np.sqrt(np.maximum(level - self.gap, 0.0)))
 
     def fitted(self, pressure: Array) -> Array:
         """Return pressures within the bounds and with the right sums, zero where no contact is possible."""
         pressure = np.minimum(pressure, self.limit)
         pressure *= self.reachable
+        if not self.loaded:
+            return pressure
         total = total_of(pressure)
-        empty = np.flatnonzero(self.loaded & (total == 0.0))
+        empty = np.flatnonzero(total == 0.0)
         if empty.size:
             pressure[empty] = self.reachable[empty]
             total[empty] = total_of(pressure[empty])
-        pressure *= ratio(self.total, total, self.loaded, otherwise=1.0)
-        above = np.flatnonzero((pressure > self.limit).any(axis=CELLS)) if self.any_capped else empty[:0]
+        pressure *= self.total / total
+        above = np.flatnonzero((pressure > self.limit).any(axis=CELLS)) if self.capped else empty[:0]
         if above.size:
             pressure[above] = self.project(pressure[above], self.reachable[above], above)
         return pressure
@@ -317,19 +295,11 @@ class Grids:
         return self.clip(pressure, (pressure > 0.0) & (pressure < self.limit))
 
     def clip(self, pressure: Array, movable: Mask, rows: Rows = ALL) -> Array:
-        """Pressures of some of the problems within the bounds and with the right sums.
-
-        Scaled where the load is given and there is no cap, projected otherwise.
-        """
+        """Pressures of some of the problems within the bounds and with the right sums, scaled if there is no cap."""
+        if self.capped or not self.loaded:
+            return self.project(pressure, movable, rows)
         clipped = np.maximum(pressure, 0.0)
-        if self.all_scaled:
-            clipped *= self.total[rows] / total_of(clipped)
-            return clipped
-        scaled = (self.loaded & ~self.capped)[rows]
-        clipped *= ratio(self.total[rows], total_of(clipped), scaled, otherwise=1.0)
-        others = np.flatnonzero(~scaled)
-        if others.size:
-            clipped[others] = self.project(pressure[others], movable[others], np.arange(len(self))[rows][others])
+        clipped *= self.total[rows] / total_of(clipped)
         return clipped
 
     def project(self, pressure: Array, movable: Mask, rows: Rows = ALL) -> Array:
@@ -339,18 +309,13 @@ class Grids:
         """
         total, limit = self.total[rows], self.limit[rows]
         projected = np.minimum(np.maximum(pressure, 0.0), limit)
-        summed = np.flatnonzero(self.loaded[rows] & movable.any(axis=CELLS, keepdims=True))
-        if summed.size:
+        summed = np.flatnonzero(movable.any(axis=CELLS)) if self.loaded else ()
+        if len(summed):
             movable, total = movable[summed], total[summed]
             fixed = np.where(movable, 0.0, projected[summed])
             limit = np.where(movable, np.minimum(limit[summed], total), 0.0)
             projected[summed] = fixed + shifted_to_sum(pressure[summed], total - total_of(fixed), limit, movable)
         return projected
-
-
-def ratio(above: Array, below: Array, where: Mask, otherwise: float = 0.0) -> Array:
-    """Quotients of one number for each problem where they are to be taken."""
-    return np.asarray(np.where(where, above, otherwise) / np.where(where, below, 1.0))
 
 
 def shifted_to_sum(values: Array, total: Array, cap: Array, movable: Mask) -> Array:

@@ -14,6 +14,7 @@ from loaded_tca.arrays import Array, numbers
 from loaded_tca.contact import checks
 from loaded_tca.contact.cuts import limits
 from loaded_tca.contact.edges import FreeEdge, check_edges, without_material_beyond
+from loaded_tca.contact.love import own_coefficient
 from loaded_tca.contact.slices import check_slices
 
 Spacing = tuple[float, float]
@@ -109,6 +110,18 @@ class ContactProblem:
         if self.max_pressure is None:
             return math.inf
         return self.max_pressure if self.cover is None else limits(self.max_pressure, self.cover)
+
+    @cached_property
+    def cap_is_near(self) -> bool:
+        """Whether one cell that took all of the load, or of the approach, would be pressed beyond the cap."""
+        if self.max_pressure is None:
+            return False
+        if self.load is None:
+            stiffness = self.contact_modulus / (self.spacing[0] * own_coefficient(self.spacing[1] / self.spacing[0]))
+            most = (self.approach - self.first_contact) * stiffness
+        else:
+            most = self.load / self.cell_area
+        return self.max_pressure * (1.0 if self.cover is None else self.cover[self.cover > 0.0].min()) < most
 
     @property
     def material_area(self) -> float:

@@ -301,8 +301,10 @@ def _stacks(
         approach = problem.approach
         if problem.load == 0.0 or (approach is not None and approach <= problem.first_contact):
             continue
-        parts = problem.slice_compliance is None, problem.cover is None, k if problem.free_edges else None
-        alike.setdefault((problem.cells, tolerance < SINGLE_PRECISION, start is None, *parts), []).append(k)
+        given = (value is None for value in (start, approach, problem.slice_compliance, problem.cover))
+        edges = k if problem.free_edges else None
+        key = problem.cells, tolerance < SINGLE_PRECISION, problem.cap_is_near, edges, *given
+        alike.setdefault(key, []).append(k)
     stacks = []
     for numbers_of in alike.values():
         size = max(1, STACK_CELLS // math.prod(problems[numbers_of[0]].cells))

@@ -36,7 +36,7 @@ def displaced(grids, pressure):
 
 
 def energy(grids, pressure):
-    level = grids.gap if grids.loaded[0] else grids.gap - grids.approach[0]
+    level = grids.gap if grids.loaded else grids.gap - grids.approach[0]
     return float((pressure * (0.5 * displaced(grids, pressure) + level)).sum())
 
 
