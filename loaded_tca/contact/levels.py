@@ -61,15 +61,15 @@ def under_other_load(pressure: Array, ratio: float) -> Array:
 
     The squares of the pressures under two ellipses of the same shape, or two strips, differ by a constant.
     """
-    square = continue_outside(pressure * pressure)
-    square[square == 0.0] = -np.inf  # no neighbour tells how these would go on
-    total, shift = ratio * float(pressure.sum()), 0.0
+    square, total, shift = continue_outside(pressure * pressure), ratio * float(pressure.sum()), 0.0
+    told = square != 0.0  # no neighbour tells how the others would go on
+    squares, found = square[told], np.zeros(square.shape)
     for _ in range(SHIFTS):
-        shifted = np.sqrt(np.maximum(square + shift, 0.0))
-        surplus = float(shifted.sum()) - total
-        slope = 0.5 * float((1.0 / shifted[shifted > 0.0]).sum()) if shifted.any() else 0.0
-        shift -= surplus / slope if slope > 0.0 else 0.0
-    return np.asarray(np.sqrt(np.maximum(square + shift, 0.0)))
+        shifted = np.sqrt(np.maximum(squares + shift, 0.0))
+        slope = 0.5 * float((1.0 / shifted[shifted > 0.0]).sum())
+        shift -= (float(shifted.sum()) - total) / slope if slope > 0.0 else 0.0
+    found[told] = np.sqrt(np.maximum(squares + shift, 0.0))
+    return found
 
 
 def continue_outside(square: Array) -> Array:

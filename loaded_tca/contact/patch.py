@@ -15,6 +15,8 @@ from loaded_tca.contact.levels import continue_outside, split, window_around
 GOOD_FIT = 2e-3
 # Twice as many cells as the quadratic has coefficients.
 FEWEST = 12
+# Cells on a line, or on another conic, tell no quadratic; rounding leaves this part of the largest eigenvalue.
+RANK = 1e-14
 # Rows and columns that enter the fit at most: more change its result by less than the solver's tolerance does.
 SAMPLES = 48
 # A cell is cut into 4 x 4 to find how much of it is in contact.
@@ -31,10 +33,10 @@ def peak_pressure(pressure: Array) -> float:
         return largest
     terms = np.stack((np.ones_like(x), x, y, 0.5 * x * x, x * y, 0.5 * y * y))
     # Not by BLAS: its threads wait for each other on a busy machine.
-    products = np.einsum("ik,jk->ij", terms, terms)
-    if np.linalg.matrix_rank(products) < 6:
+    scales, modes = np.linalg.eigh(np.einsum("ik,jk->ij", terms, terms))
+    if scales[0] <= RANK * scales[-1]:
         return largest
-    fitted = np.linalg.solve(products, np.einsum("ik,k->i", terms, square))
+    fitted = modes @ (modes.T @ np.einsum("ik,k->i", terms, square) / scales)
     misfit = float(np.sqrt(np.mean((np.einsum("i,ik->k", fitted, terms) - square) ** 2)))
     hessian = np.array([[fitted[3], fitted[4]], [fitted[4], fitted[5]]])
     if misfit > GOOD_FIT or np.linalg.eigvalsh(hessian)[1] >= 0.0:
@@ -54,13 +56,13 @@ def area_and_semi_axes(pressure: Array, spacing: tuple[float, float]) -> tuple[f
     square = continue_outside(pressure[window] ** 2)
     for _ in range(HALVINGS):
         square = split(split(square, -2), -1)
-    inside = square > 0.0
+    inside = (square > 0.0).astype(float)
+    sums, cells = (inside.sum(axis=1), inside.sum(axis=0)), inside.sum()
     width, length = spacing[0] / 2**HALVINGS, spacing[1] / 2**HALVINGS
-    count = np.count_nonzero(inside)
-    x, y = (np.nonzero(inside)[axis] * step for axis, step in ((0, width), (1, length)))
-    moments = np.cov(np.stack((x, y)), bias=True) + np.diag([width**2, length**2]) / 12.0
-    minor, major = 2.0 * np.sqrt(np.linalg.eigvalsh(moments))
-    return count * width * length, float(minor), float(major)
+    x, y = (np.arange(n) - np.arange(n) @ own / cells for n, own in zip(inside.shape, sums, strict=True))
+    moments = np.array([[x * x @ sums[0], 0.0], [x @ (inside @ y), y * y @ sums[1]]]) / cells + np.eye(2) / 12.0
+    minor, major = 2.0 * np.sqrt(np.linalg.eigvalsh(moments * np.outer((width, length), (width, length))))
+    return float(cells) * width * length, float(minor), float(major)
 
 
 def _upper_part(pressure: Array) -> tuple[Array, Array, Array]:
@@ -68,10 +70,9 @@ def _upper_part(pressure: Array) -> tuple[Array, Array, Array]:
     high = pressure > 0.5
     rows, columns = np.flatnonzero(high.any(axis=1)), np.flatnonzero(high.any(axis=0))
     rows, columns = (index[:: -(-index.size // SAMPLES)] for index in (rows, columns))
-    part = pressure[np.ix_(rows, columns)]
-    chosen = part > 0.5
-    x, y = np.broadcast_arrays(_centred(rows)[:, None], _centred(columns)[None, :])
-    return part[chosen] ** 2, x[chosen], y[chosen]
+    part = pressure[rows][:, columns]
+    row, column = np.nonzero(part > 0.5)
+    return part[row, column] ** 2, _centred(rows)[row], _centred(columns)[column]
 
 
 def _centred(index: NDArray[np.intp]) -> Array:
@@ -89,12 +90,11 @@ def ends_at_material(pressure: Array, void: Mask) -> bool:
     if not void.any():
         return False
     square = pressure**2
-    for axis in (0, 1):
-        for direction in (1, -1):
-            beyond, before = np.roll(void, -direction, axis), np.roll(square, direction, axis)
-            np.moveaxis(beyond, axis, 0)[-1 if direction > 0 else 0] = False
-            if (beyond & (square > 0.0) & (3.0 * square >= before)).any():
-                return True
+    for beyond, squares in ((void, square), (void[::-1], square[::-1]), (void.T, square.T), (void.T[::-1], square.T[::-1])):
+        last, across = np.nonzero(beyond[1:] & (squares[:-1] > 0.0))
+        before = np.where(last > 0, squares[last - 1, across], 0.0)
+        if (3.0 * squares[last, across] >= before).any():
+            return True
     return False
 
 

@@ -85,7 +85,7 @@ class ContactProblem:
         gap = without_material_beyond(gap.copy(), spacing, edges if cover is None else ())
         there = np.isfinite(gap)
         checks.raise_if([] if there.any() else ["free_edges: no cell within them holds material"])
-        cover = None if cover is None or (cover[there] == 1.0).all() else np.where(there, cover, 0.0)
+        cover = None if cover is None or (cover == 1.0)[there].all() else np.where(there, cover, 0.0)
         for array in (gap, slices, cover):
             if array is not None:
                 array.flags.writeable = False
@@ -126,8 +126,8 @@ class ContactProblem:
     @property
     def material_area(self) -> float:
         """Area of the cells that has material [mm^2]."""
-        parts = np.isfinite(self.gap) if self.cover is None else self.cover
-        return float(parts.sum()) * self.cell_area
+        cells = np.count_nonzero(np.isfinite(self.gap)) if self.cover is None else float(self.cover.sum())
+        return cells * self.cell_area
 
     @property
     def cells(self) -> tuple[int, int]:

@@ -410,16 +410,12 @@ def _solve_on_finest(
         convolutions[rows] += descent.convolutions + 1
         ended = (residual <= tolerance[rows]) | (iterations[rows] >= MOST_ITERATIONS) | (check == MOST_CHECKS - 1)
         for k in np.flatnonzero(ended).tolist():
-            problem = problems[rows[k]]
-            gap = np.add(displacement[k], grids.gap[k], out=displacement[k])
-            gap -= approach[k]
-            own = pressure[k]
-            own /= _unit(problem)
+            problem, own = problems[rows[k]], pressure[k] / _unit(problems[rows[k]])
             if problem.max_pressure is not None:  # what is at the cap but for rounding is exactly at it from here on
                 own = np.where((own > 0.0) & (own >= (1.0 - AT_BOUND) * problem.cap), problem.cap, own)
             found[rows[k]] = ContactSolution(
-                pressure=own if len(grids) == 1 else own.copy(),
-                gap=gap if len(grids) == 1 else gap.copy(),
+                pressure=own,
+                gap=displacement[k] + grids.gap[k] - approach[k],
                 approach=problem.first_contact + float(approach[k]),
                 load=float(own.sum()) * problem.cell_area if problem.load is None else problem.load,
                 iterations=int(iterations[rows[k]]),
