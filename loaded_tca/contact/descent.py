@@ -25,8 +25,6 @@ THREADED_BLAS = 10_000
 RESTART = np.float32(np.inf)
 # What residuals refer to where the approach is none, as it cannot be in a solution [mm].
 LEAST_APPROACH = 1e-100
-# Problems that are solved leave the stack once no more than this part of it is left: copying costs less than they do.
-PART_LEFT = 0.75
 
 
 def dots(one: NDArray[Any], other: NDArray[Any]) -> Array:
@@ -149,32 +147,27 @@ class Descent:
 
     def run(self, tolerance: Array, limit: Array) -> None:
         """Iterate each problem until its residual is below its tolerance or its ``limit`` of iterations is reached."""
-        running = np.ones(len(self._rows), dtype=bool)
         for step in count():
             np.add(self._displacement, self._grids.gap, out=self._excess)
             state = judge(self._grids, self._now, self._excess, self._next)
             if step == 0:  # of the excess in single precision
                 self._scale = np.abs(self._excess).max(axis=CELLS, keepdims=True, initial=LEAST_APPROACH)
-            solved = state.residual[:, 0, 0] <= tolerance
-            (ended,) = (running & (solved | (step >= limit))).nonzero()
-            if ended.size:
-                rows = self._rows[ended]
+            ends = (state.residual[:, 0, 0] <= tolerance) | (step >= limit)
+            if ends.any():
+                rows = self._rows[ends]
                 if rows.size == len(self.pressure):
                     self.pressure = self._now
                 else:
-                    self.pressure[rows] = self._now[ended]
-                self.iterations[rows] = step
-                self.approach[rows], self.residual[rows] = state.approach[ended, 0, 0], state.residual[ended, 0, 0]
-                self.convolutions[rows] = self._used[ended]
-                running[ended] = False
-                (left,) = running.nonzero()
+                    self.pressure[rows] = self._now[ends]
+                self.iterations[rows], self.convolutions[rows] = step, self._used[ends]
+                self.approach[rows], self.residual[rows] = state.approach[ends, 0, 0], state.residual[ends, 0, 0]
+                left = np.flatnonzero(~ends)
                 if not left.size:
                     return
-                if left.size <= PART_LEFT * len(running):
-                    self._keep(left)
-                    state = Judgement(*(values[left] for values in state))
-                    running, tolerance, limit = running[left], tolerance[left], limit[left]
-            self._iterate(state, running)
+                self._keep(left)
+                state = Judgement(*(values[left] for values in state))
+                tolerance, limit = tolerance[left], limit[left]
+            self._iterate(state)
             if (step + 1) % REFRESH == 0:
                 self._displacement = self._displaced(exact=True)
                 self._last_descent[:] = RESTART
@@ -205,8 +198,8 @@ class Descent:
         places = self._rows[rows]
         return ALL if places.size == len(self.pressure) else places
 
-    def _iterate(self, state: Judgement, running: Mask) -> None:
-        """One step along the conjugate directions, projected where it leaves the bounds; none for those that ended."""
+    def _iterate(self, state: Judgement) -> None:
+        """One step along the conjugate directions, projected where it leaves the bounds."""
         np.copyto(self._free, state.free)
         np.multiply(self._excess, 1.0 / self._scale, out=self._residual, casting="same_kind")
         cells = np.maximum(total_of(self._free), 1.0)
@@ -215,7 +208,7 @@ class Descent:
         self._used += 1
         image = self._fast(self._direction, self._image, self._places())
         curvature = dots(self._direction, image)
-        good = (np.minimum(np.minimum(slope, descent), curvature) > 0.0) & running[:, None, None]
+        good = np.minimum(np.minimum(slope, descent), curvature) > 0.0
         self._last_descent = np.where(good, descent, RESTART)
         length = np.zeros(good.shape, dtype=np.float32)
         np.divide(self._scale * slope, curvature, out=length, where=good, casting="same_kind")
@@ -266,11 +259,9 @@ class Descent:
     def _level(self, values: Single, cells: Single) -> None:
         """Leave nothing outside the free cells; with a given sum, take the mean off them, so that the sum stays."""
         values *= self._free
-        mean = total_of(values) / cells
-        if not self._grids.loaded:
-            mean *= self._grids.loaded
-        values -= mean
-        values *= self._free
+        if self._grids.loaded:
+            values -= total_of(values) / cells
+            values *= self._free
 
     def _chosen(self, rows: Indices) -> Rows:
         """Rows as an index that does not copy if they are all."""

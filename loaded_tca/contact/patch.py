@@ -90,7 +90,8 @@ def ends_at_material(pressure: Array, void: Mask) -> bool:
     if not void.any():
         return False
     square = pressure**2
-    for beyond, squares in ((void, square), (void[::-1], square[::-1]), (void.T, square.T), (void.T[::-1], square.T[::-1])):
+    turned = ((void, square), (void.T, square.T))
+    for beyond, squares in (*turned, *((cells[::-1], values[::-1]) for cells, values in turned)):
         last, across = np.nonzero(beyond[1:] & (squares[:-1] > 0.0))
         before = np.where(last > 0, squares[last - 1, across], 0.0)
         if (3.0 * squares[last, across] >= before).any():

@@ -116,12 +116,14 @@ class ContactProblem:
         """Whether one cell that took all of the load, or of the approach, would be pressed beyond the cap."""
         if self.max_pressure is None:
             return False
-        if self.load is None:
+        if self.load is not None:
+            most = self.load / self.cell_area
+        else:
+            assert self.approach is not None
             stiffness = self.contact_modulus / (self.spacing[0] * own_coefficient(self.spacing[1] / self.spacing[0]))
             most = (self.approach - self.first_contact) * stiffness
-        else:
-            most = self.load / self.cell_area
-        return self.max_pressure * (1.0 if self.cover is None else self.cover[self.cover > 0.0].min()) < most
+        least = 1.0 if self.cover is None else float(self.cover[self.cover > 0.0].min())
+        return bool(self.max_pressure * least < most)
 
     @property
     def material_area(self) -> float:

@@ -79,7 +79,7 @@ def test_preconditioner_nearly_inverts_the_convolution_in_the_middle(rng):
 @pytest.mark.parametrize("aspect", [1.0, 0.001, 1000.0])
 @pytest.mark.parametrize("box", [(2, 2), (16, 16), (32, 48), (10, 128)])
 def test_symbol_of_the_periodic_kernel_is_positive(box, aspect):
-    assert convolution._inverse_kernels(box, [aspect]).min() > 0.0
+    assert convolution._inverse_kernels(box, [aspect], "float32").min() > 0.0
 
 
 def test_fast_lengths_are_even_few_and_hardly_too_long():

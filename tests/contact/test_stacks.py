@@ -169,7 +169,7 @@ def test_transforms_of_a_stack_are_those_of_each(make, shape, rng):
         alone = make(shape, aspects[[k]])(values[[k]], np.empty((1, *shape), dtype=np.float32))
         assert_array_equal(found[k], alone[0])
     some = np.array([0, 7, 18])
-    assert_array_equal(make(shape, aspects).select(some)(values[some], np.empty((3, *shape), dtype="f4")), found[some])
+    assert_array_equal(make(shape, aspects)(values[some], np.empty((3, *shape), dtype="f4"), some), found[some])
 
 
 def test_coefficients_of_many_aspects_are_those_of_each():
