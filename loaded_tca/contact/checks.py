@@ -18,6 +18,8 @@ MOST_SLENDER = 1e12
 """Length of a cell over its width, either way."""
 SHORTEST, LONGEST = 1e-25, 1e25
 """Displacements [mm] that stay far from the limits of single precision, in which the iteration runs."""
+SYMMETRY = 1e-9
+"""Of a slice compliance, over its largest value: it is symmetric, the rounding of how it was computed is not."""
 
 
 def check_grid(gap: Array, spacing: tuple[float, float], contact_modulus: float) -> list[str]:
@@ -47,6 +49,19 @@ def check_cover(cover: Array | None, gap: Array) -> list[str]:
         return [f"cover: its shape {cover.shape} is not that of the gap, {gap.shape}"]
     wrong = np.count_nonzero(np.isfinite(gap) & ~((cover > 0.0) & (cover <= 1.0)))
     return [f"cover: {wrong} cells with a finite gap are not above 0 and at most 1"] if wrong else []
+
+
+def check_slices(compliance: Array | None, shape: tuple[int, ...]) -> list[str]:
+    """Problems of a slice compliance for a grid of a shape."""
+    if compliance is None:
+        return []
+    if compliance.shape != (shape[-1], shape[-1]):
+        return [f"slice_compliance: shape {(shape[-1], shape[-1])} is needed, not {compliance.shape}"]
+    if not np.isfinite(compliance).all():
+        return [f"slice_compliance: {int((~np.isfinite(compliance)).sum())} values are not finite"]
+    if np.abs(compliance - compliance.T).max() > SYMMETRY * np.abs(compliance).max():
+        return ["slice_compliance: is not symmetric"]
+    return []
 
 
 def check_spacing(spacing: tuple[float, float]) -> list[str]:

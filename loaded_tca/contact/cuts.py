@@ -20,19 +20,10 @@ import numpy as np
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.contact.convolution import ALL, Rows
 from loaded_tca.contact.love import influence_coefficients
-from loaded_tca.contact.slices import merged
 
 CROWDING = 0.94
 """kappa: the approach of a strip that ends anywhere in a cell lies on the line through those that end at its borders,
 within 0.02 % on 16 and 32 cells (with 1: 0.09 %)."""
-
-
-def merged_cover(cover: Array, merge: tuple[int, int]) -> Array:
-    """Parts of the cells that have material where so many cells along the last two axes are one."""
-    for axis in (-2, -1):
-        if merge[axis] == 2:
-            cover = merged(cover, axis)
-    return cover
 
 
 def limits(cap: float | Array, cover: Array) -> Array:

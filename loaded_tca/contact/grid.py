@@ -10,12 +10,11 @@ import numpy as np
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.convolution import ALL, Convolution, Rows, Window
-from loaded_tca.contact.cuts import CutCells, limits, merged_cover
+from loaded_tca.contact.cuts import CutCells, limits
 from loaded_tca.contact.edges import FreeEdge, MirroredConvolution, amplification, mirrors
-from loaded_tca.contact.levels import coarsen, window_around
+from loaded_tca.contact.levels import coarsen, merged, window_around
 from loaded_tca.contact.love import own_coefficient
 from loaded_tca.contact.problem import ContactProblem
-from loaded_tca.contact.slices import merge_slices
 
 # Gaps are cut at this multiple of the largest that could close, to stay far from the limits of single precision.
 OUT_OF_REACH = 2.0
@@ -214,17 +213,14 @@ class Grids:
 
     def coarser(self, merge: tuple[int, int]) -> Grids:
         """Return the same problems with so many cells merged along each axis."""
-        slices = self.slices
-        if slices is not None and merge[1] == 2:
-            slices = merge_slices(slices) * 2.0
         return replace(
             self,
             gap=coarsen(np.where(self.reachable, self.gap, np.inf), merge),
             spacing=self.spacing * merge,
             total=self.total / merge[1],
             cap=self.cap * merge[0],
-            slices=slices,
-            cover=None if self.cover is None else merged_cover(self.cover, merge),
+            slices=None if self.slices is None else merged(self.slices, (merge[1], merge[1])) * merge[1],
+            cover=None if self.cover is None else merged(self.cover, merge),
         )
 
     @cached_property

@@ -44,6 +44,16 @@ def _merge_pairs(gap: Array) -> Array:
     return merged
 
 
+def merged(values: Array, merge: tuple[int, int]) -> Array:
+    """Means (..., nx, ny) over so many cells along the last two axes; an odd last one stays alone."""
+    for axis in (-2, -1):
+        if merge[axis] == 2:
+            starts = np.arange(0, values.shape[axis], 2)
+            sizes = np.diff(np.append(starts, values.shape[axis]))
+            values = np.add.reduceat(values, starts, axis=axis) / (sizes[:, None] if axis == -2 else sizes)
+    return values
+
+
 def prolong(pressure: Array, shape: tuple[int, int], merge: tuple[int, int]) -> Array:
     """Pressure (..., nx, ny) on the next finer grid: its square interpolated, continued below zero across the edge.
 

@@ -15,7 +15,6 @@ from loaded_tca.contact import checks
 from loaded_tca.contact.cuts import limits
 from loaded_tca.contact.edges import FreeEdge, check_edges, without_material_beyond
 from loaded_tca.contact.love import own_coefficient
-from loaded_tca.contact.slices import check_slices
 
 Spacing = tuple[float, float]
 
@@ -44,7 +43,7 @@ class ContactProblem:
         Where the bodies end beside the contact. Without ``cover`` cells whose middle lies beyond carry nothing.
     slice_compliance : (ny, ny) array_like [mm/N], optional
         Displacement of every slice (cells of one place along the second axis) under a unit force on each of them, on
-        top of that of the half-spaces.
+        top of that of the half-spaces: bending beneath them spreads the load along the contact.
     cover : (nx, ny) array_like, optional
         Part of every cell that has material, above 0 and at most 1 where the gap is finite; default: whole cells. The
         pressure of a cell is the mean over the whole of it.
@@ -78,7 +77,7 @@ class ContactProblem:
         checks.raise_if(
             checks.check_grid(gap, self.spacing, self.contact_modulus)
             + check_edges(self.free_edges)
-            + check_slices(slices, gap.shape)
+            + checks.check_slices(slices, gap.shape)
             + checks.check_cover(cover, gap)
         )
         spacing, edges = (float(self.spacing[0]), float(self.spacing[1])), tuple(self.free_edges)

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.contact import ContactProblem, solve_contact, solve_to_accuracy
 from loaded_tca.contact.edges import FreeEdge
-from loaded_tca.contact.slices import merge_slices
+from loaded_tca.contact.levels import merged
 from loaded_tca.contact.solver import contact_stiffness
 from loaded_tca.errors import InputError
 
@@ -130,11 +130,11 @@ def test_grid_is_refined_with_its_slices():
 @pytest.mark.parametrize("count", [48, 49])
 def test_merged_slices_have_the_mean_of_both(count):
     slices = spread((1, count))
-    merged = merge_slices(slices)
-    assert merged.shape == (-(-count // 2),) * 2
-    assert_allclose(merged[3, 5], slices[6:8, 10:12].mean())
-    assert_allclose(merged[-1, -1], slices[-1, -1] if count % 2 else slices[-2:, -2:].mean())
-    assert_allclose(merged, merged.T)
+    means = merged(slices, (2, 2))
+    assert means.shape == (-(-count // 2),) * 2
+    assert_allclose(means[3, 5], slices[6:8, 10:12].mean())
+    assert_allclose(means[-1, -1], slices[-1, -1] if count % 2 else slices[-2:, -2:].mean())
+    assert_allclose(means, means.T)
 
 
 @pytest.mark.parametrize(
