@@ -84,16 +84,16 @@ def under_other_load(pressure: Array, ratio: float) -> Array:
 
 def continue_outside(square: Array) -> Array:
     """Give cells beside the contact the lowest value of the lines through two neighbours in it, zero at most."""
-    rows, columns = square.shape[-2:]
-    padded = np.zeros((*square.shape[:-2], rows + 4, columns + 4))
+    padded = np.zeros((*square.shape[:-2], square.shape[-2] + 4, square.shape[-1] + 4))
     padded[..., 2:-2, 2:-2] = square
-    line = np.zeros(square.shape)
-    for down, right in ((1, 0), (-1, 0), (0, 1), (0, -1)):
-        near, far = (
-            padded[..., 2 + k * down : 2 + k * down + rows, 2 + k * right : 2 + k * right + columns] for k in (1, 2)
-        )
-        np.minimum(line, 2.0 * near - far, out=line, where=near > 0.0)
-    return np.where(square > 0.0, square, line)
+    # All cells in one line, which is faster: what lies beyond the end of a row is margin.
+    flat, line, width = padded.reshape(-1), np.zeros(padded.shape), padded.shape[-1]
+    first, last = 2 * width, padded.size - 2 * width
+    inner = line.reshape(-1)[first:last]
+    for step in (width, -width, 1, -1):
+        near, far = (flat[first + k * step : last + k * step] for k in (1, 2))
+        np.minimum(inner, 2.0 * near - far, out=inner, where=near > 0.0)
+    return np.where(square > 0.0, square, line[..., 2:-2, 2:-2])
 
 
 def split(values: Array, axis: int) -> Array:

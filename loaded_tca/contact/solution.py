@@ -157,8 +157,8 @@ class ContactSolution:
     @cached_property
     def reaches_border(self) -> bool:
         """Whether the outermost cells of the grid carry pressure: the grid, not the bodies, bounds the contact."""
-        outermost = (self.pressure[[0, -1]], self.pressure[:, [0, -1]])
-        return any(bool((cells > 0.0).any()) for cells in outermost)
+        pressure = self.pressure
+        return any(bool(border.any()) for border in (pressure[0], pressure[-1], pressure[:, 0], pressure[:, -1]))
 
     @cached_property
     def reaches_material_edge(self) -> bool:
