@@ -80,6 +80,13 @@ def test_contact_ends_at_the_material_or_before(end, reached, turn):
     assert patch.ends_at_material(np.rot90(pressure, turn), np.rot90(void, turn)) is reached
 
 
+def test_one_cell_before_the_end_of_the_material_reaches_it_whatever_stands_at_the_other_border():
+    pressure = np.zeros((8, 3))
+    pressure[0], pressure[-1] = 1.0, 10.0
+    void = np.broadcast_to(np.arange(8)[:, None] == 1, (8, 3))
+    assert patch.ends_at_material(pressure, void)
+
+
 @given(offset=st.floats(-0.5, 0.5), radius=st.floats(4.0, 12.0))
 def test_ends_of_a_strip_lie_within_its_cells(offset, radius):
     """A Hertzian strip: p^2 is a parabola of half width R, which a chord through its last cells, d and d + 1 from its

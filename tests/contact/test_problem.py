@@ -6,7 +6,7 @@ import pickle
 
 import numpy as np
 import pytest
-from numpy.testing import assert_array_equal
+from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.contact import ContactProblem, FreeEdge, solve_contact, solve_problem
 from loaded_tca.errors import InputError
@@ -84,3 +84,15 @@ def test_masked_number_is_none(argument):
         del options["load"]
     with pytest.raises(InputError, match=f"^{argument}: "):
         solve_contact(ball(), (0.03, 0.03), E_STAR, **options)
+
+
+@pytest.mark.parametrize("cover", [None, np.full((24, 24), 0.5)])
+def test_cap_that_one_cell_under_the_whole_load_would_not_reach_changes_nothing(cover):
+    """Alone it would be pressed by the load over its material."""
+    most = 50.0 / 0.03**2 / (1.0 if cover is None else 0.5)
+    free = solve_problem(ContactProblem(ball(), (0.03, 0.03), E_STAR, load=50.0, cover=cover), tolerance=1e-10)
+    for cap, near in ((1.001 * most, False), (0.999 * most, True)):
+        problem = ContactProblem(ball(), (0.03, 0.03), E_STAR, load=50.0, max_pressure=cap, cover=cover)
+        assert problem.cap_is_near is near
+        found = solve_problem(problem, tolerance=1e-10).pressure
+        assert_allclose(found, free.pressure, atol=1e-6 * free.pressure.max() if near else 0.0, rtol=0.0)
