@@ -17,12 +17,12 @@ PARTS = ("value", "rho", "z", "rho_rho", "rho_z", "z_z")
 
 def cubic(r, z):
     """r^3 + 2 r z - z^2."""
-    return Jet(r**3 + 2 * r * z - z**2, 3 * r**2 + 2 * z, 2 * r - 2 * z, 6 * r, 2.0, -2.0)
+    return Jet(r**3 + 2 * r * z - z**2, 3 * r**2 + 2 * z, 2 * r - 2 * z, (6 * r, 2.0, -2.0))
 
 
 def saddle(r, z):
     """r z^2 - r."""
-    return Jet(r * z**2 - r, z**2 - 1, 2 * r * z, 0.0, 2 * z, 2 * r)
+    return Jet(r * z**2 - r, z**2 - 1, 2 * r * z, (0.0, 2 * z, 2 * r))
 
 
 def parts(jet):
@@ -78,9 +78,9 @@ def test_shift_and_scale_is_the_linear_map_of_the_value_and_scales_the_derivativ
 
 @given(coordinates, coordinates)
 def test_derivative_that_is_the_number_zero_counts_like_an_array_of_zeros_and_stays_one(r, z):
-    along, across = Jet(np.array(z**2), z=2.0 * z, z_z=2.0), Jet(np.array(r**2), rho=2.0 * r, rho_rho=2.0)
+    along, across = Jet(np.array(z**2), z=2.0 * z, bends=(0.0, 0.0, 2.0)), Jet(np.array(r**2), 2.0 * r, 0.0, (2.0, 0.0, 0.0))
     full = [
-        Jet(jet.value, *(np.array(float(part)) for part in (jet.rho, jet.z, jet.rho_rho, jet.rho_z, jet.z_z)))
+        Jet(jet.value, np.array(float(jet.rho)), np.array(float(jet.z)), tuple(np.array(part) for part in jet.bends))
         for jet in (along, across)
     ]
 

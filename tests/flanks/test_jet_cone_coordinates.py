@@ -19,7 +19,8 @@ def gradient_and_hessian(jet):
 
 
 def functions(rho, z):
-    return cone_distance(rho, z, 1.0), cone_angle(rho, z)
+    distance = cone_distance(rho, z, 1.0)
+    return distance, cone_angle(distance)
 
 
 @given(lengths, lengths)
