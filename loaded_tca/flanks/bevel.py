@@ -116,7 +116,8 @@ class SphericalInvoluteFlank(Flank):
         q = _q(sine, self.base_angle)
         involute = np.arctan2(q, cosine) / sine_base - np.arctan2(q, sine_base * cosine)
         profile = of_cone_angle(
-            distance,
+            rho,
+            z,
             side * (self._pitch_involute - involute),
             -side / sine_base * q / sine,
             lambda: -side * sine_base * cosine / (q * (sine * sine)),
@@ -153,7 +154,7 @@ class SphericalInvoluteFlank(Flank):
         distance, fall = self._cone_distance(rho, z), -(math.sin(self.base_angle) ** 2)
         sine, cosine = distance.rho, distance.z
         q = _q(sine, self.base_angle)
-        return of_cone_angle(distance, np.arctan2(q, cosine), sine / q, lambda: fall * cosine / (q * q * q))
+        return of_cone_angle(rho, z, np.arctan2(q, cosine), sine / q, lambda: fall * cosine / (q * q * q))
 
     def lengthwise_coordinate(self, rho: Array, z: Array) -> Jet:
         """R - R_m."""

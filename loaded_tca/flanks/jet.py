@@ -158,9 +158,10 @@ def cone_distance(rho: Array, z: Array, mean: float) -> Jet:
     return Jet(value, sine, cosine, bends)
 
 
-def of_cone_angle(distance: Jet, value: Any, first: Any, second: Any) -> Jet:
-    """f(u) of the cone angle u = atan2(rho, z), given R(rho, z) and f, f' and f'' there (as of ``Jet.compose``)."""
-    slope_rho, slope_z = distance.z / distance.value, -distance.rho / distance.value
+def of_cone_angle(rho: Array, z: Array, value: Any, first: Any, second: Any) -> Jet:
+    """f(u) of the cone angle u = atan2(rho, z), given f, f' and f'' there; f'' may be a function that returns it."""
+    square = rho * rho + z * z
+    slope_rho, slope_z = z / square, -rho / square
 
     def bends() -> Bends:
         twice = 2.0 * slope_rho * slope_z
@@ -169,12 +170,12 @@ def of_cone_angle(distance: Jet, value: Any, first: Any, second: Any) -> Jet:
     return Jet(None, slope_rho, slope_z, bends).compose(value, first, second)
 
 
-def cone_angle(distance: Jet) -> Jet:
-    """U = atan2(rho, z) [rad], given R(rho, z).
+def cone_angle(rho: Array, z: Array) -> Jet:
+    """U = atan2(rho, z) [rad].
 
     Examples
     --------
-    >>> round(float(cone_angle(cone_distance(1.0, 1.0, 1.0)).value / np.pi), 2)
+    >>> round(float(cone_angle(1.0, 1.0).value / np.pi), 2)
     0.25
     """
-    return of_cone_angle(distance, np.arctan2(distance.rho, distance.z), 1.0, 0.0)
+    return of_cone_angle(rho, z, np.arctan2(rho, z), 1.0, 0.0)

@@ -112,7 +112,7 @@ class ToothRegion(Flank):
         tip, apex = self.face_cone
         sine, cosine = math.sin(tip), math.cos(tip)
         distance = self._distance(rho, z)
-        above = cone_angle(distance) + self._form_line(distance) * -1.0
+        above = cone_angle(rho, z) + self._form_line(distance) * -1.0
         return (
             Jet((z + apex) * sine - rho * cosine, rho=-cosine, z=sine),
             distance.times(above),
@@ -132,7 +132,7 @@ class ToothRegion(Flank):
     def profile_coordinate(self, rho: Array, z: Array) -> Jet:
         """Height above the form line, scaled to that at mid-face [mm]."""
         distance = self._distance(rho, z)
-        return cone_angle(distance).times(self._rise(distance)) + self._foot(distance) * -1.0
+        return cone_angle(rho, z).times(self._rise(distance)) + self._foot(distance) * -1.0
 
     def lengthwise_coordinate(self, rho: Array, z: Array) -> Jet:
         """R - R_m."""
