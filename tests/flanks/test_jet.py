@@ -92,3 +92,19 @@ def test_derivative_that_is_the_number_zero_counts_like_an_array_of_zeros_and_st
     untouched = along + along * 2.0 + along.compose(np.sin(along.value), np.cos(along.value), -np.sin(along.value))
     assert (untouched.rho, untouched.rho_rho, untouched.rho_z) == (0.0, 0.0, 0.0)
     assert all(type(part) is float for part in (untouched.rho, untouched.rho_rho, untouched.rho_z))
+
+
+def test_second_derivatives_are_found_once_and_only_when_they_are_asked_for():
+    asked = []
+
+    def bends():
+        asked.append("bends")
+        return 6.0, 2.0, -2.0
+
+    jet = Jet(1.0, 3.0, 1.0, bends)
+    whole = (jet * 2.0 + jet).times(jet.compose(1.0, 2.0, lambda: asked.append("second") or 2.0))
+    assert (whole.value, whole.rho, whole.z) == (3.0, 27.0, 9.0)
+    assert not asked
+    assert whole.rho_rho == 3.0 * (2.0 * 3.0**2 + 2.0 * 6.0) + 2.0 * 9.0 * 6.0 + 18.0  # f g'' + 2 f' g' + f'' g
+    assert whole.z_z == 3.0 * (2.0 * 1.0**2 - 2.0 * 2.0) + 2.0 * 3.0 * 2.0 - 6.0
+    assert sorted(asked) == ["bends", "second"]
