@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -13,6 +14,7 @@ from loaded_tca.flanks import FlankModifications
 from loaded_tca.loaded.load_sharing import ToothPair, share_load, tooth_pairs_at
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.material import Material
+from loaded_tca.separation import sample_separation
 from loaded_tca.unloaded import trace_teeth
 from tests.samples.gear_pairs import NONE, gear_pair, sam_paper
 
@@ -254,6 +256,29 @@ def test_deflections_of_the_teeth_are_part_of_the_total():
     assert_allclose([share.rotation for share in found.shares], found.rotation, rtol=COMPATIBLE)
     assert found.rotation > shared(spur, phi1).rotation
     assert found.torque_rate < shared(spur, phi1).torque_rate
+
+
+class Tilting(Springs):
+    """Teeth whose deflection tilts the next tooth against its contact, by nothing in the middle of the face."""
+
+    def between(self, at, under):
+        assert at[0] < under[0]
+        return np.outer(np.ones(len(at[1].y)), self.coupling * under[1].y)
+
+
+@pytest.mark.parametrize(("part", "carrying"), [(0.5, 2), (1.5, 1)])
+def test_pair_comes_under_load_where_its_neighbour_bends_it_towards_the_mate(part, carrying):
+    """It closes as soon as its nearest slice does, while others and the mean of them are still apart."""
+    pair = spur()
+    first, second = sorted(tooth_pairs_at(trace_teeth(pair, [-0.9 * CENTRE]), 0), key=lambda one: one.pair)
+    first, bending = replace(first, initial_separation=0.0), Tilting(1e-6, 1e-7)
+    alone = share_load(pair, (first,), TORQUE, GRID, bending=bending)
+    face = sample_separation(pair, second.contact, cells=(24, 200), box=(0.2, 0.5 * pair.face_width))
+    nearest = (face.gap.min(axis=0) + bending.coupling * alone.shares[0].force * face.y).min()
+    assert nearest < -5e-4  # mm: far beyond what the balance tells apart
+    closed = replace(second, initial_separation=alone.rotation - part * nearest / second.contact.wheel_lever)
+    found = share_load(pair, (first, closed), TORQUE, GRID, bending=bending)
+    assert len(found.shares) == carrying
 
 
 class Restless:
