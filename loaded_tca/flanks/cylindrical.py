@@ -71,9 +71,7 @@ class InvoluteFlank(Flank):
         angle, steepness = roll / self.base_radius, roll / rho
         involute = angle - np.arctan(angle) - self._working_involute
         value = (-float(self.side)) * involute + self._twist * z
-        return Jet(
-            value, inward * steepness, self._twist, lambda: (inward * (1.0 / roll - steepness / rho), 0.0, 0.0)
-        )
+        return Jet(value, inward * steepness, self._twist, lambda: (inward * (1.0 / roll - steepness / rho), 0.0, 0.0))
 
     def edges(self, rho: Array, z: Array) -> tuple[Jet, ...]:
         """Tip circle, root form circle, the two ends of the face."""

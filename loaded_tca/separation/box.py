@@ -50,8 +50,8 @@ def estimate_boxes(
 ) -> list[tuple[float, float] | GeometryError]:
     """Half lengths across and along [mm] of boxes that hold n contacts, each under its load > 0 [N].
 
-    Where the material ends inside a box, the box ends a cell (of its ``cells`` along) beyond it, so that whole cells end
-    there. A contact off the flanks gets an error instead.
+    Where the material ends inside a box, the box ends a cell beyond it (one of its ``cells`` along), so that whole
+    cells end there. A contact off the flanks gets an error instead.
     """
     curvatures, modulus = relative_curvatures(pair, contacts), pair.contact_modulus
     gap = NormalGap(pair, contacts, np.array([curvature.axes for curvature in curvatures]))

@@ -204,8 +204,8 @@ def sample_separations(
     to_size = [index for index in shapes if index not in half_lengths]
     if to_size:
         forces = [loads[index] or LOAD_OF_UNLOADED_BOX for index in to_size]
-        starts, along = [guesses[index] for index in to_size], [shapes[index][1] for index in to_size]
-        fitting = estimate_boxes(pair, [contacts[index] for index in to_size], forces, starts, along)
+        starts, lengthwise = [guesses[index] for index in to_size], [shapes[index][1] for index in to_size]
+        fitting = estimate_boxes(pair, [contacts[index] for index in to_size], forces, starts, lengthwise)
         for index, one in zip(to_size, fitting, strict=True):
             if isinstance(one, GeometryError):
                 found[index] = one

@@ -78,7 +78,10 @@ def test_shift_and_scale_is_the_linear_map_of_the_value_and_scales_the_derivativ
 
 @given(coordinates, coordinates)
 def test_derivative_that_is_the_number_zero_counts_like_an_array_of_zeros_and_stays_one(r, z):
-    along, across = Jet(np.array(z**2), z=2.0 * z, bends=(0.0, 0.0, 2.0)), Jet(np.array(r**2), 2.0 * r, 0.0, (2.0, 0.0, 0.0))
+    along, across = (
+        Jet(np.array(z**2), z=2.0 * z, bends=(0.0, 0.0, 2.0)),
+        Jet(np.array(r**2), 2.0 * r, 0.0, (2.0, 0.0, 0.0)),
+    )
     full = [
         Jet(jet.value, np.array(float(jet.rho)), np.array(float(jet.z)), tuple(np.array(part) for part in jet.bends))
         for jet in (along, across)
