@@ -116,7 +116,7 @@ class GeneratedFlank(ToothRegion):
         if not on.all():
             parts[:, ~on] = _stack(self._spline_flank.theta(flat[0][~on], flat[1][~on]))
         value, slope_rho, slope_z, *bends = parts.reshape(6, *rho.shape)
-        return Jet(value, slope_rho, slope_z, (bends[0], bends[1], bends[2]))
+        return Jet(value, slope_rho, slope_z, bends)
 
     def gradient_norm(self, rho: Array, z: Array) -> Jet:
         """|grad F| [1/mm]: its B-spline over the flank's coordinates."""

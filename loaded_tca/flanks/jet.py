@@ -12,9 +12,9 @@ from loaded_tca.arrays import Array
 SMALLEST_DISTANCE = 1e-3
 """Cone distances are kept above this fraction of R_m: at the apex there is no flank."""
 
-Bends = tuple[Any, Any, Any]
+Bends = Sequence[Any]
 """Second derivatives by rho rho, rho z and z z."""
-FLAT: Bends = (0.0, 0.0, 0.0)
+FLAT = (0.0, 0.0, 0.0)
 
 
 class Jet:
@@ -43,36 +43,18 @@ class Jet:
             self._bends = self._bends()
         return self._bends
 
-    @property
-    def rho_rho(self) -> Any:
-        """Second derivative by rho."""
-        return self.bends[0]
-
-    @property
-    def rho_z(self) -> Any:
-        """Mixed derivative."""
-        return self.bends[1]
-
-    @property
-    def z_z(self) -> Any:
-        """Second derivative by z."""
-        return self.bends[2]
+    rho_rho = property(lambda self: self.bends[0], doc="Second derivative by rho.")
+    rho_z = property(lambda self: self.bends[1], doc="Mixed derivative.")
+    z_z = property(lambda self: self.bends[2], doc="Second derivative by z.")
 
     def __add__(self, other: Jet) -> Jet:
-        def bends() -> Bends:
-            (f_rr, f_rz, f_zz), (g_rr, g_rz, g_zz) = self.bends, other.bends
-            return _sum(f_rr, g_rr), _sum(f_rz, g_rz), _sum(f_zz, g_zz)
-
-        return Jet(self.value + other.value, _sum(self.rho, other.rho), _sum(self.z, other.z), bends)
+        slopes = _sum(self.rho, other.rho), _sum(self.z, other.z)
+        return Jet(self.value + other.value, *slopes, lambda: [*map(_sum, self.bends, other.bends)])
 
     def __mul__(self, factor: Any) -> Jet:
         """Multiply by a number, or by an array that does not depend on (rho, z)."""
-
-        def bends() -> Bends:
-            rho_rho, rho_z, z_z = self.bends
-            return _product(rho_rho, factor), _product(rho_z, factor), _product(z_z, factor)
-
-        return Jet(self.value * factor, _product(self.rho, factor), _product(self.z, factor), bends)
+        slopes = _product(self.rho, factor), _product(self.z, factor)
+        return Jet(self.value * factor, *slopes, lambda: [_product(part, factor) for part in self.bends])
 
     __rmul__ = __mul__
 
@@ -81,14 +63,10 @@ class Jet:
         f, g = self, other
 
         def bends() -> Bends:
-            slopes = (
-                2.0 * _product(f.rho, g.rho),
-                _sum(_product(f.rho, g.z), _product(f.z, g.rho)),
-                2.0 * _product(f.z, g.z),
-            )
+            mixed = _sum(_product(f.rho, g.z), _product(f.z, g.rho))
+            slopes = 2.0 * _product(f.rho, g.rho), mixed, 2.0 * _product(f.z, g.z)
             bent = (_sum(_product(p, g.value), _product(q, f.value)) for p, q in zip(f.bends, g.bends, strict=True))
-            rho_rho, rho_z, z_z = map(_sum, slopes, bent)
-            return rho_rho, rho_z, z_z
+            return [*map(_sum, slopes, bent)]
 
         return Jet(
             f.value * g.value,
