@@ -34,7 +34,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.frame import ConeFrame
-from loaded_tca.flanks.jet import Jet, cone_angle, cone_distance
+from loaded_tca.flanks.jet import Jet, cone_distance, of_cone_angle
 
 SMALLEST_Q = 3e-5
 """Q is kept above this: at the base cone itself the curvature is infinite, below it there is no involute. That
@@ -56,12 +56,6 @@ def _q(sine: Array, base_angle: float) -> Array:
     """Q = sqrt(sin^2 u - sin^2 delta_b), from sin u."""
     base = math.sin(base_angle)
     return np.sqrt(np.maximum((sine - base) * (sine + base), SMALLEST_Q**2))
-
-
-def _sine_and_cosine(rho: Array, z: Array) -> tuple[Array, Array]:
-    """Of the cone angle."""
-    distance = np.sqrt(rho * rho + z * z)
-    return rho / distance, z / distance
 
 
 class SphericalInvoluteFlank(Flank):
@@ -117,18 +111,23 @@ class SphericalInvoluteFlank(Flank):
 
     def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:  # noqa: ARG002 (it has no relief start)
         """Theta of the spherical involute, log spiral included."""
-        angle, sine_base = cone_angle(rho, z), math.sin(self.base_angle)
-        sine, cosine = _sine_and_cosine(rho, z)
+        distance, sine_base, side = self._cone_distance(rho, z), math.sin(self.base_angle), float(self.side)
+        sine, cosine = distance.rho, distance.z
         q = _q(sine, self.base_angle)
         involute = np.arctan2(q, cosine) / sine_base - np.arctan2(q, sine_base * cosine)
-        side = float(self.side)
-        slope, bend = -side / sine_base * q / sine, -side * sine_base * cosine / (q * (sine * sine))
-        profile = angle.compose(side * (self._pitch_involute - involute), slope, bend)
+        profile = of_cone_angle(
+            rho,
+            z,
+            side * (self._pitch_involute - involute),
+            -side / sine_base * q / sine,
+            lambda: -side * sine_base * cosine / (q * (sine * sine)),
+        )
         if self._spiral == 0.0:
             return profile
-        distance = self._cone_distance(rho, z)
         inverse = 1.0 / distance.value
-        logarithm = distance.compose(np.log(distance.value / self.mean_cone_distance), inverse, -(inverse**2))
+        logarithm = distance.compose(
+            np.log(distance.value / self.mean_cone_distance), inverse, lambda: -inverse * inverse
+        )
         return profile + logarithm * self._spiral
 
     def edges(self, rho: Array, z: Array) -> tuple[Jet, ...]:
@@ -152,11 +151,10 @@ class SphericalInvoluteFlank(Flank):
 
     def profile_coordinate(self, rho: Array, z: Array) -> Jet:
         """Unwound arc w, cos u = cos(delta_b) cos(w)."""
-        angle = cone_angle(rho, z)
-        sine, cosine = _sine_and_cosine(rho, z)
+        distance, fall = self._cone_distance(rho, z), -(math.sin(self.base_angle) ** 2)
+        sine, cosine = distance.rho, distance.z
         q = _q(sine, self.base_angle)
-        bend = (-(math.sin(self.base_angle) ** 2)) * cosine / (q * q * q)
-        return angle.compose(np.arctan2(q, cosine), sine / q, bend)
+        return of_cone_angle(rho, z, np.arctan2(q, cosine), sine / q, lambda: fall * cosine / (q * q * q))
 
     def lengthwise_coordinate(self, rho: Array, z: Array) -> Jet:
         """R - R_m."""
@@ -168,7 +166,7 @@ class SphericalInvoluteFlank(Flank):
         distance = self._cone_distance(rho, z)
         value = size / distance.value
         slope = -value / distance.value
-        return distance.compose(value, slope, -2.0 * slope / distance.value)
+        return distance.compose(value, slope, lambda: -2.0 * slope / distance.value)
 
     def _cone_distance(self, rho: Array, z: Array) -> Jet:
         return cone_distance(rho, z, self.mean_cone_distance)

@@ -305,7 +305,7 @@ class CradleGeneration:
             if self.machine.rolls:
                 bend -= turned[i] * turned[j] / np.where(turns_back, 1.0, sharpness)
             parts.append(-bend / lead)
-        jet = Jet(alpha - self.roll(phi)[0], *theta, *parts)
+        jet = Jet(alpha - self.roll(phi)[0], theta[0], theta[1], parts)
         return GeneratedPoints(jet, phi, cut.height, sharpness / np.abs(lead), converged)
 
 

@@ -71,7 +71,7 @@ class InvoluteFlank(Flank):
         angle, steepness = roll / self.base_radius, roll / rho
         involute = angle - np.arctan(angle) - self._working_involute
         value = (-float(self.side)) * involute + self._twist * z
-        return Jet(value, inward * steepness, self._twist, inward * (1.0 / roll - steepness / rho))
+        return Jet(value, inward * steepness, self._twist, lambda: (inward * (1.0 / roll - steepness / rho), 0.0, 0.0))
 
     def edges(self, rho: Array, z: Array) -> tuple[Jet, ...]:
         """Tip circle, root form circle, the two ends of the face."""
@@ -94,7 +94,7 @@ class InvoluteFlank(Flank):
     def profile_coordinate(self, rho: Array, z: Array) -> Jet:  # noqa: ARG002 (it depends on the radius alone)
         """Roll length a = sqrt(rho^2 - r_b^2)."""
         roll = self._roll_length(rho)
-        return Jet(roll, rho=rho / roll, rho_rho=-(self.base_radius**2) / (roll * roll * roll))
+        return Jet(roll, rho / roll, 0.0, lambda: (-(self.base_radius**2) / (roll * roll * roll), 0.0, 0.0))
 
     def lengthwise_coordinate(self, rho: Array, z: Array) -> Jet:  # noqa: ARG002
         """Z itself, counted from the middle of the face."""

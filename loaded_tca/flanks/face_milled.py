@@ -115,7 +115,8 @@ class GeneratedFlank(ToothRegion):
             parts[:, on] = _stack(self._exact(flat[0][on], flat[1][on]))
         if not on.all():
             parts[:, ~on] = _stack(self._spline_flank.theta(flat[0][~on], flat[1][~on]))
-        return Jet(*parts.reshape(6, *rho.shape))
+        value, slope_rho, slope_z, *bends = parts.reshape(6, *rho.shape)
+        return Jet(value, slope_rho, slope_z, bends)
 
     def gradient_norm(self, rho: Array, z: Array) -> Jet:
         """|grad F| [1/mm]: its B-spline over the flank's coordinates."""
@@ -252,4 +253,4 @@ def _gradient(rho: Array, theta: Jet) -> Array:
 
 def _stack(jet: Jet) -> Array:
     """The six parts of a jet (6, n)."""
-    return np.stack([jet.value, *jet.derivatives])
+    return np.stack([jet.value, jet.rho, jet.z, *jet.bends])

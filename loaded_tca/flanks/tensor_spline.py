@@ -27,7 +27,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.linalg import LinearOperator, lsmr
 
 from loaded_tca.arrays import Array
-from loaded_tca.flanks.jet import Jet
+from loaded_tca.flanks.jet import Bends, Jet
 
 POINTS_AT_ONCE = 4096
 """Points evaluated together: their coefficients take 1.2 MB."""
@@ -48,16 +48,18 @@ class SplineDerivatives(NamedTuple):
 
     def compose(self, u: Jet, v: Jet) -> Jet:
         """S(u(rho, z), v(rho, z)), with these the derivatives of S there (chain rule)."""
-        across = [_sum((self.u_u, part_u), (self.u_v, part_v)) for part_u, part_v in ((u.rho, v.rho), (u.z, v.z))]
-        along = [_sum((self.u_v, part_u), (self.v_v, part_v)) for part_u, part_v in ((u.rho, v.rho), (u.z, v.z))]
-        return Jet(
-            self.value,
-            _sum((self.u, u.rho), (self.v, v.rho)),
-            _sum((self.u, u.z), (self.v, v.z)),
-            _sum((across[0], u.rho), (along[0], v.rho), (self.u, u.rho_rho), (self.v, v.rho_rho)),
-            _sum((across[0], u.z), (along[0], v.z), (self.u, u.rho_z), (self.v, v.rho_z)),
-            _sum((across[1], u.z), (along[1], v.z), (self.u, u.z_z), (self.v, v.z_z)),
-        )
+
+        def bends() -> Bends:
+            across = [_sum((self.u_u, part_u), (self.u_v, part_v)) for part_u, part_v in ((u.rho, v.rho), (u.z, v.z))]
+            along = [_sum((self.u_v, part_u), (self.v_v, part_v)) for part_u, part_v in ((u.rho, v.rho), (u.z, v.z))]
+            return (
+                _sum((across[0], u.rho), (along[0], v.rho), (self.u, u.rho_rho), (self.v, v.rho_rho)),
+                _sum((across[0], u.z), (along[0], v.z), (self.u, u.rho_z), (self.v, v.rho_z)),
+                _sum((across[1], u.z), (along[1], v.z), (self.u, u.z_z), (self.v, v.z_z)),
+            )
+
+        slopes = _sum((self.u, u.rho), (self.v, v.rho)), _sum((self.u, u.z), (self.v, v.z))
+        return Jet(self.value, *slopes, bends)
 
 
 def _sum(*products: tuple[Any, Any]) -> Any:

@@ -60,8 +60,7 @@ def found_together(
 ) -> list[Result]:
     """Answer what generators ask for, in rounds, until all have returned.
 
-    In a round all gaps that are asked for are sampled, or else all free edges found, or else the problems on the grid
-    that most ask for are solved.
+    In a round what most ask for is found: all gaps, or all free edges, or all problems on one grid.
     Whenever one returns, another one begins: so many are under way that stacks are full, and no more, so that memory
     stays bounded and progress steady.
 
@@ -113,18 +112,17 @@ def found_alone(pair: GearPair, steps: Steps[Result]) -> Result:
 def _answers(
     pair: GearPair, asked: dict[int, Gap | Ends | Task]
 ) -> dict[int, Separation | Array | ContactSolution | LoadedTCAError | None]:
-    """Answer the gaps that are asked for, or else the free edges, or the problems on one grid; errors are answers."""
-    gaps = {index: request for index, request in asked.items() if isinstance(request, Gap)}
-    if gaps:
-        contacts, cells, loads, boxes = zip(*gaps.values(), strict=True)
+    """Answer what most ask for, gaps, free edges or problems on one grid; errors are answers."""
+    kinds = {index: one.problem.cells if isinstance(one, Task) else type(one) for index, one in asked.items()}
+    (most, _), *_ = Counter(kinds.values()).most_common(1)
+    chosen: Any = {index: asked[index] for index, kind in kinds.items() if kind == most}
+    if most is Gap:
+        contacts, cells, loads, boxes = zip(*chosen.values(), strict=True)
         found = sample_separations(pair, contacts, cells=cells, loads=loads, boxes=boxes)
-        return dict(zip(gaps, found, strict=True))
-    ends = {index: request.separation for index, request in asked.items() if isinstance(request, Ends)}
-    if ends:
-        return dict(zip(ends, edge_compliances(pair, [*ends.values()]), strict=True))
-    tasks = {index: task for index, task in asked.items() if isinstance(task, Task)}
-    (cells, _), *_ = Counter(task.problem.cells for task in tasks.values()).most_common(1)
-    chosen = {index: task for index, task in tasks.items() if task.problem.cells == cells}
+        return dict(zip(chosen, found, strict=True))
+    if most is Ends:
+        separations = [request.separation for request in chosen.values()]
+        return dict(zip(chosen, edge_compliances(pair, separations), strict=True))
     solutions = solve_problems(*zip(*chosen.values(), strict=True), on_failure="return")
     return {
         index: not_converged(solution, task.tolerance) if solution.status is ContactStatus.NOT_CONVERGED else solution

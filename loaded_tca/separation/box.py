@@ -46,12 +46,12 @@ def estimate_boxes(
     contacts: Sequence[ContactPoint],
     loads: Sequence[float],
     guesses: Sequence[tuple[float, float] | None],
-    cells: int,
+    cells: Sequence[int],
 ) -> list[tuple[float, float] | GeometryError]:
     """Half lengths across and along [mm] of boxes that hold n contacts, each under its load > 0 [N].
 
-    Where the material ends inside a box, the box ends a cell (of ``cells`` along) beyond it, so that whole cells end
-    there. A contact off the flanks gets an error instead.
+    Where the material ends inside a box, the box ends a cell beyond it (one of its ``cells`` along), so that whole
+    cells end there. A contact off the flanks gets an error instead.
     """
     curvatures, modulus = relative_curvatures(pair, contacts), pair.contact_modulus
     gap = NormalGap(pair, contacts, np.array([curvature.axes for curvature in curvatures]))
@@ -88,7 +88,7 @@ def estimate_boxes(
     material = along.copy()
     material[held] = _material_lengths(gap.of(held), room[held], x[held], y[held], along[held])
     margin = np.where(on_edge, EDGE_MARGIN, np.where(end > CERTAINLY_INSIDE * material, SPIKE_MARGIN, MARGIN))
-    beyond = material * (cells / (cells - 2) if cells > 2 else 1.0)
+    beyond = material * [n / (n - 2) if n > 2 else 1.0 for n in cells]
     boxes = np.full((count, 2), np.nan)
     boxes[held] = np.stack([margin * needed[:, 0], np.where(material < along, beyond, along)], axis=1)[held]
     missing = "no flank around the contact point at pinion angle {:.6g} rad"

@@ -186,7 +186,7 @@ def sample_separations(
         Of all contacts whose cells are None.
     """
     found: dict[int, Separation | InputError | GeometryError] = {}
-    alike: dict[tuple[int, int], list[int]] = {}
+    shapes: dict[int, tuple[int, int]] = {}
     guesses = [None] * len(contacts) if guesses is None else guesses
     for index, (contact, shape, load, box, guess) in enumerate(
         zip(contacts, cells, loads, boxes, guesses, strict=True)
@@ -198,21 +198,22 @@ def sample_separations(
             found[index] = error
         else:
             across, along = shape if shape is not None else (cells_for_accuracy(accuracy),) * 2
-            alike.setdefault((int(across), int(along)), []).append(index)
-    relative_curvatures(pair, [contacts[index] for indices in alike.values() for index in indices])  # kept
-    for shape, indices in alike.items():
-        half_lengths = {index: box for index in indices if (box := boxes[index]) is not None}
-        to_size = [index for index in indices if index not in half_lengths]
-        if to_size:
-            forces = [loads[index] or LOAD_OF_UNLOADED_BOX for index in to_size]
-            starts = [guesses[index] for index in to_size]
-            fitting = estimate_boxes(pair, [contacts[index] for index in to_size], forces, starts, shape[1])
-            for index, one in zip(to_size, fitting, strict=True):
-                if isinstance(one, GeometryError):
-                    found[index] = one
-                else:
-                    half_lengths[index] = one
-        sized, size = [*half_lengths.items()], max(1, TOGETHER // math.prod(shape))
+            shapes[index] = int(across), int(along)
+    relative_curvatures(pair, [contacts[index] for index in shapes])  # kept
+    half_lengths = {index: box for index in shapes if (box := boxes[index]) is not None}
+    to_size = [index for index in shapes if index not in half_lengths]
+    if to_size:
+        forces = [loads[index] or LOAD_OF_UNLOADED_BOX for index in to_size]
+        starts, lengthwise = [guesses[index] for index in to_size], [shapes[index][1] for index in to_size]
+        fitting = estimate_boxes(pair, [contacts[index] for index in to_size], forces, starts, lengthwise)
+        for index, one in zip(to_size, fitting, strict=True):
+            if isinstance(one, GeometryError):
+                found[index] = one
+            else:
+                half_lengths[index] = one
+    for shape in dict.fromkeys(shapes.values()):
+        sized = [(index, box) for index, box in half_lengths.items() if shapes[index] == shape]
+        size = max(1, TOGETHER // math.prod(shape))
         for part in (dict(sized[first : first + size]) for first in range(0, len(sized), size)):
             gaps = _sampled(pair, [contacts[index] for index in part], np.array([*part.values()]), shape)
             found.update(zip(part, gaps, strict=True))

@@ -17,12 +17,12 @@ PARTS = ("value", "rho", "z", "rho_rho", "rho_z", "z_z")
 
 def cubic(r, z):
     """r^3 + 2 r z - z^2."""
-    return Jet(r**3 + 2 * r * z - z**2, 3 * r**2 + 2 * z, 2 * r - 2 * z, 6 * r, 2.0, -2.0)
+    return Jet(r**3 + 2 * r * z - z**2, 3 * r**2 + 2 * z, 2 * r - 2 * z, (6 * r, 2.0, -2.0))
 
 
 def saddle(r, z):
     """r z^2 - r."""
-    return Jet(r * z**2 - r, z**2 - 1, 2 * r * z, 0.0, 2 * z, 2 * r)
+    return Jet(r * z**2 - r, z**2 - 1, 2 * r * z, (0.0, 2 * z, 2 * r))
 
 
 def parts(jet):
@@ -78,9 +78,12 @@ def test_shift_and_scale_is_the_linear_map_of_the_value_and_scales_the_derivativ
 
 @given(coordinates, coordinates)
 def test_derivative_that_is_the_number_zero_counts_like_an_array_of_zeros_and_stays_one(r, z):
-    along, across = Jet(np.array(z**2), z=2.0 * z, z_z=2.0), Jet(np.array(r**2), rho=2.0 * r, rho_rho=2.0)
+    along, across = (
+        Jet(np.array(z**2), z=2.0 * z, bends=(0.0, 0.0, 2.0)),
+        Jet(np.array(r**2), 2.0 * r, 0.0, (2.0, 0.0, 0.0)),
+    )
     full = [
-        Jet(jet.value, *(np.array(float(part)) for part in (jet.rho, jet.z, jet.rho_rho, jet.rho_z, jet.z_z)))
+        Jet(jet.value, np.array(float(jet.rho)), np.array(float(jet.z)), tuple(np.array(part) for part in jet.bends))
         for jet in (along, across)
     ]
 
@@ -92,3 +95,19 @@ def test_derivative_that_is_the_number_zero_counts_like_an_array_of_zeros_and_st
     untouched = along + along * 2.0 + along.compose(np.sin(along.value), np.cos(along.value), -np.sin(along.value))
     assert (untouched.rho, untouched.rho_rho, untouched.rho_z) == (0.0, 0.0, 0.0)
     assert all(type(part) is float for part in (untouched.rho, untouched.rho_rho, untouched.rho_z))
+
+
+def test_second_derivatives_are_found_once_and_only_when_they_are_asked_for():
+    asked = []
+
+    def bends():
+        asked.append("bends")
+        return 6.0, 2.0, -2.0
+
+    jet = Jet(1.0, 3.0, 1.0, bends)
+    whole = (jet * 2.0 + jet).times(jet.compose(1.0, 2.0, lambda: asked.append("second") or 2.0))
+    assert (whole.value, whole.rho, whole.z) == (3.0, 27.0, 9.0)
+    assert not asked
+    assert whole.rho_rho == 3.0 * (2.0 * 3.0**2 + 2.0 * 6.0) + 2.0 * 9.0 * 6.0 + 18.0  # f g'' + 2 f' g' + f'' g
+    assert whole.z_z == 3.0 * (2.0 * 1.0**2 - 2.0 * 2.0) + 2.0 * 3.0 * 2.0 - 6.0
+    assert sorted(asked) == ["bends", "second"]

@@ -2,7 +2,6 @@
 
 import math
 import pickle
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,6 +12,7 @@ from numpy.testing import assert_allclose
 from loaded_tca import AccuracyWarning, GeometryError, InputError, trace_contact
 from loaded_tca.flanks import FlankModifications, InvoluteFlank, SplineFlank, fitted
 from loaded_tca.flanks.base import Region, unmodified
+from loaded_tca.flanks.jet import Jet
 from loaded_tca.flanks.spline import pitch_point
 from loaded_tca.gears import bevel_mesh
 from loaded_tca.pairs.bevel import bevel_pair
@@ -201,7 +201,7 @@ def test_flank_without_a_pitch_point_is_told():
 
         def theta(self, rho, z, beyond=None):
             jet = super().theta(rho, z, beyond)
-            return replace(jet, value=np.maximum(jet.value, -1.0) + 3.0)
+            return Jet(np.maximum(jet.value, -1.0) + 3.0, jet.rho, jet.z, jet.bends)
 
     flank = Raised(50.0, 0.0, -1, 53.0, (51.0, 57.0), 20.0)
     with pytest.raises(GeometryError, match=r"the flank around diameter .* mm, 0 mm from mid-face has no pitch point"):
