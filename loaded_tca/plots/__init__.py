@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from loaded_tca.plots.comparison import plot_compared_maps, plot_comparison
 from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
 from loaded_tca.plots.ease_off import plot_ease_off
-from loaded_tca.plots.envelope import plot_pressure_envelope
-from loaded_tca.plots.flanks import plot_contact_path
+from loaded_tca.plots.envelope import plot_contact_patterns, plot_pressure_envelope
+from loaded_tca.plots.flanks import plot_contact_path, plot_full_mesh
 from loaded_tca.plots.pressure_map import plot_pressure_map
 from loaded_tca.plots.sharing import (
     plot_harmonics,
@@ -28,8 +29,12 @@ __all__ = [
     "PICTURES",
     "draw_teeth",
     "plot_all",
+    "plot_compared_maps",
+    "plot_comparison",
     "plot_contact_path",
+    "plot_contact_patterns",
     "plot_ease_off",
+    "plot_full_mesh",
     "plot_harmonics",
     "plot_line_load",
     "plot_line_load_distribution",
@@ -63,6 +68,8 @@ PICTURES = (
     "line_load_distribution",
     "pressure_envelope",
     "path_pressure",
+    "contact_patterns",
+    "full_mesh",
 )
 """Names of all pictures that there may be, without their ending."""
 
@@ -82,7 +89,7 @@ def plot_all(
     torque : int, optional
         Index of the torque of maps and flanks, and of the only load shares; default: the largest one, and all.
     position : int, optional
-        Index of the position of the pressure map; default: those of the highest pressures.
+        Index of the position of the pressure map, and of the full mesh; default: those of the highest pressures.
 
     Returns
     -------
@@ -92,7 +99,8 @@ def plot_all(
         position, ``pressure_map_edge.png``; if Hertz holds in other positions only, ``pressure_map_hertz.png`` of the
         highest pressure where it holds. Where tooth pairs share the load: ``load_share.png``, ``harmonics.png``,
         ``mesh_stiffness.png``, ``line_load.png``, ``line_load_distribution.png``, ``pressure_envelope.png``,
-        ``path_pressure.png``.
+        ``path_pressure.png``, under several torques ``contact_patterns.png``, and ``full_mesh.png`` of a position that
+        is asked for.
 
     Raises
     ------
@@ -128,5 +136,9 @@ def plot_all(
             "pressure_envelope": plot_pressure_envelope(result, torque),
             "path_pressure": plot_path_pressure(result),
         }
+        if len(result.torque) > 1:
+            figures["contact_patterns"] = plot_contact_patterns(result)
+        if position is not None:
+            figures["full_mesh"] = plot_full_mesh(result, position, torque)
     contents = {f"{name}.png": png_of(figure) for name, figure in figures.items()}
     return replace_together(directory, contents, {f"{name}.png" for name in PICTURES} - {*contents})

@@ -16,7 +16,7 @@ from loaded_tca.pairs import mating_teeth
 from loaded_tca.plots import PICTURES, plot_all
 from loaded_tca.reference.weber_banaschek import ring_torsion
 from loaded_tca.results.files import read_dataset, write_dataset
-from loaded_tca.results.key_figures import harmonic_amplitudes
+from loaded_tca.results.key_figures import harmonic_coefficients
 from tests.samples.results import FLANKS_ALONE, ONE_PAIR, PER_PAIR, SCENES, assert_same
 
 EQUILIBRIUM = 1e-8
@@ -203,9 +203,9 @@ def test_harmonics_make_up_the_transmission_error():
 
 
 def test_harmonics_of_too_few_positions_are_unknown():
-    assert np.isnan(harmonic_amplitudes(np.zeros(1), 2)).all()
-    assert_array_equal(np.isnan(harmonic_amplitudes(np.zeros(5), 3)), [False, True, True])
-    assert np.isnan(harmonic_amplitudes(np.array([0.0, np.nan, 0.0, 0.0]), 1)).all()
+    assert np.isnan(harmonic_coefficients(np.zeros(1), 2)).all()
+    assert_array_equal(np.isnan(harmonic_coefficients(np.zeros(5), 3)), [False, True, True])
+    assert np.isnan(harmonic_coefficients(np.array([0.0, np.nan, 0.0, 0.0]), 1)).all()
 
 
 @pytest.mark.parametrize("count", [0, 1.5, None])
