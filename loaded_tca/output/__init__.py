@@ -1,4 +1,4 @@
-"""What is written to files and the terminal: reports, comparisons, tables, surfaces of teeth, stresses, the overview of a scene."""
+"""What is written to files and the terminal: reports, tables, comparisons, teeth, stresses, overviews of scenes."""
 
 from loaded_tca.output.comparison_files import write_comparison
 from loaded_tca.output.overview import describe_scene

@@ -48,22 +48,23 @@ def _table(comparison: Comparison) -> str:
         "figure": [name for _, name in rows],
     }
     for k, result in enumerate(comparison.results):
-        headers = {"value": result, "difference": f"{result}: difference", "relative_difference": f"{result}: relative"}
-        for part, header in headers.items():
-            if k == 0 and part != "value":
-                continue
+        for part in figures.data_vars if k else ("value",):
             values = figures[part].values[..., k].ravel()
-            columns[header] = [cell(value, name) for value, (_, name) in zip(values, rows, strict=True)]
+            columns[f"{result}: {part}"] = [cell(value, name) for value, (_, name) in zip(values, rows, strict=True)]
     return csv_table(columns)
 
 
 def _json(comparison: Comparison) -> str:
     """Differing keys of the scenes, and the figures of each torque by their names and those of the results."""
     figures, names = comparison.figures, list(comparison.results)
+    parts = {name: values.values for name, values in figures.data_vars.items()}
 
-    def by_result(part: str, torque: int, figure: str, first: int) -> dict[str, float | None]:
-        values = figures[part].isel(torque=torque).sel(figure=figure).values
-        return {name: known(float(value), figure) for name, value in zip(names[first:], values[first:], strict=True)}
+    def told(torque: int, index: int, figure: str) -> dict[str, dict[str, float | None]]:
+        rows = {part: zip(names, values[torque, index].tolist(), strict=True) for part, values in parts.items()}
+        return {
+            str(part): {name: known(value, figure) for name, value in row if part == "value" or name != names[0]}
+            for part, row in rows.items()
+        }
 
     content = {
         "compared_with": names[0],
@@ -76,12 +77,7 @@ def _json(comparison: Comparison) -> str:
             {
                 "pinion_torque_Nm": 1e-3 * float(torque),
                 "figures": {
-                    str(figure): {
-                        "value": by_result("value", k, figure, 0),
-                        "difference": by_result("difference", k, figure, 1),
-                        "relative_difference": by_result("relative_difference", k, figure, 1),
-                    }
-                    for figure in figures.figure.values
+                    figure: told(k, index, figure) for index, figure in enumerate(figures.figure.values.tolist())
                 },
             }
             for k, torque in enumerate(comparison.torque)

@@ -171,7 +171,7 @@ def _column(name: str, unit: str) -> tuple[str, float]:
 
 
 def cell(value: Any, name: str) -> str:
-    """Return a number as tables have it: nine digits, zero for what is rounding, or nothing where the number is not known; words as they are."""
+    """Return a number as tables have it: nine digits, zero for rounding, nothing where unknown; words as they are."""
     if isinstance(value, str):
         return value
     return f"{without_rounding(value, name):.9g}" if math.isfinite(value) else ""

@@ -26,6 +26,7 @@ from loaded_tca.results.files import FilePath, replace_together
 from loaded_tca.results.mesh_cycle import MeshCycle
 
 __all__ = [
+    "MORE_PICTURES",
     "PICTURES",
     "draw_teeth",
     "plot_all",
@@ -68,18 +69,23 @@ PICTURES = (
     "line_load_distribution",
     "pressure_envelope",
     "path_pressure",
-    "contact_patterns",
-    "full_mesh",
 )
-"""Names of all pictures that there may be, without their ending."""
+"""Names of the pictures that a result has, without their ending."""
+MORE_PICTURES = ("contact_patterns", "full_mesh")
+"""Names of those that are drawn on request."""
 
 
 def plot_all(
-    result: MeshCycle, directory: FilePath, *, torque: int | None = None, position: int | None = None
+    result: MeshCycle,
+    directory: FilePath,
+    *,
+    torque: int | None = None,
+    position: int | None = None,
+    more: bool = False,
 ) -> tuple[Path, ...]:
     """Save every picture as PNG into a directory, all of them or none.
 
-    Pictures of these names that the result does not have, as an earlier one may have left, are removed.
+    Pictures of these names that are not drawn, as an earlier result may have left, are removed.
 
     Parameters
     ----------
@@ -90,6 +96,8 @@ def plot_all(
         Index of the torque of maps and flanks, and of the only load shares; default: the largest one, and all.
     position : int, optional
         Index of the position of the pressure map, and of the full mesh; default: those of the highest pressures.
+    more : bool
+        Draw ``MORE_PICTURES`` too, where tooth pairs share the load.
 
     Returns
     -------
@@ -99,8 +107,7 @@ def plot_all(
         position, ``pressure_map_edge.png``; if Hertz holds in other positions only, ``pressure_map_hertz.png`` of the
         highest pressure where it holds. Where tooth pairs share the load: ``load_share.png``, ``harmonics.png``,
         ``mesh_stiffness.png``, ``line_load.png``, ``line_load_distribution.png``, ``pressure_envelope.png``,
-        ``path_pressure.png``, under several torques ``contact_patterns.png``, and ``full_mesh.png`` of a position that
-        is asked for.
+        ``path_pressure.png``. With ``more``: under several torques ``contact_patterns.png``, and ``full_mesh.png``.
 
     Raises
     ------
@@ -136,9 +143,9 @@ def plot_all(
             "pressure_envelope": plot_pressure_envelope(result, torque),
             "path_pressure": plot_path_pressure(result),
         }
-        if len(result.torque) > 1:
+        if more and len(result.torque) > 1:
             figures["contact_patterns"] = plot_contact_patterns(result)
-        if position is not None:
+        if more and peak is not None:
             figures["full_mesh"] = plot_full_mesh(result, position, torque)
     contents = {f"{name}.png": png_of(figure) for name, figure in figures.items()}
-    return replace_together(directory, contents, {f"{name}.png" for name in PICTURES} - {*contents})
+    return replace_together(directory, contents, {f"{name}.png" for name in (*PICTURES, *MORE_PICTURES)} - {*contents})

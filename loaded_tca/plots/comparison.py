@@ -7,15 +7,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import cycle
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from loaded_tca.arrays import Array
 from loaded_tca.plots import style
-from loaded_tca.plots.pressure_map import PRESSURE, draw_map, scale_factor
 from loaded_tca.plots.flanks import highest_of_map
+from loaded_tca.plots.pressure_map import PRESSURE, draw_map, scale_factor
 from loaded_tca.plots.sharing import MOST_ORDERS, OVER_THE_PATH, draw_orders, over_the_path
 from loaded_tca.plots.style import COLOURS, DISTINCT_COLOURS, MARKERS
 from loaded_tca.results.comparison import Comparison, compare_results
@@ -25,8 +23,6 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 Results = Mapping[str, MeshCycle] | Sequence[MeshCycle] | Comparison
 SMALLEST_SPAN_UM = 1e-3
 """Height of a transmission error axis below which a curve would be rounding."""
-SAME_PITCH = 1e-9
-"""Relative difference of angular pitches that is none."""
 UNIT = np.array([-1.0, 1.0])
 """Borders [mm] of a map of nothing."""
 MOST_IN_A_ROW = 3
@@ -60,22 +56,21 @@ def plot_comparison(results: Results, torque: float | None = None) -> Figure:
     comparison = results if isinstance(results, Comparison) else compare_results(results)
     shared = comparison.index_of(torque)
     named = comparison.results
-    pitches = np.array([result.gear_pair.pitch for result in named.values()])
-    alike = bool(np.ptp(pitches) <= SAME_PITCH * pitches[0])
+    alike = len({result.scene.pinion.teeth for result in named.values()}) == 1
     unit = "[deg]" if alike else "[pitches]"
     figure = Figure(figsize=(11.0, 10.0), layout="constrained")
-    panels = figure.subplots(3, 2)
-    (absolute, about_mean), (harmonics, stiffness), (pressure, share) = panels
+    (absolute, about_mean), (harmonics, stiffness), (pressure, share) = figure.subplots(3, 2)
     bars = []
-    for (name, result), k, pitch, (colour, marker, width) in zip(
-        named.items(), comparison.indices[shared], pitches, _styles(len(named)), strict=True
+    for (name, result), k, (colour, marker, width) in zip(
+        named.items(), comparison.indices[shared], _styles(len(named)), strict=True
     ):
         drawn = {"color": colour, "marker": marker, "linewidth": width, "markersize": 4.0}
-        scale = math.degrees(1.0) if alike else 1.0 / pitch
+        scale = math.degrees(1.0) if alike else 1.0 / result.gear_pair.pitch
         angle = scale * result.pinion_angle
         length = 1e3 * result.wheel_base_radius
         error = length * result.transmission_error[k]
-        absolute.plot(angle, error, label=name, **drawn)
+        label = name.replace("$", r"\$")  # no TeX, and shown where it begins with an underscore
+        absolute.plot(angle, error, label=f" {label}", **drawn)
         about_mean.plot(angle, error - mean_over_a_pitch(error), **drawn)
         stiffness.plot(angle, result.mesh_stiffness[k], **drawn)
         bars.append((name, colour, length * result.harmonics(MOST_ORDERS)[k]))
@@ -84,22 +79,20 @@ def plot_comparison(results: Results, torque: float | None = None) -> Figure:
             known = np.isfinite(curve)
             axes.plot(scale * places[known], curve[known], **drawn)
     draw_orders(harmonics, bars)
-    absolute.set_ylabel("transmission error [µm]")
-    about_mean.set_ylabel("the same, less its mean [µm]")
-    stiffness.set_ylabel("mesh stiffness [N/(mm µm)]")
-    pressure.set_ylabel("peak pressure [MPa]")
-    share.set_ylabel("share of the torque [%]")
-    share.set_ylim(-4.0, 106.0)
     harmonics.set_ylabel("amplitude [µm]")
-    for axes in (absolute, about_mean, stiffness):
-        axes.set_xlabel(f"pinion angle {unit}")
-    for axes in (pressure, share):
-        axes.set_xlabel(f"{OVER_THE_PATH} {unit}")
+    for axes, over, label in (
+        (absolute, "pinion angle", "transmission error [µm]"),
+        (about_mean, "pinion angle", "the same, less its mean [µm]"),
+        (stiffness, "pinion angle", "mesh stiffness [N/(mm µm)]"),
+        (pressure, OVER_THE_PATH, "peak pressure [MPa]"),
+        (share, OVER_THE_PATH, "share of the torque [%]"),
+    ):
+        axes.set(xlabel=f"{over} {unit}", ylabel=label)
+        axes.grid(alpha=0.3)
     for axes in (absolute, about_mean):
         style.widen(axes, SMALLEST_SPAN_UM)
     style.from_zero(pressure)
-    for axes in (absolute, about_mean, stiffness, pressure, share):
-        axes.grid(alpha=0.3)
+    share.set_ylim(-4.0, 106.0)
     figure.legend(*absolute.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize="small")
     style.write_title(figure, _title(named), f"{_under(comparison, shared)}, lengths at the wheel's base circle")
     return figure
@@ -141,11 +134,8 @@ def plot_compared_maps(results: Results, torque: float | None = None, position: 
     figure = Figure(figsize=size, layout="constrained")
     panels = figure.subplots(rows, columns, squeeze=False).ravel().tolist()
     loaded = [one is not None and bool(one.pressure.any()) for one in maps]
-    tops = [
-        highest_of_map(result, *at) if carries else 0.0
-        for result, at, carries in zip(named.values(), places, loaded, strict=True)
-    ]
-    highest = max(tops)
+    of_loaded = [(result, at) for result, at, carries in zip(named.values(), places, loaded, strict=True) if carries]
+    highest = max((highest_of_map(result, *at) for result, at in of_loaded), default=0.0)
     for axes, (name, result), (k, n, column), one in zip(panels, named.items(), places, maps, strict=False):
         if one is None:
             style.tell(axes, "no tooth pair is in contact here")
@@ -159,8 +149,8 @@ def plot_compared_maps(results: Results, torque: float | None = None, position: 
         beyond = any(one is not None and one.pressure.max() > highest for one in maps)
         colours = ScalarMappable(Normalize(0.0, highest), COLOURS)
         figure.colorbar(colours, ax=panels, label=PRESSURE, extend="max" if beyond else "neither")
-    keys = {label: key for axes in panels for key, label in zip(*axes.get_legend_handles_labels(), strict=True)}
-    keys = {label.partition(",")[0]: key for label, key in keys.items()}
+    drawn = (zip(*axes.get_legend_handles_labels(), strict=True) for axes in panels)
+    keys = {label.partition(",")[0]: key for pairs in drawn for key, label in pairs}  # Hertz without its pressure
     figure.legend(keys.values(), keys.keys(), loc="outside lower center", ncols=3, fontsize="small")
     style.write_title(figure, _title(named), f"contact pressure, {_under(comparison, shared)}")
     return figure

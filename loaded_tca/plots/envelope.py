@@ -89,9 +89,7 @@ def _envelopes(result: MeshCycle, torques: list[int]) -> tuple[Figure, list[Axes
     return figure, panels
 
 
-def _passing(
-    result: MeshCycle, torque: int, to_picture: ToPicture, field: Array
-) -> Iterator[tuple[Array, Array]]:
+def _passing(result: MeshCycle, torque: int, to_picture: ToPicture, field: Array) -> Iterator[tuple[Array, Array]]:
     """Places (k, 2) in the picture of a flank and the pressure (k,) that they see.
 
     Of each map all cells, and from each position to the next the ridge of the pressure, which no place between sees

@@ -175,9 +175,7 @@ def loaded_maps(result: MeshCycle, torque: int, positions: Sequence[int] | None 
 def colour_scale(
     result: MeshCycle, torque: int | list[int], maps: Sequence[PressureMap]
 ) -> tuple[Normalize, Literal["max", "neither"]]:
-    """Scale of the colours of maps up to the highest peak pressure under one torque or several, and the arrow of its
-    bar if a cell lies beyond.
-    """
+    """Scale of colours up to the highest peak pressure under some torques; arrow of its bar if a cell lies beyond."""
     highest = float(np.nanmax(result.peak_pressure[torque], initial=0.0)) or 1.0
     beyond = any(one.pressure.max() > highest for one in maps)
     return Normalize(0.0, highest), "max" if beyond else "neither"
@@ -197,9 +195,7 @@ def highest_of_map(result: MeshCycle, torque: int, position: int, column: int) -
     return min(highest, max(body, float(result.peak_pressure[at])))
 
 
-def both_flanks(
-    result: MeshCycle, *draw: Callable[[Axes, ToPicture], Sequence[Artist]]
-) -> tuple[Figure, list[Axes]]:
+def both_flanks(result: MeshCycle, *draw: Callable[[Axes, ToPicture], Sequence[Artist]]) -> tuple[Figure, list[Axes]]:
     """A panel for each flank, with what is drawn on it cut off at its outline; a row for each function that draws.
 
     The function is called with the axes and what takes points to the picture; it returns what is to be cut off.

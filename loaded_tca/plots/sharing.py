@@ -156,7 +156,8 @@ def plot_harmonics(result: MeshCycle) -> Figure:
     for torque, _, colour, marker in styles:
         told = amplitudes[torque] >= PART_WITH_PHASE * np.fmax.reduce(amplitudes[torque])
         below.plot(places[torque][told], phases[torque][told], marker, color=colour)
-    below.set(ylim=(-190.0, 190.0), yticks=range(-180, 181, 90), ylabel="phase [deg], where the\namplitude is not below 1 %", xlabel=axes.get_xlabel())
+    below.set(ylim=(-190.0, 190.0), yticks=range(-180, 181, 90), xlabel=axes.get_xlabel())
+    below.set_ylabel(f"phase [deg], of amplitudes\nfrom {PART_WITH_PHASE:.0%} of the largest on")
     below.grid(alpha=0.3)
     axes.set_xlabel("")
     about = f"harmonics of the transmission error, {loads(result)}", range_of_positions(result)
@@ -269,7 +270,7 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
 
 
 def over_the_path(result: MeshCycle, *numbers: Array) -> Iterator[Array]:
-    """Pinion angles from the pitch point of the own tooth pair (n,) [rad], ascending, and numbers (position, pair) there."""
+    """Ascending pinion angles from the pitch point of the own tooth pair (n,) [rad]; numbers (position, pair) there."""
     angle = result.pinion_angle[:, None] - result.gear_pair.pitch * result.pair
     order = np.argsort(angle, axis=None, kind="stable")
     return (values.ravel()[order] for values in (angle, *numbers))

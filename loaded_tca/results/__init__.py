@@ -1,4 +1,4 @@
-"""What an analysis found: the mesh cycle, its key figures, its file, several side by side, the stresses below the flanks."""
+"""What an analysis found: the mesh cycle, its figures and file, the stresses below the flanks, and several compared."""
 
 from loaded_tca.results.comparison import Comparison, compare_results
 from loaded_tca.results.mesh_cycle import MeshCycle

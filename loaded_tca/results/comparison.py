@@ -137,8 +137,8 @@ class Comparison:
         more = len(keys) - MOST_KEYS
         notes = [f"{more} more keys of the scenes differ"] if more > 0 else []
         shared = [_told(one) for one in self.torque]
-        others = {name: [one for one in _torques(result) if one not in shared] for name, result in self.results.items()}
-        if left := [f"{name} {', '.join(torques)}" for name, torques in others.items() if torques]:
+        own = {name: [one for one in _torques(result) if one not in shared] for name, result in self.results.items()}
+        if left := [f"{name} {', '.join(torques)}" for name, torques in own.items() if torques]:
             notes.append(f"all have the torques {', '.join(shared)} N m; left out: {'; '.join(left)} N m")
         head = f"Compared with {names[0]}, pinion torque {_told(self.torque[at])} N m"
         return "\n".join([head, *(line.rstrip() for line in lines), *(f"note: {note}" for note in notes)])
@@ -175,7 +175,10 @@ def compare_results(results: Mapping[str, MeshCycle] | Sequence[MeshCycle]) -> C
     )
     require(
         (len(named) > 1, f"results: {len(named)} given; a comparison takes two or more"),
-        *((isinstance(one, MeshCycle), f"results: {name} is no MeshCycle but {one!r:.60}") for name, one in named.items()),
+        *(
+            (isinstance(one, MeshCycle), f"results: {name} is no MeshCycle but {one!r:.60}")
+            for name, one in named.items()
+        ),
     )
     torques = [set(_torques(result)) for result in named.values()]
     shared = set.intersection(*torques)

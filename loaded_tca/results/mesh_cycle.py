@@ -251,8 +251,8 @@ class MeshCycle:
     def harmonic_phases(self, count: int) -> Array:
         """Return the phases of the orders 1 to ``count`` of the tooth mesh of the loaded transmission error.
 
-        TE(phi1) = mean + sum of amplitude_k cos(k z1 phi1 + phase_k), with the amplitudes of ``harmonics``: phases count
-        from the pinion angle 0, as those of the unloaded ``MeshPath.harmonics`` do.
+        TE(phi1) = mean + sum of amplitude_k cos(k z1 phi1 + phase_k), with the amplitudes of ``harmonics``. Phases
+        count from the pinion angle 0, as those of the unloaded ``MeshPath.harmonics`` do.
 
         Parameters
         ----------
