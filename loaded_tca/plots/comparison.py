@@ -168,9 +168,8 @@ def _places(comparison: Comparison, shared: int, position: int | None) -> list[t
 
 
 def _styles(count: int) -> Iterator[tuple[str, str, float]]:
-    """Colour, marker and line width of each result; the first one is broad, so that it is seen below another."""
-    widths = [4.0] + [1.5] * (count - 1)
-    return zip(cycle(DISTINCT_COLOURS), cycle(MARKERS), widths, strict=False)
+    """Colour, marker and line width of each result: curves on each other are seen, each beside the next."""
+    return zip(cycle(DISTINCT_COLOURS), cycle(MARKERS), np.linspace(5.0, 1.5, count).tolist(), strict=False)
 
 
 def _title(named: Mapping[str, MeshCycle]) -> str:
