@@ -50,6 +50,9 @@ and where tooth pairs share the load
   line_load_distribution.png    along the contacts on the flanks, under the largest torque
   pressure_envelope.png     the highest pressure on the flanks, under the largest torque
   path_pressure.png         from the begin to the end of contact, all torques
+and, only with 'plot --all'
+  contact_patterns.png      the highest pressure on the flanks under each of several torques, on one scale
+  full_mesh.png             all tooth pairs at the position of pressure_map.png on the flanks
 Pictures of these names that the result does not have are removed; docs/results.md says more."""
 TEETH = """files in DIR:
   pinion.vtk, wheel.vtk     the teeth in contact, in the fixed frame; "patch" tells flanks, fillets and lands apart
@@ -57,6 +60,12 @@ TEETH = """files in DIR:
   pinion.stl, wheel.stl     closed solids, each in its gear's own frame
   teeth.png                 a picture of all that
 All lengths are in mm."""
+COMPARE = """files in DIR:
+  comparison.csv            one row per shared torque and key figure: values, differences to the first result
+  comparison.json           the same, and the keys in which the scenes differ
+  comparison.png            transmission error, its harmonics, stiffness, pressure and load share, over each other
+  compared_maps.png         pressure maps side by side on one scale
+Pictures are those of one torque; docs/results.md says more."""
 EASE_OFF = """files in DIR:
   ease_off.png              what the flank lacks of the conjugate of its mating flank, in um, with the values at its
                             corners, and its angles, crownings and twist"""
@@ -205,11 +214,22 @@ def _parser() -> argparse.ArgumentParser:
         reader.add_argument("--out", metavar="DIR", type=_path, help=f"directory for the files; default: {own}")
         reader.add_argument("--torque", metavar="NM", type=float, help=f"{of_torque}; default: largest")
         reader.add_argument("--position", metavar="N", type=int, help=f"position of {of_position}, from 1; {peak}")
+    plot.add_argument("--all", action="store_true", help="draw contact_patterns.png and full_mesh.png too")
     tooth.add_argument("--fillet-radius", metavar="MM", type=float, help="of arcs at the root; default: by the module")
     tooth.add_argument("--whole-gears", action="store_true", help="all teeth in the STL files, not one")
     below.add_argument("--pair", metavar="K", type=int, help=f"tooth pair, as load_share.png counts; {peak}")
     below.add_argument(
         "--gear", choices=("pinion", "wheel"), default="pinion", help="below whose flank; default: pinion"
+    )
+    compare = command("compare", _compare, "show what two or more results differ in", COMPARE)
+    compare.add_argument(
+        "results", metavar="DIR|FILE", nargs="+", type=_path, help="results; the first is what others are compared with"
+    )
+    compare.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the files")
+    compare.add_argument("--names", metavar="NAME", nargs="+", help="of the results; default: from their directories")
+    compare.add_argument("--torque", metavar="NM", type=float, help="pinion torque of the pictures; default: largest")
+    compare.add_argument(
+        "--position", metavar="N", type=int, help="position of the maps in the first result, from 1; default: own peaks"
     )
     ease_off = command("ease-off", _ease_off, "draw the ease-off of a scene, without load", EASE_OFF)
     ease_off.add_argument("scene", metavar="SCENE.toml", help="scene file")
@@ -249,14 +269,14 @@ def _run(options: argparse.Namespace) -> None:
     """Read, analyse, write everything, and show the summary."""
     from loaded_tca.analysis import analyse
     from loaded_tca.output.report import write_report
-    from loaded_tca.plots import PICTURES, plot_all
+    from loaded_tca.plots import MORE_PICTURES, PICTURES, plot_all
     from loaded_tca.scene import read_scene
 
     scene, directory = read_scene(options.scene), options.out
     _check_place(directory)
     with _progress_bar(scene) as progress:
         result = analyse(scene, progress=progress)
-    report = write_report(result, directory, outdated=[f"{name}.png" for name in PICTURES])
+    report = write_report(result, directory, outdated=[f"{name}.png" for name in (*PICTURES, *MORE_PICTURES)])
     try:
         pictures = plot_all(result, directory)
     except BaseException as error:  # an interrupt, too
@@ -271,7 +291,7 @@ def _plot(options: argparse.Namespace) -> None:
     from loaded_tca.plots import plot_all
 
     result, directory, torque, position = _loaded(options)
-    _print_files(plot_all(result, directory, torque=torque, position=position))
+    _print_files(plot_all(result, directory, torque=torque, position=position, more=options.all))
 
 
 def _tooth(options: argparse.Namespace) -> None:
@@ -301,6 +321,43 @@ def _subsurface(options: argparse.Namespace) -> None:
     _print_files(written)
 
 
+def _compare(options: argparse.Namespace) -> None:
+    from loaded_tca.output.comparison_files import write_comparison
+    from loaded_tca.plots import plot_compared_maps, plot_comparison, png_of
+    from loaded_tca.results import MeshCycle, compare_results
+
+    _check_place(options.out)
+    paths = [_result_file(path) for path in options.results]
+    names = options.names or _ends_that_differ(paths)
+    if len(names) != len(paths) or len(set(names)) != len(names):
+        raise InputError(f"--names {' '.join(names)}: {len(paths)} results take as many names, each another")
+    comparison = compare_results(dict(zip(names, map(MeshCycle.load, paths), strict=True)))
+    torque = None if options.torque is None else 1e3 * options.torque
+    position = _index_of_position(options.position, comparison.results[names[0]])
+    summary = comparison.summary(torque)
+    pictures = {
+        "comparison.png": png_of(plot_comparison(comparison, torque)),
+        "compared_maps.png": png_of(plot_compared_maps(comparison, torque, position)),
+    }
+    written = write_comparison(comparison, options.out, pictures)
+    print(summary, end="\n\n")
+    _print_files(written)
+
+
+def _ends_that_differ(paths: Sequence[Path]) -> list[str]:
+    """Shortest ends of the paths of results, without the usual name of their files, that tell them apart."""
+    from loaded_tca.output.report import RESULT
+
+    whole = [Path(os.path.abspath(path)) for path in paths]
+    for one in whole:
+        if whole.count(one) > 1:
+            raise InputError(f"{one}: given twice; a comparison takes different results")
+    parts = [(one.parent if one.name == RESULT else one.with_suffix("")).parts for one in whole]
+    longest = max(map(len, parts))
+    ends = (["/".join(part[-length:]) for part in parts] for length in range(1, longest + 1))
+    return next((names for names in ends if len(set(names)) == len(names)), [str(one) for one in whole])
+
+
 def _ease_off(options: argparse.Namespace) -> None:
     from loaded_tca.flank_maps.ease_off_map import ease_off_map
     from loaded_tca.plots import plot_ease_off, png_of
@@ -316,29 +373,41 @@ def _ease_off(options: argparse.Namespace) -> None:
 
 def _loaded(options: argparse.Namespace) -> tuple[MeshCycle, Path, int | None, int | None]:
     """What the command line names: the result, the directory to write to, and indices of the torque and position."""
-    from loaded_tca.output.report import RESULT
     from loaded_tca.results.mesh_cycle import MeshCycle
 
-    path = options.result / RESULT if os.path.isdir(options.result) else options.result
+    path = _result_file(options.result)
     result = MeshCycle.load(path)
-    torque, position = options.torque, options.position
+    torque = options.torque
     if torque is not None:
         known = [f"{1e-3 * float(one):.6g}" for one in result.torque]
         if f"{torque:.6g}" not in known:
             raise InputError(f"--torque {torque:g}: the result has {', '.join(known)} N m")
         torque = known.index(f"{torque:.6g}")
-    if position is not None:
-        if not 1 <= position <= len(result.path):
-            raise InputError(f"--position {position}: the result has the positions 1 to {len(result.path)}")
-        if not result.path.in_contact[position - 1]:
-            raise InputError(f"--position {position}: no tooth pair is in contact there")
-        position -= 1
+    position = _index_of_position(options.position, result)
     chosen = {"torque_{:g}_Nm": options.torque, "position_{}": options.position}
     chosen |= {"pair_{}": getattr(options, "pair", None), "below_{}": getattr(options, "gear", None)}
     names = [name.format(value) for name, value in chosen.items() if value not in (None, "pinion")]
     directory = options.out or path.parent / "_".join(names)  # files of a part do not replace those of the whole
     _check_place(directory)
     return result, directory, torque, position
+
+
+def _result_file(path: Path) -> Path:
+    """The file of a result that is named by itself or by its directory."""
+    from loaded_tca.output.report import RESULT
+
+    return path / RESULT if os.path.isdir(path) else path
+
+
+def _index_of_position(position: int | None, result: MeshCycle) -> int | None:
+    """Index from 0 of a position of a result that is in contact, given from 1."""
+    if position is None:
+        return None
+    if not 1 <= position <= len(result.path):
+        raise InputError(f"--position {position}: the result has the positions 1 to {len(result.path)}")
+    if not result.path.in_contact[position - 1]:
+        raise InputError(f"--position {position}: no tooth pair is in contact there")
+    return position - 1
 
 
 def _check(options: argparse.Namespace) -> None:

@@ -7,6 +7,8 @@ import matplotlib
 import numpy as np
 import pytest
 
+from loaded_tca import cli
+
 matplotlib.use("Agg")
 hypothesis.settings.register_profile("suite", deadline=None, max_examples=100, derandomize=True)
 hypothesis.settings.register_profile("nightly", deadline=None, max_examples=2000)
@@ -23,3 +25,15 @@ def _nan_stops():
 def rng():
     """A seeded generator of random numbers."""
     return np.random.default_rng(20240607)
+
+
+@pytest.fixture
+def run(capsys):
+    """Run the command; returns exit code, stdout and the lines of stderr."""
+
+    def run(*arguments):
+        code = cli.main([str(argument) for argument in arguments])
+        captured = capsys.readouterr()
+        return code, captured.out, captured.err.splitlines()
+
+    return run

@@ -30,18 +30,6 @@ def _in_an_empty_directory(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
-@pytest.fixture
-def run(capsys):
-    """Run the command; returns exit code, stdout and the lines of stderr."""
-
-    def run(*arguments):
-        code = cli.main([str(argument) for argument in arguments])
-        captured = capsys.readouterr()
-        return code, captured.out, captured.err.splitlines()
-
-    return run
-
-
 def scene(name="quick", **changes):
     """A scene file that takes a moment, with other values where asked."""
     text = (SCENES / "helical.toml").read_text(encoding="utf-8")

@@ -1,21 +1,8 @@
 import pytest
 
-from loaded_tca import cli
 from tests.samples.results import result
 
 FILES = {"pinion.vtk", "wheel.vtk", "pressure.vtk", "pinion.stl", "wheel.stl", "teeth.png"}
-
-
-@pytest.fixture
-def run(capsys):
-    """Run the command; returns exit code, stdout and the lines of stderr."""
-
-    def run(*arguments):
-        code = cli.main([str(argument) for argument in arguments])
-        captured = capsys.readouterr()
-        return code, captured.out, captured.err.splitlines()
-
-    return run
 
 
 @pytest.fixture

@@ -1,5 +1,6 @@
-"""What is written to files and the terminal: reports, tables, surfaces of teeth, stresses, the overview of a scene."""
+"""What is written to files and the terminal: reports, tables, comparisons, teeth, stresses, overviews of scenes."""
 
+from loaded_tca.output.comparison_files import write_comparison
 from loaded_tca.output.overview import describe_scene
 from loaded_tca.output.report import write_report
 from loaded_tca.output.subsurface_files import write_subsurface
@@ -9,6 +10,7 @@ from loaded_tca.output.teeth_in_space import teeth_in_space
 __all__ = [
     "describe_scene",
     "teeth_in_space",
+    "write_comparison",
     "write_report",
     "write_stl",
     "write_subsurface",

@@ -87,7 +87,7 @@ def summary_json(result: MeshCycle) -> str:
         "rigid_bore_diameters_mm": result.scene.rigid_bores,
         "torques": [
             {
-                **{name: _known(value, name) for name, value in figures.items()},
+                **{name: known(value, name) for name, value in figures.items()},
                 "tooth_pair_at_peak": None if place is None else int(result.pair[place[1]]),
             }
             for torque, figures in enumerate(result.key_figures())
@@ -97,8 +97,8 @@ def summary_json(result: MeshCycle) -> str:
     return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def _known(value: float, name: str) -> float | None:
-    """The number without what is rounding; None if it is not known."""
+def known(value: float, name: str) -> float | None:
+    """Return a number as JSON has it: without what is rounding; None if it is not known."""
     if isinstance(value, bool | int):
         return value
     return without_rounding(value, name) if math.isfinite(value) else None
@@ -159,7 +159,7 @@ def csv_table(columns: Mapping[str, Iterable[Any]]) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(columns)
-    cells = ([_cell(value, name) for value in values] for name, values in columns.items())
+    cells = ([cell(value, name) for value in values] for name, values in columns.items())
     writer.writerows(zip(*cells, strict=True))
     return text.getvalue()
 
@@ -170,8 +170,8 @@ def _column(name: str, unit: str) -> tuple[str, float]:
     return COLUMNS.get(name, (f"{name}_{unit_name}" if unit_name else name, factor))
 
 
-def _cell(value: Any, name: str) -> str:
-    """Nine digits, zero for what is rounding, or nothing where the number is not known; words as they are."""
+def cell(value: Any, name: str) -> str:
+    """Return a number as tables have it: nine digits, zero for rounding, nothing where unknown; words as they are."""
     if isinstance(value, str):
         return value
     return f"{without_rounding(value, name):.9g}" if math.isfinite(value) else ""

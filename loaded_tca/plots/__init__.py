@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from loaded_tca.plots.comparison import plot_compared_maps, plot_comparison
 from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
 from loaded_tca.plots.ease_off import plot_ease_off
-from loaded_tca.plots.envelope import plot_pressure_envelope
-from loaded_tca.plots.flanks import plot_contact_path
+from loaded_tca.plots.envelope import plot_contact_patterns, plot_pressure_envelope
+from loaded_tca.plots.flanks import plot_contact_path, plot_full_mesh
 from loaded_tca.plots.pressure_map import plot_pressure_map
 from loaded_tca.plots.sharing import (
     plot_harmonics,
@@ -25,11 +26,16 @@ from loaded_tca.results.files import FilePath, replace_together
 from loaded_tca.results.mesh_cycle import MeshCycle
 
 __all__ = [
+    "MORE_PICTURES",
     "PICTURES",
     "draw_teeth",
     "plot_all",
+    "plot_compared_maps",
+    "plot_comparison",
     "plot_contact_path",
+    "plot_contact_patterns",
     "plot_ease_off",
+    "plot_full_mesh",
     "plot_harmonics",
     "plot_line_load",
     "plot_line_load_distribution",
@@ -64,15 +70,22 @@ PICTURES = (
     "pressure_envelope",
     "path_pressure",
 )
-"""Names of all pictures that there may be, without their ending."""
+"""Names of the pictures that a result has, without their ending."""
+MORE_PICTURES = ("contact_patterns", "full_mesh")
+"""Names of those that are drawn on request."""
 
 
 def plot_all(
-    result: MeshCycle, directory: FilePath, *, torque: int | None = None, position: int | None = None
+    result: MeshCycle,
+    directory: FilePath,
+    *,
+    torque: int | None = None,
+    position: int | None = None,
+    more: bool = False,
 ) -> tuple[Path, ...]:
     """Save every picture as PNG into a directory, all of them or none.
 
-    Pictures of these names that the result does not have, as an earlier one may have left, are removed.
+    Pictures of these names that are not drawn, as an earlier result may have left, are removed.
 
     Parameters
     ----------
@@ -82,7 +95,9 @@ def plot_all(
     torque : int, optional
         Index of the torque of maps and flanks, and of the only load shares; default: the largest one, and all.
     position : int, optional
-        Index of the position of the pressure map; default: those of the highest pressures.
+        Index of the position of the pressure map, and of the full mesh; default: those of the highest pressures.
+    more : bool
+        Draw ``MORE_PICTURES`` too, where tooth pairs share the load.
 
     Returns
     -------
@@ -92,7 +107,7 @@ def plot_all(
         position, ``pressure_map_edge.png``; if Hertz holds in other positions only, ``pressure_map_hertz.png`` of the
         highest pressure where it holds. Where tooth pairs share the load: ``load_share.png``, ``harmonics.png``,
         ``mesh_stiffness.png``, ``line_load.png``, ``line_load_distribution.png``, ``pressure_envelope.png``,
-        ``path_pressure.png``.
+        ``path_pressure.png``. With ``more``: under several torques ``contact_patterns.png``, and ``full_mesh.png``.
 
     Raises
     ------
@@ -128,5 +143,9 @@ def plot_all(
             "pressure_envelope": plot_pressure_envelope(result, torque),
             "path_pressure": plot_path_pressure(result),
         }
+        if more and len(result.torque) > 1:
+            figures["contact_patterns"] = plot_contact_patterns(result)
+        if more and peak is not None:
+            figures["full_mesh"] = plot_full_mesh(result, position, torque)
     contents = {f"{name}.png": png_of(figure) for name, figure in figures.items()}
-    return replace_together(directory, contents, {f"{name}.png" for name in PICTURES} - {*contents})
+    return replace_together(directory, contents, {f"{name}.png" for name in (*PICTURES, *MORE_PICTURES)} - {*contents})

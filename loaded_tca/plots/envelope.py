@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -12,7 +13,7 @@ from matplotlib.figure import Figure
 
 from loaded_tca.arrays import Array
 from loaded_tca.plots import style
-from loaded_tca.plots.flanks import both_flanks, colour_scale, loaded_maps
+from loaded_tca.plots.flanks import ToPicture, both_flanks, colour_scale, loaded_maps
 from loaded_tca.plots.style import COLOURS, highest_torque, load, range_of_positions
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap, slice_middles
@@ -39,9 +40,39 @@ def plot_pressure_envelope(result: MeshCycle, torque: int | None = None) -> Figu
     matplotlib.figure.Figure
     """
     torque = highest_torque(result) if torque is None else torque
-    scale, extend = colour_scale(result, torque, loaded_maps(result, torque))
+    figure, _ = _envelopes(result, [torque])
+    style.set_title(figure, result, f"pressure envelope, {load(result, torque)}", range_of_positions(result))
+    return figure
 
-    def draw(axes: Axes, to_picture: Callable[[Array], Array]) -> list[Artist]:
+
+def plot_contact_patterns(result: MeshCycle) -> Figure:
+    """Loaded contact pattern under each torque on one scale: the highest pressure that each place of both flanks sees.
+
+    A row for each torque, of many torques four from the least to the largest; each row is
+    :func:`plot_pressure_envelope` under its torque.
+
+    Parameters
+    ----------
+    result : MeshCycle
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    shown = style.torques_with_panels(result)
+    figure, panels = _envelopes(result, shown)
+    for torque, axes in zip(shown, panels[::2], strict=True):
+        axes.set_ylabel(f"{style.torque_label(result, torque)}\n{axes.get_ylabel()}")
+    style.set_title(figure, result, f"loaded contact patterns, {style.loads(result)}", range_of_positions(result))
+    return figure
+
+
+def _envelopes(result: MeshCycle, torques: list[int]) -> tuple[Figure, list[Axes]]:
+    """Both flanks with their pressure envelope in a row for each torque, without a title."""
+    maps = [one for torque in torques for one in loaded_maps(result, torque)]
+    scale, extend = colour_scale(result, torques, maps)
+
+    def draw(torque: int, axes: Axes, to_picture: ToPicture) -> list[Artist]:
         low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
         field = (high - low) / FIELDS
         highest = np.zeros((FIELDS, FIELDS))
@@ -53,15 +84,12 @@ def plot_pressure_envelope(result: MeshCycle, torque: int | None = None) -> Figu
         borders = np.linspace(low, high, FIELDS + 1).T
         return [axes.pcolormesh(*borders, seen, cmap=COLOURS, norm=scale, rasterized=True)]
 
-    figure, panels = both_flanks(result, draw)
+    figure, panels = both_flanks(result, *(partial(draw, torque) for torque in torques))
     figure.colorbar(ScalarMappable(scale, COLOURS), ax=panels, label="highest contact pressure [MPa]", extend=extend)
-    style.set_title(figure, result, f"pressure envelope, {load(result, torque)}", range_of_positions(result))
-    return figure
+    return figure, panels
 
 
-def _passing(
-    result: MeshCycle, torque: int, to_picture: Callable[[Array], Array], field: Array
-) -> Iterator[tuple[Array, Array]]:
+def _passing(result: MeshCycle, torque: int, to_picture: ToPicture, field: Array) -> Iterator[tuple[Array, Array]]:
     """Places (k, 2) in the picture of a flank and the pressure (k,) that they see.
 
     Of each map all cells, and from each position to the next the ridge of the pressure, which no place between sees
@@ -85,7 +113,7 @@ def _passing(
             before = ridge
 
 
-def _cells(one: PressureMap, to_picture: Callable[[Array], Array], field: Array) -> tuple[Array, Array]:
+def _cells(one: PressureMap, to_picture: ToPicture, field: Array) -> tuple[Array, Array]:
     """Points (k, 3) within the cells under pressure, so close that none leaves a field empty, and their pressure."""
     corners = to_picture(one.corners)
     across, along = (

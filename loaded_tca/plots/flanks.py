@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -16,10 +18,22 @@ from matplotlib.patches import Patch, Polygon
 
 from loaded_tca.arrays import Array
 from loaded_tca.flanks.base import Flank
-from loaded_tca.plots.style import ACCENT, COLOURS, NOT_REACHED, highest_torque, load, range_of_positions, set_title
+from loaded_tca.plots.style import (
+    ACCENT,
+    COLOURS,
+    NOT_REACHED,
+    highest_torque,
+    load,
+    position_label,
+    range_of_positions,
+    set_title,
+)
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
+from loaded_tca.results.summary import signed
 
+ToPicture = Callable[[Array], Array]
+"""Takes points (..., 3) of the fixed frame to their places (..., 2) in the picture of a flank."""
 CONTACT_POINTS = "unloaded contact points of all positions and pairs"
 MOST_AREAS = 7
 CELLS_OF_SPIKES = 0.05
@@ -53,15 +67,10 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     maps = [one for row in drawn for one in row]
     scale, extend = colour_scale(result, torque, maps)
 
-    def draw(axes: Axes, to_picture: Callable[[Array], Array]) -> list[Artist]:
-        areas: list[Artist] = []
-        for one in maps:
-            x, y = np.moveaxis(to_picture(one.corners), -1, 0)
-            loaded = np.where(one.pressure > 0.0, one.pressure, np.nan)
-            areas.append(axes.pcolormesh(x, y, loaded, cmap=COLOURS, norm=scale, rasterized=True))
+    def draw(axes: Axes, to_picture: ToPicture) -> list[Artist]:
         for path in result.paths:
             axes.plot(*to_picture(path.point).T, ".", color=ACCENT, markersize=4.0)
-        return areas
+        return _draw_areas(axes, to_picture, maps, scale)
 
     figure, panels = both_flanks(result, draw)
     if maps:
@@ -82,6 +91,81 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     return figure
 
 
+def plot_full_mesh(result: MeshCycle, position: int | None = None, torque: int | None = None) -> Figure:
+    """Pressure of all tooth pairs at one position, each where it lies on both flanks, with its share of the torque.
+
+    All teeth of a gear are alike, so that one flank shows what every tooth in the mesh carries.
+
+    Parameters
+    ----------
+    result : MeshCycle
+    position : int, optional
+        Index along the path; default: that of the peak pressure, ``result.peak_contact``.
+    torque : int, optional
+        Index of the torque; default: the largest one.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    IndexError
+        If nothing is in contact at that position.
+    """
+    torque = highest_torque(result) if torque is None else torque
+    peak = result.peak_contact(torque)
+    if position is None and peak is not None:
+        position = peak[0]
+    if position is None or not result.path.in_contact[position]:
+        raise IndexError("no mesh to show: no tooth pair is in contact at this position")
+    maps = loaded_maps(result, torque, [position])
+    scale, extend = colour_scale(result, torque, maps)
+
+    def draw(axes: Axes, to_picture: ToPicture) -> list[Artist]:
+        for number, share, one in zip(
+            result.pair.tolist(), result.load_share[torque, position], result.maps[torque][position], strict=True
+        ):
+            if one is None:
+                continue
+            at, along = to_picture(np.stack([one.origin, one.origin + one.spacing[1] * one.axes[1]]))
+            axes.plot(*at, "+", color=ACCENT)
+            rising = math.copysign(1.0, np.prod(along - at))
+            upwards = 1.0 if at[1] < np.mean(axes.get_ylim()) else -1.0
+            axes.annotate(
+                f"pair {signed(number)}: {100.0 * share:.3g} %",
+                at,
+                xytext=(-45.0 * rising * upwards, 24.0 * upwards),  # beside the contact, towards mid-height
+                textcoords="offset points",
+                ha="center",
+                va="center",
+                fontsize="small",
+                arrowprops={"arrowstyle": "-", "color": "0.6"},
+                bbox={"facecolor": "white", "edgecolor": "0.6", "boxstyle": "round,pad=0.2"},
+                zorder=10.0,
+            )
+        return _draw_areas(axes, to_picture, maps, scale)
+
+    figure, panels = both_flanks(result, draw)
+    if maps:
+        figure.colorbar(ScalarMappable(scale, COLOURS), ax=panels, label="contact pressure [MPa]", extend=extend)
+    contact_point = Line2D([], [], color=ACCENT, marker="+", linestyle="", label="unloaded contact point of the pair")
+    figure.legend(handles=[contact_point], loc="outside lower center", fontsize="small")
+    what = "all tooth pairs with their shares of the torque" if maps else "no load, no pressure on the flanks"
+    set_title(figure, result, f"{what}, {load(result, torque)}", position_label(result, position))
+    return figure
+
+
+def _draw_areas(axes: Axes, to_picture: ToPicture, maps: Sequence[PressureMap], scale: Normalize) -> list[Artist]:
+    """Cells under pressure where they lie on a flank."""
+    areas: list[Artist] = []
+    for one in maps:
+        x, y = np.moveaxis(to_picture(one.corners), -1, 0)
+        loaded = np.where(one.pressure > 0.0, one.pressure, np.nan)
+        areas.append(axes.pcolormesh(x, y, loaded, cmap=COLOURS, norm=scale, rasterized=True))
+    return areas
+
+
 def loaded_maps(result: MeshCycle, torque: int, positions: Sequence[int] | None = None) -> list[PressureMap]:
     """Maps under pressure, of all pairs, at all positions or some."""
     rows = result.maps[torque] if positions is None else [result.maps[torque][position] for position in positions]
@@ -89,9 +173,9 @@ def loaded_maps(result: MeshCycle, torque: int, positions: Sequence[int] | None 
 
 
 def colour_scale(
-    result: MeshCycle, torque: int, maps: Sequence[PressureMap]
+    result: MeshCycle, torque: int | list[int], maps: Sequence[PressureMap]
 ) -> tuple[Normalize, Literal["max", "neither"]]:
-    """Scale of the colours of maps up to the highest peak pressure, and the arrow of its bar if a cell lies beyond."""
+    """Scale of colours up to the highest peak pressure under some torques; arrow of its bar if a cell lies beyond."""
     highest = float(np.nanmax(result.peak_pressure[torque], initial=0.0)) or 1.0
     beyond = any(one.pressure.max() > highest for one in maps)
     return Normalize(0.0, highest), "max" if beyond else "neither"
@@ -111,16 +195,14 @@ def highest_of_map(result: MeshCycle, torque: int, position: int, column: int) -
     return min(highest, max(body, float(result.peak_pressure[at])))
 
 
-def both_flanks(
-    result: MeshCycle, draw: Callable[[Axes, Callable[[Array], Array]], Sequence[Artist]]
-) -> tuple[Figure, list[Axes]]:
-    """A panel for each flank, with what is drawn on it cut off at its outline.
+def both_flanks(result: MeshCycle, *draw: Callable[[Axes, ToPicture], Sequence[Artist]]) -> tuple[Figure, list[Axes]]:
+    """A panel for each flank, with what is drawn on it cut off at its outline; a row for each function that draws.
 
-    ``draw`` is called with the axes and a function that takes points (..., 3) of the fixed frame to their places
-    (..., 2) in the picture of the flank; it returns what is to be cut off.
+    The function is called with the axes and what takes points to the picture; it returns what is to be cut off.
     """
-    figure = Figure(figsize=(11.0, 5.5), layout="constrained")
-    scene, pair, panels = result.scene, result.gear_pair, list(figure.subplots(1, 2))
+    figure = Figure(figsize=(11.0, 2.0 + 3.5 * len(draw)), layout="constrained")
+    scene, pair = result.scene, result.gear_pair
+    panels = figure.subplots(len(draw), 2, squeeze=False, sharex="col", sharey="col")
 
     def on_pinion(points: Array) -> Array:
         radius = np.hypot(points[..., 0], points[..., 1])
@@ -131,12 +213,16 @@ def both_flanks(
         return np.stack(pair.wheel.flank.frame.to_picture(radius, axial), axis=-1)
 
     sides = ((pair.pinion.flank, on_pinion), (pair.wheel.flank, on_wheel))
-    described = zip(panels, scene.flank_names, scene.active_starts(), sides, strict=True)
-    for axes, name, start, (flank, to_picture) in described:
-        outline = _draw_flank(axes, name, flank, start)
-        for drawn in draw(axes, to_picture):
-            drawn.set_clip_path(outline)
-    return figure, panels
+    described = zip(panels.T, scene.flank_names, scene.active_starts(), sides, strict=True)
+    for column, name, start, (flank, to_picture) in described:
+        for axes, draw_on in zip(column, draw, strict=True):
+            outline = _draw_flank(axes, name, flank, start)
+            for drawn in draw_on(axes, to_picture):
+                drawn.set_clip_path(outline)
+        for above, below in pairwise(column):
+            above.set_xlabel("")
+            below.set_title("")
+    return figure, panels.ravel().tolist()
 
 
 def _draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:

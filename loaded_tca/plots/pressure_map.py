@@ -6,7 +6,9 @@ import math
 from typing import Any
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse, Patch, Rectangle
@@ -16,6 +18,8 @@ from loaded_tca.plots.flanks import highest_of_map
 from loaded_tca.plots.style import ACCENT, COLOURS, NO_LOAD, NO_MATERIAL, highest_torque, load, place, set_title, tell
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
+
+PRESSURE = "contact pressure [MPa]"
 
 
 def plot_pressure_map(
@@ -52,10 +56,34 @@ def plot_pressure_map(
     one = None if at is None else result.maps[torque][at[0]][at[1]]
     if at is None or one is None:
         raise IndexError("no pressure map: the tooth pair is not in contact at this position")
-    scale, height = _scale_factor(one)
+    scale, height = scale_factor(len(one.y) * one.spacing[1], len(one.x) * one.spacing[0])
     figure = Figure(figsize=(9.0, 1.8 + height), layout="constrained")
     axes = figure.add_subplot()
-    _draw_pressure(figure, axes, one, highest_of_map(result, torque, *at) if one.pressure.any() else 0.0)
+    highest = highest_of_map(result, torque, *at) if one.pressure.any() else 0.0
+    draw_map(axes, result, torque, at, highest, scale)
+    if one.pressure.any():
+        peak = float(one.pressure.max())
+        label = PRESSURE + (f"\n(single cells: up to {peak:.0f})" if highest < peak else "")
+        colours = ScalarMappable(Normalize(0.0, highest), COLOURS)
+        figure.colorbar(colours, ax=axes, label=label, extend="max" if highest < peak else "neither")
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
+    frame = result.gear_pair.pinion.flank.frame
+    what = "contact pressure" if one.pressure.any() else "no contact pressure"
+    set_title(figure, result, f"{what}, {load(result, torque)}", *place(result, at[0], frame, at[1]))
+    return figure
+
+
+def draw_map(
+    axes: Axes, result: MeshCycle, torque: int, at: tuple[int, int], highest: float, scale: float
+) -> PressureMap:
+    """Draw the pressure of a contact, with its area after Hertz and its unloaded contact point, and name the axes.
+
+    The contact is at indices of position and pair; its colours go up to the highest pressure, and across it is drawn
+    larger by the scale.
+    """
+    one = result.maps[torque][at[0]][at[1]]
+    assert one is not None
+    _draw_pressure(axes, one, highest)
     names = ("hertz_semi_minor", "hertz_semi_major", "hertz_pressure")
     minor, major, pressure = (float(getattr(result, name)[torque][at]) for name in names)
     if math.isfinite(pressure):
@@ -65,13 +93,9 @@ def plot_pressure_map(
         area: Patch = Rectangle((-major, -minor), *size, **drawn) if line else Ellipse((0.0, 0.0), *size, **drawn)
         axes.add_patch(area)
     axes.plot(0.0, 0.0, "+", color=ACCENT, label="unloaded contact point")
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
     axes.set_aspect(scale)
-    frame = result.gear_pair.pinion.flank.frame
-    _label_axes(axes, one, scale, frame)
-    what = "contact pressure" if one.pressure.any() else "no contact pressure"
-    set_title(figure, result, f"{what}, {load(result, torque)}", *place(result, at[0], frame, at[1]))
-    return figure
+    _label_axes(axes, one, scale, result.gear_pair.pinion.flank.frame)
+    return one
 
 
 def _label_axes(axes: Axes, one: PressureMap, scale: float, frame: FlankFrame) -> None:
@@ -86,29 +110,23 @@ def _label_axes(axes: Axes, one: PressureMap, scale: float, frame: FlankFrame) -
     )
 
 
-def _draw_pressure(figure: Figure, axes: Axes, one: PressureMap, highest: float) -> None:
+def _draw_pressure(axes: Axes, one: PressureMap, highest: float) -> None:
     """Pressure of each cell, in colours up to the highest; white without pressure, grey without material."""
     x, y = one.borders
     void = np.isinf(one.gap)
-    axes.set_facecolor(NO_MATERIAL)
-    axes.pcolormesh(y, x, np.where(void, np.nan, 0.0), cmap="Greys", vmin=0.0, vmax=1.0)
+    ground = colormaps["Greys"].with_extremes(bad=NO_MATERIAL)
+    axes.pcolormesh(y, x, np.where(void, np.nan, 0.0), cmap=ground, vmin=0.0, vmax=1.0)
     if void.any():
         axes.plot([], [], "s", color=NO_MATERIAL, label="no material")
     if not one.pressure.any():
         tell(axes, NO_LOAD)
         return
     loaded = np.where(one.pressure > 0.0, one.pressure, np.nan)
-    mesh = axes.pcolormesh(y, x, loaded, cmap=COLOURS, norm=Normalize(0.0, highest))
-    peak = float(one.pressure.max())
-    label = "contact pressure [MPa]"
-    if highest < peak:
-        label += f"\n(single cells: up to {peak:.0f})"
-    figure.colorbar(mesh, ax=axes, label=label, extend="max" if highest < peak else "neither")
+    axes.pcolormesh(y, x, loaded, cmap=COLOURS, norm=Normalize(0.0, highest))
 
 
-def _scale_factor(one: PressureMap) -> tuple[float, float]:
-    """How much larger to draw the direction across, for a map of 7 inches by what is returned beside it."""
-    length, width = len(one.y) * one.spacing[1], len(one.x) * one.spacing[0]
+def scale_factor(length: float, width: float) -> tuple[float, float]:
+    """How much larger to draw the direction across of a map, and its height [inch] where it is 7 inches long."""
     wanted = 0.5 * length / width
     power = 10.0 ** math.floor(math.log10(wanted))
     scale = max(factor * power for factor in (1.0, 2.0, 5.0) if factor * power <= wanted)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -15,9 +15,10 @@ from matplotlib.figure import Figure
 
 from loaded_tca.arrays import Array
 from loaded_tca.plots import style
-from loaded_tca.plots.flanks import both_flanks, loaded_maps
+from loaded_tca.plots.flanks import ToPicture, both_flanks, loaded_maps
 from loaded_tca.plots.style import (
     COLOURS,
+    DISTINCT_COLOURS,
     HERTZ,
     MARKERS,
     NO_LOAD,
@@ -25,7 +26,9 @@ from loaded_tca.plots.style import (
     load,
     loads,
     range_of_positions,
+    torque_label,
     torque_styles,
+    torques_with_panels,
 )
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import slice_middles
@@ -33,15 +36,14 @@ from loaded_tca.results.summary import signed
 from loaded_tca.unloaded.contact_span import contact_span, path_letters, roll_lengths_of_flanks
 
 WHAT_LETTERS_ARE = "A, E: unloaded contact ends at the pinion's root, tip; B, D: a pitch from E, A; C: pitch point"
+OVER_THE_PATH = "pinion angle from the pitch point of the tooth pair"
 NEAR_LETTERS = 0.03
 """Part of the axis below which two letters stand to either side of their lines."""
-PAIR_COLOURS = "#0072b2", "#d55e00", "#56b4e9", "#cc79a7", "#e69f00", "#009e73"
-"""Of tooth pairs 0, +1, ...: told apart by colour-blind readers (Okabe and Ito)."""
-MOST_PANELS = 4
-"""Torques with a panel each."""
 MOST_ORDERS, LEAST_POSITIONS = 8, 4
 """Orders of the tooth mesh that are drawn; positions from which the first is known."""
 SMALLEST_AMPLITUDE_UM = 1e-4
+PART_WITH_PHASE = 0.01
+"""Part of the largest amplitude under a torque from which a phase is drawn: that of less may be rounding."""
 
 
 def plot_load_share(result: MeshCycle, torque: int | None = None) -> Figure:
@@ -57,27 +59,24 @@ def plot_load_share(result: MeshCycle, torque: int | None = None) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    order = np.argsort(result.torque, kind="stable")
-    spread = np.linspace(0.0, len(order) - 1.0, min(len(order), MOST_PANELS)).round().astype(int)
-    shown = order[np.unique(spread)].tolist() if torque is None else [torque]
+    shown = torques_with_panels(result) if torque is None else [torque]
     figure = Figure(figsize=(8.0, 2.8 + (3.0 if len(shown) == 1 else 1.8 * len(shown))), layout="constrained")
     *panels, below = figure.subplots(len(shown) + 1, 1, sharex=True, height_ratios=(*(3.0,) * len(shown), 1.5))
     angle = np.degrees(result.pinion_angle)
-    styles = {index: style for index, *style in torque_styles(result)}
+    colours = {index: colour for index, _, colour, _ in torque_styles(result)}
     for k, (axes, index) in enumerate(zip(panels, shown, strict=True)):
         for number, share in zip(result.pair.tolist(), result.load_share[index].T, strict=True):
             marker = MARKERS[number % len(MARKERS)]
-            colour, label = PAIR_COLOURS[number % len(PAIR_COLOURS)], f"tooth pair {signed(number)}"
+            colour, label = DISTINCT_COLOURS[number % len(DISTINCT_COLOURS)], f"tooth pair {signed(number)}"
             axes.plot(angle, 100.0 * share, color=colour, marker=marker, markersize=4.0, label=label)
         axes.set_ylabel("share of\nthe torque [%]")
         axes.set_ylim(-4.0, 106.0)
         axes.grid(alpha=0.3)
-        torque_label, colour, _ = styles[index]
-        told = torque_label if len(shown) > 1 else "_the only one"
+        told = torque_label(result, index) if len(shown) > 1 else "_the only one"
         width = 1.5 * (len(shown) - k)  # curves on each other are seen, each beside the next
-        below.step(angle, result.loaded_pairs[index], where="mid", color=colour, linewidth=width, label=told)
+        below.step(angle, result.loaded_pairs[index], where="mid", color=colours[index], linewidth=width, label=told)
         if len(shown) > 1:
-            axes.set_title(load(result, index).partition(" (")[0], fontsize="small")
+            axes.set_title(torque_label(result, index), fontsize="small")
     below.set_ylabel("pairs\nunder load")
     below.set_ylim(0.0, len(result.pair) + 0.5)
     below.set_yticks(range(len(result.pair) + 1))
@@ -135,7 +134,10 @@ def plot_line_load(result: MeshCycle) -> Figure:
 
 
 def plot_harmonics(result: MeshCycle) -> Figure:
-    """Amplitudes of the orders of the tooth mesh in the loaded transmission error, under each torque.
+    """Amplitudes and phases of the orders of the tooth mesh in the loaded transmission error, under each torque.
+
+    The error is its mean plus the sum of amplitude cos(order z1 phi1 + phase), phi1 the pinion angle. A phase is drawn
+    where the amplitude is at least a hundredth of the largest.
 
     Parameters
     ----------
@@ -145,13 +147,33 @@ def plot_harmonics(result: MeshCycle) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    figure, axes = style.one_panel()
+    figure = Figure(figsize=(8.0, 6.5), layout="constrained")
+    axes, below = figure.subplots(2, 1, sharex=True, height_ratios=(3.0, 2.0))
     amplitudes = 1e3 * result.wheel_base_radius * result.harmonics(MOST_ORDERS)
-    orders, width = np.arange(1, MOST_ORDERS + 1), 0.8 / len(result.torque)
-    for torque, label, colour, _ in torque_styles(result):
-        place = orders + (torque - 0.5 * (len(result.torque) - 1)) * width
-        axes.bar(place, amplitudes[torque], width, color=colour, label=label)
-    known = orders[np.isfinite(amplitudes).any(axis=0)]
+    phases = np.degrees(result.harmonic_phases(MOST_ORDERS))
+    styles = list(torque_styles(result))
+    places = draw_orders(axes, [(label, colour, amplitudes[torque]) for torque, label, colour, _ in styles])
+    for torque, _, colour, marker in styles:
+        told = amplitudes[torque] >= PART_WITH_PHASE * np.fmax.reduce(amplitudes[torque])
+        below.plot(places[torque][told], phases[torque][told], marker, color=colour)
+    below.set(ylim=(-190.0, 190.0), yticks=range(-180, 181, 90), xlabel=axes.get_xlabel())
+    below.set_ylabel(f"phase [deg], of amplitudes\nfrom {PART_WITH_PHASE:.0%} of the largest on")
+    below.grid(alpha=0.3)
+    axes.set_xlabel("")
+    about = f"harmonics of the transmission error, {loads(result)}", range_of_positions(result)
+    return style.finished(figure, axes, result, *about)
+
+
+def draw_orders(axes: Axes, curves: Sequence[tuple[str, str, Array]]) -> Array:
+    """Bars of the amplitudes [um] of the first orders, side by side for each label and colour.
+
+    Returns the places (curves, orders) of the bars.
+    """
+    orders, width = np.arange(1, MOST_ORDERS + 1), 0.8 / len(curves)
+    places = orders + (np.arange(len(curves))[:, None] - 0.5 * (len(curves) - 1)) * width
+    for place, (label, colour, amplitudes) in zip(places, curves, strict=True):
+        axes.bar(place, amplitudes, width, color=colour, label=label)
+    known = orders[np.isfinite([amplitudes for _, _, amplitudes in curves]).any(axis=0)]
     if known.size:
         axes.set_xticks(known)
         axes.set_xlim(known[0] - 0.6, known[-1] + 0.6)
@@ -161,9 +183,8 @@ def plot_harmonics(result: MeshCycle) -> Figure:
     axes.set_xlabel("order of the tooth mesh")
     axes.set_ylabel("amplitude at the wheel's base circle [µm]")
     style.widen(axes, SMALLEST_AMPLITUDE_UM)
-    axes.grid(visible=False, axis="x")
-    about = f"harmonics of the transmission error, {loads(result)}", range_of_positions(result)
-    return style.finished(figure, axes, result, *about)
+    axes.grid(alpha=0.3, axis="y")
+    return places
 
 
 def plot_line_load_distribution(result: MeshCycle, torque: int | None = None) -> Figure:
@@ -192,7 +213,7 @@ def plot_line_load_distribution(result: MeshCycle, torque: int | None = None) ->
         highest = max(highest, float(line_load.max()))
     scale = Normalize(0.0, highest or 1.0)
 
-    def draw(axes: Axes, to_picture: Callable[[Array], Array]) -> list[Artist]:
+    def draw(axes: Axes, to_picture: ToPicture) -> list[Artist]:
         places = list(to_picture(np.concatenate(segments)))
         lines = LineCollection(places, cmap=COLOURS, norm=scale, linewidths=2.0, rasterized=True)
         lines.set_array(np.concatenate(values))
@@ -223,20 +244,18 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
     matplotlib.figure.Figure
     """
     pair, pressure = result.gear_pair, result.peak_pressure
-    angle = np.degrees(result.pinion_angle[:, None] - pair.pitch * result.pair)
-    order = np.argsort(angle, axis=None, kind="stable")
     figure, axes = style.one_panel(6.0 if result.scene.path_points else 5.0)
     drawn = False
     for torque, label, colour, marker in torque_styles(result):
-        curve, hertz = (values[torque].ravel()[order] for values in (pressure, result.hertz_pressure))
-        known, places = np.isfinite(curve), angle.ravel()[order]
+        places, curve, hertz = over_the_path(result, pressure[torque], result.hertz_pressure[torque])
+        places, known = np.degrees(places), np.isfinite(curve)
         axes.plot(places[known], curve[known], color=colour, marker=marker, markersize=4.0, label=label)
         stretches = style.over_a_stretch(hertz)
         axes.plot(places, stretches, color=colour, **HERTZ)
         drawn |= bool(np.isfinite(stretches).any())
     if drawn:
         axes.plot([], [], color="black", label="after Hertz", **HERTZ)
-    axes.set_xlabel(f"pinion angle from the pitch point of the tooth pair [deg]\n{WHAT_LETTERS_ARE}")
+    axes.set_xlabel(f"{OVER_THE_PATH} [deg]\n{WHAT_LETTERS_ARE}")
     axes.set_ylabel("peak pressure [MPa]")
     style.from_zero(axes)
     if not (pressure > 0.0).any():
@@ -248,6 +267,13 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
         points = {"C": result.scene.path_points["C"], **roll_lengths_of_flanks(pair, *ends)}
         _draw_table(figure, axes, points, result.scene.path_points, pair.base_radii[0])
     return style.finished(figure, axes, result, f"pressure over the path of contact, {loads(result)}")
+
+
+def over_the_path(result: MeshCycle, *numbers: Array) -> Iterator[Array]:
+    """Ascending pinion angles from the pitch point of the own tooth pair (n,) [rad]; numbers (position, pair) there."""
+    angle = result.pinion_angle[:, None] - result.gear_pair.pitch * result.pair
+    order = np.argsort(angle, axis=None, kind="stable")
+    return (values.ravel()[order] for values in (angle, *numbers))
 
 
 def _mark_points(axes: Axes, points: Mapping[str, float]) -> None:

@@ -27,6 +27,10 @@ COLOURS = "viridis"
 """Even in lightness, and told apart by colour-blind readers and in grey."""
 ACCENT, NO_MATERIAL, NOT_REACHED = "#d55e00", "0.8", "0.9"
 MARKERS = "osD^vP*X"
+DISTINCT_COLOURS = "#0072b2", "#d55e00", "#56b4e9", "#cc79a7", "#e69f00", "#009e73"
+"""Of tooth pairs and results, in no order: told apart by colour-blind readers (Okabe and Ito)."""
+MOST_PANELS = 4
+"""Torques with a panel each."""
 HERTZ: dict[str, Any] = {"linestyle": "--", "linewidth": 4.0, "alpha": 0.4, "zorder": 1.0}
 """How a curve after Hertz is drawn: broad, below the curve that it is compared with, in the colour of its torque."""
 NO_LOAD = "no load, no pressure"
@@ -80,7 +84,7 @@ def torque_styles(result: MeshCycle) -> Iterator[tuple[int, str, str, str]]:
     every = math.ceil(count / MOST_LABELS)
     for torque in range(count):
         shade = 0.15 + 0.7 * torque / max(1, count - 1)
-        label = f"pinion torque {_in_newton_metres(result, torque)}" if torque % every == 0 else "_unlabelled"
+        label = torque_label(result, torque) if torque % every == 0 else "_unlabelled"
         yield torque, label, to_hex(colormaps[COLOURS](shade)), MARKERS[torque % len(MARKERS)]
 
 
@@ -120,11 +124,23 @@ def highest_torque(result: MeshCycle) -> int:
     return int(np.argmax(result.torque))
 
 
+def torques_with_panels(result: MeshCycle) -> list[int]:
+    """Return the indices of all torques in ascending order, of many torques four from the least to the largest."""
+    order = np.argsort(result.torque, kind="stable")
+    spread = np.linspace(0.0, len(order) - 1.0, min(len(order), MOST_PANELS)).round().astype(int)
+    return order[np.unique(spread)].tolist()
+
+
+def torque_label(result: MeshCycle, torque: int) -> str:
+    """Return what legends and panels say of one torque."""
+    return f"pinion torque {1e-3 * result.torque[torque]:.4g} N m"
+
+
 def load(result: MeshCycle, torque: int) -> str:
     """Return what a title says of one torque, and which of several it is."""
     count = len(result.torque)
     which = "the largest" if torque == highest_torque(result) else f"number {torque + 1}"
-    return f"pinion torque {_in_newton_metres(result, torque)}" + (f" ({which} of {count})" if count > 1 else "")
+    return torque_label(result, torque) + (f" ({which} of {count})" if count > 1 else "")
 
 
 def loads(result: MeshCycle) -> str:
@@ -133,12 +149,19 @@ def loads(result: MeshCycle) -> str:
     return load(result, 0) if len(result.torque) == 1 else f"pinion torques {low:.4g} to {high:.4g} N m"
 
 
+def position_label(result: MeshCycle, position: int, column: int | None = None) -> str:
+    """Return what a title says of one position, and of one of several tooth pairs there."""
+    several = column is not None and len(result.pair) > 1
+    which = f", tooth pair {signed(int(result.pair[column]))}" if several else ""
+    angle = _degrees(result.pinion_angle[position])
+    return f"position {position + 1} of {len(result.path)}{which}: pinion angle {angle} deg"
+
+
 def place(result: MeshCycle, position: int, frame: FlankFrame, column: int) -> tuple[str, str]:
     """Return what a title says of one position, and of a pair's contact point in the frame of the pinion's flank."""
     where = result.paths[column][position]
-    which = f", tooth pair {signed(int(result.pair[column]))}" if len(result.pair) > 1 else ""
     return (
-        f"position {position + 1} of {len(result.path)}{which}: pinion angle {_degrees(where.pinion_angle)} deg",
+        position_label(result, position, column),
         f"contact point on the pinion: {frame.place(where.pinion_radius, where.pinion_axial)}",
     )
 
@@ -152,9 +175,14 @@ def range_of_positions(result: MeshCycle) -> str:
 
 
 def set_title(figure: Figure, result: MeshCycle, *about: str) -> None:
-    """Write the title of the scene and what is shown; taken literally, signs of TeX too."""
+    """Write the title of the scene and what is shown."""
+    write_title(figure, result.scene.title, *about)
+
+
+def write_title(figure: Figure, title: str, *about: str) -> None:
+    """Write a title and what is shown; taken literally, signs of TeX too."""
     joined = ", ".join(about)
-    lines = [result.scene.title, *([joined] if len(joined) <= LONGEST_LINE else about)]
+    lines = [title, *([joined] if len(joined) <= LONGEST_LINE else about)]
     wrapped = [part for line in lines for part in _parts_of(line)]
     figure.suptitle("\n".join(wrapped), fontsize="medium", parse_math=False)
 
@@ -163,10 +191,6 @@ def _parts_of(line: str) -> list[str]:
     """A line, or as many of even length as it takes, so that no short end is left over."""
     count = math.ceil(len(line) / LONGEST_LINE)
     return textwrap.wrap(line, min(LONGEST_LINE, len(line) // max(1, count) + 10))
-
-
-def _in_newton_metres(result: MeshCycle, torque: int) -> str:
-    return f"{1e-3 * result.torque[torque]:.4g} N m"
 
 
 def _degrees(angle: float) -> str:

@@ -1,5 +1,6 @@
-"""What an analysis found: the mesh cycle, its key figures, its file, the stresses below the flanks."""
+"""What an analysis found: the mesh cycle, its figures and file, the stresses below the flanks, and several compared."""
 
+from loaded_tca.results.comparison import Comparison, compare_results
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.reached_edges import reached_edges
@@ -7,4 +8,13 @@ from loaded_tca.results.stress_below import StressBelow, stress_below
 
 load_result = MeshCycle.load
 
-__all__ = ["MeshCycle", "PressureMap", "StressBelow", "load_result", "reached_edges", "stress_below"]
+__all__ = [
+    "Comparison",
+    "MeshCycle",
+    "PressureMap",
+    "StressBelow",
+    "compare_results",
+    "load_result",
+    "reached_edges",
+    "stress_below",
+]

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
 
@@ -21,31 +22,36 @@ ORDERS = 3
 """Orders of the tooth mesh that the key figures name."""
 
 
-def harmonic_amplitudes(error: Array, count: int) -> Array:
-    """Amplitudes of the orders 1 to ``count`` of a periodic curve.
+def harmonic_coefficients(error: Array, count: int) -> NDArray[np.complex128]:
+    r"""Complex amplitudes of the orders 1 to ``count`` of a periodic curve.
+
+    .. math:: c_k = \frac{2}{N} \sum_{n=0}^{N-1} e_n \exp(-2 \pi i k n / N)
+
+    so that e(t) = mean + sum of \|c_k\| cos(2 pi k t + arg c_k), t from 0 to 1 over the period.
 
     Parameters
     ----------
-    error : (n,) array
+    error : (N + 1,) array
         At even positions over one period, both ends included.
     count : int
 
     Returns
     -------
-    (count,) array
-        NaN for orders of which the positions are too few, and for a curve with a gap.
+    (count,) complex array
+        In the unit of the curve; NaN for orders of which the positions are too few, and for a curve with a gap.
 
     Examples
     --------
-    >>> harmonic_amplitudes(np.cos(np.linspace(0.0, 2.0 * np.pi, 9)), 4).round(12)
-    array([ 1.,  0.,  0., nan])
+    >>> wave = harmonic_coefficients(np.cos(np.linspace(0.0, 2.0 * np.pi, 9) + 0.5), 4)
+    >>> np.abs(wave).round(12), np.angle(wave[0]).round(12)
+    (array([ 1.,  0.,  0., nan]), np.float64(0.5))
     """
     period = error[:-1]
-    amplitudes = np.full(count, math.nan)
+    coefficients = np.full(count, complex(math.nan, math.nan))
     known = min(count, (len(period) - 1) // 2)
     if known > 0 and np.isfinite(period).all():
-        amplitudes[:known] = 2.0 / len(period) * np.abs(np.fft.rfft(period))[1 : known + 1]
-    return amplitudes
+        coefficients[:known] = 2.0 / len(period) * np.fft.rfft(period)[1 : known + 1]
+    return coefficients
 
 
 def mean_over_a_pitch(values: Array) -> float:

@@ -16,7 +16,7 @@ from loaded_tca.compliance.torsion import body_torsion
 from loaded_tca.errors import InputError, require
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.files import Buffer, FilePath, Part, arrays_of, netcdf_of, read_dataset, replacing, variables_of
-from loaded_tca.results.key_figures import harmonic_amplitudes, key_figures
+from loaded_tca.results.key_figures import harmonic_coefficients, key_figures
 from loaded_tca.results.pressure_map import MAP_PARTS, SIZES, Maps, maps_from, stacked_maps
 from loaded_tca.results.summary import signed, summary_text
 from loaded_tca.scene import Scene, parse_scene
@@ -246,10 +246,34 @@ class MeshCycle:
             For each torque; NaN where one pair carries the whole load, since its error has no period, and for orders
             of which the positions are too few.
         """
+        return np.abs(self._harmonic_coefficients(count))
+
+    def harmonic_phases(self, count: int) -> Array:
+        """Return the phases of the orders 1 to ``count`` of the tooth mesh of the loaded transmission error.
+
+        TE(phi1) = mean + sum of amplitude_k cos(k z1 phi1 + phase_k), with the amplitudes of ``harmonics``. Phases
+        count from the pinion angle 0, as those of the unloaded ``MeshPath.harmonics`` do.
+
+        Parameters
+        ----------
+        count : int
+            Of orders, at least 1.
+
+        Returns
+        -------
+        (m, count) array [rad]
+            From -pi to pi; NaN where the amplitude is. That of an amplitude near zero is rounding.
+        """
+        coefficients = self._harmonic_coefficients(count)
+        turned = np.arange(1, count + 1) * 2.0 * math.pi * self.pinion_angle[0] / self.gear_pair.pitch
+        return np.angle(coefficients * np.exp(-1j * turned))
+
+    def _harmonic_coefficients(self, count: int) -> NDArray[np.complex128]:
+        """Complex amplitudes (m, count) [rad] of the orders, phases from the first position."""
         if not isinstance(count, int | np.integer) or count < 1:
             raise InputError(f"count: {count!r} is not a whole number from 1 on")
         periodic = self.scene.analysis.load_sharing
-        return np.stack([harmonic_amplitudes(e if periodic else e[:0], count) for e in self.transmission_error])
+        return np.stack([harmonic_coefficients(e if periodic else e[:0], count) for e in self.transmission_error])
 
     def peak_contact(self, torque: int, *, where_hertz_holds: bool = False) -> tuple[int, int] | None:
         """Return indices of position and pair with the highest peak pressure of those asked for; None if none is."""

@@ -84,7 +84,7 @@ def summary_text(title: str, scope: str, figures: Sequence[Figures]) -> str:
         Of each torque, as ``MeshCycle.key_figures`` gives them.
     """
     rows = [
-        (label, [" | ".join(_shown(entry[name], name) for name in names) for entry in figures])
+        (label, [" | ".join(shown(entry[name], name) for name in names) for entry in figures])
         for label, names in ROWS
         if not any(part in name for name in names for part in ONLY_IF_KNOWN)
         or any(math.isfinite(entry[name]) for entry in figures for name in names)
@@ -106,8 +106,8 @@ def without_rounding(value: float, name: str) -> float:
     return value if "residual" in name or not abs(value) < ROUNDING else 0.0
 
 
-def _shown(value: float, name: str) -> str:
-    """Four digits, all those before the point; a dash for what is not known."""
+def shown(value: float, name: str) -> str:
+    """Return a figure as summaries show it: four digits, all those before the point; a dash for what is not known."""
     value = without_rounding(value, name)
     if math.isnan(value):
         return "-"

@@ -5,11 +5,13 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import GeometryError
 from loaded_tca.plots import (
     plot_contact_path,
+    plot_contact_patterns,
+    plot_full_mesh,
     plot_harmonics,
     plot_line_load_distribution,
     plot_load_share,
@@ -19,7 +21,7 @@ from loaded_tca.plots import (
     sharing,
 )
 from loaded_tca.unloaded import contact_span
-from tests.samples.results import changed_scene, result
+from tests.samples.results import changed, changed_scene, result, with_a_gap
 
 
 def shared(name="mesh_cycle_helical", torques=(260.0,)):
@@ -174,6 +176,21 @@ def test_legend_of_the_load_shares_covers_no_curve():
     assert widths[0] > widths[1]  # where they lie on each other both are seen
 
 
+def test_phases_are_drawn_where_the_amplitude_is_no_rounding():
+    cycle = result("mesh_cycle_spur", positions=9, torques=(40.0, 130.0))
+    angle = 34 * cycle.pinion_angle
+    waves = np.stack([np.cos(angle + 0.5) + 0.02 * np.cos(2 * angle), np.cos(angle) + 0.005 * np.cos(2 * angle - 1.0)])
+    cycle = changed(cycle, transmission_error=1e-5 * waves)
+    bars, phases = plot_harmonics(cycle).axes
+    first, second = phases.get_lines()
+    assert_allclose(first.get_ydata(), [np.degrees(0.5), 0.0], atol=1e-6)
+    assert_allclose(second.get_ydata(), [0.0], atol=1e-6)
+    places = [[bar.get_x() + 0.5 * bar.get_width() for bar in one] for one in bars.containers]
+    assert_allclose(first.get_xdata(), places[0][:2])
+    assert_allclose(second.get_xdata(), places[1][:1])
+    assert "[deg]" in phases.get_ylabel()
+
+
 def envelope(cycle):
     """Picture of the pinion's flank: centres of its fields, the pressure in them, and the bar of colours."""
     figure = plot_pressure_envelope(cycle)
@@ -215,6 +232,61 @@ def test_scale_of_the_envelope_ends_at_the_highest_peak_pressure():
     assert_allclose(limits, (0.0, np.nanmax(cycle.peak_pressure)), rtol=1e-12)
     assert bar._colorbar.extend == "max"
     assert envelope(shared("mesh_cycle_spur", torques=(40.0,)))[2]._colorbar.extend == "neither"
+
+
+def test_contact_patterns_are_the_envelopes_of_their_torques_on_one_scale():
+    cycle = shared("mesh_cycle_spur", torques=(40.0, 130.0))
+    *panels, bar = plot_contact_patterns(cycle).axes
+    for torque in (0, 1):
+        own = plot_pressure_envelope(cycle, torque).axes
+        for axes, alone in zip(panels[2 * torque : 2 * torque + 2], own, strict=False):
+            drawn, expected = axes.collections[0], alone.collections[0]
+            assert_array_equal(drawn.get_array().filled(0.0), expected.get_array().filled(0.0))
+            assert_allclose(drawn.get_clim(), (0.0, np.nanmax(cycle.peak_pressure)), rtol=1e-12)
+            assert (axes.get_xlim(), axes.get_ylim()) == (alone.get_xlim(), alone.get_ylim())
+    assert panels[0].get_ylabel().startswith("pinion torque 40 N m\n")
+    assert panels[2].get_ylabel().startswith("pinion torque 130 N m\n")
+    assert_allclose(bar.get_ylim()[1], np.nanmax(cycle.peak_pressure), rtol=1e-12)
+
+
+def test_contact_patterns_of_many_torques_stay_few():
+    cycle = shared(torques=tuple(float(torque) for torque in range(10, 80, 10)))
+    *panels, _ = plot_contact_patterns(cycle).axes
+    labels = [axes.get_ylabel().splitlines()[0] for axes in panels[::2]]
+    assert (labels[0], labels[-1], len(labels)) == ("pinion torque 10 N m", "pinion torque 70 N m", 4)
+
+
+@pytest.mark.parametrize(
+    ("name", "torque"), [("mesh_cycle_helical", 260.0), ("mesh_cycle_bevel", 1.0), ("mesh_cycle_spur", 260.0)]
+)
+def test_full_mesh_has_every_loaded_pair_where_it_lies_with_its_share(name, torque):
+    cycle = shared(name, torques=(torque,))
+    figure = plot_full_mesh(cycle, 1)
+    loaded = np.flatnonzero(cycle.normal_force[0, 1] > 0.0)
+    assert loaded.size > 1
+    frames = cycle.gear_pair.pinion.flank.frame, cycle.gear_pair.wheel.flank.frame
+    for axes, frame, gear in zip(figure.axes, frames, ("pinion", "wheel"), strict=False):
+        assert len(axes.collections) == loaded.size
+        shares = [float(text.get_text().split()[-2]) for text in axes.texts]
+        assert_allclose(sum(shares), 100.0, atol=0.1)  # of three digits each
+        for text, column in zip(axes.texts, loaded, strict=True):
+            assert text.get_text().startswith(f"pair {cycle.pair[column]:+d}:".replace("+0", "0"))
+            radius, axial = (getattr(cycle.paths[column], f"{gear}_{part}")[1] for part in ("radius", "axial"))
+            assert_allclose(text.xy, frame.to_picture(radius, axial), atol=1e-6)
+    assert "position 2 of 5: pinion angle" in figure.get_suptitle()
+
+
+def test_full_mesh_is_that_of_the_peak_pressure_unless_told():
+    cycle = shared()
+    assert f"position {cycle.peak_contact(0)[0] + 1} of 5" in plot_full_mesh(cycle).get_suptitle()
+    with pytest.raises(IndexError, match="no tooth pair is in contact"):
+        plot_full_mesh(with_a_gap(), 1)
+
+
+def test_full_mesh_without_load_says_so():
+    figure = plot_full_mesh(result(torques=(0.0,), positions=2))
+    assert "no load, no pressure on the flanks" in figure.get_suptitle()
+    assert len(figure.axes) == 2  # no bar of colours
 
 
 def test_letters_say_what_they_are_and_do_not_cover_each_other():

@@ -6,9 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
+from loaded_tca.errors import InputError
 from loaded_tca.plots import plot_transmission_error
-from loaded_tca.results.key_figures import mean_over_a_pitch
-from tests.samples.results import result
+from loaded_tca.results.key_figures import harmonic_coefficients, mean_over_a_pitch
+from tests.samples.results import changed, result
 
 
 @given(st.floats(-1e3, 1e3), st.floats(-1e3, 1e3), st.floats(0.0, 6.3), st.integers(4, 40))
@@ -16,6 +17,38 @@ def test_mean_of_a_harmonic_over_a_pitch_is_its_constant(constant, amplitude, ph
     """Both ends are one place: counted twice, the mean would follow the phase."""
     wave = constant + amplitude * np.cos(np.linspace(0.0, 2.0 * np.pi, intervals + 1) + phase)
     assert_allclose(mean_over_a_pitch(wave), constant, atol=1e-9)
+
+
+WAVES = st.lists(st.tuples(st.floats(0.1, 10.0), st.floats(-3.1, 3.1)), min_size=1, max_size=5)
+
+
+@given(st.floats(-100.0, 100.0), WAVES, st.integers(12, 40))
+def test_harmonics_of_a_known_curve_are_its_amplitudes_and_phases(constant, waves, intervals):
+    turn = np.linspace(0.0, 2.0 * np.pi, intervals + 1)
+    curve = constant + sum(height * np.cos(k * turn + phase) for k, (height, phase) in enumerate(waves, start=1))
+    found = harmonic_coefficients(curve, len(waves))
+    assert_allclose(found, [height * np.exp(1j * phase) for height, phase in waves], atol=1e-11)  # rounding of 100
+
+
+def test_phases_of_the_transmission_error_count_from_the_pitch_point():
+    """TE = mean + sum of amplitude cos(order z1 phi1 + phase), whatever pinion angle the positions begin at."""
+    cycle = result("mesh_cycle_spur", positions=7, torques=(40.0, 130.0))
+    turn = 34 * cycle.pinion_angle
+    waves = [(3e-5, 0.4), (1e-5, -2.0)]
+    curve = sum(height * np.cos(k * turn + phase) for k, (height, phase) in enumerate(waves, start=1))
+    cycle = changed(cycle, transmission_error=np.stack([curve - 1e-4, -2.0 * curve]))
+    heights, phases = np.transpose(waves)
+    assert_allclose(cycle.harmonics(2), [heights, 2.0 * heights], rtol=1e-9)
+    assert_allclose(cycle.harmonic_phases(2)[0], phases, rtol=1e-9)
+    assert_allclose(np.exp(1j * cycle.harmonic_phases(2)[1]), -np.exp(1j * phases), rtol=1e-9)  # upside down
+    assert np.isnan(cycle.harmonic_phases(3)[:, 2]).all()  # six positions know the orders below three
+    assert np.isnan(result(positions=5).harmonic_phases(1)).all()  # one pair carries all
+
+
+@pytest.mark.parametrize("count", [0, 1.5, None])
+def test_count_of_phases_that_is_no_whole_number_is_refused(count):
+    with pytest.raises(InputError, match="count"):
+        result().harmonic_phases(count)
 
 
 def test_mean_leaves_positions_without_a_value_out():

@@ -13,10 +13,10 @@ from loaded_tca import AccuracyWarning, InputError, analyse, load_result, read_s
 from loaded_tca.output.report import positions_csv, summary_json
 from loaded_tca.output.teeth_in_space import teeth_in_space
 from loaded_tca.pairs import mating_teeth
-from loaded_tca.plots import PICTURES, plot_all
+from loaded_tca.plots import MORE_PICTURES, PICTURES, plot_all
 from loaded_tca.reference.weber_banaschek import ring_torsion
 from loaded_tca.results.files import read_dataset, write_dataset
-from loaded_tca.results.key_figures import harmonic_amplitudes
+from loaded_tca.results.key_figures import harmonic_coefficients
 from tests.samples.results import FLANKS_ALONE, ONE_PAIR, PER_PAIR, SCENES, assert_same
 
 EQUILIBRIUM = 1e-8
@@ -203,9 +203,9 @@ def test_harmonics_make_up_the_transmission_error():
 
 
 def test_harmonics_of_too_few_positions_are_unknown():
-    assert np.isnan(harmonic_amplitudes(np.zeros(1), 2)).all()
-    assert_array_equal(np.isnan(harmonic_amplitudes(np.zeros(5), 3)), [False, True, True])
-    assert np.isnan(harmonic_amplitudes(np.array([0.0, np.nan, 0.0, 0.0]), 1)).all()
+    assert np.isnan(harmonic_coefficients(np.zeros(1), 2)).all()
+    assert_array_equal(np.isnan(harmonic_coefficients(np.zeros(5), 3)), [False, True, True])
+    assert np.isnan(harmonic_coefficients(np.array([0.0, np.nan, 0.0, 0.0]), 1)).all()
 
 
 @pytest.mark.parametrize("count", [0, 1.5, None])
@@ -277,6 +277,14 @@ def test_numbers_of_every_pair_have_the_axes_torque_position_pair():
 def test_every_picture_of_a_shared_load_is_drawn(make, tmp_path):
     drawn = {path.stem for path in plot_all(make(), tmp_path)}
     assert drawn >= set(PICTURES) - {"pressure_map_edge", "pressure_map_hertz"}
+
+
+def test_more_pictures_are_drawn_on_request_and_go_without(tmp_path):
+    drawn = {path.stem for path in plot_all(cycle(), tmp_path, more=True)}
+    assert drawn >= set(MORE_PICTURES)
+    assert "contact_patterns" not in {path.stem for path in plot_all(helical(), tmp_path, more=True)}  # one torque
+    plot_all(cycle(), tmp_path)
+    assert not {path.stem for path in tmp_path.iterdir()} & set(MORE_PICTURES)
 
 
 def test_pictures_of_a_shared_load_go_where_one_pair_carries_all(tmp_path):

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca import cli
 from loaded_tca.errors import InputError
 from loaded_tca.output.subsurface_files import STRESSES, subsurface_csv, write_subsurface
 from loaded_tca.plots import plot_stress_below
@@ -220,18 +219,6 @@ def test_picture_names_scene_load_and_place(quantity):
 # Command
 
 FILES = {"subsurface.nc", "subsurface.csv", "subsurface_max_shear.png", "subsurface_von_mises.png"}
-
-
-@pytest.fixture
-def run(capsys):
-    """Run the command; returns exit code, stdout and the lines of stderr."""
-
-    def run(*arguments):
-        code = cli.main([str(argument) for argument in arguments])
-        captured = capsys.readouterr()
-        return code, captured.out, captured.err.splitlines()
-
-    return run
 
 
 @pytest.fixture

@@ -1,0 +1,183 @@
+"""Two or more results in one picture: their curves over each other, their pressure maps on one scale."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import cycle
+
+import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+from loaded_tca.plots import style
+from loaded_tca.plots.flanks import highest_of_map
+from loaded_tca.plots.pressure_map import PRESSURE, draw_map, scale_factor
+from loaded_tca.plots.sharing import MOST_ORDERS, OVER_THE_PATH, draw_orders, over_the_path
+from loaded_tca.plots.style import COLOURS, DISTINCT_COLOURS, MARKERS
+from loaded_tca.results.comparison import Comparison, compare_results
+from loaded_tca.results.key_figures import mean_over_a_pitch
+from loaded_tca.results.mesh_cycle import MeshCycle
+
+Results = Mapping[str, MeshCycle] | Sequence[MeshCycle] | Comparison
+SMALLEST_SPAN_UM = 1e-3
+"""Height of a transmission error axis below which a curve would be rounding."""
+UNIT = np.array([-1.0, 1.0])
+"""Borders [mm] of a map of nothing."""
+MOST_IN_A_ROW = 3
+PANEL_INCHES = 5.5
+"""Width of a pressure map beside others."""
+
+
+def plot_comparison(results: Results, torque: float | None = None) -> Figure:
+    """Curves of two or more results over each other, under one torque.
+
+    Transmission error at the wheel's base circle, absolute and about its mean; its harmonics; mesh stiffness; peak
+    pressure and load share of every tooth pair at the angle of its own teeth. Angles are in degrees, of pinions with
+    different numbers of teeth in pitches. A result without load sharing has no harmonics.
+
+    Parameters
+    ----------
+    results : mapping of str to MeshCycle, sequence of MeshCycle, or Comparison
+        As :func:`loaded_tca.results.compare_results` takes them; their names are in the legend.
+    torque : float [N mm], optional
+        One that all results have; default: the largest of these.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two results, or they do not share the torque.
+    """
+    comparison = results if isinstance(results, Comparison) else compare_results(results)
+    shared = comparison.index_of(torque)
+    named = comparison.results
+    alike = len({result.scene.pinion.teeth for result in named.values()}) == 1
+    unit = "[deg]" if alike else "[pitches]"
+    figure = Figure(figsize=(11.0, 10.0), layout="constrained")
+    (absolute, about_mean), (harmonics, stiffness), (pressure, share) = figure.subplots(3, 2)
+    bars = []
+    for (name, result), k, (colour, marker, width) in zip(
+        named.items(), comparison.indices[shared], _styles(len(named)), strict=True
+    ):
+        drawn = {"color": colour, "marker": marker, "linewidth": width, "markersize": 4.0}
+        scale = math.degrees(1.0) if alike else 1.0 / result.gear_pair.pitch
+        angle = scale * result.pinion_angle
+        length = 1e3 * result.wheel_base_radius
+        error = length * result.transmission_error[k]
+        label = name.replace("$", r"\$")  # no TeX, and shown where it begins with an underscore
+        absolute.plot(angle, error, label=f" {label}", **drawn)
+        about_mean.plot(angle, error - mean_over_a_pitch(error), **drawn)
+        stiffness.plot(angle, result.mesh_stiffness[k], **drawn)
+        bars.append((name, colour, length * result.harmonics(MOST_ORDERS)[k]))
+        places, *curves = over_the_path(result, result.peak_pressure[k], 100.0 * result.load_share[k])
+        for axes, curve in zip((pressure, share), curves, strict=True):
+            known = np.isfinite(curve)
+            axes.plot(scale * places[known], curve[known], **drawn)
+    draw_orders(harmonics, bars)
+    harmonics.set_ylabel("amplitude [µm]")
+    for axes, over, label in (
+        (absolute, "pinion angle", "transmission error [µm]"),
+        (about_mean, "pinion angle", "the same, less its mean [µm]"),
+        (stiffness, "pinion angle", "mesh stiffness [N/(mm µm)]"),
+        (pressure, OVER_THE_PATH, "peak pressure [MPa]"),
+        (share, OVER_THE_PATH, "share of the torque [%]"),
+    ):
+        axes.set(xlabel=f"{over} {unit}", ylabel=label)
+        axes.grid(alpha=0.3)
+    for axes in (absolute, about_mean):
+        style.widen(axes, SMALLEST_SPAN_UM)
+    style.from_zero(pressure)
+    share.set_ylim(-4.0, 106.0)
+    figure.legend(*absolute.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize="small")
+    style.write_title(figure, _title(named), f"{_under(comparison, shared)}, lengths at the wheel's base circle")
+    return figure
+
+
+def plot_compared_maps(results: Results, torque: float | None = None, position: int | None = None) -> Figure:
+    """Pressure maps of two or more results side by side, on one scale of colours and one of lengths.
+
+    Parameters
+    ----------
+    results : mapping of str to MeshCycle, sequence of MeshCycle, or Comparison
+        As :func:`loaded_tca.results.compare_results` takes them.
+    torque : float [N mm], optional
+        One that all results have; default: the largest of these.
+    position : int, optional
+        Index of the position of the first result; of the others the one at the nearest part of a pitch is drawn.
+        Default: the position of the peak pressure of each.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two results, or they do not share the torque.
+    """
+    comparison = results if isinstance(results, Comparison) else compare_results(results)
+    shared = comparison.index_of(torque)
+    named = comparison.results
+    places = _places(comparison, shared, position)
+    maps = [result.maps[k][n][column] for result, (k, n, column) in zip(named.values(), places, strict=True)]
+    borders = [np.concatenate([one.borders[axis] for one in maps if one is not None] or [UNIT]) for axis in (1, 0)]
+    limits = [(float(ends.min()), float(ends.max())) for ends in borders]
+    scale, height = scale_factor(*(high - low for low, high in limits))
+    columns = len(named) if len(named) <= MOST_IN_A_ROW else math.ceil(math.sqrt(len(named)))
+    rows = math.ceil(len(named) / columns)
+    size = PANEL_INCHES * columns, 1.0 + rows * (1.2 + 0.6 * height)  # labels and the bar take the rest of 7 inches
+    figure = Figure(figsize=size, layout="constrained")
+    panels = figure.subplots(rows, columns, squeeze=False).ravel().tolist()
+    loaded = [one is not None and bool(one.pressure.any()) for one in maps]
+    of_loaded = [(result, at) for result, at, carries in zip(named.values(), places, loaded, strict=True) if carries]
+    highest = max((highest_of_map(result, *at) for result, at in of_loaded), default=0.0)
+    for axes, (name, result), (k, n, column), one in zip(panels, named.items(), places, maps, strict=False):
+        if one is None:
+            style.tell(axes, "no tooth pair is in contact here")
+        else:
+            draw_map(axes, result, k, (n, column), highest, scale)
+        axes.set(xlim=limits[0], ylim=limits[1])
+        axes.set_title(f"{name}\n{style.position_label(result, n, column)}", fontsize="small", parse_math=False)
+    for axes in panels[len(named) :]:
+        axes.set_axis_off()
+    if any(loaded):
+        beyond = any(one is not None and one.pressure.max() > highest for one in maps)
+        colours = ScalarMappable(Normalize(0.0, highest), COLOURS)
+        figure.colorbar(colours, ax=panels, label=PRESSURE, extend="max" if beyond else "neither")
+    drawn = (zip(*axes.get_legend_handles_labels(), strict=True) for axes in panels)
+    keys = {label.partition(",")[0]: key for pairs in drawn for key, label in pairs}  # Hertz without its pressure
+    figure.legend(keys.values(), keys.keys(), loc="outside lower center", ncols=3, fontsize="small")
+    style.write_title(figure, _title(named), f"contact pressure, {_under(comparison, shared)}")
+    return figure
+
+
+def _places(comparison: Comparison, shared: int, position: int | None) -> list[tuple[int, int, int]]:
+    """Indices of torque, position and tooth pair of the map of each result."""
+    named = zip(comparison.results.values(), comparison.indices[shared].tolist(), strict=True)
+    if position is None:
+        peaks = [(k, result.peak_contact(k)) for result, k in named]
+        return [(k, *(peak or (0, 0))) for k, peak in peaks]
+    parts = [result.pinion_angle / result.gear_pair.pitch for result in comparison.results.values()]
+    nearest = [int(np.abs(part - parts[0][position]).argmin()) for part in parts]
+    return [(k, n, int(result.peak_column[k, n])) for (result, k), n in zip(named, nearest, strict=True)]
+
+
+def _styles(count: int) -> Iterator[tuple[str, str, float]]:
+    """Colour, marker and line width of each result: curves on each other are seen, each beside the next."""
+    return zip(cycle(DISTINCT_COLOURS), cycle(MARKERS), np.linspace(5.0, 1.5, count).tolist(), strict=False)
+
+
+def _title(named: Mapping[str, MeshCycle]) -> str:
+    """The title of all scenes, or else the names."""
+    titles = {result.scene.title for result in named.values()}
+    return titles.pop() if len(titles) == 1 else " | ".join(named)
+
+
+def _under(comparison: Comparison, shared: int) -> str:
+    first = next(iter(comparison.results.values()))
+    return style.torque_label(first, int(comparison.indices[shared, 0]))

@@ -1,0 +1,225 @@
+"""Two or more results side by side: what their scenes differ in, and what that does to the key figures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import InputError, require
+from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.summary import shown, without_rounding
+from loaded_tca.scene.section import as_table
+from loaded_tca.scene.text import shown as shown_value
+
+if TYPE_CHECKING:
+    import xarray
+
+MAIN = {
+    "peak_pressure_MPa": "peak pressure [MPa]",
+    "contact_length_at_peak_mm": "  contact length there [mm]",
+    "edge_pressure_MPa": "at a sharp edge, mesh-dependent [MPa]",
+    "transmission_error_mean_um": "transmission error, mean [um]",
+    "transmission_error_span_um": "  peak to peak [um]",
+    "unloaded_transmission_error_span_um": "  unloaded, peak to peak [um]",
+    **{f"transmission_error_order_{order}_um": f"  order {order} of the tooth mesh [um]" for order in (1, 2, 3)},
+    "mesh_stiffness_mean_N_per_mm_um": "mesh stiffness, mean [N/(mm um)]",
+    "face_load_factor": "load factor K_Hbeta",
+    "transverse_load_factor": "load factor K_Halpha",
+    "line_load_at_largest_force_N_per_mm": "line load under the largest force [N/mm]",
+    "loaded_contact_ratio": "tooth pairs under load, mean",
+}
+"""Key figures of the summary and their labels."""
+PLACES = "pinion_angle_at", "axial_at"
+"""Parts of the names of figures that count from a zero of no meaning: they have no relative difference."""
+NOT_COMPARED = "title", "load.pinion_torque_Nm", "analysis.torques_Nm"
+"""Keys of the scenes that a comparison does not name."""
+DIGITS = ".6g"
+"""Of torques [N m] that are the same."""
+MOST_KEYS = 12
+"""Keys of the scenes that the summary names."""
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Two or more results under the torques that all of them have, each beside the first.
+
+    Attributes
+    ----------
+    results : mapping of str to MeshCycle
+        By their names; the first is the one that the others are compared with.
+    torque : (m,) array [N mm]
+        Torques that all results have, ascending.
+    """
+
+    results: Mapping[str, MeshCycle]
+    torque: Array
+
+    @cached_property
+    def figures(self) -> xarray.Dataset:
+        """Key figures as ``value``, ``difference`` and ``relative_difference`` to the first (torque, figure, result).
+
+        NaN: not known. A relative difference is that over the magnitude of the first, and NaN where that is zero and
+        for angles and axial places, whose zero has no meaning.
+        """
+        import xarray
+
+        owned = [result.key_figures() for result in self.results.values()]
+        names = [name for name in owned[0][0] if name != "pinion_torque_Nm"]
+        value = np.array(
+            [
+                [[without_rounding(own[k][name], name) for own, k in zip(owned, row, strict=True)] for name in names]
+                for row in self.indices
+            ]
+        )
+        first = value[..., :1]
+        difference = value - first
+        is_place = np.array([any(part in name for part in PLACES) for name in names])
+        base = np.where((first == 0.0) | is_place[:, None], math.nan, np.abs(first))
+        parts = {"value": value, "difference": difference, "relative_difference": difference / base}
+        dimensions = ("torque", "figure", "result")
+        return xarray.Dataset(
+            {name: (dimensions, values) for name, values in parts.items()},
+            {"torque": self.torque, "figure": names, "result": list(self.results)},
+        )
+
+    @cached_property
+    def indices(self) -> np.ndarray[tuple[int, int], np.dtype[np.int_]]:
+        """Index (torque, result) of each torque in each result."""
+        named = [_torques(result) for result in self.results.values()]
+        return np.array([[known.index(told) for known in named] for told in map(_told, self.torque)])
+
+    @cached_property
+    def differing_keys(self) -> dict[str, tuple[Any, ...]]:
+        """Keys of the scenes that are not the same in all, with the value of each result; None: not given.
+
+        Titles and torques are left out.
+        """
+        scenes = [dict(_flat(as_table(result.scene))) for result in self.results.values()]
+        keys = dict.fromkeys(key for scene in scenes for key in scene if key not in NOT_COMPARED)
+        values = {key: tuple(scene.get(key) for scene in scenes) for key in keys}
+        return {key: row for key, row in values.items() if any(value != row[0] for value in row)}
+
+    def index_of(self, torque: float | None = None) -> int:
+        """Return the index of a torque [N mm] among the shared ones; default: that of the largest.
+
+        Raises
+        ------
+        InputError
+            If the results do not share it.
+        """
+        if torque is None:
+            return len(self.torque) - 1
+        known = [_told(one) for one in self.torque]
+        require((_told(torque) in known, f"torque: {_told(torque)} N m; the results share {', '.join(known)} N m"))
+        return known.index(_told(torque))
+
+    def summary(self, torque: float | None = None) -> str:
+        """Return what differs in the scenes and in the main figures under one torque [N mm]; default: the largest."""
+        at = self.index_of(torque)
+        names = list(self.results)
+        table: list[tuple[str, ...]] = [("", names[0], *(cell for name in names[1:] for cell in (name, "", "")))]
+        keys = list(self.differing_keys.items())
+        for key, (first, *others) in keys[:MOST_KEYS]:
+            table.append((key, _written(first), *(cell for other in others for cell in (_written(other), "", ""))))
+        under = self.figures.isel(torque=at)
+        for name, label in MAIN.items():
+            one = under.sel(figure=name)
+            if not one.value.isnull().all():
+                table.append((label, *_cells(name, *(one[part].values for part in one))))
+        widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+        lines = [f"{row[0]:<{widths[0]}}" + _right(row[1:], widths[1:]) for row in table]
+        more = len(keys) - MOST_KEYS
+        notes = [f"{more} more keys of the scenes differ"] if more > 0 else []
+        shared = [_told(one) for one in self.torque]
+        own = {name: [one for one in _torques(result) if one not in shared] for name, result in self.results.items()}
+        if left := [f"{name} {', '.join(torques)}" for name, torques in own.items() if torques]:
+            notes.append(f"all have the torques {', '.join(shared)} N m; left out: {'; '.join(left)} N m")
+        head = f"Compared with {names[0]}, pinion torque {_told(self.torque[at])} N m"
+        return "\n".join([head, *(line.rstrip() for line in lines), *(f"note: {note}" for note in notes)])
+
+
+def compare_results(results: Mapping[str, MeshCycle] | Sequence[MeshCycle]) -> Comparison:
+    """Compare two or more results under the torques that all of them have.
+
+    Parameters
+    ----------
+    results : mapping of str to MeshCycle, or sequence of MeshCycle
+        By their names; those of a sequence are called ``result 1``, ``result 2``, ... The first one is what the others
+        are compared with. They may be of different gears, and of other positions and models.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two, or they share no torque.
+
+    Examples
+    --------
+    Of a pair with more crowning than the other::
+
+        comparison = compare_results({"5 um": first, "8 um": second})
+        comparison.differing_keys  # {"pinion.modifications.lead_crowning_um": (5.0, 8.0)}
+        comparison.figures.relative_difference.sel(figure="peak_pressure_MPa", result="8 um")
+    """
+    named = dict(
+        results if isinstance(results, Mapping) else {f"result {k}": one for k, one in enumerate(results, start=1)}
+    )
+    require(
+        (len(named) > 1, f"results: {len(named)} given; a comparison takes two or more"),
+        *(
+            (isinstance(one, MeshCycle), f"results: {name} is no MeshCycle but {one!r:.60}")
+            for name, one in named.items()
+        ),
+    )
+    torques = [set(_torques(result)) for result in named.values()]
+    shared = set.intersection(*torques)
+    if not shared:
+        owned = "; ".join(f"{name}: {', '.join(_torques(result))} N m" for name, result in named.items())
+        raise InputError(f"results: no torque that all have ({owned})")
+    first = next(iter(named.values()))
+    return Comparison(named, np.sort([torque for torque in first.torque if _told(torque) in shared]))
+
+
+def _told(torque: float) -> str:
+    """A torque [N mm] in N m, as scenes write it."""
+    return f"{1e-3 * torque:{DIGITS}}"
+
+
+def _torques(result: MeshCycle) -> list[str]:
+    return [_told(torque) for torque in result.torque]
+
+
+def _flat(table: Mapping[str, Any], place: str = "") -> Iterator[tuple[str, Any]]:
+    """Keys with dots, and their values."""
+    for name, value in table.items():
+        if isinstance(value, Mapping):
+            yield from _flat(value, f"{place}{name}.")
+        else:
+            yield place + name, value
+
+
+def _written(value: Any) -> str:
+    return "-" if value is None else shown_value(value)
+
+
+def _cells(name: str, value: Array, difference: Array, relative: Array) -> Iterator[str]:
+    """The first value, then of every other result its value, difference and relative difference."""
+    yield shown(value[0], name)
+    for one, change, part in zip(value[1:], difference[1:], relative[1:], strict=True):
+        yield shown(one, name)
+        told = shown(change, name)
+        yield f"+{told}" if change > 0.0 else told
+        yield f"({100.0 * part:+.1f} %)" if math.isfinite(part) else ""
+
+
+def _right(cells: Sequence[str], widths: Sequence[int]) -> str:
+    return "".join(f"  {cell:>{width}}" for cell, width in zip(cells, widths, strict=True))

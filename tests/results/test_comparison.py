@@ -1,0 +1,131 @@
+"""Results beside each other: shared torques, differences of key figures, keys in which the scenes differ."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from loaded_tca.errors import InputError
+from loaded_tca.results import compare_results
+from loaded_tca.scene.section import as_table
+from tests.samples.results import changed, changed_scene, result, with_a_gap
+
+
+def two_torques():
+    return result(torques=(20.0, 80.0))
+
+
+def test_differences_are_those_to_the_first():
+    first = two_torques()
+    higher = changed(first, peak_pressure=1.25 * first.peak_pressure)
+    figures = compare_results({"first": first, "higher": higher}).figures
+    assert figures.result.values.tolist() == ["first", "higher"]
+    peaks = np.nanmax(first.peak_pressure, axis=(1, 2))
+    pressure = figures.sel(figure="peak_pressure_MPa")
+    assert_allclose(pressure.value.transpose("result", "torque"), [peaks, 1.25 * peaks])
+    assert_allclose(pressure.difference.transpose("result", "torque"), [0.0 * peaks, 0.25 * peaks])
+    assert_allclose(pressure.relative_difference.sel(result="higher"), 0.25)
+    others = figures.drop_sel(figure=["peak_pressure_MPa", "peak_pressure_where_hertz_holds_MPa"])
+    assert not others.difference.fillna(0.0).any()
+
+
+def test_relative_difference_of_a_negative_figure_has_the_sign_of_the_difference():
+    """A transmission error of -9 um is less than one of -8 um: -1/8."""
+    first = two_torques()
+    behind = changed(first, transmission_error=1.125 * first.transmission_error)
+    mean = compare_results([first, behind]).figures.sel(figure="transmission_error_mean_um", result="result 2")
+    assert (mean.value < 0.0).all()
+    assert_allclose(mean.relative_difference, -0.125, rtol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["pinion_angle_at_peak_deg", "pinion_axial_at_peak_mm"])
+def test_places_have_no_relative_difference(name):
+    """Their zero, mid-face or the pitch point, is no amount of anything."""
+    moved = changed(two_torques(), peak_axial=two_torques().peak_axial + 1.0)
+    figure = compare_results([two_torques(), moved]).figures.sel(figure=name)
+    assert np.isfinite(figure.difference).all()
+    assert np.isnan(figure.relative_difference).all()
+
+
+def test_rounding_and_unknown_figures_have_no_relative_difference():
+    first = changed(two_torques(), unloaded_transmission_error=1e-18 * np.arange(5.0))
+    second = changed(two_torques(), unloaded_transmission_error=5e-18 * np.arange(5.0))
+    figures = compare_results([first, second]).figures.sel(result="result 2")
+    assert_array_equal(figures.difference.sel(figure="unloaded_transmission_error_span_um"), 0.0)
+    for name in ("unloaded_transmission_error_span_um", "transmission_error_order_1_um"):
+        assert np.isnan(figures.relative_difference.sel(figure=name)).all()
+
+
+def test_compared_are_the_torques_that_all_have():
+    comparison = compare_results({"a": two_torques(), "b": result(torques=(80.0, 50.0)), "c": result(torques=(80.0,))})
+    assert_array_equal(comparison.torque, [80e3])
+    assert_array_equal(comparison.indices, [[1, 0, 0]])
+    values = comparison.figures.value.sel(torque=80e3, figure="peak_pressure_MPa")
+    assert_allclose(values, np.nanmax(two_torques().peak_pressure[1]), rtol=1e-6)  # to the tolerance of the solver
+    note = "note: all have the torques 80 N m; left out: a 20; b 50 N m"
+    assert comparison.summary().splitlines()[-1] == note
+    assert "note" not in compare_results([two_torques(), two_torques()]).summary()
+
+
+def test_results_without_a_common_torque_are_told_theirs():
+    with pytest.raises(InputError, match=r"no torque that all have \(a: 20, 80 N m; b: 130 N m\)"):
+        compare_results({"a": two_torques(), "b": result()})
+
+
+@pytest.mark.parametrize(
+    ("results", "told"),
+    [
+        ([], "results: 0 given"),
+        ({"alone": None}, "results: 1 given"),
+        (["out", "other"], "results: result 1 is no MeshCycle but 'out'"),
+    ],
+)
+def test_what_is_no_pair_of_results_is_told(results, told):
+    with pytest.raises(InputError, match=told):
+        compare_results(results)
+
+
+def test_torque_that_is_not_shared_is_told():
+    with pytest.raises(InputError, match="torque: 50 N m; the results share 20, 80 N m"):
+        compare_results([two_torques(), two_torques()]).summary(50e3)
+
+
+def test_keys_of_the_scenes_that_differ():
+    crowned = changed_scene(two_torques(), {"pinion.modifications.lead_crowning_um": 7.5, "title": "another"})
+    comparison = compare_results({"a": two_torques(), "b": crowned})
+    own = as_table(two_torques().scene)["pinion"]["modifications"]["lead_crowning_um"]
+    assert comparison.differing_keys == {"pinion.modifications.lead_crowning_um": (own, 7.5)}
+    row = comparison.summary().splitlines()[2]
+    assert row.split() == ["pinion.modifications.lead_crowning_um", f"{own}", "7.5"]
+
+
+def test_gears_of_other_families_are_compared_in_what_both_have():
+    bevel = result("straight_bevel", positions=3, torques=(20.0, 80.0))
+    comparison = compare_results({"helical": two_torques(), "bevel": bevel})
+    assert comparison.differing_keys["pair.type"] == ("cylindrical", "straight_bevel")
+    assert comparison.differing_keys["pair.helix_angle_deg"][1] is None
+    assert np.isfinite(comparison.figures.difference.sel(figure="peak_pressure_MPa")).all()
+    assert "more keys of the scenes differ" in comparison.summary()
+
+
+def test_harmonics_of_one_pair_that_carries_all_are_unknown():
+    alone = result("spur", positions=5, torques=(130.0,))
+    shared = result("mesh_cycle_spur", positions=5, torques=(130.0,))
+    comparison = compare_results({"shared": shared, "alone": alone})
+    assert comparison.differing_keys["analysis.load_sharing"] == (True, False)
+    row = next(line for line in comparison.summary().splitlines() if "order 1 of the tooth mesh" in line)
+    assert row.split()[-2:] == ["-", "-"]  # neither value nor difference
+
+
+def test_summary_has_values_and_both_differences():
+    first = two_torques()
+    lines = compare_results({"a": first, "b": changed(first, peak_pressure=2.0 * first.peak_pressure)}).summary(20e3)
+    head, names, row = lines.splitlines()[:3]
+    assert head == "Compared with a, pinion torque 20 N m"
+    assert names.split() == ["a", "b"]
+    peak = np.nanmax(first.peak_pressure[0])
+    assert row.split()[-5:] == [f"{peak:.4g}", f"{2.0 * peak:.4g}", f"+{peak:.4g}", "(+100.0", "%)"]
+
+
+def test_positions_without_contact_do_not_hinder():
+    figures = compare_results([two_torques(), with_a_gap()]).figures
+    assert_array_equal(figures.difference.sel(figure="positions_in_contact", result="result 2"), -1.0)
