@@ -1,0 +1,13 @@
+"""Many analyses as one: a study varies keys of a scene and collects the key figures of every variant.
+
+The engine is any ``concurrent.futures.Executor``. An executor belongs to its caller; a study asks it for one task per
+variant, writes down each one that is done, and goes on where it stopped when it is run again.
+"""
+
+from loaded_tca.studies.figures import figures
+from loaded_tca.studies.read import parse_study, read_study
+from loaded_tca.studies.run import run_study
+from loaded_tca.studies.store import load_study
+from loaded_tca.studies.study import Study
+
+__all__ = ["Study", "figures", "load_study", "parse_study", "read_study", "run_study"]
