@@ -125,5 +125,9 @@ class ConvergenceError(LoadedTCAError, RuntimeError):
         return type(self), (str(self), self.last)
 
 
+class ExecutorError(LoadedTCAError, RuntimeError):
+    """An executor that gave up before all of its tasks were done, as when a worker is killed."""
+
+
 class AccuracyWarning(UserWarning):
     """A converged answer that is doubtful: the model, not the solver, is at its limit."""

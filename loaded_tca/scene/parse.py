@@ -68,7 +68,7 @@ def parse_scene(text: str, source: str = "scene", folder: str | os.PathLike[str]
     pair.modul: unknown key; did you mean "pair.normal_module_mm"?
     ...
     """
-    return scene_from_table(_with_files_from(Path(folder), _table(text, source)))
+    return scene_from_table(_with_files_from(Path(folder), toml_table(text, source)))
 
 
 def _with_files_from(folder: Path, table: dict[str, Any], levels: int = 3) -> dict[str, Any]:
@@ -82,7 +82,8 @@ def _with_files_from(folder: Path, table: dict[str, Any], levels: int = 3) -> di
     return found
 
 
-def _table(text: str, source: str) -> dict[str, Any]:
+def toml_table(text: str, source: str) -> dict[str, Any]:
+    """Return the tables of a TOML text; InputError if it is none, or too long."""
     if len(text) > LARGEST_FILE:
         raise InputError(f"{source}: too long for a scene; allowed up to {LARGEST_FILE} characters")
     dots = [line.count(".") for line in text.split("\n")]

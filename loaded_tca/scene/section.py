@@ -172,6 +172,33 @@ def _unknown(section: type[Section], found: Mapping[str, Any], place: str) -> It
         yield f"{place.rstrip('.') or 'scene'}: {more} more unknown keys"
 
 
+def key_at(section: type[Section], path: str, place: str = "") -> Key:
+    """Return what a section says of the key at a path with dots.
+
+    Raises
+    ------
+    InputError
+        If there is no such key, or the path leads to a section.
+
+    Examples
+    --------
+    >>> from loaded_tca.scene.cylindrical import CylindricalScene
+    >>> key_at(CylindricalScene, "pinion.modifications.lead_crowning_um").default
+    0.0
+    """
+    name, _, rest = path.partition(".")
+    if name not in entries(section):
+        raise InputError(_unknown(section, {name: None}, place))
+    entry = entries(section)[name][1]
+    if isinstance(entry, Subsection):
+        if not rest:
+            raise InputError(f"{place}{name}: a section; allowed is one of its keys")
+        return key_at(entry.section, rest, f"{place}{name}.")
+    if rest:
+        raise InputError(f"{place}{name}.{shown_key(rest)}: unknown key; {place}{name} is a key, no section")
+    return entry
+
+
 def _homes(section: type[Section]) -> dict[str, str]:
     """Name of every key and section inside -> where it belongs, seen from the section."""
     inner: dict[str, str] = {}

@@ -1,0 +1,15 @@
+"""Many analyses as one: a study varies keys of a scene and collects the key figures of every variant.
+
+The engine is any ``concurrent.futures.Executor``. An executor belongs to its caller; a study asks it for one task per
+variant, writes down each one that is done, and goes on where it stopped when it is run again.
+"""
+
+from loaded_tca.studies.figures import figures
+from loaded_tca.studies.pool import process_pool
+from loaded_tca.studies.read import parse_study, read_study
+from loaded_tca.studies.run import run_study
+from loaded_tca.studies.store import load_study
+from loaded_tca.studies.study import Study
+from loaded_tca.studies.summary import study_summary
+
+__all__ = ["Study", "figures", "load_study", "parse_study", "process_pool", "read_study", "run_study", "study_summary"]

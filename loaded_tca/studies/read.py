@@ -1,0 +1,164 @@
+"""Study files: TOML with the words of :class:`loaded_tca.studies.Study`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from loaded_tca.errors import InputError, read_text
+from loaded_tca.scene import Scene, read_scene
+from loaded_tca.scene.keys import did_you_mean, nearest
+from loaded_tca.scene.parse import LARGEST_FILE, toml_table
+from loaded_tca.scene.text import shown, shown_key
+from loaded_tca.studies.study import Distribution, Study
+
+WORDS = ("scene", "changes", "factors", "distributions", "samples", "seed", "table")
+SPAN = {"from", "to", "count"}
+"""Words of evenly spaced values."""
+DISTRIBUTION = "distribution"
+"""Word for the name of a distribution; its parameters stand beside it."""
+MOST_VALUES = 1_000_000
+
+
+def read_study(path: str | os.PathLike[str]) -> Study:
+    """Read a study file.
+
+    Parameters
+    ----------
+    path : str or path
+        TOML in UTF-8. The files that it names, ``scene`` and ``table`` (CSV with keys as its header), are looked for
+        from its folder.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, or with every problem that it holds.
+    """
+    return parse_study(read_text(path, LARGEST_FILE), source=os.fspath(path), folder=Path(path).parent)
+
+
+def parse_study(text: str, source: str = "study", folder: str | os.PathLike[str] = ".") -> Study:
+    r"""Make a study of the text of a study file.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    source : str
+        What messages call the text.
+    folder : str or path
+        Where the files that it names are looked for.
+
+    Raises
+    ------
+    InputError
+        If the text is no TOML, or with every problem that it holds.
+
+    Examples
+    --------
+    >>> parse_study('[factors]\nmounting.misalignment_um = { from = 0, to = 10 }')
+    Traceback (most recent call last):
+    ...
+    loaded_tca.errors.InputError: scene: missing; allowed the name of a scene file
+    factors.mounting.misalignment_um: found a table; allowed a list of values or { from, to, count }
+    """
+    found = toml_table(text, source)
+    problems = [
+        f"{shown_key(word)}: unknown word{did_you_mean(nearest(word, WORDS)) or '; allowed ' + ', '.join(WORDS)}"
+        for word in found
+        if word not in WORDS
+    ]
+
+    given: dict[str, Any] = {}
+    parts: list[tuple[dict[str, Any], str, Callable[..., Any], tuple[Any, ...]]] = [
+        (given, "scene", _scene, (found, Path(folder))),
+        (given, "table", _table, (found.get("table"), Path(folder))),
+    ]
+    for word, read, words in (("factors", _values, SPAN), ("distributions", _distribution, {DISTRIBUTION})):
+        section = found.get(word, {})
+        if isinstance(section, dict):
+            given[word] = {}
+            parts += [(given[word], key, read, (f"{word}.{key}", value)) for key, value in _leaves(section, words)]
+        else:
+            problems.append(f"{word}: found {shown(section)}; allowed a section [{word}]")
+    for place, name, read, arguments in parts:
+        try:
+            place[name] = read(*arguments)
+        except InputError as error:
+            problems += error.problems
+    given |= {word: found[word] for word in ("samples", "seed") if word in found}
+    if problems:
+        raise InputError(problems)
+    return Study(**given)
+
+
+def _scene(found: Mapping[str, Any], folder: Path) -> Scene:
+    name, changes = found.get("scene"), found.get("changes", {})
+    if not isinstance(name, str):
+        raise InputError(
+            f"scene: {'missing' if name is None else f'found {shown(name)}'}; allowed the name of a scene file"
+        )
+    if not isinstance(changes, dict):
+        raise InputError(f"changes: found {shown(changes)}; allowed a section [changes]")
+    return read_scene(folder / name).with_changes(dict(_leaves(changes, set())))
+
+
+def _leaves(section: Mapping[str, Any], words: set[str], place: str = "") -> Iterator[tuple[str, Any]]:
+    """Keys with dots and values of nested tables; one that has any of the words is a value itself."""
+    for name, value in section.items():
+        if isinstance(value, dict) and value and not words & set(value):
+            yield from _leaves(value, words, f"{place}{name}.")
+        else:
+            yield f"{place}{name}", value
+
+
+def _values(key: str, value: Any) -> list[Any]:
+    if isinstance(value, list):
+        return value
+    if not isinstance(value, dict) or set(value) != SPAN:
+        raise InputError(f"{key}: found {shown(value)}; allowed a list of values or {{ from, to, count }}")
+    low, high, count = value["from"], value["to"], value["count"]
+    if not (type(count) is int and 1 <= count <= MOST_VALUES):
+        raise InputError(f"{key}.count: found {shown(count)}; allowed a whole number from 1 to {MOST_VALUES}")
+    if not all(type(end) in (int, float) and np.isfinite(end) for end in (low, high)):
+        raise InputError(f"{key}: found from {shown(low)} to {shown(high)}; allowed two finite numbers")
+    values: list[Any] = np.linspace(low, high, count).tolist()
+    return values
+
+
+def _distribution(key: str, value: Any) -> Distribution:
+    from scipy import stats
+
+    name = value.get(DISTRIBUTION) if isinstance(value, dict) else None
+    known = getattr(stats, name, None) if isinstance(name, str) else None
+    if not isinstance(known, stats.rv_continuous | stats.rv_discrete):
+        told = shown(value) if name is None else shown(name)
+        raise InputError(
+            f'{key}: found {told}; allowed {{ {DISTRIBUTION} = "norm", scale = 5.0 }}, names of scipy.stats'
+        )
+    parameters = {word: number for word, number in value.items() if word != DISTRIBUTION}
+    try:
+        frozen: Distribution = known(**parameters)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{key}: {name}: {error}") from None
+    return frozen
+
+
+def _table(name: Any, folder: Path) -> dict[str, list[Any]]:
+    if name is None:
+        return {}
+    if not isinstance(name, str):
+        raise InputError(f"table: found {shown(name)}; allowed the name of a CSV file")
+    import pandas
+
+    try:
+        frame = pandas.read_csv(folder / name)
+    except OSError as error:
+        raise InputError(f"table: {folder / name}: cannot be read: {error.strerror or error}") from None
+    except ValueError as error:
+        raise InputError(f"table: {folder / name}: no CSV: {error}") from None
+    return {str(key): column.tolist() for key, column in frame.items()}

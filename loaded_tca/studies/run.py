@@ -1,0 +1,257 @@
+"""Run a study on any executor: every variant that is done is written down at once, and is not computed again."""
+
+from __future__ import annotations
+
+import time
+import warnings
+from collections.abc import Callable, Collection, Iterator, Mapping
+from concurrent.futures import Executor, Future
+from contextlib import ExitStack, contextmanager
+from importlib.metadata import version
+from itertools import islice
+from pathlib import Path
+from queue import SimpleQueue
+from tempfile import TemporaryDirectory
+from threading import Lock, get_ident
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from loaded_tca.analysis import analyse
+from loaded_tca.errors import AccuracyWarning, ConvergenceError, ExecutorError, InputError, LoadedTCAError
+from loaded_tca.results.files import FilePath, make_directory, replacing, write_dataset
+from loaded_tca.scene import Scene
+from loaded_tca.studies.figures import figures as key_figures
+from loaded_tca.studies.figures import figures_of
+from loaded_tca.studies.store import Row, Rows, dataset_of
+from loaded_tca.studies.study import Study
+
+if TYPE_CHECKING:
+    import xarray
+
+AHEAD = 1000
+"""Variants under way: enough for hundreds of workers, and little memory."""
+
+Figures = Callable[[Scene], Mapping[str, Any]]
+Progress = Callable[[int, int, int], None]
+"""Called with how many variants are done, of how many, and how many of these are not ok."""
+
+
+def run_study(
+    study: Study,
+    executor: Executor | None = None,
+    out: FilePath | None = None,
+    progress: Progress | None = None,
+    figures: Figures = key_figures,
+    keep_maps: Collection[int] = (),
+) -> xarray.Dataset:
+    """Analyse all variants of a study.
+
+    Parameters
+    ----------
+    study : Study
+    executor : concurrent.futures.Executor, optional
+        Whose workers analyse; it stays the caller's. Default: this process.
+    out : path, optional
+        File for the result. Beside it, in ``<name>.rows.jsonl``, stand the variants that are done, while the study runs
+        and afterwards: the same study with the same ``out`` computes only what is missing there.
+    progress : callable, optional
+        Called as ``progress(done, total, failed)`` with those known before, if any, and whenever variants are done.
+    figures : callable
+        What is kept of a variant: a function of its scene that returns numbers, or numbers over the torques, by their
+        names, and that workers can import. Default: :func:`loaded_tca.studies.figures`.
+    keep_maps : collection of int
+        Variants of which the whole result is kept, pressure maps included: ``<name>_maps/<variant>.nc`` beside ``out``,
+        to be read by :func:`loaded_tca.load_result`.
+
+    Returns
+    -------
+    xarray.Dataset
+        See :func:`loaded_tca.studies.store.dataset_of`. What does not fit or does not converge is a row with its
+        ``status`` and ``reason``. The numbers depend neither on the executor nor on the order; ``seconds`` do.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written, or maps are to be kept of no variant of the study.
+    ExecutorError
+        If the executor gives up, as when a worker is killed.
+
+    Examples
+    --------
+    >>> from loaded_tca import parse_scene
+    >>> from loaded_tca.cli import DEMO_SCENE
+    >>> few = {"analysis.positions": 3, "analysis.compliance": "contact", "analysis.free_edges": False}
+    >>> scene = parse_scene(DEMO_SCENE.read_text()).with_changes(few)
+    >>> found = run_study(Study(scene, {"pinion.modifications.lead_crowning_um": [2.0, 6.0]}))
+    >>> found["face_load_factor"].squeeze().diff("sample").item() > 0.0  # more crowning, less of the face carries
+    True
+    """
+    unknown = [variant for variant in keep_maps if variant not in range(len(study))]
+    if unknown or (keep_maps and out is None):
+        told = "needs out" if out is None else f"{unknown[:3]} are not variants 0 to {len(study) - 1}"
+        raise InputError(f"keep_maps: {told}")
+    digest = study.digests(figures)
+    with ExitStack() as stack:
+        place = Path(stack.enter_context(TemporaryDirectory()), "study.nc") if out is None else Path(out)
+        rows = stack.enter_context(Rows(place.with_suffix(".rows.jsonl")))
+        maps = place.with_name(f"{place.stem}_maps")
+        missing: list[int] = []
+        kept: list[int] = []
+        for variant in range(len(study)):
+            known = digest(variant) in rows and (variant not in keep_maps or _map_of(maps, variant).exists())
+            (kept if known else missing).append(variant)
+        done, failed = len(study) - len(missing), sum(row["status"] != "ok" for row in rows.of(map(digest, kept)))
+        tasks = ((study.scene, study.changes(v), digest(v), figures, v if v in keep_maps else None) for v in missing)
+        if progress is not None and kept:
+            progress(done, len(study), failed)
+        with _told_how_to_go_on(rows, out):
+            for found in _in_this_process(tasks) if executor is None else _by(executor, tasks):
+                rows.append([row for row, _ in found])
+                for row, whole in found:
+                    if whole is not None:
+                        _keep(maps, *whole)
+                    failed += row["status"] != "ok"
+                done += len(found)
+                if progress is not None:
+                    progress(done, len(study), failed)
+        attributes = {"scene_toml": study.scene.to_toml(), "version": version("loaded_tca"), "seed": study.seed}
+        dataset = dataset_of(study, rows.of(map(digest, range(len(study)))), attributes)
+        if out is not None:
+            write_dataset(place, dataset)
+    return dataset
+
+
+Task = tuple[Scene, dict[str, Any], str, Figures, int | None]
+"""Scene of the study, changes, digest, figures, and the number of the variant if its maps are to be kept."""
+Done = tuple[Row, tuple[int, bytes] | None]
+"""A row, and the number and the result of the variant if its maps are kept."""
+
+
+def _in_this_process(tasks: Iterator[Task]) -> Iterator[list[Done]]:
+    for task in tasks:
+        yield [_analysed(*task)]
+
+
+def _by(executor: Executor, tasks: Iterator[Task]) -> Iterator[list[Done]]:
+    """What is done, as it comes; at the end, and if anything goes wrong, nothing is left for the executor to begin."""
+    finished: SimpleQueue[Future[Done]] = SimpleQueue()
+    under_way: set[Future[Done]] = set()
+    try:
+        while True:
+            for task in islice(tasks, AHEAD - len(under_way)):
+                future = _submitted(executor, task)
+                under_way.add(future)
+                future.add_done_callback(finished.put)
+            if not under_way:
+                return
+            batch = [finished.get()]
+            while not finished.empty():
+                batch.append(finished.get())
+            under_way.difference_update(batch)
+            lost = [future for future in batch if future.cancelled() or future.exception() is not None]
+            yield [future.result() for future in batch if future not in lost]
+            if lost:
+                error = None if lost[0].cancelled() else lost[0].exception()
+                told = "cancelled" if error is None else f"{type(error).__name__}: {error}".splitlines()[0]
+                raise ExecutorError(f"the executor gave up: {told}") from error
+    finally:
+        for future in under_way:
+            future.cancel()
+
+
+def _submitted(executor: Executor, task: Task) -> Future[Done]:
+    """A task that an executor was given; one that has failed if the executor takes none any more."""
+    try:
+        return executor.submit(_analysed, *task)
+    except Exception as error:  # as many kinds as there are executors
+        future: Future[Done] = Future()
+        future.set_exception(error)
+        return future
+
+
+def _analysed(scene: Scene, changes: dict[str, Any], digest: str, figures: Figures, keep: int | None) -> Done:
+    """Analyse one variant, in whatever process and thread this is called."""
+    begin = time.perf_counter()
+    status, reason, found, whole = "ok", "", {}, None
+    with accuracy_warnings() as told:
+        try:
+            variant = scene.with_changes(changes)
+            if keep is not None:
+                result = analyse(variant)
+                whole = keep, bytes(result.to_netcdf())
+            values = figures_of(result) if keep is not None and figures is key_figures else figures(variant)
+            found = {name: np.atleast_1d(np.asarray(value, dtype=float)).tolist() for name, value in values.items()}
+        except Exception as error:  # a variant that fails is a row; what it is of the program's fault, too
+            status, reason = _status_of(error), str(error) or type(error).__name__
+    row = {
+        "digest": digest,
+        "status": status,
+        "reason": reason,
+        "warnings": [*dict.fromkeys(told)],
+        "seconds": time.perf_counter() - begin,
+        "figures": found,
+    }
+    return row, whole
+
+
+def _status_of(error: Exception) -> str:
+    if isinstance(error, ConvergenceError):
+        return "not converged"
+    return "refused" if isinstance(error, LoadedTCAError) else "fault"
+
+
+def _map_of(maps: Path, variant: int) -> Path:
+    return maps / f"{variant}.nc"
+
+
+def _keep(maps: Path, variant: int, content: bytes) -> None:
+    make_directory(maps)
+    with replacing(_map_of(maps, variant)) as temporary:
+        temporary.write_bytes(content)
+
+
+@contextmanager
+def _told_how_to_go_on(rows: Rows, out: FilePath | None) -> Iterator[None]:
+    try:
+        yield
+    except BaseException as error:  # an interrupt, too
+        if out is not None:
+            error.add_note(f"{len(rows)} variants are kept in {rows.path}: the same study goes on from there")
+        raise
+
+
+_listening: dict[int, list[str]] = {}
+_filters = ExitStack()
+_lock = Lock()
+
+
+@contextmanager
+def accuracy_warnings() -> Iterator[list[str]]:
+    """Collect the sentences of accuracy warnings of this thread; other threads collect their own, or show them.
+
+    ``warnings.catch_warnings`` alone changes what all threads of a process do.
+    """
+    told: list[str] = []
+    with _lock:
+        if not _listening:
+            _filters.enter_context(warnings.catch_warnings())
+            warnings.simplefilter("always", AccuracyWarning)
+            shown = warnings.showwarning
+
+            def show(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
+                sentences = _listening.get(get_ident())
+                if sentences is not None and issubclass(category, AccuracyWarning):
+                    sentences.append(str(message))
+                else:
+                    shown(message, category, *where, **more)
+
+            warnings.showwarning = show
+        _listening[get_ident()] = told
+    try:
+        yield told
+    finally:
+        with _lock:
+            del _listening[get_ident()]
+            if not _listening:
+                _filters.close()

@@ -1,0 +1,179 @@
+"""Rows of a study on disk: each is there once its variant is done, whatever happens to the others."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import InputError, reason_of
+from loaded_tca.results.files import FilePath, make_directory, read_dataset
+from loaded_tca.scene.text import literal
+from loaded_tca.studies.study import Study
+
+if TYPE_CHECKING:
+    import xarray
+
+STATUSES = ("ok", "refused", "not converged", "fault")
+"""Of a variant: analysed; its scene or geometry refused; not converged; any other error, a fault of the program."""
+KIND = "study"
+Row = dict[str, Any]
+"""digest, status, reason, warnings, seconds, and figures (name -> values over the torques), as JSON holds them."""
+
+
+class Rows:
+    """A file with one line for every variant that is done, in the order in which they were.
+
+    Parameters
+    ----------
+    path : str or path
+        Made if it does not exist. A line that was not written to its end is cut off.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read or written.
+    """
+
+    def __init__(self, path: FilePath) -> None:
+        self.path = Path(path)
+        make_directory(self.path.parent)
+        try:
+            self._file = os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
+        except OSError as error:
+            raise InputError(f"{self.path}: cannot be written: {reason_of(error)}") from error
+        self._size = 0
+        self._places: dict[str, int] = {}
+        for row, size in self._read():
+            self._places[row["digest"]] = self._size
+            self._size += size
+        os.ftruncate(self._file, self._size)
+
+    def __enter__(self) -> Rows:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        os.close(self._file)
+
+    def __contains__(self, digest: str) -> bool:
+        return digest in self._places
+
+    def __len__(self) -> int:
+        return len(self._places)
+
+    def append(self, rows: Sequence[Row]) -> None:
+        """Write rows down: all of them, or none and an InputError."""
+        lines = [json.dumps(row).encode() + b"\n" for row in rows]
+        rest = b"".join(lines)
+        try:
+            while rest:
+                rest = rest[os.write(self._file, rest) :]
+        except OSError as error:
+            os.ftruncate(self._file, self._size)
+            raise InputError(f"{self.path}: cannot be written: {reason_of(error)}") from error
+        for row, line in zip(rows, lines, strict=True):
+            self._places[row["digest"]] = self._size
+            self._size += len(line)
+
+    def of(self, digests: Iterable[str]) -> Iterator[Row]:
+        """Rows in the order asked for, read one by one."""
+        with open(self.path, "rb") as file:
+            for digest in digests:
+                file.seek(self._places[digest])
+                yield json.loads(file.readline())
+
+    def _read(self) -> Iterator[tuple[Row, int]]:
+        """Rows of the file and their bytes, up to the first that is not whole."""
+        with open(self.path, "rb") as file:
+            for line in file:
+                try:
+                    row = json.loads(line)
+                except ValueError:
+                    return
+                if not line.endswith(b"\n") or not isinstance(row, dict) or "digest" not in row:
+                    return
+                yield row, len(line)
+
+
+def dataset_of(study: Study, rows: Iterable[Row], attributes: dict[str, Any]) -> xarray.Dataset:
+    """Gather the rows of all variants, in their order.
+
+    Parameters
+    ----------
+    study : Study
+    rows : iterable of Row
+        Of all variants; read one by one.
+    attributes : dict
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimensions sample and torque. Over both the key figures, NaN where there are none; over the samples the varied
+        keys (coordinates), ``status``, ``reason``, ``warnings`` (lines) and ``seconds``.
+    """
+    import xarray
+
+    count = len(study)
+    texts: dict[str, list[str]] = {"status": [], "reason": [], "warnings": []}
+    seconds = np.empty(count)
+    found: dict[str, Array] = {}
+    torques = 1
+    for sample, row in enumerate(rows):
+        texts["status"].append(row["status"])
+        texts["reason"].append(row["reason"])
+        texts["warnings"].append("\n".join(row["warnings"]))
+        seconds[sample] = row["seconds"]
+        for name, values in row["figures"].items():
+            if len(values) > torques:
+                torques = len(values)
+                found = {known: _widened(array, torques) for known, array in found.items()}
+            array = found.setdefault(name, np.full((count, torques), np.nan))
+            array[sample, : len(values)] = values
+    variables = {name: (("sample", "torque"), array) for name, array in found.items()}
+    own = {name: ("sample", np.array(column, dtype=np.str_)) for name, column in texts.items()}
+    told = ("sample", seconds, {"units": "s", "long_name": "time of the analysis"})
+    return xarray.Dataset(
+        {**variables, **own, "seconds": told}, coords=_varied(study), attrs={"kind": KIND, **attributes}
+    )
+
+
+def _widened(array: Array, torques: int) -> Array:
+    """The array with room for more torques."""
+    return np.pad(array, ((0, 0), (0, torques - array.shape[1])), constant_values=np.nan)
+
+
+def _varied(study: Study) -> dict[str, tuple[str, Array]]:
+    """Values of the varied keys over the samples; lists and booleans as a scene file writes them."""
+    columns: dict[str, list[Any]] = {key: [] for key in study.keys}
+    for variant in range(len(study)):
+        for key, value in study.changes(variant).items():
+            plain = isinstance(value, int | float | str) and not isinstance(value, bool)
+            columns[key].append(value if plain else literal(value))
+    return {key: ("sample", np.array(column)) for key, column in columns.items()}
+
+
+def load_study(path: FilePath) -> xarray.Dataset:
+    """Read the result of a study.
+
+    Parameters
+    ----------
+    path : str or path
+        File that ``run_study`` wrote.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is damaged, or is no study.
+    """
+    dataset = read_dataset(path)
+    if dataset.attrs.get("kind") != KIND:
+        raise InputError(f"{path}: a result of loaded_tca, but no study; read it with load_result")
+    return dataset

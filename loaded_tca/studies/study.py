@@ -1,0 +1,247 @@
+"""What a study varies: keys of a scene, each over given values or after a distribution."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import pickle
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from functools import cached_property
+from importlib.metadata import version
+from numbers import Integral, Real
+from typing import Any, Protocol
+
+import numpy as np
+from scipy.stats import qmc
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import InputError
+from loaded_tca.scene import Scene
+from loaded_tca.scene.keys import Key, Number, Whole
+from loaded_tca.scene.section import as_table, key_at
+from loaded_tca.scene.text import shown
+
+NEVER = 1e-12
+"""Probabilities nearer than this to 0 or 1 are moved there: a distribution without bounds has no value at its ends."""
+MOST_SAMPLES = 2**30
+"""Points of a scrambled Sobol sequence."""
+
+
+class Distribution(Protocol):
+    """A frozen distribution of ``scipy.stats``."""
+
+    def ppf(self, q: Any) -> Any:
+        """Value that is not exceeded with the probability ``q``."""
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """Variants of a scene, numbered from 0: rows of the table outermost, then the factors, samples innermost.
+
+    Parameters
+    ----------
+    scene : Scene
+        What all variants have in common.
+    factors : mapping of str to sequence, optional
+        Keys as in a scene file, with dots -> values; every combination is a variant, the last factor changes fastest.
+    distributions : mapping of str to frozen distribution of ``scipy.stats``, optional
+        Keys -> distributions, independent of each other. The same ``samples`` points stand for every combination.
+    samples : int, optional
+        Points of a scrambled Sobol sequence; powers of two fill the space best. Needed with distributions.
+    seed : int
+        Of the scrambling: the same seed gives the same points.
+    table : mapping of str to sequence, optional
+        Keys -> given values, all equally many, as a ``pandas.DataFrame`` has them; each row is a variant.
+
+    Raises
+    ------
+    InputError
+        Every problem at once: unknown keys, values that a key never takes, none at all. A number out of the range of
+        its key is no problem of the study: that variant is refused when its turn comes.
+
+    Examples
+    --------
+    >>> from scipy.stats import norm
+    >>> from loaded_tca import parse_scene
+    >>> from loaded_tca.cli import DEMO_SCENE
+    >>> scene = parse_scene(DEMO_SCENE.read_text())
+    >>> crownings = {"pinion.modifications.lead_crowning_um": [3.0, 5.0]}
+    >>> study = Study(scene, crownings, {"mounting.misalignment_um": norm(0.0, 5.0)}, samples=64)
+    >>> len(study), study.changes(64)["pinion.modifications.lead_crowning_um"]
+    (128, 5.0)
+    """
+
+    scene: Scene
+    factors: Mapping[str, Sequence[Any]] = field(default_factory=dict)
+    distributions: Mapping[str, Distribution] = field(default_factory=dict)
+    samples: int | None = None
+    seed: int = 0
+    table: Mapping[str, Sequence[Any]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        problems = [*self._problems_of_numbers(), *self._problems_of_keys()]
+        kinds = self._kinds
+        for key, values in (*self.table.items(), *self.factors.items()):
+            problems += _problems_of_values(key, kinds.get(key), values)
+        for key, distribution in self.distributions.items():
+            problems += _problems_of_distribution(key, kinds.get(key), distribution)
+        lengths = {key: len(values) for key, values in self.table.items() if hasattr(values, "__len__")}
+        if len(set(lengths.values())) > 1:
+            problems.append("table: columns of different lengths: " + ", ".join(f"{k} {n}" for k, n in lengths.items()))
+        if problems:
+            raise InputError(problems)
+        for name in ("factors", "table"):  # copies, which nobody else changes
+            lists = {key: [_plain(value) for value in values] for key, values in getattr(self, name).items()}
+            object.__setattr__(self, name, lists)
+
+    def _problems_of_numbers(self) -> Iterator[str]:
+        if not _is_whole(self.seed, 0, math.inf):
+            yield f"seed: found {shown(self.seed)}; allowed a whole number from 0 on"
+        if not self.distributions and self.samples is not None:
+            yield "samples: given without distributions, of which they are"
+        elif self.distributions and not _is_whole(self.samples, 1, MOST_SAMPLES):
+            yield f"samples: found {shown(self.samples)}; allowed a whole number from 1 to {MOST_SAMPLES}"
+
+    def _problems_of_keys(self) -> Iterator[str]:
+        if not self.keys:
+            yield "factors: none given, no distributions and no table; a study varies one key at least"
+        for key in dict.fromkeys(self.keys):
+            if self.keys.count(key) > 1:
+                yield f"{key}: varied more than once"
+            try:
+                key_at(type(self.scene), key)
+            except InputError as error:
+                yield from error.problems
+        if "load.pinion_torque_Nm" in self.keys and self.scene.analysis.torques_Nm is not None:
+            yield (
+                "load.pinion_torque_Nm: changes nothing, since the scene has analysis.torques_Nm; vary these, or leave "
+                "them out of the scene"
+            )
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Keys that vary: those of the table, of the factors, of the distributions."""
+        return (*self.table, *self.factors, *self.distributions)
+
+    def __len__(self) -> int:
+        return math.prod(self._counts)
+
+    def changes(self, variant: int) -> dict[str, Any]:
+        """What a variant changes in the scene: key -> value."""
+        if not 0 <= variant < len(self):
+            raise InputError(f"variant: {variant}; allowed 0 to {len(self) - 1}")
+        row, *places, sample = (int(place) for place in np.unravel_index(variant, self._counts))
+        found = {key: column[row] for key, column in self.table.items()}
+        found |= {key: values[place] for (key, values), place in zip(self.factors.items(), places, strict=True)}
+        found |= dict(zip(self.distributions, self._points[sample].tolist(), strict=True))
+        return {key: _as_key_takes(self._kinds[key], value) for key, value in found.items()}
+
+    def digests(self, figures: Callable[..., Any]) -> Callable[[int], str]:
+        """Return what tells variants apart: a digest of scene and changes, asked figures and version of the package.
+
+        A variant of another study that changes the same keys to the same values has the same digest.
+        """
+        table = as_table(self.scene)
+        for key in self.keys:  # what the scene itself has there is of no account
+            *sections, name = key.split(".")
+            place = table
+            for section in sections:
+                place = place.get(section, {})
+            place.pop(name, None)
+        named = hasattr(figures, "__qualname__")  # others, as partials, hold values that tell
+        asked = f"{figures.__module__}.{figures.__qualname__}" if named else pickle.dumps(figures).hex()
+        common = [version("loaded_tca"), asked, table]
+        begun = hashlib.sha256(json.dumps(common, sort_keys=True).encode())
+
+        def digest(variant: int) -> str:
+            own = begun.copy()
+            own.update(json.dumps(self.changes(variant), sort_keys=True).encode())
+            return own.hexdigest()
+
+        return digest
+
+    @cached_property
+    def _counts(self) -> tuple[int, ...]:
+        rows = max((len(column) for column in self.table.values()), default=1)
+        return (rows, *(len(values) for values in self.factors.values()), self.samples or 1)
+
+    @cached_property
+    def _kinds(self) -> dict[str, Key]:
+        """What the scene says of the keys, of those that it knows."""
+        found = {}
+        for key in self.keys:
+            with suppress(InputError):
+                found[key] = key_at(type(self.scene), key)
+        return found
+
+    @cached_property
+    def _points(self) -> Array:
+        """Values of the keys with distributions, (samples, keys)."""
+        if self.samples is None:
+            return np.empty((1, 0))
+        sobol = qmc.Sobol(len(self.distributions), scramble=True, rng=self.seed)
+        unit = sobol.random_base2((self.samples - 1).bit_length())[: self.samples]
+        columns = zip(self.distributions.values(), np.clip(unit, NEVER, 1.0 - NEVER).T, strict=True)
+        return np.stack([np.asarray(one.ppf(column), dtype=float) for one, column in columns], axis=1)
+
+
+def _is_whole(value: Any, low: float, high: float) -> bool:
+    return isinstance(value, Integral) and not isinstance(value, bool) and low <= int(value) <= high
+
+
+def _is_finite(value: Any) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _plain(value: Any) -> Any:
+    """A value without the types of NumPy."""
+    return value.tolist() if isinstance(value, np.generic | np.ndarray) else value
+
+
+def _as_key_takes(key: Key, value: Any) -> Any:
+    """The value in the key's own type; a number that it refuses stays what it is."""
+    if isinstance(key.kind, Whole) and float(value).is_integer():
+        value = int(value)
+    try:
+        return key.read(value)
+    except ValueError:
+        return value
+
+
+def _problems_of_values(key: str, known: Key | None, values: Any) -> Iterator[str]:
+    if isinstance(values, str | bytes | Mapping) or not (hasattr(values, "__len__") and hasattr(values, "__iter__")):
+        yield f"{key}: found {shown(values)}; allowed a list of values"
+        return
+    if len(values) == 0:
+        yield f"{key}: no values"
+    elif known is not None:
+        refusals = (_refusal(known, _plain(value)) for value in values)
+        yield from dict.fromkeys(f"{key}: {refusal}" for refusal in refusals if refusal)
+
+
+def _refusal(known: Key, value: Any) -> str:
+    """Why a key never takes a value; nothing for a number, be it in the range of the key or not."""
+    if isinstance(known.kind, Number) and _is_finite(value):
+        return ""
+    try:
+        known.read(value)
+    except ValueError as refused:
+        return str(refused)
+    return ""
+
+
+def _problems_of_distribution(key: str, known: Key | None, distribution: Any) -> Iterator[str]:
+    if known is not None and not isinstance(known.kind, Number | Whole):
+        yield f"{key}: no number, so that it has no distribution; allowed {known.kind.allowed}, as a factor"
+    try:
+        middle = float(distribution.ppf(0.5))
+    except (AttributeError, TypeError, ValueError):
+        yield f"{key}: found {shown(distribution)}; allowed a frozen distribution of scipy.stats, as norm(0.0, 5.0)"
+        return
+    if not math.isfinite(middle):
+        yield f"{key}: the distribution has no median; are its parameters allowed?"
+    elif known is not None and isinstance(known.kind, Whole) and not middle.is_integer():
+        yield f"{key}: the distribution gives {middle:g}; allowed are whole numbers"
