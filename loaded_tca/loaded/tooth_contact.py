@@ -163,7 +163,9 @@ class LoadedContact:
         if not self.at_edge:
             minor, major = self.solution.semi_axes
             return 2.0 * minor, 2.0 * major
-        pressure, cover = np.pad(self.solution.pressure_on_material, 1), np.pad(self.separation.cover, 1)
+        pressure, cover = self.solution.pressure_on_material, self.separation.cover
+        if self.solution.reaches_border:  # nothing lies beyond
+            pressure, cover = np.pad(pressure, 1), np.pad(cover, 1)
         across, along = (
             float(np.ptp(values_at_ends(pressure, place, cover, (axis,)))) * self.separation.spacing[axis]
             for axis, place in enumerate([*np.indices(pressure.shape)])
@@ -315,10 +317,10 @@ def contact_under_load(
     separation = yield from _box_for_cap(pair, contact, load, (yield Gap(contact, cells, load=load)))
     for _ in range(MOST_BOXES):
         loaded = yield from _solve_in_box(pair, contact, load, grid, separation, bending, number, coupling)
+        if not loaded.solution.reaches_border:
+            break
         pressure = loaded.solution.pressure
         filled = [bool((np.take(pressure, [0, -1], axis=axis) > 0.0).any()) for axis in (0, 1)]
-        if not any(filled):
-            break
         lengths = zip(loaded.separation.half_lengths, filled, strict=True)
         across, along = (length * (GROWTH if grow else 1.0) for length, grow in lengths)
         separation = yield Gap(contact, cells, box=(across, along))
