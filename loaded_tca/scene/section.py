@@ -9,7 +9,6 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cache
 from textwrap import shorten
 from typing import Any, ClassVar, TypeVar
 
@@ -72,7 +71,6 @@ def subsection(section: type[Section], about: str, optional: bool = False, name:
     return field(default=None, metadata=entry) if optional else field(default_factory=dict, metadata=entry)
 
 
-@cache
 def entries(section: type[Section]) -> dict[str, tuple[str, Key | Subsection]]:
     """Name in a file -> (attribute, entry), in the order in which they are written."""
     table = {}
