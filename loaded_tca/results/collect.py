@@ -126,6 +126,9 @@ def _numbers(
         "on_relief_start": loaded.at_relief_start,
         "cells_across": solution.pressure.shape[0],
         "cells_along": solution.pressure.shape[1],
+        "discretisation_error": solution.error_estimate.peak_pressure
+        if of_slices is None and solution.load > 0.0
+        else math.nan,
         "iterations": solution.iterations,
         "residual": solution.residual,
     }
