@@ -106,9 +106,8 @@ def test_discretisation_error_is_known_of_every_smooth_contact_and_of_no_other()
     assert (cycle.on_edge & (cycle.normal_force > 0.0)).any()
     assert_array_equal(np.isfinite(cycle.discretisation_error), smooth)
     assert np.isnan(refined(1e-2, (0.0, 130.0)).discretisation_error[0]).all()
-    assert np.isnan(
-        result("mesh_cycle_helical", positions=3, torques=(130.0,)).discretisation_error
-    ).all()  # cells given
+    cells_given = result("mesh_cycle_helical", positions=3, torques=(130.0,))
+    assert np.isnan(cells_given.discretisation_error).all()
 
 
 def test_largest_discretisation_error_is_that_of_its_torque():
