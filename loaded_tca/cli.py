@@ -209,7 +209,7 @@ def _parser() -> argparse.ArgumentParser:
     demo = command("demo", _demo, "analyse a helical pair; writes its scene file too")
     demo.add_argument("--out", metavar="DIR", type=_path, default=DEMO_DIRECTORY, help=f"default: ./{DEMO_DIRECTORY}")
     run = command("run", _run, "analyse a scene; writes result.nc, summary.json, positions.csv and pictures")
-    run.add_argument("scene", metavar="SCENE.toml", help="scene file")
+    _add_scene(run)
     run.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
     own = "beside the result; with options that choose a part of it, in a directory there that these name"
     peak = "default: that of the peak pressure of the summary"
@@ -244,7 +244,7 @@ def _parser() -> argparse.ArgumentParser:
         "--position", metavar="N", type=int, help="position of the maps in the first result, from 1; default: own peaks"
     )
     ease_off = command("ease-off", _ease_off, "draw the ease-off of a scene, without load", EASE_OFF)
-    ease_off.add_argument("scene", metavar="SCENE.toml", help="scene file")
+    _add_scene(ease_off)
     ease_off.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the picture")
     ease_off.add_argument("--gear", choices=("pinion", "wheel"), default="pinion", help="whose flank; default: pinion")
     study = command(
@@ -263,8 +263,32 @@ def _parser() -> argparse.ArgumentParser:
         help="variants, from 0, whose results are kept whole",
     )
     check = command("check", _check, "read a scene and show its geometry, without computing a contact", None)
-    check.add_argument("scene", metavar="SCENE.toml", help="scene file")
+    _add_scene(check)
     return parser
+
+
+def _add_scene(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("scene", metavar="SCENE.toml", help="scene file")
+    text = "another value of a key, for instance pinion.teeth=21; may be given again for other keys"
+    parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], type=_change, help=text)
+
+
+def _change(text: str) -> tuple[str, str]:
+    """Key and value, as text, of a change of a scene."""
+    key, equals, value = (part.strip() for part in text.partition("="))
+    if not key or not equals:
+        raise argparse.ArgumentTypeError(f"{text!r:.60} is not KEY=VALUE, for instance pinion.teeth=21")
+    return key, value
+
+
+def _scene(options: argparse.Namespace) -> Scene:
+    """The scene that the command line names, with its changes."""
+    from loaded_tca.scene import read_scene
+    from loaded_tca.scene.parse import literal_value
+
+    scene = read_scene(options.scene)
+    changes = {key: literal_value(value) for key, value in options.set}
+    return scene.with_changes(changes) if changes else scene
 
 
 class _Version(argparse.Action):
@@ -287,7 +311,7 @@ def _demo(options: argparse.Namespace) -> None:
         again = f"'loaded-tca run {scene} --out {directory}'"
         raise InputError(f"{scene}: has been changed, and the demo would replace it; rename it, or use {again}")
     replace_together(directory, {scene.name: content})
-    _run(argparse.Namespace(scene=scene, out=directory))
+    _run(argparse.Namespace(scene=scene, set=[], out=directory))
     print(f"Next: change {scene}, for instance its lead_crowning_um, then try\n")
     print(f"  loaded-tca run {scene} --out my-pair")
 
@@ -297,9 +321,8 @@ def _run(options: argparse.Namespace) -> None:
     from loaded_tca.analysis import analyse
     from loaded_tca.output.report import write_report
     from loaded_tca.plots import MORE_PICTURES, PICTURES, plot_all
-    from loaded_tca.scene import read_scene
 
-    scene, directory = read_scene(options.scene), options.out
+    scene, directory = _scene(options), options.out
     _check_place(directory)
     with _progress_bar(scene) as progress:
         result = analyse(scene, progress=progress)
@@ -389,9 +412,8 @@ def _ease_off(options: argparse.Namespace) -> None:
     from loaded_tca.flank_maps.ease_off_map import ease_off_map
     from loaded_tca.plots import plot_ease_off, png_of
     from loaded_tca.results.files import replace_together
-    from loaded_tca.scene import read_scene
 
-    scene = read_scene(options.scene)
+    scene = _scene(options)
     _check_place(options.out)
     ease_off = ease_off_map(scene.pair(), options.gear)
     picture = png_of(plot_ease_off(ease_off, scene.title))
@@ -481,9 +503,8 @@ def _index_of_position(position: int | None, result: MeshCycle) -> int | None:
 
 def _check(options: argparse.Namespace) -> None:
     from loaded_tca.output.overview import describe_scene
-    from loaded_tca.scene import read_scene
 
-    print(describe_scene(read_scene(options.scene)))
+    print(describe_scene(_scene(options)))
 
 
 def _print_files(paths: Sequence[Path]) -> None:

@@ -14,7 +14,7 @@ import pytest
 
 import loaded_tca.analysis
 import loaded_tca.plots
-from loaded_tca import cli
+from loaded_tca import cli, load_result, read_scene
 from loaded_tca.errors import AccuracyWarning, ConvergenceError, GeometryError, InputError
 
 SCENES = Path(__file__).parents[1] / "examples" / "scenes"
@@ -88,6 +88,47 @@ def test_run_writes_report_and_pictures_and_shows_the_summary(run):
     assert set(os.listdir("new/place")) == REPORT | PICTURES
     assert out.startswith("Crowned helical pair 34/57\n3 positions")
     assert "Written to new/place: result.nc" in out
+
+
+def test_run_takes_single_changes_of_the_scene(run):
+    """The result keeps the changed scene, as it is checked and computed."""
+    wanted = {"pinion.modifications.lead_crowning_um": "6", "pinion.hand": "left", "analysis.cells": "[8, 16]"}
+    changes = [part for key, value in wanted.items() for part in ("--set", f"{key}={value}")]
+    assert run("run", scene(), "--out", "out", *changes, "--set", "title = a = b")[0] == 0
+    kept = load_result("out/result.nc").scene
+    assert kept == read_scene("quick.toml").with_changes(
+        {
+            "pinion.modifications.lead_crowning_um": 6.0,
+            "pinion.hand": "left",
+            "analysis.cells": (8, 16),
+            "title": "a = b",
+        }
+    )
+    assert read_scene("quick.toml").pinion.modifications.lead_crowning_um != 6.0
+
+
+@pytest.mark.parametrize("command", [["check"], ["ease-off", "--out", "maps"]])
+def test_other_commands_take_changes_of_the_scene_too(run, command):
+    code, out, err = run(*command, scene(), "--set", "pinion.teeth=33", "--set", "title=another pair")
+    assert (code, err) == (0, [])
+    assert ("another pair" in out) == (command == ["check"])
+
+
+def test_every_change_that_cannot_be_made_is_told(run):
+    code, _, err = run("check", scene(), *("--set=pinion.teth=35", "--set=load.pinion_torque_Nm=much", "--set=wheel=3"))
+    assert code == 2
+    assert err == [
+        'loaded-tca: pinion.teth: unknown key; did you mean "pinion.teeth"?',
+        "loaded-tca: wheel: found 3; allowed a section [wheel]",
+        'loaded-tca: load.pinion_torque_Nm: found "much"; allowed a number from 0 to 1e+09',
+    ]
+
+
+@pytest.mark.parametrize("change", ["pinion.teeth", "=3", ""])
+def test_a_change_without_key_or_value_is_refused(run, change):
+    code, _, err = run("check", scene(), "--set", change)
+    assert code == 2
+    assert f"--set: {change!r} is not KEY=VALUE, for instance pinion.teeth=21" in err[0]
 
 
 def test_plot_draws_a_result_again(run):

@@ -6,11 +6,13 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from loaded_tca.arrays import Array
+from loaded_tca.compliance.flexibility import MOST_IN_MEMORY
 from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_compliance
 from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.compliance.torsion import body_torsion
@@ -20,6 +22,7 @@ from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
 from loaded_tca.tooth.build import Resolution, build_tooth
+from loaded_tca.tooth.geometry import ToothGeometry
 
 LAYERS_PER_HEIGHT = 2.5
 """Layers of elements across a face as wide as the teeth are high; between the two numbers below."""
@@ -144,7 +147,7 @@ def require_teeth(pair: GearPair) -> None:
     with way_out_told():
         for name, gear in gears:
             with named(name):
-                build_tooth(gear.nominal_flanks, gear.form, CHECKED)
+                _require_tooth(gear.geometry.unmodified)
         _ = pair.rigid_bores
     for name, gear in gears:
         if gear.flank is not gear.nominal_flank:
@@ -153,6 +156,12 @@ def require_teeth(pair: GearPair) -> None:
             except GeometryError as error:
                 sentence = f"{name}, with its modifications: {error}; it bends like the tooth without them"
                 warnings.warn(sentence, AccuracyWarning, stacklevel=3)
+
+
+@lru_cache(maxsize=MOST_IN_MEMORY)
+def _require_tooth(teeth: ToothGeometry) -> None:
+    """Refuse teeth that cannot be built; variants of the micro-geometry ask once."""
+    build_tooth((teeth.nominal(1), teeth.nominal(-1)), teeth.form(), CHECKED)
 
 
 def tooth_compliance(pair: GearPair, *, neighbours: int = 1, density: MeshDensity | None = None) -> ToothCompliance:

@@ -20,10 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cholesky, solve_triangular
 from scipy.sparse import csr_array
-from threadpoolctl import threadpool_limits
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.errors import GeometryError
+from loaded_tca.threads import one_blas_thread
 
 Flags = NDArray[np.bool_]
 LEAF = 8
@@ -88,7 +88,7 @@ class Factorisation:
 
 def _substitute(down: Sequence[_Front], up: Sequence[_Front], found: Array) -> None:
     """Forward and backward substitution through fronts in the order of elimination, in place."""
-    with threadpool_limits(1, user_api="blas"):  # the fronts are small: threads waiting for each other cost far more
+    with one_blas_thread():  # the fronts are small: threads waiting for each other cost far more
         for front in down:
             part = solve_triangular(front.factor, found[front.inside], lower=True, check_finite=False)
             found[front.inside] = part
@@ -134,7 +134,7 @@ def factorise(
     places = np.column_stack([np.zeros(n, dtype=int) if blocks is None else blocks, places])
     touching = np.bincount(dofs.ravel(), minlength=size)
     work = _Elimination(matrices, kinds, np.where(free[dofs], dofs, size), places, touching)
-    with threadpool_limits(1, user_api="blas"):
+    with one_blas_thread():
         unknowns, whole = work.eliminate(np.arange(n))
     return Factorisation(tuple(front.renumbered(unknowns) for front in whole.fronts), size)
 

@@ -22,19 +22,22 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from weakref import WeakKeyDictionary, ref
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
 from loaded_tca.arrays import Array
+from loaded_tca.compliance import flexibility
 from loaded_tca.compliance.body import ToothFrame, gear_nodes
-from loaded_tca.compliance.flexibility import ToothFlexibility, kept_flexibility
+from loaded_tca.compliance.flexibility import MOST_IN_MEMORY, ToothFlexibility, kept_flexibility
 from loaded_tca.compliance.half_space import depth_displacement
 from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.errors import InputError
+from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
+from loaded_tca.tooth.geometry import ToothGeometry
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,6 +183,8 @@ class _Places:
 def gear_compliance(gear: Gear, density: MeshDensity = MeshDensity()) -> GearCompliance:
     """Load a gear body by unit forces all over one flank, or take what is known of it.
 
+    Gears whose flanks differ in their modifications alone share one model: the last few are kept in memory.
+
     Parameters
     ----------
     gear : Gear
@@ -192,8 +197,23 @@ def gear_compliance(gear: Gear, density: MeshDensity = MeshDensity()) -> GearCom
     GeometryError
         If the tooth is pointed or cut off, or the mesh is turned inside out.
     """
+    return _model(gear.geometry.unmodified, gear.flank.side, gear.material, gear.bore_diameter, density)
+
+
+@lru_cache(maxsize=MOST_IN_MEMORY)
+def _model(
+    teeth: ToothGeometry, side: int, material: Material, bore_diameter: float | None, density: MeshDensity
+) -> GearCompliance:
+    """Compliance of a gear without modifications, by all that it is made of: whose are equal share one model."""
+    gear = Gear.of(teeth, side, material, bore_diameter)
     frame = ToothFrame(gear, gear_nodes(gear, density))
     return GearCompliance(frame, kept_flexibility(frame))
+
+
+def forget() -> None:
+    """Forget the models that are kept in memory; files stay."""
+    _model.cache_clear()
+    flexibility.forget()
 
 
 _KEPT: WeakKeyDictionary[FlankLine, tuple[ref[GearCompliance], _Places]] = WeakKeyDictionary()

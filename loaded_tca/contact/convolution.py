@@ -6,7 +6,6 @@ while in use; what is kept is bounded by :data:`CACHE_BYTES`.
 
 import functools
 import math
-import multiprocessing
 import os
 import threading
 from collections import OrderedDict, deque
@@ -21,6 +20,7 @@ from scipy.fft import dctn
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.contact.love import influence_coefficients
+from loaded_tca.threads import allowed_threads
 
 Window = tuple[slice, slice]
 Rows = Indices | slice
@@ -34,13 +34,11 @@ PIECE_BYTES = 2**18
 # So should the work arrays of the small problems that are transformed together; more problems than this save nothing.
 BLOCK_BYTES = 2**18
 LARGEST_BLOCK = 16
-_forked = False
 
 
 def _mark_fork() -> None:
-    """Threads do not survive a fork: the child works with one, and plans anew."""
-    global _forked, _cache
-    _forked = True
+    """Threads do not survive a fork: the child makes its own, and plans anew."""
+    global _cache
     _cache = _Cache()
 
 
@@ -359,9 +357,8 @@ class Preconditioner(_Filter):
 
 
 def useful_threads(box: tuple[int, int], wanted: int) -> int:
-    """One for small transforms, and in workers: threads do not survive a fork, and a pool fills the machine."""
-    worker = _forked or multiprocessing.parent_process() is not None
-    return 1 if worker or box[0] * box[1] < THREADED_POINTS else min(wanted, os.cpu_count() or 1)
+    """One for small transforms, else as many as are allowed here."""
+    return 1 if box[0] * box[1] < THREADED_POINTS else allowed_threads(wanted)
 
 
 def _kernels(kind: str, box: tuple[int, int], aspects: ArrayLike, dtype: str, half: bool = False) -> Array:

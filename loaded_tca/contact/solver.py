@@ -96,7 +96,7 @@ def solve_contact(
     initial_pressure : (nx, ny) array_like, optional [MPa]
         Where to start from, such as the solution of a neighbouring position; nested grids if absent.
     threads : int
-        Threads of large transforms; the result does not depend on them. Workers of a pool keep to one.
+        Threads of large transforms; the result does not depend on them. See :mod:`loaded_tca.threads`.
     warn : bool
         Whether to give an AccuracyWarning for each of ``solution.accuracy_warnings``.
     free_edges : sequence of FreeEdge

@@ -105,6 +105,7 @@ def _numbers(
     slope = abs(float(loaded.separation.axes[1] @ heelwards(pair, loaded.contact)))
     longest = pair.face_width / slope if slope > 0.0 else math.inf  # what of the contact's direction the face holds
     length = min(length, longest)
+    smooth = of_slices is None and solution.load > 0.0
     hertz, of_material = _hertz(pair, loaded, length), replace(one, pressure=solution.pressure_on_material)
     return {
         "normal_force": solution.load,
@@ -126,6 +127,7 @@ def _numbers(
         "on_relief_start": loaded.at_relief_start,
         "cells_across": solution.pressure.shape[0],
         "cells_along": solution.pressure.shape[1],
+        "discretisation_error": solution.error_estimate.peak_pressure if smooth else math.nan,
         "iterations": solution.iterations,
         "residual": solution.residual,
     }

@@ -156,6 +156,7 @@ def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
             for name in ("cells_across", "cells_along")
             for cells in (getattr(result, name)[torque],)
         },
+        "largest_discretisation_error": _reduced(np.max, result.discretisation_error[torque]),
         "most_solver_iterations": _reduced(np.max, result.iterations[torque]),
         "worst_solver_residual": _reduced(np.max, result.residual[torque]),
         "positions": len(result.path),

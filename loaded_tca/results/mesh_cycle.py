@@ -71,6 +71,12 @@ QUANTITIES: dict[str, Part] = {
     "on_relief_start": (PAIRS, "1", "whether the start of a linear relief lies in the contact"),
     "cells_across": (PAIRS, "1", "cells of the grid across the contact"),
     "cells_along": (PAIRS, "1", "cells of the grid along the contact"),
+    "discretisation_error": (
+        PAIRS,
+        "1",
+        "estimated relative error of the peak pressure by the grid, from the two finest; NaN where cells are given, at "
+        "edges and relief starts, without load",
+    ),
     "iterations": (PAIRS, "1", "iterations of the contact solver"),
     "residual": (PAIRS, "1", "residual of the contact solver"),
 }
@@ -79,7 +85,7 @@ COORDINATES = ("torque", "pinion_angle", "pair")
 
 OF_THE_PEAK = frozenset(
     {"peak_pressure", "peak_radius", "peak_axial", "on_edge", "on_relief_start"}
-    | {"cells_across", "cells_along", "iterations", "residual"}
+    | {"cells_across", "cells_along", "discretisation_error", "iterations", "residual"}
 )
 """Numbers whose value at a position is that of the pair with the highest peak pressure."""
 OF_THE_EDGE = frozenset({"edge_pressure", "edge_is_rounded"})

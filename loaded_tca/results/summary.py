@@ -9,7 +9,7 @@ Figures = Mapping[str, float]
 """Name with its unit -> number, for one torque."""
 
 ROUNDING = 1e-6
-"""Figures below this, in the engineer's units, are rounding; residuals are not."""
+"""Figures below this, in the engineer's units, are rounding; residuals and errors of the grid are not."""
 FOUR_DIGITS = 9999.5
 """From here on four digits would be written with an exponent."""
 MOST_TORQUES = 6
@@ -102,8 +102,9 @@ def signed(number: int) -> str:
 
 
 def without_rounding(value: float, name: str) -> float:
-    """Zero for what is rounding in the engineer's units; residuals stay what they are."""
-    return value if "residual" in name or not abs(value) < ROUNDING else 0.0
+    """Zero for what is rounding in the engineer's units; residuals and errors of the grid stay what they are."""
+    exact = "residual" in name or "discretisation" in name
+    return value if exact or not abs(value) < ROUNDING else 0.0
 
 
 def shown(value: float, name: str) -> str:

@@ -98,6 +98,11 @@ class DescribedTooth(ToothGeometry):
     owner: str
     measured_side: int
 
+    @property
+    def unmodified(self) -> ToothGeometry:
+        """The teeth by their equations, without modifications."""
+        return self.analytic.unmodified
+
     def nominal(self, side: int) -> Flank:
         """Flank by its equations, without modifications."""
         return self.analytic.nominal(side)

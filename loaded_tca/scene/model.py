@@ -218,13 +218,15 @@ class Scene(Section, ABC):
 
             scene.with_changes({"analysis.cells": (32, 32)})
         """
-        table = as_table(self)
+        # Sections without a change stay what they are, since they are checked; another family may have others.
+        table = contents(self) if {"pair", "pair.type"}.isdisjoint(changes) else as_table(self)
         for path, value in changes.items():
             *sections, name = path.split(".")
             place = table
             for section in sections:
-                place[section] = place[section] if isinstance(place.get(section), dict) else {}
-                place = place[section]
+                inner = place.get(section)
+                inner = contents(inner) if isinstance(inner, Section) else inner
+                place[section] = place = dict(inner) if isinstance(inner, dict) else {}
             place[name] = value
         return scene_from_table(table)
 

@@ -71,6 +71,21 @@ def parse_scene(text: str, source: str = "scene", folder: str | os.PathLike[str]
     return scene_from_table(_with_files_from(Path(folder), toml_table(text, source)))
 
 
+def literal_value(text: str) -> Any:
+    """Return the value that a literal of TOML stands for; any other text is a string by itself.
+
+    Examples
+    --------
+    >>> [literal_value(text) for text in ("6", "[20.0, 130.0]", "false", "left", '"left"')]
+    [6, [20.0, 130.0], False, 'left', 'left']
+    """
+    try:
+        found = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):
+        return text
+    return found["value"] if len(found) == 1 else text
+
+
 def _with_files_from(folder: Path, table: dict[str, Any], levels: int = 3) -> dict[str, Any]:
     """The table, in which the keys of the upper levels that are called file name it from the current folder."""
     found: dict[str, Any] = {}

@@ -95,6 +95,15 @@ def as_table(section: Section) -> dict[str, Any]:
     }
 
 
+def values_of(section: Section) -> dict[str, Any]:
+    """Return the values of a section, as ``check`` does of a table: of its own keys, and with dots of those inside."""
+    values = contents(section)
+    for name, inner in list(values.items()):
+        if isinstance(inner, Section):
+            values |= {f"{name}.{key}": value for key, value in values_of(inner).items()}
+    return values
+
+
 def check(section: type[Section], found: Mapping[str, Any], place: str = "") -> tuple[dict[str, Any], list[str]]:
     """Check a table against a section.
 
@@ -138,6 +147,8 @@ def check(section: type[Section], found: Mapping[str, Any], place: str = "") -> 
 def _check_subsection(name: str, entry: Subsection, given: Any, place: str) -> tuple[dict[str, Any], list[str]]:
     if given is None and entry.optional:
         return {name: None}, []
+    if type(given) is entry.section:  # checked when it was made
+        return {name: given} | {f"{name}.{key}": value for key, value in values_of(given).items()}, []
     if isinstance(given, Section):
         given = contents(given) if isinstance(given, entry.section) else shown(given)
     if not isinstance(given, Mapping | None):
@@ -161,7 +172,7 @@ def made(section: type[SectionType], values: Mapping[str, Any]) -> SectionType:
 def _unknown(section: type[Section], found: Mapping[str, Any], place: str) -> Iterator[str]:
     known = entries(section)
     unknown = [name for name in found if name not in known]
-    homes = _homes(section)
+    homes = _homes(section) if unknown else {}
     for name in unknown[:MOST_UNKNOWN_KEYS]:
         meant = nearest(name, homes)
         allowed = shorten(", ".join(known), LONGEST_LIST, placeholder=" ...")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.bevel import SphericalInvoluteFlank
@@ -32,6 +32,11 @@ class BevelTooth(ToothGeometry):
     gear: BevelGear
     active: tuple[float, float]
     modifications: FlankModifications = FlankModifications()
+
+    @property
+    def unmodified(self) -> ToothGeometry:
+        """The same teeth without modifications."""
+        return replace(self, modifications=FlankModifications())
 
     def nominal(self, side: int) -> Flank:
         """Spherical involute flank of a side."""

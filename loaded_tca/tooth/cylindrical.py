@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.cylindrical import InvoluteFlank
@@ -42,6 +42,11 @@ class CylindricalTooth(ToothGeometry):
     working_radius: float
     active: ActiveProfile
     modifications: FlankModifications = FlankModifications()
+
+    @property
+    def unmodified(self) -> ToothGeometry:
+        """The same teeth without modifications."""
+        return replace(self, modifications=FlankModifications())
 
     def nominal(self, side: int) -> Flank:
         """Involute flank of a side."""

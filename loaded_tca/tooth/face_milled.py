@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -22,6 +23,8 @@ from loaded_tca.tooth.sections import ApexSpheres
 
 TIP_POINTS = 9
 """Points along the face cone at which the thickness of the tooth is checked."""
+MOST_FLANKS = 8
+"""Nominal flanks that are kept for variants of the micro-geometry."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +43,11 @@ class FaceMilledTooth(ToothGeometry):
     modifications: FlankModifications = FlankModifications()
     exact: bool = False
 
+    @property
+    def unmodified(self) -> ToothGeometry:
+        """The same teeth without modifications."""
+        return replace(self, modifications=FlankModifications())
+
     def nominal(self, side: int) -> Flank:
         """Generated flank of a side.
 
@@ -50,24 +58,7 @@ class FaceMilledTooth(ToothGeometry):
         GeometryError
             If the flank is undercut or not cut at all, or meets the other one below the face cone.
         """
-        flank = GeneratedFlank(self.gear, self.gear.flank_name(side))
-        if self.gear.cutter.concave is not None and self.gear.cutter.convex is not None:
-            self._require_tip(flank)
-        return flank if self.exact else flank.as_spline()
-
-    def _require_tip(self, flank: GeneratedFlank) -> None:
-        """Refuse a tooth whose two flanks, cut with one set of machine settings, meet below the face cone."""
-        distance = chebyshev_nodes(flank.cone_distances, TIP_POINTS)
-        angle = face_cone_angles(flank.face_cone, distance)
-        rho, z = distance * np.sin(angle), distance * np.cos(angle)
-        thickness = rho * tooth_angle(self.gear, rho, z)
-        worst = int(np.argmin(thickness))
-        if not thickness[worst] > 0.0:
-            raise GeometryError(
-                f"{self.gear.name}: pointed tooth: its flanks lie {-thickness[worst]:.3g} mm beyond each other at the "
-                f"tip, {flank.frame.place(float(rho[worst]), float(z[worst]))}; lower face_angle, or bring the point "
-                "radii of the cutter nearer to each other"
-            )
+        return _nominal(self.gear, side, self.exact)
 
     def modified(self, nominal: Flank) -> Flank:
         """The flank with its modifications; the profile runs from the form line to the tip."""
@@ -106,3 +97,27 @@ class FaceMilledTooth(ToothGeometry):
             radius = FILLET_RADIUS_COEFFICIENT * 2.0 * rho * math.cos(spiral) / gear.teeth
         root = RootCone(blank.root_angle, -blank.root_apex)
         return ToothForm(gear.teeth, half_angle, ApexSpheres(), root, ArcFillet(radius), largest_that_fits=True)
+
+
+@lru_cache(maxsize=MOST_FLANKS)
+def _nominal(gear: FaceMilledGear, side: int, exact: bool) -> Flank:
+    """Generated flank of a side; its B-spline takes far longer than its modifications."""
+    flank = GeneratedFlank(gear, gear.flank_name(side))
+    if gear.cutter.concave is not None and gear.cutter.convex is not None:
+        _require_tip(gear, flank)
+    return flank if exact else flank.as_spline()
+
+
+def _require_tip(gear: FaceMilledGear, flank: GeneratedFlank) -> None:
+    """Refuse a tooth whose two flanks, cut with one set of machine settings, meet below the face cone."""
+    distance = chebyshev_nodes(flank.cone_distances, TIP_POINTS)
+    angle = face_cone_angles(flank.face_cone, distance)
+    rho, z = distance * np.sin(angle), distance * np.cos(angle)
+    thickness = rho * tooth_angle(gear, rho, z)
+    worst = int(np.argmin(thickness))
+    if not thickness[worst] > 0.0:
+        raise GeometryError(
+            f"{gear.name}: pointed tooth: its flanks lie {-thickness[worst]:.3g} mm beyond each other at the "
+            f"tip, {flank.frame.place(float(rho[worst]), float(z[worst]))}; lower face_angle, or bring the point "
+            "radii of the cutter nearer to each other"
+        )

@@ -11,6 +11,11 @@ from loaded_tca.tooth.form import ToothForm
 class ToothGeometry(ABC):
     """The teeth of one gear by their equations; each family of gears has its subclass."""
 
+    @property
+    @abstractmethod
+    def unmodified(self) -> ToothGeometry:
+        """The same teeth without modifications: whose are equal have equal nominal flanks and forms."""
+
     @abstractmethod
     def nominal(self, side: int) -> Flank:
         """Flank of the side s = +1 or -1 without modifications, with Theta = 0 at the pitch point of mid-face."""

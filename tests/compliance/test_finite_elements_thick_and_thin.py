@@ -5,9 +5,9 @@ import pytest
 from numpy.testing import assert_allclose
 from skfem import ElementHexS2, ElementQuadS2
 
-from loaded_tca.compliance import flexibility as kept
 from loaded_tca.compliance import gear_compliance
 from loaded_tca.compliance.finite_elements import FACES, discretise, following, nodes_of
+from loaded_tca.compliance.influence import forget
 from loaded_tca.compliance.layout import RingLayout
 from loaded_tca.material import Material
 from tests.samples.bodies import COARSE, between, line, pinion, within
@@ -79,13 +79,13 @@ def test_faces_are_found_around_the_ring():
 def test_thick_layers_beside_the_tooth_change_little(monkeypatch):
     gear, found = pinion(), []
     for bricks in (RingLayout.bricks, property(_thin)):
-        kept.forget()
+        forget()
         monkeypatch.setattr(RingLayout, "bricks", bricks)
         model = gear_compliance(gear, replace(COARSE, lengthwise=8))
         lines = line(model, 0.3), line(model, 0.7, tooth=1)
         alone = [within(model, height, part) for height in (0.1, 0.5, 0.9) for part in (0.3, 1.0)]
         found.append([*alone, between(model, *lines)])
-    kept.forget()
+    forget()
     assert_allclose(found[0], found[1], rtol=THICKER)
 
 

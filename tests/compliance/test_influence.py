@@ -3,16 +3,21 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
-from loaded_tca.compliance import FlankLine, MeshDensity, gear_compliance
+from loaded_tca.compliance import FlankLine, MeshDensity, gear_compliance, influence
 from loaded_tca.compliance.body import gear_nodes
 from loaded_tca.compliance.dissection import factorise
 from loaded_tca.compliance.finite_elements import discretise
+from loaded_tca.compliance.flexibility import MOST_IN_MEMORY
 from loaded_tca.errors import InputError
+from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears.transverse_profile import half_tooth
 from loaded_tca.material import Material
+from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.reference.weber_banaschek import ring_torsion, tooth_deflection
+from loaded_tca.scene import FlankForm
+from loaded_tca.scene.build import described_gear
 from tests.samples.bodies import COARSE, WIDTH, between, line, model, pinion, spur_mesh, within
 
 HEIGHTS = (0.1, 0.5, 0.9)
@@ -186,3 +191,51 @@ def test_deflection_is_that_of_weber_and_banaschek(height):
     found = below(gear, height)
     assert_allclose(found, expected, rtol=CLOSED_FORM)
     assert found > expected
+
+
+def test_variants_of_the_micro_geometry_share_one_model(monkeypatch):
+    """Also of described flanks: the model is that of the teeth by their equations, without modifications."""
+    built = []
+
+    def counted(gear, density):
+        built.append(gear)
+        return gear_nodes(gear, density)
+
+    monkeypatch.setattr(influence, "gear_nodes", counted)
+    influence.forget()
+    gears = [pinion(), *(crowned(amount) for amount in (0.004, 0.008))]
+    gears.append(described_gear(gears[1], FlankForm(form="bspline"), "pinion", 1))
+    found = [gear_compliance(gear, COARSE) for gear in gears]
+    assert len(built) == 1
+    assert all(one is found[0] for one in found)
+    influence.forget()
+    apart = gear_compliance(gears[-1], COARSE)
+    influence.forget()
+    assert_array_equal(apart.table.displacement, found[0].table.displacement)
+    one = line(apart, 0.4, 0.7)
+    away = np.abs(one.z[:, None] - one.z)
+    assert_array_equal(apart.within(one, away), found[0].within(one, away))
+
+
+def crowned(amount):
+    modifications = FlankModifications(lead_crowning=amount), FlankModifications()
+    return cylindrical_pair(spur_mesh(), modifications=modifications).pinion
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        lambda: gear_compliance(pinion(bore_diameter=36.0), COARSE),
+        lambda: gear_compliance(pinion(side=-1), COARSE),
+        lambda: gear_compliance(pinion(material=Material(205000.0, 0.3)), COARSE),
+        lambda: gear_compliance(pinion(width=21.0), COARSE),
+        lambda: gear_compliance(pinion(), replace(COARSE, neighbours=2)),
+    ],
+    ids=["bore", "side", "modulus", "width", "neighbours"],
+)
+def test_another_gear_has_a_model_of_its_own(other):
+    assert other().table is not gear_compliance(pinion(), COARSE).table
+
+
+def test_only_the_last_models_stay_in_memory():
+    assert influence._model.cache_info().maxsize == MOST_IN_MEMORY

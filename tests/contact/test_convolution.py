@@ -2,7 +2,6 @@
 
 import concurrent.futures
 import multiprocessing
-import os
 
 import numpy as np
 import pytest
@@ -11,6 +10,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.contact import convolution
 from loaded_tca.contact.convolution import Convolution, Preconditioner, fast_length
 from loaded_tca.contact.love import influence_coefficients
+from loaded_tca.threads import allowed_threads
 
 DOUBLE = 1e-13  # some hundred roundings of a transform, relative to the largest value
 SINGLE = 1e-5
@@ -97,7 +97,7 @@ def test_results_do_not_depend_on_threads(rng):
 
 def test_small_transforms_keep_to_one_thread():
     assert convolution.useful_threads((64, 64), 4) == 1
-    assert convolution.useful_threads((1024, 1024), 4) == min(4, os.cpu_count())
+    assert convolution.useful_threads((1024, 1024), 4) == allowed_threads(4)
 
 
 def test_cache_stays_bounded(monkeypatch, rng):

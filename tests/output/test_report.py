@@ -145,6 +145,7 @@ def test_table_agrees_with_the_result():
 
 def test_every_column_with_a_unit_tells_it():
     pure = {"position", "iterations", "residual", "load_share_pair_0", "cells_across", "cells_along"}
+    pure |= {"discretisation_error"}
     pure |= {"on_edge", "on_relief_start", "edge_is_rounded", "line_load_ratio", "loaded_pairs"}
     units = ("_mm", "_MPa", "_N", "_N_per_mm", "_Nm", "_deg", "_arcsec", "_um", "_N_per_mm_um")
     assert all(name.endswith(units) or name in pure for name in table(result())[0])
@@ -167,6 +168,8 @@ def test_table_shows_zero_for_rounding_but_no_false_residual():
     assert {row["contact_point_pinion_axial_mm"] for row in rows} == {"0"}
     tiny = changed(result(), residual=np.full((1, 5, 1), 1e-12))
     assert {row["residual"] for row in table(tiny)} == {"1e-12"}
+    fine = changed(result(), discretisation_error=np.full((1, 5, 1), 7e-7))
+    assert {row["discretisation_error"] for row in table(fine)} == {"7e-07"}
 
 
 def test_line_contact_is_no_longer_than_the_face():

@@ -1,15 +1,20 @@
 """Figures of a whole cycle: means over a pitch, and which contact a figure is of."""
 
+import warnings
+from functools import cache
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
-from loaded_tca.errors import InputError
+from loaded_tca.analysis import analyse
+from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.plots import plot_transmission_error
 from loaded_tca.results.key_figures import harmonic_coefficients, mean_over_a_pitch
-from tests.samples.results import changed, result
+from loaded_tca.scene import read_scene
+from tests.samples.results import FLANKS_ALONE, SCENES, changed, result
 
 
 @given(st.floats(-1e3, 1e3), st.floats(-1e3, 1e3), st.floats(0.0, 6.3), st.integers(4, 40))
@@ -105,3 +110,40 @@ def test_load_factors_of_the_figures_are_those_of_the_result():
     row = next(row for row in cycle.summary().splitlines() if row.startswith("load factors K_Hbeta | K_Halpha"))
     assert row.split()[-3:] == [f"{face:.4g}", "|", f"{transverse:.4g}"]
     assert "K_Hbeta" not in result(positions=1).summary()
+
+
+@cache
+def refined(accuracy, torques=(65.0, 130.0)):
+    """Pairs of which some reach an edge at every position, on grids that an accuracy chooses."""
+    changes = {**FLANKS_ALONE, "analysis.positions": 3, "analysis.torques_Nm": torques, "analysis.accuracy": accuracy}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # some contacts reach an edge
+        return analyse(read_scene(SCENES / "mesh_cycle_helical.toml").with_changes(changes))
+
+
+def test_discretisation_error_bounds_the_error_of_the_peak_by_the_grid():
+    coarse, fine = refined(1e-2), refined(1e-4)
+    known = np.isfinite(coarse.discretisation_error) & np.isfinite(fine.discretisation_error)
+    assert known.sum() > 4
+    error = np.abs(coarse.peak_pressure / fine.peak_pressure - 1.0)[known]
+    assert (error <= (coarse.discretisation_error + fine.discretisation_error)[known]).all()
+    assert (coarse.discretisation_error[known] <= 1e-2).all()
+    assert (fine.discretisation_error[known] <= 1e-4).all()
+
+
+def test_discretisation_error_is_known_of_every_smooth_contact_and_of_no_other():
+    cycle = refined(1e-2)
+    smooth = (cycle.normal_force > 0.0) & ~cycle.on_edge & ~cycle.on_relief_start
+    assert smooth.any()
+    assert (cycle.on_edge & (cycle.normal_force > 0.0)).any()
+    assert_array_equal(np.isfinite(cycle.discretisation_error), smooth)
+    assert np.isnan(refined(1e-2, (0.0, 130.0)).discretisation_error[0]).all()
+    cells_given = result("mesh_cycle_helical", positions=3, torques=(130.0,))
+    assert np.isnan(cells_given.discretisation_error).all()
+
+
+def test_largest_discretisation_error_is_that_of_its_torque():
+    cycle = refined(1e-2, (0.0, 130.0))
+    without, loaded = (figures["largest_discretisation_error"] for figures in cycle.key_figures())
+    assert np.isnan(without)
+    assert loaded == np.nanmax(cycle.discretisation_error[1])

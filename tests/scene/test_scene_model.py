@@ -21,6 +21,7 @@ from loaded_tca.scene import (
     read_scene,
     scene_from_table,
 )
+from loaded_tca.scene import section as sections
 from loaded_tca.scene.build import in_base_units
 from loaded_tca.scene.cylindrical import GearSection, Geometry, MountingErrors
 from loaded_tca.unloaded import trace_contact
@@ -223,6 +224,15 @@ def test_changes_leave_the_scene_as_it_is(scene):
     changed = scene.with_changes({"pinion.teeth": 35})
     assert (scene.pinion.teeth, changed.pinion.teeth) == (34, 35)
     assert changed.with_changes({"pinion.teeth": 34}) == scene
+
+
+def test_sections_without_a_change_are_not_checked_again(scene, monkeypatch):
+    checked, check = [], sections.check
+    monkeypatch.setattr(sections, "check", lambda kind, *rest: checked.append(kind.__name__) or check(kind, *rest))
+    changed = scene.with_changes({"pinion.modifications.lead_crowning_um": 5.0})
+    assert set(checked) == {"CylindricalScene", "GearSection", "Modifications"}
+    assert changed.wheel is scene.wheel
+    assert changed.pinion.flank is scene.pinion.flank
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import pytest
 
 from loaded_tca.errors import InputError
 from loaded_tca.scene import parse_scene, read_scene
+from loaded_tca.scene.parse import literal_value
 
 ROOT = Path(__file__).parents[2]
 
@@ -118,3 +119,25 @@ def test_example_is_read_and_written_back(path):
     scene = read_scene(path)
     assert scene.title
     assert parse_scene(scene.to_toml()) == scene
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("6", 6),
+        ("-1.5e-3", -1.5e-3),
+        ("true", True),
+        ("[1, 2.5]", [1, 2.5]),
+        ('"6"', "6"),
+        ("left", "left"),
+        ("two words", "two words"),
+        ("", ""),
+        ("[1, 2", "[1, 2"),
+        ("1\nother = 2", "1\nother = 2"),
+        ("9" * 5000, "9" * 5000),
+        ("[" * 5000, "[" * 5000),
+    ],
+)
+def test_literal_is_read_as_in_a_file_and_any_other_text_is_a_string(text, value):
+    found = literal_value(text)
+    assert (found, type(found)) == (value, type(value))

@@ -13,13 +13,14 @@ from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.scene import Scene, parse_scene, read_scene, scene_from_table
 from loaded_tca.scene.keys import Choice, Grid, Key, Line, List, Number, Whole
 from loaded_tca.scene.model import FAMILIES
-from loaded_tca.scene.section import Subsection, entries
+from loaded_tca.scene.section import Subsection, as_table, entries
 
 ROOT = Path(__file__).parents[2]
 
 SCENES = ROOT / "examples" / "scenes"
 EXAMPLES = [path.read_text(encoding="utf-8") for path in sorted(SCENES.glob("*.toml"))]
 TABLES = [tomllib.loads(text) for text in EXAMPLES]
+READ = [read_scene(path) for path in sorted(SCENES.glob("*.toml"))]
 CYLINDRICAL = (SCENES / "fzg_c14.toml").read_text(encoding="utf-8")
 
 
@@ -136,6 +137,27 @@ def mutated(draw):
 @given(mutated())
 def test_mutated_scene_ends_well(table):
     ends_well(scene_from_table, table)
+
+
+@given(st.sampled_from(READ), st.data())
+def test_changes_are_told_as_those_of_a_whole_file_are(scene, data):
+    """Sections without a change are not checked again, which must make no difference."""
+    table = as_table(scene)
+    places = [".".join(place) for place in all_places(table)]
+    deeper = st.tuples(st.sampled_from(places), st.sampled_from(NAMES)).map(".".join)
+    paths = st.sampled_from(places) | deeper
+    changes = data.draw(st.dictionaries(paths, values | st.floats(0.1, 100.0), min_size=1, max_size=4))
+    given_before = copy.deepcopy(changes)
+    found = outcome(scene.with_changes, changes)
+    for path, value in copy.deepcopy(changes).items():
+        *sections, name = path.split(".")
+        place = table
+        for section in sections:
+            place[section] = place[section] if isinstance(place.get(section), dict) else {}
+            place = place[section]
+        place[name] = value
+    assert found == outcome(scene_from_table, table)
+    assert changes == given_before
 
 
 def sound_values(kind):

@@ -7,6 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import InputError
+from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import Cutter, FaceMilledMesh
 from loaded_tca.pairs import mating_teeth
 from loaded_tca.pairs.face_milled import face_milled_pair
@@ -80,3 +81,13 @@ def test_one_blade_makes_no_tooth():
     for make in (lambda: pair.pinion.form, lambda: pair.pinion.back):
         with pytest.raises(InputError, match=r"cutter\.convex: missing"):
             make()
+
+
+def test_variants_of_the_micro_geometry_share_their_nominal_flanks():
+    plain, crowned = (
+        FaceMilledTooth(published_pinion(), FlankModifications(lead_crowning=amount)) for amount in (0.0, 0.01)
+    )
+    assert crowned.nominal(1) is plain.nominal(1)
+    assert crowned.nominal(-1) is not plain.nominal(1)
+    assert FaceMilledTooth(published_pinion(), exact=True).nominal(1) is not plain.nominal(1)
+    assert FaceMilledTooth(published_wheel()).nominal(1) is not plain.nominal(1)
