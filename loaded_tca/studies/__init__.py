@@ -5,9 +5,10 @@ variant, writes down each one that is done, and goes on where it stopped when it
 """
 
 from loaded_tca.studies.figures import figures
+from loaded_tca.studies.pool import process_pool
 from loaded_tca.studies.read import parse_study, read_study
 from loaded_tca.studies.run import run_study
 from loaded_tca.studies.store import load_study
 from loaded_tca.studies.study import Study
 
-__all__ = ["Study", "figures", "load_study", "parse_study", "read_study", "run_study"]
+__all__ = ["Study", "figures", "load_study", "parse_study", "process_pool", "read_study", "run_study"]
