@@ -10,5 +10,6 @@ from loaded_tca.studies.read import parse_study, read_study
 from loaded_tca.studies.run import run_study
 from loaded_tca.studies.store import load_study
 from loaded_tca.studies.study import Study
+from loaded_tca.studies.summary import study_summary
 
-__all__ = ["Study", "figures", "load_study", "parse_study", "process_pool", "read_study", "run_study"]
+__all__ = ["Study", "figures", "load_study", "parse_study", "process_pool", "read_study", "run_study", "study_summary"]
