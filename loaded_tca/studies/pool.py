@@ -48,8 +48,11 @@ def process_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
                 own = set(active_children()) - others
             yield pool
         except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)  # first: it stumbles over cancelled tasks of ended processes
             for process in own:
                 process.terminate()
+            for process in own:
+                process.join()
             raise
 
 

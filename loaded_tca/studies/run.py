@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 import warnings
 from collections.abc import Callable, Collection, Generator, Iterator, Mapping
-from concurrent.futures import Executor, Future
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from contextlib import ExitStack, closing, contextmanager
 from importlib.metadata import version
 from itertools import islice
@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 AHEAD = 1000
 """Variants under way: enough for hundreds of workers, and little memory."""
+
+GONE = "as when a scheduler goes away"
 
 Figures = Callable[[Scene], Mapping[str, Any]]
 Progress = Callable[[int, int, int], None]
@@ -161,8 +163,10 @@ def _by(executor: Executor, tasks: Iterator[Task]) -> Generator[list[Done]]:
             lost = [future for future in batch if future.cancelled() or future.exception() is not None]
             yield [future.result() for future in batch if future not in lost]
             if lost:
-                error = None if lost[0].cancelled() else lost[0].exception()
-                told = "cancelled" if error is None else f"{type(error).__name__}: {error}".splitlines()[0]
+                error = CancelledError(GONE) if lost[0].cancelled() else lost[0].exception()
+                if isinstance(error, BrokenExecutor):  # it fails all of them, and stumbles over cancelled ones
+                    under_way.clear()
+                told = f"{type(error).__name__}: {error}".splitlines()[0]
                 raise ExecutorError(f"the executor gave up: {told}") from error
     finally:
         for future in under_way:

@@ -1,5 +1,6 @@
 """Studies that are analysed in a moment, and figures that need no analysis."""
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -33,3 +34,9 @@ def unlike_variants():
     rows = [(2.0, 34, 40.0), (6.0, 34, 40.0), (6.0, 34, 400.0), (-1.0, 34, 40.0), (6.0, 4, 40.0), (8.0, 33, 60.0)]
     keys = ("pinion.modifications.lead_crowning_um", "pinion.teeth", "load.pinion_torque_Nm")
     return Study(scene, table=dict(zip(keys, zip(*rows, strict=True), strict=True)))
+
+
+def in_folder(folder, *values):
+    """Variants of the crowning of a scene that tells its figures where the study is."""
+    scene = replace(helical(), title=str(folder))
+    return Study(scene, {"pinion.modifications.lead_crowning_um": [float(value) for value in values]})
