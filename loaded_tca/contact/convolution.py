@@ -14,13 +14,16 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
-import pyfftw
 from numpy.typing import ArrayLike
 from scipy.fft import dctn
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.contact.love import influence_coefficients
+from loaded_tca.lazy import hidden
 from loaded_tca.threads import allowed_threads
+
+with hidden("dask.array.fft"):  # for interfaces that nobody here uses, it would take longer to import than all else
+    import pyfftw
 
 Window = tuple[slice, slice]
 Rows = Indices | slice
