@@ -43,20 +43,29 @@ def plot_pressure_envelope(result: MeshCycle, torque: int | None = None) -> Figu
 
     def draw(axes: Axes, to_picture: Callable[[Array], Array]) -> list[Artist]:
         low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
-        field = (high - low) / FIELDS
-        highest = np.zeros((FIELDS, FIELDS))
-        for places, pressure in _passing(result, torque, to_picture, field):
-            column, row = np.floor((places - low) / field).astype(int).T
-            inside = (column >= 0) & (column < FIELDS) & (row >= 0) & (row < FIELDS)
-            np.maximum.at(highest, (row[inside], column[inside]), pressure[inside])
-        seen = np.where(highest > 0.0, highest, np.nan)
-        borders = np.linspace(low, high, FIELDS + 1).T
+        borders, seen = pressure_seen(result, torque, to_picture, low, high)
         return [axes.pcolormesh(*borders, seen, cmap=COLOURS, norm=scale, rasterized=True)]
 
     figure, panels = both_flanks(result, draw)
     figure.colorbar(ScalarMappable(scale, COLOURS), ax=panels, label="highest contact pressure [MPa]", extend=extend)
     style.set_title(figure, result, f"pressure envelope, {load(result, torque)}", range_of_positions(result))
     return figure
+
+
+def pressure_seen(
+    result: MeshCycle, torque: int, to_picture: Callable[[Array], Array], low: Array, high: Array
+) -> tuple[Array, Array]:
+    """Highest pressure that each place of a flank sees, NaN where none, on fields between two corners of a picture.
+
+    Borders (2, n + 1) of the fields come first, in the units of the picture.
+    """
+    field = (high - low) / FIELDS
+    highest = np.zeros((FIELDS, FIELDS))
+    for places, pressure in _passing(result, torque, to_picture, field):
+        column, row = np.floor((places - low) / field).astype(int).T
+        inside = (column >= 0) & (column < FIELDS) & (row >= 0) & (row < FIELDS)
+        np.maximum.at(highest, (row[inside], column[inside]), pressure[inside])
+    return np.linspace(low, high, FIELDS + 1).T, np.where(highest > 0.0, highest, np.nan)
 
 
 def _passing(

@@ -15,7 +15,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon
 
 from loaded_tca.arrays import Array
+from loaded_tca.flank_maps.conjugate import GearName
 from loaded_tca.flanks.base import Flank
+from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.plots.style import ACCENT, COLOURS, NOT_REACHED, highest_torque, load, range_of_positions, set_title
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
@@ -122,13 +124,7 @@ def both_flanks(
     figure = Figure(figsize=(11.0, 5.5), layout="constrained")
     scene, pair, panels = result.scene, result.gear_pair, list(figure.subplots(1, 2))
 
-    def on_pinion(points: Array) -> Array:
-        radius = np.hypot(points[..., 0], points[..., 1])
-        return np.stack(pair.pinion.flank.frame.to_picture(radius, points[..., 2]), axis=-1)
-
-    def on_wheel(points: Array) -> Array:
-        radius, _, axial = pair.to_wheel(points)
-        return np.stack(pair.wheel.flank.frame.to_picture(radius, axial), axis=-1)
+    on_pinion, on_wheel = picture_of(pair, "pinion"), picture_of(pair, "wheel")
 
     sides = ((pair.pinion.flank, on_pinion), (pair.wheel.flank, on_wheel))
     described = zip(panels, scene.flank_names, scene.active_starts(), sides, strict=True)
@@ -137,6 +133,20 @@ def both_flanks(
         for drawn in draw(axes, to_picture):
             drawn.set_clip_path(outline)
     return figure, panels
+
+
+def picture_of(pair: GearPair, gear: GearName) -> Callable[[Array], Array]:
+    """What takes points (..., 3) of the fixed frame to their places (..., 2) in the picture of a gear's flank."""
+
+    def on_pinion(points: Array) -> Array:
+        radius = np.hypot(points[..., 0], points[..., 1])
+        return np.stack(pair.pinion.flank.frame.to_picture(radius, points[..., 2]), axis=-1)
+
+    def on_wheel(points: Array) -> Array:
+        radius, _, axial = pair.to_wheel(points)
+        return np.stack(pair.wheel.flank.frame.to_picture(radius, axial), axis=-1)
+
+    return on_pinion if gear == "pinion" else on_wheel
 
 
 def _draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:

@@ -152,9 +152,14 @@ def range_of_positions(result: MeshCycle) -> str:
 
 
 def set_title(figure: Figure, result: MeshCycle, *about: str) -> None:
-    """Write the title of the scene and what is shown; taken literally, signs of TeX too."""
+    """Write the title of the scene and what is shown."""
+    write_title(figure, result.scene.title, *about)
+
+
+def write_title(figure: Figure, title: str, *about: str) -> None:
+    """Write a title and what is shown; taken literally, signs of TeX too."""
     joined = ", ".join(about)
-    lines = [result.scene.title, *([joined] if len(joined) <= LONGEST_LINE else about)]
+    lines = [title, *([joined] if len(joined) <= LONGEST_LINE else about)]
     wrapped = [part for line in lines for part in _parts_of(line)]
     figure.suptitle("\n".join(wrapped), fontsize="medium", parse_math=False)
 
