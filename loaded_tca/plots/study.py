@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize, to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -72,6 +73,7 @@ def plot_study(
     Returns
     -------
     dict of str to matplotlib.figure.Figure
+        Empty if there are no figures, as where every variant was refused.
 
     Raises
     ------
@@ -79,9 +81,9 @@ def plot_study(
         If the study has no such figure.
     """
     figures = main_figures(study) if figures is None else list(figures)
-    rank_by = rank_by or (figures[0] if figures else None)
-    if rank_by is None:
+    if not figures:
         return {}
+    rank_by = rank_by or figures[0]
     stepped = [key for key in varied_keys(study) if _is_stepped(study, key)]
     scattered = [key for key in varied_keys(study) if key not in stepped]
     pictures = {}
@@ -139,23 +141,24 @@ def plot_study_lines(study: xarray.Dataset, figure: str, over: str | None = None
     drawing, axes = _panels(len(panels), (7.0, 4.5))
     banded = False
     for one, (title, lines) in zip(axes, panels, strict=True):
-        for (label, column, of), colour, marker in _styled(lines):
+        styles = _styles([label for label, _, _ in lines])
+        for (_, column, of), (label, colour, marker) in zip(lines, styles, strict=True):
             at = np.unique(places[of])
             spread = np.stack([_percentiles(column[of & (places == place)]) for place in at])
-            one.plot(at, spread[:, 1], color=colour, marker=marker, markersize=4.0, label=label or "_unlabelled")
+            one.plot(at, spread[:, 1], color=colour, marker=marker, markersize=4.0, label=label)
             if np.nanmax(np.append(spread[:, 2] - spread[:, 0], 0.0)) > 0.0:
                 one.fill_between(at, spread[:, 0], spread[:, 2], color=colour, alpha=0.15, linewidth=0.0)
                 banded = True
         columns = np.stack([column for _, column, _ in lines], axis=1)
         _mark_missing(one, np.unique(places[~np.isfinite(columns).all(axis=1)]))
-        _finish_panel(one, columns, title)
+        _finish_panel(one, columns, title if values.shape[1] > 1 else "")
         one.set(xlabel=label_of(over), ylabel=label_of(figure))
         if words is not None:
             one.set_xticks(range(len(words)), words)
-    _legend(drawing, axes[0], label_of(by) if by else "")
+    _legend(drawing, axes, label_of(by) if by else "")
     what = f"{_plain(label_of(figure))} over {_plain(label_of(over))}"
     band = [f"median and band ({BAND}) over the other keys"] if banded else []
-    _set_title(drawing, study, values, f"{what}{_of_torques(torques, values) if by else ''}", *band)
+    _set_title(drawing, study, values, f"{what}{_under(study, torques if by else range(values.shape[1]))}", *band)
     return drawing
 
 
@@ -217,7 +220,7 @@ def plot_study_heat_map(
     handles = [best, Line2D([], [], color=ACCENT, marker="x", linestyle="", label=MISSING)][: 1 + crossed]
     drawing.legend(handles=handles, loc="outside lower center", ncols=2, fontsize="small")
     median = [] if max(int(of.sum()) for line in of_cell for of in line) < 2 else ["medians over the other keys"]
-    _set_title(drawing, study, values, f"{_plain(label_of(figure))}{_of_torques(torques, values)}", *median)
+    _set_title(drawing, study, values, f"{_plain(label_of(figure))}{_under(study, torques)}", *median)
     return drawing
 
 
@@ -245,23 +248,22 @@ def plot_study_histogram(study: xarray.Dataset, figure: str, by: Sequence[str] =
     torques, labels = _shown_torques(study), _torque_labels(study)
     drawing, axes = _panels(len(torques), (6.5, 4.5))
     for one, torque in zip(axes, torques, strict=True):
-        known = [(label, column[np.isfinite(column)]) for label, of in groups for column in [values[of, torque]]]
+        known = [column[np.isfinite(column)] for _, of in groups for column in [values[of, torque]]]
         cumulative = one if len(groups) > 1 else one.twinx()
         title = [labels[torque]] * (values.shape[1] > 1)
         if len(groups) == 1:
-            _draw_bars(one, known[0][1])
-            title.append(_draw_percentiles(one, known[0][1]))
-        for (label, column), colour, _ in _styled(known):
+            _draw_bars(one, known[0])
+            title.append(_draw_percentiles(one, known[0]))
+        for column, (label, colour, _) in zip(known, _styles([label for label, _ in groups]), strict=True):
             if column.size:
-                shade = colour if len(groups) > 1 else "black"
-                cumulative.ecdf(column, color=shade, label=label or "_unlabelled")
+                cumulative.ecdf(column, color=colour if len(groups) > 1 else "black", label=label)
         cumulative.set_ylim(0.0, 1.02)
         cumulative.yaxis.set_major_formatter(PercentFormatter(1.0))
         cumulative.set_ylabel("variants up to here")
         one.set_xlabel(label_of(figure))
         _finish_panel(one, values[:, [torque]], "\n".join(title), vertical=False)
-    _legend(drawing, axes[0], ", ".join(map(label_of, by)))
-    what = f"scatter of the {_plain(label_of(figure))}{_of_torques(torques, values)}"
+    _legend(drawing, axes, ", ".join(map(label_of, by)))
+    what = f"scatter of the {_plain(label_of(figure))}{_under(study, torques)}"
     _set_title(drawing, study, values, what)
     return drawing
 
@@ -297,7 +299,7 @@ def plot_study_over_torque(study: xarray.Dataset, figure: str = TRANSMISSION_ERR
         axes.plot(torques[nominal], values[nominal], "s--", color="black", label="nominal")
     axes.set(xlabel=label_of(TORQUE), ylabel=label_of(figure))
     _finish_panel(axes, values, "")
-    _legend(drawing, axes, "")
+    _legend(drawing, [axes], "")
     _set_title(drawing, study, values, f"{_plain(label_of(figure))} over the torque")
     return drawing
 
@@ -338,19 +340,19 @@ def plot_study_scatter_matrix(
     names = [*keys, *figures]
     count = len(names)
     drawing = Figure(figsize=(1.5 + 1.9 * count, 1.3 + 1.7 * count), layout="constrained")
-    panels = drawing.subplots(count, count, squeeze=False, sharex="col")
+    panels: list[list[Axes]] = drawing.subplots(count, count, squeeze=False, sharex="col").tolist()
     known = np.isfinite(shades)
     span = (float(shades[known].min()), float(shades[known].max())) if known.any() else (0.0, 1.0)
     scale = Normalize(*span)
     for i, j in np.ndindex(count, count):
-        axes = panels[i, j]
+        axes = panels[i][j]
         if j > i:
             axes.set_visible(False)
         elif i == j:
             _draw_bars(axes, data[i][np.isfinite(data[i])], MOST_COLUMNS)
             axes.set_ylabel("")
         else:
-            dots = axes.scatter(data[j][known], data[i][known], c=shades[known], cmap=COLOURS, norm=scale, s=12.0)
+            axes.scatter(data[j][known], data[i][known], c=shades[known], cmap=COLOURS, norm=scale, s=12.0)
             axes.plot(data[j][~known], data[i][~known], "x", color=ACCENT, markersize=5.0)
         axes.tick_params(labelsize="x-small", left=j < i, labelbottom=i == count - 1, labelleft=0 == j < i)
         axes.locator_params(nbins=4)
@@ -358,14 +360,16 @@ def plot_study_scatter_matrix(
             axes.set_xlabel(wrapped_label_of(names[j]), fontsize="small")
         if j == 0 and i > 0:
             axes.set_ylabel(wrapped_label_of(names[i]), fontsize="small")
-    drawing.colorbar(dots, ax=panels, label=label_of(colour or figures[0]), shrink=0.6)
+    label = label_of(colour or figures[0])
+    drawing.colorbar(ScalarMappable(scale, COLOURS), ax=drawing.axes, label=label, shrink=0.6)
     if not known.all():
         drawing.legend(
             handles=[Line2D([], [], color=ACCENT, marker="x", linestyle="", label=MISSING)],
             loc="outside lower center",
             fontsize="small",
         )
-    of = f"{len(keys)} of {len(varied_keys(study))} varied keys" if len(keys) < len(varied_keys(study)) else "varied keys"
+    every = len(varied_keys(study))
+    of = f"{len(keys)} of {every} varied keys" if len(keys) < every else "varied keys"
     under = f", {_torque_labels(study)[torque]}" if study.sizes["torque"] > 1 else ""
     _set_title(drawing, study, shades[:, None], f"{of} and figures{under}")
     return drawing
@@ -430,7 +434,7 @@ def _draw_cells(drawing: Figure, axes: Axes, cells: Array, label: str, largest_i
     if cells.size <= MOST_CELLS_WITH_NUMBERS:
         for i, j in zip(*np.nonzero(known), strict=True):
             ink = "black" if scale(cells[i, j]) > 0.6 else "white"
-            axes.text(j, i, f"{cells[i, j]:.3g}", ha="center", va="center", color=ink, fontsize="small")
+            axes.text(j, i, f"{cells[i, j]:.4g}", ha="center", va="center", color=ink, fontsize="small")
     i, j = np.unravel_index((np.nanargmax if largest_is_best else np.nanargmin)(cells), cells.shape)
     axes.add_patch(Rectangle((j - 0.5, i - 0.5), 1, 1, fill=False, edgecolor=ACCENT, linewidth=2.5, clip_on=False))
 
@@ -443,7 +447,9 @@ def _draw_bars(axes: Axes, values: Array, most: int = 40) -> None:
     least = SAME * max(abs(low), abs(high)) or 1.0
     room = 0.5 * max(0.0, least - (high - low))
     bins = min(most, max(5, math.ceil(math.sqrt(len(values)))))
-    axes.hist(values, bins=bins, range=(low - room, high + room), color=to_hex(colormaps[COLOURS](0.6)), edgecolor="white")
+    axes.hist(
+        values, bins=bins, range=(low - room, high + room), color=to_hex(colormaps[COLOURS](0.6)), edgecolor="white"
+    )
     axes.set_ylabel("variants")
     axes.yaxis.set_major_locator(MaxNLocator(4, integer=True))
 
@@ -515,11 +521,11 @@ def _strongest(study: xarray.Dataset, values: Array) -> list[str]:
     keys, known = varied_keys(study), np.isfinite(values)
     if len(keys) <= MOST_PARAMETERS:
         return keys
-    strength = {}
+    strength: dict[str, float] = {}
     for key in keys:
         column = _column(study, key)[0][known]
         varies = column.size > 2 and np.ptp(column) > 0.0 and np.ptp(values[known]) > 0.0
-        strength[key] = abs(spearmanr(column, values[known]).statistic) if varies else 0.0
+        strength[key] = abs(float(spearmanr(column, values[known]).statistic)) if varies else 0.0
     strongest = sorted(keys, key=lambda key: -strength[key])[:MOST_PARAMETERS]
     return [key for key in keys if key in strongest]
 
@@ -537,26 +543,32 @@ def _shown_torques(study: xarray.Dataset) -> list[int]:
 
 
 def _torque_labels(study: xarray.Dataset) -> list[str]:
-    """What is said of each torque; its number where it is not the same in all variants."""
+    """What is said of each torque; where it is not the same in all variants, which of several it is."""
     count = study.sizes["torque"]
-    if TORQUE not in study:
-        return [f"torque {k + 1}" for k in range(count)]
-    columns = (np.unique(column[np.isfinite(column)]) for column in figure_values(study, TORQUE).T)
-    numbers = enumerate(columns, start=1)
-    return [f"pinion torque {one[0]:.4g} N m" if len(one) == 1 else f"torque {k} of {count}" for k, one in numbers]
+    torques = figure_values(study, TORQUE) if TORQUE in study else np.full((1, count), np.nan)
+    columns = (np.unique(column[np.isfinite(column)]) for column in torques.T)
+    numbered = [f"torque {k + 1} of {count}" if count > 1 else "" for k in range(count)]
+    return [
+        f"pinion torque {one[0]:.4g} N m" if len(one) == 1 else number
+        for one, number in zip(columns, numbered, strict=True)
+    ]
 
 
-def _of_torques(torques: Sequence[int], values: Array) -> str:
-    return f", {len(torques)} of {values.shape[1]} torques" if len(torques) < values.shape[1] else ""
+def _under(study: xarray.Dataset, shown: Sequence[int]) -> str:
+    """What a title says of the torques: the only one, or that some have no panel."""
+    count = study.sizes["torque"]
+    if count == 1:
+        return "".join(f", {label}" for label in _torque_labels(study) if label)
+    return f", {len(shown)} of {count} torques" if len(shown) < count else ""
 
 
-def _styled(lines: Sequence[tuple[str, *tuple[Array, ...]]]) -> Iterator[tuple[tuple[str, *tuple[Array, ...]], str, str]]:
-    """Lines, each with a label first, with their colour and marker; of many only some keep their label."""
-    every = math.ceil(len(lines) / MOST_LABELS)
-    for k, (label, *rest) in enumerate(lines):
-        shade = 0.15 + 0.7 * k / max(1, len(lines) - 1)
-        shown = label if k % every == 0 else ""
-        yield (shown, *rest), to_hex(colormaps[COLOURS](shade)), MARKERS[k % len(MARKERS)]
+def _styles(labels: Sequence[str]) -> Iterator[tuple[str, str, str]]:
+    """Label, colour and marker of each line; of many only some keep their label."""
+    every = math.ceil(len(labels) / MOST_LABELS)
+    for k, label in enumerate(labels):
+        shade = 0.15 + 0.7 * k / max(1, len(labels) - 1)
+        shown = label if label and k % every == 0 else "_unlabelled"
+        yield shown, to_hex(colormaps[COLOURS](shade)), MARKERS[k % len(MARKERS)]
 
 
 def _panels(count: int, size: tuple[float, float]) -> tuple[Figure, list[Axes]]:
@@ -587,12 +599,13 @@ def _mark_missing(axes: Axes, places: Array) -> None:
         axes.plot(places, heights, "x", color=ACCENT, transform=axes.get_xaxis_transform(), label=MISSING)
 
 
-def _legend(drawing: Figure, axes: Axes, title: str) -> None:
-    handles, labels = axes.get_legend_handles_labels()
-    if len(labels) > 1 or title:
+def _legend(drawing: Figure, panels: Sequence[Axes], title: str) -> None:
+    """Legend below all panels; none where there is but one line."""
+    shown = {label: handle for axes in panels for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)}
+    if len(shown) > 1 or title or MISSING in shown:
         drawing.legend(
-            handles,
-            labels,
+            shown.values(),
+            shown.keys(),
             title=title or None,
             loc="outside lower center",
             ncols=4,
@@ -608,7 +621,9 @@ def told_of_variants(study: xarray.Dataset, values: Array | None = None) -> str:
     without = 0 if values is None else int(((status == "ok") & ~np.isfinite(values).any(axis=1)).sum())
     doubtful = sum(bool(lines) for lines in study["warnings"].values.tolist())
     more = {"without this figure": without, "with accuracy warnings": doubtful}
-    return f"{len(status)} variants: " + ", ".join(counts + [f"{count} {told}" for told, count in more.items() if count])
+    return f"{len(status)} variants: " + ", ".join(
+        counts + [f"{count} {told}" for told, count in more.items() if count]
+    )
 
 
 def _set_title(drawing: Figure, study: xarray.Dataset, values: Array, *about: str) -> None:

@@ -121,7 +121,9 @@ def plot_loaded_vh_check(
     }
     first = next(iter(kept.values()))
     torque = highest_torque(first) if torque is None else torque
-    scale = Normalize(0.0, max(float(np.nanmax(one.peak_pressure[torque], initial=0.0)) for one in kept.values()) or 1.0)
+    scale = Normalize(
+        0.0, max(float(np.nanmax(one.peak_pressure[torque], initial=0.0)) for one in kept.values()) or 1.0
+    )
     h, v = (np.unique(study[key].values) for key in keys)
     figure, panels = _grid_of_flanks(v, h, (f"V: {label_of(keys[1])}", f"H: {label_of(keys[0])}"))
     for k, (at_h, at_v) in enumerate(zip(*(study[key].values for key in keys), strict=True)):

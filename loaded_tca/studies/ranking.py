@@ -70,7 +70,7 @@ def rank_variants(
     study : xarray.Dataset
         What :func:`loaded_tca.studies.run_study` returns.
     by : str, optional
-        Figure that ranks them; default: the peak-to-peak transmission error.
+        Figure that ranks them; default: the peak-to-peak transmission error, or the first one that the study has.
     torque : int, optional
         Index of the torque whose figures are compared. Default: of each figure the worst value over the torques, which
         is its largest, or with ``largest_is_best`` its least.
@@ -100,19 +100,18 @@ def rank_variants(
     """
     import pandas
 
-    figures = main_figures(study)
-    if by is None and not figures:
-        raise InputError("rank by: the study has no figures")
-    by = by or figures[0]
-    if torque is not None and not 0 <= torque < study.sizes["torque"]:
-        raise InputError(f"torque: {torque}; the study has the torques 0 to {study.sizes['torque'] - 1}")
+    ranked_by = [by] if by else main_figures(study)[:1]
+    torques = study.sizes.get("torque", 0)
+    if torque is not None and not 0 <= torque < torques:
+        raise InputError(f"torque: {torque}; the study has the torques 0 to {torques - 1}")
     worst = np.fmin.reduce if largest_is_best else np.fmax.reduce
     columns = {}
-    for name in dict.fromkeys([by, *figures]):
+    for name in dict.fromkeys([*ranked_by, *main_figures(study)]):
         values = figure_values(study, name)
         columns[name] = worst(values, axis=1) if torque is None else values[:, torque]
-    order = np.argsort(-columns[by] if largest_is_best else columns[by], kind="stable")  # NaN at the end
-    count = int(np.isfinite(columns[by]).sum())
+    ranks = columns[ranked_by[0]] if ranked_by else np.full(study.sizes["sample"], np.nan)
+    order = np.argsort(-ranks if largest_is_best else ranks, kind="stable")  # NaN at the end
+    count = int(np.isfinite(ranks).sum())
     frame = pandas.DataFrame(
         {
             "sample": np.arange(len(order)),

@@ -14,7 +14,6 @@ from numbers import Integral, Real
 from typing import Any, Protocol
 
 import numpy as np
-from scipy.stats import qmc
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
@@ -179,6 +178,8 @@ class Study:
         """Values of the keys with distributions, (samples, keys)."""
         if self.samples is None:
             return np.empty((1, 0))
+        from scipy.stats import qmc  # half a second, which studies without distributions do not need
+
         sobol = qmc.Sobol(len(self.distributions), scramble=True, rng=self.seed)
         unit = sobol.random_base2((self.samples - 1).bit_length())[: self.samples]
         columns = zip(self.distributions.values(), np.clip(unit, NEVER, 1.0 - NEVER).T, strict=True)
