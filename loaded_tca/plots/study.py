@@ -394,7 +394,7 @@ def plot_study_ranking(
     ranked = ranking[ranking["rank"].notna()]
     columns = [name for name in ranking.columns if name not in ("status", "reason")]
     cells = [[_cell(value) for value in row] for row in ranked[columns].head(MOST_ROWS).to_numpy().tolist()]
-    drawing = Figure(figsize=(1.0 + 1.25 * len(columns), 1.9 + 0.26 * max(1, len(cells))), layout="constrained")
+    drawing = Figure(figsize=(1.0 + 1.25 * len(columns), 2.3 + 0.26 * max(1, len(cells))), layout="constrained")
     axes = drawing.add_subplot()
     axes.set_axis_off()
     if cells:
