@@ -18,9 +18,11 @@ from pathlib import Path
 from threading import Event, Thread
 from typing import TYPE_CHECKING, NoReturn, TextIO
 
-from loaded_tca.errors import ConvergenceError, InputError, LoadedTCAError, reason_of
+from loaded_tca.errors import ConvergenceError, ExecutorError, InputError, LoadedTCAError, reason_of
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.scene import Scene
 
@@ -65,9 +67,17 @@ SUBSURFACE = """files in DIR:
   subsurface.csv            the same over the depth, below the highest pressure
   subsurface_max_shear.png, subsurface_von_mises.png
 Stresses in MPa, tension positive, of a half-space without friction; docs/results.md says more."""
+STUDY = """files in DIR:
+  study.nc                  all figures of all variants, to be read by loaded_tca.studies.load_study or xarray
+  study.csv                 the same, one row per variant and torque
+  study.rows.jsonl          the variants that are done; the same command goes on from there
+  study_maps/N.nc           whole results of the variants asked for by --keep-maps, as of 'loaded-tca run'"""
 BAR = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt}, {elapsed} gone, {remaining} left"
+STUDY_BAR = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt}, {rate_fmt}, {elapsed} gone, {remaining} left"
 NOT_BY_ITSELF = 1e-9
 """Delay [s] of a bar that does not draw itself while it is made."""
+REACHED_WITHIN = 10.0
+"""Seconds for a scheduler to answer."""
 TICK = 1.0
 """Seconds after which a bar is drawn again, also where one contact takes longer."""
 WORTH_TELLING = 10.0
@@ -138,6 +148,8 @@ def _told(error: BaseException) -> tuple[int, list[str]]:
         return OK, []
     if isinstance(error, OSError):  # what the package writes tells by itself what cannot be written
         return BAD_INPUT, [f"{error.filename or 'standard output: cannot be written'}: {reason_of(error)}"]
+    if isinstance(error, ExecutorError):
+        return FAULT, [str(error)]
     if isinstance(error, ConvergenceError):
         return NO_CONVERGENCE, str(error).splitlines()
     if isinstance(error, LoadedTCAError):
@@ -215,6 +227,21 @@ def _parser() -> argparse.ArgumentParser:
     ease_off.add_argument("scene", metavar="SCENE.toml", help="scene file")
     ease_off.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the picture")
     ease_off.add_argument("--gear", choices=("pinion", "wheel"), default="pinion", help="whose flank; default: pinion")
+    study = command(
+        "study", _study, "analyse the variants of a study file; run again, it goes on where it stopped", STUDY
+    )
+    study.add_argument("study", metavar="STUDY.toml", help="study file")
+    study.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
+    engine = study.add_mutually_exclusive_group()
+    engine.add_argument("--workers", metavar="N", type=int, help="processes on this machine; default: this one alone")
+    engine.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, as tcp://host:8786")
+    study.add_argument(
+        "--keep-maps",
+        metavar="N,N,...",
+        type=_numbers,
+        default=(),
+        help="variants, from 0, whose results are kept whole",
+    )
     check = command("check", _check, "read a scene and show its geometry, without computing a contact", None)
     check.add_argument("scene", metavar="SCENE.toml", help="scene file")
     return parser
@@ -314,6 +341,48 @@ def _ease_off(options: argparse.Namespace) -> None:
     _print_files(replace_together(options.out, {"ease_off.png": picture}))
 
 
+def _study(options: argparse.Namespace) -> None:
+    from loaded_tca.results.files import replace_together
+    from loaded_tca.studies import read_study, run_study, study_summary
+
+    study, directory = read_study(options.study), options.out
+    _check_place(directory)
+    with _executor(options) as executor, _bar("variants", len(study), STUDY_BAR) as show:
+        found = run_study(study, executor, directory / "study.nc", show, keep_maps=options.keep_maps)
+    table = found.to_dataframe().to_csv().encode()
+    print(study_summary(found), end="\n\n")
+    _print_files([directory / "study.nc", *replace_together(directory, {"study.csv": table})])
+
+
+@contextmanager
+def _executor(options: argparse.Namespace) -> Iterator[Executor | None]:
+    """Who analyses: processes of this machine, those of a cluster, or nobody else."""
+    from loaded_tca.studies import process_pool
+
+    if options.workers is not None:
+        with process_pool(options.workers) as pool:
+            yield pool
+    elif options.scheduler is not None:
+        try:
+            from distributed import Client
+        except ModuleNotFoundError:
+            raise InputError("--scheduler: needs the package distributed; 'pip install distributed' gets it") from None
+        try:
+            client = Client(options.scheduler, timeout=REACHED_WITHIN)
+        except (OSError, ValueError) as error:
+            raise InputError(f"--scheduler {options.scheduler}: not reached: {reason_of(error)}") from None
+        with client:
+            yield client.get_executor(pure=False)
+    else:
+        yield None
+
+
+def _numbers(text: str) -> tuple[int, ...]:
+    if not all(part.isdecimal() for part in text.split(",")):
+        raise argparse.ArgumentTypeError(f"{text}: allowed whole numbers with commas between them, as 0,12")
+    return tuple(map(int, text.split(",")))
+
+
 def _loaded(options: argparse.Namespace) -> tuple[MeshCycle, Path, int | None, int | None]:
     """What the command line names: the result, the directory to write to, and indices of the torque and position."""
     from loaded_tca.output.report import RESULT
@@ -381,14 +450,21 @@ def _progress_bar(scene: Scene) -> Iterator[Callable[[int, int], None] | None]:
     effort, terminal = expected_effort(scene), sys.stderr is not None and sys.stderr.isatty()
     if not effort.is_refused and (terminal or effort.seconds > WORTH_TELLING or not effort.fits):
         _say(f"loaded-tca: {effort}")
-    if not terminal:
+    torques, positions = len(scene.torques), scene.analysis.positions
+    count = "positions" if torques == 1 else f"{torques} torques x {positions} positions"
+    with _bar(count, torques * positions, BAR) as show:
+        yield show
+
+
+@contextmanager
+def _bar(what: str, whole: int, layout: str) -> Iterator[Callable[..., None] | None]:
+    """On a terminal, a bar with what is done, of how much, and the time left: called with both, and failures."""
+    if sys.stderr is None or not sys.stderr.isatty():
         yield None
         return
     from tqdm import tqdm
 
-    torques, positions = len(scene.torques), scene.analysis.positions
-    count = "positions" if torques == 1 else f"{torques} torques x {positions} positions"
-    with tqdm(desc=count, total=torques * positions, bar_format=BAR, delay=NOT_BY_ITSELF) as bar:
+    with tqdm(desc=what, total=whole, bar_format=layout, delay=NOT_BY_ITSELF) as bar:
         bar.refresh()  # drawn only where an interrupt ends its line
         finished = Event()
 
@@ -396,7 +472,9 @@ def _progress_bar(scene: Scene) -> Iterator[Callable[[int, int], None] | None]:
             while not finished.wait(TICK):
                 bar.refresh()
 
-        def show(done: int, total: int) -> None:
+        def show(done: int, total: int, failed: int = 0) -> None:
+            if failed:
+                bar.set_description_str(f"{what} ({failed} failed)", refresh=False)
             bar.total = total
             bar.update(done - bar.n)
 

@@ -56,7 +56,7 @@ def run_study(
         File for the result. Beside it, in ``<name>.rows.jsonl``, stand the variants that are done, while the study runs
         and afterwards: the same study with the same ``out`` computes only what is missing there.
     progress : callable, optional
-        Called as ``progress(done, total, failed)`` whenever variants are done.
+        Called as ``progress(done, total, failed)`` with those known before, if any, and whenever variants are done.
     figures : callable
         What is kept of a variant: a function of its scene that returns numbers, or numbers over the torques, by their
         names, and that workers can import. Default: :func:`loaded_tca.studies.figures`.
@@ -103,6 +103,8 @@ def run_study(
             (kept if known else missing).append(variant)
         done, failed = len(study) - len(missing), sum(row["status"] != "ok" for row in rows.of(map(digest, kept)))
         tasks = ((study.scene, study.changes(v), digest(v), figures, v if v in keep_maps else None) for v in missing)
+        if progress is not None and kept:
+            progress(done, len(study), failed)
         with _told_how_to_go_on(rows, out):
             for found in _in_this_process(tasks) if executor is None else _by(executor, tasks):
                 rows.append([row for row, _ in found])

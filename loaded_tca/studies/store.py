@@ -45,7 +45,7 @@ class Rows:
         self.path = Path(path)
         make_directory(self.path.parent)
         try:
-            self._file = os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_APPEND)
+            self._file = os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
         except OSError as error:
             raise InputError(f"{self.path}: cannot be written: {reason_of(error)}") from error
         self._size = 0

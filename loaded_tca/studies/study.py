@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import pickle
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -149,7 +150,9 @@ class Study:
             for section in sections:
                 place = place.get(section, {})
             place.pop(name, None)
-        common = [version("loaded_tca"), f"{figures.__module__}.{figures.__qualname__}", table]
+        named = hasattr(figures, "__qualname__")  # others, as partials, hold values that tell
+        asked = f"{figures.__module__}.{figures.__qualname__}" if named else pickle.dumps(figures).hex()
+        common = [version("loaded_tca"), asked, table]
         begun = hashlib.sha256(json.dumps(common, sort_keys=True).encode())
 
         def digest(variant: int) -> str:

@@ -1,0 +1,92 @@
+"""A study in a few lines: how many variants there are, what became of them, how far the main figures scatter."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import xarray
+
+MAIN = {
+    "peak_pressure_MPa": "peak pressure [MPa]",
+    "transmission_error_span_um": "transmission error, peak to peak [um]",
+    "transmission_error_order_1_um": "  order 1 of the tooth mesh [um]",
+    "mesh_stiffness_mean_N_per_mm_um": "mesh stiffness, mean [N/(mm um)]",
+    "face_load_factor": "load factor K_Hbeta",
+}
+"""Figures that are told, those of them that the study has, with their labels."""
+PERCENTILES = {"min": 0, "5 %": 5, "median": 50, "95 %": 95, "max": 100}
+MOST_REASONS = 5
+
+
+def study_summary(study: xarray.Dataset) -> str:
+    """Return what became of the variants of a study, and the scatter of the main figures.
+
+    Parameters
+    ----------
+    study : xarray.Dataset
+        What :func:`loaded_tca.studies.run_study` returns.
+
+    Returns
+    -------
+    str
+        Percentiles are over the variants whose figure is known; failures and warnings stand below, most frequent first.
+
+    Examples
+    --------
+    >>> import xarray
+    >>> found = {"face_load_factor": (("sample", "torque"), [[1.2], [1.6], [np.nan]])}
+    >>> words = {"status": ["ok", "ok", "refused"], "reason": ["", "", "pinion: pointed"], "warnings": ["", "", ""]}
+    >>> print(study_summary(xarray.Dataset({**found, **{name: ("sample", column) for name, column in words.items()}})))
+    3 variants: 2 ok, 1 refused
+                             min      5 %   median     95 %      max
+    load factor K_Hbeta      1.2     1.22      1.4     1.58      1.6
+    refused: pinion: pointed (1 variant)
+    """
+    status = Counter(study["status"].values.tolist())
+    told = ", ".join(f"{count} {word}" for word, count in sorted(status.items(), key=lambda one: (one[0] != "ok", one)))
+    return "\n".join([f"{study.sizes['sample']} variants: {told}", *_table(study), *_reasons(study)])
+
+
+def _table(study: xarray.Dataset) -> Iterator[str]:
+    """Percentiles of the main figures over the variants, one line for each torque."""
+    shown = {name: label for name, label in MAIN.items() if name in study and np.isfinite(study[name]).any()}
+    if not shown:
+        return
+    torques = study["pinion_torque_Nm"].values if "pinion_torque_Nm" in study else np.zeros((1, 1))
+    for torque in range(study.sizes["torque"]):
+        known = torques[np.isfinite(torques[:, torque]), torque]
+        same = known.size and np.ptp(known) == 0.0 and study.sizes["torque"] > 1
+        head = f"under {known[0]:g} N m" if same else f"torque {torque + 1}" if study.sizes["torque"] > 1 else ""
+        width = max(len(label) for label in (*shown.values(), head))
+        yield f"{head:<{width}}" + "".join(f"{word:>9}" for word in PERCENTILES)
+        for name, label in shown.items():
+            values = study[name].values[:, torque]
+            values = values[np.isfinite(values)]
+            if values.size:
+                at = np.percentile(values, [*PERCENTILES.values()])
+                yield f"{label:<{width}}" + "".join(f"{value:>9.4g}" for value in at)
+
+
+def _reasons(study: xarray.Dataset) -> Iterator[str]:
+    """Why variants failed, and what is doubtful, each once, with how many variants it concerns."""
+    failed = [
+        f"{status}: {' '.join(reason.split())}"
+        for status, reason in zip(study["status"].values.tolist(), study["reason"].values.tolist(), strict=True)
+        if status != "ok"
+    ]
+    doubtful = [
+        f"warning: {line.split(' (at ')[0]}"  # at which position differs from variant to variant
+        for lines in study["warnings"].values.tolist()
+        for line in lines.splitlines()
+    ]
+    for sentences in (failed, doubtful):
+        counted = Counter(sentences).most_common()
+        for sentence, count in counted[:MOST_REASONS]:
+            yield f"{sentence} ({count} variant{'s' if count > 1 else ''})"
+        if len(counted) > MOST_REASONS:
+            yield f"... and {len(counted) - MOST_REASONS} more"

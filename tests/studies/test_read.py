@@ -1,0 +1,89 @@
+"""Study files: the words of Study in TOML."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from loaded_tca.errors import InputError
+from loaded_tca.studies import parse_study, read_study
+from tests.samples.studies import HELICAL
+
+CROWNING, TILT = "pinion.modifications.lead_crowning_um", "mounting.misalignment_um"
+
+WHOLE = f"""
+scene = "{HELICAL}"
+samples = 8
+seed = 3
+table = "given.csv"
+
+[changes]
+analysis.positions = 5
+
+[factors]
+{CROWNING} = {{ from = 0.0, to = 6.0, count = 3 }}
+"wheel.modifications.lead_crowning_form" = ["parabolic", "circular"]
+
+[distributions]
+{TILT} = {{ distribution = "norm", loc = 1.0, scale = 5.0 }}
+"""
+
+
+def test_file_holds_all_that_a_study_has(tmp_path):
+    (tmp_path / "given.csv").write_text(
+        "load.pinion_torque_Nm,pinion.modifications.tip_relief_form\n40,linear\n80.5,parabolic\n"
+    )
+    (tmp_path / "study.toml").write_text(WHOLE)
+    study = read_study(tmp_path / "study.toml")
+    assert len(study) == 2 * 3 * 2 * 8
+    assert study.scene.analysis.positions == 5
+    assert study.seed == 3
+    assert study.factors[CROWNING] == [0.0, 3.0, 6.0]
+    assert study.changes(len(study) - 1)["load.pinion_torque_Nm"] == 80.5
+    values = np.array([study.changes(variant)[TILT] for variant in range(8)])
+    assert sorted(np.floor(8 * stats.norm(1.0, 5.0).cdf(values))) == list(range(8))
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("scene = 3", "scene: found 3; allowed the name of a scene file"),
+        ('scene = "absent.toml"', "absent.toml: cannot be read"),
+        ("changes = 1", "changes: found 1; allowed a section [changes]"),
+        ("factors = [1]", "factors: found [1]; allowed a section [factors]"),
+        ("factor = 1", 'factor: unknown word; did you mean "factors"?'),
+        ("xyz = 1", "xyz: unknown word; allowed scene, changes, factors"),
+        ("factors.a.b = 3", "factors.a.b: found 3; allowed a list of values or { from, to, count }"),
+        ("factors.a = { from = 1, to = 2 }", "factors.a: found a table; allowed a list of values or {"),
+        ("factors.a = { from = 1, to = 2, count = 0 }", "factors.a.count: found 0; allowed a whole number from 1"),
+        ("factors.a = { from = 1, to = inf, count = 2 }", "allowed two finite numbers"),
+        ("distributions.a = 1", "distributions.a: found 1; allowed { distribution ="),
+        ("distributions.a = { distribution = 'normal' }", 'distributions.a: found "normal"; allowed'),
+        ("distributions.a = { distribution = 'norm', width = 1 }", "distributions.a: norm: "),
+        ("table = 1", "table: found 1; allowed the name of a CSV file"),
+        ("table = 'absent.csv'", "absent.csv: cannot be read: No such file"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_in_a_file_is_told(tmp_path, text, told):
+    scene = "" if text.startswith(("scene", "changes")) else f'scene = "{HELICAL}"\n'
+    scene += f'scene = "{HELICAL}"\n' if text.startswith("changes") else ""
+    with pytest.raises(InputError) as caught:
+        parse_study(scene + text, folder=tmp_path)
+    assert len(caught.value.problems) == 1
+    assert told in caught.value.problems[0]
+
+
+def test_table_that_is_no_table(tmp_path):
+    (tmp_path / "empty.csv").write_text("")
+    with pytest.raises(InputError, match=r"empty.csv: no CSV"):
+        parse_study(f'scene = "{HELICAL}"\ntable = "empty.csv"', folder=tmp_path)
+
+
+def test_every_problem_is_told_at_once():
+    with pytest.raises(InputError) as caught:
+        parse_study('scenes = "a"\n[factors]\na = 1\n[distributions]\nb = 2')
+    assert [problem.split(":")[0] for problem in caught.value.problems] == [
+        "scenes",
+        "scene",
+        "factors.a",
+        "distributions.b",
+    ]

@@ -1,0 +1,203 @@
+"""A study in this process: what its result holds, what is kept on disk, what is computed again."""
+
+import json
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+from loaded_tca import analyse, load_result
+from loaded_tca.errors import AccuracyWarning, ConvergenceError, GeometryError, InputError
+from loaded_tca.studies import Study, load_study, run_study
+from loaded_tca.studies.run import accuracy_warnings
+from tests.samples.studies import crowning, helical
+
+CROWNING, TEETH = "pinion.modifications.lead_crowning_um", "pinion.teeth"
+
+
+def study(*values):
+    return Study(helical(), {CROWNING: values})
+
+
+def counting():
+    """Figures that count how often they are asked for."""
+    asked = []
+
+    def counted(scene):
+        asked.append(scene.pinion.modifications.lead_crowning_um)
+        return crowning(scene)
+
+    counted.asked = asked
+    return counted
+
+
+def test_rows_are_the_key_figures_of_each_variant():
+    found = run_study(Study(helical(), {CROWNING: [2.0, 6.0]}))
+    assert found.sizes == {"sample": 2, "torque": 1}
+    assert_array_equal(found[CROWNING], [2.0, 6.0])
+    for sample, value in enumerate([2.0, 6.0]):
+        (expected,) = analyse(helical().with_changes({CROWNING: value})).key_figures()
+        for name, figure in expected.items():
+            assert_array_equal(found[name].values[sample], [figure], err_msg=name)
+    assert list(found["status"].values) == ["ok", "ok"]
+    assert (found["seconds"] > 0.0).all()
+
+
+def test_torques_are_a_dimension_shorter_lists_end_in_nan():
+    found = run_study(Study(helical(), {"analysis.torques_Nm": [[20.0], [20.0, 40.0]]}))
+    assert_array_equal(found["pinion_torque_Nm"], [[20.0, np.nan], [20.0, 40.0]])
+    assert list(found["analysis.torques_Nm"].values) == ["[20.0]", "[20.0, 40.0]"]
+
+
+def failing(scene):
+    value = scene.pinion.modifications.lead_crowning_um
+    errors = {
+        2.0: GeometryError("pointed"),
+        3.0: InputError(["one", "two"]),
+        4.0: ConvergenceError("swings", last=1),
+        5.0: ZeroDivisionError("by zero"),
+    }
+    if value in errors:
+        raise errors[value]
+    return {"crowning_um": value, "over_torques": [1.0, 2.0]}
+
+
+def test_variants_that_fail_are_rows():
+    found = run_study(study(1.0, 2.0, 3.0, 4.0, 5.0, -1.0), figures=failing)
+    assert list(found["status"].values) == ["ok", "refused", "refused", "not converged", "fault", "refused"]
+    assert list(found["reason"].values)[:5] == ["", "pointed", "one\ntwo", "swings", "by zero"]
+    assert "found -1.0; allowed a number from 0" in found["reason"].values[5]
+    assert_array_equal(found["crowning_um"][:, 0], [1.0] + 5 * [np.nan])
+    assert_array_equal(found["over_torques"][0], [1.0, 2.0])
+
+
+def nonsense(scene):
+    return {"word": scene.title}
+
+
+def test_figures_that_are_no_numbers_are_a_fault():
+    found = run_study(study(1.0), figures=nonsense)
+    assert found["status"].values[0] == "fault"
+    assert "could not convert string to float" in found["reason"].values[0]
+
+
+def test_accuracy_warnings_are_kept_with_their_variant():
+    found = run_study(Study(helical(), {"load.pinion_torque_Nm": [40.0, 400.0]}))
+    assert found["warnings"].values[0] == ""
+    assert "the contact reaches an edge of a flank" in found["warnings"].values[1]
+
+
+def test_other_warnings_are_shown_as_always():
+    def warn():
+        with accuracy_warnings() as told:
+            warnings.warn("old", DeprecationWarning, stacklevel=1)
+            warnings.warn("doubtful", AccuracyWarning, stacklevel=1)
+        return told
+
+    with pytest.warns(DeprecationWarning, match="old"):
+        assert warn() == ["doubtful"]
+
+
+def test_result_can_be_reopened(tmp_path):
+    out = tmp_path / "deep" / "study.nc"
+    found = run_study(study(1.0, -1.0), out=out, figures=crowning)
+    assert load_study(out).identical(found)
+    assert found.attrs["scene_toml"] == helical().to_toml()
+    frame = found.to_dataframe()
+    assert_array_equal(frame["crowning_um"], [1.0, np.nan])
+
+
+def test_only_what_is_missing_is_computed(tmp_path):
+    out, first, second = tmp_path / "study.nc", counting(), counting()
+    run_study(study(1.0, 2.0), out=out, figures=first)
+    found = run_study(study(2.0, 3.0, 1.0), out=out, figures=second)
+    assert first.asked == [1.0, 2.0]
+    assert second.asked == [3.0]
+    assert_array_equal(found["crowning_um"][:, 0], [2.0, 3.0, 1.0])
+
+
+def test_what_was_done_before_an_interrupt_is_kept(tmp_path):
+    out, counted = tmp_path / "study.nc", counting()
+
+    def stop(*now):
+        if now == (2, 3, 0):
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt) as caught:
+        run_study(study(1.0, 2.0, 3.0), out=out, progress=stop, figures=counted)
+    assert caught.value.__notes__ == [
+        f"2 variants are kept in {tmp_path / 'study.rows.jsonl'}: the same study goes on from there"
+    ]
+    assert not out.exists()
+    run_study(study(1.0, 2.0, 3.0), out=out, figures=counted)
+    assert counted.asked == [1.0, 2.0, 3.0]
+
+
+def test_line_that_was_not_written_to_its_end_is_computed_again(tmp_path):
+    out, counted = tmp_path / "study.nc", counting()
+    run_study(study(1.0, 2.0), out=out, figures=counted)
+    rows = tmp_path / "study.rows.jsonl"
+    rows.write_bytes(rows.read_bytes()[:-10])
+    found = run_study(study(1.0, 2.0), out=out, figures=counted)
+    assert counted.asked == [1.0, 2.0, 2.0]
+    assert_array_equal(found["crowning_um"][:, 0], [1.0, 2.0])
+    assert len([json.loads(line) for line in rows.read_text().splitlines()]) == 2
+
+
+def test_progress_counts_what_is_done_and_what_failed(tmp_path):
+    told = []
+    run_study(study(1.0, -1.0, 2.0), out=tmp_path / "s.nc", figures=crowning, progress=lambda *now: told.append(now))
+    assert told == [(1, 3, 0), (2, 3, 1), (3, 3, 1)]
+    told.clear()
+    run_study(
+        study(1.0, -1.0, 2.0, 3.0), out=tmp_path / "s.nc", figures=crowning, progress=lambda *now: told.append(now)
+    )
+    assert told == [(3, 4, 1), (4, 4, 1)]
+
+
+def test_maps_of_chosen_variants_are_kept(tmp_path):
+    out = tmp_path / "study.nc"
+    found = run_study(study(2.0, 6.0), out=out, keep_maps=[1])
+    assert [path.name for path in (tmp_path / "study_maps").iterdir()] == ["1.nc"]
+    result = load_result(tmp_path / "study_maps" / "1.nc")
+    assert result.scene.pinion.modifications.lead_crowning_um == 6.0
+    assert_array_equal(found["peak_pressure_MPa"][1], [result.key_figures()[0]["peak_pressure_MPa"]])
+
+
+def test_maps_asked_for_later_are_computed_again(tmp_path):
+    out, counted = tmp_path / "study.nc", counting()
+    run_study(study(2.0, 6.0), out=out, figures=counted)
+    run_study(study(2.0, 6.0), out=out, figures=counted, keep_maps=[0])
+    assert counted.asked == [2.0, 6.0, 2.0]
+    assert (tmp_path / "study_maps" / "0.nc").exists()
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [({"keep_maps": [0]}, "keep_maps: needs out"), ({"keep_maps": [7], "out": "a.nc"}, "not variants 0 to 1")],
+)
+def test_maps_that_cannot_be_kept(tmp_path, monkeypatch, given, told):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(InputError, match=told):
+        run_study(study(1.0, 2.0), figures=crowning, **given)
+    assert not list(tmp_path.iterdir())
+
+
+def test_file_that_cannot_be_written(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="cannot be made a directory"):
+        run_study(study(1.0), out=tmp_path / "file" / "study.nc", figures=crowning)
+
+
+def test_result_of_an_analysis_is_no_study(tmp_path):
+    analyse(helical()).save(tmp_path / "result.nc")
+    with pytest.raises(InputError, match="a result of loaded_tca, but no study"):
+        load_study(tmp_path / "result.nc")
+
+
+def test_scene_of_the_study_stays_what_it_was():
+    before = replace(helical())
+    run_study(study(1.0), figures=crowning)
+    assert helical() == before

@@ -1,0 +1,94 @@
+"""The command that runs studies: files, words on the terminal, exit codes."""
+
+import csv
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from loaded_tca import cli, load_result
+from loaded_tca.studies import load_study
+from tests.samples.studies import helical
+
+CROWNING = "pinion.modifications.lead_crowning_um"
+
+
+@pytest.fixture
+def study(tmp_path, monkeypatch):
+    """A study file in an empty directory, with these values."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scene.toml").write_text(helical().to_toml(), encoding="utf-8")
+
+    def study(values, more=""):
+        (tmp_path / "study.toml").write_text(f'scene = "scene.toml"\n[factors]\n{CROWNING} = {values}\n{more}')
+        return "study.toml"
+
+    return study
+
+
+def test_study_writes_figures_table_and_summary(study, capsys):
+    assert cli.main(["study", study([2.0, -1.0, 6.0]), "--out", "out", "--keep-maps", "2"]) == 0
+    text = capsys.readouterr().out
+    assert text.startswith("3 variants: 2 ok, 1 refused\n")
+    assert "found -1.0; allowed a number from 0 to 10000 (1 variant)" in text
+    assert text.rstrip().endswith("Written to out: study.nc, study.csv")
+    found = load_study("out/study.nc")
+    assert list(found[CROWNING].values) == [2.0, -1.0, 6.0]
+    with open("out/study.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row[CROWNING]) for row in rows] == [2.0, -1.0, 6.0]
+    assert float(rows[2]["peak_pressure_MPa"]) == found["peak_pressure_MPa"].values[2, 0]
+    assert load_result("out/study_maps/2.nc").scene.pinion.modifications.lead_crowning_um == 6.0
+
+
+def test_workers_find_what_one_process_finds(study):
+    name = study([2.0, 4.0, 6.0])
+    assert cli.main(["study", name, "--out", "alone"]) == 0
+    assert cli.main(["study", name, "--out", "workers", "--workers", "2"]) == 0
+    alone, workers = (load_study(f"{place}/study.nc").drop_vars("seconds") for place in ("alone", "workers"))
+    assert alone.identical(workers)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["--workers", "0"], "workers: found 0; allowed a whole number from 1 on"),
+        (["--keep-maps", "9"], "keep_maps: [9] are not variants 0 to 1"),
+        (["--keep-maps", "a"], "allowed whole numbers with commas between them, as 0,12"),
+        (["--workers", "2", "--scheduler", "tcp://localhost:1"], "not allowed with argument"),
+    ],
+)
+def test_wrong_options_are_bad_input(study, capsys, arguments, told):
+    assert cli.main(["study", study([2.0, 6.0]), "--out", "out", *arguments]) == 2
+    assert told in capsys.readouterr().err
+    assert not os.path.exists("out/study.nc")
+
+
+def test_wrong_study_is_told_before_anything_is_written(study, capsys):
+    assert cli.main(["study", study('["a"]', "pinion.tooth = [1]"), "--out", "out"]) == 2
+    assert [line.split(":")[1].strip() for line in capsys.readouterr().err.splitlines()] == ["pinion.tooth", CROWNING]
+    assert not os.path.exists("out")
+
+
+@pytest.mark.parametrize("workers", [[], ["--workers", "2"]])
+def test_interrupt_keeps_what_is_done_and_the_same_command_goes_on(study, workers):
+    name = study("{ from = 0.0, to = 10.0, count = 1001 }")
+    command = [sys.executable, "-m", "loaded_tca", "study", name, "--out", "out", *workers]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        rows = "out/study.rows.jsonl"
+        while process.poll() is None and not (os.path.exists(rows) and os.path.getsize(rows) > 5000):
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        _, told = process.communicate(timeout=60)
+    assert process.returncode in (130, -signal.SIGINT)
+    assert "variants are kept in out/study.rows.jsonl: the same study goes on from there" in told
+    with open(rows) as file:
+        kept = file.read().count("\n")
+    assert 0 < kept < 1001
+    study([0.0, 0.01])
+    assert cli.main(["study", name, "--out", "out"]) == 0
+    with open(rows) as file:
+        assert file.read().count("\n") == max(kept, 2)
