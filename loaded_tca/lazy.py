@@ -1,10 +1,11 @@
-"""Names of a package that are imported when they are first used (PEP 562)."""
+"""Imports that cost nothing before they are used: names of packages (PEP 562), and what libraries import in vain."""
 
 from __future__ import annotations
 
 import ast
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from importlib import import_module
 from importlib.util import find_spec
 
@@ -41,3 +42,31 @@ def lazy_names(package: str) -> tuple[Callable[[str], object], Callable[[], list
         return import_module(f"{package}.{name}")
 
     return load, lambda: sorted({*vars(module), *origins})
+
+
+@contextmanager
+def hidden(module: str) -> Iterator[None]:
+    """Let imports inside find no such module, unless it is imported already.
+
+    Parameters
+    ----------
+    module : str
+        What a library imports if it is installed, for something that is not used here.
+
+    Examples
+    --------
+    >>> with hidden("http.server"):
+    ...     import http.server
+    Traceback (most recent call last):
+    ...
+    ModuleNotFoundError: import of http.server halted; None in sys.modules
+    >>> import http.server
+    """
+    if module in sys.modules:
+        yield
+        return
+    sys.modules[module] = None  # type: ignore[assignment]
+    try:
+        yield
+    finally:
+        del sys.modules[module]

@@ -16,12 +16,15 @@ from copy import copy
 from typing import Any, Self
 
 import numpy as np
-import pyfftw
 from numpy.typing import ArrayLike
 from scipy.fft import dctn
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.contact.love import influence_coefficients
+from loaded_tca.lazy import hidden
+
+with hidden("dask.array.fft"):  # for interfaces that nobody here uses, it would take longer to import than all else
+    import pyfftw
 
 Window = tuple[slice, slice]
 

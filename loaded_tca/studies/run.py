@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Callable, Collection, Iterator, Mapping
-from concurrent.futures import Executor, Future
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Collection, Generator, Iterator, Mapping
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
+from contextlib import ExitStack, closing, contextmanager
 from importlib.metadata import version
 from itertools import islice
 from pathlib import Path
@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loaded_tca.analysis import analyse
-from loaded_tca.errors import AccuracyWarning, ConvergenceError, ExecutorError, InputError, LoadedTCAError
+from loaded_tca.errors import AccuracyWarning, ConvergenceError, ExecutorError, LoadedTCAError, require
 from loaded_tca.results.files import FilePath, make_directory, replacing, write_dataset
 from loaded_tca.scene import Scene
 from loaded_tca.studies.figures import figures as key_figures
@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 AHEAD = 1000
 """Variants under way: enough for hundreds of workers, and little memory."""
+
+GONE = "as when a scheduler goes away"
 
 Figures = Callable[[Scene], Mapping[str, Any]]
 Progress = Callable[[int, int, int], None]
@@ -87,34 +89,43 @@ def run_study(
     >>> found["face_load_factor"].squeeze().diff("sample").item() > 0.0  # more crowning, less of the face carries
     True
     """
-    unknown = [variant for variant in keep_maps if variant not in range(len(study))]
-    if unknown or (keep_maps and out is None):
-        told = "needs out" if out is None else f"{unknown[:3]} are not variants 0 to {len(study) - 1}"
-        raise InputError(f"keep_maps: {told}")
+    with_maps = set(keep_maps)
+    unknown = sorted(with_maps.difference(range(len(study))))
+    named = hasattr(figures, "__qualname__")
+    require(
+        (not with_maps or out is not None, "keep_maps: needs out"),
+        (not unknown, f"keep_maps: {unknown[:3]} are not variants 0 to {len(study) - 1}"),
+        (named, f"figures: found {figures!r}; allowed a function, whose name tells its rows from those of others"),
+    )
     digest = study.digests(figures)
     with ExitStack() as stack:
         place = Path(stack.enter_context(TemporaryDirectory()), "study.nc") if out is None else Path(out)
         rows = stack.enter_context(Rows(place.with_suffix(".rows.jsonl")))
+        stack.enter_context(_told_how_to_go_on(rows, out))
         maps = place.with_name(f"{place.stem}_maps")
-        missing: list[int] = []
         kept: list[int] = []
+        missing: dict[str, list[int]] = {}  # variants that change the same are analysed once
         for variant in range(len(study)):
-            known = digest(variant) in rows and (variant not in keep_maps or _map_of(maps, variant).exists())
-            (kept if known else missing).append(variant)
-        done, failed = len(study) - len(missing), sum(row["status"] != "ok" for row in rows.of(map(digest, kept)))
-        tasks = ((study.scene, study.changes(v), digest(v), figures, v if v in keep_maps else None) for v in missing)
-        if progress is not None and kept:
-            progress(done, len(study), failed)
-        with _told_how_to_go_on(rows, out):
-            for found in _in_this_process(tasks) if executor is None else _by(executor, tasks):
-                rows.append([row for row, _ in found])
-                for row, whole in found:
-                    if whole is not None:
-                        _keep(maps, *whole)
-                    failed += row["status"] != "ok"
-                done += len(found)
-                if progress is not None:
-                    progress(done, len(study), failed)
+            if digest(variant) in rows and (variant not in with_maps or _map_of(maps, variant).exists()):
+                kept.append(variant)
+            else:
+                missing.setdefault(digest(variant), []).append(variant)
+        done, failed = len(kept), sum(row["status"] != "ok" for row in rows.of(map(digest, kept)))
+        tell = progress or (lambda *_: None)
+        if kept:
+            tell(done, len(study), failed)
+        tasks = (
+            (study.scene, study.changes(variants[0]), known, figures, not with_maps.isdisjoint(variants))
+            for known, variants in missing.items()
+        )
+        with closing(_in_this_process(tasks) if executor is None else _by(executor, tasks)) as batches:
+            for batch in batches:
+                rows.append([row for row, _ in batch])
+                for row, whole in batch:
+                    variants = missing[row["digest"]]
+                    _keep(maps, with_maps.intersection(variants), whole)
+                    done, failed = done + len(variants), failed + len(variants) * (row["status"] != "ok")
+                tell(done, len(study), failed)
         attributes = {"scene_toml": study.scene.to_toml(), "version": version("loaded_tca"), "seed": study.seed}
         dataset = dataset_of(study, rows.of(map(digest, range(len(study)))), attributes)
         if out is not None:
@@ -122,18 +133,18 @@ def run_study(
     return dataset
 
 
-Task = tuple[Scene, dict[str, Any], str, Figures, int | None]
-"""Scene of the study, changes, digest, figures, and the number of the variant if its maps are to be kept."""
-Done = tuple[Row, tuple[int, bytes] | None]
-"""A row, and the number and the result of the variant if its maps are kept."""
+Task = tuple[Scene, dict[str, Any], str, Figures, bool]
+"""Scene of the study, changes, digest, figures, and whether maps are to be kept."""
+Done = tuple[Row, bytes | None]
+"""A row, and the whole result if maps are kept."""
 
 
-def _in_this_process(tasks: Iterator[Task]) -> Iterator[list[Done]]:
+def _in_this_process(tasks: Iterator[Task]) -> Generator[list[Done]]:
     for task in tasks:
         yield [_analysed(*task)]
 
 
-def _by(executor: Executor, tasks: Iterator[Task]) -> Iterator[list[Done]]:
+def _by(executor: Executor, tasks: Iterator[Task]) -> Generator[list[Done]]:
     """What is done, as it comes; at the end, and if anything goes wrong, nothing is left for the executor to begin."""
     finished: SimpleQueue[Future[Done]] = SimpleQueue()
     under_way: set[Future[Done]] = set()
@@ -152,8 +163,10 @@ def _by(executor: Executor, tasks: Iterator[Task]) -> Iterator[list[Done]]:
             lost = [future for future in batch if future.cancelled() or future.exception() is not None]
             yield [future.result() for future in batch if future not in lost]
             if lost:
-                error = None if lost[0].cancelled() else lost[0].exception()
-                told = "cancelled" if error is None else f"{type(error).__name__}: {error}".splitlines()[0]
+                error = CancelledError(GONE) if lost[0].cancelled() else lost[0].exception()
+                if isinstance(error, BrokenExecutor):  # it fails all of them, and stumbles over cancelled ones
+                    under_way.clear()
+                told = f"{type(error).__name__}: {error}".splitlines()[0]
                 raise ExecutorError(f"the executor gave up: {told}") from error
     finally:
         for future in under_way:
@@ -170,17 +183,17 @@ def _submitted(executor: Executor, task: Task) -> Future[Done]:
         return future
 
 
-def _analysed(scene: Scene, changes: dict[str, Any], digest: str, figures: Figures, keep: int | None) -> Done:
+def _analysed(scene: Scene, changes: dict[str, Any], digest: str, figures: Figures, keep: bool) -> Done:
     """Analyse one variant, in whatever process and thread this is called."""
     begin = time.perf_counter()
     status, reason, found, whole = "ok", "", {}, None
     with accuracy_warnings() as told:
         try:
             variant = scene.with_changes(changes)
-            if keep is not None:
+            if keep:
                 result = analyse(variant)
-                whole = keep, bytes(result.to_netcdf())
-            values = figures_of(result) if keep is not None and figures is key_figures else figures(variant)
+                whole = bytes(result.to_netcdf())
+            values = figures_of(result) if keep and figures is key_figures else figures(variant)
             found = {name: np.atleast_1d(np.asarray(value, dtype=float)).tolist() for name, value in values.items()}
         except Exception as error:  # a variant that fails is a row; what it is of the program's fault, too
             status, reason = _status_of(error), str(error) or type(error).__name__
@@ -205,10 +218,14 @@ def _map_of(maps: Path, variant: int) -> Path:
     return maps / f"{variant}.nc"
 
 
-def _keep(maps: Path, variant: int, content: bytes) -> None:
+def _keep(maps: Path, variants: Collection[int], content: bytes | None) -> None:
+    """Write the whole result of variants that change the same, if it is kept."""
+    if content is None:
+        return
     make_directory(maps)
-    with replacing(_map_of(maps, variant)) as temporary:
-        temporary.write_bytes(content)
+    for variant in variants:
+        with replacing(_map_of(maps, variant)) as temporary:
+            temporary.write_bytes(content)
 
 
 @contextmanager

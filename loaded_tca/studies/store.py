@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
@@ -24,7 +25,8 @@ STATUSES = ("ok", "refused", "not converged", "fault")
 """Of a variant: analysed; its scene or geometry refused; not converged; any other error, a fault of the program."""
 KIND = "study"
 Row = dict[str, Any]
-"""digest, status, reason, warnings, seconds, and figures (name -> values over the torques), as JSON holds them."""
+PARTS_OF_A_ROW = {"digest", "status", "reason", "warnings", "seconds", "figures"}
+"""As JSON holds them; figures: name -> values over the torques."""
 
 
 class Rows:
@@ -44,16 +46,12 @@ class Rows:
     def __init__(self, path: FilePath) -> None:
         self.path = Path(path)
         make_directory(self.path.parent)
+        self._places: dict[str, int] = {}
         try:
             self._file = os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
+            os.ftruncate(self._file, self._read())
         except OSError as error:
             raise InputError(f"{self.path}: cannot be written: {reason_of(error)}") from error
-        self._size = 0
-        self._places: dict[str, int] = {}
-        for row, size in self._read():
-            self._places[row["digest"]] = self._size
-            self._size += size
-        os.ftruncate(self._file, self._size)
 
     def __enter__(self) -> Rows:
         return self
@@ -70,18 +68,23 @@ class Rows:
         return len(self._places)
 
     def append(self, rows: Sequence[Row]) -> None:
-        """Write rows down: all of them, or none and an InputError."""
+        """Write rows down; where there is no room for all, those that fit, and an InputError."""
         lines = [json.dumps(row).encode() + b"\n" for row in rows]
-        rest = b"".join(lines)
+        content, written = b"".join(lines), 0
         try:
-            while rest:
-                rest = rest[os.write(self._file, rest) :]
+            while written < len(content):
+                written += os.write(self._file, content[written:])
         except OSError as error:
-            os.ftruncate(self._file, self._size)
             raise InputError(f"{self.path}: cannot be written: {reason_of(error)}") from error
-        for row, line in zip(rows, lines, strict=True):
-            self._places[row["digest"]] = self._size
-            self._size += len(line)
+        finally:  # the file itself says where they are: another run of the study may have written in between
+            end = os.lseek(self._file, 0, os.SEEK_CUR)
+            place = end - written
+            for row, line in zip(rows, lines, strict=True):
+                if place + len(line) > end:
+                    os.ftruncate(self._file, place)
+                    break
+                self._places[row["digest"]] = place
+                place += len(line)
 
     def of(self, digests: Iterable[str]) -> Iterator[Row]:
         """Rows in the order asked for, read one by one."""
@@ -90,17 +93,19 @@ class Rows:
                 file.seek(self._places[digest])
                 yield json.loads(file.readline())
 
-    def _read(self) -> Iterator[tuple[Row, int]]:
-        """Rows of the file and their bytes, up to the first that is not whole."""
+    def _read(self) -> int:
+        """Find the rows of the file; bytes up to the end of its last whole line."""
+        place = 0
         with open(self.path, "rb") as file:
             for line in file:
-                try:
+                if not line.endswith(b"\n"):
+                    break
+                with suppress(ValueError):  # a damaged line costs its own variant, no other
                     row = json.loads(line)
-                except ValueError:
-                    return
-                if not line.endswith(b"\n") or not isinstance(row, dict) or "digest" not in row:
-                    return
-                yield row, len(line)
+                    if isinstance(row, dict) and set(row) >= PARTS_OF_A_ROW:
+                        self._places[row["digest"]] = place
+                place += len(line)
+        return place
 
 
 def dataset_of(study: Study, rows: Iterable[Row], attributes: dict[str, Any]) -> xarray.Dataset:
@@ -124,13 +129,14 @@ def dataset_of(study: Study, rows: Iterable[Row], attributes: dict[str, Any]) ->
 
     count = len(study)
     texts: dict[str, list[str]] = {"status": [], "reason": [], "warnings": []}
+    same: dict[str, str] = {}  # many variants say the same: one text in memory for all
     seconds = np.empty(count)
     found: dict[str, Array] = {}
     torques = 1
     for sample, row in enumerate(rows):
-        texts["status"].append(row["status"])
-        texts["reason"].append(row["reason"])
-        texts["warnings"].append("\n".join(row["warnings"]))
+        told = row["status"], row["reason"], "\n".join(row["warnings"])
+        for column, text in zip(texts.values(), told, strict=True):
+            column.append(same.setdefault(text, text))
         seconds[sample] = row["seconds"]
         for name, values in row["figures"].items():
             if len(values) > torques:
@@ -139,10 +145,10 @@ def dataset_of(study: Study, rows: Iterable[Row], attributes: dict[str, Any]) ->
             array = found.setdefault(name, np.full((count, torques), np.nan))
             array[sample, : len(values)] = values
     variables = {name: (("sample", "torque"), array) for name, array in found.items()}
-    own = {name: ("sample", np.array(column, dtype=np.str_)) for name, column in texts.items()}
-    told = ("sample", seconds, {"units": "s", "long_name": "time of the analysis"})
+    own = {name: ("sample", np.array(column, dtype=object)) for name, column in texts.items()}
+    spent = ("sample", seconds, {"units": "s", "long_name": "time of the analysis"})
     return xarray.Dataset(
-        {**variables, **own, "seconds": told}, coords=_varied(study), attrs={"kind": KIND, **attributes}
+        {**variables, **own, "seconds": spent}, coords=_varied(study), attrs={"kind": KIND, **attributes}
     )
 
 
