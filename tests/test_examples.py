@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import trace_contact
 from loaded_tca.scene import read_scene
+from loaded_tca.studies import read_study
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 
@@ -28,6 +29,9 @@ EXPECTED = {
     "plot_against_finite_elements": (1.0, 3e-2),  # plane strain has no free ends: 2 % stiffer
     "plot_ease_off": (1.0, 1e-3),  # the crownings of both gears add up, to first order
     "plot_vh_check": (-1.0, 0.03),  # shifts under opposite errors: first order
+    "plot_vh_under_load": (-1.0, 0.03),  # shifts under opposite errors: first order
+    "plot_monte_carlo": (1.0, 0.03),  # either sign of misalignment gathers the load; positions at 1 % of accuracy
+    "plot_micro_geometry": (1.0, 1e-12),  # every step of crowning
     "plot_tooth_3d": (1.0, 5e-3),  # the pressure laid on the flank carries the load
     "plot_bidirectional_start": (1.0, 1e-7),  # five equations and ease-off find the same contact
 }
@@ -57,6 +61,15 @@ def test_example_is_short(path):
 @pytest.mark.parametrize("path", sorted((EXAMPLES / "scenes").glob("*.toml")), ids=lambda path: path.stem)
 def test_example_scene_is_sound(path):
     assert read_scene(path).pair().pitch > 0.0
+
+
+@pytest.mark.parametrize(
+    ("name", "example"), [("misalignment", "plot_monte_carlo"), ("micro_geometry", "plot_micro_geometry")]
+)
+def test_example_study_is_that_of_its_script(name, example):
+    read, made = read_study(EXAMPLES / "studies" / f"{name}.toml"), loaded(EXAMPLES / f"{example}.py").STUDY
+    assert read.scene == made.scene
+    assert [read.changes(k) for k in range(len(read))] == [made.changes(k) for k in range(len(made))]
 
 
 def test_measured_flank_is_what_its_script_makes():

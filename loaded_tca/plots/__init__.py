@@ -18,10 +18,19 @@ from loaded_tca.plots.sharing import (
     plot_mesh_stiffness,
     plot_path_pressure,
 )
+from loaded_tca.plots.study import (
+    plot_study,
+    plot_study_heat_map,
+    plot_study_histogram,
+    plot_study_lines,
+    plot_study_over_torque,
+    plot_study_ranking,
+    plot_study_scatter_matrix,
+)
 from loaded_tca.plots.style import highest_torque, png_of, save_figure
 from loaded_tca.plots.subsurface import plot_stress_below, plot_subsurface
 from loaded_tca.plots.three_d import draw_teeth, plot_teeth, show_teeth
-from loaded_tca.plots.vh_check import plot_vh_check
+from loaded_tca.plots.vh_check import plot_loaded_vh_check, plot_vh_check
 from loaded_tca.results.files import FilePath, replace_together
 from loaded_tca.results.mesh_cycle import MeshCycle
 
@@ -40,12 +49,20 @@ __all__ = [
     "plot_line_load",
     "plot_line_load_distribution",
     "plot_load_share",
+    "plot_loaded_vh_check",
     "plot_mesh_stiffness",
     "plot_path_pressure",
     "plot_peak_pressure",
     "plot_pressure_envelope",
     "plot_pressure_map",
     "plot_stress_below",
+    "plot_study",
+    "plot_study_heat_map",
+    "plot_study_histogram",
+    "plot_study_lines",
+    "plot_study_over_torque",
+    "plot_study_ranking",
+    "plot_study_scatter_matrix",
     "plot_subsurface",
     "plot_teeth",
     "plot_transmission_error",

@@ -74,14 +74,7 @@ def _envelopes(result: MeshCycle, torques: list[int]) -> tuple[Figure, list[Axes
 
     def draw(torque: int, axes: Axes, to_picture: ToPicture) -> list[Artist]:
         low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
-        field = (high - low) / FIELDS
-        highest = np.zeros((FIELDS, FIELDS))
-        for places, pressure in _passing(result, torque, to_picture, field):
-            column, row = np.floor((places - low) / field).astype(int).T
-            inside = (column >= 0) & (column < FIELDS) & (row >= 0) & (row < FIELDS)
-            np.maximum.at(highest, (row[inside], column[inside]), pressure[inside])
-        seen = np.where(highest > 0.0, highest, np.nan)
-        borders = np.linspace(low, high, FIELDS + 1).T
+        borders, seen = pressure_seen(result, torque, to_picture, low, high)
         return [axes.pcolormesh(*borders, seen, cmap=COLOURS, norm=scale, rasterized=True)]
 
     figure, panels = both_flanks(result, *(partial(draw, torque) for torque in torques))
@@ -136,3 +129,19 @@ def _ridge(one: PressureMap) -> tuple[Array, Array]:
     y = np.linspace(one.y[loaded[0]] - half, one.y[loaded[-1]] + half, 2 * FIELDS)
     x, height = (np.interp(y, one.y[loaded], values) for values in (across, one.pressure[:, loaded].max(axis=0)))
     return one.origin + x[:, None] * one.axes[0] + y[:, None] * one.axes[1], height
+
+
+def pressure_seen(
+    result: MeshCycle, torque: int, to_picture: Callable[[Array], Array], low: Array, high: Array
+) -> tuple[Array, Array]:
+    """Highest pressure that each place of a flank sees, NaN where none, on fields between two corners of a picture.
+
+    Borders (2, n + 1) of the fields come first, in the units of the picture.
+    """
+    field = (high - low) / FIELDS
+    highest = np.zeros((FIELDS, FIELDS))
+    for places, pressure in _passing(result, torque, to_picture, field):
+        column, row = np.floor((places - low) / field).astype(int).T
+        inside = (column >= 0) & (column < FIELDS) & (row >= 0) & (row < FIELDS)
+        np.maximum.at(highest, (row[inside], column[inside]), pressure[inside])
+    return np.linspace(low, high, FIELDS + 1).T, np.where(highest > 0.0, highest, np.nan)

@@ -17,7 +17,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon
 
 from loaded_tca.arrays import Array
+from loaded_tca.flank_maps.conjugate import GearName
 from loaded_tca.flanks.base import Flank
+from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.plots.style import (
     ACCENT,
     COLOURS,
@@ -204,15 +206,7 @@ def both_flanks(result: MeshCycle, *draw: Callable[[Axes, ToPicture], Sequence[A
     scene, pair = result.scene, result.gear_pair
     panels = figure.subplots(len(draw), 2, squeeze=False, sharex="col", sharey="col")
 
-    def on_pinion(points: Array) -> Array:
-        radius = np.hypot(points[..., 0], points[..., 1])
-        return np.stack(pair.pinion.flank.frame.to_picture(radius, points[..., 2]), axis=-1)
-
-    def on_wheel(points: Array) -> Array:
-        radius, _, axial = pair.to_wheel(points)
-        return np.stack(pair.wheel.flank.frame.to_picture(radius, axial), axis=-1)
-
-    sides = ((pair.pinion.flank, on_pinion), (pair.wheel.flank, on_wheel))
+    sides = ((pair.pinion.flank, picture_of(pair, "pinion")), (pair.wheel.flank, picture_of(pair, "wheel")))
     described = zip(panels.T, scene.flank_names, scene.active_starts(), sides, strict=True)
     for column, name, start, (flank, to_picture) in described:
         for axes, draw_on in zip(column, draw, strict=True):
@@ -223,6 +217,20 @@ def both_flanks(result: MeshCycle, *draw: Callable[[Axes, ToPicture], Sequence[A
             above.set_xlabel("")
             below.set_title("")
     return figure, panels.ravel().tolist()
+
+
+def picture_of(pair: GearPair, gear: GearName) -> ToPicture:
+    """What takes points (..., 3) of the fixed frame to their places (..., 2) in the picture of a gear's flank."""
+
+    def on_pinion(points: Array) -> Array:
+        radius = np.hypot(points[..., 0], points[..., 1])
+        return np.stack(pair.pinion.flank.frame.to_picture(radius, points[..., 2]), axis=-1)
+
+    def on_wheel(points: Array) -> Array:
+        radius, _, axial = pair.to_wheel(points)
+        return np.stack(pair.wheel.flank.frame.to_picture(radius, axial), axis=-1)
+
+    return on_pinion if gear == "pinion" else on_wheel
 
 
 def _draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:

@@ -3,17 +3,36 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
+from loaded_tca.errors import InputError
+from loaded_tca.flank_maps.conjugate import GearName
 from loaded_tca.flank_maps.pattern import ContactPattern
 from loaded_tca.flank_maps.vh_check import BEYOND, VHCheck
 from loaded_tca.flanks.frame import FlankFrame
-from loaded_tca.plots.style import ACCENT, COLOURS, NOT_REACHED
+from loaded_tca.plots.envelope import pressure_seen
+from loaded_tca.plots.flanks import FINENESS, loaded_maps, picture_of
+from loaded_tca.plots.labels import label_of
+from loaded_tca.plots.study import told_of_variants
+from loaded_tca.plots.style import ACCENT, COLOURS, NOT_REACHED, highest_torque, load
+from loaded_tca.results import MeshCycle, load_result
+from loaded_tca.results.files import FilePath
+from loaded_tca.results.pressure_map import PressureMap
+from loaded_tca.studies.ranking import varied_keys
+
+if TYPE_CHECKING:
+    import xarray
 
 CELL = (2.0, 1.35)
 """Size of a cell [inch]."""
@@ -40,10 +59,7 @@ def plot_vh_check(check: VHCheck, names: tuple[str, str] = ("V [mm]", "H [mm]"),
     -------
     matplotlib.figure.Figure
     """
-    rows, columns = len(check.v), len(check.h)
-    width = MARGIN + CELL[0] * columns
-    figure = Figure(figsize=(width, MARGIN + CELL[1] * rows), layout="constrained")
-    panels = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
+    figure, panels = _grid_of_flanks(check.v, check.h, names)
     upwards, onwards = np.argsort(-check.v), np.argsort(check.h)
     first = check.patterns[0][0]
     levels = np.linspace(0.0, 1e3 * first.compound, LEVELS)
@@ -52,27 +68,143 @@ def plot_vh_check(check: VHCheck, names: tuple[str, str] = ("V [mm]", "H [mm]"),
             cell = (int(row), int(column))
             drawn = _draw_cell(panels[i, j], check.patterns[row][column], check.frame, levels)
             panels[i, j].plot(*check.centre[cell], "o", color=ACCENT, markeredgecolor="white", markersize=5.0)
-            on_edge = check.edge_share[cell] > 0.0
-            panels[i, j].set(xticks=[], yticks=[])
-            for spine in panels[i, j].spines.values():
-                spine.set(color=ACCENT if on_edge else "0.6", linewidth=2.0 if on_edge else 0.8)
-        panels[i, 0].set_ylabel(f"{check.v[row]:.4g}", rotation=0, ha="right", va="center")
-    for j, column in enumerate(onwards):
-        panels[-1, j].set_xlabel(f"{check.h[column]:.4g}")
-    figure.supylabel(names[0])
-    figure.supxlabel(names[1])
+            _frame(panels[i, j], bool(check.edge_share[cell] > 0.0))
     figure.colorbar(drawn, ax=panels, label="smallest gap over the passage [µm]", format="%.3g")
     what = f"contact pattern on the {first.gear}, marking compound {1e3 * first.compound:.4g} µm, no load"
-    inside = f"dot: its centre; in each cell the tip is on top, {check.frame.heelwards} on the right; {EDGE}"
-    lines = [part for line in (title, what, inside) for part in textwrap.wrap(line, int(CHARACTERS * width))]
-    figure.suptitle("\n".join(lines), fontsize="medium", parse_math=False)
+    inside = f"dot: its centre; {_how_it_lies(check.frame)}; {EDGE}"
+    _set_title(figure, title, what, inside)
     return figure
+
+
+def plot_loaded_vh_check(
+    study: xarray.Dataset,
+    results: FilePath | Mapping[int, MeshCycle],
+    *,
+    gear: GearName = "pinion",
+    torque: int | None = None,
+) -> Figure:
+    """Loaded contact pattern in each cell: the highest pressure that each place of the flank sees over the positions.
+
+    Laid out as by :func:`plot_vh_check`, all cells in one scale of colours.
+
+    Parameters
+    ----------
+    study : xarray.Dataset
+        Of :func:`loaded_tca.studies.vh_study`, or any other study of two keys with numbers: to the right goes the
+        first one, upwards the second one.
+    results : path or mapping of int to MeshCycle
+        Whole results by the numbers of the variants, or the directory in which ``run_study`` kept them.
+    gear : {"pinion", "wheel"}
+        Whose flank.
+    torque : int, optional
+        Index of the torque; default: the largest one.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If the study does not vary two keys with numbers, no variant is ok, or the result of one that is ok is missing.
+    """
+    keys = varied_keys(study)
+    if len(keys) != 2 or any(study[key].dtype.kind not in "if" for key in keys):
+        raise InputError(f"V-H check: the study varies {', '.join(keys)}; allowed two keys with numbers")
+    status = study["status"].values.tolist()
+    if "ok" not in status:
+        raise InputError(f"V-H check: none of the {len(status)} variants is ok; the first: {study['reason'].values[0]}")
+    kept = {
+        k: results[k] if isinstance(results, Mapping) else load_result(Path(results, f"{k}.nc"))
+        for k in range(len(status))
+        if status[k] == "ok"
+    }
+    first = next(iter(kept.values()))
+    torque = highest_torque(first) if torque is None else torque
+    scale = Normalize(
+        0.0, max(float(np.nanmax(one.peak_pressure[torque], initial=0.0)) for one in kept.values()) or 1.0
+    )
+    h, v = (np.unique(study[key].values) for key in keys)
+    figure, panels = _grid_of_flanks(v, h, (f"V: {label_of(keys[1])}", f"H: {label_of(keys[0])}"))
+    for k, (at_h, at_v) in enumerate(zip(*(study[key].values for key in keys), strict=True)):
+        axes = panels[len(v) - 1 - np.searchsorted(v, at_v), np.searchsorted(h, at_h)]
+        _frame(axes, k in kept and bool(kept[k].on_edge[torque].any()))
+        if k in kept:
+            _draw_loaded_cell(axes, kept[k], torque, gear, scale)
+        else:
+            axes.text(0.5, 0.5, status[k], transform=axes.transAxes, ha="center", va="center", color=ACCENT)
+    beyond = any(one.pressure.max() > scale.vmax for result in kept.values() for one in loaded_maps(result, torque))
+    figure.colorbar(
+        ScalarMappable(scale, COLOURS),
+        ax=panels,
+        label="highest contact pressure [MPa]",
+        extend="max" if beyond else "neither",
+    )
+    frame = (first.gear_pair.pinion if gear == "pinion" else first.gear_pair.wheel).flank.frame
+    what = f"loaded contact pattern on the {gear}, {load(first, torque)}"
+    inside = f"dot: centre of the force; {_how_it_lies(frame)}; {EDGE}"
+    _set_title(figure, first.scene.title, what, told_of_variants(study), inside)
+    return figure
+
+
+def _grid_of_flanks(v: Array, h: Array, names: tuple[str, str]) -> tuple[Figure, NDArray[np.object_]]:
+    """A panel for each pair of errors, v upwards and h to the right, with their values and names at the edges."""
+    size = MARGIN + CELL[0] * len(h), MARGIN + CELL[1] * len(v)
+    figure = Figure(figsize=size, layout="constrained")
+    panels = figure.subplots(len(v), len(h), squeeze=False, sharex=True, sharey=True)
+    for axes, value in zip(panels[:, 0], np.sort(v)[::-1], strict=True):
+        axes.set_ylabel(f"{value:.4g}", rotation=0, ha="right", va="center")
+    for axes, value in zip(panels[-1], np.sort(h), strict=True):
+        axes.set_xlabel(f"{value:.4g}")
+    figure.supylabel(names[0])
+    figure.supxlabel(names[1])
+    return figure, panels
+
+
+def _frame(axes: Axes, on_edge: bool) -> None:
+    axes.set(xticks=[], yticks=[])
+    for spine in axes.spines.values():
+        spine.set(color=ACCENT if on_edge else "0.6", linewidth=2.0 if on_edge else 0.8)
+
+
+def _how_it_lies(frame: FlankFrame) -> str:
+    return f"in each cell the tip is on top, {frame.heelwards} on the right"
+
+
+def _set_title(figure: Figure, *lines: str) -> None:
+    wrapped = [part for line in lines for part in textwrap.wrap(line, int(CHARACTERS * figure.get_figwidth()))]
+    figure.suptitle("\n".join(wrapped), fontsize="medium", parse_math=False)
+
+
+def _draw_loaded_cell(axes: Axes, result: MeshCycle, torque: int, gear: GearName, scale: Normalize) -> None:
+    """The flank with the highest pressure that each of its places sees, and the centre of all forces."""
+    pair = result.gear_pair
+    flank, to_picture = (pair.pinion if gear == "pinion" else pair.wheel).flank, picture_of(pair, gear)
+    x, y = flank.frame.to_picture(*flank.grid(*FINENESS))
+    (outline,) = axes.fill(*_around(x, y), color=NOT_REACHED, zorder=0)
+    maps = loaded_maps(result, torque)
+    if not maps:
+        return
+    borders, seen = pressure_seen(result, torque, to_picture, *np.transpose([(x.min(), x.max()), (y.min(), y.max())]))
+    axes.pcolormesh(*borders, seen, cmap=COLOURS, norm=scale, rasterized=True).set_clip_path(outline)
+    forces = np.concatenate([(one.pressure * np.prod(one.spacing)).ravel() for one in maps])
+    places = np.concatenate([to_picture(_middles(one)).reshape(-1, 2) for one in maps])
+    axes.plot(*(forces @ places / forces.sum()), "o", color=ACCENT, markeredgecolor="white", markersize=5.0)
+
+
+def _middles(one: PressureMap) -> Array:
+    """Middles (nx, ny, 3) of the cells of a map in the fixed frame [mm]."""
+    return one.origin + one.x[:, None, None] * one.axes[0] + one.y[:, None] * one.axes[1]
+
+
+def _around(x: Array, y: Array) -> list[Array]:
+    """Points around the edge of a grid."""
+    return [np.concatenate([part[0], part[:, -1], part[-1, ::-1], part[::-1, 0]]) for part in (x, y)]
 
 
 def _draw_cell(axes: Axes, pattern: ContactPattern, frame: FlankFrame, levels: Array) -> ContourSet:
     """The flank, with the gap as far as the compound marks it."""
     x, y = frame.to_picture(pattern.radius, pattern.axial)
-    outline = (np.concatenate([part[0], part[:, -1], part[-1, ::-1], part[::-1, 0]]) for part in (x, y))
-    axes.fill(*outline, color=NOT_REACHED, zorder=0)
+    axes.fill(*_around(x, y), color=NOT_REACHED, zorder=0)
     gap = 1e3 * np.clip(pattern.gap, 0.0, BEYOND * pattern.compound)
     return axes.contourf(x, y, gap, levels, cmap=COLOURS)

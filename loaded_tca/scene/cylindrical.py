@@ -107,6 +107,8 @@ class CylindricalScene(BlankScene):
     GearPair(21/57, module 3 mm, face 25 mm)
     """
 
+    vh_keys: ClassVar[tuple[str, str]] = ("mounting.in_plane_deg", "mounting.out_of_plane_deg")
+
     geometry: Geometry = subsection(Geometry, "what both gears have in common", name="pair")
     pinion: GearSection = subsection(GearSection, "the gear that turns about +z")
     wheel: GearSection = subsection(GearSection, "its mating gear")

@@ -66,6 +66,9 @@ class Scene(Section, ABC):
     load: Load = subsection(Load, "what the pair carries")
     analysis: Analysis = subsection(Analysis, "how finely it is computed")
 
+    vh_keys: ClassVar[tuple[str, str]]
+    """Keys of the two mounting errors that a V-H check varies."""
+
     rules: ClassVar[tuple[Rule, ...]] = (
         rule(
             ("material", "pinion.material", "wheel.material"),

@@ -85,6 +85,7 @@ def sides_in_contact(sense: Sense, hand: int, driving: Driving) -> tuple[Side, S
 class SpiralScene(Scene):
     """A scene of gears on meeting axes, whose flanks in contact may be asked for by name."""
 
+    vh_keys: ClassVar[tuple[str, str]] = ("mounting.offset_mm", "mounting.pinion_axial_mm")
     usual_flank: ClassVar[Side | None] = None
     """Flank of the pinion in contact where neither flank nor sense is given; None: the sense is positive."""
 

@@ -6,10 +6,23 @@ variant, writes down each one that is done, and goes on where it stopped when it
 
 from loaded_tca.studies.figures import figures
 from loaded_tca.studies.pool import process_pool
+from loaded_tca.studies.ranking import rank_variants
 from loaded_tca.studies.read import parse_study, read_study
 from loaded_tca.studies.run import run_study
 from loaded_tca.studies.store import load_study
 from loaded_tca.studies.study import Study
 from loaded_tca.studies.summary import study_summary
+from loaded_tca.studies.vh_study import vh_study
 
-__all__ = ["Study", "figures", "load_study", "parse_study", "process_pool", "read_study", "run_study", "study_summary"]
+__all__ = [
+    "Study",
+    "figures",
+    "load_study",
+    "parse_study",
+    "process_pool",
+    "rank_variants",
+    "read_study",
+    "run_study",
+    "study_summary",
+    "vh_study",
+]

@@ -122,7 +122,8 @@ def dataset_of(study: Study, rows: Iterable[Row], attributes: dict[str, Any]) ->
     -------
     xarray.Dataset
         Dimensions sample and torque. Over both the key figures, NaN where there are none; over the samples the varied
-        keys (coordinates), ``status``, ``reason``, ``warnings`` (lines) and ``seconds``.
+        keys (coordinates, with the attribute ``sampling``: "table", "factor" or "distribution"), ``status``,
+        ``reason``, ``warnings`` (lines) and ``seconds``.
     """
     import xarray
 
@@ -156,14 +157,16 @@ def _widened(array: Array, torques: int) -> Array:
     return np.pad(array, ((0, 0), (0, torques - array.shape[1])), constant_values=np.nan)
 
 
-def _varied(study: Study) -> dict[str, tuple[str, Array]]:
+def _varied(study: Study) -> dict[str, tuple[str, Array, dict[str, str]]]:
     """Values of the varied keys over the samples; lists and booleans as a scene file writes them."""
     columns: dict[str, list[Any]] = {key: [] for key in study.keys}
     for variant in range(len(study)):
         for key, value in study.changes(variant).items():
             plain = isinstance(value, int | float | str) and not isinstance(value, bool)
             columns[key].append(value if plain else literal(value))
-    return {key: ("sample", np.array(column)) for key, column in columns.items()}
+    ways = [("table", study.table), ("factor", study.factors), ("distribution", study.distributions)]
+    sampling = {key: {"sampling": way} for way, keys in ways for key in keys}
+    return {key: ("sample", np.array(column), sampling[key]) for key, column in columns.items()}
 
 
 def load_study(path: FilePath) -> xarray.Dataset:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-import pickle
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -15,7 +14,6 @@ from numbers import Integral, Real
 from typing import Any, Protocol
 
 import numpy as np
-from scipy.stats import qmc
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
@@ -151,9 +149,7 @@ class Study:
             for section in sections:
                 place = place.get(section, {})
             place.pop(name, None)
-        named = hasattr(figures, "__qualname__")  # others, as partials, hold values that tell
-        asked = f"{figures.__module__}.{figures.__qualname__}" if named else pickle.dumps(figures).hex()
-        common = [version("loaded_tca"), asked, table]
+        common = [version("loaded_tca"), f"{figures.__module__}.{figures.__qualname__}", table]
         begun = hashlib.sha256(json.dumps(common, sort_keys=True).encode())
 
         def digest(variant: int) -> str:
@@ -182,6 +178,8 @@ class Study:
         """Values of the keys with distributions, (samples, keys)."""
         if self.samples is None:
             return np.empty((1, 0))
+        from scipy.stats import qmc  # half a second, which studies without distributions do not need
+
         sobol = qmc.Sobol(len(self.distributions), scramble=True, rng=self.seed)
         unit = sobol.random_base2((self.samples - 1).bit_length())[: self.samples]
         columns = zip(self.distributions.values(), np.clip(unit, NEVER, 1.0 - NEVER).T, strict=True)

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pandas
@@ -155,12 +154,6 @@ def test_digest_tells_what_a_variant_is():
     }
     assert one not in others
     assert len(others) == 4
-
-
-def test_digest_tells_the_values_that_figures_hold():
-    study = Study(helical(), {CROWNING: [1.0]})
-    digests = {study.digests(partial(figures, n))(0) for n in (1, 1, 2)}
-    assert len(digests) == 2
 
 
 def test_study_keeps_its_values():

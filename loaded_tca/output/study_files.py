@@ -1,0 +1,59 @@
+"""Tables of a study: every figure of every variant, and the variants in the order of a figure."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from loaded_tca.results.files import Buffer, FilePath, replace_together
+from loaded_tca.studies.ranking import rank_variants
+
+if TYPE_CHECKING:
+    import xarray
+
+TABLE, RANKING, PICTURES = "study.csv", "ranking.csv", "study_*.png"
+"""Names of the two files and of the pictures."""
+
+
+def write_study(
+    study: xarray.Dataset,
+    directory: FilePath,
+    more: Mapping[str, Buffer] = {},
+    rank_by: str | None = None,
+    largest_is_best: bool = False,
+) -> tuple[Path, ...]:
+    """Write ``study.csv`` and ``ranking.csv``, all files or none.
+
+    Parameters
+    ----------
+    study : xarray.Dataset
+        What :func:`loaded_tca.studies.run_study` returns.
+    directory : str or path
+        Made if it does not exist. Pictures ``study_*.png`` of an earlier study that are not written again are removed.
+    more : mapping of str to bytes
+        Contents of files to write with these, by their names: pictures of the study.
+    rank_by, largest_is_best
+        As for :func:`loaded_tca.studies.rank_variants`.
+
+    Returns
+    -------
+    tuple of Path
+        All files.
+
+    Raises
+    ------
+    InputError
+        If they cannot be written, or the study has no figure ``rank_by``.
+    """
+    ranking = rank_variants(study, rank_by, largest_is_best=largest_is_best).to_csv(index=False)
+    contents = {TABLE: study_csv(study).encode(), RANKING: ranking.encode(), **more}
+    old = {path.name for path in Path(directory).glob(PICTURES)} - {*contents}
+    return replace_together(directory, contents, old)
+
+
+def study_csv(study: xarray.Dataset) -> str:
+    """Return every figure as CSV, one row per variant and torque; both are numbered from 0."""
+    order = [name for name in ("sample", "torque") if name in study.sizes]  # no torque where no variant is ok
+    table: str = study.to_dataframe(order).reset_index().to_csv(index=False)
+    return table

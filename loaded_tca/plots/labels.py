@@ -1,0 +1,68 @@
+"""What the axes of pictures call keys of a scene and key figures, with their units."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+
+UNITS = {
+    "N_per_mm_um": "N/(mm µm)",
+    "N_per_mm": "N/mm",
+    "arcsec": "arcsec",
+    "um": "µm",
+    "mm": "mm",
+    "deg": "deg",
+    "rad": "rad",
+    "Nm": "N m",
+    "MPa": "MPa",
+    "N": "N",
+}
+"""Ending of a name -> unit as it is printed."""
+SILENT = {"pair", "modifications", "mounting", "load", "analysis", "material"}
+"""Sections that a name does without: the key says enough."""
+NAMES = {
+    "in_plane": "axis error in plane",
+    "out_of_plane": "axis error out of plane",
+    "pinion_axial": "axial displacement of the pinion",
+    "wheel_axial": "axial displacement of the wheel",
+    "youngs_modulus": "Young's modulus",
+    "poisson_ratio": "Poisson's ratio",
+    "transmission_error_span": "peak-to-peak transmission error",
+    "unloaded_transmission_error_span": "peak-to-peak unloaded transmission error",
+    "face_load_factor": "face load factor K_Hβ",
+    "transverse_load_factor": "transverse load factor K_Hα",
+}
+"""Keys and figures whose words alone do not name them."""
+SHORT_LINE = 18
+"""Characters."""
+UNIT = re.compile(f"_({'|'.join(UNITS)})$")
+
+
+def label_of(name: str) -> str:
+    """Name of a key of a scene or of a key figure in words, with its unit in brackets.
+
+    Parameters
+    ----------
+    name : str
+        With dots between its sections.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> label_of("pinion.modifications.lead_crowning_um"), label_of("transmission_error_span_um")
+    ('pinion lead crowning [µm]', 'peak-to-peak transmission error [µm]')
+    """
+    *sections, key = name.split(".")
+    found = UNIT.search(key)
+    plain = key[: found.start()] if found else key
+    words = [*(section for section in sections if section not in SILENT), plain]
+    words = [NAMES.get(word) or word.replace("_", " ") for word in words]
+    return " ".join(words) + (f" [{UNITS[found[1]]}]" if found else "")
+
+
+def wrapped_label_of(name: str) -> str:
+    """Return ``label_of`` in lines short enough for a narrow panel or a column."""
+    return "\n".join(textwrap.wrap(label_of(name), SHORT_LINE))

@@ -1,0 +1,126 @@
+"""What the dataset of a study holds, and its variants in the order of a figure."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import InputError
+from loaded_tca.scene.keys import did_you_mean, nearest
+from loaded_tca.scene.parse import parse_scene
+from loaded_tca.scene.section import as_table
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+MAIN_FIGURES = ("transmission_error_span_um", "peak_pressure_MPa", "face_load_factor")
+"""Figures by which variants are compared unless others are asked for; the first one ranks them."""
+
+
+def varied_keys(study: xarray.Dataset) -> list[str]:
+    """Keys that a study varies, in the order of the study."""
+    return [str(name) for name, values in study.coords.items() if values.dims == ("sample",)]
+
+
+def main_figures(study: xarray.Dataset) -> list[str]:
+    """Figures of ``MAIN_FIGURES`` that a study has; if it has none, as with figures of its own, its first ones."""
+    known = [str(name) for name, values in study.data_vars.items() if values.dims == ("sample", "torque")]
+    told = [name for name in MAIN_FIGURES if name in known and np.isfinite(figure_values(study, name)).any()]
+    return told or known[: len(MAIN_FIGURES)]
+
+
+def figure_values(study: xarray.Dataset, name: str) -> Array:
+    """Values (samples, torques) of a figure, NaN for variants that are not ok.
+
+    Raises
+    ------
+    InputError
+        If the study has no such figure.
+    """
+    known = [str(one) for one, values in study.data_vars.items() if values.dims == ("sample", "torque")]
+    if name not in known:
+        hint = did_you_mean(nearest(name, known)) or f"; allowed {', '.join(known) or 'nothing: there are none'}"
+        raise InputError(f"{name}: no figure of the study{hint}")
+    ok = (study["status"].values == "ok")[:, None]
+    return np.where(ok, np.asarray(study[name].values, dtype=float), np.nan)
+
+
+def nominal_variant(study: xarray.Dataset) -> int | None:
+    """Number of the first variant in which every varied key has the value of the scene; None without one."""
+    table = as_table(parse_scene(study.attrs["scene_toml"]))
+    agrees = np.ones(study.sizes["sample"], dtype=bool)
+    for key in varied_keys(study):
+        nominal = table
+        for section in key.split("."):
+            nominal = nominal.get(section, {})
+        agrees &= np.array([value == nominal for value in study[key].values.tolist()], dtype=bool)
+    return int(agrees.argmax()) if agrees.any() else None
+
+
+def rank_variants(
+    study: xarray.Dataset, by: str | None = None, torque: int | None = None, largest_is_best: bool = False
+) -> pandas.DataFrame:
+    """Variants of a study, the best first.
+
+    Parameters
+    ----------
+    study : xarray.Dataset
+        What :func:`loaded_tca.studies.run_study` returns.
+    by : str, optional
+        Figure that ranks them; default: the peak-to-peak transmission error, or the first one that the study has.
+    torque : int, optional
+        Index of the torque whose figures are compared. Default: of each figure the worst value over the torques, which
+        is its largest, or with ``largest_is_best`` its least.
+    largest_is_best : bool
+        Whether the largest value is the best one.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per variant: ``rank`` from 1, ``sample`` (its number), ``status``, the varied keys, the figures,
+        ``warnings`` (how many) and ``reason``. Variants without the figure have no rank and stand at the end.
+
+    Raises
+    ------
+    InputError
+        If the study has no such figure or torque.
+
+    Examples
+    --------
+    >>> import xarray
+    >>> status = {name: ("sample", values) for name, values in {
+    ...     "status": ["ok", "refused", "ok"], "reason": ["", "too small", ""], "warnings": ["", "", ""]}.items()}
+    >>> factor = {"face_load_factor": (("sample", "torque"), [[1.5], [np.nan], [1.25]])}
+    >>> teeth = {"pinion.teeth": ("sample", [20, 3, 25])}
+    >>> rank_variants(xarray.Dataset({**factor, **status}, teeth), "face_load_factor")["pinion.teeth"].tolist()
+    [25, 20, 3]
+    """
+    import pandas
+
+    ranked_by = [by] if by else main_figures(study)[:1]
+    torques = study.sizes.get("torque", 0)
+    if torque is not None and not 0 <= torque < torques:
+        raise InputError(f"torque: {torque}; the study has the torques 0 to {torques - 1}")
+    worst = np.fmin.reduce if largest_is_best else np.fmax.reduce
+    columns = {}
+    for name in dict.fromkeys([*ranked_by, *main_figures(study)]):
+        values = figure_values(study, name)
+        columns[name] = worst(values, axis=1) if torque is None else values[:, torque]
+    ranks = columns[ranked_by[0]] if ranked_by else np.full(study.sizes["sample"], np.nan)
+    order = np.argsort(-ranks if largest_is_best else ranks, kind="stable")  # NaN at the end
+    count = int(np.isfinite(ranks).sum())
+    frame = pandas.DataFrame(
+        {
+            "sample": np.arange(len(order)),
+            "status": study["status"].values,
+            **{key: study[key].values for key in varied_keys(study)},
+            **columns,
+            "warnings": [len(lines.splitlines()) for lines in study["warnings"].values.tolist()],
+            "reason": study["reason"].values,
+        }
+    ).iloc[order]
+    frame.insert(0, "rank", pandas.array([*range(1, count + 1), *[None] * (len(order) - count)], dtype="Int64"))
+    return frame.reset_index(drop=True)

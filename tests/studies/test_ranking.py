@@ -1,0 +1,76 @@
+"""Variants in the order of a figure: none is lost."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+from loaded_tca.errors import InputError
+from loaded_tca.studies import rank_variants
+from loaded_tca.studies.ranking import figure_values, main_figures, nominal_variant, varied_keys
+from tests.samples.study_datasets import LEAD, SCENE, TIP, dataset, grid
+
+TWO_FAIL = ["ok", "refused", "ok", "ok", "not converged", "ok"]
+
+
+def test_best_is_first_and_failed_variants_stand_at_the_end():
+    found = rank_variants(grid(TWO_FAIL))
+    assert found["sample"].tolist() == [3, 5, 2, 0, 1, 4]  # spans 1, 10, 101, 110
+    assert found["rank"].tolist()[:4] == [1, 2, 3, 4]
+    assert found["rank"].isna().tolist() == [False] * 4 + [True] * 2
+    assert found["reason"].tolist()[4:] == ["it is refused", "it is not converged"]
+
+
+def test_largest_may_be_the_best():
+    assert rank_variants(grid(), "peak_pressure_MPa", largest_is_best=True)["sample"].iloc[0] == 5
+
+
+def test_the_worst_torque_counts_unless_one_is_asked_for():
+    study = dataset({LEAD: [0.0, 3.0]}, {"face_load_factor": [[1.0, 4.0], [2.0, 3.0]]}, torques=(40.0, 80.0))
+    assert rank_variants(study, "face_load_factor")["sample"].tolist() == [1, 0]
+    assert rank_variants(study, "face_load_factor", torque=0)["sample"].tolist() == [0, 1]
+    best = rank_variants(study, "face_load_factor", largest_is_best=True)
+    assert best["face_load_factor"].tolist() == [2.0, 1.0]
+
+
+def test_unknown_figure_or_torque_is_told():
+    with pytest.raises(InputError, match=r'peak_presure_MPa: no figure of the study; did you mean "peak_pressure_MPa"'):
+        rank_variants(grid(), "peak_presure_MPa")
+    with pytest.raises(InputError, match=r"torque: 1; the study has the torques 0 to 0"):
+        rank_variants(grid(), torque=1)
+
+
+def test_study_without_a_figure_ranks_nothing_and_loses_nothing():
+    study = dataset({LEAD: [0.0, 3.0]}, {}, ["refused"] * 2).drop_vars("pinion_torque_Nm")
+    assert main_figures(study) == []
+    found = rank_variants(study)
+    assert found["rank"].isna().all()
+    assert found["status"].tolist() == ["refused"] * 2
+    with pytest.raises(InputError, match=r"anything: no figure of the study; allowed nothing"):
+        rank_variants(study, "anything")
+
+
+def test_figures_of_variants_that_are_not_ok_are_not_known():
+    study = grid(TWO_FAIL)
+    study["peak_pressure_MPa"][1] = 1.0
+    assert_array_equal(
+        np.isfinite(figure_values(study, "peak_pressure_MPa")[:, 0]), [True, False, True, True, False, True]
+    )
+
+
+def test_figures_of_its_own_are_shown_where_a_study_has_no_others():
+    study = dataset({LEAD: [0.0, 3.0]}, {"noise_dB": [1.0, 2.0]}).drop_vars("pinion_torque_Nm")
+    assert main_figures(study) == ["noise_dB"]
+    assert varied_keys(study) == [LEAD]
+
+
+def test_nominal_variant_is_that_of_the_scene():
+    """The scene has a crowning of its own and no misalignment."""
+    own = SCENE.pinion.modifications.lead_crowning_um
+    study = dataset({LEAD: [own, own + 1.0, own], "mounting.misalignment_um": [1.0, 0.0, 0.0]}, {})
+    assert nominal_variant(study) == 2
+    assert nominal_variant(study.isel(sample=[0, 1])) is None
+
+
+def test_tables_of_words_and_numbers_are_ranked():
+    study = dataset({"analysis.compliance": ["contact", "contact+tooth"], TIP: [0.0, 1.0]}, {"a_um": [2.0, 1.0]})
+    assert rank_variants(study, "a_um")["analysis.compliance"].tolist() == ["contact+tooth", "contact"]
