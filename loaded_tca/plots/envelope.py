@@ -132,7 +132,7 @@ def _ridge(one: PressureMap) -> tuple[Array, Array]:
 
 
 def pressure_seen(
-    result: MeshCycle, torque: int, to_picture: Callable[[Array], Array], low: Array, high: Array
+    result: MeshCycle, torque: int, to_picture: ToPicture, low: Array, high: Array
 ) -> tuple[Array, Array]:
     """Highest pressure that each place of a flank sees, NaN where none, on fields between two corners of a picture.
 
