@@ -79,6 +79,8 @@ Stresses in MPa, tension positive, of a half-space without friction; docs/result
 STUDY = """files in DIR:
   study.nc                  all figures of all variants, to be read by loaded_tca.studies.load_study or xarray
   study.csv                 the same, one row per variant and torque
+  ranking.csv               one row per variant, the best by --rank-by first
+  study_*.png               pictures that fit what varies
   study.rows.jsonl          the variants that are done; the same command goes on from there
   study_maps/N.nc           whole results of the variants asked for by --keep-maps, as of 'loaded-tca run'"""
 BAR = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt}, {elapsed} gone, {remaining} left"
@@ -255,6 +257,7 @@ def _parser() -> argparse.ArgumentParser:
     engine = study.add_mutually_exclusive_group()
     engine.add_argument("--workers", metavar="N", type=int, help="processes on this machine; default: this one alone")
     engine.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, as tcp://host:8786")
+    study.add_argument("--rank-by", metavar="FIGURE", help="figure of study.csv, the least is best; default: TE span")
     study.add_argument(
         "--keep-maps",
         metavar="N,N,...",
@@ -421,16 +424,18 @@ def _ease_off(options: argparse.Namespace) -> None:
 
 
 def _study(options: argparse.Namespace) -> None:
-    from loaded_tca.results.files import replace_together
+    from loaded_tca.output.study_files import write_study
+    from loaded_tca.plots import plot_study, png_of
     from loaded_tca.studies import read_study, run_study, study_summary
 
     study, directory = read_study(options.study), options.out
     _check_place(directory)
     with _executor(options) as executor, _bar("variants", len(study), STUDY_BAR) as show:
         found = run_study(study, executor, directory / "study.nc", show, keep_maps=options.keep_maps)
-    table = found.to_dataframe().to_csv().encode()
+    pictures = {f"{name}.png": png_of(figure) for name, figure in plot_study(found, rank_by=options.rank_by).items()}
+    written = write_study(found, directory, pictures, options.rank_by)
     print(study_summary(found), end="\n\n")
-    _print_files([directory / "study.nc", *replace_together(directory, {"study.csv": table})])
+    _print_files([directory / "study.nc", *written])
 
 
 @contextmanager
@@ -447,11 +452,11 @@ def _executor(options: argparse.Namespace) -> Iterator[Executor | None]:
         except ModuleNotFoundError:
             raise InputError("--scheduler: needs the package distributed; 'pip install distributed' gets it") from None
         try:
-            client = Client(options.scheduler, timeout=REACHED_WITHIN)
+            client = Client(options.scheduler, timeout=REACHED_WITHIN)  # type: ignore[no-untyped-call]
         except (OSError, ValueError) as error:
             raise InputError(f"--scheduler {options.scheduler}: not reached: {reason_of(error)}") from None
         with client:
-            yield client.get_executor(pure=False)
+            yield client.get_executor(pure=False)  # type: ignore[no-untyped-call]
     else:
         yield None
 

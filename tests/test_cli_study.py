@@ -2,6 +2,7 @@
 
 import csv
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -34,13 +35,19 @@ def test_study_writes_figures_table_and_summary(study, capsys):
     text = capsys.readouterr().out
     assert text.startswith("3 variants: 2 ok, 1 refused\n")
     assert "found -1.0; allowed a number from 0 to 10000 (1 variant)" in text
-    assert text.rstrip().endswith("Written to out: study.nc, study.csv")
+    (files,) = re.findall("Written to out: (.*)", text)
+    assert files.startswith("study.nc, study.csv, ranking.csv, study_")
+    assert all(os.path.exists(f"out/{name}") for name in files.split(", "))
     found = load_study("out/study.nc")
     assert list(found[CROWNING].values) == [2.0, -1.0, 6.0]
     with open("out/study.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     assert [float(row[CROWNING]) for row in rows] == [2.0, -1.0, 6.0]
     assert float(rows[2]["peak_pressure_MPa"]) == found["peak_pressure_MPa"].values[2, 0]
+    with open("out/ranking.csv", newline="") as file:
+        ranked = [float(row[CROWNING]) for row in csv.DictReader(file)]
+    spans = found["transmission_error_span_um"].values[:, 0]
+    assert ranked == [2.0, 6.0, -1.0] if spans[0] < spans[2] else [6.0, 2.0, -1.0]
     assert load_result("out/study_maps/2.nc").scene.pinion.modifications.lead_crowning_um == 6.0
 
 
@@ -55,6 +62,7 @@ def test_workers_find_what_one_process_finds(study):
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
+        (["--rank-by", "peak_pressure"], 'peak_pressure: no figure of the study; did you mean "peak_pressure_MPa"?'),
         (["--workers", "0"], "workers: found 0; allowed a whole number from 1 on"),
         (["--keep-maps", "9"], "keep_maps: [9] are not variants 0 to 1"),
         (["--keep-maps", "a"], "allowed whole numbers with commas between them, as 0,12"),
@@ -64,7 +72,7 @@ def test_workers_find_what_one_process_finds(study):
 def test_wrong_options_are_bad_input(study, capsys, arguments, told):
     assert cli.main(["study", study([2.0, 6.0]), "--out", "out", *arguments]) == 2
     assert told in capsys.readouterr().err
-    assert not os.path.exists("out/study.nc")
+    assert not os.path.exists("out/study.csv")
 
 
 def test_wrong_study_is_told_before_anything_is_written(study, capsys):
