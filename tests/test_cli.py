@@ -411,10 +411,10 @@ def test_progress_counts_torques_and_positions(monkeypatch):
 
 def test_estimate_is_told_on_a_terminal_and_where_an_analysis_is_long(run, monkeypatch):
     assert run("run", scene(), "--out", "out")[2] == []
-    monkeypatch.setattr(cli, "WORTH_TELLING", 0.0)
+    monkeypatch.setattr(cli.terminal, "WORTH_TELLING", 0.0)
     (told,) = run("run", scene(), "--out", "out")[2]
     assert told.startswith("loaded-tca: 3 contacts of 256 cells: roughly 0.03")
-    monkeypatch.setattr(cli, "WORTH_TELLING", math.inf)
+    monkeypatch.setattr(cli.terminal, "WORTH_TELLING", math.inf)
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
     assert cli.main(["run", str(scene()), "--out", "out"]) == 0
@@ -430,7 +430,7 @@ def test_bar_is_drawn_again_while_a_contact_takes_long(monkeypatch):
             time.sleep(0.01)
         raise GeometryError("enough")
 
-    monkeypatch.setattr(cli, "TICK", 0.02)
+    monkeypatch.setattr(cli.terminal, "TICK", 0.02)
     monkeypatch.setattr(loaded_tca.analysis, "analyse", analyse)
     monkeypatch.setattr(sys, "stderr", terminal)
     assert cli.main(["run", str(scene()), "--out", "out"]) == 2

@@ -1,0 +1,76 @@
+"""The command ``loaded-tca``: a scene file in; results, pictures or one line that says what is wrong out.
+
+Exit codes: 0; 1 a fault of the program; 2 bad input; 3 no convergence; 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import io
+import sys
+import traceback
+from collections.abc import Sequence
+
+from loaded_tca.cli.arguments import command_line
+from loaded_tca.cli.commands import DEMO_SCENE
+from loaded_tca.cli.terminal import flush, let_go, say, warnings_in_one_line_each
+from loaded_tca.errors import ConvergenceError, ExecutorError, InputError, LoadedTCAError, reason_of
+
+__all__ = ["DEMO_SCENE", "main"]
+
+OK, FAULT, BAD_INPUT, NO_CONVERGENCE, INTERRUPTED = 0, 1, 2, 3, 130
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Default: those of the process.
+
+    Returns
+    -------
+    int
+        The exit code.
+    """
+    arguments = list(sys.argv[1:] if arguments is None else arguments)
+    if isinstance(sys.stdout, io.TextIOWrapper):  # titles may hold characters that the terminal does not know
+        sys.stdout.reconfigure(errors="backslashreplace")
+    try:
+        with warnings_in_one_line_each():
+            options = command_line().parse_args(arguments)
+            options.command(options)
+            flush()
+    except (Exception, KeyboardInterrupt) as error:  # whatever happens ends in one line
+        if "--traceback" in arguments and not isinstance(error, KeyboardInterrupt | BrokenPipeError):
+            traceback.print_exc()
+        if isinstance(error, OSError) and error.filename is None:
+            let_go(sys.stdout)
+        code, lines = _told(error)
+        for line in (*lines, *getattr(error, "__notes__", ())):
+            say(f"loaded-tca: {line}")
+        return code
+    return OK
+
+
+def _told(error: BaseException) -> tuple[int, list[str]]:
+    """Exit code and lines of an error."""
+    if isinstance(error, KeyboardInterrupt):
+        return INTERRUPTED, ["interrupted; no file is half written"]
+    if isinstance(error, BrokenPipeError):  # whoever read the output has closed it
+        return OK, []
+    if isinstance(error, OSError):  # what the package writes tells by itself what cannot be written
+        return BAD_INPUT, [f"{error.filename or 'standard output: cannot be written'}: {reason_of(error)}"]
+    if isinstance(error, ExecutorError):
+        return FAULT, [str(error)]
+    if isinstance(error, ConvergenceError):
+        return NO_CONVERGENCE, str(error).splitlines()
+    if isinstance(error, LoadedTCAError):
+        problems = error.problems if isinstance(error, InputError) else (str(error),)
+        return BAD_INPUT, [" ".join(problem.split()) for problem in problems]
+    if isinstance(error, MemoryError):
+        return BAD_INPUT, [
+            "out of memory; ask for fewer analysis.cells, a larger analysis.accuracy, or fewer positions"
+        ]
+    what = f"{type(error).__name__}: {error}".splitlines()[0]
+    return FAULT, [f"a fault of the program, please report it with the output of --traceback: {what}"]

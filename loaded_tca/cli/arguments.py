@@ -1,0 +1,193 @@
+"""The command line: what each command takes, and its help."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+from typing import NoReturn
+
+from loaded_tca.cli import commands as run_by
+from loaded_tca.cli.terminal import flush
+from loaded_tca.errors import InputError
+
+DESCRIPTION = "Loaded tooth contact analysis of gears."
+FILES = """files in DIR:
+  result.nc                 everything, to be read by loaded_tca.load_result, xarray or 'loaded-tca plot'
+  summary.json              the key figures
+  positions.csv             one row per torque and position
+  contacts.csv              one row per torque, position and tooth pair, only where pairs share the load
+  contact_path.png          where the flanks carry pressure, under the largest torque
+  transmission_error.png    over the positions, all torques
+  peak_pressure.png         over the positions, all torques
+  pressure_map.png          at the position of the peak pressure, under the largest torque
+  pressure_map_edge.png     only if a contact at another position has the highest edge pressure
+  pressure_map_hertz.png    only if Hertz holds, but not where the peak pressure is
+and where tooth pairs share the load
+  load_share.png            of each tooth pair, all torques
+  harmonics.png             orders of the tooth mesh in the transmission error, all torques
+  mesh_stiffness.png        over the positions, all torques
+  line_load.png             over the positions, all torques
+  line_load_distribution.png    along the contacts on the flanks, under the largest torque
+  pressure_envelope.png     the highest pressure on the flanks, under the largest torque
+  path_pressure.png         from the begin to the end of contact, all torques
+and, only with 'plot --all'
+  contact_patterns.png      the highest pressure on the flanks under each of several torques, on one scale
+  full_mesh.png             all tooth pairs at the position of pressure_map.png on the flanks
+Pictures of these names that the result does not have are removed; docs/results.md says more."""
+TEETH = """files in DIR:
+  pinion.vtk, wheel.vtk     the teeth in contact, in the fixed frame; "patch" tells flanks, fillets and lands apart
+  pressure.vtk              the cells under pressure on the pinion's flank, in MPa
+  pinion.stl, wheel.stl     closed solids, each in its gear's own frame
+  teeth.png                 a picture of all that
+All lengths are in mm."""
+COMPARE = """files in DIR:
+  comparison.csv            one row per shared torque and key figure: values, differences to the first result
+  comparison.json           the same, and the keys in which the scenes differ
+  comparison.png            transmission error, its harmonics, stiffness, pressure and load share, over each other
+  compared_maps.png         pressure maps side by side on one scale
+Pictures are those of one torque; docs/results.md says more."""
+EASE_OFF = """files in DIR:
+  ease_off.png              what the flank lacks of the conjugate of its mating flank, in um, with the values at its
+                            corners, and its angles, crownings and twist"""
+SUBSURFACE = """files in DIR:
+  subsurface.nc             six stresses, von Mises and greatest shear, at every depth below every cell of the map
+  subsurface.csv            the same over the depth, below the highest pressure
+  subsurface_max_shear.png, subsurface_von_mises.png
+Stresses in MPa, tension positive, of a half-space without friction; docs/results.md says more."""
+STUDY = """files in DIR:
+  study.nc                  all figures of all variants, to be read by loaded_tca.studies.load_study or xarray
+  study.csv                 the same, one row per variant and torque
+  ranking.csv               one row per variant, the best by --rank-by first
+  study_*.png               pictures that fit what varies
+  study.rows.jsonl          the variants that are done; the same command goes on from there
+  study_maps/N.nc           whole results of the variants asked for by --keep-maps, as of 'loaded-tca run'"""
+EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
+
+
+def command_line() -> argparse.ArgumentParser:
+    """Return what reads the command line; the namespace it makes has the ``command`` to call with it."""
+    common = _Parser(add_help=False)
+    common.add_argument("--traceback", action="store_true", default=argparse.SUPPRESS, help="show where an error arose")
+    parser = _Parser("loaded-tca", description=DESCRIPTION, epilog=EXAMPLE, parents=[common])
+    parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
+    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+
+    def command(
+        name: str, run: Callable[[argparse.Namespace], None], text: str, epilog: str | None = FILES
+    ) -> argparse.ArgumentParser:
+        layout = argparse.RawDescriptionHelpFormatter
+        added = commands.add_parser(
+            name, help=text, description=text, epilog=epilog, formatter_class=layout, parents=[common]
+        )
+        added.set_defaults(command=run)
+        return added
+
+    demo = command("demo", run_by.demo, "analyse a helical pair; writes its scene file too")
+    place = run_by.DEMO_DIRECTORY
+    demo.add_argument("--out", metavar="DIR", type=_path, default=place, help=f"default: ./{place}")
+    run = command("run", run_by.run, "analyse a scene; writes result.nc, summary.json, positions.csv and pictures")
+    _add_scene(run)
+    run.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
+    own = "beside the result; with options that choose a part of it, in a directory there that these name"
+    peak = "default: that of the peak pressure of the summary"
+    plot = command("plot", run_by.plot, "draw the pictures of a result again")
+    told = "write the complete teeth of a result as surfaces (VTK, STL) and as a picture"
+    tooth = command("tooth", run_by.tooth, told, TEETH)
+    below = command("subsurface", run_by.subsurface, "show the stresses below a pressure map of a result", SUBSURFACE)
+    for reader, of_torque, of_position in (
+        (plot, "pinion torque of maps and flanks", "pressure_map.png"),
+        (tooth, "pinion torque of the pressure", "the teeth"),
+        (below, "pinion torque", "the pressure map"),
+    ):
+        reader.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
+        reader.add_argument("--out", metavar="DIR", type=_path, help=f"directory for the files; default: {own}")
+        reader.add_argument("--torque", metavar="NM", type=float, help=f"{of_torque}; default: largest")
+        reader.add_argument("--position", metavar="N", type=int, help=f"position of {of_position}, from 1; {peak}")
+    plot.add_argument("--all", action="store_true", help="draw contact_patterns.png and full_mesh.png too")
+    tooth.add_argument("--fillet-radius", metavar="MM", type=float, help="of arcs at the root; default: by the module")
+    tooth.add_argument("--whole-gears", action="store_true", help="all teeth in the STL files, not one")
+    below.add_argument("--pair", metavar="K", type=int, help=f"tooth pair, as load_share.png counts; {peak}")
+    below.add_argument(
+        "--gear", choices=("pinion", "wheel"), default="pinion", help="below whose flank; default: pinion"
+    )
+    compare = command("compare", run_by.compare, "show what two or more results differ in", COMPARE)
+    compare.add_argument(
+        "results", metavar="DIR|FILE", nargs="+", type=_path, help="results; the first is what others are compared with"
+    )
+    compare.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the files")
+    compare.add_argument("--names", metavar="NAME", nargs="+", help="of the results; default: from their directories")
+    compare.add_argument("--torque", metavar="NM", type=float, help="pinion torque of the pictures; default: largest")
+    compare.add_argument(
+        "--position", metavar="N", type=int, help="position of the maps in the first result, from 1; default: own peaks"
+    )
+    ease_off = command("ease-off", run_by.ease_off, "draw the ease-off of a scene, without load", EASE_OFF)
+    _add_scene(ease_off)
+    ease_off.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the picture")
+    ease_off.add_argument("--gear", choices=("pinion", "wheel"), default="pinion", help="whose flank; default: pinion")
+    study = command(
+        "study", run_by.study, "analyse the variants of a study file; run again, it goes on where it stopped", STUDY
+    )
+    study.add_argument("study", metavar="STUDY.toml", help="study file")
+    study.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
+    engine = study.add_mutually_exclusive_group()
+    engine.add_argument("--workers", metavar="N", type=int, help="processes on this machine; default: this one alone")
+    engine.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, as tcp://host:8786")
+    study.add_argument("--rank-by", metavar="FIGURE", help="figure of study.csv, the least is best; default: TE span")
+    study.add_argument(
+        "--keep-maps",
+        metavar="N,N,...",
+        type=_numbers,
+        default=(),
+        help="variants, from 0, whose results are kept whole",
+    )
+    check = command("check", run_by.check, "read a scene and show its geometry, without computing a contact", None)
+    _add_scene(check)
+    return parser
+
+
+class _Parser(argparse.ArgumentParser):
+    """Tells a wrong command line, and help that cannot be shown, as any other bad input."""
+
+    def error(self, message: str) -> NoReturn:
+        raise InputError(f"{message}; see '{self.prog} --help'")
+
+    def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
+        flush()
+        super().exit(status, message)
+
+
+class _Version(argparse.Action):
+    """Looks the version up only when asked."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        from importlib.metadata import version
+
+        print(f"loaded-tca {version('loaded_tca')}")
+        parser.exit()
+
+
+def _path(text: str) -> Path:
+    if not text:
+        raise argparse.ArgumentTypeError("the name is empty; '.' is the directory that you are in")
+    return Path(text)
+
+
+def _numbers(text: str) -> tuple[int, ...]:
+    if not all(part.isdecimal() for part in text.split(",")):
+        raise argparse.ArgumentTypeError(f"{text}: allowed whole numbers with commas between them, as 0,12")
+    return tuple(map(int, text.split(",")))
+
+
+def _add_scene(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("scene", metavar="SCENE.toml", help="scene file")
+    text = "another value of a key, for instance pinion.teeth=21; may be given again for other keys"
+    parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], type=_change, help=text)
+
+
+def _change(text: str) -> tuple[str, str]:
+    """Key and value, as text, of a change of a scene."""
+    key, equals, value = (part.strip() for part in text.partition("="))
+    if not key or not equals:
+        raise argparse.ArgumentTypeError(f"{text!r:.60} is not KEY=VALUE, for instance pinion.teeth=21")
+    return key, value

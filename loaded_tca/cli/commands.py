@@ -1,0 +1,157 @@
+"""The commands: each reads, has it computed, writes its files and says what it has written."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from loaded_tca.cli.named import (
+    check_place,
+    ends_that_differ,
+    executor_of,
+    index_of_position,
+    result_file,
+    result_of,
+    scene_of,
+)
+from loaded_tca.cli.terminal import STUDY_BAR, bar_of, print_files, progress_bar
+from loaded_tca.errors import InputError
+
+# The modules that compute and draw take most of a second to import: each command imports what it needs.
+
+DEMO_DIRECTORY = Path("loaded-tca-demo")
+DEMO_SCENE = Path(__file__).parents[1] / "demo.toml"
+
+
+def demo(options: argparse.Namespace) -> None:
+    """Write the scene file of the demo and run it."""
+    from loaded_tca.results.files import replace_together
+
+    directory = options.out
+    check_place(directory)
+    scene, content = directory / "scene.toml", DEMO_SCENE.read_bytes()
+    if scene.exists() and scene.read_bytes() != content:
+        again = f"'loaded-tca run {scene} --out {directory}'"
+        raise InputError(f"{scene}: has been changed, and the demo would replace it; rename it, or use {again}")
+    replace_together(directory, {scene.name: content})
+    run(argparse.Namespace(scene=scene, set=[], out=directory))
+    print(f"Next: change {scene}, for instance its lead_crowning_um, then try\n")
+    print(f"  loaded-tca run {scene} --out my-pair")
+
+
+def run(options: argparse.Namespace) -> None:
+    """Read, analyse, write everything, and show the summary."""
+    from loaded_tca.analysis import analyse
+    from loaded_tca.output.report import write_report
+    from loaded_tca.plots import MORE_PICTURES, PICTURES, plot_all
+
+    scene, directory = scene_of(options), options.out
+    check_place(directory)
+    with progress_bar(scene) as progress:
+        result = analyse(scene, progress=progress)
+    report = write_report(result, directory, outdated=[f"{name}.png" for name in (*PICTURES, *MORE_PICTURES)])
+    try:
+        pictures = plot_all(result, directory)
+    except BaseException as error:  # an interrupt, too
+        again = f"'loaded-tca plot {directory}' draws them"
+        error.add_note(f"{directory}: the numbers are new, all pictures are missing: {again}")
+        raise
+    print(result.summary(), end="\n\n")
+    print_files([*report, *pictures])
+
+
+def plot(options: argparse.Namespace) -> None:
+    """Draw the pictures of a result again."""
+    from loaded_tca.plots import plot_all
+
+    result, directory, torque, position = result_of(options)
+    print_files(plot_all(result, directory, torque=torque, position=position, more=options.all))
+
+
+def tooth(options: argparse.Namespace) -> None:
+    """Write the complete teeth of a result, and a picture of them."""
+    from loaded_tca.output.surface_files import write_teeth
+    from loaded_tca.output.teeth_in_space import teeth_in_space
+    from loaded_tca.pairs import mating_teeth
+    from loaded_tca.plots import draw_teeth, png_of
+
+    result, directory, torque, position = result_of(options)
+    teeth = mating_teeth(result.gear_pair, fillet_radius=options.fillet_radius)
+    shown = teeth_in_space(result, teeth, position, torque)
+    picture = {"teeth.png": png_of(draw_teeth(result, shown))}
+    title = result.scene.title
+    print_files(write_teeth(shown, teeth, directory, title=title, whole_gears=options.whole_gears, more=picture))
+
+
+def subsurface(options: argparse.Namespace) -> None:
+    """Write the stresses below a pressure map, and pictures of them."""
+    from loaded_tca.output.subsurface_files import write_subsurface
+    from loaded_tca.plots import plot_stress_below, png_of
+    from loaded_tca.results.stress_below import NAMES, stress_below
+
+    result, directory, torque, position = result_of(options)
+    below = stress_below(result, torque, position, options.pair, gear=options.gear)
+    pictures = {f"subsurface_{quantity}.png": png_of(plot_stress_below(below, quantity)) for quantity in NAMES}
+    written = write_subsurface(below, directory, pictures)
+    print(below.summary(), end="\n\n")
+    print_files(written)
+
+
+def compare(options: argparse.Namespace) -> None:
+    """Show what results differ in."""
+    from loaded_tca.output.comparison_files import write_comparison
+    from loaded_tca.plots import plot_compared_maps, plot_comparison, png_of
+    from loaded_tca.results import MeshCycle, compare_results
+
+    check_place(options.out)
+    paths = [result_file(path) for path in options.results]
+    names = options.names or ends_that_differ(paths)
+    if len(names) != len(paths) or len(set(names)) != len(names):
+        raise InputError(f"--names {' '.join(names)}: {len(paths)} results take as many names, each another")
+    comparison = compare_results(dict(zip(names, map(MeshCycle.load, paths), strict=True)))
+    torque = None if options.torque is None else 1e3 * options.torque
+    position = index_of_position(options.position, comparison.results[names[0]])
+    summary = comparison.summary(torque)
+    pictures = {
+        "comparison.png": png_of(plot_comparison(comparison, torque)),
+        "compared_maps.png": png_of(plot_compared_maps(comparison, torque, position)),
+    }
+    written = write_comparison(comparison, options.out, pictures)
+    print(summary, end="\n\n")
+    print_files(written)
+
+
+def ease_off(options: argparse.Namespace) -> None:
+    """Draw the ease-off of a scene."""
+    from loaded_tca.flank_maps.ease_off_map import ease_off_map
+    from loaded_tca.plots import plot_ease_off, png_of
+    from loaded_tca.results.files import replace_together
+
+    scene = scene_of(options)
+    check_place(options.out)
+    ease_off = ease_off_map(scene.pair(), options.gear)
+    picture = png_of(plot_ease_off(ease_off, scene.title))
+    print_files(replace_together(options.out, {"ease_off.png": picture}))
+
+
+def study(options: argparse.Namespace) -> None:
+    """Analyse what is missing of a study, write its tables and pictures, and show the summary."""
+    from loaded_tca.output.study_files import write_study
+    from loaded_tca.plots import plot_study, png_of
+    from loaded_tca.studies import read_study, run_study, study_summary
+
+    study, directory = read_study(options.study), options.out
+    check_place(directory)
+    with executor_of(options) as executor, bar_of("variants", len(study), STUDY_BAR) as show:
+        found = run_study(study, executor, directory / "study.nc", show, keep_maps=options.keep_maps)
+    pictures = {f"{name}.png": png_of(figure) for name, figure in plot_study(found, rank_by=options.rank_by).items()}
+    written = write_study(found, directory, pictures, options.rank_by)
+    print(study_summary(found), end="\n\n")
+    print_files([directory / "study.nc", *written])
+
+
+def check(options: argparse.Namespace) -> None:
+    """Show the geometry of a scene."""
+    from loaded_tca.output.overview import describe_scene
+
+    print(describe_scene(scene_of(options)))

@@ -1,0 +1,124 @@
+"""What the command line names: scenes with their changes, results, directories, engines of studies."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from loaded_tca.errors import InputError, reason_of
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    from loaded_tca.results.mesh_cycle import MeshCycle
+    from loaded_tca.scene import Scene
+
+REACHED_WITHIN = 10.0
+"""Seconds for a scheduler to answer."""
+
+
+def scene_of(options: argparse.Namespace) -> Scene:
+    """The scene that the command line names, with its changes."""
+    from loaded_tca.scene import read_scene
+    from loaded_tca.scene.parse import literal_value
+
+    scene = read_scene(options.scene)
+    changes = {key: literal_value(value) for key, value in options.set}
+    return scene.with_changes(changes) if changes else scene
+
+
+def result_of(options: argparse.Namespace) -> tuple[MeshCycle, Path, int | None, int | None]:
+    """What the command line names: the result, the directory to write to, and indices of the torque and position."""
+    from loaded_tca.results.mesh_cycle import MeshCycle
+
+    path = result_file(options.result)
+    result = MeshCycle.load(path)
+    torque = options.torque
+    if torque is not None:
+        known = [f"{1e-3 * float(one):.6g}" for one in result.torque]
+        if f"{torque:.6g}" not in known:
+            raise InputError(f"--torque {torque:g}: the result has {', '.join(known)} N m")
+        torque = known.index(f"{torque:.6g}")
+    position = index_of_position(options.position, result)
+    chosen = {"torque_{:g}_Nm": options.torque, "position_{}": options.position}
+    chosen |= {"pair_{}": getattr(options, "pair", None), "below_{}": getattr(options, "gear", None)}
+    names = [name.format(value) for name, value in chosen.items() if value not in (None, "pinion")]
+    directory = options.out or path.parent / "_".join(names)  # files of a part do not replace those of the whole
+    check_place(directory)
+    return result, directory, torque, position
+
+
+def result_file(path: Path) -> Path:
+    """The file of a result that is named by itself or by its directory."""
+    from loaded_tca.output.report import RESULT
+
+    return path / RESULT if os.path.isdir(path) else path
+
+
+def index_of_position(position: int | None, result: MeshCycle) -> int | None:
+    """Index from 0 of a position of a result that is in contact, given from 1."""
+    if position is None:
+        return None
+    if not 1 <= position <= len(result.path):
+        raise InputError(f"--position {position}: the result has the positions 1 to {len(result.path)}")
+    if not result.path.in_contact[position - 1]:
+        raise InputError(f"--position {position}: no tooth pair is in contact there")
+    return position - 1
+
+
+def ends_that_differ(paths: Sequence[Path]) -> list[str]:
+    """Shortest ends of the paths of results, without the usual name of their files, that tell them apart."""
+    from loaded_tca.output.report import RESULT
+
+    whole = [Path(os.path.abspath(path)) for path in paths]
+    for one in whole:
+        if whole.count(one) > 1:
+            raise InputError(f"{one}: given twice; a comparison takes different results")
+    parts = [(one.parent if one.name == RESULT else one.with_suffix("")).parts for one in whole]
+    longest = max(map(len, parts))
+    ends = (["/".join(part[-length:]) for part in parts] for length in range(1, longest + 1))
+    return next((names for names in ends if len(set(names)) == len(names)), [str(one) for one in whole])
+
+
+def check_place(directory: Path) -> None:
+    """Refuse a directory that cannot be written before the analysis rather than after it; makes nothing."""
+    whole = directory.absolute()
+    existing = next(place for place in (whole, *whole.parents) if os.path.lexists(place))
+    if not os.path.isdir(existing):
+        what = "a link that leads nowhere" if existing.is_symlink() else "a file"
+        raise InputError(f"--out {directory}: {existing} is {what}; give a directory")
+    if not os.access(existing, os.W_OK):
+        raise InputError(f"--out {directory}: {existing} cannot be written to; give another directory")
+    for place in (whole, *(existing / name for name in whole.relative_to(existing).parts)):
+        try:
+            with suppress(FileNotFoundError):
+                place.lstat()
+        except OSError as error:  # a name that is too long
+            raise InputError(f"--out {directory}: cannot be made a directory: {reason_of(error)}") from error
+
+
+@contextmanager
+def executor_of(options: argparse.Namespace) -> Iterator[Executor | None]:
+    """Who analyses: processes of this machine, those of a cluster, or nobody else."""
+    from loaded_tca.studies import process_pool
+
+    if options.workers is not None:
+        with process_pool(options.workers) as pool:
+            yield pool
+    elif options.scheduler is not None:
+        try:
+            from distributed import Client
+        except ModuleNotFoundError:
+            raise InputError("--scheduler: needs the package distributed; 'pip install distributed' gets it") from None
+        try:
+            client = Client(options.scheduler, timeout=REACHED_WITHIN)  # type: ignore[no-untyped-call]
+        except (OSError, ValueError) as error:
+            raise InputError(f"--scheduler {options.scheduler}: not reached: {reason_of(error)}") from None
+        with client:
+            yield client.get_executor(pure=False)  # type: ignore[no-untyped-call]
+    else:
+        yield None

@@ -1,0 +1,114 @@
+"""What the command shows on a terminal: lines, bars, warnings, and whatever goes wrong."""
+
+from __future__ import annotations
+
+import os
+import sys
+import warnings
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from threading import Event, Thread
+from typing import TYPE_CHECKING, TextIO
+
+if TYPE_CHECKING:
+    from loaded_tca.scene import Scene
+
+BAR = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt}, {elapsed} gone, {remaining} left"
+STUDY_BAR = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt}, {rate_fmt}, {elapsed} gone, {remaining} left"
+NOT_BY_ITSELF = 1e-9
+"""Delay [s] of a bar that does not draw itself while it is made."""
+TICK = 1.0
+"""Seconds after which a bar is drawn again, also where one contact takes longer."""
+WORTH_TELLING = 10.0
+"""Seconds from which an estimate is told where there is no terminal, too."""
+
+
+def flush() -> None:
+    """Write what was printed, while a failure can still be told."""
+    if sys.stdout is not None:  # closed from the start
+        sys.stdout.flush()
+
+
+def let_go(stream: TextIO | None) -> None:
+    """Give up a stream that cannot be written: what it holds would fail again when the interpreter ends."""
+    if stream is not None:
+        with suppress(OSError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+def say(line: str) -> None:
+    """Print a line on standard error, if that can be written."""
+    if sys.stderr is not None:
+        try:
+            print(line, file=sys.stderr)
+        except OSError:
+            let_go(sys.stderr)
+
+
+def print_files(paths: Sequence[Path]) -> None:
+    """Say which files were written, all in one directory."""
+    print(f"Written to {paths[0].parent}: {', '.join(path.name for path in paths)}")
+
+
+@contextmanager
+def progress_bar(scene: Scene) -> Iterator[Callable[[int, int], None] | None]:
+    """An estimate of the analysis and, on a terminal, a bar with what is done, of how much, and the time left.
+
+    In a file or a pipe there is no bar, and an estimate only of an analysis that is long or exceeds the memory. The bar
+    is there from the start, before the first position teeth that bend are modelled, and shows the time all along.
+    """
+    from loaded_tca.loaded.effort import expected_effort
+
+    effort, terminal = expected_effort(scene), sys.stderr is not None and sys.stderr.isatty()
+    if not effort.is_refused and (terminal or effort.seconds > WORTH_TELLING or not effort.fits):
+        say(f"loaded-tca: {effort}")
+    torques, positions = len(scene.torques), scene.analysis.positions
+    count = "positions" if torques == 1 else f"{torques} torques x {positions} positions"
+    with bar_of(count, torques * positions, BAR) as show:
+        yield show
+
+
+@contextmanager
+def bar_of(what: str, whole: int, layout: str) -> Iterator[Callable[..., None] | None]:
+    """On a terminal, a bar with what is done, of how much, and the time left: called with both, and failures."""
+    if sys.stderr is None or not sys.stderr.isatty():
+        yield None
+        return
+    from tqdm import tqdm
+
+    with tqdm(desc=what, total=whole, bar_format=layout, delay=NOT_BY_ITSELF) as bar:
+        bar.refresh()  # drawn only where an interrupt ends its line
+        finished = Event()
+
+        def tick() -> None:
+            while not finished.wait(TICK):
+                bar.refresh()
+
+        def show(done: int, total: int, failed: int = 0) -> None:
+            if failed:
+                bar.set_description_str(f"{what} ({failed} failed)", refresh=False)
+            bar.total = total
+            bar.update(done - bar.n)
+
+        ticking = Thread(target=tick, daemon=True)
+        ticking.start()
+        try:
+            yield show
+        finally:
+            finished.set()
+            ticking.join()
+
+
+@contextmanager
+def warnings_in_one_line_each() -> Iterator[None]:
+    """Collect warnings and tell each once, with its count, also if an error follows."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        warnings.simplefilter("ignore", ResourceWarning)  # files that an interrupt leaves open
+        try:
+            yield
+        finally:
+            for message, count in Counter(" ".join(str(entry.message).split()) for entry in caught).items():
+                say(f"warning: {message}" + (f" ({count} times)" if count > 1 else ""))
