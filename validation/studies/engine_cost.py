@@ -83,7 +83,7 @@ def cluster(stack: ExitStack) -> Executor:
     """Two workers of one thread each behind a scheduler."""
     from distributed import Client, LocalCluster
 
-    local = stack.enter_context(LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None))
+    local = stack.enter_context(LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0"))
     executor: Executor = stack.enter_context(Client(local)).get_executor(pure=False)
     return executor
 
