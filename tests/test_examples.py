@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import trace_contact
 from loaded_tca.scene import read_scene
-from loaded_tca.studies import read_study
+from loaded_tca.studies import load_study, read_study
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 
@@ -51,6 +51,13 @@ def test_example_gives_its_number_and_its_picture(name, tmp_path, monkeypatch):
     number, tolerance = EXPECTED[name]
     assert loaded(EXAMPLES / f"{name}.py").main() == pytest.approx(number, abs=tolerance)
     assert [path.name for path in tmp_path.iterdir()] == [f"{name.removeprefix('plot_')}.png"]
+
+
+def test_study_on_a_cluster_follows_hertz(tmp_path, monkeypatch):
+    """Eight times the load: twice the pressure."""
+    monkeypatch.chdir(tmp_path)
+    assert loaded(EXAMPLES / "study_on_dask.py").main() == pytest.approx(2.0, abs=5e-3)  # the flanks bend a little
+    assert (load_study("study_on_dask.nc")["status"] == "ok").all()
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda path: path.stem)

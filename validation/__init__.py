@@ -8,6 +8,7 @@
 | `bevel` | straight and spiral bevel pairs: blanks, three methods, mounting errors, pressure |
 | `face_milled` | face-milled pairs: machine settings, contact, the bidirectional start |
 | `loaded` | the loaded mesh cycle: limits and speed |
+| `studies` | studies: what their engine costs, and how far it carries |
 | `calculix` | runs of CalculiX, the numbers kept of them, and the loaded mesh cycle beside them |
 
 ``python -m validation`` prints the rows of all comparisons in one table; a script that writes a page of
