@@ -24,7 +24,7 @@ from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.plots.envelope import pressure_seen
 from loaded_tca.plots.flanks import FINENESS, loaded_maps, picture_of
 from loaded_tca.plots.labels import label_of
-from loaded_tca.plots.study import told_of_variants
+from loaded_tca.plots.study_panels import told_of_variants
 from loaded_tca.plots.style import ACCENT, COLOURS, NOT_REACHED, highest_torque, load
 from loaded_tca.results import MeshCycle, load_result
 from loaded_tca.results.files import FilePath

@@ -1,0 +1,176 @@
+"""What pictures of a study have in common: columns and groups of variants, panels, lines, titles."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import InputError
+from loaded_tca.plots import style
+from loaded_tca.plots.style import ACCENT, COLOURS, MARKERS, MOST_LABELS
+from loaded_tca.scene.parse import toml_table
+from loaded_tca.studies.ranking import figure_values, varied_keys
+
+if TYPE_CHECKING:
+    import xarray
+
+TORQUE = "pinion_torque_Nm"
+PERCENTILES = (0.05, 0.5, 0.95)
+MISSING = "refused, not converged or without this figure"
+NOTHING = "no variant has this figure"
+MOST_PANELS = 4
+"""Torques with a panel each."""
+SAME = 1e-6
+"""Part of a value below which differences are rounding."""
+
+
+def known_key(study: xarray.Dataset, key: str) -> str:
+    """Return a key that the study varies; InputError for any other."""
+    known = varied_keys(study)
+    if key not in known:
+        raise InputError(f"{key}: not varied in the study; allowed {', '.join(known)}")
+    return key
+
+
+def column_of(study: xarray.Dataset, key: str) -> tuple[Array, list[str] | None]:
+    """Values (samples,) of a key; of words their places in the order of the alphabet, and the words."""
+    values = study[known_key(study, key)].values
+    if values.dtype.kind in "if":
+        return values.astype(float), None
+    words, places = np.unique(values, return_inverse=True)
+    return places.astype(float), [str(word) for word in words]
+
+
+def steps_of(study: xarray.Dataset, key: str) -> tuple[Array, list[str]]:
+    """Which of its values, in ascending order, a key has in each sample, and the values as text."""
+    column, words = column_of(study, key)
+    steps, places = np.unique(column, return_inverse=True)
+    return places, words or [f"{step:.5g}" for step in steps]
+
+
+def groups_of(study: xarray.Dataset, keys: Sequence[str]) -> list[tuple[str, Array]]:
+    """Values of some keys as text, and the samples (n,) that have them, for each combination; all without a key."""
+    places, texts = zip(*(steps_of(study, key) for key in keys), strict=True) if keys else ((), ())
+    if not keys:
+        return [("", np.ones(study.sizes["sample"], dtype=bool))]
+    combinations = np.unique(np.stack(places, axis=1), axis=0)
+    return [
+        (", ".join(text[k] for text, k in zip(texts, one, strict=True)), (np.stack(places, axis=1) == one).all(axis=1))
+        for one in combinations.tolist()
+    ]
+
+
+def percentiles_of(values: Array) -> Array:
+    """Percentiles (3,) of the finite values, NaN without one."""
+    known = values[np.isfinite(values)]
+    return np.quantile(known, PERCENTILES) if known.size else np.full(len(PERCENTILES), math.nan)
+
+
+def shown_torques(study: xarray.Dataset) -> list[int]:
+    """Indices of all torques, of many some spread evenly from the first to the last."""
+    count = study.sizes["torque"]
+    return np.unique(np.linspace(0, count - 1, min(count, MOST_PANELS)).round().astype(int)).tolist()
+
+
+def torque_labels(study: xarray.Dataset) -> list[str]:
+    """What is said of each torque; where it is not the same in all variants, which of several it is."""
+    count = study.sizes["torque"]
+    torques = figure_values(study, TORQUE) if TORQUE in study else np.full((1, count), np.nan)
+    columns = (np.unique(column[np.isfinite(column)]) for column in torques.T)
+    numbered = [f"torque {k + 1} of {count}" if count > 1 else "" for k in range(count)]
+    return [
+        f"pinion torque {one[0]:.4g} N m" if len(one) == 1 else number
+        for one, number in zip(columns, numbered, strict=True)
+    ]
+
+
+def under_torques(study: xarray.Dataset, shown: Sequence[int]) -> str:
+    """What a title says of the torques: the only one, or that some have no panel."""
+    count = study.sizes["torque"]
+    if count == 1:
+        return "".join(f", {label}" for label in torque_labels(study) if label)
+    return f", {len(shown)} of {count} torques" if len(shown) < count else ""
+
+
+def styles_of(labels: Sequence[str]) -> Iterator[tuple[str, str, str]]:
+    """Label, colour and marker of each line; of many only some keep their label."""
+    every = math.ceil(len(labels) / MOST_LABELS)
+    for k, label in enumerate(labels):
+        shade = 0.15 + 0.7 * k / max(1, len(labels) - 1)
+        shown = label if label and k % every == 0 else "_unlabelled"
+        yield shown, to_hex(colormaps[COLOURS](shade)), MARKERS[k % len(MARKERS)]
+
+
+def panels_of(count: int, size: tuple[float, float]) -> tuple[Figure, list[Axes]]:
+    """A figure with panels of a size [inch], two in a row."""
+    rows, columns = math.ceil(count / 2), min(count, 2)
+    drawing = Figure(figsize=(columns * size[0], 0.8 + rows * size[1]), layout="constrained")
+    axes = drawing.subplots(rows, columns, squeeze=False).ravel().tolist()
+    for spare in axes[count:]:
+        spare.set_visible(False)
+    return drawing, axes[:count]
+
+
+def finish_panel(axes: Axes, values: Array, title: str, vertical: bool = True) -> None:
+    """Grid, title, and a word where nothing is known; a vertical axis that does not blow up rounding."""
+    known = np.abs(values[np.isfinite(values)])
+    axes.grid(alpha=0.3)
+    axes.set_title(title, fontsize="small")
+    if not known.size:
+        style.tell(axes, NOTHING)
+    elif vertical:
+        style.widen(axes, SAME * float(known.max()))
+
+
+def mark_missing(axes: Axes, places: Array) -> None:
+    """Crosses at the lower end of a panel where variants have no figure."""
+    if places.size:
+        heights = np.full(len(places), 0.03)
+        axes.plot(places, heights, "x", color=ACCENT, transform=axes.get_xaxis_transform(), label=MISSING)
+
+
+def legend_of(drawing: Figure, panels: Sequence[Axes], title: str) -> None:
+    """Legend below all panels; none where there is but one line."""
+    shown = {label: handle for axes in panels for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)}
+    if len(shown) > 1 or title or MISSING in shown:
+        drawing.legend(
+            shown.values(),
+            shown.keys(),
+            title=title or None,
+            loc="outside lower center",
+            ncols=4,
+            fontsize="small",
+            title_fontsize="small",
+        )
+
+
+def told_of_variants(study: xarray.Dataset, values: Array | None = None) -> str:
+    """What became of the variants; with values (samples, n) of a figure, how many are ok but do not have it."""
+    status = study["status"].values
+    counts = [f"{count} {word}" for word, count in Counter(status.tolist()).most_common()]
+    without = 0 if values is None else int(((status == "ok") & ~np.isfinite(values).any(axis=1)).sum())
+    doubtful = sum(bool(lines) for lines in study["warnings"].values.tolist())
+    more = {"without this figure": without, "with accuracy warnings": doubtful}
+    return f"{len(status)} variants: " + ", ".join(
+        counts + [f"{count} {told}" for told, count in more.items() if count]
+    )
+
+
+def set_study_title(drawing: Figure, study: xarray.Dataset, values: Array, *about: str) -> None:
+    """Title of the scene, what is shown, and what became of the variants."""
+    title = toml_table(study.attrs.get("scene_toml", ""), "scene").get("title", "")
+    style.write_title(drawing, title, *about, told_of_variants(study, values))
+
+
+def without_unit(label: str) -> str:
+    """A label without its unit."""
+    return label.partition(" [")[0]
