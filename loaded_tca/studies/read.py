@@ -67,6 +67,8 @@ def parse_study(text: str, source: str = "study", folder: str | os.PathLike[str]
     factors.mounting.misalignment_um: found a table; allowed a list of values or { from, to, count }
     """
     found = toml_table(text, source)
+    if "pair" in found:
+        raise InputError(f'{source}: a scene, no study; a study names it as scene = "..."')
     problems = [
         f"{shown_key(word)}: unknown word{did_you_mean(nearest(word, WORDS)) or '; allowed ' + ', '.join(WORDS)}"
         for word in found
@@ -136,15 +138,25 @@ def _distribution(key: str, value: Any) -> Distribution:
     name = value.get(DISTRIBUTION) if isinstance(value, dict) else None
     known = getattr(stats, name, None) if isinstance(name, str) else None
     if not isinstance(known, stats.rv_continuous | stats.rv_discrete):
-        told = shown(value) if name is None else shown(name)
+        names = [
+            word for word in dir(stats) if isinstance(getattr(stats, word), stats.rv_continuous | stats.rv_discrete)
+        ]
+        hint = did_you_mean(nearest(name, names)) if isinstance(name, str) else ""
+        told = (shown(value) if name is None else shown(name)) + hint
         raise InputError(
             f'{key}: found {told}; allowed {{ {DISTRIBUTION} = "norm", scale = 5.0 }}, names of scipy.stats'
         )
     parameters = {word: number for word, number in value.items() if word != DISTRIBUTION}
     try:
         frozen: Distribution = known(**parameters)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"{key}: {name}: {error}") from None
+    except (TypeError, ValueError):
+        takes = [
+            *(known.shapes or "").replace(",", "").split(),
+            "loc",
+            *["scale"] * isinstance(known, stats.rv_continuous),
+        ]
+        found = ", ".join(parameters) or "none"
+        raise InputError(f"{key}: {name} has the parameters {', '.join(takes)}; found {found}") from None
     return frozen
 
 

@@ -101,7 +101,8 @@ class Study:
         if not self.distributions and self.samples is not None:
             yield "samples: given without distributions, of which they are"
         elif self.distributions and not _is_whole(self.samples, 1, MOST_SAMPLES):
-            yield f"samples: found {shown(self.samples)}; allowed a whole number from 1 to {MOST_SAMPLES}"
+            found = "missing" if self.samples is None else f"found {shown(self.samples)}"
+            yield f"samples: {found}; allowed a whole number from 1 to {MOST_SAMPLES}, with distributions"
 
     def _problems_of_keys(self) -> Iterator[str]:
         if not self.keys:
@@ -240,6 +241,6 @@ def _problems_of_distribution(key: str, known: Key | None, distribution: Any) ->
         yield f"{key}: found {shown(distribution)}; allowed a frozen distribution of scipy.stats, as norm(0.0, 5.0)"
         return
     if not math.isfinite(middle):
-        yield f"{key}: the distribution has no median; are its parameters allowed?"
+        yield f"{key}: the distribution has no median: a parameter is out of its range, as a scale below 0"
     elif known is not None and isinstance(known.kind, Whole) and not middle.is_integer():
         yield f"{key}: the distribution gives {middle:g}; allowed are whole numbers"

@@ -103,7 +103,7 @@ def test_number_out_of_its_range_is_no_fault_of_the_study():
         ({"factors": {"analysis.compliance": ["teeth"]}}, 'allowed "contact" or "contact+tooth"'),
         ({"factors": {CROWNING: [1.0]}, "samples": 4}, "samples: given without distributions"),
         ({"factors": {CROWNING: [1.0]}, "seed": -1}, "seed: found -1; allowed a whole number from 0 on"),
-        ({"distributions": {CROWNING: stats.norm(5.0, 1.0)}}, "samples: found None; allowed a whole number from 1"),
+        ({"distributions": {CROWNING: stats.norm(5.0, 1.0)}}, "samples: missing; allowed a whole number from 1"),
         ({"distributions": {CROWNING: stats.norm(5.0, 1.0)}, "samples": 2.5}, "samples: found 2.5"),
         ({"distributions": {CROWNING: 5.0}, "samples": 2}, "allowed a frozen distribution of scipy.stats"),
         ({"distributions": {CROWNING: stats.norm(5.0, -1.0)}, "samples": 2}, "the distribution has no median"),
