@@ -161,10 +161,11 @@ def _by(executor: Executor, tasks: Iterator[Task]) -> Generator[list[Done]]:
             while not finished.empty():
                 batch.append(finished.get())
             under_way.difference_update(batch)
-            lost = [future for future in batch if future.cancelled() or future.exception() is not None]
+            lost = {future for future in batch if future.cancelled() or future.exception() is not None}
             yield [future.result() for future in batch if future not in lost]
             if lost:
-                error = CancelledError(GONE) if lost[0].cancelled() else lost[0].exception()
+                first = next(future for future in batch if future in lost)
+                error = CancelledError(GONE) if first.cancelled() else first.exception()
                 if isinstance(error, BrokenExecutor):  # it fails all of them, and stumbles over cancelled ones
                     under_way.clear()
                 told = f"{type(error).__name__}: {error}".splitlines()[0]
