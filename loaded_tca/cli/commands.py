@@ -142,7 +142,7 @@ def study(options: argparse.Namespace) -> None:
 
     study, directory = read_study(options.study), options.out
     check_place(directory)
-    with executor_of(options) as executor, bar_of("variants", len(study), STUDY_BAR) as show:
+    with executor_of(options, len(study)) as executor, bar_of("variants", len(study), STUDY_BAR) as show:
         found = run_study(study, executor, directory / "study.nc", show, keep_maps=options.keep_maps)
     rank_by = options.rank_by if options.rank_by in found else None  # another one is told once all is written
     pictures = {f"{name}.png": png_of(figure) for name, figure in plot_study(found, rank_by=rank_by).items()}

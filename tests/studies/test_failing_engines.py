@@ -250,13 +250,13 @@ def test_variants_that_change_the_same_are_analysed_once(tmp_path):
 
 def test_figures_that_no_process_can_import(tmp_path):
     study = in_folder(tmp_path, 1, 2)
-    with (
-        ProcessPoolExecutor(1, get_context("fork")) as pool,
-        pytest.raises(
-            ExecutorError, match=r"the executor gave up: (Attribute|Pickling)Error: Can't (get|pickle) .*lambda"
-        ),
-    ):
-        run_study(study, pool, figures=lambda scene: asked(scene))
+
+    def local(scene):
+        return asked(scene)
+
+    told = r"the executor gave up: (Attribute|Pickling)Error: Can't (get|pickle) .*local"
+    with ProcessPoolExecutor(1, get_context("fork")) as pool, pytest.raises(ExecutorError, match=told):
+        run_study(study, pool, figures=local)
 
 
 def test_figures_without_a_name(tmp_path):
