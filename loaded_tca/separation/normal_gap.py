@@ -66,6 +66,29 @@ class _Meeting:
     settled: Mask
 
 
+@dataclass(frozen=True, eq=False)
+class FlankPoints:
+    """Points of one flank that the normals of n contacts meet, each array with the shape of the grid.
+
+    Attributes
+    ----------
+    point : (..., 3) array [mm]
+        Along the axes of the gear's frame as it stands in space, whatever its angle.
+    rho, z : (...) array [mm]
+        Cylindrical coordinates of the same.
+    gradient : (..., 3) array
+        Of theta - Theta(rho, z), Cartesian [1/mm].
+    steepness : (...) array
+        Its part along the normal [1/mm].
+    """
+
+    point: Array
+    rho: Array
+    z: Array
+    gradient: Array
+    steepness: Array
+
+
 class NormalGap:
     """Distance of the two flanks of a contact along its normal, in coordinates of its tangent plane.
 
@@ -127,15 +150,25 @@ class NormalGap:
     def with_edges(self, x: Array, y: Array) -> tuple[Array, list[Array]]:
         """Gap [mm], and distances to each edge of both flanks [mm], at points that broadcast; signed as of ``at``."""
         shape, rays = np.broadcast_shapes(x.shape, y.shape), self._rays(x, y)
-        met = [self._meet(ray) for ray in rays]
-        missed = None
-        if not (met[0].settled & met[1].settled).all():
-            missed = np.logical_or(*(self._meet_rest(rays[own], met[own], met[1 - own]) for own in (0, 1)))
+        met, missed = self._meetings(rays)
         jets = [jet for ray, one in zip(rays, met, strict=True) for jet in ray.flank.edges(one.rho, one.z)]
         distances = [jet.value + ON_EDGE * self.pair.module for jet in jets]
         if missed is not None:
             distances = [np.where(missed, -np.inf, distance) for distance in distances]
         return (met[1].height - met[0].height).reshape(shape), [distance.reshape(shape) for distance in distances]
+
+    def flank_points(self, x: Array, y: Array) -> tuple[FlankPoints, FlankPoints]:
+        """Points of the flanks of pinion and wheel on the normals at points that broadcast."""
+        shape, rays = np.broadcast_shapes(x.shape, y.shape), self._rays(x, y)
+        found = []
+        for ray, met in zip(rays, self._meetings(rays)[0], strict=True):
+            point = np.stack([o + met.height * n for o, n in zip(ray.start, ray.normal, strict=True)], axis=-1)
+            basis = cylindrical_basis(np.arctan2(point[..., 1], point[..., 0]))
+            gradient = (_theta_less_flank(ray.flank, met.rho, met.z)[0][..., None, :] @ basis)[..., 0, :]
+            steep = sum(gradient[..., part] * n for part, n in enumerate(ray.normal))
+            parts = point.reshape(*shape, 3), met.rho.reshape(shape), met.z.reshape(shape)
+            found.append(FlankPoints(*parts, gradient.reshape(*shape, 3), np.asarray(steep).reshape(shape)))
+        return found[0], found[1]
 
     def curvature_across(self, x: Array, y: Array) -> Array:
         """Second derivative of the gap by x [1/mm] at points that broadcast: the relative curvature across.
@@ -166,6 +199,13 @@ class NormalGap:
             normal = tuple(axes[:, 2, :, None].swapaxes(0, 1))
             rays.append(_Rays(flank, tuple(part.reshape(count, -1) for part in start), normal, turns[:, None]))
         return rays
+
+    def _meetings(self, rays: list[_Rays]) -> tuple[list[_Meeting], Mask | None]:
+        """Where the rays meet both flanks, and which meet neither; None if all do."""
+        met = [self._meet(ray) for ray in rays]
+        if (met[0].settled & met[1].settled).all():
+            return met, None
+        return met, np.logical_or(*(self._meet_rest(rays[own], met[own], met[1 - own]) for own in (0, 1)))
 
     def _meet_rest(self, rays: _Rays, met: _Meeting, mating: _Meeting) -> Mask:
         """Take further steps as long as they shrink, where the mating gear is met; return where that is in vain."""
