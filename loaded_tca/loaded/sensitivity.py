@@ -27,7 +27,7 @@ Bonnans & Shapiro 2000, Perturbation Analysis of Optimization Problems, chapter 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -38,15 +38,20 @@ from loaded_tca.contact import ContactProblem
 from loaded_tca.contact.convolution import Preconditioner
 from loaded_tca.contact.grid import Grids
 from loaded_tca.contact.levels import window_around
-from loaded_tca.errors import ConvergenceError
+from loaded_tca.errors import ConvergenceError, InputError
+from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.tooth_contact import LoadedContact
+from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
+from loaded_tca.separation.gap_change import GapChange
 from loaded_tca.unloaded import ContactPoint
 
 TOLERANCE = 1e-10
 """Of the linear systems, relative: the derivatives are exact to 1e-8."""
 MOST_ITERATIONS = 500
+PART_OF_A_CELL = 0.5
+"""By which a grid is moved either way to see how the compliance of its slices changes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +114,7 @@ class Tangent:
         self.grids = [grid for grid in grids if grid.active.any()]
         self._blocks = [_Block(grid) for grid in self.grids]
         sizes = [block.size for block in self._blocks]
-        self._parts = [slice(end - size, end) for size, end in zip(sizes, np.cumsum(sizes).tolist(), strict=True)]
+        self.parts = [slice(end - size, end) for size, end in zip(sizes, np.cumsum(sizes).tolist(), strict=True)]
         self._size = sum(sizes)
         self._coupling = {
             (i, j): bending.between((one.number, one.separation), (two.number, two.separation))
@@ -162,10 +167,10 @@ class Tangent:
     def displaced(self, forces: Array) -> Array:
         """K f (n,) [mm] of forces (n,) [N]."""
         moved = np.empty(self._size)
-        for block, part in zip(self._blocks, self._parts, strict=True):
+        for block, part in zip(self._blocks, self.parts, strict=True):
             moved[part] = block.displaced(forces[part])
         for (i, j), matrix in self._coupling.items():
-            one, two, at, under = self._blocks[i], self._blocks[j], self._parts[i], self._parts[j]
+            one, two, at, under = self._blocks[i], self._blocks[j], self.parts[i], self.parts[j]
             moved[at] += (matrix @ two.slice_forces(forces[under]))[one.columns]
             moved[under] += (matrix.T @ one.slice_forces(forces[at]))[two.columns]
         return moved
@@ -192,9 +197,99 @@ class Tangent:
 
     def _preconditioned(self, residual: Array) -> Array:
         found = np.empty(self._size)
-        for block, part in zip(self._blocks, self._parts, strict=True):
+        for block, part in zip(self._blocks, self.parts, strict=True):
             found[part] = block.preconditioned(residual[part])
         return found
+
+
+def followed_changes(
+    pair: GearPair, grids: Sequence[LoadedGrid], changes: Sequence[GapChange], bending: BendingModel | None, ends: bool
+) -> list[Array]:
+    r"""Changes of the gaps on grids that move with their contacts.
+
+    On a grid at rest a contact that moves leaves by cells and enters by others, and the derivative has a ripple of the
+    grid. The change is therefore split into one that a shift s of the contact makes up for, found by least squares
+    under the weight of the pressure, and a rest; on a grid that follows by s
+
+    .. math:: dh \to dh + s \cdot \left(\nabla h + \frac{\partial C}{\partial x} F\right),
+              \qquad dh \approx c_0 - s \cdot \nabla h,
+
+    with C F the deflection of the slices under their forces. The half-spaces are the same everywhere.
+
+    Parameters
+    ----------
+    pair : GearPair
+    grids : sequence of LoadedGrid
+        Of the pairs that carry load at one position, each with an active cell.
+    changes : sequence of GapChange
+        Of each grid, for the same keys.
+    bending : BendingModel or None
+    ends : bool
+        Whether free edges add to the deflection.
+
+    Returns
+    -------
+    list of (keys, nx, ny) arrays [mm per unit of the key]
+    """
+    found = [change.by_key.copy() for change in changes]
+    forces = [grid.pressure.sum(axis=0) * grid.problem.cell_area for grid in grids]
+    for i, (grid, change) in enumerate(zip(grids, changes, strict=True)):
+        shifts = _shifts(grid, change)
+        found[i] += np.tensordot(shifts, change.by_place, 1)
+        for axis, shift in enumerate(shifts.T):
+            if not shift.any():
+                continue
+            step = PART_OF_A_CELL * grid.problem.spacing[axis]
+            one, two = (
+                replace(grid.separation, origin=grid.separation.origin + sign * step * grid.separation.axes[axis])
+                for sign in (-1.0, 1.0)
+            )
+            moved = [np.zeros(force.shape) for force in forces]
+            if ends:
+                less, more = (0.0 if edge is None else edge @ forces[i] for edge in _edges(pair, (one, two)))
+                moved[i] += (more - less) / (2.0 * step)
+            if bending is not None:
+                less, more = (bending.within(grid.number, place) for place in (one, two))
+                moved[i] += (more - less) @ forces[i] / (2.0 * step)
+                for j, other in enumerate(grids):
+                    if j != i:
+                        under = other.number, other.separation
+                        less, more = (bending.between((grid.number, place), under) for place in (one, two))
+                        matrix = (more - less) / (2.0 * step)
+                        moved[i] += matrix @ forces[j]
+                        moved[j] += matrix.T @ forces[i]
+            for rest, deflection in zip(found, moved, strict=True):
+                rest += shift[:, None, None] * deflection
+    return found
+
+
+def _edges(pair: GearPair, separations: Sequence[Separation]) -> list[Array | None]:
+    found = edge_compliances(pair, separations)
+    for one in found:
+        if isinstance(one, InputError):
+            raise one
+    return found  # type: ignore[return-value]
+
+
+def _shifts(grid: LoadedGrid, change: GapChange) -> Array:
+    """How far the contact moves across and along (keys, 2) [mm per unit]; not towards an edge that it reaches."""
+    active = grid.active
+    cover, shifts = grid.separation.cover, np.zeros((len(change.by_key), 2))
+    bare = np.pad(cover < 1.0, 1, constant_values=True)
+    free = [
+        axis
+        for axis in (0, 1)
+        if not (active & (np.roll(bare, 1, axis) | np.roll(bare, -1, axis) | bare)[1:-1, 1:-1]).any()
+    ]
+    if not free:
+        return shifts
+    weight = np.sqrt(grid.pressure[active])
+    slopes = change.by_place[free][:, active]
+    columns = np.stack([weight, *(weight * slopes)], axis=1)
+    scale = np.linalg.norm(columns, axis=0)
+    fit = np.linalg.lstsq(columns / scale, (weight * change.by_key[:, active]).T)[0]
+    shifts[:, free] = -(fit[1:] / scale[1:, None]).T
+    return shifts
 
 
 class _Block:

@@ -211,7 +211,7 @@ def test_tangent_without_an_active_cell_is_zero():
 
 def test_linear_system_that_is_not_solved_in_time_is_an_error(monkeypatch):
     monkeypatch.setattr("loaded_tca.loaded.sensitivity.MOST_ITERATIONS", 2)
-    with pytest.raises(ConvergenceError, match="sensitivities: a linear system of .* in 2 iterations"):
+    with pytest.raises(ConvergenceError, match=r"sensitivities: a linear system of .* in 2 iterations"):
         dense().tangent()
 
 
