@@ -134,9 +134,9 @@ class Tangent:
         """Values (..., nx, ny) of each grid at the active cells, in one row (..., n)."""
         return np.concatenate([one[..., grid.active] for one, grid in zip(values, self.grids, strict=True)], axis=-1)
 
-    def rotation_change(self, gaps: Array) -> Array:
-        """DLambda [rad] by changes (..., n) of the gaps [mm], under the same torque."""
-        return np.asarray(gaps @ self.weights / self.stiffness)
+    def rotation_change(self, gaps: Array, torque: Array | float = 0.0) -> Array:
+        """DLambda [rad] by changes (..., n) of the gaps [mm] and (...) of the torque [N mm]."""
+        return np.asarray((gaps @ self.weights + torque) / self.stiffness)
 
     @property
     def rotation_by_torque(self) -> float:
@@ -152,17 +152,20 @@ class Tangent:
         """df/dT (n,) [1/mm]: where material that is removed counts, and how much."""
         return np.asarray(self.by_rotation / self.stiffness)
 
-    def functional_change(self, slopes: Array, gaps: Array) -> tuple[Array, float]:
-        """Changes (...) of a number J(f) by changes (..., n) of the gaps, and its derivative by the torque.
+    def functional_change(self, slopes: Array, gaps: Array, torque: Array | float = 0.0) -> tuple[Array, float]:
+        """Changes (...) of a number J(f), and its derivative by the torque.
 
         Parameters
         ----------
         slopes : (n,) array
             dJ/df at the active cells, per N.
         gaps : (..., n) array [mm]
+            Changes of the gaps.
+        torque : (...) array [N mm]
+            Changes of the torque beside them.
         """
         by_torque = float(slopes @ self.force_by_torque)
-        return by_torque * (gaps @ self.weights) - gaps @ self.solved(slopes), by_torque
+        return by_torque * (gaps @ self.weights + torque) - gaps @ self.solved(slopes), by_torque
 
     def displaced(self, forces: Array) -> Array:
         """K f (n,) [mm] of forces (n,) [N]."""

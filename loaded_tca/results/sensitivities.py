@@ -14,14 +14,14 @@ from loaded_tca.contact import ContactProblem
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.free_edges import edge_compliance
-from loaded_tca.loaded.load_sharing import tooth_pairs_at
+from loaded_tca.loaded.load_sharing import ToothPair, tooth_pairs_at
 from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.sensitivity import LoadedGrid, Tangent, followed_changes
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.separation import sample_separation
-from loaded_tca.separation.gap_change import gap_change, pair_changes
-from loaded_tca.unloaded import ContactPoint, trace_contact, trace_teeth
+from loaded_tca.separation.gap_change import PairChange, gap_change, pair_changes
+from loaded_tca.unloaded import trace_contact, trace_teeth
 
 if TYPE_CHECKING:
     from loaded_tca.results.mesh_cycle import MeshCycle
@@ -52,18 +52,22 @@ class Sensitivities:
 
 def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
     """Derivatives of a result to keys of its scene; see :meth:`MeshCycle.sensitivities`."""
-    scene, pair = result.scene, result.scene.pair()
+    wanted, pair = result.scene.analysis, result.scene.pair()
     named = [key for key in keys if key != TORQUE]
-    changes, at = pair_changes(scene, named), [keys.index(key) for key in named]
-    contacts, bending = _contacts(result, pair)
+    changes, at = pair_changes(result.scene, named), [keys.index(key) for key in named]
+    angles, alone = result.pinion_angle, not wanted.load_sharing
+    unloaded, apart = _unloaded(pair, angles, alone)
+    both = [[_unloaded(side, angles, alone)[0] for side in (change.below, change.above)] for change in changes]
+    bending = None if wanted.compliance == "contact" else tooth_compliance(pair, neighbours=apart)
     error = np.full((*result.transmission_error.shape, len(keys)), np.nan)
     share = np.full((*result.load_share.shape, len(keys)), np.nan)
     for t, n in np.ndindex(error.shape[:2]):
+        share[t, n][~np.isnan(result.load_share[t, n])] = 0.0
         grids, places = [], []
         for k, number in enumerate(result.dataset["pair"].values.tolist()):
             one = result.maps[t][n][k]
             if one is not None and one.pressure.any():
-                grid = _loaded_grid(result, pair, one, (number, contacts[n][number]), bending)
+                grid = _loaded_grid(result, pair, one, unloaded[n][number], bending)
                 if grid.active.any():
                     grids.append(grid)
                     places.append(k)
@@ -71,41 +75,58 @@ def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
             continue
         tangent = Tangent(grids, bending)
         grown = [gap_change(pair, grid.contact, grid.separation, changes) for grid in grids]
-        gaps = tangent.gathered(followed_changes(pair, grids, grown, bending, scene.analysis.free_edges))
-        by_torque = NEWTON_MILLIMETRES * tangent.rotation_by_torque
-        by_key = np.full(len(keys), by_torque)
-        by_key[at] = tangent.rotation_change(gaps)
-        error[t, n] = -pair.driving * by_key
-        share[t, n] = np.where(np.isnan(result.load_share[t, n])[:, None], np.nan, 0.0)
-        torque = float(result.torque[t])
-        for place, part in zip(places, tangent.parts, strict=True):
+        followed = followed_changes(pair, grids, grown, bending, wanted.free_edges)
+        # The levers are those of the unloaded contact points, which move too.
+        levers = np.array(
+            [[_lever_change(c, sides, n, g.number) for c, sides in zip(changes, both, strict=True)] for g in grids]
+        )
+        levers = levers.reshape(len(grids), len(changes), 2)
+        back = pair.driving * (result.path.transmission_error[n] - result.transmission_error[t, n])
+        beyond = np.array([back - unloaded[n][grid.number].initial_separation for grid in grids])
+        forces = np.array([grid.pressure.sum() * grid.problem.cell_area for grid in grids])
+        gaps = tangent.gathered(
+            [rest - (own[:, 1] * turn)[:, None, None] for rest, own, turn in zip(followed, levers, beyond, strict=True)]
+        )
+        lost, torque = -(forces @ levers[:, :, 0]), float(result.torque[t])
+        error[t, n, :] = -pair.driving * NEWTON_MILLIMETRES * tangent.rotation_by_torque
+        error[t, n, at] = -pair.driving * tangent.rotation_change(gaps, lost)
+        for i, (place, part) in enumerate(zip(places, tangent.parts, strict=True)):
             slopes = np.zeros(tangent.pinion_levers.shape)
             slopes[part] = tangent.pinion_levers[part] / torque
-            by_gap, of_torque = tangent.functional_change(slopes, gaps)
-            own = np.full(len(keys), NEWTON_MILLIMETRES * (of_torque - result.load_share[t, n, place] / torque))
-            own[at] = by_gap
-            share[t, n, place] = own
+            by_gap, by_torque = tangent.functional_change(slopes, gaps, lost)
+            share[t, n, place, :] = NEWTON_MILLIMETRES * (by_torque - result.load_share[t, n, place] / torque)
+            share[t, n, place, at] = by_gap + levers[i, :, 0] * forces[i] / torque
     return Sensitivities(tuple(keys), error, share)
 
 
-def _contacts(result: MeshCycle, pair: GearPair) -> tuple[list[dict[int, ContactPoint]], BendingModel | None]:
-    """Unloaded contacts by position and tooth pair, in the angles of their own teeth, and what bends."""
-    angles, wanted, apart = result.pinion_angle, result.scene.analysis, 1
-    contacts: list[dict[int, ContactPoint]]
-    if wanted.load_sharing:
-        mesh = trace_teeth(pair, angles)
-        apart = max(farthest_apart(mesh), 1)
-        contacts = [{one.pair: one.contact for one in tooth_pairs_at(mesh, n)} for n in range(len(mesh))]
-    else:
-        contacts = [{0: contact} for contact in trace_contact(pair, angles)]
-    return contacts, None if wanted.compliance == "contact" else tooth_compliance(pair, neighbours=apart)
+Unloaded = list[dict[int, ToothPair]]
+"""Unloaded contacts by position and number of the tooth pair, in the angles of their own teeth."""
+
+
+def _unloaded(pair: GearPair, angles: Array, alone: bool) -> tuple[Unloaded, int]:
+    """Unloaded contacts, and how many pitches those of a position are apart."""
+    if alone:
+        return [{0: ToothPair(0, contact, 0.0)} for contact in trace_contact(pair, angles)], 1
+    mesh = trace_teeth(pair, angles)
+    found: Unloaded = [{one.pair: one for one in tooth_pairs_at(mesh, n)} for n in range(len(mesh))]
+    return found, max(farthest_apart(mesh), 1)
+
+
+def _lever_change(change: PairChange, sides: Sequence[Unloaded], position: int, number: int) -> tuple[float, float]:
+    """Changes of the levers about pinion and wheel [mm per unit]; none where a pair gets out of reach."""
+    below, above = (side[position].get(number) for side in sides)
+    if below is None or above is None:
+        return 0.0, 0.0
+    one, two = below.contact, above.contact
+    moved = two.pinion_lever - one.pinion_lever, two.wheel_lever - one.wheel_lever
+    return moved[0] / change.difference, moved[1] / change.difference
 
 
 def _loaded_grid(
-    result: MeshCycle, pair: GearPair, one: PressureMap, of: tuple[int, ContactPoint], bending: BendingModel | None
+    result: MeshCycle, pair: GearPair, one: PressureMap, of: ToothPair, bending: BendingModel | None
 ) -> LoadedGrid:
     """The contact problem that a map solves, made again."""
-    number, contact = of
+    number, contact = of.pair, of.contact
     (nx, ny), (dx, dy) = one.pressure.shape, one.spacing
     separation = sample_separation(pair, contact, cells=(nx, ny), box=(0.5 * nx * dx, 0.5 * ny * dy))
     if not np.allclose(separation.origin, one.origin, rtol=0.0, atol=1e-6 * pair.module):
