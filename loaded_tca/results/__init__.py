@@ -4,6 +4,7 @@ from loaded_tca.results.comparison import Comparison, compare_results
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.reached_edges import reached_edges
+from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.stress_below import StressBelow, stress_below
 
 load_result = MeshCycle.load
@@ -12,6 +13,7 @@ __all__ = [
     "Comparison",
     "MeshCycle",
     "PressureMap",
+    "Sensitivities",
     "StressBelow",
     "compare_results",
     "load_result",

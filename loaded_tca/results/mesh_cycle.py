@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -18,6 +18,7 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.files import Buffer, FilePath, Part, arrays_of, netcdf_of, read_dataset, replacing, variables_of
 from loaded_tca.results.key_figures import harmonic_coefficients, key_figures
 from loaded_tca.results.pressure_map import MAP_PARTS, SIZES, Maps, maps_from, stacked_maps
+from loaded_tca.results.sensitivities import Sensitivities, sensitivities
 from loaded_tca.results.summary import signed, summary_text
 from loaded_tca.scene import Scene, parse_scene
 from loaded_tca.unloaded import ContactPath
@@ -280,6 +281,31 @@ class MeshCycle:
             raise InputError(f"count: {count!r} is not a whole number from 1 on")
         periodic = self.scene.analysis.load_sharing
         return np.stack([harmonic_coefficients(e if periodic else e[:0], count) for e in self.transmission_error])
+
+    def sensitivities(self, keys: Sequence[str]) -> Sensitivities:
+        """Return the derivatives to keys of the scene: one more linear problem for each state serves them all.
+
+        The loaded transmission error changes by the mean of the material removed over the contacts, weighted with the
+        growth of the pressure with the torque. See :mod:`loaded_tca.loaded.sensitivity`.
+
+        Parameters
+        ----------
+        keys : sequence of str
+            As of ``scene.with_changes``: of the modifications of either gear, of machine settings and cutters, of
+            mounting errors, and ``load.pinion_torque_Nm``, which stands for the torque of each row.
+
+        Returns
+        -------
+        Sensitivities
+
+        Raises
+        ------
+        InputError
+            With every key that is unknown, given twice, or that the scene cannot vary.
+        ConvergenceError
+            If a linear problem is not solved to its tolerance.
+        """
+        return sensitivities(self, keys)
 
     def peak_contact(self, torque: int, *, where_hertz_holds: bool = False) -> tuple[int, int] | None:
         """Return indices of position and pair with the highest peak pressure of those asked for; None if none is."""

@@ -11,19 +11,22 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import tooth_compliance
 from loaded_tca.contact import ContactProblem
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, require
 from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.free_edges import edge_compliance
 from loaded_tca.loaded.load_sharing import ToothPair, tooth_pairs_at
 from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.sensitivity import LoadedGrid, Tangent, followed_changes
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.key_figures import harmonic_coefficients
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.separation import sample_separation
 from loaded_tca.separation.gap_change import PairChange, gap_change, pair_changes
 from loaded_tca.unloaded import trace_contact, trace_teeth
 
 if TYPE_CHECKING:
+    import xarray
+
     from loaded_tca.results.mesh_cycle import MeshCycle
 
 TORQUE = "load.pinion_torque_Nm"
@@ -43,16 +46,64 @@ class Sensitivities:
         Of the loaded, absolute transmission error.
     load_share : (torque, position, pair, key) array [1 per unit of the key]
         Of the shares in the torque; zero where a pair carries nothing.
+    line_load : (torque, position, pair, key) array [N/mm per unit of the key]
+        Of the largest force per length along each contact, between the slices of its grid.
+    result : MeshCycle
+        What they are derivatives of.
     """
 
     keys: tuple[str, ...]
     transmission_error: Array
     load_share: Array
+    line_load: Array
+    result: MeshCycle
+
+    @property
+    def dataset(self) -> xarray.Dataset:
+        """All as a dataset with the dimensions torque, position, pair and key."""
+        import xarray
+
+        coordinates = {name: self.result.dataset[name] for name in ("torque", "pinion_angle", "pair")}
+        arrays = {
+            "transmission_error": (("torque", "position", "key"), self.transmission_error),
+            "load_share": (("torque", "position", "pair", "key"), self.load_share),
+            "line_load": (("torque", "position", "pair", "key"), self.line_load),
+        }
+        return xarray.Dataset(arrays, {**coordinates, "key": list(self.keys)})
+
+    @property
+    def peak_to_peak(self) -> Array:
+        """Derivative of the peak-to-peak transmission error, (torque, key) [rad per unit]; NaN with one position.
+
+        That of the highest position less that of the lowest one.
+        """
+        errors, slopes = self.result.transmission_error, self.transmission_error
+        found = np.full((len(errors), len(self.keys)), np.nan)
+        for t, error in enumerate(errors):
+            if np.isfinite(error).sum() > 1:
+                found[t] = slopes[t, np.nanargmax(error)] - slopes[t, np.nanargmin(error)]
+        return found
+
+    def harmonics(self, count: int) -> Array:
+        """Derivatives of the amplitudes of ``MeshCycle.harmonics``, (torque, order, key) [rad per unit]; NaN where they are."""
+        amplitudes = self.result.harmonics(count)
+        found = np.full((*amplitudes.shape, len(self.keys)), np.nan)
+        for t, error in enumerate(self.result.transmission_error):
+            wave = harmonic_coefficients(error, count)
+            for k in range(len(self.keys)):
+                slope = harmonic_coefficients(self.transmission_error[t, :, k], count)
+                known = np.isfinite(amplitudes[t]) & np.isfinite(slope) & (amplitudes[t] > 0.0)
+                found[t, known, k] = (wave[known].conj() * slope[known]).real / amplitudes[t, known]
+        return found
 
 
 def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
     """Derivatives of a result to keys of its scene; see :meth:`MeshCycle.sensitivities`."""
-    wanted, pair = result.scene.analysis, result.scene.pair()
+    require(
+        (not isinstance(keys, str), f"keys: {keys!r:.80} is one text; allowed is a list of keys"),
+        (len(set(keys)) == len(keys), "keys: a key is given twice"),
+    )
+    wanted, pair = result.scene.analysis, result.gear_pair
     named = [key for key in keys if key != TORQUE]
     changes, at = pair_changes(result.scene, named), [keys.index(key) for key in named]
     angles, alone = result.pinion_angle, not wanted.load_sharing
@@ -60,7 +111,7 @@ def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
     both = [[_unloaded(side, angles, alone)[0] for side in (change.below, change.above)] for change in changes]
     bending = None if wanted.compliance == "contact" else tooth_compliance(pair, neighbours=apart)
     error = np.full((*result.transmission_error.shape, len(keys)), np.nan)
-    share = np.full((*result.load_share.shape, len(keys)), np.nan)
+    share, line = np.full((2, *result.load_share.shape, len(keys)), np.nan)
     for t, n in np.ndindex(error.shape[:2]):
         share[t, n][~np.isnan(result.load_share[t, n])] = 0.0
         grids, places = [], []
@@ -96,7 +147,11 @@ def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
             by_gap, by_torque = tangent.functional_change(slopes, gaps, lost)
             share[t, n, place, :] = NEWTON_MILLIMETRES * (by_torque - result.load_share[t, n, place] / torque)
             share[t, n, place, at] = by_gap + levers[i, :, 0] * forces[i] / torque
-    return Sensitivities(tuple(keys), error, share)
+            slopes[part] = _line_load_slopes(grids[i])
+            by_gap, by_torque = tangent.functional_change(slopes, gaps, lost)
+            line[t, n, place, :] = NEWTON_MILLIMETRES * by_torque
+            line[t, n, place, at] = by_gap
+    return Sensitivities(tuple(keys), error, share, line, result)
 
 
 Unloaded = list[dict[int, ToothPair]]
@@ -106,7 +161,8 @@ Unloaded = list[dict[int, ToothPair]]
 def _unloaded(pair: GearPair, angles: Array, alone: bool) -> tuple[Unloaded, int]:
     """Unloaded contacts, and how many pitches those of a position are apart."""
     if alone:
-        return [{0: ToothPair(0, contact, 0.0)} for contact in trace_contact(pair, angles)], 1
+        path = trace_contact(pair, angles)
+        return [{0: ToothPair(0, path[n], 0.0)} for n in range(len(path))], 1
     mesh = trace_teeth(pair, angles)
     found: Unloaded = [{one.pair: one for one in tooth_pairs_at(mesh, n)} for n in range(len(mesh))]
     return found, max(farthest_apart(mesh), 1)
@@ -145,3 +201,20 @@ def _loaded_grid(
         cover=separation.cover,
     )
     return LoadedGrid(number, contact, separation, problem, one.pressure)
+
+
+def _line_load_slopes(grid: LoadedGrid) -> Array:
+    """Derivative [1/mm] of the largest line load to the forces of the active cells of a grid.
+
+    The largest one is that of the parabola through the highest slice and its neighbours, since the two in the middle
+    of an even grid may be alike; at an end of the contact it is that of the slice.
+    """
+    line = grid.pressure.sum(axis=0)
+    top = int(line.argmax())
+    weights = np.zeros(line.size)
+    weights[top] = 1.0
+    if 0 < top < line.size - 1 and min(line[top - 1], line[top + 1]) > 0.0:
+        before, after = line[top] - line[top - 1], line[top] - line[top + 1]
+        place = 0.5 * (before - after) / (before + after) if before + after > 0.0 else 0.0
+        weights[top - 1 : top + 2] = 0.5 * place * (place - 1.0), 1.0 - place**2, 0.5 * place * (place + 1.0)
+    return np.asarray(weights[grid.active.nonzero()[1]] / grid.problem.spacing[1])

@@ -1,0 +1,144 @@
+"""Sensitivities of results: against slopes through whole analyses, closed forms, files, keys that cannot be varied."""
+
+import warnings
+from functools import cache
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from loaded_tca import analyse, load_result, read_scene
+from loaded_tca.errors import AccuracyWarning, InputError
+from tests.samples.results import FLANKS_ALONE, ONE_PAIR, SCENES, result
+
+REAL_PAIRS = 0.03
+"""Agreement asked for with analyses, of the largest slope, on 64 cells: they make boxes and grids anew."""
+CROWNING, SLOPE = "pinion.modifications.lead_crowning_um", "pinion.modifications.helix_slope_um"
+TORQUE = "load.pinion_torque_Nm"
+
+
+@cache
+def analysed(name, bends, changes=(), cells=64, positions=3):
+    wanted = {"analysis.accuracy": None, "analysis.cells": (cells, cells), "analysis.torques_Nm": None}
+    scene = read_scene(SCENES / f"{name}.toml").with_changes(
+        {**wanted, "analysis.positions": positions, **({} if bends else FLANKS_ALONE), **dict(changes)}
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # contacts on edges are wanted
+        return analyse(scene)
+
+
+def value_of(scene, key):
+    for part in key.split("."):
+        scene = getattr(scene, part)
+    return scene
+
+
+def slope_through_analyses(name, bends, key, step):
+    """Slope of the cubic through nine analyses."""
+    middle = value_of(analysed(name, bends).scene, key)
+    steps = np.linspace(-step, step, 9)
+    errors = [analysed(name, bends, ((key, middle + by),)).transmission_error[0] for by in steps]
+    return np.polyfit(steps, errors, 3)[-2]
+
+
+REAL = [
+    ("mesh_cycle_helical", CROWNING, 2.0),
+    ("mesh_cycle_helical", "mounting.misalignment_um", 2.0),
+    ("mesh_cycle_spur", CROWNING, 2.0),
+    ("mesh_cycle_spur", "pinion.modifications.tip_relief_um", 2.0),
+    ("mesh_cycle_bevel", SLOPE, 1.0),
+    ("mesh_cycle_bevel", "mounting.offset_mm", 3e-3),
+]
+
+
+@pytest.mark.parametrize("bends", [False, True], ids=["flanks alone", "bending"])
+@pytest.mark.parametrize(("name", "key", "step"), REAL)
+def test_transmission_error_of_real_pairs_changes_as_whole_analyses_do(name, key, step, bends):
+    expected = slope_through_analyses(name, bends, key, step)
+    found = analysed(name, bends).sensitivities([key]).transmission_error[0, :, 0]
+    assert_allclose(found, expected, rtol=0, atol=REAL_PAIRS * np.abs(expected).max())
+
+
+def test_load_shares_of_a_helical_pair_change_as_whole_analyses_do():
+    middle, step = 5.0, 2.0
+    below, above = (analysed("mesh_cycle_helical", False, ((CROWNING, middle + by),)) for by in (-step, step))
+    same = analysed("mesh_cycle_helical", False)
+    assert_array_equal(below.pair, same.pair)
+    expected = (above.load_share - below.load_share) / (2.0 * step)
+    found = same.sensitivities([CROWNING]).load_share[..., 0]
+    assert_allclose(found, expected, rtol=0, atol=2.0 * REAL_PAIRS * np.abs(expected).max())  # a chord, no cubic
+
+
+def test_load_shares_of_all_pairs_change_by_nothing_together():
+    found = result("mesh_cycle_helical").sensitivities([CROWNING, SLOPE, TORQUE]).load_share
+    assert_allclose(np.nansum(found, axis=2), 0.0, atol=1e-8 * np.nanmax(np.abs(found)))
+
+
+def test_transmission_error_changes_with_the_torque_as_between_two_analyses():
+    one = analysed("mesh_cycle_helical", False)
+    step = 2.0
+    around = [analysed("mesh_cycle_helical", False, ((TORQUE, 130.0 + by),)) for by in (-step, step)]
+    expected = (around[1].transmission_error - around[0].transmission_error)[0] / (2.0 * step)
+    found = one.sensitivities([TORQUE]).transmission_error[0, :, 0]
+    assert_allclose(found, expected, rtol=REAL_PAIRS)
+    assert (found < 0.0).all(), "the wheel stays behind the pinion that drives it"
+
+
+def test_lead_crowning_of_either_gear_counts_alike():
+    one = analysed("mesh_cycle_helical", False)
+    found = one.sensitivities([CROWNING, "wheel.modifications.lead_crowning_um"]).transmission_error[0]
+    assert_allclose(found[:, 0], found[:, 1], rtol=1e-3)
+
+
+def test_tooth_pair_that_carries_all_has_sensitivities_too():
+    one = analysed("mesh_cycle_helical", False, tuple(ONE_PAIR.items()), 32)
+    found = one.sensitivities(["mounting.axial_offset_mm", CROWNING])
+    gear = one.scene.mesh().pinion
+    assert_allclose(
+        found.transmission_error[0, 1, 0] * one.wheel_base_radius, np.tan(abs(gear.base_helix_angle)), rtol=1e-3
+    )
+    assert_allclose(found.load_share, 0.0, atol=1e-12)
+
+
+def test_sensitivities_of_a_result_from_a_file_are_those_of_the_analysis(tmp_path):
+    one = result("mesh_cycle_helical")
+    one.save(tmp_path / "result.nc")
+    keys = [CROWNING, "mounting.out_of_plane_deg"]
+    found = load_result(tmp_path / "result.nc").sensitivities(keys)
+    assert_array_equal(found.transmission_error, one.sensitivities(keys).transmission_error)
+    assert found.keys == tuple(keys)
+    assert found.dataset["load_share"].dims == ("torque", "position", "pair", "key")
+    assert found.dataset["key"].values.tolist() == keys
+
+
+def test_peak_to_peak_and_harmonics_follow_from_the_positions():
+    one = result("mesh_cycle_helical", positions=9)
+    found, step = one.sensitivities([CROWNING]), 1e-3
+    moved = one.transmission_error + step * found.transmission_error[..., 0]
+    span = (np.ptp(moved, axis=1) - np.ptp(one.transmission_error, axis=1)) / step
+    assert_allclose(found.peak_to_peak[:, 0], span, rtol=1e-6)
+    waves = [np.abs(np.fft.rfft(error[:, :-1])[:, 1:4]) / 4.0 for error in (one.transmission_error, moved)]
+    assert_allclose(found.harmonics(3)[..., 0], (waves[1] - waves[0]) / step, rtol=1e-3)
+
+
+def test_state_without_load_has_no_sensitivities():
+    one = result("mesh_cycle_helical", torques=(0.0, 130.0))
+    found = one.sensitivities([CROWNING])
+    assert np.isnan(found.transmission_error[0]).all()
+    assert np.isfinite(found.transmission_error[1]).all()
+    assert np.isnan(found.peak_to_peak[0]).all() or np.isfinite(found.peak_to_peak[1]).all()
+
+
+@pytest.mark.parametrize(
+    ("keys", "told"),
+    [
+        (["pinion.modifications.lead_crownin_um"], "unknown key"),
+        (["pinion.teeth"], "does not change the gap alone"),
+        ([CROWNING, CROWNING], "given twice"),
+        (CROWNING, "one text"),
+    ],
+)
+def test_keys_that_are_no_parameters_are_one_clear_error(keys, told):
+    with pytest.raises(InputError, match=told):
+        result("mesh_cycle_helical").sensitivities(keys)
