@@ -98,6 +98,8 @@ class Tangent:
         Of the pairs that carry load.
     bending : BendingModel, optional
         That the pairs displace each other by; default: they do not.
+    tolerance : float
+        Of the linear systems, relative.
 
     Attributes
     ----------
@@ -110,7 +112,10 @@ class Tangent:
         If a linear system is not solved to its tolerance.
     """
 
-    def __init__(self, grids: Sequence[LoadedGrid], bending: BendingModel | None = None) -> None:
+    def __init__(
+        self, grids: Sequence[LoadedGrid], bending: BendingModel | None = None, tolerance: float = TOLERANCE
+    ) -> None:
+        self._tolerance = tolerance
         self.grids = [grid for grid in grids if grid.active.any()]
         self._blocks = [_Block(grid) for grid in self.grids]
         sizes = [block.size for block in self._blocks]
@@ -186,13 +191,13 @@ class Tangent:
         found, failed = cg(
             LinearOperator(shape, matvec=self.displaced, dtype=float),
             displacement,
-            rtol=TOLERANCE,
+            rtol=self._tolerance,
             maxiter=MOST_ITERATIONS,
             M=LinearOperator(shape, matvec=self._preconditioned, dtype=float),
         )
         if failed:
             raise ConvergenceError(
-                f"sensitivities: a linear system of {self._size} cells is not solved to {TOLERANCE:.0e} in "
+                f"sensitivities: a linear system of {self._size} cells is not solved to {self._tolerance:.0e} in "
                 f"{MOST_ITERATIONS} iterations",
                 last=found,
             )

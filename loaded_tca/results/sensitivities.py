@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -32,31 +33,70 @@ if TYPE_CHECKING:
 TORQUE = "load.pinion_torque_Nm"
 NEWTON_MILLIMETRES = 1e3
 """Of a newton metre."""
+LINEAR = 1e-7
+"""Tolerance of the linear systems, which are known to the grid's percent."""
+LEVERS_ALIKE = 1e-2
+"""Relative difference of levers that comes from the slopes of modifications alone."""
 
 
 @dataclass(frozen=True, eq=False)
 class Sensitivities:
     """Derivatives of a result to keys of its scene; NaN where nothing is in contact or nothing is loaded.
 
+    Found when they are asked for: the transmission error costs one linear problem for each state, the others one more
+    for each loaded tooth pair, however many keys there are.
+
     Attributes
     ----------
     keys : tuple of str
         As of ``scene.with_changes``; the unit of each is in its name.
-    transmission_error : (torque, position, key) array [rad per unit of the key]
-        Of the loaded, absolute transmission error.
-    load_share : (torque, position, pair, key) array [1 per unit of the key]
-        Of the shares in the torque; zero where a pair carries nothing.
-    line_load : (torque, position, pair, key) array [N/mm per unit of the key]
-        Of the largest force per length along each contact, between the slices of its grid.
     result : MeshCycle
         What they are derivatives of.
+    states : tuple of State
+        Torques and positions under load.
     """
 
     keys: tuple[str, ...]
-    transmission_error: Array
-    load_share: Array
-    line_load: Array
     result: MeshCycle
+    states: tuple[State, ...]
+
+    @cached_property
+    def transmission_error(self) -> Array:
+        """Of the loaded, absolute transmission error, (torque, position, key) [rad per unit of the key]."""
+        found = np.full((*self.result.transmission_error.shape, len(self.keys)), np.nan)
+        for state in self.states:
+            change = state.tangent.rotation_change(state.gaps, state.torques)
+            found[state.torque, state.position] = -self.result.gear_pair.driving * change
+        return found
+
+    @cached_property
+    def load_share(self) -> Array:
+        """Of the shares in the torque, (torque, position, pair, key) [1 per unit]; zero where nothing is carried."""
+        found = np.full((*self.result.load_share.shape, len(self.keys)), np.nan)
+        for state in self.states:
+            place = state.torque, state.position
+            found[place][~np.isnan(self.result.load_share[place])] = 0.0
+            torque, tangent = float(self.result.torque[state.torque]), state.tangent
+            for pair, part, lever in zip(state.pairs, tangent.parts, state.lever_torques, strict=True):
+                slopes = np.zeros(tangent.pinion_levers.shape)
+                slopes[part] = tangent.pinion_levers[part]
+                own = tangent.functional_change(slopes, state.gaps, state.torques)[0] + lever
+                raised = np.array([NEWTON_MILLIMETRES if key == TORQUE else 0.0 for key in self.keys])
+                found[*place, pair] = (own - self.result.load_share[*place, pair] * raised) / torque
+        return found
+
+    @cached_property
+    def line_load(self) -> Array:
+        """Of the largest force per length along each contact, (torque, position, pair, key) [N/mm per unit]."""
+        found = np.full((*self.result.load_share.shape, len(self.keys)), np.nan)
+        for state in self.states:
+            tangent = state.tangent
+            for pair, part, grid in zip(state.pairs, tangent.parts, tangent.grids, strict=True):
+                slopes = np.zeros(tangent.pinion_levers.shape)
+                slopes[part] = _line_load_slopes(grid)
+                change = tangent.functional_change(slopes, state.gaps, state.torques)[0]
+                found[state.torque, state.position, pair] = change
+        return found
 
     @property
     def dataset(self) -> xarray.Dataset:
@@ -73,7 +113,7 @@ class Sensitivities:
 
     @property
     def peak_to_peak(self) -> Array:
-        """Derivative of the peak-to-peak transmission error, (torque, key) [rad per unit]; NaN with one position.
+        """Of the peak-to-peak transmission error, (torque, key) [rad per unit]; NaN with one position.
 
         That of the highest position less that of the lowest one.
         """
@@ -85,7 +125,7 @@ class Sensitivities:
         return found
 
     def harmonics(self, count: int) -> Array:
-        """Derivatives of the amplitudes of ``MeshCycle.harmonics``, (torque, order, key) [rad per unit]; NaN where they are."""
+        """Of the amplitudes of ``MeshCycle.harmonics``, (torque, order, key) [rad per unit]; NaN where they are."""
         amplitudes = self.result.harmonics(count)
         found = np.full((*amplitudes.shape, len(self.keys)), np.nan)
         for t, error in enumerate(self.result.transmission_error):
@@ -108,12 +148,12 @@ def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
     changes, at = pair_changes(result.scene, named), [keys.index(key) for key in named]
     angles, alone = result.pinion_angle, not wanted.load_sharing
     unloaded, apart = _unloaded(pair, angles, alone)
-    both = [[_unloaded(side, angles, alone)[0] for side in (change.below, change.above)] for change in changes]
+    both = None
+    if _levers_differ(unloaded):
+        both = [[_unloaded(side, angles, alone)[0] for side in (change.below, change.above)] for change in changes]
     bending = None if wanted.compliance == "contact" else tooth_compliance(pair, neighbours=apart)
-    error = np.full((*result.transmission_error.shape, len(keys)), np.nan)
-    share, line = np.full((2, *result.load_share.shape, len(keys)), np.nan)
-    for t, n in np.ndindex(error.shape[:2]):
-        share[t, n][~np.isnan(result.load_share[t, n])] = 0.0
+    states = []
+    for t, n in np.ndindex(result.transmission_error.shape):
         grids, places = [], []
         for k, number in enumerate(result.dataset["pair"].values.tolist()):
             one = result.maps[t][n][k]
@@ -124,34 +164,55 @@ def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
                     places.append(k)
         if not grids:
             continue
-        tangent = Tangent(grids, bending)
+        tangent = Tangent(grids, bending, tolerance=LINEAR)
         grown = [gap_change(pair, grid.contact, grid.separation, changes) for grid in grids]
         followed = followed_changes(pair, grids, grown, bending, wanted.free_edges)
-        # The levers are those of the unloaded contact points, which move too.
-        levers = np.array(
-            [[_lever_change(c, sides, n, g.number) for c, sides in zip(changes, both, strict=True)] for g in grids]
-        )
-        levers = levers.reshape(len(grids), len(changes), 2)
+        levers = np.zeros((2, len(grids), len(changes)))
+        if both is not None:
+            for place in np.ndindex(levers.shape[1:]):
+                number, change = grids[place[0]].number, place[1]
+                levers[:, *place] = _lever_change(changes[change], both[change], n, number)
         back = pair.driving * (result.path.transmission_error[n] - result.transmission_error[t, n])
-        beyond = np.array([back - unloaded[n][grid.number].initial_separation for grid in grids])
+        for rest, grid, own in zip(followed, grids, levers[1], strict=True):
+            beyond = back - unloaded[n][grid.number].initial_separation
+            rest -= (beyond * own)[:, None, None]
+        gaps = np.zeros((len(keys), tangent.pinion_levers.size))
+        gaps[at] = tangent.gathered(followed)
         forces = np.array([grid.pressure.sum() * grid.problem.cell_area for grid in grids])
-        gaps = tangent.gathered(
-            [rest - (own[:, 1] * turn)[:, None, None] for rest, own, turn in zip(followed, levers, beyond, strict=True)]
-        )
-        lost, torque = -(forces @ levers[:, :, 0]), float(result.torque[t])
-        error[t, n, :] = -pair.driving * NEWTON_MILLIMETRES * tangent.rotation_by_torque
-        error[t, n, at] = -pair.driving * tangent.rotation_change(gaps, lost)
-        for i, (place, part) in enumerate(zip(places, tangent.parts, strict=True)):
-            slopes = np.zeros(tangent.pinion_levers.shape)
-            slopes[part] = tangent.pinion_levers[part] / torque
-            by_gap, by_torque = tangent.functional_change(slopes, gaps, lost)
-            share[t, n, place, :] = NEWTON_MILLIMETRES * (by_torque - result.load_share[t, n, place] / torque)
-            share[t, n, place, at] = by_gap + levers[i, :, 0] * forces[i] / torque
-            slopes[part] = _line_load_slopes(grids[i])
-            by_gap, by_torque = tangent.functional_change(slopes, gaps, lost)
-            line[t, n, place, :] = NEWTON_MILLIMETRES * by_torque
-            line[t, n, place, at] = by_gap
-    return Sensitivities(tuple(keys), error, share, line, result)
+        lever_torques, torques = np.zeros((len(grids), len(keys))), np.full(len(keys), NEWTON_MILLIMETRES)
+        lever_torques[:, at] = forces[:, None] * levers[0]
+        torques[at] = -lever_torques[:, at].sum(axis=0)
+        states.append(State(t, n, tuple(places), tangent, gaps, torques, lever_torques))
+    return Sensitivities(tuple(keys), result, tuple(states))
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """What the keys change in the equilibrium of one torque and position.
+
+    Attributes
+    ----------
+    torque, position : int
+        Indices.
+    pairs : tuple of int
+        Indices of the pairs under load.
+    tangent : Tangent
+    gaps : (keys, n) array [mm per unit]
+        Growth of the gaps at the active cells, on grids that follow their contacts.
+    torques : (keys,) array [N mm per unit]
+        Growth of the torque that the forces balance with the levers as they are.
+    lever_torques : (pairs, keys) array [N mm per unit]
+        Growth of the torque of each pair by that of its lever: levers are those of the unloaded contact points, which
+        move.
+    """
+
+    torque: int
+    position: int
+    pairs: tuple[int, ...]
+    tangent: Tangent
+    gaps: Array
+    torques: Array
+    lever_torques: Array
 
 
 Unloaded = list[dict[int, ToothPair]]
@@ -166,6 +227,16 @@ def _unloaded(pair: GearPair, angles: Array, alone: bool) -> tuple[Unloaded, int
     mesh = trace_teeth(pair, angles)
     found: Unloaded = [{one.pair: one for one in tooth_pairs_at(mesh, n)} for n in range(len(mesh))]
     return found, max(farthest_apart(mesh), 1)
+
+
+def _levers_differ(unloaded: Unloaded) -> bool:
+    """Whether the levers depend on the place of the contact, as on bevel gears, by more than its slopes.
+
+    Contacts on edges have normals, and so levers, of their own.
+    """
+    contacts = [one.contact for at_one in unloaded for one in at_one.values() if not one.contact.on_edge]
+    levers = np.array([(contact.pinion_lever, contact.wheel_lever) for contact in contacts])
+    return not contacts or bool((np.ptp(levers, axis=0) > LEVERS_ALIKE * levers.max(axis=0)).any())
 
 
 def _lever_change(change: PairChange, sides: Sequence[Unloaded], position: int, number: int) -> tuple[float, float]:
