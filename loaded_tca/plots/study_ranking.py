@@ -84,7 +84,9 @@ def _why_unranked(ranking: pandas.DataFrame) -> list[str]:
     ]
     counted = Counter(told).most_common()
     lines = [f"{textwrap.shorten(line, LONGEST_REASON)} ({count} of them)" for line, count in counted[:MOST_REASONS]]
-    more = [f"and {len(counted) - MOST_REASONS} more reasons"] * (len(counted) > MOST_REASONS)
+    more = [f"and {len(counted) - MOST_REASONS} more reason{'s' * (len(counted) > MOST_REASONS + 1)}"] * (
+        len(counted) > MOST_REASONS
+    )
     return [f"without a rank: {len(status)} of {len(ranking)} variants", *lines, *more]
 
 
