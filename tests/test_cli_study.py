@@ -63,7 +63,6 @@ def test_workers_find_what_one_process_finds(study):
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["--rank-by", "peak_pressure"], 'peak_pressure: no figure of the study; did you mean "peak_pressure_MPa"?'),
         (["--workers", "0"], "workers: found 0; allowed a whole number from 1 on"),
         (["--keep-maps", "9"], "keep_maps: [9] are not variants 0 to 1"),
         (["--keep-maps", "a"], "allowed whole numbers with commas between them, as 0,12"),
@@ -74,6 +73,41 @@ def test_wrong_options_are_bad_input(study, capsys, arguments, told):
     assert cli.main(["study", study([2.0, 6.0]), "--out", "out", *arguments]) == 2
     assert told in capsys.readouterr().err
     assert not os.path.exists("out/study.csv")
+
+
+def test_unknown_figure_is_told_once_all_is_written(study, capsys):
+    assert cli.main(["study", study([2.0, 6.0]), "--out", "out", "--rank-by", "peak_pressure"]) == 2
+    assert "--rank-by peak_pressure: no figure of study.csv; ranked as always" in capsys.readouterr().err
+    assert os.path.exists("out/ranking.csv")
+
+
+def test_study_without_an_analysis_fails(study, capsys):
+    assert cli.main(["study", study([-1.0, -2.0]), "--out", "out", "--keep-maps", "1"]) == 2
+    out, err = capsys.readouterr()
+    assert out.startswith("2 variants: 2 refused\n")
+    assert err.splitlines() == [
+        "loaded-tca: no variant was analysed; the summary says why",
+        "loaded-tca: --keep-maps 1: no maps, the variant is refused",
+    ]
+    assert os.path.exists("out/study.csv")
+
+
+def test_scene_and_study_are_told_apart(study, capsys):
+    name = study([2.0])
+    assert cli.main(["run", name, "--out", "out"]) == 2
+    assert cli.main(["study", "scene.toml", "--out", "out"]) == 2
+    assert capsys.readouterr().err.splitlines() == [
+        "loaded-tca: study.toml: a study of the scene scene.toml, no scene; 'loaded-tca study' runs it",
+        'loaded-tca: scene.toml: a scene, no study; a study names it as scene = "..."',
+    ]
+
+
+def test_study_is_no_result(study, capsys):
+    assert cli.main(["study", study([2.0]), "--out", "out"]) == 0
+    capsys.readouterr()
+    assert cli.main(["plot", "out/study.nc"]) == 2
+    (told,) = capsys.readouterr().err.splitlines()
+    assert told.endswith("a study, not the result of a mesh cycle; read it with loaded_tca.studies.load_study")
 
 
 def test_wrong_study_is_told_before_anything_is_written(study, capsys):

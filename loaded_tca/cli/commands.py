@@ -15,7 +15,7 @@ from loaded_tca.cli.named import (
     scene_of,
 )
 from loaded_tca.cli.terminal import STUDY_BAR, bar_of, print_files, progress_bar
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, require
 
 # The modules that compute and draw take most of a second to import: each command imports what it needs.
 
@@ -142,12 +142,22 @@ def study(options: argparse.Namespace) -> None:
 
     study, directory = read_study(options.study), options.out
     check_place(directory)
-    with executor_of(options) as executor, bar_of("variants", len(study), STUDY_BAR) as show:
+    with executor_of(options, len(study)) as executor, bar_of("variants", len(study), STUDY_BAR) as show:
         found = run_study(study, executor, directory / "study.nc", show, keep_maps=options.keep_maps)
-    pictures = {f"{name}.png": png_of(figure) for name, figure in plot_study(found, rank_by=options.rank_by).items()}
-    written = write_study(found, directory, pictures, options.rank_by)
+    rank_by = options.rank_by if options.rank_by in found else None  # another one is told once all is written
+    pictures = {f"{name}.png": png_of(figure) for name, figure in plot_study(found, rank_by=rank_by).items()}
+    written = write_study(found, directory, pictures, rank_by)
     print(study_summary(found), end="\n\n")
     print_files([directory / "study.nc", *written])
+    failed = (found["status"] != "ok").values
+    require(
+        (rank_by == options.rank_by, f"--rank-by {options.rank_by}: no figure of study.csv; ranked as always"),
+        (not failed.all(), "no variant was analysed; the summary says why"),
+        *(
+            (not failed[n], f"--keep-maps {n}: no maps, the variant is {found['status'].values[n]}")
+            for n in options.keep_maps
+        ),
+    )
 
 
 def check(options: argparse.Namespace) -> None:

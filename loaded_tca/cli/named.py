@@ -102,12 +102,12 @@ def check_place(directory: Path) -> None:
 
 
 @contextmanager
-def executor_of(options: argparse.Namespace) -> Iterator[Executor | None]:
+def executor_of(options: argparse.Namespace, variants: int) -> Iterator[Executor | None]:
     """Who analyses: processes of this machine, those of a cluster, or nobody else."""
     from loaded_tca.studies import process_pool
 
     if options.workers is not None:
-        with process_pool(options.workers) as pool:
+        with process_pool(min(options.workers, variants)) as pool:
             yield pool
     elif options.scheduler is not None:
         try:
@@ -115,10 +115,10 @@ def executor_of(options: argparse.Namespace) -> Iterator[Executor | None]:
         except ModuleNotFoundError:
             raise InputError("--scheduler: needs the package distributed; 'pip install distributed' gets it") from None
         try:
-            client = Client(options.scheduler, timeout=REACHED_WITHIN)  # type: ignore[no-untyped-call]
+            client = Client(options.scheduler, timeout=REACHED_WITHIN)
         except (OSError, ValueError) as error:
             raise InputError(f"--scheduler {options.scheduler}: not reached: {reason_of(error)}") from None
         with client:
-            yield client.get_executor(pure=False)  # type: ignore[no-untyped-call]
+            yield client.get_executor(pure=False)
     else:
         yield None

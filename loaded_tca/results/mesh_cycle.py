@@ -347,6 +347,10 @@ class MeshCycle:
             If it cannot be read, is damaged, or is no such file.
         """
         file = read_dataset(path)
+        if file.attrs.get("kind") == "study":
+            raise InputError(
+                f"{path}: a study, not the result of a mesh cycle; read it with loaded_tca.studies.load_study"
+            )
         try:
             arrays = arrays_of(file, QUANTITIES | IN_FILES)
             expected = {**SIZES, "end": 2, "edge": 8, "path": 1 + file.sizes["pair"]}

@@ -68,7 +68,10 @@ def parse_scene(text: str, source: str = "scene", folder: str | os.PathLike[str]
     pair.modul: unknown key; did you mean "pair.normal_module_mm"?
     ...
     """
-    return scene_from_table(_with_files_from(Path(folder), toml_table(text, source)))
+    table = toml_table(text, source)
+    if "pair" not in table and isinstance(table.get("scene"), str):
+        raise InputError(f"{source}: a study of the scene {table['scene']}, no scene; 'loaded-tca study' runs it")
+    return scene_from_table(_with_files_from(Path(folder), table))
 
 
 def literal_value(text: str) -> Any:

@@ -39,7 +39,7 @@ def process_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
     """
     whole = isinstance(workers, int) and not isinstance(workers, bool) and workers >= 1
     require((whole, f"workers: found {workers!r}; allowed a whole number from 1 on"))
-    others = set(active_children())
+    others, own = set(active_children()), set()
     with ProcessPoolExecutor(workers, get_context("spawn"), _end_with_parent) as pool:
         try:
             with _interrupts_held_back():

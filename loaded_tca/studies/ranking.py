@@ -22,7 +22,7 @@ MAIN_FIGURES = ("transmission_error_span_um", "peak_pressure_MPa", "face_load_fa
 
 def varied_keys(study: xarray.Dataset) -> list[str]:
     """Keys that a study varies, in the order of the study."""
-    return [str(name) for name, values in study.coords.items() if values.dims == ("sample",)]
+    return [str(name) for name, values in study.coords.items() if values.dims == ("sample",) and name != "sample"]
 
 
 def main_figures(study: xarray.Dataset) -> list[str]:

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from loaded_tca.errors import InputError, read_text
+from loaded_tca.errors import InputError, read_text, reason_of
 from loaded_tca.scene import Scene, read_scene
 from loaded_tca.scene.keys import did_you_mean, nearest
 from loaded_tca.scene.parse import LARGEST_FILE, toml_table
 from loaded_tca.scene.text import shown, shown_key
-from loaded_tca.studies.study import Distribution, Study
+from loaded_tca.studies.study import Distribution, Study, is_finite
 
 WORDS = ("scene", "changes", "factors", "distributions", "samples", "seed", "table")
 SPAN = {"from", "to", "count"}
@@ -67,6 +68,8 @@ def parse_study(text: str, source: str = "study", folder: str | os.PathLike[str]
     factors.mounting.misalignment_um: found a table; allowed a list of values or { from, to, count }
     """
     found = toml_table(text, source)
+    if "pair" in found:
+        raise InputError(f'{source}: a scene, no study; a study names it as scene = "..."')
     problems = [
         f"{shown_key(word)}: unknown word{did_you_mean(nearest(word, WORDS)) or '; allowed ' + ', '.join(WORDS)}"
         for word in found
@@ -86,6 +89,8 @@ def parse_study(text: str, source: str = "study", folder: str | os.PathLike[str]
         else:
             problems.append(f"{word}: found {shown(section)}; allowed a section [{word}]")
     for place, name, read, arguments in parts:
+        if name in place:
+            problems.append(f"{arguments[0]}: given twice")
         try:
             place[name] = read(*arguments)
         except InputError as error:
@@ -124,7 +129,7 @@ def _values(key: str, value: Any) -> list[Any]:
     low, high, count = value["from"], value["to"], value["count"]
     if not (type(count) is int and 1 <= count <= MOST_VALUES):
         raise InputError(f"{key}.count: found {shown(count)}; allowed a whole number from 1 to {MOST_VALUES}")
-    if not all(type(end) in (int, float) and np.isfinite(end) for end in (low, high)):
+    if not all(is_finite(end) for end in (low, high)):
         raise InputError(f"{key}: found from {shown(low)} to {shown(high)}; allowed two finite numbers")
     values: list[Any] = np.linspace(low, high, count).tolist()
     return values
@@ -136,15 +141,25 @@ def _distribution(key: str, value: Any) -> Distribution:
     name = value.get(DISTRIBUTION) if isinstance(value, dict) else None
     known = getattr(stats, name, None) if isinstance(name, str) else None
     if not isinstance(known, stats.rv_continuous | stats.rv_discrete):
-        told = shown(value) if name is None else shown(name)
+        names = [
+            word for word in dir(stats) if isinstance(getattr(stats, word), stats.rv_continuous | stats.rv_discrete)
+        ]
+        hint = did_you_mean(nearest(name, names)) if isinstance(name, str) else ""
+        told = (shown(value) if name is None else shown(name)) + hint
         raise InputError(
             f'{key}: found {told}; allowed {{ {DISTRIBUTION} = "norm", scale = 5.0 }}, names of scipy.stats'
         )
     parameters = {word: number for word, number in value.items() if word != DISTRIBUTION}
     try:
         frozen: Distribution = known(**parameters)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"{key}: {name}: {error}") from None
+    except (TypeError, ValueError):
+        takes = [
+            *(known.shapes or "").replace(",", "").split(),
+            "loc",
+            *["scale"] * isinstance(known, stats.rv_continuous),
+        ]
+        found = ", ".join(parameters) or "none"
+        raise InputError(f"{key}: {name} has the parameters {', '.join(takes)}; found {found}") from None
     return frozen
 
 
@@ -156,9 +171,11 @@ def _table(name: Any, folder: Path) -> dict[str, list[Any]]:
     import pandas
 
     try:
-        frame = pandas.read_csv(folder / name)
-    except OSError as error:
-        raise InputError(f"table: {folder / name}: cannot be read: {error.strerror or error}") from None
-    except ValueError as error:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # rows longer than the header are cut with a warning
+            frame = pandas.read_csv(folder / name, index_col=False)
+    except FileNotFoundError as error:
+        raise InputError(f"table: {folder / name}: cannot be read: {reason_of(error)}") from None
+    except Exception as error:  # on what is no CSV, or packed in some way, the reader stumbles in any way
         raise InputError(f"table: {folder / name}: no CSV: {error}") from None
     return {str(key): column.tolist() for key, column in frame.items()}

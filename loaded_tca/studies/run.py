@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 import warnings
 from collections.abc import Callable, Collection, Generator, Iterator, Mapping
@@ -18,8 +19,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loaded_tca.analysis import analyse
-from loaded_tca.errors import AccuracyWarning, ConvergenceError, ExecutorError, LoadedTCAError, require
-from loaded_tca.results.files import FilePath, make_directory, replacing, write_dataset
+from loaded_tca.errors import AccuracyWarning, ConvergenceError, ExecutorError, InputError, LoadedTCAError, require
+from loaded_tca.results.files import FilePath, make_directory, read_dataset, remove, replacing, write_dataset
 from loaded_tca.scene import Scene
 from loaded_tca.studies.figures import figures as key_figures
 from loaded_tca.studies.figures import figures_of
@@ -34,6 +35,9 @@ AHEAD = 1000
 """Variants under way: enough for hundreds of workers, and little memory."""
 
 GONE = "as when a scheduler goes away"
+
+OTHERS = ("sample", "torque", "status", "reason", "warnings", "seconds")
+"""What else stands beside figures in the result."""
 
 Figures = Callable[[Scene], Mapping[str, Any]]
 Progress = Callable[[int, int, int], None]
@@ -64,8 +68,8 @@ def run_study(
         What is kept of a variant: a function of its scene that returns numbers, or numbers over the torques, by their
         names, and that workers can import. Default: :func:`loaded_tca.studies.figures`.
     keep_maps : collection of int
-        Variants of which the whole result is kept, pressure maps included: ``<name>_maps/<variant>.nc`` beside ``out``,
-        to be read by :func:`loaded_tca.load_result`.
+        Variants of which the whole result is kept, pressure maps included, if they are ok:
+        ``<name>_maps/<variant>.nc`` beside ``out``, to be read by :func:`loaded_tca.load_result`.
 
     Returns
     -------
@@ -92,7 +96,7 @@ def run_study(
     """
     with_maps = set(keep_maps)
     unknown = sorted(with_maps.difference(range(len(study))))
-    named = hasattr(figures, "__qualname__")
+    named = "<lambda>" not in getattr(figures, "__qualname__", "<lambda>")
     require(
         (not with_maps or out is not None, "keep_maps: needs out"),
         (not unknown, f"keep_maps: {unknown[:3]} are not variants 0 to {len(study) - 1}"),
@@ -104,6 +108,7 @@ def run_study(
         rows = stack.enter_context(Rows(place.with_suffix(".rows.jsonl")))
         stack.enter_context(_told_how_to_go_on(rows, out))
         maps = place.with_name(f"{place.stem}_maps")
+        _remove_outdated(maps, study)
         kept: list[int] = []
         missing: dict[str, list[int]] = {}  # variants that change the same are analysed once
         for variant in range(len(study)):
@@ -161,10 +166,11 @@ def _by(executor: Executor, tasks: Iterator[Task]) -> Generator[list[Done]]:
             while not finished.empty():
                 batch.append(finished.get())
             under_way.difference_update(batch)
-            lost = [future for future in batch if future.cancelled() or future.exception() is not None]
+            lost = {future for future in batch if future.cancelled() or future.exception() is not None}
             yield [future.result() for future in batch if future not in lost]
             if lost:
-                error = CancelledError(GONE) if lost[0].cancelled() else lost[0].exception()
+                first = next(future for future in batch if future in lost)
+                error = CancelledError(GONE) if first.cancelled() else first.exception()
                 if isinstance(error, BrokenExecutor):  # it fails all of them, and stumbles over cancelled ones
                     under_way.clear()
                 told = f"{type(error).__name__}: {error}".splitlines()[0]
@@ -195,9 +201,9 @@ def _analysed(scene: Scene, changes: dict[str, Any], digest: str, figures: Figur
                 result = analyse(variant)
                 whole = bytes(result.to_netcdf())
             values = figures_of(result) if keep and figures is key_figures else figures(variant)
-            found = {name: np.atleast_1d(np.asarray(value, dtype=float)).tolist() for name, value in values.items()}
+            found = {_named(name): _over_torques(name, value) for name, value in values.items()}
         except Exception as error:  # a variant that fails is a row; what it is of the program's fault, too
-            status, reason = _status_of(error), str(error) or type(error).__name__
+            status, reason = _status_of(error), str(error).encode(errors="replace").decode() or type(error).__name__
     row = {
         "digest": digest,
         "status": status,
@@ -209,10 +215,37 @@ def _analysed(scene: Scene, changes: dict[str, Any], digest: str, figures: Figur
     return row, whole
 
 
+def _named(name: Any) -> str:
+    """The name of a figure, which is that of a variable in a file, too, and of a picture."""
+    if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or name in OTHERS:
+        raise ValueError(f"figures: name {name!r:.60}; allowed letters, digits and _, but not {', '.join(OTHERS)}")
+    return name
+
+
+def _over_torques(name: str, value: Any) -> list[float]:
+    array = np.atleast_1d(np.asarray(value, dtype=float))
+    if array.ndim > 1:
+        raise ValueError(f"figures: {name} has {array.ndim} dimensions; allowed a number, or one for each torque")
+    return array.tolist()
+
+
 def _status_of(error: Exception) -> str:
     if isinstance(error, ConvergenceError):
         return "not converged"
     return "refused" if isinstance(error, LoadedTCAError) else "fault"
+
+
+def _remove_outdated(maps: Path, study: Study) -> None:
+    """Remove kept results of variants that the study does not have any more, or has under another number."""
+    for path in maps.glob("*.nc"):
+        variant = int(path.stem) if path.stem.isdecimal() else len(study)
+        try:
+            scene = study.scene.with_changes(study.changes(variant)).to_toml() if variant < len(study) else ""
+            outdated = read_dataset(path).attrs.get("scene_toml") != scene
+        except InputError:
+            outdated = True
+        if outdated:
+            remove(path)
 
 
 def _map_of(maps: Path, variant: int) -> Path:

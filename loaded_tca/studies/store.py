@@ -121,7 +121,8 @@ def dataset_of(study: Study, rows: Iterable[Row], attributes: dict[str, Any]) ->
     Returns
     -------
     xarray.Dataset
-        Dimensions sample and torque. Over both the key figures, NaN where there are none; over the samples the varied
+        Dimensions sample (the number of the variant) and torque [N mm], which has a coordinate where all variants have
+        the same. Over both the key figures, NaN where there are none; over the samples the varied
         keys (coordinates, with the attribute ``sampling``: "table", "factor" or "distribution"), ``status``,
         ``reason``, ``warnings`` (lines) and ``seconds``.
     """
@@ -147,8 +148,13 @@ def dataset_of(study: Study, rows: Iterable[Row], attributes: dict[str, Any]) ->
     variables = {name: (("sample", "torque"), array) for name, array in found.items()}
     own = {name: ("sample", np.array(column, dtype=object)) for name, column in texts.items()}
     spent = ("sample", seconds, {"units": "s", "long_name": "time of the analysis"})
+    places = {"sample": ("sample", np.arange(count, dtype=np.int32))}
+    torque = 1e3 * found.get("pinion_torque_Nm", np.full((1, torques), np.nan))
+    known = torque[np.isfinite(torque).all(axis=1)]
+    if len(known) and (known == known[0]).all():  # the same in all variants
+        places["torque"] = ("torque", known[0])
     return xarray.Dataset(
-        {**variables, **own, "seconds": spent}, coords=_varied(study), attrs={"kind": KIND, **attributes}
+        {**variables, **own, "seconds": spent}, coords={**places, **_varied(study)}, attrs={"kind": KIND, **attributes}
     )
 
 

@@ -24,8 +24,8 @@ from loaded_tca.scene.text import shown
 
 NEVER = 1e-12
 """Probabilities nearer than this to 0 or 1 are moved there: a distribution without bounds has no value at its ends."""
-MOST_SAMPLES = 2**30
-"""Points of a scrambled Sobol sequence."""
+MOST_VARIANTS = 1_000_000
+"""Of a study: a row of key figures takes 3 kB on disk."""
 
 
 class Distribution(Protocol):
@@ -94,14 +94,17 @@ class Study:
         for name in ("factors", "table"):  # copies, which nobody else changes
             lists = {key: [_plain(value) for value in values] for key, values in getattr(self, name).items()}
             object.__setattr__(self, name, lists)
+        if (count := math.prod(self._counts)) > MOST_VARIANTS:
+            raise InputError(f"factors: all together {count:.4g} variants; allowed up to {MOST_VARIANTS}")
 
     def _problems_of_numbers(self) -> Iterator[str]:
         if not _is_whole(self.seed, 0, math.inf):
             yield f"seed: found {shown(self.seed)}; allowed a whole number from 0 on"
         if not self.distributions and self.samples is not None:
             yield "samples: given without distributions, of which they are"
-        elif self.distributions and not _is_whole(self.samples, 1, MOST_SAMPLES):
-            yield f"samples: found {shown(self.samples)}; allowed a whole number from 1 to {MOST_SAMPLES}"
+        elif self.distributions and not _is_whole(self.samples, 1, MOST_VARIANTS):
+            found = "missing" if self.samples is None else f"found {shown(self.samples)}"
+            yield f"samples: {found}; allowed a whole number from 1 to {MOST_VARIANTS}, with distributions"
 
     def _problems_of_keys(self) -> Iterator[str]:
         if not self.keys:
@@ -113,11 +116,9 @@ class Study:
                 key_at(type(self.scene), key)
             except InputError as error:
                 yield from error.problems
-        if "load.pinion_torque_Nm" in self.keys and self.scene.analysis.torques_Nm is not None:
-            yield (
-                "load.pinion_torque_Nm: changes nothing, since the scene has analysis.torques_Nm; vary these, or leave "
-                "them out of the scene"
-            )
+        several = self.scene.analysis.torques_Nm is not None or "analysis.torques_Nm" in self.keys
+        if "load.pinion_torque_Nm" in self.keys and several:
+            yield ("load.pinion_torque_Nm: changes nothing beside analysis.torques_Nm; vary these, or leave them out")
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -190,8 +191,12 @@ def _is_whole(value: Any, low: float, high: float) -> bool:
     return isinstance(value, Integral) and not isinstance(value, bool) and low <= int(value) <= high
 
 
-def _is_finite(value: Any) -> bool:
-    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+def is_finite(value: Any) -> bool:
+    """Whether a value is a number, but no boolean, that a float can hold."""
+    try:
+        return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+    except OverflowError:
+        return False
 
 
 def _plain(value: Any) -> Any:
@@ -201,12 +206,15 @@ def _plain(value: Any) -> Any:
 
 def _as_key_takes(key: Key, value: Any) -> Any:
     """The value in the key's own type; a number that it refuses stays what it is."""
-    if isinstance(key.kind, Whole) and float(value).is_integer():
-        value = int(value)
     try:
-        return key.read(value)
+        return key.read(_whole_if_asked(key, value))
     except ValueError:
         return value
+
+
+def _whole_if_asked(key: Key, value: Any) -> Any:
+    """A whole number where one is asked for and the value is one that is written otherwise, as 33.0."""
+    return int(value) if isinstance(key.kind, Whole) and is_finite(value) and float(value).is_integer() else value
 
 
 def _problems_of_values(key: str, known: Key | None, values: Any) -> Iterator[str]:
@@ -222,10 +230,10 @@ def _problems_of_values(key: str, known: Key | None, values: Any) -> Iterator[st
 
 def _refusal(known: Key, value: Any) -> str:
     """Why a key never takes a value; nothing for a number, be it in the range of the key or not."""
-    if isinstance(known.kind, Number) and _is_finite(value):
+    if isinstance(known.kind, Number) and is_finite(value):
         return ""
     try:
-        known.read(value)
+        known.read(_whole_if_asked(known, value))
     except ValueError as refused:
         return str(refused)
     return ""
@@ -236,10 +244,10 @@ def _problems_of_distribution(key: str, known: Key | None, distribution: Any) ->
         yield f"{key}: no number, so that it has no distribution; allowed {known.kind.allowed}, as a factor"
     try:
         middle = float(distribution.ppf(0.5))
-    except (AttributeError, TypeError, ValueError):
+    except Exception:  # of whatever it is, or of parameters that scipy.stats stumbles over
         yield f"{key}: found {shown(distribution)}; allowed a frozen distribution of scipy.stats, as norm(0.0, 5.0)"
         return
     if not math.isfinite(middle):
-        yield f"{key}: the distribution has no median; are its parameters allowed?"
+        yield f"{key}: the distribution has no median: a parameter is out of its range, as a scale below 0"
     elif known is not None and isinstance(known.kind, Whole) and not middle.is_integer():
         yield f"{key}: the distribution gives {middle:g}; allowed are whole numbers"

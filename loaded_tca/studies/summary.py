@@ -43,8 +43,8 @@ def study_summary(study: xarray.Dataset) -> str:
     >>> words = {"status": ["ok", "ok", "refused"], "reason": ["", "", "pinion: pointed"], "warnings": ["", "", ""]}
     >>> print(study_summary(xarray.Dataset({**found, **{name: ("sample", column) for name, column in words.items()}})))
     3 variants: 2 ok, 1 refused
-                             min      5 %   median     95 %      max
-    load factor K_Hbeta      1.2     1.22      1.4     1.58      1.6
+                               min        5 %     median       95 %        max
+    load factor K_Hbeta        1.2       1.22        1.4       1.58        1.6
     refused: pinion: pointed (1 variant)
     """
     status = Counter(study["status"].values.tolist())
@@ -63,13 +63,13 @@ def _table(study: xarray.Dataset) -> Iterator[str]:
         same = known.size and np.ptp(known) == 0.0 and study.sizes["torque"] > 1
         head = f"under {known[0]:g} N m" if same else f"torque {torque + 1}" if study.sizes["torque"] > 1 else ""
         width = max(len(label) for label in (*shown.values(), head))
-        yield f"{head:<{width}}" + "".join(f"{word:>9}" for word in PERCENTILES)
+        yield f"{head:<{width}}" + "".join(f"{word:>11}" for word in PERCENTILES)
         for name, label in shown.items():
             values = study[name].values[:, torque]
             values = values[np.isfinite(values)]
             if values.size:
                 at = np.percentile(values, [*PERCENTILES.values()])
-                yield f"{label:<{width}}" + "".join(f"{value:>9.4g}" for value in at)
+                yield f"{label:<{width}}" + "".join(f"{value:>11.4g}" for value in at)
 
 
 def _reasons(study: xarray.Dataset) -> Iterator[str]:

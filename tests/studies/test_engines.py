@@ -71,5 +71,5 @@ def test_numbers_do_not_depend_on_the_order():
     backwards = Study(study.scene, table={key: column[::-1] for key, column in study.table.items()})
     found = run_study(backwards)
     assert found["status"].values[2] == "refused"
-    for name, content in bits(found, slice(None, None, -1)).items():
+    for name, content in bits(found.drop_vars("sample"), slice(None, None, -1)).items():
         assert content == expected()[name], name

@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 import time
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
@@ -56,7 +56,8 @@ def is_over(process):
 
 
 def test_killed_worker_ends_the_study_and_costs_no_row(tmp_path):
-    study, out = in_folder(tmp_path, 1, 2, 3, 4), tmp_path / "study.nc"
+    values = range(1, 51)
+    study, out = in_folder(tmp_path, *values), tmp_path / "study.nc"
     before = set(multiprocessing.active_children())
     with (
         ProcessPoolExecutor(2, get_context("fork")) as pool,
@@ -71,8 +72,8 @@ def test_killed_worker_ends_the_study_and_costs_no_row(tmp_path):
     ]
     (tmp_path / "asked").unlink()
     found = run_study(study, None, out, figures=killing)
-    assert_array_equal(found["crowning_um"][:, 0], [1.0, 2.0, 3.0, 4.0])
-    assert len(calls_in(tmp_path)) == 4 - len(kept)
+    assert_array_equal(found["crowning_um"][:, 0], values)
+    assert len(calls_in(tmp_path)) == len(values) - len(kept)
 
 
 def test_scheduler_hands_the_variants_of_a_killed_worker_to_another(cluster, tmp_path):
@@ -249,13 +250,13 @@ def test_variants_that_change_the_same_are_analysed_once(tmp_path):
 
 def test_figures_that_no_process_can_import(tmp_path):
     study = in_folder(tmp_path, 1, 2)
-    with (
-        ProcessPoolExecutor(1, get_context("fork")) as pool,
-        pytest.raises(
-            ExecutorError, match=r"the executor gave up: (Attribute|Pickling)Error: Can't (get|pickle) .*lambda"
-        ),
-    ):
-        run_study(study, pool, figures=lambda scene: asked(scene))
+
+    def local(scene):
+        return asked(scene)
+
+    told = r"the executor gave up: (Attribute|Pickling)Error: Can't (get|pickle) .*local"
+    with ProcessPoolExecutor(1, get_context("fork")) as pool, pytest.raises(ExecutorError, match=told):
+        run_study(study, pool, figures=local)
 
 
 def test_figures_without_a_name(tmp_path):
@@ -270,6 +271,29 @@ def test_executor_that_takes_nothing_any_more(tmp_path):
     with pytest.raises(ExecutorError, match="gave up: RuntimeError: cannot schedule new futures after shutdown"):
         run_study(study, pool, out, figures=asked)
     run_study(study, None, out, figures=asked)
+
+
+class GivingUp(Executor):
+    """An executor whose first task fails and whose others wait."""
+
+    def __init__(self, error):
+        self.error, self.futures = error, []
+
+    def submit(self, *_):
+        future = Future()
+        if not self.futures:
+            future.set_exception(self.error)
+        self.futures.append(future)
+        return future
+
+
+@pytest.mark.parametrize(("error", "cancelled"), [(BrokenExecutor("over"), False), (RuntimeError("over"), True)])
+def test_what_waits_is_cancelled_unless_the_executor_is_broken(tmp_path, error, cancelled):
+    """A broken pool fails all of its tasks itself; before Python 3.12 it hangs where one is cancelled meanwhile."""
+    executor = GivingUp(error)
+    with pytest.raises(ExecutorError, match=f"{type(error).__name__}: over"):
+        run_study(in_folder(tmp_path, 1, 2, 3), executor, figures=asked)
+    assert [future.cancelled() for future in executor.futures] == [False, cancelled, cancelled]
 
 
 @pytest.mark.parametrize("workers", [0, -1, 1.5, True, "2"])

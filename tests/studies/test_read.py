@@ -57,8 +57,9 @@ def test_file_holds_all_that_a_study_has(tmp_path):
         ("factors.a = { from = 1, to = 2, count = 0 }", "factors.a.count: found 0; allowed a whole number from 1"),
         ("factors.a = { from = 1, to = inf, count = 2 }", "allowed two finite numbers"),
         ("distributions.a = 1", "distributions.a: found 1; allowed { distribution ="),
-        ("distributions.a = { distribution = 'normal' }", 'distributions.a: found "normal"; allowed'),
-        ("distributions.a = { distribution = 'norm', width = 1 }", "distributions.a: norm: "),
+        ("distributions.a = { distribution = 'gaussian' }", 'distributions.a: found "gaussian"'),
+        ("distributions.a = { distribution = 'norme' }", 'distributions.a: found "norme"; did you mean "norm"?'),
+        ("distributions.a = { distribution = 'norm', width = 1 }", "norm has the parameters loc, scale; found width"),
         ("table = 1", "table: found 1; allowed the name of a CSV file"),
         ("table = 'absent.csv'", "absent.csv: cannot be read: No such file"),
     ],
@@ -72,10 +73,24 @@ def test_what_is_wrong_in_a_file_is_told(tmp_path, text, told):
     assert told in caught.value.problems[0]
 
 
-def test_table_that_is_no_table(tmp_path):
-    (tmp_path / "empty.csv").write_text("")
-    with pytest.raises(InputError, match=r"empty.csv: no CSV"):
-        parse_study(f'scene = "{HELICAL}"\ntable = "empty.csv"', folder=tmp_path)
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("empty.csv", b""),
+        ("commas.csv", b"mounting.misalignment_um\n0,5\n1,5\n"),
+        ("longer.csv", b"mounting.misalignment_um,pinion.teeth\n1,33,3\n"),
+        ("packed.csv.xz", b"mounting.misalignment_um\n1\n"),
+    ],
+)
+def test_table_that_is_no_table(tmp_path, name, content):
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(InputError, match=f"{name}: no CSV"):
+        parse_study(f'scene = "{HELICAL}"\ntable = "{name}"', folder=tmp_path)
+
+
+def test_key_that_is_written_in_two_ways_is_told():
+    with pytest.raises(InputError, match=r"factors\.mounting\.misalignment_um: given twice"):
+        parse_study(f'scene = "{HELICAL}"\n[factors]\n{TILT} = [1]\n"{TILT}" = [2]')
 
 
 def test_every_problem_is_told_at_once():

@@ -166,6 +166,53 @@ def test_maps_of_chosen_variants_are_kept(tmp_path):
     assert_array_equal(found["peak_pressure_MPa"][1], [result.key_figures()[0]["peak_pressure_MPa"]])
 
 
+def test_maps_of_another_study_are_not_left_under_its_numbers(tmp_path):
+    out = tmp_path / "study.nc"
+    run_study(study(2.0, 6.0, 8.0), out=out, keep_maps=[0, 1, 2])
+    run_study(study(6.0, 2.0), out=out, keep_maps=[0])
+    maps = sorted((tmp_path / "study_maps").iterdir())
+    assert [path.name for path in maps] == ["0.nc"]
+    assert load_result(maps[0]).scene.pinion.modifications.lead_crowning_um == 6.0
+
+
+def test_maps_stay_where_they_are_not_asked_for_again(tmp_path):
+    out = tmp_path / "study.nc"
+    run_study(study(2.0, 6.0), out=out, keep_maps=[1])
+    run_study(study(2.0, 6.0), out=out)
+    assert (tmp_path / "study_maps" / "1.nc").exists()
+
+
+def square(scene):
+    return {"square": [[1.0, scene.pinion.teeth]]}
+
+
+def reserved(scene):
+    return {"status": scene.pinion.teeth}
+
+
+def spaced(scene):
+    return {"two words": scene.pinion.teeth}
+
+
+@pytest.mark.parametrize(
+    ("figures", "told"),
+    [
+        (square, "figures: square has 2 dimensions; allowed a number, or one for each torque"),
+        (reserved, "figures: name 'status'; allowed letters, digits and _, but not sample, torque"),
+        (spaced, "figures: name 'two words'; allowed letters, digits and _"),
+    ],
+)
+def test_figures_that_do_not_fit_into_the_result_are_a_fault(tmp_path, figures, told):
+    found = run_study(study(1.0, 2.0), out=tmp_path / "study.nc", figures=figures)
+    assert list(found["status"].values) == ["fault", "fault"]
+    assert told in found["reason"].values[0]
+
+
+def test_figures_without_a_name_are_refused():
+    with pytest.raises(InputError, match="allowed a function, whose name tells its rows"):
+        run_study(study(1.0), figures=lambda scene: {"teeth": scene.pinion.teeth})
+
+
 def test_maps_asked_for_later_are_computed_again(tmp_path):
     out, counted = tmp_path / "study.nc", counting()
     run_study(study(2.0, 6.0), out=out, figures=counted)

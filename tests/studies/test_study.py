@@ -83,6 +83,10 @@ def test_whole_numbers_words_and_lists_are_what_the_keys_take():
     assert scene.with_changes(changes).pinion.modifications.lead_crowning_form == "circular"
 
 
+def test_whole_numbers_may_be_written_as_others():
+    assert Study(helical(), {"pinion.teeth": [33.0]}).changes(0) == {"pinion.teeth": 33}
+
+
 def test_number_out_of_its_range_is_no_fault_of_the_study():
     assert Study(helical(), {CROWNING: [-3.0]}).changes(0) == {CROWNING: -3.0}
 
@@ -99,11 +103,15 @@ def test_number_out_of_its_range_is_no_fault_of_the_study():
         ({"factors": {CROWNING: "12"}}, f"{CROWNING}: found \"12\"; allowed a list of values"),
         ({"factors": {CROWNING: ["much"]}}, f'{CROWNING}: found "much"; allowed a number'),
         ({"factors": {CROWNING: [math.nan]}}, f"{CROWNING}: found nan; allowed a number"),
+        ({"factors": {CROWNING: [10**400]}}, f"{CROWNING}: found a whole number of 1329 bits; allowed a number"),
+        ({"factors": {"pinion.teeth": [33.5]}}, "pinion.teeth: found 33.5; allowed a whole number"),
+        ({"factors": {CROWNING: range(2000), RELIEF: range(2000)}}, "all together 4e+06 variants; allowed up to"),
+        ({"distributions": {CROWNING: stats.yulesimon(0.01)}, "samples": 2}, "allowed a frozen distribution"),
         ({"factors": {CROWNING: [True]}}, f"{CROWNING}: found true; allowed a number"),
         ({"factors": {"analysis.compliance": ["teeth"]}}, 'allowed "contact" or "contact+tooth"'),
         ({"factors": {CROWNING: [1.0]}, "samples": 4}, "samples: given without distributions"),
         ({"factors": {CROWNING: [1.0]}, "seed": -1}, "seed: found -1; allowed a whole number from 0 on"),
-        ({"distributions": {CROWNING: stats.norm(5.0, 1.0)}}, "samples: found None; allowed a whole number from 1"),
+        ({"distributions": {CROWNING: stats.norm(5.0, 1.0)}}, "samples: missing; allowed a whole number from 1"),
         ({"distributions": {CROWNING: stats.norm(5.0, 1.0)}, "samples": 2.5}, "samples: found 2.5"),
         ({"distributions": {CROWNING: 5.0}, "samples": 2}, "allowed a frozen distribution of scipy.stats"),
         ({"distributions": {CROWNING: stats.norm(5.0, -1.0)}, "samples": 2}, "the distribution has no median"),
@@ -128,6 +136,8 @@ def test_every_problem_is_told_at_once():
 
 def test_torque_that_the_scene_leaves_aside_is_refused():
     several = read_scene(HELICAL).with_changes({"analysis.torques_Nm": [50.0, 100.0]})
+    with pytest.raises(InputError, match=r"load\.pinion_torque_Nm: changes nothing"):
+        Study(helical(), {"load.pinion_torque_Nm": [10.0], "analysis.torques_Nm": [[50.0]]})
     with pytest.raises(InputError, match=r"load\.pinion_torque_Nm: changes nothing"):
         Study(several, {"load.pinion_torque_Nm": [10.0]})
     assert len(Study(several, {"analysis.torques_Nm": [[50.0, 80.0], [10.0]]})) == 2
