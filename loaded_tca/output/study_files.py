@@ -54,9 +54,10 @@ def write_study(
 
 
 def study_csv(study: xarray.Dataset) -> str:
-    """Return every figure as CSV, one row per variant and torque, the varied keys first; both are numbered from 0.
+    """Return every figure as CSV, one row per variant and torque, the varied keys first.
 
-    Columns of whole numbers, as counts are, have no decimals.
+    Variants are numbered from 0, and so are torques that are not the same [N mm] in all of them. Columns of whole
+    numbers, as counts are, have no decimals.
     """
     order = [name for name in ("sample", "torque") if name in study.sizes]  # no torque where no variant is ok
     frame = study.to_dataframe(order).reset_index()
