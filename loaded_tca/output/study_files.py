@@ -56,11 +56,10 @@ def write_study(
 def study_csv(study: xarray.Dataset) -> str:
     """Return every figure as CSV, one row per variant and torque, the varied keys first.
 
-    Variants are numbered from 0, and so are torques that are not the same [N mm] in all of them. Columns of whole
-    numbers, as counts are, have no decimals.
+    Variants and torques are numbered from 0. Columns of whole numbers, as counts are, have no decimals.
     """
     order = [name for name in ("sample", "torque") if name in study.sizes]  # no torque where no variant is ok
-    frame = study.to_dataframe(order).reset_index()
+    frame = study.drop_vars("torque", errors="ignore").to_dataframe(order).reset_index()
     for name in study.data_vars:
         known = frame[name].dropna()
         if known.dtype.kind == "f" and (known.abs() < 2**53).all() and (known % 1 == 0).all():
