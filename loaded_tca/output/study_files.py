@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from loaded_tca.results.files import Buffer, FilePath, replace_together
-from loaded_tca.studies.ranking import rank_variants
+from loaded_tca.studies.ranking import main_figures, rank_variants, varied_keys
 
 if TYPE_CHECKING:
     import xarray
@@ -44,16 +44,25 @@ def write_study(
     Raises
     ------
     InputError
-        If they cannot be written, or the study has no figure ``rank_by``.
+        If they cannot be written, or the study has figures, but not ``rank_by``.
     """
-    ranking = rank_variants(study, rank_by, largest_is_best=largest_is_best).to_csv(index=False)
+    by = rank_by if main_figures(study) else None  # where all variants were refused there is nothing to rank by
+    ranking = rank_variants(study, by, largest_is_best=largest_is_best).to_csv(index=False)
     contents = {TABLE: study_csv(study).encode(), RANKING: ranking.encode(), **more}
     old = {path.name for path in Path(directory).glob(PICTURES)} - {*contents}
     return replace_together(directory, contents, old)
 
 
 def study_csv(study: xarray.Dataset) -> str:
-    """Return every figure as CSV, one row per variant and torque; both are numbered from 0."""
+    """Return every figure as CSV, one row per variant and torque, the varied keys first.
+
+    Variants and torques are numbered from 0. Columns of whole numbers, as counts are, have no decimals.
+    """
     order = [name for name in ("sample", "torque") if name in study.sizes]  # no torque where no variant is ok
-    table: str = study.to_dataframe(order).reset_index().to_csv(index=False)
+    frame = study.drop_vars("torque", errors="ignore").to_dataframe(order).reset_index()
+    for name in study.data_vars:
+        known = frame[name].dropna()
+        if known.dtype.kind == "f" and (known.abs() < 2**53).all() and (known % 1 == 0).all():
+            frame[name] = frame[name].astype("Int64")
+    table: str = frame[list(dict.fromkeys([*order, *varied_keys(study), *frame]))].to_csv(index=False)
     return table

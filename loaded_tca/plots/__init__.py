@@ -22,8 +22,8 @@ from loaded_tca.plots.study import (
     plot_study,
     plot_study_heat_map,
     plot_study_lines,
-    plot_study_ranking,
 )
+from loaded_tca.plots.study_ranking import plot_study_ranking
 from loaded_tca.plots.study_scatter import plot_study_histogram, plot_study_over_torque, plot_study_scatter_matrix
 from loaded_tca.plots.style import highest_torque, png_of, save_figure
 from loaded_tca.plots.subsurface import plot_stress_below, plot_subsurface

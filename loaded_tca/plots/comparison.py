@@ -5,17 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import cycle
+from typing import Any
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
 from loaded_tca.plots import style
 from loaded_tca.plots.flanks import highest_of_map
 from loaded_tca.plots.pressure_map import PRESSURE, draw_map, scale_factor
 from loaded_tca.plots.sharing import MOST_ORDERS, OVER_THE_PATH, draw_orders, over_the_path
-from loaded_tca.plots.style import COLOURS, DISTINCT_COLOURS, MARKERS
+from loaded_tca.plots.style import COLOURS, DISTINCT_COLOURS, MARKERS, NO_MATERIAL
 from loaded_tca.results.comparison import Comparison, compare_results
 from loaded_tca.results.key_figures import mean_over_a_pitch
 from loaded_tca.results.mesh_cycle import MeshCycle
@@ -26,6 +28,15 @@ SMALLEST_SPAN_UM = 1e-3
 UNIT = np.array([-1.0, 1.0])
 """Borders [mm] of a map of nothing."""
 MOST_IN_A_ROW = 3
+BEYOND: dict[str, Any] = {
+    "facecolor": "white",
+    "edgecolor": NO_MATERIAL,
+    "hatch": "///",
+    "linewidth": 0.0,
+    "zorder": -1.0,
+    "label": "not in this map",
+}
+"""The ground of a panel that its map does not fill: what lies beyond the map was not computed."""
 PANEL_INCHES = 5.5
 """Width of a pressure map beside others."""
 
@@ -101,6 +112,8 @@ def plot_comparison(results: Results, torque: float | None = None) -> Figure:
 def plot_compared_maps(results: Results, torque: float | None = None, position: int | None = None) -> Figure:
     """Pressure maps of two or more results side by side, on one scale of colours and one of lengths.
 
+    Where a panel is larger than its map, because another map is, it is hatched.
+
     Parameters
     ----------
     results : mapping of str to MeshCycle, sequence of MeshCycle, or Comparison
@@ -142,6 +155,8 @@ def plot_compared_maps(results: Results, torque: float | None = None, position: 
         else:
             draw_map(axes, result, k, (n, column), highest, scale)
         axes.set(xlim=limits[0], ylim=limits[1])
+        if one is not None and [(float(ends[0]), float(ends[-1])) for ends in one.borders[::-1]] != limits:
+            axes.add_patch(Rectangle((0.0, 0.0), 1.0, 1.0, transform=axes.transAxes, **BEYOND))
         axes.set_title(f"{name}\n{style.position_label(result, n, column)}", fontsize="small", parse_math=False)
     for axes in panels[len(named) :]:
         axes.set_axis_off()

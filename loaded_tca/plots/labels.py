@@ -27,6 +27,7 @@ NAMES = {
     "wheel_axial": "axial displacement of the wheel",
     "youngs_modulus": "Young's modulus",
     "poisson_ratio": "Poisson's ratio",
+    "sample": "number of the variant",
     "transmission_error_span": "peak-to-peak transmission error",
     "unloaded_transmission_error_span": "peak-to-peak unloaded transmission error",
     "face_load_factor": "face load factor K_Hβ",
@@ -64,5 +65,7 @@ def label_of(name: str) -> str:
 
 
 def wrapped_label_of(name: str) -> str:
-    """Return ``label_of`` in lines short enough for a narrow panel or a column."""
-    return "\n".join(textwrap.wrap(label_of(name), SHORT_LINE))
+    """Return ``label_of`` in lines short enough for a narrow panel or a column; units stay whole."""
+    words, bracket, unit = label_of(name).partition(" [")
+    lines = textwrap.wrap(words + bracket + unit.replace(" ", "\N{NO-BREAK SPACE}"), SHORT_LINE)
+    return "\n".join(lines).replace("\N{NO-BREAK SPACE}", " ")

@@ -1,4 +1,4 @@
-"""Pictures of a study: figures over the varied keys, and the best variants.
+"""Pictures of a study: which ones fit it, and figures over the varied keys.
 
 Variants that were refused, did not converge or lack a figure are counted in the title and marked by crosses.
 """
@@ -19,21 +19,24 @@ from matplotlib.patches import Patch, Rectangle
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.plots import style
-from loaded_tca.plots.labels import label_of, wrapped_label_of
+from loaded_tca.plots.labels import label_of
 from loaded_tca.plots.study_panels import (
     MISSING,
     NOTHING,
     SAME,
+    SAMPLE,
     TORQUE,
     column_of,
     finish_panel,
     groups_of,
+    key_label,
     known_key,
     legend_of,
     mark_missing,
     panels_of,
     percentiles_of,
     set_study_title,
+    set_ticks,
     shown_torques,
     steps_of,
     styles_of,
@@ -41,6 +44,7 @@ from loaded_tca.plots.study_panels import (
     under_torques,
     without_unit,
 )
+from loaded_tca.plots.study_ranking import plot_study_ranking
 from loaded_tca.plots.study_scatter import (
     BAND,
     TRANSMISSION_ERROR,
@@ -48,14 +52,15 @@ from loaded_tca.plots.study_scatter import (
     plot_study_over_torque,
     plot_study_scatter_matrix,
 )
-from loaded_tca.plots.style import ACCENT, COLOURS, NOT_REACHED
-from loaded_tca.studies.ranking import figure_values, main_figures, rank_variants, varied_keys
+from loaded_tca.plots.style import ACCENT, COLOURS, MOST_LABELS, NOT_REACHED
+from loaded_tca.studies.ranking import figure_values, main_figures, varied_keys
 
 if TYPE_CHECKING:
     import xarray
 
 MOST_CELLS_WITH_NUMBERS = 150
-MOST_ROWS = 20
+FEWEST_OF_A_DISTRIBUTION = 20
+"""Rows of a table from which its figures have a histogram."""
 
 
 def plot_study(
@@ -66,8 +71,9 @@ def plot_study(
 ) -> dict[str, Figure]:
     """Return the pictures that fit what a study varies, by the names of their files without the ending.
 
-    Keys with given values: lines of each figure, with two or more keys heat maps. Distributions: histograms, the
-    scatter over the torque if there are several, a scatter matrix. The ranking always.
+    Keys with given values: lines of each figure, with two or more keys heat maps. Distributions and long tables:
+    histograms, the scatter over the torque if there are several, a scatter matrix. Tables of few rows: each figure over
+    the number of the variant. The ranking always.
 
     Parameters
     ----------
@@ -83,19 +89,21 @@ def plot_study(
     Returns
     -------
     dict of str to matplotlib.figure.Figure
-        Empty if there are no figures, as where every variant was refused.
+        The ranking alone if there are no figures, as where every variant was refused.
 
     Raises
     ------
     InputError
         If the study has no such figure.
     """
+    if not main_figures(study):
+        return {"study_ranking": plot_study_ranking(study)}
     figures = main_figures(study) if figures is None else list(figures)
-    if not figures:
-        return {}
-    rank_by = rank_by or figures[0]
+    rank_by = rank_by or next(iter(figures), None)
     stepped = [key for key in varied_keys(study) if _is_stepped(study, key)]
     scattered = [key for key in varied_keys(study) if key not in stepped]
+    if _is_short_table(study, scattered):
+        stepped, scattered = stepped or [SAMPLE], []
     pictures = {}
     for name in figures:
         if stepped:
@@ -125,7 +133,7 @@ def plot_study_lines(study: xarray.Dataset, figure: str, over: str | None = None
     figure : str
         Name of a key figure.
     over : str, optional
-        Key of the horizontal axis; default: the first one.
+        Key of the horizontal axis, or "sample": the number of the variant; default: the first key.
     by : str, optional
         Key whose values have a line each; default: none.
 
@@ -140,7 +148,7 @@ def plot_study_lines(study: xarray.Dataset, figure: str, over: str | None = None
     """
     values = figure_values(study, figure)
     over = known_key(study, over or varied_keys(study)[0])
-    places, words = column_of(study, over)
+    places, _ = column_of(study, over)
     torques, labels = shown_torques(study), torque_labels(study)
     everywhere = np.ones(len(places), dtype=bool)
     if by is None:
@@ -149,23 +157,30 @@ def plot_study_lines(study: xarray.Dataset, figure: str, over: str | None = None
         series = groups_of(study, [by])
         panels = [(labels[t], [(label, values[:, t], of) for label, of in series]) for t in torques]
     drawing, axes = panels_of(len(panels), (7.0, 4.5))
-    banded = False
+    banded, crossed = False, False
     for one, (title, lines) in zip(axes, panels, strict=True):
         styles = styles_of([label for label, _, _ in lines])
-        for (_, column, of), (label, colour, marker) in zip(lines, styles, strict=True):
+        for k, ((_, column, of), (label, colour, marker)) in enumerate(zip(lines, styles, strict=True)):
             at = np.unique(places[of])
             spread = np.stack([percentiles_of(column[of & (places == place)]) for place in at])
-            one.plot(at, spread[:, 1], color=colour, marker=marker, markersize=4.0, label=label)
+            drawn = bool(np.isfinite(spread).any())
+            if drawn:
+                line = "" if over == SAMPLE else "-"
+                one.plot(at, spread[:, 1], color=colour, marker=marker, markersize=4.0, linestyle=line, label=label)
+            missing = np.unique(places[of & ~np.isfinite(column)])
+            height = 0.03 * (1 + k % MOST_LABELS)  # those of different lines do not hide each other
+            mark_missing(one, missing, height, colour, "_unlabelled" if drawn else label)
+            crossed |= bool(missing.size)
             if np.nanmax(np.append(spread[:, 2] - spread[:, 0], 0.0)) > 0.0:
                 one.fill_between(at, spread[:, 0], spread[:, 2], color=colour, alpha=0.15, linewidth=0.0)
                 banded = True
         columns = np.stack([column for _, column, _ in lines], axis=1)
-        mark_missing(one, np.unique(places[~np.isfinite(columns).all(axis=1)]))
         finish_panel(one, columns, title if values.shape[1] > 1 else "")
-        one.set(xlabel=label_of(over), ylabel=label_of(figure))
-        if words is not None:
-            one.set_xticks(range(len(words)), words)
-    legend_of(drawing, axes, label_of(by) if by else "")
+        one.set(xlabel=key_label(study, over), ylabel=label_of(figure))
+        set_ticks(one.xaxis, study, over)
+    if crossed:
+        axes[0].plot([], [], "x", color="black", label=MISSING)
+    legend_of(drawing, axes, key_label(study, by) if by else "")
     what = f"{without_unit(label_of(figure))} over {without_unit(label_of(over))}"
     band = [f"median and band ({BAND}) over the other keys"] if banded else []
     set_study_title(
@@ -226,56 +241,13 @@ def plot_study_heat_map(
         for axis, ticks in ((one.xaxis, x), (one.yaxis, y)):
             every = math.ceil(len(ticks) / 20)
             axis.set_ticks(range(0, len(ticks), every), ticks[::every])
-        one.set(xlabel=label_of(across), ylabel=label_of(upwards))
+        one.set(xlabel=key_label(study, across), ylabel=key_label(study, upwards))
         one.set_title(labels[torque] if values.shape[1] > 1 else "", fontsize="small")
     best = Patch(fill=False, edgecolor=ACCENT, linewidth=2.5, label="largest" if largest_is_best else "least")
     handles = [best, Line2D([], [], color=ACCENT, marker="x", linestyle="", label=MISSING)][: 1 + crossed]
     drawing.legend(handles=handles, loc="outside lower center", ncols=2, fontsize="small")
     median = [] if max(int(of.sum()) for line in of_cell for of in line) < 2 else ["medians over the other keys"]
     set_study_title(drawing, study, values, f"{without_unit(label_of(figure))}{under_torques(study, torques)}", *median)
-    return drawing
-
-
-def plot_study_ranking(
-    study: xarray.Dataset, by: str | None = None, *, torque: int | None = None, largest_is_best: bool = False
-) -> Figure:
-    """Table of the best variants of :func:`loaded_tca.studies.rank_variants`.
-
-    Parameters
-    ----------
-    study : xarray.Dataset
-    by, torque, largest_is_best
-        As there.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
-    ranking = rank_variants(study, by, torque, largest_is_best)
-    ranked = ranking[ranking["rank"].notna()]
-    columns = [name for name in ranking.columns if name not in ("status", "reason")]
-    cells = [[_cell(value) for value in row] for row in ranked[columns].head(MOST_ROWS).to_numpy().tolist()]
-    drawing = Figure(figsize=(1.0 + 1.25 * len(columns), 2.3 + 0.26 * max(1, len(cells))), layout="constrained")
-    axes = drawing.add_subplot()
-    axes.set_axis_off()
-    if cells:
-        heads = [wrapped_label_of(name) for name in columns]
-        table = axes.table(cells, colLabels=heads, loc="upper center", cellLoc="right")
-        table.auto_set_font_size(False)
-        table.set_fontsize(8.5)
-        highest = 1 + max(head.count("\n") for head in heads)
-        for column in range(len(columns)):
-            table[0, column].set_height(highest * table[1, column].get_height())
-            table[0, column].set_facecolor(NOT_REACHED)
-    else:
-        style.tell(axes, NOTHING)
-    values = figure_values(study, by or main_figures(study)[0])
-    what = f"{len(cells)} best of {len(ranked)} variants" if len(cells) < len(ranked) else "variants"
-    worst = "least" if largest_is_best else "largest"
-    of = [f"of each figure the {worst} over the torques"] if torque is None and values.shape[1] > 1 else []
-    order = "largest" if largest_is_best else "least"
-    what = f"{what}, {order} {without_unit(label_of(by or main_figures(study)[0]))} first"
-    set_study_title(drawing, study, values, what, *of)
     return drawing
 
 
@@ -288,10 +260,13 @@ def _draw_cells(drawing: Figure, axes: Axes, cells: Array, label: str, largest_i
         style.tell(axes, NOTHING)
         return
     low, high = float(cells[known].min()), float(cells[known].max())
-    scale = Normalize(low, high) if high - low > SAME * max(abs(low), abs(high)) else Normalize(low - 0.5, high + 0.5)
+    same = high - low <= SAME * max(abs(low), abs(high))
+    scale = Normalize(low - 0.5, high + 0.5) if same else Normalize(low, high)
     borders = (np.arange(count + 1) - 0.5 for count in cells.shape[::-1])
     mesh = axes.pcolormesh(*borders, cells, cmap=COLOURS, norm=scale)
-    drawing.colorbar(mesh, ax=axes, label=label)
+    bar = drawing.colorbar(mesh, ax=axes, label=label)
+    if same:
+        bar.set_ticks([low], labels=[f"{low:.4g}"])
     if cells.size <= MOST_CELLS_WITH_NUMBERS:
         for i, j in zip(*np.nonzero(known), strict=True):
             ink = "black" if scale(cells[i, j]) > 0.6 else "white"
@@ -307,13 +282,15 @@ def _is_stepped(study: xarray.Dataset, key: str) -> bool:
     return sampling == "factor" or (sampling == "table" and few)
 
 
+def _is_short_table(study: xarray.Dataset, keys: Sequence[str]) -> bool:
+    """Whether keys that are not stepped are those of a table of so few rows that it is no distribution."""
+    ways = {study[key].attrs.get("sampling", "table") for key in keys}
+    return ways == {"table"} and study.sizes["sample"] < FEWEST_OF_A_DISTRIBUTION
+
+
 def _has_common_torques(study: xarray.Dataset) -> bool:
     """Whether there are several torques, each with more than one variant."""
     if TORQUE not in study:
         return False
     _, counts = np.unique(study[TORQUE].values[np.isfinite(study[TORQUE].values)], return_counts=True)
     return len(counts) > 1 and bool(counts.min() > 1)
-
-
-def _cell(value: object) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)

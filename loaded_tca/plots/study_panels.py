@@ -10,14 +10,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.plots import style
+from loaded_tca.plots.labels import label_of
 from loaded_tca.plots.style import ACCENT, COLOURS, MARKERS, MOST_LABELS
-from loaded_tca.scene.parse import toml_table
+from loaded_tca.scene.parse import parse_scene, toml_table
 from loaded_tca.studies.ranking import figure_values, varied_keys
 
 if TYPE_CHECKING:
@@ -25,6 +28,8 @@ if TYPE_CHECKING:
 
 TORQUE = "pinion_torque_Nm"
 PERCENTILES = (0.05, 0.5, 0.95)
+SAMPLE = "sample"
+"""Number of a variant: stands for a key where no key orders the variants."""
 MISSING = "refused, not converged or without this figure"
 NOTHING = "no variant has this figure"
 MOST_PANELS = 4
@@ -34,8 +39,10 @@ SAME = 1e-6
 
 
 def known_key(study: xarray.Dataset, key: str) -> str:
-    """Return a key that the study varies; InputError for any other."""
+    """Return a key that the study varies, or ``SAMPLE``; InputError for any other."""
     known = varied_keys(study)
+    if key == SAMPLE:
+        return key
     if key not in known:
         raise InputError(f"{key}: not varied in the study; allowed {', '.join(known)}")
     return key
@@ -131,11 +138,32 @@ def finish_panel(axes: Axes, values: Array, title: str, vertical: bool = True) -
         style.widen(axes, SAME * float(known.max()))
 
 
-def mark_missing(axes: Axes, places: Array) -> None:
-    """Crosses at the lower end of a panel where variants have no figure."""
+def mark_missing(axes: Axes, places: Array, height: float = 0.03, colour: str = ACCENT, label: str = MISSING) -> None:
+    """Crosses at a part of the height of a panel where variants have no figure."""
     if places.size:
-        heights = np.full(len(places), 0.03)
-        axes.plot(places, heights, "x", color=ACCENT, transform=axes.get_xaxis_transform(), label=MISSING)
+        heights = np.full(len(places), height)
+        axes.plot(places, heights, "x", color=colour, transform=axes.get_xaxis_transform(), label=label)
+
+
+def key_label(study: xarray.Dataset, key: str) -> str:
+    """What an axis calls a key; V and H come before the two errors of a V-H check."""
+    errors = parse_scene(study.attrs["scene_toml"]).vh_keys
+    letter = f"{'VH'[errors.index(key)]}: " if {*varied_keys(study)} == {*errors} else ""
+    return letter + label_of(key)
+
+
+def set_ticks(axis: Axis, study: xarray.Dataset, key: str, most: int = 9) -> None:
+    """Ticks at the words of a key, at whole numbers where it is one."""
+    _, words = column_of(study, key)
+    if words is None:
+        axis.set_major_locator(MaxNLocator(most, integer=is_whole(study, key), steps=[1, 2, 2.5, 5, 10]))
+    else:
+        axis.set_ticks(range(len(words)), words)
+
+
+def is_whole(study: xarray.Dataset, key: str) -> bool:
+    """Whether the values of a key are whole numbers, as those of places of words are."""
+    return bool(study[key].dtype.kind != "f")
 
 
 def legend_of(drawing: Figure, panels: Sequence[Axes], title: str) -> None:
@@ -160,12 +188,12 @@ def told_of_variants(study: xarray.Dataset, values: Array | None = None) -> str:
     without = 0 if values is None else int(((status == "ok") & ~np.isfinite(values).any(axis=1)).sum())
     doubtful = sum(bool(lines) for lines in study["warnings"].values.tolist())
     more = {"without this figure": without, "with accuracy warnings": doubtful}
-    return f"{len(status)} variants: " + ", ".join(
+    return f"{len(status)} variant{'s' * (len(status) != 1)}: " + ", ".join(
         counts + [f"{count} {told}" for told, count in more.items() if count]
     )
 
 
-def set_study_title(drawing: Figure, study: xarray.Dataset, values: Array, *about: str) -> None:
+def set_study_title(drawing: Figure, study: xarray.Dataset, values: Array | None, *about: str) -> None:
     """Title of the scene, what is shown, and what became of the variants."""
     title = toml_table(study.attrs.get("scene_toml", ""), "scene").get("title", "")
     style.write_title(drawing, title, *about, told_of_variants(study, values))

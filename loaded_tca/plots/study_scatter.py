@@ -26,10 +26,12 @@ from loaded_tca.plots.study_panels import (
     column_of,
     finish_panel,
     groups_of,
+    is_whole,
     legend_of,
     panels_of,
     percentiles_of,
     set_study_title,
+    set_ticks,
     shown_torques,
     styles_of,
     torque_labels,
@@ -45,7 +47,8 @@ if TYPE_CHECKING:
 TRANSMISSION_ERROR = "transmission_error_span_um"
 BAND = "5 to 95 %"
 MOST_PARAMETERS = 6
-MOST_COLUMNS = 12
+FEWEST_BARS, MOST_BARS = 10, 40
+MOST_COLUMNS = 20
 """Bars of a histogram on the diagonal of a scatter matrix."""
 
 
@@ -174,13 +177,18 @@ def plot_study_scatter_matrix(
         if j > i:
             axes.set_visible(False)
         elif i == j:
-            _draw_bars(axes, data[i][np.isfinite(data[i])], MOST_COLUMNS)
+            whole = i < len(keys) and is_whole(study, keys[i])
+            _draw_bars(axes, data[i][np.isfinite(data[i])], MOST_COLUMNS, whole)
             axes.set_ylabel("")
         else:
             axes.scatter(data[j][known], data[i][known], c=shades[known], cmap=COLOURS, norm=scale, s=12.0)
             axes.plot(data[j][~known], data[i][~known], "x", color=ACCENT, markersize=5.0)
+        for axis, of in [(axes.xaxis, j), (axes.yaxis, i)][: 1 + (j < i)]:
+            if of < len(keys):
+                set_ticks(axis, study, keys[of], 4)
+            else:
+                axis.set_major_locator(MaxNLocator(4))
         axes.tick_params(labelsize="x-small", left=j < i, labelbottom=i == count - 1, labelleft=0 == j < i)
-        axes.locator_params(nbins=4)
         if i == count - 1:
             axes.set_xlabel(wrapped_label_of(names[j]), fontsize="small")
         if j == 0 and i > 0:
@@ -200,17 +208,20 @@ def plot_study_scatter_matrix(
     return drawing
 
 
-def _draw_bars(axes: Axes, values: Array, most: int = 40) -> None:
-    """Histogram of finite values."""
+def _draw_bars(axes: Axes, values: Array, most: int = MOST_BARS, whole: bool = False) -> None:
+    """Histogram of finite values, its bars after Freedman and Diaconis; of few whole numbers a bar each."""
     if not values.size:
         return
     low, high = float(values.min()), float(values.max())
-    least = SAME * max(abs(low), abs(high)) or 1.0
-    room = 0.5 * max(0.0, least - (high - low))
-    bins = min(most, max(5, math.ceil(math.sqrt(len(values)))))
-    axes.hist(
-        values, bins=bins, range=(low - room, high + room), color=to_hex(colormaps[COLOURS](0.6)), edgecolor="white"
-    )
+    if whole and high - low < most:
+        bins, low, high = round(high - low) + 1, low - 0.5, high + 0.5
+    else:
+        least = SAME * max(abs(low), abs(high)) or 1.0
+        room = 0.5 * max(0.0, least - (high - low))
+        low, high = low - room, high + room
+        width = max(2.0 * float(np.subtract(*np.quantile(values, (0.75, 0.25)))) / np.cbrt(len(values)), least)
+        bins = min(most, max(FEWEST_BARS, math.ceil((high - low) / width)))
+    axes.hist(values, bins=bins, range=(low, high), color=to_hex(colormaps[COLOURS](0.6)), edgecolor="white")
     axes.set_ylabel("variants")
     axes.yaxis.set_major_locator(MaxNLocator(4, integer=True))
 

@@ -39,8 +39,8 @@ SHORTEST_STRETCH = 3
 """Positions in a row from which a curve after Hertz is drawn: single ones are chance."""
 HEADROOM = 0.08
 """Part of an axis above the highest curve."""
-LONGEST_LINE = 95
-"""Characters of a title in one line, as many as the narrowest picture holds."""
+CHARACTERS_PER_INCH = 11.5
+"""Of a title, at most."""
 DOTS_PER_INCH = 120
 
 
@@ -181,16 +181,16 @@ def set_title(figure: Figure, result: MeshCycle, *about: str) -> None:
 
 def write_title(figure: Figure, title: str, *about: str) -> None:
     """Write a title and what is shown; taken literally, signs of TeX too."""
-    joined = ", ".join(about)
-    lines = [title, *([joined] if len(joined) <= LONGEST_LINE else about)]
-    wrapped = [part for line in lines for part in _parts_of(line)]
+    longest, joined = int(CHARACTERS_PER_INCH * figure.get_figwidth()), ", ".join(about)
+    lines = [title, *([joined] if len(joined) <= longest else about)]
+    wrapped = [part for line in lines for part in parts_of(line, longest)]
     figure.suptitle("\n".join(wrapped), fontsize="medium", parse_math=False)
 
 
-def _parts_of(line: str) -> list[str]:
-    """A line, or as many of even length as it takes, so that no short end is left over."""
-    count = math.ceil(len(line) / LONGEST_LINE)
-    return textwrap.wrap(line, min(LONGEST_LINE, len(line) // max(1, count) + 10))
+def parts_of(line: str, longest: int) -> list[str]:
+    """Return a line, or as many of even length as it takes, so that no short end is left over."""
+    count = math.ceil(len(line) / longest)
+    return textwrap.wrap(line, min(longest, len(line) // max(1, count) + 10))
 
 
 def _degrees(angle: float) -> str:

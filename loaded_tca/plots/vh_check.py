@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,6 +12,9 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
@@ -25,7 +27,7 @@ from loaded_tca.plots.envelope import pressure_seen
 from loaded_tca.plots.flanks import FINENESS, loaded_maps, picture_of
 from loaded_tca.plots.labels import label_of
 from loaded_tca.plots.study_panels import told_of_variants
-from loaded_tca.plots.style import ACCENT, COLOURS, NOT_REACHED, highest_torque, load
+from loaded_tca.plots.style import ACCENT, COLOURS, NOT_REACHED, highest_torque, load, write_title
 from loaded_tca.results import MeshCycle, load_result
 from loaded_tca.results.files import FilePath
 from loaded_tca.results.pressure_map import PressureMap
@@ -38,10 +40,11 @@ CELL = (2.0, 1.35)
 """Size of a cell [inch]."""
 MARGIN = 1.6
 """Beside all cells, and above and below them [inch]."""
-CHARACTERS = 12.0
-"""Of the title in an inch."""
+LEGEND, NAME = 0.8, 0.25
+"""Heights kept for the legend and the name of the axis above it [inch]: the layout would draw one over the other."""
 LEVELS = 7
-EDGE = "thick frame: edge contact within the pitch"
+DOT: dict[str, Any] = {"marker": "o", "linestyle": "", "color": ACCENT, "markeredgecolor": "white", "markersize": 5.0}
+EDGE = "edge contact within the pitch"
 
 
 def plot_vh_check(check: VHCheck, names: tuple[str, str] = ("V [mm]", "H [mm]"), title: str = "") -> Figure:
@@ -67,12 +70,12 @@ def plot_vh_check(check: VHCheck, names: tuple[str, str] = ("V [mm]", "H [mm]"),
         for j, column in enumerate(onwards):
             cell = (int(row), int(column))
             drawn = _draw_cell(panels[i, j], check.patterns[row][column], check.frame, levels)
-            panels[i, j].plot(*check.centre[cell], "o", color=ACCENT, markeredgecolor="white", markersize=5.0)
+            panels[i, j].plot(*check.centre[cell], **DOT)
             _frame(panels[i, j], bool(check.edge_share[cell] > 0.0))
     figure.colorbar(drawn, ax=panels, label="smallest gap over the passage [µm]", format="%.3g")
     what = f"contact pattern on the {first.gear}, marking compound {1e3 * first.compound:.4g} µm, no load"
-    inside = f"dot: its centre; {_how_it_lies(check.frame)}; {EDGE}"
-    _set_title(figure, title, what, inside)
+    _set_legend(figure, "centre of the pattern", check.frame)
+    write_title(figure, title, what)
     return figure
 
 
@@ -142,22 +145,23 @@ def plot_loaded_vh_check(
     )
     frame = (first.gear_pair.pinion if gear == "pinion" else first.gear_pair.wheel).flank.frame
     what = f"loaded contact pattern on the {gear}, {load(first, torque)}"
-    inside = f"dot: centre of the force; {_how_it_lies(frame)}; {EDGE}"
-    _set_title(figure, first.scene.title, what, told_of_variants(study), inside)
+    _set_legend(figure, "centre of the force", frame)
+    write_title(figure, first.scene.title, what, told_of_variants(study))
     return figure
 
 
 def _grid_of_flanks(v: Array, h: Array, names: tuple[str, str]) -> tuple[Figure, NDArray[np.object_]]:
     """A panel for each pair of errors, v upwards and h to the right, with their values and names at the edges."""
-    size = MARGIN + CELL[0] * len(h), MARGIN + CELL[1] * len(v)
-    figure = Figure(figsize=size, layout="constrained")
+    size = MARGIN + CELL[0] * len(h), LEGEND + MARGIN + CELL[1] * len(v)
+    legend, below = LEGEND / size[1], (LEGEND + NAME) / size[1]
+    figure = Figure(figsize=size, layout=ConstrainedLayoutEngine(rect=(0.0, below, 1.0, 1.0 - below)))
     panels = figure.subplots(len(v), len(h), squeeze=False, sharex=True, sharey=True)
     for axes, value in zip(panels[:, 0], np.sort(v)[::-1], strict=True):
         axes.set_ylabel(f"{value:.4g}", rotation=0, ha="right", va="center")
     for axes, value in zip(panels[-1], np.sort(h), strict=True):
         axes.set_xlabel(f"{value:.4g}")
     figure.supylabel(names[0])
-    figure.supxlabel(names[1])
+    figure.supxlabel(names[1], y=legend)
     return figure, panels
 
 
@@ -167,13 +171,15 @@ def _frame(axes: Axes, on_edge: bool) -> None:
         spine.set(color=ACCENT if on_edge else "0.6", linewidth=2.0 if on_edge else 0.8)
 
 
-def _how_it_lies(frame: FlankFrame) -> str:
-    return f"in each cell the tip is on top, {frame.heelwards} on the right"
-
-
-def _set_title(figure: Figure, *lines: str) -> None:
-    wrapped = [part for line in lines for part in textwrap.wrap(line, int(CHARACTERS * figure.get_figwidth()))]
-    figure.suptitle("\n".join(wrapped), fontsize="medium", parse_math=False)
+def _set_legend(figure: Figure, dot: str, frame: FlankFrame) -> None:
+    """Below the panels what dots and thick frames are, and how the flanks lie."""
+    figure.legend(
+        handles=[Line2D([], [], label=dot, **DOT), Patch(fill=False, edgecolor=ACCENT, linewidth=2.0, label=EDGE)],
+        title=f"in each cell the tip is on top, {frame.heelwards} on the right",
+        loc="lower center",
+        fontsize="small",
+        title_fontsize="small",
+    )
 
 
 def _draw_loaded_cell(axes: Axes, result: MeshCycle, torque: int, gear: GearName, scale: Normalize) -> None:
@@ -189,7 +195,7 @@ def _draw_loaded_cell(axes: Axes, result: MeshCycle, torque: int, gear: GearName
     axes.pcolormesh(*borders, seen, cmap=COLOURS, norm=scale, rasterized=True).set_clip_path(outline)
     forces = np.concatenate([(one.pressure * np.prod(one.spacing)).ravel() for one in maps])
     places = np.concatenate([to_picture(_middles(one)).reshape(-1, 2) for one in maps])
-    axes.plot(*(forces @ places / forces.sum()), "o", color=ACCENT, markeredgecolor="white", markersize=5.0)
+    axes.plot(*(forces @ places / forces.sum()), **DOT)
 
 
 def _middles(one: PressureMap) -> Array:

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -247,6 +248,7 @@ def line_contact(line_load: float, curvature: float, contact_modulus: float) -> 
     return LineContact(line_load, contact_modulus, half_width, 2.0 * line_load / (math.pi * half_width))
 
 
+@lru_cache(maxsize=4096)  # a contact asks again under every load
 def _axis_ratio(curvature_ratio: float) -> float:
     """Return b/a for a ratio of curvatures of at least 1."""
     logarithm = math.log(curvature_ratio)

@@ -49,7 +49,7 @@ def run_study(
     executor: Executor | None = None,
     out: FilePath | None = None,
     progress: Progress | None = None,
-    figures: Figures = key_figures,
+    figures: Figures | None = None,
     keep_maps: Collection[int] = (),
 ) -> xarray.Dataset:
     """Analyse all variants of a study.
@@ -64,7 +64,7 @@ def run_study(
         and afterwards: the same study with the same ``out`` computes only what is missing there.
     progress : callable, optional
         Called as ``progress(done, total, failed)`` with those known before, if any, and whenever variants are done.
-    figures : callable
+    figures : callable, optional
         What is kept of a variant: a function of its scene that returns numbers, or numbers over the torques, by their
         names, and that workers can import. Default: :func:`loaded_tca.studies.figures`.
     keep_maps : collection of int
@@ -94,7 +94,7 @@ def run_study(
     >>> found["face_load_factor"].squeeze().diff("sample").item() > 0.0  # more crowning, less of the face carries
     True
     """
-    with_maps = set(keep_maps)
+    figures, with_maps = figures or key_figures, set(keep_maps)
     unknown = sorted(with_maps.difference(range(len(study))))
     named = "<lambda>" not in getattr(figures, "__qualname__", "<lambda>")
     require(

@@ -2,6 +2,7 @@
 
 import csv
 
+import numpy as np
 import pytest
 
 from loaded_tca.errors import InputError
@@ -27,6 +28,14 @@ def test_tables_hold_every_variant_and_torque(tmp_path):
     assert ranking[0]["sample"] == "3"
 
 
+def test_table_begins_with_the_keys_and_has_whole_numbers_for_counts(tmp_path):
+    figures = {"positions": [9.0, 9.0, 9.0], "edge_is_rounded": [0.0, 1.0, 0.0], "span_um": [1.0, 2.5, np.inf]}
+    write_study(dataset({LEAD: [1.0, 2.0, 3.0]}, figures, ["ok", "refused", "ok"]), tmp_path)
+    table = rows(tmp_path / "study.csv")
+    assert list(table[0])[:3] == ["sample", "torque", LEAD]
+    assert [[row[name] for row in table] for name in figures] == [["9", "", "9"], ["0", "", "0"], ["1.0", "", "inf"]]
+
+
 def test_pictures_of_an_earlier_study_are_removed(tmp_path):
     for name in ("study_lines_a.png", "other.png"):
         (tmp_path / name).write_bytes(b"old")
@@ -37,7 +46,7 @@ def test_pictures_of_an_earlier_study_are_removed(tmp_path):
 
 def test_study_of_which_nothing_is_ok_has_its_tables(tmp_path):
     study = dataset({LEAD: [0.0, 3.0]}, {}, ["refused"] * 2).drop_vars("pinion_torque_Nm")
-    write_study(study, tmp_path)
+    write_study(study, tmp_path, rank_by="peak_pressure_MPa")
     for name in ("study.csv", "ranking.csv"):
         assert [row["status"] for row in rows(tmp_path / name)] == ["refused"] * 2
 

@@ -150,6 +150,15 @@ def test_maps_where_nothing_touches_or_is_loaded_say_so():
     assert png_of(nowhere)
 
 
+def test_what_lies_beyond_a_smaller_map_is_hatched():
+    """A map that fills its panel has no such ground, and none is needed where all are alike."""
+    figure = plot_compared_maps([result("misaligned", positions=2), result("helical", positions=2)])
+    assert all([patch.get_hatch() for patch in axes.patches if patch.get_hatch()] for axes in figure.axes[:2])
+    assert "not in this map" in [text.get_text() for text in figure.legends[0].texts]
+    alike = plot_compared_maps([result("helical", positions=2)] * 2)
+    assert not [patch for axes in alike.axes for patch in axes.patches if patch.get_hatch()]
+
+
 def test_cells_without_material_are_grey_and_those_beyond_a_map_white():
     figure = plot_compared_maps([result("misaligned", positions=2), result("helical", positions=2)])
     void = result("misaligned", positions=2)

@@ -49,6 +49,18 @@ def test_variants_lie_where_their_errors_say():
     assert len(png_of(figure)) > 10_000
 
 
+def test_legend_below_the_panels_tells_what_frames_and_dots_are():
+    figure = plot_loaded_vh_check(study(), dict.fromkeys(range(6), cycle()))
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.texts] == ["centre of the force", "edge contact within the pitch"]
+    assert legend.get_title().get_text() == "in each cell the tip is on top, the heel on the right"
+    figure.draw_without_rendering()
+    name = figure._supxlabel.get_window_extent()
+    assert legend.get_window_extent().y1 < name.y0
+    assert name.y1 < min(axes.get_tightbbox().y0 for axes in panels(figure)[-1])
+    assert len(figure.get_suptitle().splitlines()) == 3
+
+
 @pytest.mark.parametrize("gear", ["pinion", "wheel"])
 def test_pattern_lies_around_the_centre_of_the_force(gear):
     """On a crowned flank the pressure is highest near it, and all cells share the scale of the highest peak."""

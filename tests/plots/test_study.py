@@ -97,11 +97,30 @@ def test_lines_are_medians_with_a_band_where_other_keys_vary_too():
 
 def test_lines_mark_where_variants_failed():
     figure = plot_study_lines(grid(TWO_FAIL), PRESSURE, LEAD, TIP)
-    assert_allclose(crosses(figure.axes[0])[:, 0], [0.0, 6.0])
     assert "6 variants: 4 ok, 1 refused, 1 not converged" in title(figure)
     assert SCENE.title in title(figure)
     assert "pinion torque 80 N m" in title(figure)
     assert "refused, not converged or without this figure" in [text.get_text() for text in figure.legends[0].texts]
+
+
+def test_crosses_have_the_colour_of_their_line():
+    """Variant 1 (0 um, 10 um) and variant 4 (6 um, 0 um) have failed, one of each line."""
+    (axes,) = plot_study_lines(grid(TWO_FAIL), PRESSURE, LEAD, TIP).axes
+    colours = {line.get_label(): line.get_color() for line in curves(axes)}
+    marks = {
+        line.get_color(): line.get_xydata() for line in axes.lines if line.get_marker() == "x" and line.get_xdata().size
+    }
+    assert_allclose(marks[colours["0"]][:, 0], [6.0])
+    assert_allclose(marks[colours["10"]][:, 0], [0.0])
+    assert marks[colours["0"]][0, 1] != marks[colours["10"]][0, 1]
+
+
+def test_line_without_a_point_is_a_row_of_crosses():
+    figure = plot_study_lines(grid(["ok", "refused"] * 3), PRESSURE, LEAD, TIP)
+    assert [line.get_label() for line in curves(figure.axes[0])] == ["0"]
+    assert_allclose(crosses(figure.axes[0])[:, 0], [0.0, 3.0, 6.0])
+    (legend,) = figure.legends
+    assert {line.get_label(): line.get_marker() for line in legend.get_lines()}["10"] == "x"
 
 
 def test_words_are_ticks_of_their_axis():
@@ -134,6 +153,34 @@ def test_heat_map_has_the_first_key_to_the_right_and_the_second_upwards():
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("pinion lead crowning [µm]", "pinion tip relief [µm]")
     turned = plot_study_heat_map(grid(), PRESSURE, upwards=LEAD).axes[0]
     assert turned.get_xlabel() == "pinion tip relief [µm]"
+
+
+def test_colour_bar_of_a_single_value_shows_that_value_alone():
+    figure = plot_study_heat_map(grid(leads=(3.0,), tips=(10.0,)), PRESSURE)
+    assert [tick.get_text() for tick in figure.axes[-1].get_yticklabels()] == ["540"]
+
+
+@pytest.mark.parametrize("lead", [(1.0,), (1.0, 2.0), (1.0, 2.0, 3.0)])
+def test_titles_fit_into_narrow_pictures(lead):
+    status = ["refused", *["ok"] * (len(lead) - 1)]
+    drawn = [plot_study_heat_map(grid(status, leads=lead, tips=(0.0,)), SPAN)]
+    if len(lead) > 1:
+        drawn.append(plot_study_histogram(grid(status, leads=lead, tips=(0.0,)), SPAN))
+    for figure in drawn:
+        figure.draw_without_rendering()
+        extent = figure._suptitle.get_window_extent()
+        assert extent.x0 >= 0.0
+        assert extent.x1 <= figure.bbox.width
+        assert "1 refused" in title(figure)
+
+
+def test_errors_of_a_vh_check_have_their_letters():
+    keys = {"mounting.out_of_plane_deg": [0.0, 0.01], "mounting.in_plane_deg": [0.0, 0.01]}
+    axes = plot_study_heat_map(dataset(keys, {PRESSURE: [1.0, 2.0]}), PRESSURE).axes[0]
+    assert axes.get_xlabel() == "H: axis error out of plane [deg]"
+    assert axes.get_ylabel() == "V: axis error in plane [deg]"
+    other = dataset({**keys, LEAD: [0.0, 1.0]}, {PRESSURE: [1.0, 2.0]})
+    assert plot_study_heat_map(other, PRESSURE).axes[0].get_xlabel() == "axis error out of plane [deg]"
 
 
 @pytest.mark.parametrize(("largest", "column", "row"), [(False, 1, 1), (True, 0, 0)])
@@ -177,6 +224,17 @@ def test_histogram_has_its_percentiles_where_they_are():
     assert "5 % at 5, 50 % at 50, 95 % at 95" in figure.axes[1].get_title()
     cumulative = figure.axes[3].lines[0]
     assert_allclose(np.interp(50.0, cumulative.get_xdata()[1:], cumulative.get_ydata()[1:]), 0.5, atol=0.01)
+
+
+def test_histogram_of_skewed_values_shows_their_shape(rng):
+    """Of exponential values 1 - e^(-1) are below their mean, about a tenth of the longest of 400."""
+    values = rng.exponential(size=400)
+    study = dataset({LEAD: values}, {PRESSURE: values}, sampling="distribution")
+    bars = heights(plot_study_histogram(study, PRESSURE).axes[0])
+    assert 10 <= len(bars) <= 40
+    assert max(bars) < 0.3 * 400
+    outlier = dataset({LEAD: values}, {PRESSURE: np.where(np.arange(400) == 0, 1e6, values)}, sampling="distribution")
+    assert len(heights(plot_study_histogram(outlier, PRESSURE).axes[0])) == 40
 
 
 def test_histogram_tells_how_many_failed():
@@ -275,6 +333,19 @@ def test_scatter_matrix_of_many_keys_shows_those_that_matter(rng):
     assert "6 of 7 varied keys" in title(figure)
 
 
+def test_words_and_whole_numbers_have_their_ticks_in_the_scatter_matrix():
+    hand, teeth = (list(column) for column in zip(*itertools.product(["right", "left"], [33, 34, 35]), strict=True))
+    keys = {"pinion.hand": hand, "pinion.teeth": teeth, "load.pinion_torque_Nm": np.linspace(70.0, 80.0, 6)}
+    figure = plot_study_scatter_matrix(dataset(keys, {SPAN: np.arange(6.0)}, sampling="distribution"), [SPAN])
+    png_of(figure)
+    lowest = {axes.get_xlabel(): axes for axes in figure.axes if axes.get_xlabel()}
+    assert [tick.get_text() for tick in lowest["pinion hand"].get_xticklabels()] == ["left", "right"]
+    assert set(lowest["pinion teeth"].get_xticks() % 1.0) == {0.0}
+    assert "pinion torque\n[N m]" in lowest  # the unit in one piece
+    bars = [heights(axes) for axes in figure.axes if axes.patches][:2]
+    assert bars == [[3, 3], [2, 2, 2]]
+
+
 def test_scatter_matrix_needs_a_figure():
     with pytest.raises(InputError, match="figures: none to show"):
         plot_study_scatter_matrix(grid(), [])
@@ -292,8 +363,34 @@ def test_ranking_begins_with_the_best_and_counts_the_rest():
     assert (5, 0) not in table
     assert table[0, 2].replace("\n", " ") == "pinion lead crowning [µm]"
     assert "6 variants: 4 ok, 1 refused, 1 not converged" in title(figure)
+    assert figure.get_supxlabel().splitlines() == [
+        "without a rank: 2 of 6 variants",
+        "refused: it is refused (1 of them)",
+        "not converged: it is not converged (1 of them)",
+    ]
+    assert plot_study_ranking(grid()).get_supxlabel() == ""
     long = plot_study_ranking(grid(leads=np.arange(5.0), tips=np.arange(5.0)), PRESSURE)
     assert "20 best of 25 variants, least peak pressure first" in title(long)
+
+
+def test_ranking_fills_its_picture():
+    for figure in (plot_study_ranking(grid()), plot_study_ranking(grid(leads=np.arange(5.0), tips=np.arange(5.0)))):
+        figure.draw_without_rendering()
+        table = figure.axes[0].tables[0].get_window_extent()
+        assert table.y0 < 0.15 * figure.bbox.height
+        assert table.y1 < figure._suptitle.get_window_extent().y0
+
+
+def test_ranking_tells_the_most_frequent_reasons_and_counts_the_others():
+    study = grid(["refused"] * 5 + ["ok"])
+    study["reason"] = ("sample", ["a\nb", "c", "a\nb", "d", "e", ""])
+    assert plot_study_ranking(study).get_supxlabel().splitlines() == [
+        "without a rank: 5 of 6 variants",
+        "refused: a b (2 of them)",
+        "refused: c (1 of them)",
+        "refused: d (1 of them)",
+        "and 1 more reason",
+    ]
 
 
 def test_ranking_over_several_torques_says_which_value_counts():
@@ -328,12 +425,29 @@ def test_table_of_repeated_values_is_a_grid_and_of_others_a_cloud(rng):
     for key in study.coords:
         study[key].attrs["sampling"] = "table"
     assert f"heat_map_{SPAN}" in names(study)
-    cloud = dataset({LEAD: rng.random(9), TIP: rng.random(9)}, {SPAN: rng.random(9)}, sampling="table")
+    cloud = dataset({LEAD: rng.random(20), TIP: rng.random(20)}, {SPAN: rng.random(20)}, sampling="table")
     assert names(cloud) == [f"histogram_{SPAN}", "scatter_matrix", "ranking"]
 
 
-def test_study_of_which_nothing_is_ok_has_no_pictures():
-    assert plot_study(dataset({LEAD: [0.0, 3.0]}, {}, ["refused"] * 2).drop_vars("pinion_torque_Nm")) == {}
+def test_few_designs_are_points_over_their_numbers_and_no_distribution():
+    study = dataset({LEAD: [1.0, 5.0, 2.0], TIP: [3.0, 1.0, 0.0]}, {SPAN: [4.0, 6.0, 5.0]}, sampling="table")
+    assert names(study) == [f"lines_{SPAN}", "ranking"]
+    (axes,) = plot_study(study)[f"study_lines_{SPAN}"].axes
+    assert_allclose(axes.lines[0].get_xydata(), [[0.0, 4.0], [1.0, 6.0], [2.0, 5.0]])
+    assert axes.lines[0].get_linestyle() == "None"
+    assert axes.get_xlabel() == "number of the variant"
+    assert set(axes.get_xticks() % 1.0) == {0.0}
+
+
+@pytest.mark.parametrize("rank_by", [None, PRESSURE])
+def test_study_of_which_nothing_is_ok_has_a_ranking_that_says_so(rank_by):
+    study = dataset({LEAD: [0.0, 3.0]}, {}, ["refused"] * 2).drop_vars("pinion_torque_Nm")
+    ((name, figure),) = plot_study(study, rank_by=rank_by).items()
+    assert name == "study_ranking"
+    assert [text.get_text() for text in figure.axes[0].texts] == ["no variant has any figure"]
+    assert figure.get_supxlabel().splitlines()[1] == "refused: it is refused (2 of them)"
+    assert "2 variants: 2 refused" in title(figure)
+    assert png_of(figure)
 
 
 def test_pictures_of_a_figure_that_no_variant_has_say_so():

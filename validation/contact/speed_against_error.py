@@ -208,7 +208,7 @@ def plan(largest: int, largest_of_peers: int) -> Iterator[tuple[str, Problem]]:
 
 def memory_above_imports(n: int) -> float:
     """Peak resident memory [MiB] of one solve in a process of its own, above that after the imports."""
-    code = f"import sys; sys.argv = ['']; from validation import speed_against_error as s; s.print_memory({n})"
+    code = f"import sys; sys.argv = ['']; from validation.contact import speed_against_error as s; s.print_memory({n})"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     return float(done.stdout)
 

@@ -40,7 +40,7 @@ SCENE = ROOT / "examples" / "scenes" / "mesh_cycle_helical.toml"
 CROWNING = "pinion.modifications.lead_crowning_um"
 NINE: dict[str, Any] = {"analysis.positions": 9, "analysis.torques_Nm": None, "load.pinion_torque_Nm": 130.0}
 FLANKS: dict[str, Any] = {"analysis.compliance": "contact", "analysis.free_edges": False}
-RUNS, EMPTY, FULL = 5, 2000, 48
+RUNS, EMPTY, FULL = 3, 2000, 32
 """Runs that take turns, empty analyses and variants in each."""
 
 
