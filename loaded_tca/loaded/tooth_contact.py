@@ -366,16 +366,7 @@ def _solve_in_box(
         displaced = None if coupling is None else coupling(separation)
         bent = None if bending is None else bending.within(number, separation)
         ends = (yield Ends(separation)) if grid.free_edges else None
-        problem = ContactProblem(
-            separation.cut_gap if displaced is None else separation.cut_gap + displaced,
-            separation.spacing,
-            pair.contact_modulus,
-            load=load,
-            max_pressure=pair.max_pressure,
-            slice_compliance=bent if ends is None else ends if bent is None else bent + ends,
-            cover=separation.cover,
-        )
-        return (yield Task(problem, tolerance, start))
+        return (yield Task(contact_problem(pair, separation, load, bent, ends, displaced), tolerance, start))
 
     if grid.cells is not None:
         tolerance = grid.tolerance
@@ -386,6 +377,30 @@ def _solve_in_box(
         solution, _ = yield from refinement(solved, grid.accuracy, grid.tolerance, smooth, FIRST_CELLS, expected)
     at_relief_start = _crosses_relief_start(pair, contact, separation, solution.pressure_on_material)
     return LoadedContact(contact, separation, solution, at_relief_start, tolerance, displaced, bent)
+
+
+def contact_problem(
+    pair: GearPair,
+    separation: Separation,
+    load: float,
+    bent: Array | None,
+    ends: Array | None,
+    displaced: Array | None = None,
+) -> ContactProblem:
+    """The contact problem of a pair on a grid.
+
+    ``bent`` and ``ends``: slice compliance of its teeth and of its free edges, (ny, ny) [mm/N]; ``displaced``:
+    displacement of its slices by other pairs, (ny,) [mm]; None where there are none.
+    """
+    return ContactProblem(
+        separation.cut_gap if displaced is None else separation.cut_gap + displaced,
+        separation.spacing,
+        pair.contact_modulus,
+        load=load,
+        max_pressure=pair.max_pressure,
+        slice_compliance=bent if ends is None else ends if bent is None else bent + ends,
+        cover=separation.cover,
+    )
 
 
 def _crosses_relief_start(pair: GearPair, contact: ContactPoint, separation: Separation, pressure: Array) -> bool:

@@ -11,13 +11,13 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import tooth_compliance
-from loaded_tca.contact import ContactProblem
 from loaded_tca.errors import InputError, require
 from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.free_edges import edge_compliance
 from loaded_tca.loaded.load_sharing import ToothPair, tooth_pairs_at
 from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.sensitivity import LoadedGrid, Tangent, followed_changes
+from loaded_tca.loaded.tooth_contact import contact_problem
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.key_figures import harmonic_coefficients
 from loaded_tca.results.pressure_map import PressureMap
@@ -258,19 +258,9 @@ def _loaded_grid(
     separation = sample_separation(pair, contact, cells=(nx, ny), box=(0.5 * nx * dx, 0.5 * ny * dy))
     if not np.allclose(separation.origin, one.origin, rtol=0.0, atol=1e-6 * pair.module):
         raise InputError("sensitivities: the pressure maps of the result do not belong to its scene")
-    compliance = None if bending is None else bending.within(number, separation)
+    bent = None if bending is None else bending.within(number, separation)
     ends = edge_compliance(pair, separation) if result.scene.analysis.free_edges else None
-    if ends is not None:
-        compliance = ends if compliance is None else compliance + ends
-    problem = ContactProblem(
-        separation.cut_gap,
-        separation.spacing,
-        pair.contact_modulus,
-        load=float(one.pressure.sum()) * dx * dy,
-        max_pressure=pair.max_pressure,
-        slice_compliance=compliance,
-        cover=separation.cover,
-    )
+    problem = contact_problem(pair, separation, float(one.pressure.sum()) * dx * dy, bent, ends)
     return LoadedGrid(number, contact, separation, problem, one.pressure)
 
 

@@ -15,14 +15,13 @@ from loaded_tca.scene import Scene, read_scene
 from loaded_tca.scene.keys import did_you_mean, nearest
 from loaded_tca.scene.parse import LARGEST_FILE, toml_table
 from loaded_tca.scene.text import shown, shown_key
-from loaded_tca.studies.study import Distribution, Study, is_finite
+from loaded_tca.studies.study import MOST_VARIANTS, Distribution, Study, is_finite
 
 WORDS = ("scene", "changes", "factors", "distributions", "samples", "seed", "table")
 SPAN = {"from", "to", "count"}
 """Words of evenly spaced values."""
 DISTRIBUTION = "distribution"
 """Word for the name of a distribution; its parameters stand beside it."""
-MOST_VALUES = 1_000_000
 
 
 def read_study(path: str | os.PathLike[str]) -> Study:
@@ -127,8 +126,8 @@ def _values(key: str, value: Any) -> list[Any]:
     if not isinstance(value, dict) or set(value) != SPAN:
         raise InputError(f"{key}: found {shown(value)}; allowed a list of values or {{ from, to, count }}")
     low, high, count = value["from"], value["to"], value["count"]
-    if not (type(count) is int and 1 <= count <= MOST_VALUES):
-        raise InputError(f"{key}.count: found {shown(count)}; allowed a whole number from 1 to {MOST_VALUES}")
+    if not (type(count) is int and 1 <= count <= MOST_VARIANTS):
+        raise InputError(f"{key}.count: found {shown(count)}; allowed a whole number from 1 to {MOST_VARIANTS}")
     if not all(is_finite(end) for end in (low, high)):
         raise InputError(f"{key}: found from {shown(low)} to {shown(high)}; allowed two finite numbers")
     values: list[Any] = np.linspace(low, high, count).tolist()

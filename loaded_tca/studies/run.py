@@ -102,7 +102,7 @@ def run_study(
         (not unknown, f"keep_maps: {unknown[:3]} are not variants 0 to {len(study) - 1}"),
         (named, f"figures: found {figures!r}; allowed a function, whose name tells its rows from those of others"),
     )
-    digest = study.digests(figures)
+    digests = [*map(study.digests(figures), range(len(study)))]
     with ExitStack() as stack:
         place = Path(stack.enter_context(TemporaryDirectory()), "study.nc") if out is None else Path(out)
         rows = stack.enter_context(Rows(place.with_suffix(".rows.jsonl")))
@@ -111,12 +111,12 @@ def run_study(
         _remove_outdated(maps, study)
         kept: list[int] = []
         missing: dict[str, list[int]] = {}  # variants that change the same are analysed once
-        for variant in range(len(study)):
-            if digest(variant) in rows and (variant not in with_maps or _map_of(maps, variant).exists()):
+        for variant, digest in enumerate(digests):
+            if digest in rows and (variant not in with_maps or _map_of(maps, variant).exists()):
                 kept.append(variant)
             else:
-                missing.setdefault(digest(variant), []).append(variant)
-        done, failed = len(kept), sum(row["status"] != "ok" for row in rows.of(map(digest, kept)))
+                missing.setdefault(digest, []).append(variant)
+        done, failed = len(kept), sum(row["status"] != "ok" for row in rows.of(digests[variant] for variant in kept))
         tell = progress or (lambda *_: None)
         if kept:
             tell(done, len(study), failed)
@@ -133,7 +133,7 @@ def run_study(
                     done, failed = done + len(variants), failed + len(variants) * (row["status"] != "ok")
                 tell(done, len(study), failed)
         attributes = {"scene_toml": study.scene.to_toml(), "version": version("loaded_tca"), "seed": study.seed}
-        dataset = dataset_of(study, rows.of(map(digest, range(len(study)))), attributes)
+        dataset = dataset_of(study, rows.of(digests), attributes)
         if out is not None:
             write_dataset(place, dataset)
     return dataset
