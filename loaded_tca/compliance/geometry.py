@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import brentq
 from scipy.optimize.elementwise import find_root
 
 from loaded_tca.arrays import Array
@@ -26,8 +27,8 @@ SAG = 0.2
 """Sag of the lowest row of the tooth over its width."""
 SHALLOW = 0.3
 """The same at most over the depth of the rim."""
-GROWTH = 1.8
-"""Each layer of the rim is so much thicker than the one above."""
+GROWTH, MOST_GROWTH = 1.8, 30.0
+"""Each layer of the rim is so much thicker than the one above; at most, where the uppermost has its own thickness."""
 LARGEST_RATIO = 1.6
 """Outer over inner radius of an element at the bore. Displacements in a twisted ring go with r and 1/r, of which one
 quadratic element takes off 0.06 % of the twist at this ratio, 0.25 % at 2, 5 % at 5.5; default bores need no cut."""
@@ -192,7 +193,7 @@ def _tooth(density: MeshDensity, sides: tuple[_Side, _Side], bore: Array) -> tup
         tuple(np.concatenate(both) for both in zip(side.on_foot(below), side.on_flank(up), strict=True))
         for side in sides
     )
-    across = np.linspace(0.0, 1.0, 2 * density.through + 1)[:, None, None]
+    across = _graded(density)[:, None, None]
     angle = left[1] + across * (right[1] - left[1])
     width = 0.5 * (left[0] + right[0]) * (right[1] - left[1])
     deepest = np.minimum(SAG * width[0], SHALLOW * (np.minimum(left[0][0], right[0][0]) - bore))
@@ -201,9 +202,29 @@ def _tooth(density: MeshDensity, sides: tuple[_Side, _Side], bore: Array) -> tup
     return radius, angle
 
 
-def cuts_at_bore(root: Array, bore: Array, layers: int) -> int:
+def _graded(density: MeshDensity) -> Array:
+    """Parts of the thickness of the tooth at which its columns of nodes stand, middles of elements among them."""
+    layer = np.arange(density.through)
+    thickness = density.grading ** np.minimum(layer, layer[::-1])
+    corners = np.append(0.0, np.cumsum(thickness)) / thickness.sum()
+    return np.interp(np.arange(2 * density.through + 1), 2 * np.arange(density.through + 1), corners)
+
+
+def rim_growth(root: Array, bore: Array, density: MeshDensity, teeth: int) -> float:
+    """Thickness of each layer of a rim over that of the one above; radii (k,) of root and bore in one section [mm]."""
+    if density.skin == 0.0:
+        return GROWTH
+    part = density.skin * 2.0 * math.pi / teeth / float((1.0 - bore / root).mean())
+    powers = np.arange(density.rim)
+    if part * density.rim >= 1.0:
+        return 1.0
+    growth = brentq(lambda growth: part * (growth**powers).sum() - 1.0, 1.0, MOST_GROWTH)
+    return round(growth, 6)  # equal gears have equal layouts
+
+
+def cuts_at_bore(root: Array, bore: Array, layers: int, growth: float) -> int:
     """Layers of at most the largest ratio of radii that the lowest layer of a rim is cut into; radii (k,) [mm]."""
-    lowest = (GROWTH**layers - GROWTH ** (layers - 1)) / (GROWTH**layers - 1.0)
+    lowest = growth ** (layers - 1) / (growth ** np.arange(layers)).sum()
     ratio = 1.0 + lowest * float((root / bore).max() - 1.0)
     return max(1, math.ceil(math.log(ratio) / math.log(LARGEST_RATIO)))
 
@@ -215,7 +236,8 @@ def _rim(top: Array, bore: Array, layout: RingLayout) -> Array:
     """
     layers, cuts = layout.density.rim, layout.cuts
     above = layers - 0.5 * np.arange(2 * layers + 1)
-    part = (GROWTH**above - 1.0) / (GROWTH**layers - 1.0)
+    growth = layout.growth
+    part = (growth**above - 1.0) / (growth**layers - 1.0) if growth != 1.0 else above / layers
     radius = top[:, None] - part[:, None] * (top - bore)[:, None]
     if cuts == 1:
         return radius

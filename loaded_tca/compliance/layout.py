@@ -15,6 +15,8 @@ import numpy as np
 from loaded_tca.arrays import Array, Indices, count_problems
 from loaded_tca.errors import InputError
 
+LARGEST_GRADING, LARGEST_SKIN = 10.0, 0.1
+
 
 @dataclass(frozen=True)
 class MeshDensity:
@@ -34,11 +36,17 @@ class MeshDensity:
         Across the face.
     neighbours : int
         Neighbouring teeth on either side that are modelled; of further ones the rim alone.
+    grading : float
+        Thickness of each layer through the tooth over that of the next one towards the flank.
+    skin : float
+        Thickness of the uppermost layer of the rim over the pitch along the root circle; 0: each layer of the rim is
+        1.8 times as thick as the one above.
 
     Raises
     ------
     InputError
-        If a number is not a whole one, not positive, or ``through`` is odd.
+        If a number is not a whole one, not positive, or ``through`` is odd; if ``grading`` is below 1 or ``skin`` is
+        not between 0 and 0.1.
     """
 
     through: int = 4
@@ -48,10 +56,17 @@ class MeshDensity:
     rim: int = 4
     lengthwise: int = 10
     neighbours: int = 1
+    grading: float = 1.0
+    skin: float = 0.0
 
     def __post_init__(self) -> None:
-        elements = {name: count for name, count in vars(self).items() if name != "neighbours"}
+        other = "neighbours", "grading", "skin"
+        elements = {name: count for name, count in vars(self).items() if name not in other}
         problems = count_problems(elements, 1) + count_problems({"neighbours": self.neighbours}, 0)
+        if not 1.0 <= self.grading <= LARGEST_GRADING:
+            problems.append(f"grading: {self.grading} is not between 1 and {LARGEST_GRADING:g}")
+        if not 0.0 <= self.skin <= LARGEST_SKIN:
+            problems.append(f"skin: {self.skin} is not between 0 and {LARGEST_SKIN:g}")
         if not problems and self.through % 2:
             problems.append(f"through: {self.through} is not even: the middle of the tooth must be a line of nodes")
         if problems:
@@ -88,12 +103,15 @@ class RingLayout:
         Layers of a solid gear below those of the rim; 0: a bore.
     cuts : int
         Layers that the lowest layer of the rim is cut into.
+    growth : float
+        Thickness of each layer of the rim over that of the one above, before the lowest is cut.
     """
 
     teeth: int
     density: MeshDensity
     core: int = 0
     cuts: int = 1
+    growth: float = 1.8
 
     @property
     def neighbours(self) -> int:
@@ -165,6 +183,36 @@ class RingLayout:
     def elements(self) -> Indices:
         """Lowest column and row (n, 2) of each element of a section."""
         return np.concatenate([self._elements_of(sector) for sector in self.sectors])
+
+    def surface(self, side: int, flank: int) -> tuple[Indices, Indices]:
+        """Elements of a section along one side of the resolved tooth, from its flank down to the middle of the space.
+
+        Parameters
+        ----------
+        side : int
+            +1 or -1.
+        flank : int
+            Edges of the flank that belong to it, the lowest ones.
+
+        Returns
+        -------
+        lowest : (n, 2) int array
+            Lowest column and row of each element.
+        ends : (n, 2, 2) int array
+            Both ends of its edge on the surface on the way down: 0 or 1 from the lowest node, in columns and rows.
+        """
+        density, first = self.density, self.sector(0).first
+        down = np.arange(density.fillet + flank)[::-1]
+        out = np.arange(density.land)
+        right = int(side > 0)
+        beside = density.land + (density.through - 1) * right  # the outermost column of the tooth
+        beyond = density.land + density.through + out if right else density.land - 1 - out
+        tooth = np.column_stack([np.full_like(down, first + 2 * beside), self.base_row + 2 * down])
+        land = np.column_stack([first + 2 * beyond, np.full_like(out, self.base_row - 2)])
+        on_tooth = np.array([[right, 1], [right, 0]])
+        on_land = np.array([[1 - right, 1], [right, 1]])
+        ends = np.concatenate([np.tile(on_tooth, (len(down), 1, 1)), np.tile(on_land, (len(out), 1, 1))])
+        return np.concatenate([tooth, land]), ends
 
     def _elements_of(self, sector: SectorLayout) -> Indices:
         rim = _block(sector.first, sector.columns, 0, self.base_row // 2)
