@@ -72,19 +72,20 @@ class Factorisation:
 
         Only fronts between a load or a reading and the end of the elimination are passed.
         """
-        below, above = self._reached(loads), self._reached(readings)
-        active = np.flatnonzero(below | above)
+        above = self._reached(readings)
+        active = np.flatnonzero(above | self._reached(loads))
         place = np.full(self.size, -1)
         place[active] = np.arange(len(active))
-        down = [front.renumbered(place) for front in self.fronts if below[front.inside].any()]
         up = [front.renumbered(place) for front in self.fronts if above[front.inside].any()]
-        loads, readings = loads[:, active], readings[:, active]
         result = np.empty((readings.shape[0], loads.shape[0]))
         step = max(1, int(BYTES_OF_LOADS / (8.0 * max(1, len(active)))))
         for first in range(0, loads.shape[0], step):
-            found = loads[first : first + step].T.toarray()
+            block = loads[first : first + step]
+            below = self._reached(block)
+            down = [front.renumbered(place) for front in self.fronts if below[front.inside].any()]
+            found = block[:, active].T.toarray()
             _substitute(down, up, found)
-            result[:, first : first + step] = readings @ found
+            result[:, first : first + step] = readings[:, active] @ found
         return result
 
     def _reached(self, rows: csr_array) -> Flags:
