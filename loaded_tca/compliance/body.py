@@ -5,7 +5,7 @@ A solid gear (bore diameter 0) is that ring and its core, held where its journal
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -42,8 +42,11 @@ def gear_nodes(gear: Gear, density: MeshDensity, outline: int = 65) -> BodyNodes
     GeometryError
         If the tooth is pointed or cut off.
     """
-    resolution = Resolution(flank=outline, fillet=outline, land=9, lengthwise=2 * density.lengthwise + 1)
+    step = 1 if density.thin_ends else 2
+    planes = density.planes // step
+    resolution = Resolution(flank=outline, fillet=outline, land=9, lengthwise=int(planes[-1]) + 1)
     tooth = build_tooth(gear.nominal_flanks, gear.form, resolution)
+    tooth = replace(tooth, outline=tooth.outline[:, planes], foot=tooth.foot[:, planes])
     sections, root = gear.form.sections, tooth.outline[0]
     radius = np.hypot(root[:, 0], root[:, 1])
     bore = gear.bore_radius(sections.coordinate(radius, root[:, 2]))
@@ -110,6 +113,12 @@ class ToothFrame:
     def side(self) -> int:
         """The side s = +1 or -1 of the flank in contact."""
         return self.gear.flank.side
+
+    @cached_property
+    def face_parts(self) -> Array:
+        """Parts of the face width (k,) at which sections of nodes stand, 0 to 1."""
+        coordinate = self.nodes.coordinate
+        return (coordinate - coordinate[0]) / (coordinate[-1] - coordinate[0])
 
     @property
     def flank(self) -> Flank:
@@ -180,7 +189,7 @@ class ToothFrame:
         """Places among the nodes (columns, rows, layers) numbered ``number``, on the flank in contact of a tooth."""
         rows, column = self._flank_rows(tooth), self._column(0.5 + 0.5 * self.side, tooth)
         row = rows.start + places.height * (rows.stop - 1 - rows.start)
-        return _among_nodes(number[column], row, places.length * (number.shape[2] - 1))
+        return _among_nodes(number[column], row, np.interp(places.length, self.face_parts, np.arange(number.shape[2])))
 
     def on_middle(self, places: FlankPlaces, tooth: int, number: Indices) -> SurfacePlaces:
         """Places below those of a flank, on the middle of a tooth of the model."""

@@ -34,6 +34,9 @@ LARGEST_RATIO = 1.6
 quadratic element takes off 0.06 % of the twist at this ratio, 0.25 % at 2, 5 % at 5.5; default bores need no cut."""
 HOLE = 0.1
 """Free hole in the core of a solid gear, over the diameter of its journals: the mesh is a ring."""
+SHORTEST_LAND = 0.05
+"""Half of the root land over the way from the end of the tooth's rows to the middle of the space: with a shorter one the
+end of the fillet is not followed by an edge of elements."""
 SHARP = math.pi / 3.0
 """Bend of an edge between its halves from which it is made straight; 29 deg on usual teeth. With fewer elements
 along a foot they bend more, to 66 where one folded; made straight, that made a face-milled pinion 4 % too stiff."""
@@ -90,7 +93,26 @@ class _Side:
         """Radius and angle (n, k): part 0 is the flank, 1 the end of the tooth's rows, 2 the middle of the space."""
         split = FILLET_SHARE * self.fillet
         part = part[:, None]
-        length = np.where(part <= 1.0, part * split, split + (part - 1.0) * (self.foot_length[-1] - split))
+        return self._at_length(np.where(part <= 1.0, part * split, split + (part - 1.0) * (self.foot_length[-1] - split)))
+
+    def beyond_tooth(self, density: MeshDensity) -> tuple[Array, Array]:
+        """Radius and angle (n, k) of nodes from the end of the tooth's rows to the middle of the space.
+
+        Below thin layers the fillet ends between two elements, where there is a root land: stress has a bend there.
+        """
+        split, whole = FILLET_SHARE * self.fillet, self.foot_length[-1]
+        root_land = (whole - self.fillet) / (whole - split)
+        part = np.linspace(0.0, 1.0, 2 * density.land + 1)
+        if density.skin == 0.0 or density.land == 1 or root_land.min() < SHORTEST_LAND:
+            return self.on_foot(1.0 + part)
+        count = min(max(1, round(density.land * float(root_land.mean()))), density.land - 1)
+        corner = np.linspace(0.0, 1.0, 2 * (density.land - count) + 1)[:, None]
+        beyond = np.linspace(0.0, 1.0, 2 * count + 1)[1:, None]
+        lengths = split + corner * (self.fillet - split), self.fillet + beyond * (whole - self.fillet)
+        return self._at_length(np.concatenate(lengths))
+
+    def _at_length(self, length: Array) -> tuple[Array, Array]:
+        """Radius and angle (n, k) at lengths (n, k) along the foot."""
         radius, angle = (_interpolated(length, self.foot_length, values) for values in self.foot)
         return radius, angle
 
@@ -162,8 +184,7 @@ def _sector(sector: SectorLayout, layout: RingLayout, sides: tuple[_Side, _Side]
         columns = slice(2 * density.land, 2 * (density.land + density.through) + 1)
         filled = slice(layout.base_row, layout.base_row + block[0].shape[1])
         radius[columns, filled], angle[columns, filled] = block
-        part = 1.0 + np.linspace(0.0, 1.0, 2 * density.land + 1)
-        right, left = (_without_folds(*side.on_foot(part)) for side in sides)
+        right, left = (_without_folds(*side.beyond_tooth(density)) for side in sides)
         top = tuple(np.concatenate([left[n][::-1], block[n][:, 0], right[n]]) for n in range(2))
     filled = slice(0, layout.base_row + 1)
     part = np.linspace(HOLE, 1.0, 2 * layout.core + 1)[:-1, None]

@@ -40,13 +40,16 @@ class MeshDensity:
         Thickness of each layer through the tooth over that of the next one towards the flank.
     skin : float
         Thickness of the uppermost layer of the rim over the pitch along the root circle; 0: each layer of the rim is
-        1.8 times as thick as the one above.
+        1.8 times as thick as the one above. Above 0 an edge of elements also follows the end of the fillet.
+    thin_ends : bool
+        Whether the two outermost layers at each end of the face are half as thick as the others; ``lengthwise`` is
+        even then, and 6 at least.
 
     Raises
     ------
     InputError
-        If a number is not a whole one, not positive, or ``through`` is odd; if ``grading`` is below 1 or ``skin`` is
-        not between 0 and 0.1.
+        If a number is not a whole one, not positive, or ``through`` is odd; if ``grading`` is not between 1 and 10,
+        ``skin`` not between 0 and 0.1, or ``lengthwise`` does not suit ``thin_ends``.
     """
 
     through: int = 4
@@ -58,19 +61,30 @@ class MeshDensity:
     neighbours: int = 1
     grading: float = 1.0
     skin: float = 0.0
+    thin_ends: bool = False
 
     def __post_init__(self) -> None:
-        other = "neighbours", "grading", "skin"
+        other = "neighbours", "grading", "skin", "thin_ends"
         elements = {name: count for name, count in vars(self).items() if name not in other}
         problems = count_problems(elements, 1) + count_problems({"neighbours": self.neighbours}, 0)
         if not 1.0 <= self.grading <= LARGEST_GRADING:
             problems.append(f"grading: {self.grading} is not between 1 and {LARGEST_GRADING:g}")
+        if not problems and self.thin_ends and (self.lengthwise % 2 or self.lengthwise < 6):
+            problems.append(f"lengthwise: {self.lengthwise} is not an even number from 6 on, which thin_ends asks for")
         if not 0.0 <= self.skin <= LARGEST_SKIN:
             problems.append(f"skin: {self.skin} is not between 0 and {LARGEST_SKIN:g}")
         if not problems and self.through % 2:
             problems.append(f"through: {self.through} is not even: the middle of the tooth must be a line of nodes")
         if problems:
             raise InputError(problems)
+
+    @property
+    def planes(self) -> Indices:
+        """Where nodes stand across the face (2 lengthwise + 1,), in quarters of a layer that is not thin."""
+        thin = 2 * self.thin_ends
+        thickness = np.full(self.lengthwise, 4)
+        thickness[:thin] = thickness[self.lengthwise - thin :] = 2
+        return np.append(0, np.cumsum(np.repeat(thickness // 2, 2)))
 
     def coarse(self) -> MeshDensity:
         """Density of the neighbouring teeth, which move almost as rigid bodies."""

@@ -181,7 +181,7 @@ class RootStress:
                     last = min(int(np.flatnonzero(low)[-1]), n - 2)
                     ends = self.table.tangent_angle[side, last : last + 2, k]
                     start = max(start, float(np.interp(LEAST_ANGLE, ends, arc[last : last + 2])))
-                stations = np.linspace(start, arc[-1] + beyond * steps[-1], STATIONS)
+                stations = np.linspace(start, arc[-1], STATIONS)
                 found[side, k] = CubicSpline(arc, np.eye(n))(stations)
         return found
 
@@ -212,8 +212,14 @@ def root_stress(gear: Gear, density: MeshDensity | None = None) -> RootStress:
     GeometryError
         If the tooth is pointed or cut off, or the mesh is turned inside out.
     """
-    density = density or replace(DENSITY, lengthwise=default_density(gear).lengthwise)
+    density = density or stress_density(gear)
     return _model(gear.geometry.unmodified, gear.flank.side, gear.material, gear.bore_diameter, density)
+
+
+def stress_density(gear: Gear) -> MeshDensity:
+    """Thin layers below the surface, and as many across the face as its width asks for, thin ones at its ends."""
+    layers = default_density(gear).lengthwise
+    return replace(DENSITY, lengthwise=2 * math.ceil(0.5 * layers) + 2, thin_ends=True)
 
 
 @lru_cache(maxsize=MOST_IN_MEMORY)
@@ -257,13 +263,12 @@ def root_influence(frame: ToothFrame) -> RootInfluence:
     near, size = frame.nodes.layout.neighbours, len(mesh.points)
     teeth = range(-near, near + 1)
     forces = [frame.on_flank(places, mesh.number, tooth).along(-places.normal, size) for tooth in teeth]
-    layers = frame.nodes.layout.density.lengthwise
-    along_face = np.concatenate([[0.0], (np.arange(layers) + 0.5) / layers, [1.0]])
+    along_face = np.concatenate([[0.0], frame.face_parts[1::2], [1.0]])
     sides = [surface_places(mesh, frame.nodes, side, frame.gear.material) for side in (frame.side, -frame.side)]
     readings = vstack([rows for _, rows, _ in sides], format="csr")
     stress = factor.flexibility(vstack(forces, format="csr"), readings)
     # From (side, m, n; tooth, place) to (tooth, side, n, m; place).
-    stress = stress.reshape(2, layers + 2, -1, len(teeth), len(places.height)).transpose(3, 0, 2, 1, 4)
+    stress = stress.reshape(2, len(along_face), -1, len(teeth), len(places.height)).transpose(3, 0, 2, 1, 4)
     point, angle = (np.stack([side[which] for side in sides]) for which in (0, 2))
     return RootInfluence(heights, lengths, np.ascontiguousarray(stress), along_face, point, angle)
 
@@ -285,31 +290,31 @@ def surface_places(
     layers = nodes.layout.density.lengthwise
     layer = np.concatenate([[0], np.arange(layers), [layers - 1]])
     local = np.concatenate([[0.0], np.full(layers, 0.5), [1.0]])
-    along = np.abs(ends[:, 1] - ends[:, 0]).argmax(axis=1)
+    edge, spot = np.divmod(np.arange(2 * len(lowest)), 2)
+    edge, part = np.append(edge, edge[-1]), np.append(BEST[spot], 1.0)  # last the middle of the space itself
     number = np.full((*mesh.number.shape[:2], 2 * layers), -1)
     number[tuple(mesh.lowest.T)] = np.arange(len(mesh.lowest))
-    elements = number[lowest[:, 0], lowest[:, 1]][:, 2 * layer].T  # (m, edges)
-    in_section = (ends[:, :1] + BEST[:, None] * (ends[:, 1:] - ends[:, :1])).reshape(-1, 2)  # (n, 2)
-    m, n = len(layer), len(in_section)
+    elements = number[lowest[edge, 0], lowest[edge, 1]][:, 2 * layer].T  # (m, n)
+    in_section = ends[edge, 0] + part[:, None] * (ends[edge, 1] - ends[edge, 0])  # (n, 2)
+    m, n = elements.shape
     spots = np.concatenate([np.tile(in_section, (m, 1)), np.repeat(local, n)[:, None]], axis=1)
-    point, rows = mesh.free_surface_stress(
-        np.repeat(elements, 2, axis=1).ravel(), spots, np.tile(np.repeat(along, 2), m), material
-    )
+    along = np.abs(ends[edge, 1] - ends[edge, 0]).argmax(axis=1)
+    point, rows = mesh.free_surface_stress(elements.ravel(), spots, np.tile(along, m), material)
     plane = np.concatenate([[0], 2 * np.arange(layers) + 1, [2 * layers]])
-    return point.reshape(m, n, 3).transpose(1, 0, 2), rows, tangent_angles(nodes, side, lowest, ends, plane)
+    angle = tangent_angles(nodes, side, lowest[edge], ends[edge], part, plane)
+    return point.reshape(m, n, 3).transpose(1, 0, 2), rows, angle
 
 
-def tangent_angles(nodes: BodyNodes, side: int, lowest: Indices, ends: Indices, planes: Indices) -> Array:
-    """Angles (n, m) between the middle of tooth 0 and edges of one side, at the places where their strain is best."""
+def tangent_angles(
+    nodes: BodyNodes, side: int, lowest: Indices, ends: Indices, part: Array, planes: Indices
+) -> Array:
+    """Angles (n, m) between the middle of tooth 0 and its profile, at parts (n,) of edges of elements on one side."""
     density, first = nodes.layout.density, nodes.layout.sector(0).first
     row = nodes.layout.base_row + 2 * density.fillet + density.flank  # half way up the flank
     middle = nodes.angle[first + 2 * density.land + density.through, row, planes]
-    steps = np.arange(3)[:, None]
-    node = lowest[:, None] + ends[:, :1] * 2 + steps * (ends[:, 1:] - ends[:, :1])  # (edges, 3, 2)
+    node = lowest[:, None] + ends[:, :1] * 2 + np.arange(3)[:, None] * (ends[:, 1:] - ends[:, :1])  # (n, 3, 2)
     columns, rows = node[..., 0] % nodes.layout.shape[0], node[..., 1]
-    x, y = np.moveaxis(
-        polar(nodes.radius[columns, rows][..., planes], nodes.angle[columns, rows][..., planes] - middle), -1, 0
-    )
-    slopes = np.stack([4.0 * BEST - 3.0, 4.0 - 8.0 * BEST, 4.0 * BEST - 1.0])  # of the quadratic shape functions
-    along_x, along_y = (np.einsum("qg,eqm->egm", slopes, part).reshape(-1, len(planes)) for part in (x, y))
-    return np.arctan2(side * along_y, -along_x)
+    place = polar(nodes.radius[columns, rows][..., planes], nodes.angle[columns, rows][..., planes] - middle)
+    slopes = np.stack([4.0 * part - 3.0, 4.0 - 8.0 * part, 4.0 * part - 1.0])  # of the quadratic shape functions
+    along = np.einsum("in,nimx->nmx", slopes, place)
+    return np.arctan2(side * along[..., 1], -along[..., 0])
