@@ -198,15 +198,13 @@ class RingLayout:
         """Lowest column and row (n, 2) of each element of a section."""
         return np.concatenate([self._elements_of(sector) for sector in self.sectors])
 
-    def surface(self, side: int, flank: int) -> tuple[Indices, Indices]:
-        """Elements of a section along one side of the resolved tooth, from its flank down to the middle of the space.
+    def foot(self, side: int) -> tuple[Indices, Indices]:
+        """Elements of a section along one foot of the resolved tooth, from its flank to the middle of the space.
 
         Parameters
         ----------
         side : int
             +1 or -1.
-        flank : int
-            Edges of the flank that belong to it, the lowest ones.
 
         Returns
         -------
@@ -216,7 +214,7 @@ class RingLayout:
             Both ends of its edge on the surface on the way down: 0 or 1 from the lowest node, in columns and rows.
         """
         density, first = self.density, self.sector(0).first
-        down = np.arange(density.fillet + flank)[::-1]
+        down = np.arange(density.fillet)[::-1]
         out = np.arange(density.land)
         right = int(side > 0)
         beside = density.land + (density.through - 1) * right  # the outermost column of the tooth

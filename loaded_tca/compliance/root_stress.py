@@ -45,15 +45,14 @@ DENSITY = MeshDensity(through=6, flank=6, fillet=4, land=4, rim=6, grading=3.0, 
 """Elements of a section: layers through the tooth of 1 : 3 : 9 from both flanks, the rim's uppermost of 0.04 modules."""
 OUTLINE = 257
 """Points along each flank and fillet between which nodes are drawn."""
-FLANK_EDGES = 1
-"""Edges of the flank beside the fillet that the splines go through, too."""
 BEST = 0.5 + np.array([-0.5, 0.5]) / math.sqrt(3.0)
 """Where along an edge quadratic elements have the strain best."""
 HEIGHTS, LOWEST, OFFSET = 8, 0.03, 0.15
 """Places along the profile that are loaded: Chebyshev points of log(0.15 + h), h from 0.03 to 1. Stress under a force
 changes the faster with its height the nearer it is to the fillet."""
-LEAST_ANGLE = math.radians(15.0)
-"""Tangent angle from which on stress is told: above, a force low on the flank has local stress, not bending."""
+LEAST_ANGLE, TOP = math.radians(15.0), 0.125
+"""Tangent angle and part of the fillet's length from which on stress is told: above either, a force low on the flank
+has local stress, not bending."""
 STATIONS, PER_LAYER = 91, 4
 """Places along a fillet and in each layer of elements along the face, between which nothing is interpolated any more:
 the largest of them is within 0.05 % of the maximum."""
@@ -169,20 +168,20 @@ class RootStress:
     def _along_profile(self) -> Array:
         """Shares (2, m, stations, n) of the places of the table along the profile in the stations."""
         sides, n, m = self.table.tangent_angle.shape
+        half = 2 * self.frame.nodes.layout.density.fillet  # places on the upper half of the fillet
+        beside = BEST[0] / (BEST[1] - BEST[0])  # from a place of an edge to its end, over the step between both places
         found = np.empty((sides, m, STATIONS, n))
         for side in range(sides):
             for k in range(m):
                 steps = np.linalg.norm(np.diff(self.table.point[side, :, k], axis=0), axis=1)
-                arc = np.append(0.0, np.cumsum(steps))
-                beyond = BEST[0] / (BEST[1] - BEST[0])  # from the last place of an edge to its end
-                start = arc[2 * FLANK_EDGES - 1] + beyond * steps[2 * FLANK_EDGES - 2]
+                arc = beside * steps[0] + np.append(0.0, np.cumsum(steps))  # from the end of the flank
+                start = 2.0 * TOP * (arc[half - 1] + beside * steps[half - 2])
                 low = self.table.tangent_angle[side, :, k] < LEAST_ANGLE
                 if low.any():
                     last = min(int(np.flatnonzero(low)[-1]), n - 2)
                     ends = self.table.tangent_angle[side, last : last + 2, k]
                     start = max(start, float(np.interp(LEAST_ANGLE, ends, arc[last : last + 2])))
-                stations = np.linspace(start, arc[-1], STATIONS)
-                found[side, k] = CubicSpline(arc, np.eye(n))(stations)
+                found[side, k] = CubicSpline(arc, np.eye(n))(np.linspace(start, arc[-1], STATIONS))
         return found
 
     @cached_property
@@ -276,7 +275,7 @@ def root_influence(frame: ToothFrame) -> RootInfluence:
 def surface_places(
     mesh: Discretisation, nodes: BodyNodes, side: int, material: Material
 ) -> tuple[Array, csr_array, Array]:
-    """Places where the stress of one side of tooth 0 is read: from its flank down to the middle of the space.
+    """Places where the stress of one side of tooth 0 is read: from the end of its flank to the middle of the space.
 
     Returns
     -------
@@ -286,7 +285,7 @@ def surface_places(
     (n, m) array [rad]
         Tangent angles.
     """
-    lowest, ends = nodes.layout.surface(side, FLANK_EDGES)
+    lowest, ends = nodes.layout.foot(side)
     layers = nodes.layout.density.lengthwise
     layer = np.concatenate([[0], np.arange(layers), [layers - 1]])
     local = np.concatenate([[0.0], np.full(layers, 0.5), [1.0]])
