@@ -41,8 +41,8 @@ from loaded_tca.pairs.gear import Gear
 from loaded_tca.tooth.geometry import ToothGeometry
 from loaded_tca.tooth.profile import polar
 
-DENSITY = MeshDensity(through=6, flank=6, fillet=4, land=4, rim=6, grading=3.0, skin=0.04 / math.pi)
-"""Elements of a section: layers through the tooth of 1 : 3 : 9 from both flanks, the rim's uppermost of 0.04 modules."""
+DENSITY = MeshDensity(through=8, flank=6, fillet=4, land=4, rim=6, grading=2.5, skin=0.04 / math.pi)
+"""Elements of a section: layers through the tooth of 1 : 2.5 : 6 : 16 from both flanks, the rim's uppermost of 0.04 modules."""
 OUTLINE = 257
 """Points along each flank and fillet between which nodes are drawn."""
 BEST = 0.5 + np.array([-0.5, 0.5]) / math.sqrt(3.0)
