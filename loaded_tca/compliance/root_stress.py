@@ -41,7 +41,7 @@ from loaded_tca.pairs.gear import Gear
 from loaded_tca.tooth.geometry import ToothGeometry
 from loaded_tca.tooth.profile import polar
 
-DENSITY = MeshDensity(through=8, flank=6, fillet=4, land=4, rim=6, grading=2.5, skin=0.04 / math.pi)
+DENSITY = MeshDensity(through=8, flank=6, fillet=4, land=5, rim=6, neighbours=2, grading=2.5, skin=0.04 / math.pi)
 """Elements of a section: layers through the tooth of 1 : 2.5 : 6 : 16 from both flanks, the rim's uppermost of 0.04 modules."""
 OUTLINE = 257
 """Points along each flank and fillet between which nodes are drawn."""
@@ -50,6 +50,8 @@ BEST = 0.5 + np.array([-0.5, 0.5]) / math.sqrt(3.0)
 HEIGHTS, LOWEST, OFFSET = 8, 0.03, 0.15
 """Places along the profile that are loaded: Chebyshev points of log(0.15 + h), h from 0.03 to 1. Stress under a force
 changes the faster with its height the nearer it is to the fillet."""
+HEIGHTS_BESIDE, LENGTHS_BESIDE = 5, 1.0
+"""The same on the neighbours of a tooth, whose forces are further away, and places along the face for each layer."""
 LEAST_ANGLE, TOP = math.radians(15.0), 0.125
 """Tangent angle and part of the fillet's length from which on stress is told: above either, a force low on the flank
 has local stress, not bending."""
@@ -64,11 +66,13 @@ class RootInfluence:
 
     Attributes
     ----------
-    heights, lengths : (a,), (b,) array
-        Where a flank was loaded: parts of the range of log(0.15 + height), and of the face width.
-    stress : (teeth, 2, n, m, a b) array [MPa/N]
+    stress : (2, n, m, a b) array [MPa/N]
         On the side of the flank in contact and on the back of tooth 0, at places along the profile and along the face,
-        under unit forces on the teeth ``-neighbours`` to ``+neighbours``.
+        under unit forces on its own flank: at Chebyshev points of the range of log(0.15 + height) and of the face width.
+    stress_beside : (teeth, 2, n, m, c d) array [MPa/N]
+        The same under forces at fewer places of the teeth ``-neighbours`` to ``+neighbours``; none on tooth 0.
+    counts : (2, 2) int array
+        a, b; c, d.
     along_face : (m,) array
         Parts of the face width: both ends, and the middles of the layers of elements.
     point : (2, n, m, 3) array [mm]
@@ -77,9 +81,9 @@ class RootInfluence:
         Between the profile of a section and the middle of the tooth.
     """
 
-    heights: Array
-    lengths: Array
     stress: Array
+    stress_beside: Array
+    counts: Indices
     along_face: Array
     point: Array
     tangent_angle: Array
@@ -101,7 +105,7 @@ class RootStress:
     @property
     def neighbours(self) -> int:
         """Teeth on either side of a loaded one whose stress is known."""
-        return len(self.table.stress) // 2
+        return len(self.table.stress_beside) // 2
 
     @cached_property
     def tangent_angle(self) -> Array:
@@ -130,35 +134,40 @@ class RootStress:
             On the side of the flank in contact and on the back; from a tangent angle of 15 degrees, or the end of the
             flank, down to the middle of the space; along the face, both ends included.
         """
-        total = np.zeros(self.table.stress.shape[1:-1])
+        total = np.zeros(self.table.stress.shape[:-1])
         for line, forces in loads:
-            away = self._away(tooth, line)
-            if abs(away) <= self.neighbours:
-                total += self.table.stress[self.neighbours + away] @ (forces @ self._shares(line))
+            found = self._influence(tooth, line)
+            if found is not None:
+                stress, shares = found
+                total += stress @ (forces @ shares)
         return self._at_places(total)
 
     def per_force(self, tooth: int, line: FlankLine, place: tuple[int, int, int]) -> Array:
         """Stress at one place of those of :meth:`stress` per force at places (m,) of a line [MPa/N]."""
-        away, (side, station, along) = self._away(tooth, line), place
-        if abs(away) > self.neighbours:
+        found, (side, station, along) = self._influence(tooth, line), place
+        if found is None:
             return np.zeros(len(line.rho))
+        stress, shares = found
         profile, face = self._along_profile[side, :, station], self._along_face[along]
-        row = np.einsum("m,mn,nma->a", face, profile, self.table.stress[self.neighbours + away, side])
-        return np.asarray(self._shares(line) @ row)
+        return np.asarray(shares @ np.einsum("m,mn,nma->a", face, profile, stress[side]))
 
-    def _away(self, tooth: int, line: FlankLine) -> int:
-        """How many pitches the tooth of a line stands beyond another."""
+    def _influence(self, tooth: int, line: FlankLine) -> tuple[Array, Array] | None:
+        """Stress (2, n, m, q) of a tooth under forces at the places of the table on that of a line, and their shares.
+
+        The shares are (places of the line, q); None beyond the neighbours of the model.
+        """
         teeth = self.frame.gear.form.teeth
-        return (line.tooth - tooth + teeth // 2) % teeth - teeth // 2
-
-    def _shares(self, line: FlankLine) -> Array:
-        """Shares (m, a b) of the places of the table in every place of a line."""
+        away = (line.tooth - tooth + teeth // 2) % teeth - teeth // 2
+        if abs(away) > self.neighbours:
+            return None
         height, length = self.frame.parts(line.rho, line.z)
         across, along = (
-            chebvander(2.0 * part - 1.0, len(nodes) - 1) @ np.linalg.inv(chebvander(2.0 * nodes - 1.0, len(nodes) - 1))
-            for part, nodes in ((_part_of_range(height), self.table.heights), (length, self.table.lengths))
+            chebvander(2.0 * part - 1.0, count - 1) @ np.linalg.inv(chebvander(chebpts2(count), count - 1))
+            for part, count in zip((_part_of_range(height), length), self.table.counts[int(away != 0)], strict=True)
         )
-        return (across[:, :, None] * along[:, None, :]).reshape(len(height), -1)
+        beside = [tooth for tooth in range(-self.neighbours, self.neighbours + 1) if tooth]
+        stress = self.table.stress_beside[beside.index(away)] if away else self.table.stress
+        return stress, (across[:, :, None] * along[:, None, :]).reshape(len(height), -1)
 
     def _at_places(self, values: Array) -> Array:
         """Values (2, stations, p) at all places, by splines between those of the table (2, n, m)."""
@@ -192,7 +201,7 @@ class RootStress:
         return np.asarray(CubicSpline(known, np.eye(len(known)))(wanted))
 
 
-def root_stress(gear: Gear, density: MeshDensity | None = None) -> RootStress:
+def root_stress_model(gear: Gear, density: MeshDensity | None = None) -> RootStress:
     """Load a gear body by unit forces all over its flanks, or take what is known of it.
 
     Gears whose flanks differ in their modifications alone share one model: the last few are kept in memory, more of
@@ -228,18 +237,18 @@ def _model(
     """Root stress of a gear without modifications, by all that it is made of: whose are equal share one model."""
     gear = Gear.of(teeth, side, material, bore_diameter)
     frame = ToothFrame(gear, gear_nodes(gear, density, OUTLINE))
-    key = key_of(frame, _loaded_places(frame)[-1], "root stress ")
+    key = key_of(frame, _loaded_places(frame, False)[-1], "root stress ")
     return RootStress(frame, kept(key, RootInfluence, lambda: root_influence(frame)))
 
 
-def _loaded_places(frame: ToothFrame) -> tuple[Array, Array, FlankPlaces]:
-    """Heights (a,) and lengths (b,) of the table, and the places (a b) that they make on the flank."""
-    heights = 0.5 + 0.5 * chebpts2(HEIGHTS)
+def _loaded_places(frame: ToothFrame, beside: bool) -> tuple[int, int, FlankPlaces]:
+    """How many heights a and lengths b the table has, and the places (a b) that they make on a flank."""
     layers = frame.nodes.layout.density.lengthwise
-    lengths = 0.5 + 0.5 * chebpts2(max(LEAST_LENGTHS, math.ceil(LENGTHS_PER_LAYER * layers)))
+    heights = HEIGHTS_BESIDE if beside else HEIGHTS
+    lengths = max(LEAST_LENGTHS, math.ceil((LENGTHS_BESIDE if beside else LENGTHS_PER_LAYER) * layers))
     low, high = (math.log(OFFSET + height) for height in (LOWEST, 1.0))
-    parts = np.minimum(np.exp(low + heights * (high - low)) - OFFSET, 1.0)
-    grid = np.meshgrid(parts, lengths, indexing="ij")
+    parts = np.minimum(np.exp(low + (0.5 + 0.5 * chebpts2(heights)) * (high - low)) - OFFSET, 1.0)
+    grid = np.meshgrid(parts, 0.5 + 0.5 * chebpts2(lengths), indexing="ij")
     return heights, lengths, frame.places(*(part.ravel() for part in grid))
 
 
@@ -257,19 +266,32 @@ def root_influence(frame: ToothFrame) -> RootInfluence:
     frame : ToothFrame
         With thin layers below the surface.
     """
-    heights, lengths, places = _loaded_places(frame)
     mesh, factor = gear_body(frame.nodes, frame.gear.material)
     near, size = frame.nodes.layout.neighbours, len(mesh.points)
-    teeth = range(-near, near + 1)
-    forces = [frame.on_flank(places, mesh.number, tooth).along(-places.normal, size) for tooth in teeth]
+    *count, own = _loaded_places(frame, False)
+    *count_beside, other = _loaded_places(frame, True)
+    loads = [frame.on_flank(own, mesh.number).along(-own.normal, size)]
+    loads += [
+        frame.on_flank(other, mesh.number, tooth).along(-other.normal, size)
+        for tooth in range(-near, near + 1)
+        if tooth
+    ]
     along_face = np.concatenate([[0.0], frame.face_parts[1::2], [1.0]])
     sides = [surface_places(mesh, frame.nodes, side, frame.gear.material) for side in (frame.side, -frame.side)]
-    readings = vstack([rows for _, rows, _ in sides], format="csr")
-    stress = factor.flexibility(vstack(forces, format="csr"), readings)
-    # From (side, m, n; tooth, place) to (tooth, side, n, m; place).
-    stress = stress.reshape(2, len(along_face), -1, len(teeth), len(places.height)).transpose(3, 0, 2, 1, 4)
     point, angle = (np.stack([side[which] for side in sides]) for which in (0, 2))
-    return RootInfluence(heights, lengths, np.ascontiguousarray(stress), along_face, point, angle)
+    readings = vstack([rows for _, rows, _ in sides], format="csr")
+    stress = factor.flexibility(vstack(loads, format="csr"), readings)
+    stress = stress.reshape(2, len(along_face), -1, stress.shape[1]).swapaxes(1, 2)
+    split = len(own.height)
+    beside = stress[..., split:].reshape(*stress.shape[:-1], 2 * near, -1)
+    return RootInfluence(
+        np.ascontiguousarray(stress[..., :split]),
+        np.ascontiguousarray(np.moveaxis(beside, -2, 0)),
+        np.array([count, count_beside]),
+        along_face,
+        point,
+        angle,
+    )
 
 
 def surface_places(
