@@ -93,7 +93,9 @@ class _Side:
         """Radius and angle (n, k): part 0 is the flank, 1 the end of the tooth's rows, 2 the middle of the space."""
         split = FILLET_SHARE * self.fillet
         part = part[:, None]
-        return self._at_length(np.where(part <= 1.0, part * split, split + (part - 1.0) * (self.foot_length[-1] - split)))
+        return self._at_length(
+            np.where(part <= 1.0, part * split, split + (part - 1.0) * (self.foot_length[-1] - split))
+        )
 
     def beyond_tooth(self, density: MeshDensity) -> tuple[Array, Array]:
         """Radius and angle (n, k) of nodes from the end of the tooth's rows to the middle of the space.

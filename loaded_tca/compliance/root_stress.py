@@ -326,9 +326,7 @@ def surface_places(
     return point.reshape(m, n, 3).transpose(1, 0, 2), rows, angle
 
 
-def tangent_angles(
-    nodes: BodyNodes, side: int, lowest: Indices, ends: Indices, part: Array, planes: Indices
-) -> Array:
+def tangent_angles(nodes: BodyNodes, side: int, lowest: Indices, ends: Indices, part: Array, planes: Indices) -> Array:
     """Angles (n, m) between the middle of tooth 0 and its profile, at parts (n,) of edges of elements on one side."""
     density, first = nodes.layout.density, nodes.layout.sector(0).first
     row = nodes.layout.base_row + 2 * density.fillet + density.flank  # half way up the flank

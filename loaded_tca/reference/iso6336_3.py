@@ -7,7 +7,7 @@ edition of 2006; the examples are FZG C14 gears of GEARpie.
 """
 
 from dataclasses import dataclass
-from math import acos, asin, cos, degrees, hypot, inf, pi, radians, sin, sqrt, tan
+from math import acos, cos, degrees, hypot, inf, pi, radians, sin, sqrt, tan
 
 from scipy.optimize import brentq
 
@@ -126,7 +126,10 @@ def root_section(
         (0.0 < pressure_angle < 0.25 * pi, f"pressure_angle: {pressure_angle} rad is not between 0 and 45 deg"),
         (abs(helix_angle) < 0.25 * pi, f"helix_angle: {helix_angle} rad is not within 45 deg"),
         (-2.0 < profile_shift < 2.0, f"profile_shift: {profile_shift} is not between -2 and 2"),
-        (1.0 <= transverse_contact_ratio < 3.0, f"transverse_contact_ratio: {transverse_contact_ratio} is not in [1, 3)"),
+        (
+            1.0 <= transverse_contact_ratio < 3.0,
+            f"transverse_contact_ratio: {transverse_contact_ratio} is not in [1, 3)",
+        ),
         (0.0 < tip_diameter < inf, f"tip_diameter: {tip_diameter} is not positive and finite"),
         (0.0 < dedendum_coefficient < inf, f"dedendum_coefficient: {dedendum_coefficient} is not positive and finite"),
         (0.0 < root_radius_coefficient < inf, f"root_radius_coefficient: {root_radius_coefficient} is not positive"),
@@ -144,7 +147,9 @@ def root_section(
     )
     lever = 0.5 * ((cos(half) - sin(half) * tan(load_angle)) * diameter - z * cos(_TANGENT - angle) - below)
     if not (thickness > 0.0 and lever > 0.0 and radius > 0.0):
-        raise GeometryError(f"no critical section: thickness {thickness:.4g}, lever {lever:.4g}, radius {radius:.4g} m_n")
+        raise GeometryError(
+            f"no critical section: thickness {thickness:.4g}, lever {lever:.4g}, radius {radius:.4g} m_n"
+        )
     return RootSection(thickness, lever, radius, load_angle, pressure_angle)
 
 

@@ -136,9 +136,7 @@ def test_influence_does_not_depend_on_how_many_forces_are_solved_at_a_time(monke
 
 
 def test_helical_gear_has_its_stress_along_the_face_where_its_load_is():
-    mesh = CylindricalMesh(
-        *(CylindricalGear(z, 3.0, 20.0, helix_angle=beta) for z, beta in ((25, 0.25), (37, -0.25)))
-    )
+    mesh = CylindricalMesh(*(CylindricalGear(z, 3.0, 20.0, helix_angle=beta) for z, beta in ((25, 0.25), (37, -0.25))))
     helical = root_stress_model(cylindrical_pair(mesh).pinion, SMALL)
     places = helical.frame.places(np.full(9, 0.7), np.linspace(0.6, 0.9, 9))
     x, y, z = places.point.T

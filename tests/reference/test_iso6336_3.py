@@ -133,4 +133,3 @@ def test_factors_refuse_what_is_out_of_range():
         helix_angle_factor(2.0, 1.0)
     with pytest.raises(InputError, match="face_width: 0.0 is not positive"):
         nominal_root_stress(1.0, 0.0, 1.0, 1.0)
-

@@ -10,9 +10,6 @@ its own. Run from the root of the repository: ``python -m validation.loaded.root
 """
 
 import math
-import multiprocessing
-import resource
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
@@ -168,9 +165,7 @@ def plane_rows() -> Iterator[Row]:
         found, where = curve.largest(sign)
         for n, load in enumerate(LOADED_AT):
             yield Row(CASE, SOURCE, f"plane: {name}, load at {load} [MPa]", values[n], LINE_LOAD * found[n], UNIT)
-            yield Row(
-                CASE, SOURCE, f"plane: tangent angle of it, {load} [deg]", angles[n], where[n], ANGLE / angles[n]
-            )
+            yield Row(CASE, SOURCE, f"plane: tangent angle of it, {load} [deg]", angles[n], where[n], ANGLE / angles[n])
     for name, curve, fine in zip(("loaded side", "back"), (front, back), plane_curves(gear, FINE, radii), strict=True):
         for n, load in enumerate(LOADED_AT):
             yield Row(CASE, FINER, f"plane: whole curve of {name}, load at {load}", 0.0, _apart(curve, fine)[n], CURVE)
@@ -232,7 +227,9 @@ def space_rows() -> Iterator[Row]:
     places, weights = np.polynomial.legendre.leggauss(40)
     line = FlankLine(0, np.full(40, radius), 0.5 * float(np.ptp(width)) * places)
     stress = model.stress(0, [(line, 0.5 * LINE_LOAD * float(np.ptp(width)) * weights)])[0].max(axis=0)
-    yield Row(CASE, SOURCE, "in space over plane: middle of the face", MIDDLE, stress[len(stress) // 2] / 85.35, IN_SPACE)
+    yield Row(
+        CASE, SOURCE, "in space over plane: middle of the face", MIDDLE, stress[len(stress) // 2] / 85.35, IN_SPACE
+    )
     yield Row(CASE, SOURCE, "in space over plane: end of the face", END, stress[0] / 85.35, AT_END)
 
 
