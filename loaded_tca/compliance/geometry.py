@@ -22,7 +22,9 @@ from loaded_tca.tooth.sections import Sections, in_space
 from loaded_tca.tooth.surface import ToothSurface
 
 FILLET_SHARE = 0.5
-"""Part of the fillet's length that belongs to the tooth; the rest to the columns of the space."""
+"""Part of the fillet that belongs to the tooth; the rest to the columns of the space."""
+TURNING = 0.75
+"""Part of the measure along a fillet that is how far its tangent turns, below thin layers; the rest is its length."""
 SAG = 0.2
 """Sag of the lowest row of the tooth over its width."""
 SHALLOW = 0.3
@@ -35,8 +37,8 @@ quadratic element takes off 0.06 % of the twist at this ratio, 0.25 % at 2, 5 % 
 HOLE = 0.1
 """Free hole in the core of a solid gear, over the diameter of its journals: the mesh is a ring."""
 SHORTEST_LAND = 0.05
-"""Half of the root land over the way from the end of the tooth's rows to the middle of the space: with a shorter one the
-end of the fillet is not followed by an edge of elements."""
+"""Half of the root land over the way from the end of the tooth's rows to the middle of the space: the end of the fillet
+is followed by no edge of elements where it is shorter."""
 SHARP = math.pi / 3.0
 """Bend of an edge between its halves from which it is made straight; 29 deg on usual teeth. With fewer elements
 along a foot they bend more, to 66 where one folded; made straight, that made a face-milled pinion 4 % too stiff."""
@@ -75,13 +77,13 @@ class BodyNodes:
 class _Side:
     """One side of a tooth in the images, radius and angle (n, k): the flank from its root up, the foot on down.
 
-    The foot is the fillet with the length ``fillet`` (k,) [mm], then half the root land.
+    The foot is the fillet, then half the root land. ``measure`` (n, k) runs along it, from 0 to 1 at the end of the
+    fillet: by its length or, where elements are to follow sharp fillets, mostly by how far its tangent turns.
     """
 
     flank: tuple[Array, Array]
     foot: tuple[Array, Array]
-    foot_length: Array
-    fillet: Array
+    measure: Array
 
     def on_flank(self, height: Array) -> tuple[Array, Array]:
         """Radius and angle (n, k) at parts (n,) of the flank's height."""
@@ -91,31 +93,28 @@ class _Side:
 
     def on_foot(self, part: Array) -> tuple[Array, Array]:
         """Radius and angle (n, k): part 0 is the flank, 1 the end of the tooth's rows, 2 the middle of the space."""
-        split = FILLET_SHARE * self.fillet
-        part = part[:, None]
-        return self._at_length(
-            np.where(part <= 1.0, part * split, split + (part - 1.0) * (self.foot_length[-1] - split))
-        )
+        part, whole = part[:, None], self.measure[-1]
+        lower = FILLET_SHARE + (part - 1.0) * (whole - FILLET_SHARE)
+        return self._at_measure(np.where(part <= 1.0, part * FILLET_SHARE, lower))
 
     def beyond_tooth(self, density: MeshDensity) -> tuple[Array, Array]:
         """Radius and angle (n, k) of nodes from the end of the tooth's rows to the middle of the space.
 
         Below thin layers the fillet ends between two elements, where there is a root land: stress has a bend there.
         """
-        split, whole = FILLET_SHARE * self.fillet, self.foot_length[-1]
-        root_land = (whole - self.fillet) / (whole - split)
+        whole = self.measure[-1]
+        root_land = (whole - 1.0) / (whole - FILLET_SHARE)
         part = np.linspace(0.0, 1.0, 2 * density.land + 1)
         if density.skin == 0.0 or density.land == 1 or root_land.min() < SHORTEST_LAND:
             return self.on_foot(1.0 + part)
-        count = min(max(1, round(density.land * float(root_land.mean()))), density.land - 1)
-        corner = np.linspace(0.0, 1.0, 2 * (density.land - count) + 1)[:, None]
-        beyond = np.linspace(0.0, 1.0, 2 * count + 1)[1:, None]
-        lengths = split + corner * (self.fillet - split), self.fillet + beyond * (whole - self.fillet)
-        return self._at_length(np.concatenate(lengths))
+        count = min(max(1, round(density.land * float(root_land.mean()))), density.land // 2)
+        on_fillet = np.linspace(FILLET_SHARE, 1.0, 2 * (density.land - count) + 1)[:, None]
+        beyond = 1.0 + np.linspace(0.0, 1.0, 2 * count + 1)[1:, None] * (whole - 1.0)
+        return self._at_measure(np.concatenate([on_fillet + 0.0 * whole, beyond]))
 
-    def _at_length(self, length: Array) -> tuple[Array, Array]:
-        """Radius and angle (n, k) at lengths (n, k) along the foot."""
-        radius, angle = (_interpolated(length, self.foot_length, values) for values in self.foot)
+    def _at_measure(self, measure: Array) -> tuple[Array, Array]:
+        """Radius and angle (n, k) at values (n, k) of the measure along the foot."""
+        radius, angle = (_interpolated(measure, self.measure, values) for values in self.foot)
         return radius, angle
 
 
@@ -151,7 +150,8 @@ def body_nodes(tooth: ToothSurface, sections: Sections, bore_radius: Array, layo
 
     circles = coordinate, np.broadcast_to(bore_radius, lowest.shape)
     bore = find_root(beyond_bore, (0.0 * lowest, lowest), args=circles).x
-    sides = _side(tooth, images, 1), _side(tooth, images, -1)
+    by_turning = TURNING if layout.density.skin else 0.0
+    sides = _side(tooth, images, 1, by_turning), _side(tooth, images, -1, by_turning)
     radius, angle = np.full((2, *layout.shape, len(coordinate)), np.nan)
     unlike = {sector.density: sector for sector in layout.sectors}
     blocks = {density: _sector(sector, layout, sides, bore) for density, sector in unlike.items()}
@@ -163,14 +163,21 @@ def body_nodes(tooth: ToothSurface, sections: Sections, bore_radius: Array, layo
     return BodyNodes(layout, sections, coordinate, radius, angle, outline)
 
 
-def _side(tooth: ToothSurface, outline: tuple[Array, Array], sign: int) -> _Side:
-    """One side of the outline, from the root of its flank up and down."""
+def _side(tooth: ToothSurface, outline: tuple[Array, Array], sign: int, by_turning: float) -> _Side:
+    """One side of the outline, from the root of its flank up and down; its fillet measured in part by turning."""
     joints = tooth.joints if sign > 0 else tuple(len(tooth.outline) - 1 - joint for joint in tooth.joints[::-1])
     radius, angle = outline if sign > 0 else (outline[0][::-1], outline[1][::-1])
     flank, foot = slice(joints[4], joints[5] + 1), slice(joints[5], None)
-    length = lengths_along(polar(radius[foot], angle[foot]))
+    place, end = polar(radius[foot], angle[foot]), joints[6] - joints[5]
+    length = lengths_along(place)
+    measure = length / length[end]
+    step = np.diff(place, axis=0)
+    direction = np.unwrap(np.arctan2(step[..., 1], step[..., 0]), axis=0)
+    turn = np.abs(np.diff(direction[:end], axis=0))
+    turned = np.concatenate([np.zeros_like(turn[:1]), np.cumsum(turn, axis=0), turn.sum(axis=0)[None]])
+    measure[: end + 1] += by_turning * (turned / turned[-1] - measure[: end + 1])
     ends = (radius[flank][::-1], angle[flank][::-1]), (radius[foot], angle[foot])
-    return _Side(*ends, length, length[joints[6] - joints[5]])
+    return _Side(*ends, measure)
 
 
 def _sector(sector: SectorLayout, layout: RingLayout, sides: tuple[_Side, _Side], bore: Array) -> tuple[Array, Array]:

@@ -42,7 +42,8 @@ from loaded_tca.tooth.geometry import ToothGeometry
 from loaded_tca.tooth.profile import polar
 
 DENSITY = MeshDensity(through=8, flank=6, fillet=4, land=5, rim=6, neighbours=2, grading=2.5, skin=0.04 / math.pi)
-"""Elements of a section: layers through the tooth of 1 : 2.5 : 6 : 16 from both flanks, the rim's uppermost of 0.04 modules."""
+"""Elements of a section: layers through the tooth of 1 : 2.5 : 6 : 16 from both flanks, the rim's uppermost layer of
+0.04 modules."""
 OUTLINE = 257
 """Points along each flank and fillet between which nodes are drawn."""
 BEST = 0.5 + np.array([-0.5, 0.5]) / math.sqrt(3.0)
@@ -53,8 +54,8 @@ changes the faster with its height the nearer it is to the fillet."""
 HEIGHTS_BESIDE, LENGTHS_BESIDE = 5, 1.0
 """The same on the neighbours of a tooth, whose forces are further away, and places along the face for each layer."""
 LEAST_ANGLE, TOP = math.radians(15.0), 0.125
-"""Tangent angle and part of the fillet's length from which on stress is told: above either, a force low on the flank
-has local stress, not bending."""
+"""Tangent angle and part of the fillet, as elements follow it, from which on stress is told: above either, a force low
+on the flank has local stress, not bending."""
 STATIONS, PER_LAYER = 91, 4
 """Places along a fillet and in each layer of elements along the face, between which nothing is interpolated any more:
 the largest of them is within 0.05 % of the maximum."""
@@ -68,7 +69,7 @@ class RootInfluence:
     ----------
     stress : (2, n, m, a b) array [MPa/N]
         On the side of the flank in contact and on the back of tooth 0, at places along the profile and along the face,
-        under unit forces on its own flank: at Chebyshev points of the range of log(0.15 + height) and of the face width.
+        under unit forces on its own flank, at Chebyshev points of the range of log(0.15 + height) and of the face.
     stress_beside : (teeth, 2, n, m, c d) array [MPa/N]
         The same under forces at fewer places of the teeth ``-neighbours`` to ``+neighbours``; none on tooth 0.
     counts : (2, 2) int array
@@ -177,19 +178,13 @@ class RootStress:
     def _along_profile(self) -> Array:
         """Shares (2, m, stations, n) of the places of the table along the profile in the stations."""
         sides, n, m = self.table.tangent_angle.shape
-        half = 2 * self.frame.nodes.layout.density.fillet  # places on the upper half of the fillet
-        beside = BEST[0] / (BEST[1] - BEST[0])  # from a place of an edge to its end, over the step between both places
+        fillet = self.frame.nodes.layout.density.fillet
         found = np.empty((sides, m, STATIONS, n))
         for side in range(sides):
             for k in range(m):
                 steps = np.linalg.norm(np.diff(self.table.point[side, :, k], axis=0), axis=1)
-                arc = beside * steps[0] + np.append(0.0, np.cumsum(steps))  # from the end of the flank
-                start = 2.0 * TOP * (arc[half - 1] + beside * steps[half - 2])
-                low = self.table.tangent_angle[side, :, k] < LEAST_ANGLE
-                if low.any():
-                    last = min(int(np.flatnonzero(low)[-1]), n - 2)
-                    ends = self.table.tangent_angle[side, last : last + 2, k]
-                    start = max(start, float(np.interp(LEAST_ANGLE, ends, arc[last : last + 2])))
+                arc = np.append(0.0, np.cumsum(steps))
+                start = first_told(arc, self.table.tangent_angle[side, :, k], fillet)
                 found[side, k] = CubicSpline(arc, np.eye(n))(np.linspace(start, arc[-1], STATIONS))
         return found
 
@@ -324,6 +319,20 @@ def surface_places(
     plane = np.concatenate([[0], 2 * np.arange(layers) + 1, [2 * layers]])
     angle = tangent_angles(nodes, side, lowest[edge], ends[edge], part, plane)
     return point.reshape(m, n, 3).transpose(1, 0, 2), rows, angle
+
+
+def first_told(arc: Array, angle: Array, fillet: int) -> float:
+    """Length along the profile from which on stress is told, of lengths (n,) and tangent angles (n,) of the places.
+
+    ``fillet`` elements are on the upper half of the fillet, two places on each.
+    """
+    edge = np.arange(2 * fillet)
+    start = float(np.interp(2.0 * TOP * fillet, edge // 2 + BEST[edge % 2], arc[: 2 * fillet]))
+    low = np.flatnonzero(angle < LEAST_ANGLE)
+    if not low.size:
+        return start
+    last = min(int(low[-1]), len(arc) - 2)
+    return max(start, float(np.interp(LEAST_ANGLE, angle[last : last + 2], arc[last : last + 2])))
 
 
 def tangent_angles(nodes: BodyNodes, side: int, lowest: Indices, ends: Indices, part: Array, planes: Indices) -> Array:

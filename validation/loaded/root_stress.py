@@ -24,9 +24,8 @@ from loaded_tca.compliance.finite_elements import discretise
 from loaded_tca.compliance.root_stress import (
     BEST,
     DENSITY,
-    LEAST_ANGLE,
     OUTLINE,
-    TOP,
+    first_told,
     root_influence,
     stress_density,
     tangent_angles,
@@ -92,7 +91,7 @@ def loaded_radii() -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Stress along the foot of one side of a tooth, from where it is told: angle (n,) [rad], stress (n, loads) [MPa]."""
+    """Stress along one side of a tooth, from where it is told: angle (n,) [rad], stress (n, loads) [MPa]."""
 
     angle: Array
     stress: Array
@@ -126,8 +125,7 @@ def plane_curves(gear: Gear, density: MeshDensity, radii: Array, tooth: int = 0)
         arc = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
         fine = np.linspace(0.0, arc[-1], 2001)
         angles, stress = np.interp(fine, arc, angle), CubicSpline(arc, rows @ found)(fine)
-        fillet = 2.0 * arc[2 * density.fillet - 1]
-        first = max(int(np.flatnonzero(angles >= LEAST_ANGLE)[0]), int(np.searchsorted(fine, TOP * fillet)))
+        first = int(np.searchsorted(fine, first_told(arc, angle, density.fillet)))
         curves.append(Curve(angles[first:], stress[first:]))
     return curves[0], curves[1]
 
