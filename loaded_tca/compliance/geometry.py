@@ -77,12 +77,14 @@ class BodyNodes:
 class _Side:
     """One side of a tooth in the images, radius and angle (n, k): the flank from its root up, the foot on down.
 
-    The foot is the fillet, then half the root land. ``measure`` (n, k) runs along it, from 0 to 1 at the end of the
-    fillet: by its length or, where elements are to follow sharp fillets, mostly by how far its tangent turns.
+    The foot is the fillet, then half the root land; ``length`` (n, k) [mm] runs along it. So does ``measure`` (n, k),
+    to 1 at the end of the fillet: with the length or, where elements are to follow sharp fillets, mostly with how far
+    the tangent turns.
     """
 
     flank: tuple[Array, Array]
     foot: tuple[Array, Array]
+    length: Array
     measure: Array
 
     def on_flank(self, height: Array) -> tuple[Array, Array]:
@@ -113,8 +115,10 @@ class _Side:
         return self._at_measure(np.concatenate([on_fillet + 0.0 * whole, beyond]))
 
     def _at_measure(self, measure: Array) -> tuple[Array, Array]:
-        """Radius and angle (n, k) at values (n, k) of the measure along the foot."""
-        radius, angle = (_interpolated(measure, self.measure, values) for values in self.foot)
+        """Radius and angle (n, k) of corners of elements at values of the measure, of others half way between these."""
+        length = _interpolated(measure, self.measure, self.length)
+        length[1::2] = 0.5 * (length[:-1:2] + length[2::2])
+        radius, angle = (_interpolated(length, self.length, values) for values in self.foot)
         return radius, angle
 
 
@@ -150,11 +154,13 @@ def body_nodes(tooth: ToothSurface, sections: Sections, bore_radius: Array, layo
 
     circles = coordinate, np.broadcast_to(bore_radius, lowest.shape)
     bore = find_root(beyond_bore, (0.0 * lowest, lowest), args=circles).x
-    by_turning = TURNING if layout.density.skin else 0.0
-    sides = _side(tooth, images, 1, by_turning), _side(tooth, images, -1, by_turning)
     radius, angle = np.full((2, *layout.shape, len(coordinate)), np.nan)
     unlike = {sector.density: sector for sector in layout.sectors}
-    blocks = {density: _sector(sector, layout, sides, bore) for density, sector in unlike.items()}
+    blocks = {}
+    for density, sector in unlike.items():
+        by_turning = TURNING if density is not None and density.skin else 0.0
+        sides = _side(tooth, images, 1, by_turning), _side(tooth, images, -1, by_turning)
+        blocks[density] = _sector(sector, layout, sides, bore)
     for sector in layout.sectors:
         turn = 2.0 * math.pi / tooth.teeth * sector.number
         columns = slice(sector.first, sector.first + 2 * sector.columns)
@@ -177,7 +183,7 @@ def _side(tooth: ToothSurface, outline: tuple[Array, Array], sign: int, by_turni
     turned = np.concatenate([np.zeros_like(turn[:1]), np.cumsum(turn, axis=0), turn.sum(axis=0)[None]])
     measure[: end + 1] += by_turning * (turned / turned[-1] - measure[: end + 1])
     ends = (radius[flank][::-1], angle[flank][::-1]), (radius[foot], angle[foot])
-    return _Side(*ends, measure)
+    return _Side(*ends, length, measure)
 
 
 def _sector(sector: SectorLayout, layout: RingLayout, sides: tuple[_Side, _Side], bore: Array) -> tuple[Array, Array]:
@@ -228,6 +234,9 @@ def _tooth(density: MeshDensity, sides: tuple[_Side, _Side], bore: Array) -> tup
     width = 0.5 * (left[0] + right[0]) * (right[1] - left[1])
     deepest = np.minimum(SAG * width[0], SHALLOW * (np.minimum(left[0][0], right[0][0]) - bore))
     sag = np.concatenate([below, 0.0 * up])[:, None] * deepest
+    if density.skin:  # rows are far apart where the fillet is straight: as much of the sag lies between them
+        drop = left[0] + right[0] - left[0][2 * density.fillet] - right[0][2 * density.fillet]
+        sag = np.maximum(drop / drop[0], 0.0) * deepest
     radius = left[0] + across * (right[0] - left[0]) - 4.0 * across * (1.0 - across) * sag
     return radius, angle
 

@@ -123,13 +123,13 @@ def test_gears_without_a_section_are_refused(change, message):
 
 
 def test_factors_refuse_what_is_out_of_range():
-    with pytest.raises(InputError, match="contact_face_load_factor: 0.9 is below 1"):
+    with pytest.raises(InputError, match=r"contact_face_load_factor: 0.9 is below 1"):
         face_load_factor(0.9, 0.2)
-    with pytest.raises(InputError, match="height_over_width: 0.0 is not positive"):
+    with pytest.raises(InputError, match=r"height_over_width: 0.0 is not positive"):
         face_load_factor(1.2, 0.0)
-    with pytest.raises(InputError, match="overlap_ratio: -1.0 is negative"):
+    with pytest.raises(InputError, match=r"overlap_ratio: -1.0 is negative"):
         helix_angle_factor(0.2, -1.0)
-    with pytest.raises(InputError, match="helix_angle: 2.0 rad is not within 90 deg"):
+    with pytest.raises(InputError, match=r"helix_angle: 2.0 rad is not within 90 deg"):
         helix_angle_factor(2.0, 1.0)
-    with pytest.raises(InputError, match="face_width: 0.0 is not positive"):
+    with pytest.raises(InputError, match=r"face_width: 0.0 is not positive"):
         nominal_root_stress(1.0, 0.0, 1.0, 1.0)
