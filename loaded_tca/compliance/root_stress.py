@@ -26,6 +26,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.polynomial.chebyshev import chebpts2, chebvander
 from scipy.interpolate import CubicSpline
+from scipy.optimize import brentq
 from scipy.sparse import csr_array, vstack
 
 from loaded_tca.arrays import Array, Indices
@@ -35,15 +36,21 @@ from loaded_tca.compliance.finite_elements import Discretisation
 from loaded_tca.compliance.flexibility import LEAST_LENGTHS, LENGTHS_PER_LAYER, MOST_IN_MEMORY, kept, key_of
 from loaded_tca.compliance.geometry import BodyNodes
 from loaded_tca.compliance.influence import FlankLine
-from loaded_tca.compliance.layout import MeshDensity
+from loaded_tca.compliance.layout import LARGEST_GRADING, MeshDensity
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
+from loaded_tca.tooth.build import Resolution, build_tooth
 from loaded_tca.tooth.geometry import ToothGeometry
 from loaded_tca.tooth.profile import polar
 
 DENSITY = MeshDensity(through=8, flank=6, fillet=4, land=5, rim=6, neighbours=2, grading=2.5, skin=0.04 / math.pi)
 """Elements of a section: layers through the tooth of 1 : 2.5 : 6 : 16 from both flanks, the rim's uppermost layer of
 0.04 modules."""
+LAYER_OVER_RADIUS, THINNEST, SHARPEST = 0.2, 0.002, 0.05
+"""Thickness of the outermost layers over the radius of a fillet that is so sharp that they are thinner than usual; the
+least over the pitch; and the part of a fillet that may be sharper than that radius."""
+STRAIGHT = 1e-9
+"""Turn of the tangent between two places of a fillet that counts as none [rad]."""
 OUTLINE = 257
 """Points along each flank and fillet between which nodes are drawn."""
 BEST = 0.5 + np.array([-0.5, 0.5]) / math.sqrt(3.0)
@@ -220,9 +227,35 @@ def root_stress_model(gear: Gear, density: MeshDensity | None = None) -> RootStr
 
 
 def stress_density(gear: Gear) -> MeshDensity:
-    """Thin layers below the surface, and as many across the face as its width asks for, thin ones at its ends."""
-    layers = default_density(gear).lengthwise
-    return replace(DENSITY, lengthwise=2 * math.ceil(0.5 * layers) + 2, thin_ends=True)
+    """Thin layers below the surface, and as many across the face as its width asks for, thin ones at its ends.
+
+    Sharp fillets have thinner layers, a part of their radius.
+    """
+    layers = 2 * math.ceil(0.5 * default_density(gear).lengthwise) + 2
+    density = replace(DENSITY, lengthwise=layers, thin_ends=True)
+    skin = round(min(DENSITY.skin, max(LAYER_OVER_RADIUS * sharpest(gear.geometry.unmodified), THINNEST)), 6)
+    if skin > 0.99 * DENSITY.skin:
+        return density
+    powers = np.arange(DENSITY.through // 2)
+    thinner = (DENSITY.grading**powers).sum() * DENSITY.skin / skin  # half the tooth over its outermost layer
+    grading = brentq(lambda grading: (grading**powers).sum() - thinner, 1.0, LARGEST_GRADING)
+    return replace(density, skin=skin, grading=round(grading, 6))
+
+
+@lru_cache(maxsize=MOST_IN_MEMORY)
+def sharpest(teeth: ToothGeometry) -> float:
+    """Smallest radius of both fillets in all sections, over the pitch along the root circle."""
+    form, resolution = teeth.form(), Resolution(flank=9, fillet=129, land=3, lengthwise=5)
+    tooth = build_tooth((teeth.nominal(1), teeth.nominal(-1)), form, resolution)
+    x, y, z = np.moveaxis(tooth.outline, -1, 0)
+    radius = form.sections.radius(np.hypot(x, y), z)
+    place = radius * np.exp(1j * np.arctan2(y, x))
+    found = []
+    for first, last in (tooth.joints[1:3], tooth.joints[5:7]):
+        step = np.diff(place[first : last + 1], axis=0)
+        turn = np.abs(np.angle(step[1:] / step[:-1]))
+        found.append(np.quantile(np.abs(step[1:]) / np.maximum(turn, STRAIGHT), SHARPEST, axis=0))
+    return float((np.array(found) / (2.0 * math.pi / tooth.teeth * radius[0])).min())
 
 
 @lru_cache(maxsize=MOST_IN_MEMORY)

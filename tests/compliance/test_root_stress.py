@@ -59,12 +59,10 @@ def test_side_in_contact_is_pulled_and_the_back_is_pressed_near_30_to_45_degrees
 
 
 def test_neighbours_of_a_loaded_tooth_are_pressed_before_it_and_pulled_behind_it():
-    """-37.8 and 34.9 MPa under 100 N/mm in the plane; in space, in the middle of the face, some per cent more."""
-    before, behind = (
-        model().stress(tooth, [line()])[..., LAYERS * PER_LAYER // 2] / (1.043 * PLANE) for tooth in (-1, 1)
-    )
-    assert_allclose(before[0].min(), -0.378 / PLANE, rtol=0.05)
-    assert_allclose(behind[1].max(), 0.349 / PLANE, rtol=0.05)
+    """-37.8 and 34.9 MPa under 100 N/mm in the plane; in space, in the middle of the face, up to 10 % more."""
+    before, behind = (model().stress(tooth, [line()])[..., LAYERS * PER_LAYER // 2] for tooth in (-1, 1))
+    assert_allclose(before[0].min() / 1.05, -0.378, rtol=0.05)
+    assert_allclose(behind[1].max() / 1.05, 0.349, rtol=0.05)
 
 
 def test_stress_fades_from_tooth_to_tooth_and_is_nothing_beyond_the_model():

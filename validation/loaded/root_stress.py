@@ -13,9 +13,12 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
+from scipy.optimize import brentq
 
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import FlankLine, MeshDensity, RootStress
@@ -35,9 +38,13 @@ from loaded_tca.gears import CylindricalGear, CylindricalMesh, bevel_mesh
 from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.pairs.gear import Gear
+from loaded_tca.scene import read_scene
 from loaded_tca.tooth.profile import polar
 from validation.table import Row
 
+SCENES = Path(__file__).parents[2] / "examples" / "scenes"
+MOST_LAYERS = 10
+"""Across the faces of gears that are compared with finer meshes, which have half as many more."""
 CASE, SOURCE, FINER = "root stress", "plane finite elements, quadratic triangles", "finer mesh of the same elements"
 LINE_LOAD = 100.0
 """Of the reference [N/mm]."""
@@ -242,33 +249,38 @@ def largest(model: RootStress) -> Array:
 
 
 def families() -> dict[str, Gear]:
-    """Gears of the families, 12 mm wide."""
+    """Gears of the families; 12 mm wide but for the face-milled ones."""
     straight, spiral = (
         bevel_pair(bevel_mesh((20, 40), outer_module=4.0, face_width=12.0, spiral_angle=math.radians(angle)))
         for angle in (0.0, 30.0)
     )
+    milled = read_scene(SCENES / "face_milled_19x62_matched.toml").pair()
     return {
-        "spur": spur_pair_gear(width=12.0),
-        "helical, 15 deg": spur_pair_gear(width=12.0, helix_deg=15.0),
         "helical, 30 deg": spur_pair_gear(width=12.0, helix_deg=30.0),
         "straight bevel pinion": straight.pinion,
         "straight bevel wheel": straight.wheel,
         "spiral bevel pinion": spiral.pinion,
         "spiral bevel wheel": spiral.wheel,
+        "face-milled pinion": milled.pinion,
+        "face-milled wheel": milled.wheel,
     }
 
 
 def finer(density: MeshDensity) -> MeshDensity:
-    """Half as many elements more in every direction."""
-    section = {name: 3 * getattr(density, name) // 2 for name in ("flank", "fillet", "land", "rim")}
-    layers = 2 * math.ceil(0.75 * density.lengthwise)
-    return replace(density, through=10, grading=2.2, skin=0.5 * density.skin, lengthwise=layers, **section)
+    """Half as many elements more in every direction, the outermost layers half as thick."""
+    section = {name: 3 * getattr(density, name) // 2 for name in ("through", "flank", "fillet", "land", "rim")}
+    layers, coarse = np.arange(section["through"] // 2), np.arange(density.through // 2)
+    half = 2.0 * (density.grading**coarse).sum()  # of the tooth, over the thickness of its outermost layer
+    grading = float(brentq(lambda grading: (grading**layers).sum() - half, 1.0, 10.0))
+    lengthwise = 2 * math.ceil(0.75 * density.lengthwise)
+    return replace(density, grading=grading, skin=0.5 * density.skin, lengthwise=lengthwise, **section)
 
 
 def family_rows() -> Iterator[Row]:
     """Largest stresses of every family against a finer mesh."""
     for name, gear in families().items():
         density = stress_density(gear)
+        density = replace(density, lengthwise=min(density.lengthwise, MOST_LAYERS))
         error = np.abs(largest(model_of(gear, density)) / largest(model_of(gear, finer(density))) - 1.0)
         for quantity, value in zip(("tension", "compression"), error.max(axis=0), strict=True):
             words = f"{name}: {quantity}, largest error of {len(LINES)} loads"
@@ -278,3 +290,49 @@ def family_rows() -> Iterator[Row]:
 def rows() -> list[Row]:
     """Every comparison."""
     return [*plane_rows(), *nine_rows(), *space_rows(), *family_rows()]
+
+
+SECTION = replace(DENSITY, lengthwise=12, thin_ends=True)
+MESHES: dict[str, tuple[dict[str, Any], MeshDensity]] = {
+    "tooth compliance": ({}, MeshDensity(lengthwise=10)),
+    "6 layers through of 1 : 3 : 9": ({}, replace(SECTION, through=6, grading=3.0)),
+    "even ends of the face": ({}, replace(SECTION, thin_ends=False)),
+    "default": ({}, SECTION),
+    "half as many elements more": ({}, replace(finer(SECTION), lengthwise=12)),
+    "half as many layers more": ({}, replace(SECTION, lengthwise=18)),
+    "default, b 60": ({"width": 60.0}, replace(SECTION, lengthwise=26)),
+    "default, b 60, 20 deg": ({"width": 60.0, "helix_deg": 20.0}, replace(SECTION, lengthwise=26)),
+}
+"""Changes of the pinion of the reference, and meshes."""
+
+
+def measured(name: str) -> str:
+    """One line of the table of a mesh of ``MESHES``: errors, processor time and memory of making the model."""
+    changes, density = MESHES[name]
+    gear, before = spur_pair_gear(**changes), time.process_time()
+    model = model_of(gear, density)
+    seconds = time.process_time() - before
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
+    plane = plane_curves(spur_pair_gear(), replace(density, lengthwise=1, thin_ends=False), loaded_radii())
+    errors = [
+        100.0 * float(np.abs(curve.largest(sign)[0] * LINE_LOAD / np.array(values) - 1.0).max())
+        for curve, sign, values in zip(plane, (1, -1), (TENSION, COMPRESSION), strict=True)
+    ]
+    line, forces = line_on(model, 0.4985)  # the highest point of single contact
+    stress = model.stress(0, [(line, changes.get("width", 20.0) * forces)])[0].max(axis=0) / (TENSION[1] / LINE_LOAD)
+    kept = sum(values.nbytes for values in vars(model.table).values()) / 2**20
+    shown = [f"{value:.2f}" for value in (*errors, stress[len(stress) // 2], stress[0])]
+    return " | ".join([f"| {name}", *shown, f"{seconds:.1f}", f"{memory:.2f}", f"{kept:.1f} |"])
+
+
+def main() -> None:
+    """Print the table; every line in a process of its own, so that its memory is its own."""
+    print("| mesh | tension, % | compression, % | mid-face | end | s | GiB | table, MiB |")
+    print("|---|---|---|---|---|---|---|---|")
+    for name in MESHES:
+        with multiprocessing.get_context("spawn").Pool(1) as pool:
+            print(pool.apply(measured, (name,)), flush=True)
+
+
+if __name__ == "__main__":
+    main()
