@@ -306,7 +306,7 @@ def root_influence(frame: ToothFrame) -> RootInfluence:
     ]
     along_face = np.concatenate([[0.0], frame.face_parts[1::2], [1.0]])
     sides = [surface_places(mesh, frame.nodes, side, frame.gear.material) for side in (frame.side, -frame.side)]
-    point, angle = (np.stack([side[which] for side in sides]) for which in (0, 2))
+    point, angle = np.stack([side[0] for side in sides]), np.stack([side[2] for side in sides])
     readings = vstack([rows for _, rows, _ in sides], format="csr")
     stress = factor.flexibility(vstack(loads, format="csr"), readings)
     stress = stress.reshape(2, len(along_face), -1, stress.shape[1]).swapaxes(1, 2)

@@ -1,5 +1,6 @@
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,12 +11,23 @@ from loaded_tca.compliance import flexibility as kept
 from loaded_tca.compliance import root_stress as module
 from loaded_tca.compliance.body import ToothFrame, gear_nodes
 from loaded_tca.compliance.flexibility import key_of
-from loaded_tca.compliance.root_stress import DENSITY, PER_LAYER, RootStress, root_influence
+from loaded_tca.compliance.root_stress import (
+    DENSITY,
+    LAYER_OVER_RADIUS,
+    PER_LAYER,
+    RootStress,
+    root_influence,
+    sharpest,
+    stress_density,
+)
 from loaded_tca.flanks import FlankModifications
-from loaded_tca.gears import CylindricalGear, CylindricalMesh
+from loaded_tca.gears import CylindricalGear, CylindricalMesh, bevel_mesh
+from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.cylindrical import cylindrical_pair
+from loaded_tca.scene import read_scene
 from tests.samples.bodies import pinion, spur_mesh
 
+SCENES = Path(__file__).parents[2] / "examples" / "scenes"
 LAYERS = 8
 SMALL = replace(DENSITY, lengthwise=LAYERS, thin_ends=True)
 TINY = MeshDensity(2, 2, 1, 2, 3, 6, 1, 2.0, 0.02, True)
@@ -107,7 +119,7 @@ def test_stress_of_the_other_side_is_the_mirror_image():
 def test_places_lie_on_the_fillets_from_15_degrees_to_the_middle_of_the_space():
     angle, point = model().tangent_angle, model().point
     assert angle.shape == point.shape[:-1]
-    assert np.degrees(angle[:, 0]).min() > 14.9
+    assert_allclose(np.degrees(angle[:, 0]), 15.0, atol=0.5)  # found between places 3 degrees apart
     assert_allclose(np.degrees(angle[:, -1]), 90.0 - 180.0 / 25, atol=0.1)  # across the ray between two teeth
     radius, azimuth = np.hypot(point[..., 0], point[..., 1]), np.arctan2(point[..., 1], point[..., 0])
     assert (np.diff(radius, axis=1) < 1e-3).all()
@@ -193,3 +205,24 @@ def test_key_is_not_that_of_the_flexibility():
 def test_model_is_one_of_the_frame_and_the_table():
     frame = ToothFrame(pinion(), gear_nodes(pinion(), TINY))
     assert RootStress(frame, root_influence(frame)).neighbours == 1
+
+
+def test_sharp_fillets_have_thinner_layers_and_usual_ones_do_not():
+    """A face-milled pair with blades of edge radii of 0.016 of the pitch; spur gears have 0.15 and more."""
+    assert stress_density(pinion()) == replace(DENSITY, lengthwise=12, thin_ends=True)
+    gear = read_scene(SCENES / "face_milled_19x62_matched.toml").pair().wheel
+    density, radius = stress_density(gear), sharpest(gear.geometry.unmodified)
+    assert radius < 0.02
+    assert_allclose(density.skin, LAYER_OVER_RADIUS * radius, atol=1e-6)
+    thickness = density.grading ** np.arange(4)
+    usual = DENSITY.grading ** np.arange(4)
+    assert_allclose(thickness.sum() * density.skin, usual.sum() * DENSITY.skin, rtol=1e-4)
+
+
+def test_smallest_radius_of_an_arc_is_its_own():
+    """Of 0.38 mean normal modules, and so much of the pitch as the module over that of the root circle."""
+    mesh = bevel_mesh((20, 40), outer_module=4.0, face_width=12.0)
+    gear = mesh.pinion
+    pitch = 2.0 * np.pi / 20 * gear.mean_cone_distance * 2.0 * np.tan(0.5 * gear.root_cone_angle)
+    found = sharpest(bevel_pair(mesh).pinion.geometry.unmodified)
+    assert_allclose(found * pitch, 0.38 * gear.mean_normal_module, rtol=0.03)

@@ -10,6 +10,9 @@ its own. Run from the root of the repository: ``python -m validation.loaded.root
 """
 
 import math
+import multiprocessing
+import resource
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
