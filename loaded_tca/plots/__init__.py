@@ -10,6 +10,8 @@ from loaded_tca.plots.ease_off import plot_ease_off
 from loaded_tca.plots.envelope import plot_contact_patterns, plot_pressure_envelope
 from loaded_tca.plots.flanks import plot_contact_path, plot_full_mesh
 from loaded_tca.plots.pressure_map import plot_pressure_map
+from loaded_tca.plots.removal import plot_removal_weights
+from loaded_tca.plots.sensitivities import plot_sensitivity_curves, plot_tornado, plot_transmission_error_band
 from loaded_tca.plots.sharing import (
     plot_harmonics,
     plot_line_load,
@@ -53,6 +55,8 @@ __all__ = [
     "plot_peak_pressure",
     "plot_pressure_envelope",
     "plot_pressure_map",
+    "plot_removal_weights",
+    "plot_sensitivity_curves",
     "plot_stress_below",
     "plot_study",
     "plot_study_heat_map",
@@ -63,7 +67,9 @@ __all__ = [
     "plot_study_scatter_matrix",
     "plot_subsurface",
     "plot_teeth",
+    "plot_tornado",
     "plot_transmission_error",
+    "plot_transmission_error_band",
     "plot_vh_check",
     "png_of",
     "save_figure",

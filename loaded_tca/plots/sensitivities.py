@@ -16,6 +16,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, require
 from loaded_tca.plots import style
 from loaded_tca.plots.labels import label_of
+from loaded_tca.plots.removal import plot_removal_weights
 from loaded_tca.plots.study_panels import panels_of, without_unit
 from loaded_tca.plots.style import DISTINCT_COLOURS, MARKERS, highest_torque, load, loads, range_of_positions
 from loaded_tca.results.key_figures import mean_over_a_pitch
@@ -34,6 +35,16 @@ BANDS = ((1.0, 0.45), (2.0, 0.2))
 """Standard deviations either side, and how opaque the band is."""
 BASE_CIRCLE = "at the wheel's base circle [µm]"
 LESS_MEAN = "the same, less its mean [µm]"
+
+
+def sensitivity_pictures(found: Sensitivities, tolerances: Mapping[str, float], torque: int) -> dict[str, Figure]:
+    """Return all pictures of sensitivities under one torque by the names of their files, bands under all torques."""
+    return {
+        "tornado": plot_tornado(found, tolerances, torque=torque),
+        "sensitivity_curves": plot_sensitivity_curves(found, tolerances, torque),
+        "transmission_error_band": plot_transmission_error_band(found, tolerances),
+        "removal_weights": plot_removal_weights(found, torque),
+    }
 
 
 def plot_tornado(
