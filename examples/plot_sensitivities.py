@@ -25,7 +25,9 @@ def main() -> float:
     save_figure(plot_tornado(found, tolerances), "sensitivities.png")
 
     span = result.key_figures()[0]["transmission_error_span_um"]
-    scatter = 1e3 * result.wheel_base_radius * found.spread(tolerances)["peak_to_peak"].values[0]  # of all keys together
+    scatter = (
+        1e3 * result.wheel_base_radius * found.spread(tolerances)["peak_to_peak"].values[0]
+    )  # of all keys together
     print(f"peak-to-peak transmission error {span:.3f} um, standard deviation {scatter:.3f} um")
     along = -1e3 * math.sin(scene.mesh().working_pressure_angle)  # um per mm, at the base circle of the wheel
     return float(figure_slopes(found)["transmission_error_mean_um"][0, found.keys.index(DISTANCE)]) / along

@@ -140,7 +140,11 @@ def command_line() -> argparse.ArgumentParser:
     )
     slopes.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
     slopes.add_argument(
-        "--keys", metavar="KEY[=TOLERANCE]", nargs="+", type=_tolerance, help="for instance mounting.axial_offset_mm=0.05"
+        "--keys",
+        metavar="KEY[=TOLERANCE]",
+        nargs="+",
+        type=_tolerance,
+        help="for instance mounting.axial_offset_mm=0.05",
     )
     slopes.add_argument("--out", metavar="DIR", type=_path, help=f"directory for the files; default: {own}")
     slopes.add_argument("--torque", metavar="NM", type=float, help="pinion torque shown; default: largest, bands all")

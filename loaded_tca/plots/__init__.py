@@ -6,6 +6,7 @@ from pathlib import Path
 
 from loaded_tca.plots.comparison import plot_compared_maps, plot_comparison
 from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
+from loaded_tca.plots.design import plot_before_and_after, plot_peak_to_peak_over_torque, plot_robustness
 from loaded_tca.plots.ease_off import plot_ease_off
 from loaded_tca.plots.envelope import plot_contact_patterns, plot_pressure_envelope
 from loaded_tca.plots.flanks import plot_contact_path, plot_full_mesh
@@ -39,6 +40,7 @@ __all__ = [
     "PICTURES",
     "draw_teeth",
     "plot_all",
+    "plot_before_and_after",
     "plot_compared_maps",
     "plot_comparison",
     "plot_contact_path",
@@ -53,9 +55,11 @@ __all__ = [
     "plot_mesh_stiffness",
     "plot_path_pressure",
     "plot_peak_pressure",
+    "plot_peak_to_peak_over_torque",
     "plot_pressure_envelope",
     "plot_pressure_map",
     "plot_removal_weights",
+    "plot_robustness",
     "plot_sensitivity_curves",
     "plot_stress_below",
     "plot_study",

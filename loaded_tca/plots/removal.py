@@ -75,13 +75,13 @@ def plot_removal_weights(found: Sensitivities, torque: int | None = None) -> Fig
         label="change of the mean transmission error at the\nwheel's base circle by 1 µm less material on 1 mm² [µm]",
         extend="max" if counting.size and counting.max() > top else "neither",
     )
-    style.set_title(figure, result, f"where removed material counts, {load(result, torque)}", range_of_positions(result))
+    style.set_title(
+        figure, result, f"where removed material counts, {load(result, torque)}", range_of_positions(result)
+    )
     return figure
 
 
-def removal_weights(
-    found: Sensitivities, torque: int, gear: GearName, low: Array, high: Array
-) -> tuple[Array, Array]:
+def removal_weights(found: Sensitivities, torque: int, gear: GearName, low: Array, high: Array) -> tuple[Array, Array]:
     """Change of the mean transmission error [um] per um of removal and mm2 of a flank, on fields of its picture.
 
     Borders (2, n + 1) of the fields between two corners of the picture come first, in the units of the picture; then
