@@ -56,10 +56,10 @@ SUBSURFACE = """files in DIR:
   subsurface.csv            the same over the depth, below the highest pressure
   subsurface_max_shear.png, subsurface_von_mises.png
 Stresses in MPa, tension positive, of a half-space without friction; docs/results.md says more."""
-SENSITIVITIES = """KEY is a key of the scene, TOLERANCE its standard deviation in the unit that the key ends in. Default keys: the
-modifications that the gears have, with starts and lengths of reliefs, all mounting errors (but misalignment_um, which
-adds to out_of_plane_deg), and the torque. Default tolerances: 1 um, 0.01 mm, 0.01 deg; 0.1 mm and 0.1 deg of starts and
-lengths of reliefs; of the torque a hundredth of the largest.
+SENSITIVITIES = """KEY is a key of the scene, TOLERANCE its standard deviation, in the unit that the key ends in.
+Default keys: the modifications that the gears have, with starts and lengths of reliefs, all mounting errors (but
+misalignment_um, which adds to out_of_plane_deg), and the torque. Default tolerances: 1 um, 0.01 mm, 0.01 deg;
+0.1 mm and 0.1 deg of starts and lengths of reliefs; of the torque a hundredth of the largest.
 
 files in DIR:
   sensitivities.nc          derivatives of every position, pair and figure, all torques
@@ -139,13 +139,8 @@ def command_line() -> argparse.ArgumentParser:
         "sensitivities", run_by.sensitivities, "show what keys of the scene and their tolerances change", SENSITIVITIES
     )
     slopes.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
-    slopes.add_argument(
-        "--keys",
-        metavar="KEY[=TOLERANCE]",
-        nargs="+",
-        type=_tolerance,
-        help="for instance mounting.axial_offset_mm=0.05",
-    )
+    told = "for instance mounting.axial_offset_mm=0.05"
+    slopes.add_argument("--keys", metavar="KEY[=TOLERANCE]", nargs="+", type=_tolerance, help=told)
     slopes.add_argument("--out", metavar="DIR", type=_path, help=f"directory for the files; default: {own}")
     slopes.add_argument("--torque", metavar="NM", type=float, help="pinion torque shown; default: largest, bands all")
     ease_off = command("ease-off", run_by.ease_off, "draw the ease-off of a scene, without load", EASE_OFF)
@@ -214,9 +209,8 @@ def _tolerance(text: str) -> tuple[str, float | None]:
     except ValueError:
         tolerance = math.nan
     if not key or not (tolerance is None or 0.0 < tolerance < math.inf):
-        raise argparse.ArgumentTypeError(
-            f"{text!r:.60}: allowed KEY or KEY=TOLERANCE, the tolerance a number above 0, as mounting.axial_offset_mm=0.05"
-        )
+        allowed = "KEY or KEY=TOLERANCE, the tolerance a number above 0, as mounting.axial_offset_mm=0.05"
+        raise argparse.ArgumentTypeError(f"{text!r:.60}: allowed {allowed}")
     return key, tolerance
 
 

@@ -58,7 +58,8 @@ def tolerances_of(options: argparse.Namespace, scene: Scene) -> dict[str, float]
     from loaded_tca.results.tolerances import default_tolerances
     from loaded_tca.scene.section import key_at
 
-    given, problems = list(options.keys or ()), []
+    given: list[tuple[str, float | None]] = options.keys or []
+    problems: list[str] = []
     for key in dict.fromkeys(key for key, _ in given):
         try:
             key_at(type(scene), key)

@@ -1,4 +1,4 @@
-"""What is written to files and the terminal: reports, tables, comparisons, teeth, stresses, sensitivities, overviews of scenes."""
+"""What is written to files and the terminal: reports, tables, comparisons, teeth, stresses, sensitivities, scenes."""
 
 from loaded_tca.output.comparison_files import write_comparison
 from loaded_tca.output.overview import describe_scene

@@ -25,7 +25,7 @@ FIELDS = 160
 """Fields of the picture of a flank in each direction, each coloured by the mean over it."""
 FIELDS_OF_SPIKES = 0.005
 """Part of the fields that may lie beyond the scale of colours: single cells at edges count for much."""
-SMOOTHED = {"sigma": 1.0, "truncate": 2.0}
+BLUR = 1.0
 """Fields over which weights are spread, so that the points of cells that move across make no pattern of their own."""
 GEARS: tuple[GearName, GearName] = ("pinion", "wheel")
 
@@ -59,25 +59,24 @@ def plot_removal_weights(found: Sensitivities, torque: int | None = None) -> Fig
     for axes, gear in zip(panels, GEARS, strict=True):
         low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
         drawn.append((axes, removal_weights(found, torque, gear, low, high)))
-    counting = np.concatenate([weights[weights > 0.0] for _, (_, weights) in drawn])
-    top = float(np.quantile(counting, 1.0 - FIELDS_OF_SPIKES)) if counting.size else 1.0
-    scale = Normalize(0.0, top)
+    counting = np.concatenate([weights[weights != 0.0] for _, (_, weights) in drawn] + [np.zeros(1)])
+    low, high = np.quantile(counting, (FIELDS_OF_SPIKES, 1.0 - FIELDS_OF_SPIKES)).tolist()
+    scale = Normalize(min(low, 0.0), high or 1.0)
     for axes, (borders, weights) in drawn:
         mesh = axes.pcolormesh(
-            *borders, np.where(weights > 0.0, weights, np.nan), cmap=COLOURS, norm=scale, rasterized=True
+            *borders, np.where(weights != 0.0, weights, np.nan), cmap=COLOURS, norm=scale, rasterized=True
         )
         mesh.set_clip_path(axes.patches[0])
-    if not counting.size:
+    if not counting.any():
         style.tell(panels[0], style.NO_LOAD)
     figure.colorbar(
         ScalarMappable(scale, COLOURS),
         ax=panels,
         label="change of the mean transmission error at the\nwheel's base circle by 1 µm less material on 1 mm² [µm]",
-        extend="max" if counting.size and counting.max() > top else "neither",
+        extend="max" if counting.max() > high else "neither",
     )
-    style.set_title(
-        figure, result, f"where removed material counts, {load(result, torque)}", range_of_positions(result)
-    )
+    about = f"where removed material counts, {load(result, torque)}", range_of_positions(result)
+    style.set_title(figure, result, *about)
     return figure
 
 
@@ -93,7 +92,7 @@ def removal_weights(found: Sensitivities, torque: int, gear: GearName, low: Arra
         column, row = np.floor((places - low) / field).astype(int).T
         inside = (column >= 0) & (column < FIELDS) & (row >= 0) & (row < FIELDS)
         np.add.at(total, (row[inside], column[inside]), weights[inside])
-    return np.linspace(low, high, FIELDS + 1).T, gaussian_filter(total, **SMOOTHED)
+    return np.linspace(low, high, FIELDS + 1).T, gaussian_filter(total, BLUR, truncate=2.0)
 
 
 def _passing(found: Sensitivities, torque: int, gear: GearName, field: Array) -> Iterator[tuple[Array, Array]]:
@@ -107,7 +106,7 @@ def _passing(found: Sensitivities, torque: int, gear: GearName, field: Array) ->
             weight, one = row[pair], result.maps[torque][position][pair]
             if weight is None or one is None:
                 continue
-            counts = weight > 0.0
+            counts = weight != 0.0
             places = to_picture(points_of_cells(one, counts, to_picture, field))
             corners = to_picture(one.corners)
             sides = np.diff(corners, axis=0)[:, :-1], np.diff(corners, axis=1)[:-1]

@@ -14,9 +14,8 @@ TORQUE = "load.pinion_torque_Nm"
 
 
 def scene(name, **changes):
-    return read_scene(SCENES / f"{name}.toml").with_changes(
-        {key.replace("__", "."): one for key, one in changes.items()}
-    )
+    values = {key.replace("__", "."): value for key, value in changes.items()}
+    return read_scene(SCENES / f"{name}.toml").with_changes(values)
 
 
 def test_keys_are_the_modifications_that_the_gears_have_the_mounting_errors_and_the_torque():
