@@ -9,7 +9,7 @@ from pathlib import Path
 
 from loaded_tca import analyse, read_scene
 from loaded_tca.plots import plot_tornado, save_figure
-from loaded_tca.results import default_tolerances, figure_slopes
+from loaded_tca.results import default_tolerances, key_figure_slopes
 
 SCENE = Path(__file__).parent / "scenes" / "mesh_cycle_helical.toml"
 QUICK = {"analysis.torques_Nm": None, "analysis.positions": 9, "analysis.cells": (32, 32), "analysis.accuracy": None}
@@ -25,12 +25,10 @@ def main() -> float:
     save_figure(plot_tornado(found, tolerances), "sensitivities.png")
 
     span = result.key_figures()[0]["transmission_error_span_um"]
-    scatter = (
-        1e3 * result.wheel_base_radius * found.spread(tolerances)["peak_to_peak"].values[0]
-    )  # of all keys together
-    print(f"peak-to-peak transmission error {span:.3f} um, standard deviation {scatter:.3f} um")
+    scatter = 1e3 * result.wheel_base_radius * found.spread(tolerances)["peak_to_peak"].values[0]
+    print(f"peak-to-peak transmission error {span:.3f} um, standard deviation by all keys {scatter:.3f} um")
     along = -1e3 * math.sin(scene.mesh().working_pressure_angle)  # um per mm, at the base circle of the wheel
-    return float(figure_slopes(found)["transmission_error_mean_um"][0, found.keys.index(DISTANCE)]) / along
+    return float(key_figure_slopes(found)["transmission_error_mean_um"][0, found.keys.index(DISTANCE)]) / along
 
 
 if __name__ == "__main__":

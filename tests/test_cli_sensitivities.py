@@ -5,7 +5,7 @@ import os
 
 import pytest
 
-from loaded_tca.results import default_tolerances, figure_slopes
+from loaded_tca.results import default_tolerances, key_figure_slopes
 from tests.samples.results import result
 
 CROWNING, OFFSET = "pinion.modifications.lead_crowning_um", "mounting.axial_offset_mm"
@@ -53,7 +53,7 @@ def test_keys_have_the_tolerances_given_or_the_usual_ones(run, out):
     assert text.splitlines()[1].startswith("pinion torque 40 N m")
     found = rows("there/sensitivities.csv")
     assert [(row["key"], row["tolerance"]) for row in found] == 2 * [(OFFSET, "0.05"), (CROWNING, "1")]
-    slope = figure_slopes(cycle().sensitivities([OFFSET]))["peak_pressure_MPa"][0, 0]
+    slope = key_figure_slopes(cycle().sensitivities([OFFSET]))["peak_pressure_MPa"][0, 0]
     assert float(found[0]["peak_pressure_MPa_per_tolerance"]) == pytest.approx(0.05 * slope, rel=1e-6)
 
 
@@ -95,9 +95,9 @@ def test_all_wrong_keys_are_told_at_once(run, out):
     assert "mounting.axial_offset_mm" in errors[1]
 
 
-def test_unloaded_result_has_no_sensitivities(run, tmp_path):
-    result(torques=(0.0,), positions=2).save(tmp_path / "result.nc")
-    code, _, errors = run("sensitivities", tmp_path, "--keys", CROWNING)
+def test_torque_without_load_has_no_sensitivities(run, tmp_path):
+    result(torques=(0.0, 80.0), positions=2).save(tmp_path / "result.nc")
+    code, _, errors = run("sensitivities", tmp_path, "--keys", CROWNING, "--torque", 0)
     assert code == 2
     assert errors == ["loaded-tca: nothing is under load with pinion torque 0 N m: no derivatives"]
     assert os.listdir(tmp_path) == ["result.nc"]

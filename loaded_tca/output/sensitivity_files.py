@@ -12,7 +12,7 @@ from loaded_tca.output.report import csv_table
 from loaded_tca.results.files import Buffer, FilePath, netcdf_of, replace_together
 from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.summary import shown
-from loaded_tca.results.tolerances import figure_slopes
+from loaded_tca.results.tolerances import key_figure_slopes
 
 ALL, TABLE = "sensitivities.nc", "sensitivities.csv"
 """Names of the two files."""
@@ -70,7 +70,7 @@ def sensitivities_csv(found: Sensitivities, tolerances: Mapping[str, float]) -> 
         "key": [key for _ in torques for key in keys],
         "tolerance": [f"{one:.9g}" for _ in torques for one in spread],
     }
-    slopes = figure_slopes(found)
+    slopes = key_figure_slopes(found)
     for name, values in slopes.items():
         columns[f"{name}_per_unit"] = _cells(values)
     for name, values in slopes.items():
@@ -95,7 +95,7 @@ def sensitivities_text(found: Sensitivities, tolerances: Mapping[str, float], to
         Index of the torque.
     """
     figures = found.result.key_figures()[torque]
-    slopes = {name: values[torque] for name, values in figure_slopes(found).items()}
+    slopes = {name: values[torque] for name, values in key_figure_slopes(found).items()}
     spread = np.array([tolerances[key] for key in found.keys])
     together = [math.sqrt(float(((values * spread) ** 2).sum())) for values in slopes.values()]
     rows: list[tuple[str, list[str]]] = [

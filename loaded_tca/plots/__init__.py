@@ -9,6 +9,7 @@ from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
 from loaded_tca.plots.design import plot_before_and_after, plot_peak_to_peak_over_torque, plot_robustness
 from loaded_tca.plots.ease_off import plot_ease_off
 from loaded_tca.plots.envelope import plot_contact_patterns, plot_pressure_envelope
+from loaded_tca.plots.first_order import plot_first_order_scatter
 from loaded_tca.plots.flanks import plot_contact_path, plot_full_mesh
 from loaded_tca.plots.pressure_map import plot_pressure_map
 from loaded_tca.plots.removal import plot_removal_weights
@@ -46,6 +47,7 @@ __all__ = [
     "plot_contact_path",
     "plot_contact_patterns",
     "plot_ease_off",
+    "plot_first_order_scatter",
     "plot_full_mesh",
     "plot_harmonics",
     "plot_line_load",

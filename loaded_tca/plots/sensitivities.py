@@ -23,7 +23,7 @@ from loaded_tca.results.key_figures import mean_over_a_pitch
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.summary import shown
-from loaded_tca.results.tolerances import default_tolerances, figure_slopes
+from loaded_tca.results.tolerances import default_tolerances, key_figure_slopes
 
 RAISED, LOWERED = "#0072b2", "#e69f00"
 """Of a key that is raised, and lowered, by its tolerance: told apart by colour-blind readers and in grey."""
@@ -64,7 +64,7 @@ def plot_tornado(
     tolerances : mapping of str to float, optional
         Standard deviations of the keys, in their units; default: ``default_tolerances``.
     figures : sequence of str, optional
-        Names of :func:`loaded_tca.results.figure_slopes`; default: all that are known.
+        Names of :func:`loaded_tca.results.key_figure_slopes`; default: all that are known.
     torque : int, optional
         Index of the torque; default: the largest one.
 
@@ -80,7 +80,7 @@ def plot_tornado(
     result = found.result
     torque = highest_torque(result) if torque is None else torque
     spread = _spread(found, tolerances)
-    changes = {name: values[torque] * spread for name, values in figure_slopes(found).items()}
+    changes = {name: values[torque] * spread for name, values in key_figure_slopes(found).items()}
     unknown = [name for name in figures or () if name not in changes]
     require((not unknown, f"figures: {', '.join(unknown)} unknown; allowed {', '.join(changes)}"))
     chosen = figures or [name for name, values in changes.items() if np.isfinite(values).any()]

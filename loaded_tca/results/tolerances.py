@@ -75,7 +75,7 @@ def _usual(scene: Scene, key: str) -> float:
     return USUAL.get(name.rpartition("_")[2], 1.0) * (OF_RELIEF_ENDS if of_relief_end else 1.0)
 
 
-def figure_slopes(found: Sensitivities) -> dict[str, Array]:
+def key_figure_slopes(found: Sensitivities) -> dict[str, Array]:
     """Return derivatives of key figures to the keys, by the names of ``MeshCycle.key_figures``.
 
     Parameters

@@ -9,7 +9,7 @@ import xarray
 from numpy.testing import assert_allclose
 
 from loaded_tca.output import sensitivities_text, write_sensitivities
-from loaded_tca.results import figure_slopes
+from loaded_tca.results import key_figure_slopes
 from tests.samples.results import result
 
 TOLERANCES = {
@@ -32,7 +32,7 @@ def test_table_has_a_row_for_each_torque_and_key(found, tmp_path):
     assert [(float(row["pinion_torque_Nm"]), row["key"]) for row in rows] == [
         (torque, key) for torque in (40.0, 260.0) for key in TOLERANCES
     ]
-    for name, slopes in figure_slopes(found).items():
+    for name, slopes in key_figure_slopes(found).items():
         for row, slope in zip(rows, slopes.ravel(), strict=True):
             near = {"rtol": 1e-8}  # nine digits
             assert float(row["tolerance"]) == TOLERANCES[row["key"]]
@@ -60,7 +60,7 @@ def test_file_has_the_derivatives_of_every_position_and_the_tolerances(found, tm
 
 def test_text_has_the_figures_of_the_table_and_their_sum_of_squares(found):
     lines = sensitivities_text(found, TOLERANCES, 1).splitlines()
-    slopes = figure_slopes(found)["peak_pressure_MPa"][1]
+    slopes = key_figure_slopes(found)["peak_pressure_MPa"][1]
     assert lines[1].startswith("pinion torque 260 N m")
     lasts = {line.rpartition("  ")[0].strip(): float(line.split()[-1]) for line in lines[4:] if line.count("  ") > 4}
     rows = {label.split("  ")[0]: number for label, number in lasts.items()}

@@ -17,7 +17,7 @@ from loaded_tca.plots import (
     save_figure,
 )
 from loaded_tca.plots.removal import removal_weights
-from loaded_tca.results import figure_slopes
+from loaded_tca.results import key_figure_slopes
 from loaded_tca.results.key_figures import mean_over_a_pitch
 from tests.samples.results import result
 
@@ -43,7 +43,7 @@ def length(one):
 
 def test_bars_of_the_tornado_are_sensitivity_times_tolerance_the_longest_on_top():
     figure = plot_tornado(found(), TOLERANCES, torque=0)
-    slopes = figure_slopes(found())
+    slopes = key_figure_slopes(found())
     panels = [axes for axes in figure.axes if axes.get_visible()]
     assert len(panels) == len(slopes)
     for axes, values in zip(panels, slopes.values(), strict=True):
@@ -66,7 +66,7 @@ def test_tornado_of_many_keys_shows_the_longest_bars(monkeypatch):
     monkeypatch.setattr("loaded_tca.plots.sensitivities.MOST_BARS", 2)
     figure = plot_tornado(found(), TOLERANCES, ["peak_pressure_MPa"])
     (axes,) = figure.axes
-    longest = np.sort(np.abs(figure_slopes(found())["peak_pressure_MPa"][1] * SPREAD))[:-3:-1]
+    longest = np.sort(np.abs(key_figure_slopes(found())["peak_pressure_MPa"][1] * SPREAD))[:-3:-1]
     assert_allclose(np.abs([bar.get_width() for bar in axes.containers[0]]), longest, rtol=1e-12)
     assert "2 of 5 keys" in figure.get_suptitle()
 
@@ -173,10 +173,10 @@ def test_every_picture_of_every_case_is_drawn(case, plot, tmp_path):
 
 
 def test_without_load_there_is_nothing_to_draw():
-    one = found("helical", (0.0,), 2, ("load.pinion_torque_Nm",))
+    one = found("helical", (0.0, 80.0), 2, ("load.pinion_torque_Nm",))
     with pytest.raises(InputError, match="nothing is under load with pinion torque 0 N m"):
-        plot_tornado(one)
-    for figure in (plot_sensitivity_curves(one), plot_removal_weights(one)):
+        plot_tornado(one, torque=0)
+    for figure in (plot_sensitivity_curves(one, torque=0), plot_removal_weights(one, 0)):
         assert [text.get_text() for text in figure.axes[0].texts] == ["no load, no pressure"]
 
 

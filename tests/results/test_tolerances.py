@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca import read_scene
-from loaded_tca.results import default_tolerances, figure_slopes
+from loaded_tca.results import default_tolerances, key_figure_slopes
 from tests.samples.results import SCENES, result
 
 TORQUE = "load.pinion_torque_Nm"
@@ -67,7 +67,7 @@ def test_every_default_key_is_one_that_a_result_can_be_derived_by(name):
 def test_mean_transmission_error_follows_the_centre_distance_as_involutes_do():
     """The driven flank moves along the line of action by sin(alpha_wt) for each mm that the axes part."""
     cycle = result("mesh_cycle_helical", positions=5, torques=(40.0, 260.0))
-    slopes = figure_slopes(cycle.sensitivities(["mounting.centre_distance_error_mm"]))
+    slopes = key_figure_slopes(cycle.sensitivities(["mounting.centre_distance_error_mm"]))
     expected = -1e3 * math.sin(cycle.scene.mesh().working_pressure_angle)
     assert_allclose(slopes["transmission_error_mean_um"], expected, rtol=2e-3)
     # and it does nothing else: these are the changes by a hundredth of a millimetre
@@ -77,13 +77,13 @@ def test_mean_transmission_error_follows_the_centre_distance_as_involutes_do():
 def test_peak_pressure_of_a_point_contact_grows_with_the_cube_root_of_the_torque():
     cycle = result(torques=(50.0, 80.0))
     figures = cycle.key_figures()
-    found = figure_slopes(cycle.sensitivities([TORQUE]))["peak_pressure_MPa"][:, 0]
+    found = key_figure_slopes(cycle.sensitivities([TORQUE]))["peak_pressure_MPa"][:, 0]
     expected = [one["peak_pressure_MPa"] / (3.0 * one["pinion_torque_Nm"]) for one in figures]
     assert_allclose(found, expected, rtol=0.02)  # a grid of 20 x 24 cells
 
 
 def test_figures_that_are_not_known_have_no_slopes():
-    slopes = figure_slopes(result(positions=1).sensitivities([TORQUE]))
+    slopes = key_figure_slopes(result(positions=1).sensitivities([TORQUE]))
     assert {name for name, values in slopes.items() if np.isnan(values).all()} == {
         "transmission_error_span_um",
         "transmission_error_order_1_um",
