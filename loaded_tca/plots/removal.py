@@ -25,6 +25,8 @@ FIELDS = 160
 """Fields of the picture of a flank in each direction, each coloured by the mean over it."""
 FIELDS_OF_SPIKES = 0.005
 """Part of the fields that may lie beyond the scale of colours: single cells at edges count for much."""
+LEAST_SHOWN = 0.02
+"""Part of the scale of colours below which a field stays white."""
 BLUR = 1.0
 """Fields over which weights are spread, so that the points of cells that move across make no pattern of their own."""
 GEARS: tuple[GearName, GearName] = ("pinion", "wheel")
@@ -63,9 +65,8 @@ def plot_removal_weights(found: Sensitivities, torque: int | None = None) -> Fig
     low, high = np.quantile(counting, (FIELDS_OF_SPIKES, 1.0 - FIELDS_OF_SPIKES)).tolist()
     scale = Normalize(min(low, 0.0), high or 1.0)
     for axes, (borders, weights) in drawn:
-        mesh = axes.pcolormesh(
-            *borders, np.where(weights != 0.0, weights, np.nan), cmap=COLOURS, norm=scale, rasterized=True
-        )
+        shown = np.where(np.abs(weights) > LEAST_SHOWN * high, weights, np.nan)
+        mesh = axes.pcolormesh(*borders, shown, cmap=COLOURS, norm=scale, rasterized=True)
         mesh.set_clip_path(axes.patches[0])
     if not counting.any():
         style.tell(panels[0], style.NO_LOAD)
@@ -89,9 +90,14 @@ def removal_weights(found: Sensitivities, torque: int, gear: GearName, low: Arra
     field = (high - low) / FIELDS
     total = np.zeros((FIELDS, FIELDS))
     for places, weights in _passing(found, torque, gear, field):
-        column, row = np.floor((places - low) / field).astype(int).T
-        inside = (column >= 0) & (column < FIELDS) & (row >= 0) & (row < FIELDS)
-        np.add.at(total, (row[inside], column[inside]), weights[inside])
+        at = (places - low) / field - 0.5
+        first = np.floor(at)
+        beyond = at - first
+        for right, above in np.ndindex(2, 2):  # a point counts in the four fields whose middles are around it
+            column, row = (first + (right, above)).astype(int).T
+            part = np.abs(1.0 - np.array([right, above]) - beyond).prod(axis=1)
+            inside = (column >= 0) & (column < FIELDS) & (row >= 0) & (row < FIELDS)
+            np.add.at(total, (row[inside], column[inside]), (weights * part)[inside])
     return np.linspace(low, high, FIELDS + 1).T, gaussian_filter(total, BLUR, truncate=2.0)
 
 
