@@ -9,15 +9,15 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
+from matplotlib.collections import QuadMesh
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from scipy.ndimage import gaussian_filter
 
 from loaded_tca.arrays import Array
-from loaded_tca.flank_maps.conjugate import GearName
 from loaded_tca.plots import style
 from loaded_tca.plots.envelope import POINTS_OF_A_FIELD, points_of_cells
-from loaded_tca.plots.flanks import both_flanks, picture_of
+from loaded_tca.plots.flanks import ToPicture, both_flanks
 from loaded_tca.plots.style import COLOURS, highest_torque, load, range_of_positions
 from loaded_tca.results.sensitivities import Sensitivities
 
@@ -29,7 +29,6 @@ LEAST_SHOWN = 0.02
 """Part of the scale of colours below which a field stays white."""
 BLUR = 1.0
 """Fields over which weights are spread, so that the points of cells that move across make no pattern of their own."""
-GEARS: tuple[GearName, GearName] = ("pinion", "wheel")
 
 
 def plot_removal_weights(found: Sensitivities, torque: int | None = None) -> Figure:
@@ -52,22 +51,22 @@ def plot_removal_weights(found: Sensitivities, torque: int | None = None) -> Fig
     """
     result = found.result
     torque = highest_torque(result) if torque is None else torque
-    drawn: list[tuple[Axes, tuple[Array, Array]]] = []
+    meshes: list[QuadMesh] = []
 
-    def nothing(*_: object) -> list[Artist]:
-        return []
+    def draw(axes: Axes, to_picture: ToPicture) -> list[Artist]:
+        corners = np.transpose([axes.get_xlim(), axes.get_ylim()])
+        borders, weights = removal_weights(found, torque, to_picture, *corners)
+        meshes.append(axes.pcolormesh(*borders, weights, cmap=COLOURS, rasterized=True))
+        return [meshes[-1]]
 
-    figure, panels = both_flanks(result, nothing)
-    for axes, gear in zip(panels, GEARS, strict=True):
-        low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
-        drawn.append((axes, removal_weights(found, torque, gear, low, high)))
-    counting = np.concatenate([weights[weights != 0.0] for _, (_, weights) in drawn] + [np.zeros(1)])
+    figure, panels = both_flanks(result, draw)
+    drawn = [np.asarray(mesh.get_array()) for mesh in meshes]
+    counting = np.concatenate([weights[weights != 0.0] for weights in drawn] + [np.zeros(1)])
     low, high = np.quantile(counting, (FIELDS_OF_SPIKES, 1.0 - FIELDS_OF_SPIKES)).tolist()
     scale = Normalize(min(low, 0.0), high or 1.0)
-    for axes, (borders, weights) in drawn:
-        shown = np.where(np.abs(weights) > LEAST_SHOWN * high, weights, np.nan)
-        mesh = axes.pcolormesh(*borders, shown, cmap=COLOURS, norm=scale, rasterized=True)
-        mesh.set_clip_path(axes.patches[0])
+    for mesh, weights in zip(meshes, drawn, strict=True):
+        mesh.set_array(np.where(np.abs(weights) > LEAST_SHOWN * high, weights, np.nan))
+        mesh.set_norm(scale)
     if not counting.any():
         style.tell(panels[0], style.NO_LOAD)
     figure.colorbar(
@@ -81,7 +80,9 @@ def plot_removal_weights(found: Sensitivities, torque: int | None = None) -> Fig
     return figure
 
 
-def removal_weights(found: Sensitivities, torque: int, gear: GearName, low: Array, high: Array) -> tuple[Array, Array]:
+def removal_weights(
+    found: Sensitivities, torque: int, to_picture: ToPicture, low: Array, high: Array
+) -> tuple[Array, Array]:
     """Change of the mean transmission error [um] per um of removal and mm2 of a flank, on fields of its picture.
 
     Borders (2, n + 1) of the fields between two corners of the picture come first, in the units of the picture; then
@@ -89,22 +90,21 @@ def removal_weights(found: Sensitivities, torque: int, gear: GearName, low: Arra
     """
     field = (high - low) / FIELDS
     total = np.zeros((FIELDS, FIELDS))
-    for places, weights in _passing(found, torque, gear, field):
+    for places, weights in _passing(found, torque, to_picture, field):
         at = (places - low) / field - 0.5
         first = np.floor(at)
         beyond = at - first
-        for right, above in np.ndindex(2, 2):  # a point counts in the four fields whose middles are around it
-            column, row = (first + (right, above)).astype(int).T
-            part = np.abs(1.0 - np.array([right, above]) - beyond).prod(axis=1)
+        for corner in np.ndindex(2, 2):  # a point counts in the four fields whose middles are around it
+            column, row = (first + np.array(corner)).astype(int).T
+            part = np.abs(1.0 - np.array(corner) - beyond).prod(axis=1)
             inside = (column >= 0) & (column < FIELDS) & (row >= 0) & (row < FIELDS)
             np.add.at(total, (row[inside], column[inside]), (weights * part)[inside])
     return np.linspace(low, high, FIELDS + 1).T, gaussian_filter(total, BLUR, truncate=2.0)
 
 
-def _passing(found: Sensitivities, torque: int, gear: GearName, field: Array) -> Iterator[tuple[Array, Array]]:
+def _passing(found: Sensitivities, torque: int, to_picture: ToPicture, field: Array) -> Iterator[tuple[Array, Array]]:
     """Places (m, 2) in the picture of a flank, and what each adds (m,) to the weight of its field per area."""
     result = found.result
-    to_picture = picture_of(result.gear_pair, gear)
     intervals = max(1, len(result.path) - 1)
     for pair, path in enumerate(result.paths):
         middles = to_picture(path.point)
