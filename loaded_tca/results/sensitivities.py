@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance import tooth_compliance
 from loaded_tca.errors import InputError, require
 from loaded_tca.loaded.cycle import farthest_apart
-from loaded_tca.loaded.free_edges import edge_compliance
+from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.loaded.load_sharing import ToothPair, tooth_pairs_at
 from loaded_tca.loaded.pair_coupling import BendingModel
-from loaded_tca.loaded.sensitivity import LoadedGrid, Tangent, followed_changes
+from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
 from loaded_tca.loaded.tooth_contact import contact_problem
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.key_figures import harmonic_coefficients
-from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.separation import sample_separation
-from loaded_tca.separation.gap_change import PairChange, gap_change, pair_changes
+from loaded_tca.separation.gap_change import contact_changes, pair_changes
+from loaded_tca.separation.sample import Separation, sample_separations
 from loaded_tca.unloaded import trace_contact, trace_teeth
 
 if TYPE_CHECKING:
@@ -33,18 +32,18 @@ if TYPE_CHECKING:
 TORQUE = "load.pinion_torque_Nm"
 NEWTON_MILLIMETRES = 1e3
 """Of a newton metre."""
-LINEAR = 1e-7
+SAME = 1e-6
+"""Distance of two contact points, over the module, that are the same."""
+LINEAR = 1e-6
 """Tolerance of the linear systems, which are known to the grid's percent."""
-LEVERS_ALIKE = 1e-2
-"""Relative difference of levers that comes from the slopes of modifications alone."""
 
 
 @dataclass(frozen=True, eq=False)
 class Sensitivities:
     """Derivatives of a result to keys of its scene; NaN where nothing is in contact or nothing is loaded.
 
-    Found when they are asked for: the transmission error costs one linear problem for each state, the others one more
-    for each loaded tooth pair, however many keys there are.
+    Found when they are asked for: the transmission error costs one linear problem for each state, a torque and
+    position under load; the others one more for each loaded tooth pair, however many keys there are.
 
     Attributes
     ----------
@@ -52,50 +51,83 @@ class Sensitivities:
         As of ``scene.with_changes``; the unit of each is in its name.
     result : MeshCycle
         What they are derivatives of.
-    states : tuple of State
-        Torques and positions under load.
+    tangents : Tangents
+        Of all states.
+    places : (2, states) int array
+        Torque and position of each state, by index.
+    pairs : (grids,) int array
+        Tooth pair of each grid of the tangents, by index.
+    gaps : (keys, n) array [mm per unit]
+        Growth of the gaps at the active cells.
+    lever_torques : (keys, grids) array [N mm per unit]
+        Growth of the torque of each pair by that of its lever: levers are those of the unloaded contact points, which
+        move.
     """
 
     keys: tuple[str, ...]
     result: MeshCycle
-    states: tuple[State, ...]
+    tangents: Tangents
+    places: Indices
+    pairs: Indices
+    gaps: Array
+    lever_torques: Array
+
+    @cached_property
+    def torques(self) -> Array:
+        """Growth of the torques that the forces balance with the levers as they are, (keys, states) [N mm per unit]."""
+        found = np.zeros((len(self.keys), self.places.shape[1]))
+        np.add.at(found, (slice(None), self.tangents.state), -self.lever_torques)
+        return found + self._raised
+
+    @property
+    def _raised(self) -> Array:
+        """Growth of the torque of the pinion (keys, 1) [N mm per unit]."""
+        return np.array([[NEWTON_MILLIMETRES if key == TORQUE else 0.0] for key in self.keys])
 
     @cached_property
     def transmission_error(self) -> Array:
         """Of the loaded, absolute transmission error, (torque, position, key) [rad per unit of the key]."""
         found = np.full((*self.result.transmission_error.shape, len(self.keys)), np.nan)
-        for state in self.states:
-            change = state.tangent.rotation_change(state.gaps, state.torques)
-            found[state.torque, state.position] = -self.result.gear_pair.driving * change
+        change = self.tangents.rotation_change(self.gaps, self.torques)
+        found[*self.places] = -self.result.gear_pair.driving * change.T
         return found
 
     @cached_property
     def load_share(self) -> Array:
         """Of the shares in the torque, (torque, position, pair, key) [1 per unit]; zero where nothing is carried."""
-        found = np.full((*self.result.load_share.shape, len(self.keys)), np.nan)
-        for state in self.states:
-            place = state.torque, state.position
-            found[place][~np.isnan(self.result.load_share[place])] = 0.0
-            torque, tangent = float(self.result.torque[state.torque]), state.tangent
-            for pair, part, lever in zip(state.pairs, tangent.parts, state.lever_torques, strict=True):
-                slopes = np.zeros(tangent.pinion_levers.shape)
-                slopes[part] = tangent.pinion_levers[part]
-                own = tangent.functional_change(slopes, state.gaps, state.torques)[0] + lever
-                raised = np.array([NEWTON_MILLIMETRES if key == TORQUE else 0.0 for key in self.keys])
-                found[*place, pair] = (own - self.result.load_share[*place, pair] * raised) / torque
+        state = self.tangents.state
+        torque, share = self.result.torque[self.places[0]][state], self.result.load_share[*self._grids]
+        own = self._of_each_pair(self.tangents.pinion_levers) + self.lever_torques
+        found = self._by_pair((own - share * self._raised) / torque)
+        shared = ~np.isnan(self.result.load_share) & np.isfinite(self.transmission_error).any(axis=-1)[..., None]
+        found[shared & np.isnan(found).all(axis=-1)] = 0.0
         return found
 
     @cached_property
     def line_load(self) -> Array:
         """Of the largest force per length along each contact, (torque, position, pair, key) [N/mm per unit]."""
+        slopes = self.tangents.gathered(_line_load_slopes(grid) for grid in self.tangents.grids)
+        return self._by_pair(self._of_each_pair(slopes))
+
+    @property
+    def _grids(self) -> Indices:
+        """Torque, position and pair of each grid, (3, grids)."""
+        return np.concatenate([self.places[:, self.tangents.state], [self.pairs]])
+
+    def _by_pair(self, values: Array) -> Array:
+        """Numbers (keys, grids) as (torque, position, pair, key)."""
         found = np.full((*self.result.load_share.shape, len(self.keys)), np.nan)
-        for state in self.states:
-            tangent = state.tangent
-            for pair, part, grid in zip(state.pairs, tangent.parts, tangent.grids, strict=True):
-                slopes = np.zeros(tangent.pinion_levers.shape)
-                slopes[part] = _line_load_slopes(grid)
-                change = tangent.functional_change(slopes, state.gaps, state.torques)[0]
-                found[state.torque, state.position, pair] = change
+        found[*self._grids] = values.T
+        return found
+
+    def _of_each_pair(self, slopes: Array) -> Array:
+        """Changes (keys, grids) of a number of each grid whose derivatives by its forces are ``slopes`` (n,)."""
+        state, grid = self.tangents.state, self.tangents.grid
+        found, place = np.zeros((len(self.keys), state.size)), np.arange(state.size) - np.searchsorted(state, state)
+        for number in range(place.max() + 1):
+            own = place == number
+            change = self.tangents.functional_change(np.where(own[grid], slopes, 0.0), self.gaps, self.torques)
+            found[:, own] = change[:, state[own]]
         return found
 
     @property
@@ -143,83 +175,33 @@ def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
         (not isinstance(keys, str), f"keys: {keys!r:.80} is one text; allowed is a list of keys"),
         (len(set(keys)) == len(keys), "keys: a key is given twice"),
     )
-    wanted, pair = result.scene.analysis, result.gear_pair
-    named = [key for key in keys if key != TORQUE]
+    pair, named = result.gear_pair, [key for key in keys if key != TORQUE]
     changes, at = pair_changes(result.scene, named), [keys.index(key) for key in named]
-    angles, alone = result.pinion_angle, not wanted.load_sharing
-    unloaded, apart = _unloaded(pair, angles, alone)
-    both = None
-    if _levers_differ(unloaded):
-        both = [[_unloaded(side, angles, alone)[0] for side in (change.below, change.above)] for change in changes]
-    bending = None if wanted.compliance == "contact" else tooth_compliance(pair, neighbours=apart)
-    states = []
-    for t, n in np.ndindex(result.transmission_error.shape):
-        grids, places = [], []
-        for k, number in enumerate(result.dataset["pair"].values.tolist()):
-            one = result.maps[t][n][k]
-            if one is not None and one.pressure.any():
-                grid = _loaded_grid(result, pair, one, unloaded[n][number], bending)
-                if grid.active.any():
-                    grids.append(grid)
-                    places.append(k)
-        if not grids:
-            continue
-        tangent = Tangent(grids, bending, tolerance=LINEAR)
-        grown = [gap_change(pair, grid.contact, grid.separation, changes) for grid in grids]
-        followed = followed_changes(pair, grids, grown, bending, wanted.free_edges)
-        levers = np.zeros((2, len(grids), len(changes)))
-        if both is not None:
-            for place in np.ndindex(levers.shape[1:]):
-                number, change = grids[place[0]].number, place[1]
-                levers[:, *place] = _lever_change(changes[change], both[change], n, number)
-        back = pair.driving * (result.path.transmission_error[n] - result.transmission_error[t, n])
-        for rest, grid, own in zip(followed, grids, levers[1], strict=True):
-            beyond = back - unloaded[n][grid.number].initial_separation
-            rest -= (beyond * own)[:, None, None]
-        gaps = np.zeros((len(keys), tangent.pinion_levers.size))
-        gaps[at] = tangent.gathered(followed)
-        forces = np.array([grid.pressure.sum() * grid.problem.cell_area for grid in grids])
-        lever_torques, torques = np.zeros((len(grids), len(keys))), np.full(len(keys), NEWTON_MILLIMETRES)
-        lever_torques[:, at] = forces[:, None] * levers[0]
-        torques[at] = -lever_torques[:, at].sum(axis=0)
-        states.append(State(t, n, tuple(places), tangent, gaps, torques, lever_torques))
-    return Sensitivities(tuple(keys), result, tuple(states))
-
-
-@dataclass(frozen=True, eq=False)
-class State:
-    """What the keys change in the equilibrium of one torque and position.
-
-    Attributes
-    ----------
-    torque, position : int
-        Indices.
-    pairs : tuple of int
-        Indices of the pairs under load.
-    tangent : Tangent
-    gaps : (keys, n) array [mm per unit]
-        Growth of the gaps at the active cells, on grids that follow their contacts.
-    torques : (keys,) array [N mm per unit]
-        Growth of the torque that the forces balance with the levers as they are.
-    lever_torques : (pairs, keys) array [N mm per unit]
-        Growth of the torque of each pair by that of its lever: levers are those of the unloaded contact points, which
-        move.
-    """
-
-    torque: int
-    position: int
-    pairs: tuple[int, ...]
-    tangent: Tangent
-    gaps: Array
-    torques: Array
-    lever_torques: Array
+    unloaded, apart = _unloaded(pair, result.pinion_angle, alone=not result.scene.analysis.load_sharing)
+    bending = None if result.scene.analysis.compliance == "contact" else tooth_compliance(pair, neighbours=apart)
+    places, grids = _loaded_grids(result, pair, unloaded, bending)
+    require((bool(grids), "sensitivities: no tooth pair of the result carries load"))
+    states, first, state = np.unique(places[:2], axis=1, return_index=True, return_inverse=True)
+    of_state = np.split(np.array(grids, dtype=object), first[1:])
+    tangents = Tangents(of_state, bending, tolerance=LINEAR)
+    contacts, separations = [grid.contact for grid in grids], [grid.separation for grid in grids]
+    found = contact_changes(pair, contacts, separations, [grid.active for grid in grids], changes)
+    # the gears of a pair are turned back into contact first, then closed under load
+    position, initial = places[1], np.array([unloaded[n][grid.number].initial_separation for n, grid in zip(places[1], grids, strict=True)])
+    turned = pair.driving * (result.path.transmission_error[position] - result.transmission_error[*places[:2]]) - initial
+    beyond = found.at_contact - turned * found.levers[1]
+    gaps, forces = np.zeros((len(keys), tangents.grid.size)), result.normal_force[*places]
+    gaps[at] = found.gaps - found.at_contact[:, tangents.grid] * found.lever_parts + beyond[:, tangents.grid]
+    lever_torques = np.zeros((len(keys), len(grids)))
+    lever_torques[at] = forces * found.levers[0]
+    return Sensitivities(tuple(keys), result, tangents, states, places[2], gaps, lever_torques)
 
 
 Unloaded = list[dict[int, ToothPair]]
 """Unloaded contacts by position and number of the tooth pair, in the angles of their own teeth."""
 
 
-def _unloaded(pair: GearPair, angles: Array, alone: bool) -> tuple[Unloaded, int]:
+def _unloaded(pair: GearPair, angles: Array, *, alone: bool) -> tuple[Unloaded, int]:
     """Unloaded contacts, and how many pitches those of a position are apart."""
     if alone:
         path = trace_contact(pair, angles)
@@ -229,43 +211,42 @@ def _unloaded(pair: GearPair, angles: Array, alone: bool) -> tuple[Unloaded, int
     return found, max(farthest_apart(mesh), 1)
 
 
-def _levers_differ(unloaded: Unloaded) -> bool:
-    """Whether the levers depend on the place of the contact, as on bevel gears, by more than its slopes.
-
-    Contacts on edges have normals, and so levers, of their own.
-    """
-    contacts = [one.contact for at_one in unloaded for one in at_one.values() if not one.contact.on_edge]
-    levers = np.array([(contact.pinion_lever, contact.wheel_lever) for contact in contacts])
-    return not contacts or bool((np.ptp(levers, axis=0) > LEVERS_ALIKE * levers.max(axis=0)).any())
-
-
-def _lever_change(change: PairChange, sides: Sequence[Unloaded], position: int, number: int) -> tuple[float, float]:
-    """Changes of the levers about pinion and wheel [mm per unit]; none where a pair gets out of reach."""
-    below, above = (side[position].get(number) for side in sides)
-    if below is None or above is None:
-        return 0.0, 0.0
-    one, two = below.contact, above.contact
-    moved = two.pinion_lever - one.pinion_lever, two.wheel_lever - one.wheel_lever
-    return moved[0] / change.difference, moved[1] / change.difference
-
-
-def _loaded_grid(
-    result: MeshCycle, pair: GearPair, one: PressureMap, of: ToothPair, bending: BendingModel | None
-) -> LoadedGrid:
-    """The contact problem that a map solves, made again."""
-    number, contact = of.pair, of.contact
-    (nx, ny), (dx, dy) = one.pressure.shape, one.spacing
-    separation = sample_separation(pair, contact, cells=(nx, ny), box=(0.5 * nx * dx, 0.5 * ny * dy))
-    if not np.allclose(separation.origin, one.origin, rtol=0.0, atol=1e-6 * pair.module):
-        raise InputError("sensitivities: the pressure maps of the result do not belong to its scene")
-    bent = None if bending is None else bending.within(number, separation)
-    ends = edge_compliance(pair, separation) if result.scene.analysis.free_edges else None
-    problem = contact_problem(pair, separation, float(one.pressure.sum()) * dx * dy, bent, ends)
-    return LoadedGrid(number, contact, separation, problem, one.pressure)
+def _loaded_grids(
+    result: MeshCycle, pair: GearPair, unloaded: Unloaded, bending: BendingModel | None
+) -> tuple[Indices, list[LoadedGrid]]:
+    """Torque, position and pair (3, grids) by index, and the contact problems that the maps solve, made again."""
+    places, numbers = np.argwhere(result.normal_force > 0.0), result.dataset["pair"].values.tolist()
+    maps = [one for t, n, k in places.tolist() if (one := result.maps[t][n][k]) is not None]
+    contacts = [unloaded[n][numbers[k]].contact for _, n, k in places.tolist()]
+    separations: list[Separation] = []
+    for one, made in zip(
+        maps,
+        sample_separations(
+            pair,
+            contacts,
+            cells=[one.pressure.shape for one in maps],
+            loads=[None] * len(maps),
+            boxes=[tuple(0.5 * n * d for n, d in zip(one.pressure.shape, one.spacing, strict=True)) for one in maps],
+        ),
+        strict=True,
+    ):
+        if not isinstance(made, Separation) or not np.allclose(made.origin, one.origin, rtol=0.0, atol=SAME * pair.module):
+            raise InputError("sensitivities: the pressure maps of the result do not belong to its scene")
+        separations.append(made)
+    ends = edge_compliances(pair, separations) if result.scene.analysis.free_edges else [None] * len(maps)
+    grids = []
+    for (t, n, k), one, contact, separation, end in zip(places.tolist(), maps, contacts, separations, ends, strict=True):
+        if isinstance(end, InputError):
+            raise end
+        bent = None if bending is None else bending.within(numbers[k], separation)
+        problem = contact_problem(pair, separation, float(result.normal_force[t, n, k]), bent, end)
+        grids.append(LoadedGrid(numbers[k], contact, separation, problem, one.pressure))
+    active = [grid.active.any() for grid in grids]
+    return places[active].T, [grid for grid, own in zip(grids, active, strict=True) if own]
 
 
 def _line_load_slopes(grid: LoadedGrid) -> Array:
-    """Derivative [1/mm] of the largest line load to the forces of the active cells of a grid.
+    """Derivative [1/mm] of the largest line load to the forces of the cells of a grid, (nx, ny).
 
     The largest one is that of the parabola through the highest slice and its neighbours, since the two in the middle
     of an even grid may be alike; at an end of the contact it is that of the slice.
@@ -278,4 +259,4 @@ def _line_load_slopes(grid: LoadedGrid) -> Array:
         before, after = line[top] - line[top - 1], line[top] - line[top + 1]
         place = 0.5 * (before - after) / (before + after) if before + after > 0.0 else 0.0
         weights[top - 1 : top + 2] = 0.5 * place * (place - 1.0), 1.0 - place**2, 0.5 * place * (place + 1.0)
-    return np.asarray(weights[grid.active.nonzero()[1]] / grid.problem.spacing[1])
+    return np.broadcast_to(weights / grid.problem.spacing[1], grid.pressure.shape)
