@@ -102,6 +102,8 @@ class Tangents:
         Of all states.
     state : (grids,) int array
         That each belongs to.
+    ends : (grids,) int array
+        Cell after the last one of each grid.
     grid : (n,) int array
         That each cell belongs to.
     pinion_levers, wheel_levers : (n,) array [mm]
@@ -122,12 +124,12 @@ class Tangents:
         self._tolerance = tolerance
         self.grids = tuple(grid for state in states for grid in state)
         self.state = np.repeat(np.arange(len(states)), [len(state) for state in states])
-        self._sizes = np.array([np.count_nonzero(grid.active) for grid in self.grids])
-        self.grid = np.repeat(np.arange(len(self.grids)), self._sizes)
+        sizes = [np.count_nonzero(grid.active) for grid in self.grids]
+        self.ends, self.grid = np.cumsum(sizes), np.repeat(np.arange(len(self.grids)), sizes)
         slices = [grid.active.shape[1] for grid in self.grids]
         columns = np.concatenate([grid.active.nonzero()[1] for grid in self.grids])
         self._slice, self._slices = columns + (np.cumsum(slices) - slices)[self.grid], sum(slices)
-        self._blocks = [_Block.of(alike) for alike in _alike(self.grids, self._sizes)]
+        self._blocks = [_Block.of(alike) for alike in _alike(self.grids, self.ends)]
         self._coupling = None if bending is None else _coupling(states, bending)
         levers = [(grid.contact.pinion_lever, grid.contact.wheel_lever) for grid in self.grids]
         self.pinion_levers, self.wheel_levers = np.array(levers).reshape(-1, 2).T[:, self.grid]
@@ -247,16 +249,16 @@ def _coupling(states: Sequence[Sequence[LoadedGrid]], bending: BendingModel) -> 
     return csr_array((np.concatenate(values), places), shape=(first, first))
 
 
-def _alike(grids: Sequence[LoadedGrid], sizes: Array) -> list[list[tuple[LoadedGrid, Indices]]]:
+def _alike(grids: Sequence[LoadedGrid], ends: Indices) -> list[list[tuple[LoadedGrid, Indices]]]:
     """Grids of one shape, and with slices and cover or without, and the places of their cells in the row."""
 
     def kind(place: int) -> tuple[object, ...]:
         problem = grids[place].problem
         return problem.cells, problem.slice_compliance is None, problem.cover is None
 
-    ends = np.cumsum(sizes)
+    cells = np.split(np.arange(ends[-1]), ends[:-1])
     groups = groupby(sorted(range(len(grids)), key=kind), kind)
-    return [[(grids[n], np.arange(ends[n] - sizes[n], ends[n])) for n in group] for _, group in groups]
+    return [[(grids[n], cells[n]) for n in group] for _, group in groups]
 
 
 class _Block:

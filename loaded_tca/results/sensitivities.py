@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Indices
+from loaded_tca.arrays import Array, Indices, real
 from loaded_tca.compliance import tooth_compliance
 from loaded_tca.errors import InputError, require
 from loaded_tca.loaded.cycle import farthest_apart
@@ -19,10 +20,20 @@ from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
 from loaded_tca.loaded.tooth_contact import contact_problem
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.figure_slopes import (
+    EXPONENT,
+    face_load_factor_slopes,
+    line_load_slopes,
+    peak_pressure_slopes,
+    pressure_norm,
+)
 from loaded_tca.results.key_figures import harmonic_coefficients
+from loaded_tca.results.pressure_map import PressureMap
+from loaded_tca.results.slice_pressure import UnderPressure
 from loaded_tca.separation.gap_change import contact_changes, pair_changes
 from loaded_tca.separation.sample import Separation, sample_separations
-from loaded_tca.unloaded import trace_contact, trace_teeth
+from loaded_tca.unloaded import ContactPoint, trace_contact, trace_teeth
+from loaded_tca.unloaded.curvature import relative_curvatures
 
 if TYPE_CHECKING:
     import xarray
@@ -106,29 +117,115 @@ class Sensitivities:
     @cached_property
     def line_load(self) -> Array:
         """Of the largest force per length along each contact, (torque, position, pair, key) [N/mm per unit]."""
-        slopes = self.tangents.gathered(_line_load_slopes(grid) for grid in self.tangents.grids)
+        slopes = self.tangents.gathered(
+            line_load_slopes(grid.pressure, grid.problem.spacing) for grid in self.tangents.grids
+        )
         return self._by_pair(self._of_each_pair(slopes))
 
+    @cached_property
+    def peak_pressure(self) -> Array:
+        """Of the peak pressure of each contact, (torque, position, pair, key) [MPa per unit].
+
+        Of a contact at an edge or a relief start that of its largest slice pressure, with the curvature held.
+        """
+        result, grids = self.result, self.tangents.grids
+        rough = (result.on_edge.astype(bool) | result.on_relief_start.astype(bool))[*self._grids]
+        contacts = [UnderPressure(grid.contact, grid.separation, grid.pressure) for grid in grids]
+        slopes = peak_pressure_slopes(result.gear_pair, contacts, rough.tolist())
+        return self._by_pair(self._of_each_pair(self.tangents.gathered(slopes)))
+
+    def pressure_norm(self, exponent: float = EXPONENT) -> Array:
+        r"""Of the norm of the pressure over all contacts of a position, (torque, position, key) [MPa per unit].
+
+        Smooth where the place of the peak jumps: (integral of p^m dA over 1 mm^2)^(1/m), m the exponent.
+        """
+        grids = self.tangents.grids
+        norms, slopes = zip(
+            *(pressure_norm(one.pressure, one.separation.cover, one.problem.spacing, exponent) for one in grids),
+            strict=True,
+        )
+        largest = np.maximum.reduceat(norms, np.searchsorted(self.tangents.state, np.arange(self.places.shape[1])))
+        parts = np.array(norms) / largest[self.tangents.state]
+        whole = np.bincount(self.tangents.state, parts**exponent)[self.tangents.state]
+        weights = (parts / whole ** (1.0 / exponent)) ** (exponent - 1.0)
+        row = self.tangents.gathered(slopes) * weights[self.tangents.grid]
+        found = np.full((*self.result.transmission_error.shape, len(self.keys)), np.nan)
+        found[*self.places] = self.tangents.functional_change(row, self.gaps, self.torques).T
+        return found
+
+    @cached_property
+    def face_load_factor(self) -> Array:
+        """Of K_Hbeta, (torque, key) [1 per unit]; the strip with the largest force is held. NaN with one position."""
+        result, found = self.result, np.full((len(self.result.torque), len(self.keys)), np.nan)
+        of_maps = [face_load_factor_slopes(result.gear_pair, result.path, positions) for positions in result.maps]
+        slopes = [
+            np.zeros(grid.active.shape) if (own := of_maps[t][n][k]) is None else own
+            for (t, n, k), grid in zip(self._grids.T.tolist(), self.tangents.grids, strict=True)
+        ]
+        change = self.tangents.functional_change(self.tangents.gathered(slopes), self.gaps, self.torques)
+        for t in np.flatnonzero(np.isfinite(result.face_load_factor)).tolist():
+            found[t] = change[:, self.places[0] == t].sum(axis=1)
+        return found
+
     @property
-    def _grids(self) -> Indices:
-        """Torque, position and pair of each grid, (3, grids)."""
-        return np.concatenate([self.places[:, self.tangents.state], [self.pairs]])
+    def mesh_stiffness(self) -> Array:
+        """Tangent c of the torque over the rotation, as ``MeshCycle.mesh_stiffness``, (torque, position) [N/(mm um)].
 
-    def _by_pair(self, values: Array) -> Array:
-        """Numbers (keys, grids) as (torque, position, pair, key)."""
-        found = np.full((*self.result.load_share.shape, len(self.keys)), np.nan)
-        found[*self._grids] = values.T
+        That of the cells in contact as they are, and so what the derivatives by the torque belong to: whole cells come
+        into contact, so that it scatters by about a percent over the positions. ``MeshCycle.mesh_stiffness`` is a
+        chord, made up for its width, which scatters less.
+        """
+        pair, found = self.result.gear_pair, np.full(self.result.transmission_error.shape, np.nan)
+        found[*self.places] = self.tangents.stiffness / (1e3 * math.prod(pair.base_radii) * pair.face_width)
         return found
 
-    def _of_each_pair(self, slopes: Array) -> Array:
-        """Changes (keys, grids) of a number of each grid whose derivatives by its forces are ``slopes`` (n,)."""
-        state, grid = self.tangents.state, self.tangents.grid
-        found, place = np.zeros((len(self.keys), state.size)), np.arange(state.size) - np.searchsorted(state, state)
-        for number in range(place.max() + 1):
-            own = place == number
-            change = self.tangents.functional_change(np.where(own[grid], slopes, 0.0), self.gaps, self.torques)
-            found[:, own] = change[:, state[own]]
-        return found
+    @cached_property
+    def weight_maps(self) -> tuple[tuple[tuple[Array | None, ...], ...], ...]:
+        """Where removal counts: by torque, position and pair (nx, ny) on the grids of ``result.maps``; None as there.
+
+        Rotation of the wheel [rad] by one millimetre removed at a cell alone; removed at all cells it is 1/l2, and the
+        transmission error falls by as much. The weights are in the ratio of dp/dT.
+        """
+        found: dict[tuple[int, ...], Array] = {}
+        row = self.tangents.weights / self.tangents.spread(self.tangents.stiffness)
+        for place, grid, own in zip(
+            self._grids.T.tolist(), self.tangents.grids, np.split(row, self.tangents.ends[:-1]), strict=True
+        ):
+            found[tuple(place)] = np.zeros(grid.active.shape)
+            found[tuple(place)][grid.active] = own
+        torques, positions, pairs = (range(length) for length in self.result.load_share.shape)
+        return tuple(tuple(tuple(found.get((t, n, k)) for k in pairs) for n in positions) for t in torques)
+
+    def spread(self, deviations: Mapping[str, float]) -> xarray.Dataset:
+        """Standard deviations of the figures, to first order, if keys scatter independently of each other.
+
+        Parameters
+        ----------
+        deviations : mapping of str to float
+            Keys of these sensitivities -> standard deviation in the unit of the key, >= 0.
+
+        Returns
+        -------
+        xarray.Dataset
+            By the names of ``dataset``, without its dimension key. Where a figure is at its least, as the peak-to-peak
+            of an optimum, or has a kink, first order tells too little: compare with a Monte Carlo study
+            (:class:`loaded_tca.studies.Study`).
+
+        Raises
+        ------
+        InputError
+            If a key is not one of these, or a deviation no finite number >= 0.
+        """
+        require(
+            *((key in self.keys, f"{key}: is none of the keys; allowed {', '.join(self.keys)}") for key in deviations),
+            *(
+                (0.0 <= real(value) < math.inf, f"{key}: found {value!r:.60}; allowed a finite deviation >= 0")
+                for key, value in deviations.items()
+            ),
+        )
+        weights = np.array([float(deviations.get(key, 0.0)) for key in self.keys])
+        squares = sum((self.dataset.sel(key=key) * float(value)) ** 2 for key, value in deviations.items())
+        return np.sqrt(squares)
 
     @property
     def dataset(self) -> xarray.Dataset:
@@ -136,11 +233,12 @@ class Sensitivities:
         import xarray
 
         coordinates = {name: self.result.dataset[name] for name in ("torque", "pinion_angle", "pair")}
-        arrays = {
-            "transmission_error": (("torque", "position", "key"), self.transmission_error),
-            "load_share": (("torque", "position", "pair", "key"), self.load_share),
-            "line_load": (("torque", "position", "pair", "key"), self.line_load),
+        dimensions = {
+            ("torque", "position"): ("transmission_error",),
+            ("torque", "position", "pair"): ("load_share", "line_load", "peak_pressure"),
+            ("torque",): ("peak_to_peak", "face_load_factor"),
         }
+        arrays = {name: ((*own, "key"), getattr(self, name)) for own, names in dimensions.items() for name in names}
         return xarray.Dataset(arrays, {**coordinates, "key": list(self.keys)})
 
     @property
@@ -218,21 +316,9 @@ def _loaded_grids(
     places, numbers = np.argwhere(result.normal_force > 0.0), result.dataset["pair"].values.tolist()
     maps = [one for t, n, k in places.tolist() if (one := result.maps[t][n][k]) is not None]
     contacts = [unloaded[n][numbers[k]].contact for _, n, k in places.tolist()]
-    separations: list[Separation] = []
-    for one, made in zip(
-        maps,
-        sample_separations(
-            pair,
-            contacts,
-            cells=[one.pressure.shape for one in maps],
-            loads=[None] * len(maps),
-            boxes=[tuple(0.5 * n * d for n, d in zip(one.pressure.shape, one.spacing, strict=True)) for one in maps],
-        ),
-        strict=True,
-    ):
-        if not isinstance(made, Separation) or not np.allclose(made.origin, one.origin, rtol=0.0, atol=SAME * pair.module):
-            raise InputError("sensitivities: the pressure maps of the result do not belong to its scene")
-        separations.append(made)
+    if any(not np.allclose(one.origin, contact.point, rtol=0.0, atol=SAME * pair.module) for one, contact in zip(maps, contacts, strict=True)):
+        raise InputError("sensitivities: the pressure maps of the result do not belong to its scene")
+    separations = _separations(pair, contacts, maps)
     ends = edge_compliances(pair, separations) if result.scene.analysis.free_edges else [None] * len(maps)
     grids = []
     for (t, n, k), one, contact, separation, end in zip(places.tolist(), maps, contacts, separations, ends, strict=True):
@@ -245,18 +331,24 @@ def _loaded_grids(
     return places[active].T, [grid for grid, own in zip(grids, active, strict=True) if own]
 
 
-def _line_load_slopes(grid: LoadedGrid) -> Array:
-    """Derivative [1/mm] of the largest line load to the forces of the cells of a grid, (nx, ny).
-
-    The largest one is that of the parabola through the highest slice and its neighbours, since the two in the middle
-    of an even grid may be alike; at an end of the contact it is that of the slice.
-    """
-    line = grid.pressure.sum(axis=0)
-    top = int(line.argmax())
-    weights = np.zeros(line.size)
-    weights[top] = 1.0
-    if 0 < top < line.size - 1 and min(line[top - 1], line[top + 1]) > 0.0:
-        before, after = line[top] - line[top - 1], line[top] - line[top + 1]
-        place = 0.5 * (before - after) / (before + after) if before + after > 0.0 else 0.0
-        weights[top - 1 : top + 2] = 0.5 * place * (place - 1.0), 1.0 - place**2, 0.5 * place * (place + 1.0)
-    return np.broadcast_to(weights / grid.problem.spacing[1], grid.pressure.shape)
+def _separations(pair: GearPair, contacts: Sequence[ContactPoint], maps: Sequence[PressureMap]) -> list[Separation]:
+    """Grids of maps with the part of each cell that has material; the gap is of no account, and the deformed one."""
+    cut = [index for index, one in enumerate(maps) if np.isinf(one.gap).any()]
+    boxes = [(0.5 * n * d for n, d in zip(maps[index].pressure.shape, maps[index].spacing, strict=True)) for index in cut]
+    sampled = sample_separations(
+        pair,
+        [contacts[index] for index in cut],
+        cells=[maps[index].pressure.shape for index in cut],
+        loads=[None] * len(cut),
+        boxes=[(across, along) for across, along in boxes],
+    )
+    found = dict(zip(cut, sampled, strict=True))
+    curvatures = relative_curvatures(pair, contacts)
+    for index, (one, bend) in enumerate(zip(maps, curvatures, strict=True)):
+        whole = Separation(
+            one.gap, one.x, one.y, one.spacing, one.origin, one.axes, (bend.across, bend.along), np.ones(one.gap.shape), one.gap
+        )
+        made = found.setdefault(index, whole)
+        if not isinstance(made, Separation):
+            raise made
+    return [found[index] for index in range(len(maps))]
