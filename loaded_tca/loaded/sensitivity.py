@@ -240,7 +240,8 @@ def _coupling(states: Sequence[Sequence[LoadedGrid]], bending: BendingModel) -> 
         ends = first + np.cumsum([grid.active.shape[1] for grid in state])
         for (one, i), (two, j) in combinations(zip(state, ends.tolist(), strict=True), 2):
             matrix = bending.between((one.number, one.separation), (two.number, two.separation))
-            at, under = np.indices(matrix.shape).reshape(2, -1) + [[i - matrix.shape[0]], [j - matrix.shape[1]]]
+            at, under = (place.ravel() for place in np.indices(matrix.shape))
+            at, under = at + (i - matrix.shape[0]), under + (j - matrix.shape[1])
             rows += [at, under]
             columns += [under, at]
             values += [matrix.ravel()] * 2

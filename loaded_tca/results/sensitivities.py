@@ -6,20 +6,15 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from loaded_tca.arrays import Array, Indices, real
 from loaded_tca.compliance import tooth_compliance
-from loaded_tca.errors import InputError, require
-from loaded_tca.loaded.cycle import farthest_apart
-from loaded_tca.loaded.free_edges import edge_compliances
-from loaded_tca.loaded.load_sharing import ToothPair, tooth_pairs_at
-from loaded_tca.loaded.pair_coupling import BendingModel
-from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
-from loaded_tca.loaded.tooth_contact import contact_problem
-from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.errors import require
+from loaded_tca.loaded.sensitivity import Tangents
 from loaded_tca.results.figure_slopes import (
     EXPONENT,
     face_load_factor_slopes,
@@ -28,12 +23,8 @@ from loaded_tca.results.figure_slopes import (
     pressure_norm,
 )
 from loaded_tca.results.key_figures import harmonic_coefficients
-from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.results.slice_pressure import UnderPressure
+from loaded_tca.results.loaded_grids import loaded_grids, unloaded_contacts
 from loaded_tca.separation.gap_change import contact_changes, pair_changes
-from loaded_tca.separation.sample import Separation, sample_separations
-from loaded_tca.unloaded import ContactPoint, trace_contact, trace_teeth
-from loaded_tca.unloaded.curvature import relative_curvatures
 
 if TYPE_CHECKING:
     import xarray
@@ -43,8 +34,6 @@ if TYPE_CHECKING:
 TORQUE = "load.pinion_torque_Nm"
 NEWTON_MILLIMETRES = 1e3
 """Of a newton metre."""
-SAME = 1e-6
-"""Distance of two contact points, over the module, that are the same."""
 LINEAR = 1e-6
 """Tolerance of the linear systems, which are known to the grid's percent."""
 
@@ -95,6 +84,27 @@ class Sensitivities:
         """Growth of the torque of the pinion (keys, 1) [N mm per unit]."""
         return np.array([[NEWTON_MILLIMETRES if key == TORQUE else 0.0] for key in self.keys])
 
+    @property
+    def _grids(self) -> Indices:
+        """Torque, position and pair of each grid, (3, grids)."""
+        return np.concatenate([self.places[:, self.tangents.state], [self.pairs]])
+
+    def _by_pair(self, values: Array) -> Array:
+        """Numbers (keys, grids) as (torque, position, pair, key)."""
+        found = np.full((*self.result.load_share.shape, len(self.keys)), np.nan)
+        found[*self._grids] = values.T
+        return found
+
+    def _of_each_pair(self, slopes: Array) -> Array:
+        """Changes (keys, grids) of a number of each grid whose derivatives by its forces are ``slopes`` (n,)."""
+        state, grid = self.tangents.state, self.tangents.grid
+        found, place = np.zeros((len(self.keys), state.size)), np.arange(state.size) - np.searchsorted(state, state)
+        for number in range(place.max() + 1):
+            own = place == number
+            change = self.tangents.functional_change(np.where(own[grid], slopes, 0.0), self.gaps, self.torques)
+            found[:, own] = change[:, state[own]]
+        return found
+
     @cached_property
     def transmission_error(self) -> Array:
         """Of the loaded, absolute transmission error, (torque, position, key) [rad per unit of the key]."""
@@ -130,7 +140,7 @@ class Sensitivities:
         """
         result, grids = self.result, self.tangents.grids
         rough = (result.on_edge.astype(bool) | result.on_relief_start.astype(bool))[*self._grids]
-        contacts = [UnderPressure(grid.contact, grid.separation, grid.pressure) for grid in grids]
+        contacts = [(grid.contact, grid.separation, grid.pressure) for grid in grids]
         slopes = peak_pressure_slopes(result.gear_pair, contacts, rough.tolist())
         return self._by_pair(self._of_each_pair(self.tangents.gathered(slopes)))
 
@@ -217,15 +227,16 @@ class Sensitivities:
             If a key is not one of these, or a deviation no finite number >= 0.
         """
         require(
+            (bool(deviations), "deviations: none given; a key and its standard deviation are needed"),
             *((key in self.keys, f"{key}: is none of the keys; allowed {', '.join(self.keys)}") for key in deviations),
             *(
                 (0.0 <= real(value) < math.inf, f"{key}: found {value!r:.60}; allowed a finite deviation >= 0")
                 for key, value in deviations.items()
             ),
         )
-        weights = np.array([float(deviations.get(key, 0.0)) for key in self.keys])
-        squares = sum((self.dataset.sel(key=key) * float(value)) ** 2 for key, value in deviations.items())
-        return np.sqrt(squares)
+        slopes = self.dataset
+        parts = [slopes.sel(key=key, drop=True) * float(value) for key, value in deviations.items()]
+        return sum(part**2 for part in parts) ** 0.5
 
     @property
     def dataset(self) -> xarray.Dataset:
@@ -275,80 +286,25 @@ def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
     )
     pair, named = result.gear_pair, [key for key in keys if key != TORQUE]
     changes, at = pair_changes(result.scene, named), [keys.index(key) for key in named]
-    unloaded, apart = _unloaded(pair, result.pinion_angle, alone=not result.scene.analysis.load_sharing)
+    unloaded, apart = unloaded_contacts(pair, result.pinion_angle, alone=not result.scene.analysis.load_sharing)
     bending = None if result.scene.analysis.compliance == "contact" else tooth_compliance(pair, neighbours=apart)
-    places, grids = _loaded_grids(result, pair, unloaded, bending)
+    places, grids = loaded_grids(result, pair, unloaded, bending)
     require((bool(grids), "sensitivities: no tooth pair of the result carries load"))
-    states, first, state = np.unique(places[:2], axis=1, return_index=True, return_inverse=True)
-    of_state = np.split(np.array(grids, dtype=object), first[1:])
-    tangents = Tangents(of_state, bending, tolerance=LINEAR)
+    states, first = np.unique(places[:2], axis=1, return_index=True)
+    tangents = Tangents([grids[start:end] for start, end in pairwise([*first, len(grids)])], bending, tolerance=LINEAR)
     contacts, separations = [grid.contact for grid in grids], [grid.separation for grid in grids]
     found = contact_changes(pair, contacts, separations, [grid.active for grid in grids], changes)
     # the gears of a pair are turned back into contact first, then closed under load
-    position, initial = places[1], np.array([unloaded[n][grid.number].initial_separation for n, grid in zip(places[1], grids, strict=True)])
-    turned = pair.driving * (result.path.transmission_error[position] - result.transmission_error[*places[:2]]) - initial
+    position, initial = (
+        places[1],
+        np.array([unloaded[n][grid.number].initial_separation for n, grid in zip(places[1], grids, strict=True)]),
+    )
+    turned = (
+        pair.driving * (result.path.transmission_error[position] - result.transmission_error[*places[:2]]) - initial
+    )
     beyond = found.at_contact - turned * found.levers[1]
     gaps, forces = np.zeros((len(keys), tangents.grid.size)), result.normal_force[*places]
     gaps[at] = found.gaps - found.at_contact[:, tangents.grid] * found.lever_parts + beyond[:, tangents.grid]
     lever_torques = np.zeros((len(keys), len(grids)))
     lever_torques[at] = forces * found.levers[0]
     return Sensitivities(tuple(keys), result, tangents, states, places[2], gaps, lever_torques)
-
-
-Unloaded = list[dict[int, ToothPair]]
-"""Unloaded contacts by position and number of the tooth pair, in the angles of their own teeth."""
-
-
-def _unloaded(pair: GearPair, angles: Array, *, alone: bool) -> tuple[Unloaded, int]:
-    """Unloaded contacts, and how many pitches those of a position are apart."""
-    if alone:
-        path = trace_contact(pair, angles)
-        return [{0: ToothPair(0, path[n], 0.0)} for n in range(len(path))], 1
-    mesh = trace_teeth(pair, angles)
-    found: Unloaded = [{one.pair: one for one in tooth_pairs_at(mesh, n)} for n in range(len(mesh))]
-    return found, max(farthest_apart(mesh), 1)
-
-
-def _loaded_grids(
-    result: MeshCycle, pair: GearPair, unloaded: Unloaded, bending: BendingModel | None
-) -> tuple[Indices, list[LoadedGrid]]:
-    """Torque, position and pair (3, grids) by index, and the contact problems that the maps solve, made again."""
-    places, numbers = np.argwhere(result.normal_force > 0.0), result.dataset["pair"].values.tolist()
-    maps = [one for t, n, k in places.tolist() if (one := result.maps[t][n][k]) is not None]
-    contacts = [unloaded[n][numbers[k]].contact for _, n, k in places.tolist()]
-    if any(not np.allclose(one.origin, contact.point, rtol=0.0, atol=SAME * pair.module) for one, contact in zip(maps, contacts, strict=True)):
-        raise InputError("sensitivities: the pressure maps of the result do not belong to its scene")
-    separations = _separations(pair, contacts, maps)
-    ends = edge_compliances(pair, separations) if result.scene.analysis.free_edges else [None] * len(maps)
-    grids = []
-    for (t, n, k), one, contact, separation, end in zip(places.tolist(), maps, contacts, separations, ends, strict=True):
-        if isinstance(end, InputError):
-            raise end
-        bent = None if bending is None else bending.within(numbers[k], separation)
-        problem = contact_problem(pair, separation, float(result.normal_force[t, n, k]), bent, end)
-        grids.append(LoadedGrid(numbers[k], contact, separation, problem, one.pressure))
-    active = [grid.active.any() for grid in grids]
-    return places[active].T, [grid for grid, own in zip(grids, active, strict=True) if own]
-
-
-def _separations(pair: GearPair, contacts: Sequence[ContactPoint], maps: Sequence[PressureMap]) -> list[Separation]:
-    """Grids of maps with the part of each cell that has material; the gap is of no account, and the deformed one."""
-    cut = [index for index, one in enumerate(maps) if np.isinf(one.gap).any()]
-    boxes = [(0.5 * n * d for n, d in zip(maps[index].pressure.shape, maps[index].spacing, strict=True)) for index in cut]
-    sampled = sample_separations(
-        pair,
-        [contacts[index] for index in cut],
-        cells=[maps[index].pressure.shape for index in cut],
-        loads=[None] * len(cut),
-        boxes=[(across, along) for across, along in boxes],
-    )
-    found = dict(zip(cut, sampled, strict=True))
-    curvatures = relative_curvatures(pair, contacts)
-    for index, (one, bend) in enumerate(zip(maps, curvatures, strict=True)):
-        whole = Separation(
-            one.gap, one.x, one.y, one.spacing, one.origin, one.axes, (bend.across, bend.along), np.ones(one.gap.shape), one.gap
-        )
-        made = found.setdefault(index, whole)
-        if not isinstance(made, Separation):
-            raise made
-    return [found[index] for index in range(len(maps))]

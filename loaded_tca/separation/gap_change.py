@@ -252,7 +252,9 @@ def _at_contact_points(
     moved = np.einsum("kcs,csi->kci", shift, plane)
     point, out = np.array([one.point for one in contacts]), np.array([one.axes[2] for one in separations])
     levers = np.zeros((2, *at_contact.shape))
-    for gear, (origin, axis) in enumerate(((np.zeros(3), np.array([0.0, 0.0, 1.0])), (pair.wheel_origin, pair.wheel_axes[2]))):
+    for gear, (origin, axis) in enumerate(
+        ((np.zeros(3), np.array([0.0, 0.0, 1.0])), (pair.wheel_origin, pair.wheel_axes[2]))
+    ):
         arm = point - origin
         sense = np.sign(np.cross(arm, out) @ axis)
         levers[gear] = (np.cross(moved, out) + np.cross(arm, turned)) @ axis

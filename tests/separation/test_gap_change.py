@@ -184,7 +184,10 @@ def test_levers_change_as_those_of_contact_points_traced_anew(name):
             value = getattr(value, section)
         for trial in (value - step, value + step):
             trials.append(trace_contact(scene.with_changes({key: trial}).pair(), [contact.pinion_angle])[0])
-        expected = [(getattr(trials[1], f"{g}_lever") - getattr(trials[0], f"{g}_lever")) / (2 * step) for g in ("pinion", "wheel")]
+        expected = [
+            (getattr(trials[1], f"{g}_lever") - getattr(trials[0], f"{g}_lever")) / (2 * step)
+            for g in ("pinion", "wheel")
+        ]
         assert_allclose(found, expected, rtol=0, atol=1e-3 * np.abs(expected).max(), err_msg=key)
 
 
