@@ -138,7 +138,7 @@ def largest_slice_pressures(pair: GearPair, contacts: Sequence[UnderPressure]) -
 
     Notes
     -----
-    In the derivative the place of the largest pressure, its curvature and the length of the average are held: p dq/(2 q).
+    In the derivative the place of the largest pressure, its curvature and the length of the average are held: p dq/2q.
     Where the average has room in the contact, q k is that of a parabola through the place and those one slice before
     and after it, since on even grids two places may be alike.
     """
