@@ -235,7 +235,7 @@ class Tangents:
 
 def _coupling(states: Sequence[Sequence[LoadedGrid]], bending: BendingModel) -> csr_array:
     """Deflection of all slices, in one row, per force on each slice of another pair of the same state [mm/N]."""
-    rows, columns, values, first = [[0]], [[0]], [[0.0]], 0
+    rows, columns, values, first = [np.zeros(1, int)], [np.zeros(1, int)], [np.zeros(1)], 0
     for state in states:
         ends = first + np.cumsum([grid.active.shape[1] for grid in state])
         for (one, i), (two, j) in combinations(zip(state, ends.tolist(), strict=True), 2):

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
@@ -148,28 +146,12 @@ def pressure_norm(
     return norm, np.asarray((on_material / norm) ** (exponent - 1.0))
 
 
-class FaceLoadSlopes(NamedTuple):
-    """Derivatives of K_Hbeta by what one tooth pair carries at one position.
-
-    Attributes
-    ----------
-    by_force : (nx, ny) array [1/N]
-        By the forces of the cells, the grid at rest; zero at cells without pressure.
-    by_place : (2,) array [1/mm]
-        By the place of the grid, across and along, the forces of its cells at rest: the strips do not follow a contact
-        that moves.
-    """
-
-    by_force: Array
-    by_place: Array
-
-
 def face_load_factor_slopes(
     pair: GearPair, path: ContactPath, positions: Sequence[Sequence[PressureMap | None]]
-) -> list[list[FaceLoadSlopes | None]]:
-    """Derivatives of K_Hbeta under one torque by the forces of all positions and tooth pairs, and by their places.
+) -> list[list[Array | None]]:
+    """Derivatives of K_Hbeta under one torque by the forces of the cells of all positions and tooth pairs.
 
-    The strip with the largest force and the ends of the common face are held.
+    The strip with the largest force is held.
 
     Parameters
     ----------
@@ -181,27 +163,23 @@ def face_load_factor_slopes(
 
     Returns
     -------
-    list of lists
-        By position and tooth pair. None where K_Hbeta does not depend on a pair: it has no map, or the position is the
-        last one; everywhere if K_Hbeta itself is NaN, for one position and without load.
+    list of lists of (nx, ny) arrays [1/N]
+        By position and tooth pair, zero at cells without pressure. None where K_Hbeta does not depend on a pair: it has
+        no map, or the position is the last one; everywhere if K_Hbeta itself is NaN, for one position and without load.
     """
     borders = strip_borders(pair, path)
     loaded = [one for row in positions[:-1] for one in row if one is not None]
     forces = np.sum([np.zeros(STRIPS), *(strip_forces(pair, one, borders)[0] for one in loaded)], axis=0)
-    found: list[list[FaceLoadSlopes | None]] = [[None] * len(row) for row in positions]
+    found: list[list[Array | None]] = [[None] * len(row) for row in positions]
     if not forces.any():
         return found
     largest, total = int(forces.argmax()), float(forces.sum())
     factor = STRIPS * forces[largest] / total
-    for n, k in ((n, k) for n, row in enumerate(positions[:-1]) for k in range(len(row))):
-        if (one := positions[n][k]) is None:
-            continue
-        by_force, by_place = np.zeros(one.pressure.shape), np.zeros(2)
-        shares = strip_shares(pair, one, borders)[0][largest]
-        by_force[one.pressure > 0.0] = (STRIPS * shares - factor) / total
-        for axis, width in enumerate(one.spacing):  # over a cell: within it a force is even
-            sides = [replace(one, origin=one.origin + half * width * one.axes[axis]) for half in (-0.5, 0.5)]
-            before, after = (strip_forces(pair, side, borders)[0][largest] for side in sides)
-            by_place[axis] = STRIPS * (after - before) / (width * total)
-        found[n][k] = FaceLoadSlopes(by_force, by_place)
+    for n, row in enumerate(positions[:-1]):
+        for k, one in enumerate(row):
+            if one is not None:
+                slopes = np.zeros(one.pressure.shape)
+                shares = strip_shares(pair, one, borders)[0][largest]
+                slopes[one.pressure > 0.0] = (STRIPS * shares - factor) / total
+                found[n][k] = slopes
     return found

@@ -75,9 +75,8 @@ class Sensitivities:
     @cached_property
     def torques(self) -> Array:
         """Growth of the torques that the forces balance with the levers as they are, (keys, states) [N mm per unit]."""
-        found = np.zeros((len(self.keys), self.places.shape[1]))
-        np.add.at(found, (slice(None), self.tangents.state), -self.lever_torques)
-        return found + self._raised
+        first = np.searchsorted(self.tangents.state, np.arange(self.places.shape[1]))
+        return self._raised - np.add.reduceat(self.lever_torques, first, axis=1)
 
     @property
     def _raised(self) -> Array:
@@ -139,7 +138,7 @@ class Sensitivities:
         Of a contact at an edge or a relief start that of its largest slice pressure, with the curvature held.
         """
         result, grids = self.result, self.tangents.grids
-        rough = (result.on_edge.astype(bool) | result.on_relief_start.astype(bool))[*self._grids]
+        rough = np.asarray(np.logical_or(result.on_edge, result.on_relief_start))[*self._grids]
         contacts = [(grid.contact, grid.separation, grid.pressure) for grid in grids]
         slopes = peak_pressure_slopes(result.gear_pair, contacts, rough.tolist())
         return self._by_pair(self._of_each_pair(self.tangents.gathered(slopes)))

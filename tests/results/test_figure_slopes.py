@@ -18,7 +18,7 @@ from loaded_tca.results.figure_slopes import (
     pressure_norm,
     smooth_peak_slopes,
 )
-from loaded_tca.results.load_factors import load_factors, strip_borders, strip_forces
+from loaded_tca.results.load_factors import load_factors
 from loaded_tca.results.slice_pressure import largest_slice_pressures
 from loaded_tca.scene import read_scene
 from loaded_tca.separation import sample_separation
@@ -323,7 +323,7 @@ def test_face_load_factor_changes_with_the_pressures_of_all_pairs(name):
     for seed in range(3):
         (high, _), (low, _), (_, rows) = (factor(seed, step) for step in (STEP, -STEP, 1.0))
         parts = [
-            slope.by_force * (moved.pressure - one.pressure) * one.spacing[0] * one.spacing[1]
+            slope * (moved.pressure - one.pressure) * one.spacing[0] * one.spacing[1]
             for triple in zip(slopes, positions, rows, strict=True)
             for slope, one, moved in zip(*triple, strict=True)
             if slope is not None
@@ -337,45 +337,12 @@ def test_face_load_factor_does_not_change_with_all_forces_alike():
     slopes = face_load_factor_slopes(cycle.gear_pair, cycle.path, cycle.maps[0])
     places = [(n, k) for n, row in enumerate(slopes) for k, slope in enumerate(row) if slope is not None]
     assert len(places) == sum(one is not None for row in cycle.maps[0][:-1] for one in row)
-    parts = [slopes[n][k].by_force * cycle.maps[0][n][k].pressure for n, k in places]
+    parts = [slopes[n][k] * cycle.maps[0][n][k].pressure for n, k in places]
     areas = [np.prod(cycle.maps[0][n][k].spacing) for n, k in places]
     size = sum(area * np.abs(part).sum() for area, part in zip(areas, parts, strict=True))
     total = sum(area * part.sum() for area, part in zip(areas, parts, strict=True))
     assert_allclose(total, 0.0, atol=ROUNDING * size)
     assert slopes[-1] == [None] * len(cycle.maps[0][-1]), "the last position is the first one a pitch later"
-
-
-@pytest.mark.parametrize("name", ["mesh_cycle_helical", "mesh_cycle_bevel"])
-def test_face_load_factor_changes_as_the_grid_of_a_pair_moves_by_a_cell(name):
-    """The force in the strip that is held, over the mean; each pair at each position moved alone."""
-    cycle = result(name)
-    pair, positions = cycle.gear_pair, cycle.maps[-1]
-    slopes, borders = face_load_factor_slopes(pair, cycle.path, positions), strip_borders(pair, cycle.path)
-    here = {(n, k): one for n, row in enumerate(positions[:-1]) for k, one in enumerate(row) if one is not None}
-    forces = {place: strip_forces(pair, one, borders)[0] for place, one in here.items()}
-    whole = sum(forces.values())
-    assert_allclose(whole.max() / whole.mean(), cycle.face_load_factor[-1], rtol=ROUNDING)
-    found, expected = [], []
-    for place, one in here.items():
-        for axis, width in enumerate(one.spacing):
-            sides = [replace(one, origin=one.origin + half * width * one.axes[axis]) for half in (0.5, -0.5)]
-            moved = [whole - forces[place] + strip_forces(pair, side, borders)[0] for side in sides]
-            expected.append(np.subtract(*(one[whole.argmax()] / one.mean() for one in moved)) / width)
-            found.append(slopes[place[0]][place[1]].by_place[axis])
-    assert min(found) < -0.01 < 0.01 < max(found), "1/mm: some bring force to the strip, others take it away"
-    assert_allclose(found, expected, rtol=0, atol=1e-9 * max(found))
-
-
-def test_face_load_factor_does_not_change_as_an_even_load_within_the_face_moves():
-    """Three quarters of the face of a spur pair: both ends are strips away from the largest one."""
-    cycle = result("fzg_c14", positions=3)
-    one, shape = cycle.maps[0][1][0], (8, 50)
-    dy = 0.75 * cycle.face_width / shape[1]
-    y, x = (np.arange(shape[1]) - 24.5) * dy, np.linspace(-0.2, 0.2, shape[0])
-    pressure = np.full(shape, 500.0) + 20.0 * (np.abs(np.arange(shape[1]) - 24.5) < 10.0)  # which fills strips
-    even = replace(one, x=x, y=y, spacing=(x[1] - x[0], dy), pressure=pressure, gap=np.zeros(shape))
-    slopes = face_load_factor_slopes(cycle.gear_pair, cycle.path, [[even], [None]])[0][0]
-    assert_allclose(slopes.by_place, 0.0, atol=1e-6)  # 1/mm; the axes of the contact are straight to that
 
 
 def test_face_load_factor_that_is_none_has_no_slopes():
