@@ -1,15 +1,15 @@
 """Pictures of a design: transmission error, pressure and load factors before and after, and how robust they are.
 
-All take one dataset with the variables (units)
+All take a dataset as designs give it, with the variables
 
-- ``transmission_error`` (design, sample, torque, position) [rad], ``peak_pressure`` [MPa], the highest of all pairs;
-- ``peak_to_peak`` (design, sample, torque) [rad], ``face_load_factor``;
-- ``wheel_base_radius`` () [mm];
-- ``objective`` (design, multiple), for :func:`plot_robustness` alone, its name and unit in the attributes ``long_name``
-  and ``units``;
+- ``transmission_error`` (design, sample, torque, position) [rad], over one pitch, both ends included;
+- ``peak_pressure`` (design, sample, torque, position) [MPa], the highest of all pairs;
+- ``span_um`` (design, sample, torque), the peak-to-peak transmission error at the wheel's base circle;
+- ``face_load_factor`` (design, sample, torque);
 
-and the coordinates ``design`` (names, such as "start" and "optimum"), ``torque`` [N mm], ``pinion_angle`` (position)
-[rad] and ``multiple``, that of the scatter. Samples are those of the scatter; a title is the attribute ``title``.
+the coordinates ``design`` (names, such as "start" and "optimum") and ``torque`` [N mm], and the attribute
+``scene_toml``. Samples are those of the scatter. A robustness curve is ``objective`` (design, multiple), with the
+coordinate ``multiple`` of the scatter; its name and unit may be the attributes ``long_name`` and ``units``.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ from loaded_tca.errors import require
 from loaded_tca.plots import style
 from loaded_tca.plots.style import DISTINCT_COLOURS, MARKERS
 from loaded_tca.results.key_figures import mean_over_a_pitch
+from loaded_tca.scene import Scene, parse_scene
 
 if TYPE_CHECKING:
     import xarray
@@ -61,17 +62,19 @@ def plot_before_and_after(design: xarray.Dataset, torque: int | None = None) -> 
     InputError
         If a variable is missing.
     """
-    _require(design, "transmission_error", "peak_pressure", "peak_to_peak", "face_load_factor")
+    _require(design, "transmission_error", "peak_pressure", "span_um", "face_load_factor")
+    scene = _scene(design)
+    pair = scene.pair()
     torques = 1e-3 * design["torque"].values
     torque = int(torques.argmax()) if torque is None else torque
     figure = Figure(figsize=(11.0, 8.0), layout="constrained")
     (error, pressure), (factor, span) = figure.subplots(2, 2)
-    angle = np.degrees(design["pinion_angle"].values)
-    under = f"{torques[torque]:.4g} N m"
-    _draw(error, design, "transmission_error", angle, lambda values: _less_mean(_length(design) * values[:, torque]))
+    angle = np.degrees(pair.pitch) * np.linspace(-0.5, 0.5, design.sizes["position"])
+    length, under = 1e3 * pair.base_radii[1], f"{torques[torque]:.4g} N m"
+    _draw(error, design, "transmission_error", angle, lambda values: _less_mean(length * values[:, torque]))
     _draw(pressure, design, "peak_pressure", angle, lambda values: values[:, torque])
     _draw(factor, design, "face_load_factor", torques)
-    _draw(span, design, "peak_to_peak", torques, lambda values: _length(design) * values)
+    _draw(span, design, "span_um", torques)
     for axes, across, label in (
         (error, f"pinion angle [deg], under {under}", f"transmission error less its mean\n{BASE_CIRCLE}"),
         (pressure, f"pinion angle [deg], under {under}", "peak pressure [MPa]"),
@@ -82,7 +85,7 @@ def plot_before_and_after(design: xarray.Dataset, torque: int | None = None) -> 
     for axes in (error, span):
         style.widen(axes, SMALLEST_SPAN_UM)
     span.set_ylim(bottom=0.0)
-    return _finished(figure, design, error, _designs(design))
+    return _finished(figure, design, error, scene.title, _designs(design))
 
 
 def plot_peak_to_peak_over_torque(design: xarray.Dataset) -> Figure:
@@ -102,13 +105,14 @@ def plot_peak_to_peak_over_torque(design: xarray.Dataset) -> Figure:
     InputError
         If a variable is missing.
     """
-    _require(design, "peak_to_peak")
+    _require(design, "span_um")
     figure, axes = style.one_panel()
-    _draw(axes, design, "peak_to_peak", 1e-3 * design["torque"].values, lambda values: _length(design) * values)
+    _draw(axes, design, "span_um", 1e-3 * design["torque"].values)
     axes.set(xlabel=TORQUE_AXIS, ylabel=f"peak-to-peak transmission error\n{BASE_CIRCLE}")
     style.widen(axes, SMALLEST_SPAN_UM)
     axes.set_ylim(bottom=0.0)
-    return _finished(figure, design, axes, f"peak-to-peak transmission error over the torque, {_designs(design)}")
+    about = f"peak-to-peak transmission error over the torque, {_designs(design)}"
+    return _finished(figure, design, axes, _scene(design).title, about)
 
 
 def plot_robustness(design: xarray.Dataset) -> Figure:
@@ -165,13 +169,13 @@ def _draw(
     axes.grid(alpha=0.3)
 
 
-def _finished(figure: Figure, design: xarray.Dataset, axes: Axes, *about: str) -> Figure:
+def _finished(figure: Figure, design: xarray.Dataset, axes: Axes, *title: str) -> Figure:
     """The figure with the legend of a panel below, and its title."""
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize="small")
     samples = design.sizes.get("sample", 1)
     told = f"lines: mean, bands: range of {samples} samples of the scatter"
     with_bands = axes.collections and samples > 1
-    style.write_title(figure, str(design.attrs.get("title", "")), *about, *([told] if with_bands else []))
+    style.write_title(figure, *title, *([told] if with_bands else []))
     return figure
 
 
@@ -188,10 +192,9 @@ def _styles() -> cycle[tuple[str, str]]:
     return cycle(zip(COLOURS, MARKERS, strict=False))
 
 
-def _length(design: xarray.Dataset) -> float:
-    """Length [um] at the wheel's base circle per rad."""
-    _require(design, "wheel_base_radius")
-    return 1e3 * float(design["wheel_base_radius"])
+def _scene(design: xarray.Dataset) -> Scene:
+    """The scene that was designed."""
+    return parse_scene(str(design.attrs.get("scene_toml", "")), source="scene_toml")
 
 
 def _less_mean(values: Array) -> Array:

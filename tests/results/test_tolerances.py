@@ -79,7 +79,7 @@ def test_peak_pressure_of_a_point_contact_grows_with_the_cube_root_of_the_torque
     figures = cycle.key_figures()
     found = key_figure_slopes(cycle.sensitivities([TORQUE]))["peak_pressure_MPa"][:, 0]
     expected = [one["peak_pressure_MPa"] / (3.0 * one["pinion_torque_Nm"]) for one in figures]
-    assert_allclose(found, expected, rtol=0.02)  # a grid of 20 x 24 cells
+    assert_allclose(found, expected, rtol=0.03)  # 20 x 24 cells; the curvature changes a little over the ellipse
 
 
 def test_figures_that_are_not_known_have_no_slopes():
