@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
 from loaded_tca.arrays import Array
@@ -162,7 +163,8 @@ def _draw(
         values = changed(of_design.transpose(*dims).values)
         if len(values) > 1:
             low, high = values.min(axis=0), values.max(axis=0)
-            axes.fill_between(places, low, high, color=colour, alpha=0.2, linewidth=0)
+            border = to_rgba(colour, 0.6)  # bands that lie over each other are told apart by it
+            axes.fill_between(places, low, high, facecolor=to_rgba(colour, 0.2), edgecolor=border, linewidth=0.8)
             if len(places) == 1:  # a band needs two
                 axes.vlines(places, low, high, color=colour, alpha=0.4, linewidth=4.0)
         axes.plot(places, values.mean(axis=0), color=colour, marker=marker, markersize=4.0, label=label)
