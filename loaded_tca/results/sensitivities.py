@@ -138,7 +138,7 @@ class Sensitivities:
         Of a contact at an edge or a relief start that of its largest slice pressure, with the curvature held.
         """
         result, grids = self.result, self.tangents.grids
-        rough = np.asarray(np.logical_or(result.on_edge, result.on_relief_start))[*self._grids]
+        rough = ((result.on_edge > 0) | (result.on_relief_start > 0))[*self._grids]
         contacts = [(grid.contact, grid.separation, grid.pressure) for grid in grids]
         slopes = peak_pressure_slopes(result.gear_pair, contacts, rough.tolist())
         return self._by_pair(self._of_each_pair(self.tangents.gathered(slopes)))
