@@ -49,7 +49,7 @@ def load_factors(pair: GearPair, path: ContactPath, maps: Maps, mean_length: flo
     face_load_factor, transverse_load_factor : (m,) array
         NaN with one position and without load; the latter without a mean length too.
     """
-    borders = np.linspace(*_common_face(pair, path), STRIPS + 1)
+    borders = strip_borders(pair, path)
     factors = np.full((2, len(maps)), math.nan)
     for torque, positions in enumerate(maps):
         strips, largest = np.zeros(STRIPS), 0.0
@@ -79,16 +79,39 @@ def strip_forces(pair: GearPair, one: PressureMap, borders: Array) -> tuple[Arra
         That of a cell is shared out by the overlap of its extent along the contact; all of it is within the strips.
     length : float [mm]
     """
-    dx, dy = one.spacing
+    shares, length = strip_shares(pair, one, borders)
+    return shares @ one.pressure[one.pressure > 0.0] * one.spacing[0] * one.spacing[1], length
+
+
+def strip_shares(pair: GearPair, one: PressureMap, borders: Array) -> tuple[Array, float]:
+    """Shares of strips of the face in the forces of the cells under pressure, and the length of ``strip_forces``.
+
+    Parameters
+    ----------
+    pair : GearPair
+    one : PressureMap
+    borders : (n + 1,) array [mm]
+
+    Returns
+    -------
+    shares : (n, m) array
+        Of the m cells with pressure > 0, in the order of the map; each column adds up to one.
+    length : float [mm]
+    """
     across, along = np.nonzero(one.pressure)
     middles = one.origin + one.x[across, None] * one.axes[0] + one.y[along, None] * one.axes[1]
+    dy = one.spacing[1]
     ends = [_lengthwise(pair, middles + side * dy * one.axes[1]) for side in (-0.5, 0.5)]
     slope = np.abs(ends[1] - ends[0]).mean() / dy if across.size else 1.0
     width = float(borders[1] - borders[0])
     low, high = np.sort(np.clip(ends, borders[0], borders[-1]), axis=0)
-    shares = np.clip((borders[1:-1, None] - low) / np.maximum(high - low, ROUNDING * width), 0.0, 1.0)
-    force = one.pressure[across, along] * dx * dy
-    return np.diff(shares @ force, prepend=0.0, append=force.sum()), width / slope if slope else math.inf
+    below = np.clip((borders[1:-1, None] - low) / np.maximum(high - low, ROUNDING * width), 0.0, 1.0)
+    return np.diff(below, axis=0, prepend=0.0, append=1.0), width / slope if slope else math.inf
+
+
+def strip_borders(pair: GearPair, path: ContactPath) -> Array:
+    """Borders of the strips along the pinion's lengthwise coordinate, (STRIPS + 1,) [mm]."""
+    return np.linspace(*_common_face(pair, path), STRIPS + 1)
 
 
 def _common_face(pair: GearPair, path: ContactPath) -> tuple[float, float]:
