@@ -223,6 +223,6 @@ def test_smallest_radius_of_an_arc_is_its_own():
     """Of 0.38 mean normal modules, and so much of the pitch as the module over that of the root circle."""
     mesh = bevel_mesh((20, 40), outer_module=4.0, face_width=12.0)
     gear = mesh.pinion
-    pitch = 2.0 * np.pi / 20 * gear.mean_cone_distance * 2.0 * np.tan(0.5 * gear.root_cone_angle)
+    pitch = 2.0 * np.pi / 20 * gear.mean_cone_distance * np.sin(gear.root_cone_angle)
     found = sharpest(bevel_pair(mesh).pinion.geometry.unmodified)
-    assert_allclose(found * pitch, 0.38 * gear.mean_normal_module, rtol=0.03)
+    assert_allclose(found * pitch, 0.38 * gear.mean_normal_module, rtol=0.01)
