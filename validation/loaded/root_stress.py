@@ -46,8 +46,9 @@ from loaded_tca.tooth.profile import polar
 from validation.table import Row
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
-MOST_LAYERS = 10
-"""Across the faces of gears that are compared with finer meshes, which have half as many more."""
+MOST_LAYERS = 8
+"""Across the faces of gears that are compared with finer meshes. These have half as many more; or as many, where the
+face asks for more than that: there the sections alone are compared."""
 CASE, SOURCE, FINER = "root stress", "plane finite elements, quadratic triangles", "finer mesh of the same elements"
 LINE_LOAD = 100.0
 """Of the reference [N/mm]."""
@@ -260,10 +261,8 @@ def families() -> dict[str, Gear]:
     milled = read_scene(SCENES / "face_milled_19x62_matched.toml").pair()
     return {
         "helical, 30 deg": spur_pair_gear(width=12.0, helix_deg=30.0),
-        "straight bevel pinion": straight.pinion,
         "straight bevel wheel": straight.wheel,
         "spiral bevel pinion": spiral.pinion,
-        "spiral bevel wheel": spiral.wheel,
         "face-milled pinion": milled.pinion,
         "face-milled wheel": milled.wheel,
     }
@@ -283,8 +282,10 @@ def family_rows() -> Iterator[Row]:
     """Largest stresses of every family against a finer mesh."""
     for name, gear in families().items():
         density = stress_density(gear)
-        density = replace(density, lengthwise=min(density.lengthwise, MOST_LAYERS))
-        error = np.abs(largest(model_of(gear, density)) / largest(model_of(gear, finer(density))) - 1.0)
+        fine = finer(density)
+        if density.lengthwise > MOST_LAYERS:
+            density, fine = (replace(one, lengthwise=MOST_LAYERS) for one in (density, fine))
+        error = np.abs(largest(model_of(gear, density)) / largest(model_of(gear, fine)) - 1.0)
         for quantity, value in zip(("tension", "compression"), error.max(axis=0), strict=True):
             words = f"{name}: {quantity}, largest error of {len(LINES)} loads"
             yield Row(CASE, FINER, words, 0.0, float(value), OTHER_FAMILIES)
