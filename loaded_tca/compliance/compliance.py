@@ -17,7 +17,7 @@ from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_comp
 from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.compliance.torsion import body_torsion
 from loaded_tca.errors import AccuracyWarning, GeometryError, InputError, named, require
-from loaded_tca.material import LARGEST_RATIO_IN_BENDING
+from loaded_tca.material import LARGEST_RATIO_IN_BENDING, Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
@@ -198,11 +198,16 @@ def tooth_compliance(pair: GearPair, *, neighbours: int = 1, density: MeshDensit
     found = []
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         with named(name):
-            ratio = gear.material.poisson_ratio
-            bends = ratio <= LARGEST_RATIO_IN_BENDING
-            require((bends, f"poisson_ratio: {ratio} is above {LARGEST_RATIO_IN_BENDING}: finite elements would lock"))
+            require_bending(gear.material)
             found.append(gear_compliance(gear, replace(density or default_density(gear), neighbours=neighbours)))
     return ToothCompliance(pair, *found)
+
+
+def require_bending(material: Material) -> None:
+    """Refuse a material whose finite elements would lock."""
+    ratio = material.poisson_ratio
+    bends = ratio <= LARGEST_RATIO_IN_BENDING
+    require((bends, f"poisson_ratio: {ratio} is above {LARGEST_RATIO_IN_BENDING}: finite elements would lock"))
 
 
 def default_density(gear: Gear) -> MeshDensity:

@@ -31,7 +31,7 @@ from scipy.sparse import csr_array, vstack
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.body import FlankPlaces, ToothFrame, gear_body, gear_nodes
-from loaded_tca.compliance.compliance import default_density
+from loaded_tca.compliance.compliance import default_density, require_bending
 from loaded_tca.compliance.finite_elements import Discretisation
 from loaded_tca.compliance.flexibility import LEAST_LENGTHS, LENGTHS_PER_LAYER, MOST_IN_MEMORY, kept, key_of
 from loaded_tca.compliance.geometry import BodyNodes
@@ -218,10 +218,23 @@ def root_stress_model(gear: Gear, density: MeshDensity | None = None) -> RootStr
     Raises
     ------
     InputError
-        If the bore reaches the teeth, or the machine has not the memory.
+        If the bore reaches the teeth, Poisson's ratio is above 0.49, or the machine has not the memory.
     GeometryError
         If the tooth is pointed or cut off, or the mesh is turned inside out.
+
+    Examples
+    --------
+    >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
+    >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
+    >>> mesh = CylindricalMesh(*(CylindricalGear(teeth=z, normal_module=3.0, face_width=10.0) for z in (25, 37)))
+    >>> roots = root_stress_model(cylindrical_pair(mesh).pinion)
+    >>> line = FlankLine(0, np.full(9, 37.978), np.linspace(-4.0, 4.0, 9))  # highest point of single contact
+    >>> stress = roots.stress(0, [(line, np.full(9, 1000.0 / 9.0))])  # 1000 N
+    >>> tension = stress[0].max()
+    >>> round(float(tension), -1)  # MPa
+    90.0
     """
+    require_bending(gear.material)
     density = density or stress_density(gear)
     return _model(gear.geometry.unmodified, gear.flank.side, gear.material, gear.bore_diameter, density)
 
