@@ -76,7 +76,7 @@ class ToothCompliance:
             Symmetric.
         """
         distance = np.abs(separation.y[:, None] - separation.y)
-        on_pinion, on_wheel = self._lines(number, separation)
+        on_pinion, on_wheel = self.lines(number, separation)
         return self.pinion.within(on_pinion, distance) + self.wheel.within(on_wheel, distance)
 
     def between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
@@ -97,11 +97,14 @@ class ToothCompliance:
         InputError
             If the pairs are further apart than the modelled teeth.
         """
-        there, here = self._lines(*at), self._lines(*under)
+        there, here = self.lines(*at), self.lines(*under)
         return self.pinion.between(there[0], here[0]) + self.wheel.between(there[1], here[1])
 
-    def _lines(self, number: int, separation: Separation) -> tuple[FlankLine, FlankLine]:
-        """Middles of the slices of a grid on both flanks; kept as long as the grid is."""
+    def lines(self, number: int, separation: Separation) -> tuple[FlankLine, FlankLine]:
+        """Middles of the slices of a grid on the flanks of pinion and wheel; kept as long as the grid is.
+
+        Parameters are those of :meth:`within`. Normal forces of the slices at these lines load the roots of the teeth.
+        """
         known = _LINES.setdefault(separation, {})
         if number not in known:
             known[number] = self._lines_of(number, separation)

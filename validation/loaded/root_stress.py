@@ -5,8 +5,8 @@ of the root diameter, plane strain, refined until nothing moves by 0.02 %; in sp
 at the highest point of single contact. Where there is no reference, finer meshes of the same elements are: they have
 the largest stresses of the reference to 0.05 %.
 
-As a script, tables of error, time and memory against the mesh for ``docs/root_stress.md``; each model in a process of
-its own. Run from the root of the repository: ``python -m validation.loaded.root_stress``.
+As a script, a table of error, time and memory against the mesh; each model in a process of its own. Run from the root
+of the repository: ``python -m validation.loaded.root_stress``.
 """
 
 import math
