@@ -124,8 +124,10 @@ def axial_displacement(gear: Gear) -> float:
 
 
 def departures(name: str, changes: dict[str, Any]) -> list[Array]:
-    """Departures from the slopes over torques, (positions,) each: of tangents on 128 cells, of those to the accuracy
-    of the scene, and of chords on 128 cells."""
+    """Departures from the slopes over torques: of tangents on 128 cells and on as many as usual, of chords on 128.
+
+    Relative, (positions,) each; "usual": to the accuracy of the scene.
+    """
     scene = read_scene(SCENES / f"mesh_cycle_{name}.toml").with_changes({"analysis.positions": 9, **changes})
     torque = scene.load.pinion_torque_Nm
     with warnings.catch_warnings():
