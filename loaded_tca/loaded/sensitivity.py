@@ -156,13 +156,18 @@ class Tangents:
         return np.add.reduceat(values, self._first, axis=-1)
 
     @cached_property
+    def _sizes(self) -> Indices:
+        """Cells of each state."""
+        return np.bincount(self.state[self.grid])
+
+    @cached_property
     def _first(self) -> Indices:
         """First cell of each state."""
-        return np.searchsorted(self.state[self.grid], np.arange(self.state[-1] + 1))
+        return np.cumsum(self._sizes) - self._sizes
 
     def spread(self, values: Array) -> Array:
         """Numbers (..., states) at the cells (..., n) of each state."""
-        return values[..., self.state[self.grid]]
+        return np.repeat(values, self._sizes, axis=-1)
 
     def rotation_change(self, gaps: Array, torques: Array | float = 0.0) -> Array:
         """DLambda (..., states) [rad] by changes (..., n) of the gaps [mm] and (..., states) of the torques [N mm]."""
