@@ -225,8 +225,12 @@ def torque_shared(
     torque: float,
     grid: GridChoice,
     bending: BendingModel | None = None,
+    with_stiffness: bool = True,
 ) -> Steps[SharedLoad]:
-    """Share a torque over the tooth pairs of one position, step by step; see :func:`share_load`."""
+    """Share a torque over the tooth pairs of one position, step by step; see :func:`share_load`.
+
+    Without the stiffness of the contacts, which takes one more solution of each, if it is not asked for.
+    """
     if not 0.0 <= torque < math.inf:
         raise InputError(f"torque: {torque!r} N mm is not a finite number >= 0")
     if not tooth_pairs:
@@ -238,6 +242,8 @@ def torque_shared(
         share = Share(leading, (yield from loaded.with_stiffness()), 0.0)
         return SharedLoad(0.0, 0.0, (share,), np.zeros((1, 1)), 0.0, 0)
     found = yield from _Balance(pair, tooth_pairs, torque, grid, bending).steps()
+    if not with_stiffness:
+        return found
     shares = []
     for share in found.shares:
         shares.append(replace(share, loaded=(yield from share.loaded.with_stiffness())))
@@ -265,7 +271,8 @@ class _Balance:
         self.solved: list[LoadedContact | None] = [None] * len(tooth_pairs)
         self.compliance = np.zeros((len(contacts), len(contacts)))
         self.first_grids: list[Separation] = []
-        self.agreement = AGREEMENT_ON_CELLS if grid.cells is not None else AGREEMENT * grid.accuracy
+        usual = AGREEMENT_ON_CELLS if grid.cells is not None else AGREEMENT * grid.accuracy
+        self.agreement = usual if grid.agreement is None else grid.agreement
 
     def _first_law(self, contact: ContactPoint) -> PowerLaw:
         """Hertz's law of the curvatures at the contact point, or of a slender contact over the face."""
