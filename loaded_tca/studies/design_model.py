@@ -40,8 +40,8 @@ CELLS = (24, 40)
 SMOOTHING = 0.01
 """tau of the span [um]: it exceeds the span by 2 tau ln(N) at the most."""
 EXPONENT = 12
-TOLERANCE = 1e-9
-"""Of contacts and their balance: gradients compare with differences of evaluations."""
+TOLERANCE = 1e-6
+"""Of contacts and of the balance of the tooth pairs, relative."""
 TINY = 1e-300
 FEWEST_POSITIONS = 4
 State = tuple[int, int, int]
@@ -91,10 +91,11 @@ class DesignModel:
         seed: int = 0,
         cells: tuple[int, int] | None = None,
         smoothing: float = SMOOTHING,
+        tolerance: float = TOLERANCE,
     ) -> None:
         self.scene, self.variables, self.scatter = scene, dict(variables), dict(scatter or {})
         self.torques = np.asarray(scene.torques if torques is None else torques, dtype=float)
-        self.samples, self.seed, self.smoothing = samples if self.scatter else 1, seed, smoothing
+        self.samples, self.seed, self.smoothing, self.tolerance = samples, seed, smoothing, tolerance
         given = scene.analysis.cells
         self.cells = tuple(cells or given or CELLS)
         self._check()
@@ -156,7 +157,7 @@ class DesignModel:
             If a contact, or the balance of the tooth pairs, is not solved to the tolerance.
         """
         values = self.values(x)
-        grid = GridChoice(self.cells, tolerance=TOLERANCE, free_edges=self.scene.analysis.free_edges, agreement=TOLERANCE)
+        grid = GridChoice(self.cells, tolerance=self.tolerance, free_edges=self.scene.analysis.free_edges, agreement=self.tolerance)
         while True:
             grown = sum(one.grown for one in self.held)
             shaped = [ShapedContacts(*one) for one in zip(self.held, values + self.own_deviations, strict=True)]

@@ -1,0 +1,380 @@
+r"""Micro-geometry designed with exact gradients: quiet on average, or still quiet where the mounting scatters.
+
+With J_s the mean over the torques of a figure of sample s, the objective is its mean over the samples, mean + k sigma,
+or a percentile. It is minimised by sequential quadratic programming (``scipy.optimize``, SLSQP) over the keys scaled to
+their ranges, under limits on other figures. All of it works on held contacts (:class:`DesignModel`); at the end the
+package's own analysis of start and optimum, at the accuracy of the scene, has to confirm what was found.
+
+References
+----------
+Kraft 1994, ACM Trans. Math. Softw. 20, 262-281 (SLSQP); Bertsimas, Nohadani & Teo 2010, Oper. Res. 58, 161-178 (robust
+optimisation by gradients).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from loaded_tca.analysis import analyse
+from loaded_tca.arrays import Array
+from loaded_tca.errors import ConvergenceError, InputError, require
+from loaded_tca.results import MeshCycle
+from loaded_tca.results.files import FilePath, read_dataset, variables_of, write_dataset
+from loaded_tca.results.key_figures import mean_over_a_pitch
+from loaded_tca.scene import Scene
+from loaded_tca.studies.design_model import FIGURES, DesignModel, Evaluation
+from loaded_tca.studies.run import accuracy_warnings
+from loaded_tca.studies.study import is_finite
+from loaded_tca.threads import one_thread
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["DesignModel", "DesignResult", "Evaluation", "load_design", "optimise", "robustness"]
+
+OBJECTIVES = ("mean", "mean + k sigma", "percentile")
+MOST_ITERATIONS = 50
+ACCURACY = 1e-3
+"""Of the objective, relative, at which SLSQP stops: held contacts scatter by 0.2 to 0.7 nm."""
+KEPT = 2e-3
+"""Part of a limit by which a design may exceed it and still meet it: SLSQP meets limits to rounding of its steps."""
+CONFIRMED = 0.5
+"""Part of the gain on held contacts that the full analysis must confirm. Analyses scatter by 2 to 4 nm, held contacts
+are coarser: a gain that is much larger than both is confirmed nearly whole, one of their size is none."""
+LIMITS_CONFIRMED = 0.05
+"""Part of a limit by which the full analysis may exceed it: K_Hbeta and pressures of two grids differ by some percent."""
+KIND = "design"
+Limits = Mapping[str, float | Mapping[float, float]]
+Progress = Callable[[int, float, float], None]
+"""Called with how many designs were evaluated, the objective of the last one, and the part by which it exceeds a limit."""
+
+
+@dataclass(frozen=True)
+class Objective:
+    """What is minimised: a figure, mean over the torques, as it scatters over the samples.
+
+    Attributes
+    ----------
+    kind : {"mean", "mean + k sigma", "percentile"}
+    k : float
+        Standard deviations on top of the mean.
+    percentile : float
+        From 0 to 100.
+    figure : str
+        One of ``FIGURES``.
+    """
+
+    kind: str = "mean + k sigma"
+    k: float = 1.0
+    percentile: float = 90.0
+    figure: str = "smooth_span_um"
+
+    def __post_init__(self) -> None:
+        require(
+            (self.kind in OBJECTIVES, f"objective: {self.kind!r:.60}; allowed {', '.join(map(repr, OBJECTIVES))}"),
+            (self.figure in FIGURES, f"figure: {self.figure!r:.60}; allowed {', '.join(FIGURES)}"),
+            (0.0 <= self.k < math.inf, f"k: {self.k}; allowed a finite number from 0 on"),
+            (0.0 <= self.percentile <= 100.0, f"percentile: {self.percentile}; allowed 0 to 100"),
+        )
+
+    def of(self, figures: Array) -> tuple[float, Array]:
+        """Value of figures (sample, torque), and its derivatives to them."""
+        values = figures.mean(axis=1)
+        if self.kind == "percentile":
+            order, place = np.argsort(values), 0.01 * self.percentile * (values.size - 1)
+            low, part = int(place), place - int(place)
+            weights = np.zeros(values.size)
+            weights[order[low]] += 1.0 - part
+            weights[order[min(low + 1, values.size - 1)]] += part
+            value = float(weights @ values)
+        else:
+            weights, value, sigma = np.full(values.size, 1.0 / values.size), float(values.mean()), float(values.std())
+            if self.kind == "mean + k sigma":
+                value += self.k * sigma
+                weights += self.k * (values - values.mean()) / (values.size * sigma) if sigma > 0.0 else 0.0
+        return value, np.broadcast_to(weights[:, None] / figures.shape[1], figures.shape)
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Highest value of a figure under some torques, with every sample."""
+
+    figure: str
+    torques: tuple[int, ...]
+    highest: float
+
+
+@dataclass(frozen=True, eq=False)
+class DesignResult:
+    """A design that was found, and what the package's own analysis says of it and of the start.
+
+    Attributes
+    ----------
+    dataset : xarray.Dataset
+        Over ``design`` ("start", "optimum"), sample, torque, position and key: ``value`` of the keys, analysed
+        ``transmission_error`` [rad], ``peak_pressure`` [MPa], ``load_share`` and ``FIGURES``; those on held contacts as
+        ``held_...``; ``history_value``, ``history_objective`` and ``history_excess`` over the evaluations.
+    """
+
+    dataset: xarray.Dataset
+
+    @property
+    def start(self) -> dict[str, float]:
+        """Values of the keys where the design started."""
+        return self._values("start")
+
+    @property
+    def optimum(self) -> dict[str, float]:
+        """Values of the keys that were found."""
+        return self._values("optimum")
+
+    def _values(self, design: str) -> dict[str, float]:
+        values = self.dataset["value"].sel(design=design).values.tolist()
+        return dict(zip(self.dataset["key"].values.tolist(), values, strict=True))
+
+    @property
+    def objective(self) -> tuple[float, float]:
+        """Objective of start and optimum by the full analysis."""
+        before, after = self.dataset["objective"].values.tolist()
+        return before, after
+
+    @property
+    def held_objective(self) -> tuple[float, float]:
+        """Objective of start and optimum on held contacts."""
+        before, after = self.dataset["held_objective"].values.tolist()
+        return before, after
+
+    @property
+    def evaluations(self) -> int:
+        """How many designs were evaluated."""
+        return int(self.dataset.sizes["evaluation"])
+
+    def save(self, path: FilePath) -> None:
+        """Write the result to a NetCDF-3 file, to be read by :func:`load_design`."""
+        write_dataset(path, self.dataset)
+
+
+def load_design(path: FilePath) -> DesignResult:
+    """Read the result of a design.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is damaged, or is no design.
+    """
+    dataset = read_dataset(path)
+    if dataset.attrs.get("kind") != KIND:
+        raise InputError(f"{path}: a result of loaded_tca, but no design; read it with load_result or load_study")
+    return DesignResult(dataset)
+
+
+def optimise(
+    model: DesignModel,
+    objective: str = "mean + k sigma",
+    limits: Limits | None = None,
+    *,
+    k: float = 1.0,
+    percentile: float = 90.0,
+    figure: str = "smooth_span_um",
+    starts: int = 1,
+    seed: int = 0,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+) -> DesignResult:
+    """Design the micro-geometry of a model.
+
+    Parameters
+    ----------
+    model : DesignModel
+    objective : {"mean", "mean + k sigma", "percentile"}
+        Of the figure, its mean over the torques, over the samples of the scatter.
+    limits : mapping, optional
+        Figure -> its highest value under every torque with every sample, or a mapping of torques [N mm] to values.
+        ``edge_pressure_MPa`` keeps contacts away from the ends of the flanks.
+    k : float
+        Standard deviations on top of the mean.
+    percentile : float
+        From 0 to 100.
+    figure : str
+        One of ``FIGURES``; the default has derivatives everywhere.
+    starts : int
+        Designs to start from: that of the scene, then points of a scrambled Sobol sequence within the ranges.
+    seed : int
+        Of these.
+    executor : concurrent.futures.Executor, optional
+        For the starts and for the final analyses; it stays the caller's. Default: this process.
+    progress : callable, optional
+        Called after every evaluation in this process.
+
+    Returns
+    -------
+    DesignResult
+
+    Raises
+    ------
+    InputError
+        Before work starts, with every problem of the arguments; after it, if no design met a limit, which is named.
+    ConvergenceError
+        If the analysis at the accuracy of the scene does not confirm the optimum; ``last`` is the DesignResult.
+    """
+    wanted = Objective(objective, k, percentile, figure)
+    given = _limits(model, limits or {})
+    whole = isinstance(starts, int) and not isinstance(starts, bool) and starts >= 1
+    require((whole, f"starts: {starts!r:.60}; allowed a whole number from 1 on"))
+    low, range_ = model.bounds[:, 0], np.ptp(model.bounds, axis=1)
+    points = [(model.start - low) / range_]
+    if starts > 1:
+        from scipy.stats import qmc  # half a second
+
+        points += [*qmc.Sobol(low.size, scramble=True, rng=seed).random_base2((starts - 2).bit_length())[: starts - 1]]
+    if executor is None:
+        searches = [_Search(model, wanted, given, progress).from_point(point) for point in points]
+    else:
+        tasks = [executor.submit(_searched, model, wanted, given, point) for point in points]
+        searches = [task.result() for task in tasks]
+    history = [trial for found in searches for trial in found]
+    best = min(history, key=lambda trial: (trial.excess > KEPT, trial.excess if trial.excess > KEPT else trial.objective))
+    if best.excess > KEPT:
+        raise InputError(_told_unmet(model, given, best.x))
+    result = _analysed_result(model, wanted, history, best.x, executor)
+    _require_confirmed(result, given)
+    return result
+
+
+class Trial(NamedTuple):
+    """A design that was evaluated: values (keys,), objective, largest part by which a figure exceeds its limit."""
+
+    x: Array
+    objective: float
+    excess: float
+
+
+class _Search:
+    """SLSQP from one start, over the keys scaled to their ranges; the objective is scaled by its first value."""
+
+    def __init__(
+        self, model: DesignModel, objective: Objective, limits: Sequence[Limit], progress: Progress | None = None
+    ) -> None:
+        self._model, self._objective, self._limits, self._progress = model, objective, limits, progress
+        self._low, self._range = model.bounds[:, 0], np.ptp(model.bounds, axis=1)
+        self._last: Evaluation | None = None
+        self.history: list[Trial] = []
+
+    def from_point(self, point: Array) -> list[Trial]:
+        """Designs that were evaluated on the way from a point, (keys,) from 0 to 1."""
+        self._minimise(self._value, self._slope, point, limited=bool(self._limits))
+        if self._nearest().excess > KEPT:  # first any design that meets the limits, then the best one
+            self._minimise(self._violation, self._violation_slope, self._point(self._nearest().x), limited=False)
+            if self._nearest().excess <= KEPT:
+                self._minimise(self._value, self._slope, self._point(self._nearest().x), limited=True)
+        return self.history
+
+    def _nearest(self) -> Trial:
+        return min(self.history, key=lambda trial: trial.excess)
+
+    def _point(self, x: Array) -> Array:
+        return (x - self._low) / self._range
+
+    def _minimise(
+        self, value: Callable[[Array], float], slope: Callable[[Array], Array], point: Array, *, limited: bool
+    ) -> None:
+        from scipy.optimize import minimize
+
+        first = abs(value(point)) or 1.0
+        minimize(
+            lambda z: value(z) / first,
+            point,
+            jac=lambda z: slope(z) / first,
+            method="SLSQP",
+            bounds=[(0.0, 1.0)] * point.size,
+            constraints=[{"type": "ineq", "fun": self._room, "jac": self._room_slopes}] if limited else [],
+            options={"maxiter": MOST_ITERATIONS, "ftol": ACCURACY},
+        )
+
+    def _evaluated(self, point: Array) -> Evaluation:
+        x = np.clip(self._low + point * self._range, *self._model.bounds.T)
+        if self._last is None or not np.array_equal(self._last.x, x):
+            self._last = self._model.evaluate(x)
+            value, _ = self._objective.of(self._last.figure(self._objective.figure))
+            excess = -float(self._room(point).min(initial=math.inf))
+            self.history.append(Trial(x, value, excess))
+            if self._progress is not None:
+                self._progress(len(self.history), value, excess)
+        return self._last
+
+    def _value(self, point: Array) -> float:
+        return self._objective.of(self._evaluated(point).figure(self._objective.figure))[0]
+
+    def _slope(self, point: Array) -> Array:
+        found, figure = self._evaluated(point), self._objective.figure
+        _, weights = self._objective.of(found.figure(figure))
+        return np.asarray(self._range * np.tensordot(weights, found.gradient(figure), 2))
+
+    def _room(self, point: Array) -> Array:
+        """What is left up to each limit, as a part of it: (limits times samples times torques,)."""
+        found = self._evaluated(point)
+        rooms = [1.0 - found.figure(one.figure, one.torques).ravel() / one.highest for one in self._limits]
+        return np.concatenate([np.zeros(0), *rooms])
+
+    def _room_slopes(self, point: Array) -> Array:
+        found = self._evaluated(point)
+        rows = [-found.gradient(one.figure, one.torques).reshape(-1, point.size) / one.highest for one in self._limits]
+        return np.asarray(self._range * np.concatenate(rows))
+
+    def _violation(self, point: Array) -> float:
+        """Sum of the squares by which limits are exceeded."""
+        return float((np.minimum(self._room(point), 0.0) ** 2).sum())
+
+    def _violation_slope(self, point: Array) -> Array:
+        return np.asarray(2.0 * np.minimum(self._room(point), 0.0) @ self._room_slopes(point))
+
+
+def _searched(model: DesignModel, objective: Objective, limits: Sequence[Limit], point: Array) -> list[Trial]:
+    """A search in whatever process this is called."""
+    with one_thread():
+        return _Search(model, objective, limits).from_point(point)
+
+
+def _limits(model: DesignModel, limits: Limits) -> list[Limit]:
+    """Checked limits; every problem at once."""
+    problems, found = [], []
+    for figure, given in limits.items():
+        if figure not in FIGURES:
+            problems.append(f"limits: {figure!r:.60} is no figure; allowed {', '.join(FIGURES)}")
+            continue
+        by_torque = given if isinstance(given, Mapping) else {None: given}
+        for torque, highest in by_torque.items():
+            chosen = tuple(np.flatnonzero(True if torque is None else np.isclose(model.torques, torque)).tolist())
+            chosen = tuple(range(model.torques.size)) if torque is None else chosen
+            if not chosen:
+                told = ", ".join(f"{one:g}" for one in model.torques)
+                problems.append(f"limits: {figure}: {torque!r:.40} N mm is no torque of the model; allowed {told}")
+            elif not (is_finite(highest) and highest > 0.0):
+                problems.append(f"limits: {figure}: {highest!r:.60}; allowed a finite number above 0")
+            else:
+                found.append(Limit(figure, chosen, float(highest)))
+    if problems:
+        raise InputError(problems)
+    return found
+
+
+def _told_unmet(model: DesignModel, limits: Sequence[Limit], x: Array) -> list[str]:
+    """The limits that the best design found exceeds, and by how much."""
+    found, told = model.evaluate(x), []
+    place = ", ".join(f"{key} = {value:.4g}" for key, value in zip(model.keys, x.tolist(), strict=True))
+    for one in limits:
+        largest = float(found.figure(one.figure, one.torques).max())
+        if largest > (1.0 + KEPT) * one.highest:
+            part = 100.0 * (largest / one.highest - 1.0)
+            told.append(
+                f"limits: {one.figure}: no design found meets {one.highest:g}; at the best one it is {largest:.4g}, "
+                f"{part:.2g} % more ({place})"
+            )
+    return told
