@@ -16,20 +16,26 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
+from warnings import catch_warnings, simplefilter
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from loaded_tca.analysis import analyse
 from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError, InputError, require
-from loaded_tca.results import MeshCycle
-from loaded_tca.results.files import FilePath, read_dataset, variables_of, write_dataset
-from loaded_tca.results.key_figures import mean_over_a_pitch
+from loaded_tca.results.files import FilePath, Part, read_dataset, variables_of, write_dataset
 from loaded_tca.scene import Scene
-from loaded_tca.studies.design_model import FIGURES, DesignModel, Evaluation
+from loaded_tca.studies.design_model import (
+    FIGURES,
+    OF_ERRORS,
+    SMOOTHING,
+    DesignModel,
+    Evaluation,
+    beside_ends,
+    pressure_norm,
+)
 from loaded_tca.studies.run import accuracy_warnings
 from loaded_tca.studies.study import is_finite
 from loaded_tca.threads import one_thread
@@ -84,6 +90,13 @@ class Objective:
             (0.0 <= self.percentile <= 100.0, f"percentile: {self.percentile}; allowed 0 to 100"),
         )
 
+    @property
+    def told(self) -> str:
+        """In words."""
+        if self.kind == "percentile":
+            return f"percentile {self.percentile:g}"
+        return self.kind if self.kind == "mean" else f"mean + {self.k:g} sigma"
+
     def of(self, figures: Array) -> tuple[float, Array]:
         """Value of figures (sample, torque), and its derivatives to them."""
         values = figures.mean(axis=1)
@@ -119,8 +132,8 @@ class DesignResult:
     ----------
     dataset : xarray.Dataset
         Over ``design`` ("start", "optimum"), sample, torque, position and key: ``value`` of the keys, analysed
-        ``transmission_error`` [rad], ``peak_pressure`` [MPa], ``load_share`` and ``FIGURES``; those on held contacts as
-        ``held_...``; ``history_value``, ``history_objective`` and ``history_excess`` over the evaluations.
+        ``transmission_error`` [rad], ``peak_pressure`` [MPa], load factors and ``FIGURES``; those on held contacts as
+        ``held_...``; ``history_x``, ``history_objective`` and ``history_excess`` over the evaluations.
     """
 
     dataset: xarray.Dataset
@@ -378,3 +391,144 @@ def _told_unmet(model: DesignModel, limits: Sequence[Limit], x: Array) -> list[s
                 f"{part:.2g} % more ({place})"
             )
     return told
+
+
+def robustness(
+    model: DesignModel,
+    designs: Mapping[str, Mapping[str, float]],
+    multiples: Sequence[float],
+    objective: Objective = Objective(),
+) -> xarray.Dataset:
+    """Objective of designs over a multiple of the scatter, on held contacts.
+
+    Parameters
+    ----------
+    model : DesignModel
+        With a scatter.
+    designs : mapping of str to mapping
+        Name -> values of the keys.
+    multiples : sequence of float
+        By which the samples deviate farther than in the model; 0: no scatter.
+    objective : Objective
+
+    Returns
+    -------
+    xarray.Dataset
+        ``objective`` over design and multiple.
+    """
+    import xarray
+
+    require((bool(model.scatter), "model: without scatter, of which there are multiples"))
+    values = [model.values(one) for one in designs.values()]
+    found = np.empty((len(designs), len(multiples)))
+    for column, multiple in enumerate(multiples):
+        scaled = model.with_scatter(multiple)
+        found[:, column] = [objective.of(scaled.evaluate(x).figure(objective.figure))[0] for x in values]
+    coordinates = {"design": [*designs], "multiple": np.asarray(multiples, dtype=float)}
+    return xarray.Dataset({"objective": (("design", "multiple"), found)}, coordinates)
+
+
+def _analysed(scene: Scene) -> dict[str, Any]:
+    """What is kept of the analysis of a scene, over its torques; in whatever process this is called."""
+    with one_thread(), accuracy_warnings() as told:
+        result = analyse(scene)
+    with np.errstate(all="ignore"), catch_warnings():
+        simplefilter("ignore", RuntimeWarning)  # all NaN where nothing is in contact
+        peak = np.nanmax(result.peak_pressure, axis=2)
+    errors = 1e3 * result.wheel_base_radius * result.transmission_error[:, :-1]
+    found = {
+        "transmission_error": result.transmission_error,
+        "peak_pressure": peak,
+        "face_load_factor": result.face_load_factor,
+        "transverse_load_factor": result.transverse_load_factor,
+        "warnings": [*dict.fromkeys(told)],
+    }
+    found |= {name: np.array([of(row, SMOOTHING)[0] for row in errors]) for name, of in OF_ERRORS.items()}
+    for name, at_edges in (("pressure_MPa", False), ("edge_pressure_MPa", True)):
+        norms = []
+        for rows in result.maps:
+            maps = [[one for one in row if one is not None] for row in rows[:-1]]
+            kept = [[np.where(beside_ends(one.gap) == at_edges, one.pressure, 0.0) for one in row] for row in maps]
+            norms.append(pressure_norm(kept, [[one.spacing[0] * one.spacing[1] for one in row] for row in maps]))
+        found[name] = np.array(norms)
+    return found
+
+
+def _analysed_result(
+    model: DesignModel, objective: Objective, history: Sequence[Trial], x: Array, executor: Executor | None
+) -> DesignResult:
+    """The result of a search, with the full analyses of start and optimum."""
+    import xarray
+
+    designs = (model.start, x)
+    scenes = [scene for design in designs for scene in model.scenes(design)]
+    found = [*(map if executor is None else executor.map)(_analysed, scenes)]
+    lines = dict.fromkeys(line for one in found for line in one.pop("warnings"))
+    shape = len(designs), len(model.deviations)
+    arrays = {name: np.array([one[name] for one in found]).reshape(*shape, *found[0][name].shape) for name in found[0]}
+    held = [model.evaluate(design) for design in designs]
+    arrays |= {f"held_{name}": np.array([one.figure(name) for one in held]) for name in FIGURES}
+    arrays["held_transmission_error"] = np.array([one.transmission_error for one in held])
+    for prefix in ("", "held_"):
+        arrays[f"{prefix}objective"] = np.array([objective.of(one)[0] for one in arrays[prefix + objective.figure]])
+    arrays |= {"value": np.array(designs), "scatter": np.array([[*one.values()] for one in model.deviations])}
+    arrays |= {f"history_{name}": np.array([getattr(one, name) for one in history]) for name in Trial._fields}
+    coordinates = {
+        "design": ["start", "optimum"],
+        "key": [*model.keys],
+        "torque": ("torque", model.torques, {"units": "N mm"}),
+        **({"scatter_key": [*model.scatter]} if model.scatter else {}),
+    }
+    attributes = {"kind": KIND, "scene_toml": model.scene.to_toml(), "warnings": "\n".join(lines)}
+    attributes |= {"objective": objective.told, "figure": objective.figure}
+    return DesignResult(xarray.Dataset(variables_of(PARTS, arrays), coordinates, attributes))
+
+
+def _require_confirmed(result: DesignResult, limits: Sequence[Limit]) -> None:
+    """ConvergenceError if the full analysis does not show what the held contacts do."""
+    (start, optimum), (held_start, held_optimum) = result.objective, result.held_objective
+    problems, gain, held_gain = [], start - optimum, held_start - held_optimum
+    if gain < held_gain * (CONFIRMED if held_gain > 0.0 else 1.0 / CONFIRMED):
+        problems.append(
+            f"the objective goes from {held_start:.4g} to {held_optimum:.4g} on held contacts, but from {start:.4g} to "
+            f"{optimum:.4g} by the analysis"
+        )
+    for one in limits:
+        if one.figure != "edge_pressure_MPa":  # a number of the grid where edges are sharp
+            largest = float(result.dataset[one.figure].sel(design="optimum").values[:, one.torques].max())
+            if largest > (1.0 + LIMITS_CONFIRMED) * one.highest:
+                problems.append(f"{one.figure} is {largest:.4g} by the analysis, its limit {one.highest:g}")
+    if problems:
+        told = "; ".join(problems)
+        raise ConvergenceError(f"design: not confirmed: {told}; try more cells of the model", last=result)
+
+
+ANALYSED = "design", "sample", "torque", "position"
+FIGURE_TEXTS = {
+    "span_um": ("um", "peak-to-peak loaded transmission error at the wheel's base circle"),
+    "smooth_span_um": ("um", "the same with smooth maxima"),
+    "mean_transmission_error_um": ("um", "mean loaded transmission error at the wheel's base circle"),
+    "pressure_MPa": ("MPa", "norm of the pressure away from the ends of the flanks"),
+    "edge_pressure_MPa": ("MPa", "norm of the pressure beside the ends of the flanks"),
+    "face_load_factor": ("1", "K_Hbeta"),
+}
+PARTS: dict[str, Part] = {
+    "value": (("design", "key"), "1", "value of the key, in the unit at the end of its name"),
+    "scatter": (("sample", "scatter_key"), "1", "value of the key, or its deviation from that of the design"),
+    "transmission_error": (ANALYSED, "rad", "loaded transmission error"),
+    "peak_pressure": (ANALYSED, "MPa", "largest peak pressure of the tooth pairs"),
+    "transverse_load_factor": (ANALYSED[:3], "1", "K_Halpha"),
+    **{name: (ANALYSED[:3], *told) for name, told in FIGURE_TEXTS.items()},
+    "objective": (ANALYSED[:1], "", "what was minimised, by the full analysis"),
+    "held_transmission_error": (
+        (*ANALYSED[:3], "held_position"),
+        "rad",
+        "loaded transmission error on held contacts, without the last position, the first one of the next pitch",
+    ),
+    **{f"held_{name}": (ANALYSED[:3], unit, f"{told}, on held contacts") for name, (unit, told) in FIGURE_TEXTS.items()},
+    "held_objective": (ANALYSED[:1], "", "what was minimised, on held contacts"),
+    "history_x": (("evaluation", "key"), "1", "value of the key"),
+    "history_objective": (("evaluation",), "", "objective on held contacts"),
+    "history_excess": (("evaluation",), "1", "part by which a figure exceeds its limit; negative within all limits"),
+}
+"""What the dataset of a result holds."""

@@ -15,12 +15,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.ndimage import binary_dilation
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.compliance import require_teeth, tooth_compliance, way_out_told
 from loaded_tca.errors import InputError, require
 from loaded_tca.loaded.cycle import farthest_apart
@@ -42,7 +43,6 @@ SMOOTHING = 0.01
 EXPONENT = 12
 TOLERANCE = 1e-6
 """Of contacts and of the balance of the tooth pairs, relative."""
-TINY = 1e-300
 FEWEST_POSITIONS = 4
 State = tuple[int, int, int]
 """Sample, torque, position."""
@@ -67,10 +67,14 @@ class DesignModel:
         Of the scatter; as of :class:`Study`.
     seed : int
         Of the samples.
+    multiple : float
+        Samples deviate so many times as far from the medians of their distributions.
     cells : (int, int), optional
         Of every contact across and along; default: ``analysis.cells``, or 24 and 40.
     smoothing : float [um]
         tau of the smooth span.
+    tolerance : float
+        Of contacts and of the balance of the tooth pairs, relative.
 
     Raises
     ------
@@ -89,25 +93,44 @@ class DesignModel:
         *,
         samples: int = 8,
         seed: int = 0,
+        multiple: float = 1.0,
         cells: tuple[int, int] | None = None,
         smoothing: float = SMOOTHING,
         tolerance: float = TOLERANCE,
     ) -> None:
         self.scene, self.variables, self.scatter = scene, dict(variables), dict(scatter or {})
         self.torques = np.asarray(scene.torques if torques is None else torques, dtype=float)
-        self.samples, self.seed, self.smoothing, self.tolerance = samples, seed, smoothing, tolerance
+        self.samples, self.seed, self.multiple = samples, seed, multiple
+        self.smoothing, self.tolerance = smoothing, tolerance
         given = scene.analysis.cells
         self.cells = tuple(cells or given or CELLS)
         self._check()
         self.start = np.array([float(value_at(scene, key)) for key in self.keys])
         study = Study(scene, distributions=self.scatter, samples=samples, seed=seed) if self.scatter else None
-        self.deviations = [{}] if study is None else [study.changes(sample) for sample in range(len(study))]
+        self.deviations: list[dict[str, float]] = [{}]
+        if study is not None:
+            medians = {key: float(distribution.ppf(0.5)) for key, distribution in self.scatter.items()}
+            self.deviations = [
+                {key: medians[key] + multiple * (by - medians[key]) for key, by in study.changes(sample).items()}
+                for sample in range(len(study))
+            ]
         self.own_deviations = [np.array([one.get(key, 0.0) for key in self.keys]) for one in self.deviations]
         self.held = [self._sample(*one) for one in zip(self.deviations, self.own_deviations, strict=True)]
         pair = self.held[0].pair
         self.driving, self.micrometres = pair.driving, 1e3 * pair.base_radii[1]
         faces = [common_face(one.pair, one.mesh.leading_contact) for one in self.held]
         self.strips = [np.linspace(*face, STRIPS + 1) for face in faces]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Made anew by pickle, for other processes: held contacts are large, and quickly made."""
+        given = self.scene, self.variables, self.scatter, self.torques
+        options = "samples", "seed", "multiple", "cells", "smoothing", "tolerance"
+        return _made, (given, {name: getattr(self, name) for name in options})
+
+    def with_scatter(self, multiple: float) -> DesignModel:
+        """The model with samples that deviate so many times as far from the medians of their distributions."""
+        make, (given, options) = self.__reduce__()
+        return make(given, {**options, "multiple": multiple})  # type: ignore[no-any-return]
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -233,6 +256,10 @@ def _within(bounds: tuple[str, tuple[float, float]], value: float) -> tuple[bool
     return low <= value <= high, f"{key}: {value:g}; allowed {low:g} to {high:g}"
 
 
+def _made(given: tuple[Any, ...], options: dict[str, Any]) -> DesignModel:
+    return DesignModel(*given, **options)
+
+
 class Evaluation:
     """Figures of a design and their gradients, found when they are asked for.
 
@@ -314,19 +341,17 @@ class Evaluation:
 
     def _pressure(self, s: int, t: int, *, at_edges: bool) -> tuple[float, Sequence[Array]]:
         """Norm of the pressure of the cells beside an end of a flank, or of all others."""
-        count = self.model.positions
-        total, pressures = 0.0, []
-        for n in range(count):
-            own = [np.zeros(0)]
-            for grid in self._grids[s, t, n]:
-                beyond = np.pad(np.isinf(grid.separation.gap), 1, constant_values=True)
-                beside = binary_dilation(beyond, np.ones((3, 3), dtype=bool))[1:-1, 1:-1]
-                pressure = np.where(beside == at_edges, grid.pressure, 0.0)
-                total += float((pressure**EXPONENT).sum()) * grid.problem.cell_area / count
-                own.append(pressure[grid.active])
-            pressures.append(np.concatenate(own))
-        norm = total ** (1.0 / EXPONENT)
-        return norm, [(own / max(norm, TINY)) ** (EXPONENT - 1) / count for own in pressures]
+        pressures = [
+            [np.where(beside_ends(one.separation.gap) == at_edges, one.pressure, 0.0) for one in self._grids[s, t, n]]
+            for n in range(self.model.positions)
+        ]
+        areas = [[one.problem.cell_area for one in self._grids[s, t, n]] for n in range(self.model.positions)]
+        norm, slopes = pressure_norm(pressures, areas), []
+        for n, own in enumerate(pressures):
+            active = [one[grid.active] for one, grid in zip(own, self._grids[s, t, n], strict=True)]
+            relative = np.concatenate([np.zeros(0), *active]) / (norm or 1.0)
+            slopes.append(relative ** (EXPONENT - 1) / self.model.positions)
+        return norm, slopes
 
     def _face_load_factor(self, s: int, t: int) -> tuple[float, Sequence[Array]]:
         """Largest force of a strip of the face over the mean; the strip with the largest one is held in derivatives."""
@@ -342,6 +367,18 @@ class Evaluation:
         top, mean = int(forces.argmax()), float(forces.mean())
         factor = float(forces[top]) / mean
         return factor, [(parts[top] - factor / STRIPS) / mean for parts in shares]
+
+
+def beside_ends(gap: Array) -> Mask:
+    """Cells of a gap (nx, ny) with the end of a flank, or of the grid, beside them."""
+    beyond = np.pad(np.isinf(gap), 1, constant_values=True)
+    return np.asarray(binary_dilation(beyond, np.ones((3, 3), dtype=bool))[1:-1, 1:-1])
+
+
+def pressure_norm(pressures: Sequence[Sequence[Array]], areas: Sequence[Sequence[float]]) -> float:
+    """Norm [MPa] of pressures by position and contact, on cells of such areas [mm^2]; see the module."""
+    sums = [area * float((one**EXPONENT).sum()) for row in zip(pressures, areas, strict=True) for one, area in zip(*row, strict=True)]
+    return float((sum(sums) / len(pressures)) ** (1.0 / EXPONENT))
 
 
 def span(errors: Array, _: float) -> tuple[float, Array]:
