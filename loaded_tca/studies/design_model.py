@@ -60,7 +60,7 @@ class DesignModel:
         highest value, between which that of the scene lies.
     scatter : mapping of str to frozen distribution of ``scipy.stats``, optional
         Keys of mounting errors -> their distributions; of keys of flanks -> the distributions of what they deviate by
-        from the value of the design.
+        from the value of the design. Or to given values, all equally many, each of them a sample.
     torques : sequence of float, optional [N mm]
         Of the pinion; default: those of the scene.
     samples : int
@@ -88,7 +88,7 @@ class DesignModel:
         self,
         scene: Scene,
         variables: Mapping[str, tuple[float, float]],
-        scatter: Mapping[str, Distribution] | None = None,
+        scatter: Mapping[str, Distribution | Sequence[float]] | None = None,
         torques: Sequence[float] | None = None,
         *,
         samples: int = 8,
@@ -106,14 +106,7 @@ class DesignModel:
         self.cells = tuple(cells or given or CELLS)
         self._check()
         self.start = np.array([float(value_at(scene, key)) for key in self.keys])
-        study = Study(scene, distributions=self.scatter, samples=samples, seed=seed) if self.scatter else None
-        self.deviations: list[dict[str, float]] = [{}]
-        if study is not None:
-            medians = {key: float(distribution.ppf(0.5)) for key, distribution in self.scatter.items()}
-            self.deviations = [
-                {key: medians[key] + multiple * (by - medians[key]) for key, by in study.changes(sample).items()}
-                for sample in range(len(study))
-            ]
+        self.deviations = self._samples()
         self.own_deviations = [np.array([one.get(key, 0.0) for key in self.keys]) for one in self.deviations]
         self.held = [self._sample(*one) for one in zip(self.deviations, self.own_deviations, strict=True)]
         pair = self.held[0].pair
@@ -193,6 +186,22 @@ class DesignModel:
             found = found_together(self.held[0].pair, order)
             if sum(one.grown for one in self.held) == grown:  # else some were solved on grids that are held no more
                 return Evaluation(self, values, tuple(found))
+
+    def _samples(self) -> list[dict[str, float]]:
+        """What the keys of the scatter have, or deviate by, in each sample."""
+        if not self.scatter:
+            return [{}]
+        given = {key: one for key, one in self.scatter.items() if not hasattr(one, "ppf")}
+        drawn: dict[str, Any] = {key: one for key, one in self.scatter.items() if key not in given}
+        require((not given or not drawn, "scatter: distributions and given values; allowed one or the other"))
+        if given:
+            study = Study(self.scene, table=given)
+            medians = {key: float(np.median(column)) for key, column in study.table.items()}
+        else:
+            study = Study(self.scene, distributions=drawn, samples=self.samples, seed=self.seed)
+            medians = {key: float(one.ppf(0.5)) for key, one in drawn.items()}
+        samples = (study.changes(sample) for sample in range(len(study)))
+        return [{key: medians[key] + self.multiple * (by - medians[key]) for key, by in one.items()} for one in samples]
 
     @property
     def positions(self) -> int:
