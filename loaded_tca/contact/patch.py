@@ -7,7 +7,7 @@ an ellipse it is a quadratic.
 import numpy as np
 from numpy.typing import NDArray
 
-from loaded_tca.arrays import Array, Mask
+from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.contact.levels import continue_outside, split, window_around
 
 # The fit is that of a quadratic if it leaves this part of the squared peak unexplained (root mean square);
@@ -28,23 +28,40 @@ def peak_pressure(pressure: Array) -> float:
     largest = float(pressure.max())
     if largest == 0.0:
         return 0.0
-    square, x, y = _upper_part(pressure / largest)
+    part = pressure / largest
+    return largest * float(np.sqrt((peak_weights(part) * part**2).sum()))
+
+
+def peak_weights(pressure: Array) -> Array:
+    """Weights w (nx, ny) of the cells in the square of the peak pressure, which is the sum of w p^2.
+
+    The peak does not change with the place of the top, where its quadratic is level: its derivative by the pressures is
+    w p over the peak, as long as the cells of the fit stay the same.
+    """
+    largest, weights = float(pressure.max()), np.zeros(pressure.shape)
+    weights[np.unravel_index(int(pressure.argmax()), pressure.shape)] = 1.0
+    if largest == 0.0:
+        return weights
+    square, x, y, cells = _upper_part(pressure / largest)
     if square.size < FEWEST:
-        return largest
+        return weights
     terms = np.stack((np.ones_like(x), x, y, 0.5 * x * x, x * y, 0.5 * y * y))
     # Not by BLAS: its threads wait for each other on a busy machine.
     scales, modes = np.linalg.eigh(np.einsum("ik,jk->ij", terms, terms))
     if scales[0] <= RANK * scales[-1]:
-        return largest
+        return weights
     fitted = modes @ (modes.T @ np.einsum("ik,k->i", terms, square) / scales)
     misfit = float(np.sqrt(np.mean((np.einsum("i,ik->k", fitted, terms) - square) ** 2)))
     hessian = np.array([[fitted[3], fitted[4]], [fitted[4], fitted[5]]])
     if misfit > GOOD_FIT or np.linalg.eigvalsh(hessian)[1] >= 0.0:
-        return largest
-    top = -np.linalg.solve(hessian, fitted[1:3])
-    if np.abs(top).max() > 1.0:
-        return largest
-    return largest * float(np.sqrt(fitted[0] + 0.5 * fitted[1:3] @ top))
+        return weights
+    x_top, y_top = -np.linalg.solve(hessian, fitted[1:3])
+    if max(abs(x_top), abs(y_top)) > 1.0:
+        return weights
+    at_top = np.array([1.0, x_top, y_top, 0.5 * x_top**2, x_top * y_top, 0.5 * y_top**2])
+    weights[:] = 0.0
+    weights[cells] = np.einsum("i,ik->k", modes @ (modes.T @ at_top / scales), terms)
+    return weights
 
 
 def area_and_semi_axes(pressure: Array, spacing: tuple[float, float]) -> tuple[float, float, float]:
@@ -65,20 +82,25 @@ def area_and_semi_axes(pressure: Array, spacing: tuple[float, float]) -> tuple[f
     return float(cells) * width * length, float(minor), float(major)
 
 
-def _upper_part(pressure: Array) -> tuple[Array, Array, Array]:
-    """Square of the pressures above a half, and their places, both axes scaled to -1 ... 1; thinned if many."""
+def _upper_part(pressure: Array) -> tuple[Array, Array, Array, tuple[Indices, Indices]]:
+    """Square of the pressures above a half, their places, both axes scaled to -1 ... 1, and cells; thinned if many."""
     high = pressure > 0.5
     rows, columns = np.flatnonzero(high.any(axis=1)), np.flatnonzero(high.any(axis=0))
     rows, columns = (index[:: -(-index.size // SAMPLES)] for index in (rows, columns))
-    part = pressure[rows][:, columns]
-    row, column = np.nonzero(part > 0.5)
-    return part[row, column] ** 2, _centred(rows)[row], _centred(columns)[column]
+    row, column = np.nonzero(high[rows][:, columns])
+    cells = rows[row], columns[column]
+    return pressure[cells] ** 2, _centred(rows)[row], _centred(columns)[column], cells
 
 
 def _centred(index: NDArray[np.intp]) -> Array:
     """Positions scaled to -1 ... 1."""
     low, high = int(index[0]), int(index[-1])
     return np.asarray((2.0 * index - (low + high)) / max(1, high - low), dtype=np.float64)
+
+
+def reaches_border(pressure: Array) -> bool:
+    """Whether the outermost cells of the grid carry pressure."""
+    return any(bool(border.any()) for border in (pressure[0], pressure[-1], pressure[:, 0], pressure[:, -1]))
 
 
 def ends_at_material(pressure: Array, void: Mask) -> bool:

@@ -157,8 +157,7 @@ class ContactSolution:
     @cached_property
     def reaches_border(self) -> bool:
         """Whether the outermost cells of the grid carry pressure: the grid, not the bodies, bounds the contact."""
-        pressure = self.pressure
-        return any(bool(border.any()) for border in (pressure[0], pressure[-1], pressure[:, 0], pressure[:, -1]))
+        return patch.reaches_border(self.pressure)
 
     @cached_property
     def reaches_material_edge(self) -> bool:

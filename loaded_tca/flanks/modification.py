@@ -18,7 +18,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array, real
 from loaded_tca.errors import AccuracyWarning, InputError
-from loaded_tca.flanks.base import DerivedFlank, Flank
+from loaded_tca.flanks.base import DerivedFlank, Flank, unmodified
 from loaded_tca.flanks.jet import Jet
 
 Shape = Callable[[Any], tuple[Any, Any, Any]]
@@ -458,3 +458,26 @@ def modified(
             message = f"{owner}.{name}: {amount:.6g} mm is more than {LARGEST_AMOUNT:g} mm; is its unit right?"
             warnings.warn(message, AccuracyWarning, stacklevel=2)
     return flank
+
+
+def removal_change(below: Flank, above: Flank, rho: Array, z: Array) -> Array:
+    """Material that ``above`` removes more than ``below`` [mm], two flanks that differ in their modifications alone.
+
+    Only terms that differ are computed, so that a small difference of two values is exact to rounding.
+
+    Parameters
+    ----------
+    below, above : Flank
+    rho, z : (...) array [mm]
+
+    Returns
+    -------
+    (...) array [mm]
+    """
+    less, more = (flank.terms if isinstance(flank, ModifiedFlank) else () for flank in (below, above))
+    total = np.zeros(np.broadcast(rho, z).shape)
+    for sign, own, other in ((1.0, more, less), (-1.0, less, more)):
+        for term in own:
+            if term not in other:
+                total += sign * term.removal(unmodified(below), rho, z, None).value
+    return total

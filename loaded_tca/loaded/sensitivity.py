@@ -1,7 +1,7 @@
-r"""How the contact of all tooth pairs of a position answers to small changes of their gaps and of the torque.
+r"""How the contact of all tooth pairs answers to small changes of their gaps and of the torque.
 
-The forces f [N] of the *active* cells, under pressure and below the cap, and the rotation Lambda = -driving TE [rad]
-fulfil
+The forces f [N] of the *active* cells of a state, under pressure and below the cap, and the rotation
+Lambda = -driving TE [rad] fulfil
 
 .. math:: K f + h - l_2 \Lambda = 0, \qquad l_1 \cdot f = T,
 
@@ -26,37 +26,32 @@ Bonnans & Shapiro 2000, Perturbation Analysis of Optimization Problems, chapter 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
+from itertools import combinations, groupby
 
 import numpy as np
-from scipy.sparse.linalg import LinearOperator, cg
+from scipy.sparse import csr_array
 
-from loaded_tca.arrays import Array, Mask
+from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.contact import ContactProblem
 from loaded_tca.contact.convolution import Preconditioner
 from loaded_tca.contact.grid import Grids
-from loaded_tca.contact.levels import window_around
-from loaded_tca.errors import ConvergenceError, InputError
-from loaded_tca.loaded.free_edges import edge_compliances
+from loaded_tca.errors import ConvergenceError
 from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.tooth_contact import LoadedContact
-from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
-from loaded_tca.separation.gap_change import GapChange
 from loaded_tca.unloaded import ContactPoint
 
 TOLERANCE = 1e-10
 """Of the linear systems, relative: the derivatives are exact to 1e-8."""
 MOST_ITERATIONS = 500
-PART_OF_A_CELL = 0.5
-"""By which a grid is moved either way to see how the compliance of its slices changes."""
 
 
 @dataclass(frozen=True, eq=False)
 class LoadedGrid:
-    """What the tangent of a position needs of one tooth pair under load.
+    """What the tangent of a state needs of one tooth pair under load.
 
     Attributes
     ----------
@@ -87,24 +82,35 @@ class LoadedGrid:
         return np.asarray((self.pressure > 0.0) & (self.pressure < self.problem.cap))
 
 
-class Tangent:
-    """Linear answer of the tooth pairs of one position to changes of their gaps and of the torque.
+class Tangents:
+    """Linear answers of many states, each the tooth pairs of a position under a torque, found together.
 
-    Vectors have the active cells of all grids in one row, (n,); :meth:`gathered` makes them of grids.
+    Vectors have the active cells of all grids, state by state, in one row (n,).
 
     Parameters
     ----------
-    grids : sequence of LoadedGrid
-        Of the pairs that carry load.
+    states : sequence of sequences of LoadedGrid
+        Of each state the pairs that carry load; each grid has an active cell.
     bending : BendingModel, optional
-        That the pairs displace each other by; default: they do not.
+        That the pairs of a state displace each other by; default: they do not.
     tolerance : float
         Of the linear systems, relative.
 
     Attributes
     ----------
-    stiffness : float [N mm/rad]
-        c, the tangent dT/d rotation; zero without an active cell.
+    grids : tuple of LoadedGrid
+        Of all states.
+    state : (grids,) int array
+        That each belongs to.
+    ends : (grids,) int array
+        Cell after the last one of each grid.
+    grid : (n,) int array
+        That each cell belongs to.
+    pinion_levers, wheel_levers : (n,) array [mm]
+    by_rotation, weights : (n,) array [N/rad]
+        u and v: v/c is the rotation by a unit of material removed at a cell, where it counts and how much.
+    stiffness : (states,) array [N mm/rad]
+        c, the tangent dT/d rotation.
 
     Raises
     ------
@@ -113,52 +119,62 @@ class Tangent:
     """
 
     def __init__(
-        self, grids: Sequence[LoadedGrid], bending: BendingModel | None = None, tolerance: float = TOLERANCE
+        self, states: Sequence[Sequence[LoadedGrid]], bending: BendingModel | None = None, tolerance: float = TOLERANCE
     ) -> None:
         self._tolerance = tolerance
-        self.grids = [grid for grid in grids if grid.active.any()]
-        self._blocks = [_Block(grid) for grid in self.grids]
-        sizes = [block.size for block in self._blocks]
-        self.parts = [slice(end - size, end) for size, end in zip(sizes, np.cumsum(sizes).tolist(), strict=True)]
-        self._size = sum(sizes)
-        self._coupling = {
-            (i, j): bending.between((one.number, one.separation), (two.number, two.separation))
-            for i, one in enumerate(self.grids)
-            for j, two in enumerate(self.grids[:i])
-            if bending is not None
-        }
+        self.grids = tuple(grid for state in states for grid in state)
+        self.state = np.repeat(np.arange(len(states)), [len(state) for state in states])
+        sizes = [np.count_nonzero(grid.active) for grid in self.grids]
+        self.ends, self.grid = np.cumsum(sizes), np.repeat(np.arange(len(self.grids)), sizes)
+        slices = [grid.active.shape[1] for grid in self.grids]
+        columns = np.concatenate([grid.active.nonzero()[1] for grid in self.grids])
+        self._slice, self._slices = columns + (np.cumsum(slices) - slices)[self.grid], sum(slices)
+        self._blocks = [_Block.of(alike) for alike in _alike(self.grids, self.ends)]
+        self._coupling = None if bending is None else _coupling(states, bending)
         levers = [(grid.contact.pinion_lever, grid.contact.wheel_lever) for grid in self.grids]
-        self.pinion_levers, self.wheel_levers = np.repeat(np.array(levers).reshape(-1, 2).T, sizes, axis=1)
-        ratio = self.pinion_levers / self.wheel_levers
+        self.pinion_levers, self.wheel_levers = np.array(levers).reshape(-1, 2).T[:, self.grid]
         self.by_rotation = self.solved(self.wheel_levers)
-        parallel = ratio.size > 0 and bool(np.ptp(ratio) <= TOLERANCE * ratio[0])
-        self.weights = ratio[0] * self.by_rotation if parallel else self.solved(self.pinion_levers)
-        self.stiffness = float(self.pinion_levers @ self.by_rotation)
+        # on parallel axes both levers have one ratio, but for the slopes of modifications: nothing is left to solve
+        self.weights = self.solved(self.pinion_levers, self.pinion_levers / self.wheel_levers * self.by_rotation)
+        self.stiffness = self.summed(self.pinion_levers * self.by_rotation)
 
-    def gathered(self, values: Sequence[Array]) -> Array:
+    def gathered(self, values: Iterable[Array]) -> Array:
         """Values (..., nx, ny) of each grid at the active cells, in one row (..., n)."""
         return np.concatenate([one[..., grid.active] for one, grid in zip(values, self.grids, strict=True)], axis=-1)
 
-    def rotation_change(self, gaps: Array, torque: Array | float = 0.0) -> Array:
-        """DLambda [rad] by changes (..., n) of the gaps [mm] and (...) of the torque [N mm]."""
-        return np.asarray((gaps @ self.weights + torque) / self.stiffness)
+    def summed(self, values: Array) -> Array:
+        """Sums (..., states) over the cells (..., n) of each state."""
+        return np.add.reduceat(values, self._first, axis=-1)
+
+    @cached_property
+    def _first(self) -> Indices:
+        """First cell of each state."""
+        return np.searchsorted(self.state[self.grid], np.arange(self.state[-1] + 1))
+
+    def spread(self, values: Array) -> Array:
+        """Numbers (..., states) at the cells (..., n) of each state."""
+        return values[..., self.state[self.grid]]
+
+    def rotation_change(self, gaps: Array, torques: Array | float = 0.0) -> Array:
+        """DLambda (..., states) [rad] by changes (..., n) of the gaps [mm] and (..., states) of the torques [N mm]."""
+        return np.asarray((self.summed(gaps * self.weights) + torques) / self.stiffness)
 
     @property
-    def rotation_by_torque(self) -> float:
-        """DLambda/dT [rad/(N mm)]."""
-        return 1.0 / self.stiffness
+    def rotation_by_torque(self) -> Array:
+        """DLambda/dT (states,) [rad/(N mm)]."""
+        return np.asarray(1.0 / self.stiffness)
 
     def force_change(self, gaps: Array) -> Array:
-        """Changes (n,) of the forces [N] by a change (n,) of the gaps [mm], under the same torque."""
-        return np.asarray(self.by_rotation * self.rotation_change(gaps) - self.solved(gaps))
+        """Changes (n,) of the forces [N] by a change (n,) of the gaps [mm], under the same torques."""
+        return np.asarray(self.by_rotation * self.spread(self.rotation_change(gaps)) - self.solved(gaps))
 
     @property
     def force_by_torque(self) -> Array:
-        """df/dT (n,) [1/mm]: where material that is removed counts, and how much."""
-        return np.asarray(self.by_rotation / self.stiffness)
+        """df/dT (n,) [1/mm]."""
+        return np.asarray(self.by_rotation / self.spread(self.stiffness))
 
-    def functional_change(self, slopes: Array, gaps: Array, torque: Array | float = 0.0) -> tuple[Array, float]:
-        """Changes (...) of a number J(f), and its derivative by the torque.
+    def functional_change(self, slopes: Array, gaps: Array, torques: Array | float = 0.0) -> Array:
+        """Changes (..., states) of a number J(f) of each state.
 
         Parameters
         ----------
@@ -166,169 +182,115 @@ class Tangent:
             dJ/df at the active cells, per N.
         gaps : (..., n) array [mm]
             Changes of the gaps.
-        torque : (...) array [N mm]
-            Changes of the torque beside them.
+        torques : (..., states) array [N mm]
+            Changes of the torques beside them.
         """
-        by_torque = float(slopes @ self.force_by_torque)
-        return by_torque * (gaps @ self.weights + torque) - gaps @ self.solved(slopes), by_torque
+        by_torque = self.summed(slopes * self.force_by_torque)
+        answer = self.spread(by_torque) * self.weights - self.solved(slopes)
+        return np.asarray(self.summed(gaps * answer) + by_torque * torques)
 
     def displaced(self, forces: Array) -> Array:
         """K f (n,) [mm] of forces (n,) [N]."""
-        moved = np.empty(self._size)
-        for block, part in zip(self._blocks, self.parts, strict=True):
-            moved[part] = block.displaced(forces[part])
-        for (i, j), matrix in self._coupling.items():
-            one, two, at, under = self._blocks[i], self._blocks[j], self.parts[i], self.parts[j]
-            moved[at] += (matrix @ two.slice_forces(forces[under]))[one.columns]
-            moved[under] += (matrix.T @ one.slice_forces(forces[at]))[two.columns]
+        moved = np.empty(forces.size)
+        for block in self._blocks:
+            moved[block.cells] = block.displaced(forces[block.cells])
+        if self._coupling is not None:
+            moved += (self._coupling @ np.bincount(self._slice, forces, self._slices))[self._slice]
         return moved
 
-    def solved(self, displacement: Array) -> Array:
-        """Forces (n,) [N] that displace the active cells by as much [mm]: K^-1."""
-        if not displacement.any():
-            return np.zeros(self._size)
-        shape = self._size, self._size
-        found, failed = cg(
-            LinearOperator(shape, matvec=self.displaced, dtype=float),
-            displacement,
-            rtol=self._tolerance,
-            maxiter=MOST_ITERATIONS,
-            M=LinearOperator(shape, matvec=self._preconditioned, dtype=float),
+    def solved(self, displacement: Array, start: Array | None = None) -> Array:
+        """Forces (n,) [N] that displace the active cells by as much [mm]: K^-1, by conjugate gradients.
+
+        ``start``: forces to start from; default: none.
+        """
+        forces = np.zeros(displacement.size) if start is None else start
+        residual = displacement.copy() if start is None else displacement - self.displaced(start)
+        goal = self._tolerance**2 * self.summed(displacement**2)
+        direction, before = np.zeros(displacement.size), np.ones(goal.size)
+        for _ in range(MOST_ITERATIONS):
+            left = self.summed(residual**2) > goal
+            if not left.any():
+                return forces
+            better = self._preconditioned(residual)
+            product = self.summed(residual * better)
+            direction = better + self.spread(np.where(left, product / before, 0.0)) * direction
+            moved = self.displaced(direction)
+            step = np.divide(product, self.summed(direction * moved), out=np.zeros(goal.size), where=left)
+            forces = forces + self.spread(step) * direction
+            residual -= self.spread(step) * moved
+            before = np.where(left, product, 1.0)
+        raise ConvergenceError(
+            f"sensitivities: a linear system of {displacement.size} cells is not solved to {self._tolerance:.0e} in "
+            f"{MOST_ITERATIONS} iterations",
+            last=forces,
         )
-        if failed:
-            raise ConvergenceError(
-                f"sensitivities: a linear system of {self._size} cells is not solved to {self._tolerance:.0e} in "
-                f"{MOST_ITERATIONS} iterations",
-                last=found,
-            )
-        return np.asarray(found)
 
     def _preconditioned(self, residual: Array) -> Array:
-        found = np.empty(self._size)
-        for block, part in zip(self._blocks, self.parts, strict=True):
-            found[part] = block.preconditioned(residual[part])
-        return found
+        """Approximate inverse of the half-spaces; of cut cells, which are more compliant, by the root of their part."""
+        found, largest = np.empty(residual.size), float(np.abs(residual).max())
+        for block in self._blocks:
+            found[block.cells] = block.preconditioned(residual[block.cells] / largest)
+        return largest * found
 
 
-def followed_changes(
-    pair: GearPair, grids: Sequence[LoadedGrid], changes: Sequence[GapChange], bending: BendingModel | None, ends: bool
-) -> list[Array]:
-    r"""Changes of the gaps on grids that move with their contacts.
-
-    On a grid at rest a contact that moves leaves by cells and enters by others, and the derivative has a ripple of the
-    grid. The change is therefore split into one that a shift s of the contact makes up for, found by least squares
-    under the weight of the pressure, and a rest; on a grid that follows by s
-
-    .. math:: dh \to dh + s \cdot \left(\nabla h + \frac{\partial C}{\partial x} F\right),
-              \qquad dh \approx c_0 - s \cdot \nabla h,
-
-    with C F the deflection of the slices under their forces. The half-spaces are the same everywhere.
-
-    Parameters
-    ----------
-    pair : GearPair
-    grids : sequence of LoadedGrid
-        Of the pairs that carry load at one position, each with an active cell.
-    changes : sequence of GapChange
-        Of each grid, for the same keys.
-    bending : BendingModel or None
-    ends : bool
-        Whether free edges add to the deflection.
-
-    Returns
-    -------
-    list of (keys, nx, ny) arrays [mm per unit of the key]
-    """
-    found = [change.by_key.copy() for change in changes]
-    forces = [grid.pressure.sum(axis=0) * grid.problem.cell_area for grid in grids]
-    for i, (grid, change) in enumerate(zip(grids, changes, strict=True)):
-        shifts = _shifts(grid, change)
-        found[i] += np.tensordot(shifts, change.by_place, 1)
-        for axis, shift in enumerate(shifts.T):
-            if not shift.any():
-                continue
-            step = PART_OF_A_CELL * grid.problem.spacing[axis]
-            one, two = (
-                replace(grid.separation, origin=grid.separation.origin + sign * step * grid.separation.axes[axis])
-                for sign in (-1.0, 1.0)
-            )
-            moved = [np.zeros(force.shape) for force in forces]
-            if ends:
-                less, more = (0.0 if edge is None else edge @ forces[i] for edge in _edges(pair, (one, two)))
-                moved[i] += (more - less) / (2.0 * step)
-            if bending is not None:
-                less, more = (bending.within(grid.number, place) for place in (one, two))
-                moved[i] += (more - less) @ forces[i] / (2.0 * step)
-                for j, other in enumerate(grids):
-                    if j != i:
-                        under = other.number, other.separation
-                        less, more = (bending.between((grid.number, place), under) for place in (one, two))
-                        matrix = (more - less) / (2.0 * step)
-                        moved[i] += matrix @ forces[j]
-                        moved[j] += matrix.T @ forces[i]
-            for rest, deflection in zip(found, moved, strict=True):
-                rest += shift[:, None, None] * deflection
-    return found
+def _coupling(states: Sequence[Sequence[LoadedGrid]], bending: BendingModel) -> csr_array:
+    """Deflection of all slices, in one row, per force on each slice of another pair of the same state [mm/N]."""
+    rows, columns, values, first = [np.zeros(1, int)], [np.zeros(1, int)], [np.zeros(1)], 0
+    for state in states:
+        ends = first + np.cumsum([grid.active.shape[1] for grid in state])
+        for (one, i), (two, j) in combinations(zip(state, ends.tolist(), strict=True), 2):
+            matrix = bending.between((one.number, one.separation), (two.number, two.separation))
+            at, under = (place.ravel() for place in np.indices(matrix.shape))
+            at, under = at + (i - matrix.shape[0]), under + (j - matrix.shape[1])
+            rows += [at, under]
+            columns += [under, at]
+            values += [matrix.ravel()] * 2
+        first = int(ends[-1])
+    places = np.concatenate(rows), np.concatenate(columns)
+    return csr_array((np.concatenate(values), places), shape=(first, first))
 
 
-def _edges(pair: GearPair, separations: Sequence[Separation]) -> list[Array | None]:
-    found = edge_compliances(pair, separations)
-    for one in found:
-        if isinstance(one, InputError):
-            raise one
-    return found  # type: ignore[return-value]
+def _alike(grids: Sequence[LoadedGrid], ends: Indices) -> list[list[tuple[LoadedGrid, Indices]]]:
+    """Grids of one shape, and with slices and cover or without, and the places of their cells in the row."""
 
+    def kind(place: int) -> tuple[object, ...]:
+        problem = grids[place].problem
+        return problem.cells, problem.slice_compliance is None, problem.cover is None
 
-def _shifts(grid: LoadedGrid, change: GapChange) -> Array:
-    """How far the contact moves across and along (keys, 2) [mm per unit]; not towards an edge that it reaches."""
-    active = grid.active
-    cover, shifts = grid.separation.cover, np.zeros((len(change.by_key), 2))
-    bare = np.pad(cover < 1.0, 1, constant_values=True)
-    free = [
-        axis
-        for axis in (0, 1)
-        if not (active & (np.roll(bare, 1, axis) | np.roll(bare, -1, axis) | bare)[1:-1, 1:-1]).any()
-    ]
-    if not free:
-        return shifts
-    weight = np.sqrt(grid.pressure[active])
-    slopes = change.by_place[free][:, active]
-    columns = np.stack([weight, *(weight * slopes)], axis=1)
-    scale = np.linalg.norm(columns, axis=0)
-    fit = np.linalg.lstsq(columns / scale, (weight * change.by_key[:, active]).T)[0]
-    shifts[:, free] = -(fit[1:] / scale[1:, None]).T
-    return shifts
+    cells = np.split(np.arange(ends[-1]), ends[:-1])
+    groups = groupby(sorted(range(len(grids)), key=kind), kind)
+    return [[(grids[n], cells[n]) for n in group] for _, group in groups]
 
 
 class _Block:
-    """K of one grid on its active cells, in a window around them: half-spaces, cut cells, own slices."""
+    """K of grids of one shape on their active cells: half-spaces, cut cells, own slices.
 
-    def __init__(self, grid: LoadedGrid) -> None:
-        problem, window = grid.problem, window_around(grid.active)
-        stack = Grids.of([problem]).part(window)
-        self._at, self._shape = grid.active[window], (1, *stack.shape)
-        self._unit = problem.spacing[1] * problem.contact_modulus  # N to the lengths of a stack
+    ``cells``: their places in the row.
+    """
+
+    def __init__(self, grids: Sequence[LoadedGrid], cells: Indices) -> None:
+        problems = [grid.problem for grid in grids]
+        stack, active = Grids.of(problems), np.stack([grid.active for grid in grids])
+        self.cells = cells
+        self._at, self._shape = np.flatnonzero(active), active.shape
+        unit = [problem.spacing[1] * problem.contact_modulus for problem in problems]  # N to the lengths of a stack
+        self._unit = np.repeat(unit, active.sum(axis=(1, 2)))
         self._operator, self._inverse = stack.operator(threads=1), Preconditioner(stack.shape, stack.aspects, 1)
-        self._root = np.ones(self._at.sum()) if stack.cover is None else np.sqrt(stack.cover[0][self._at])
-        self.columns = grid.active.nonzero()[1]
-        self._slices = grid.active.shape[1]
-        self.size = self.columns.size
+        self._root = 1.0 if stack.cover is None else np.sqrt(stack.cover[active])
+
+    @classmethod
+    def of(cls, alike: Sequence[tuple[LoadedGrid, Indices]]) -> _Block:
+        grids, cells = zip(*alike, strict=True)
+        return cls(grids, np.concatenate(cells))
 
     def displaced(self, forces: Array) -> Array:
         """Displacement of the cells [mm] under forces [N] on them."""
         pressure = np.zeros(self._shape)
-        pressure[0, self._at] = forces / self._unit
-        return np.asarray(self._operator(pressure, np.empty(self._shape))[0, self._at])
-
-    def slice_forces(self, forces: Array) -> Array:
-        """Sums (ny,) of forces over the slices."""
-        return np.bincount(self.columns, forces, self._slices)
+        pressure.ravel()[self._at] = forces / self._unit
+        return np.asarray(self._operator(pressure, np.empty(self._shape)).ravel()[self._at])
 
     def preconditioned(self, residual: Array) -> Array:
-        """Approximate inverse of the half-spaces; of cut cells, which are more compliant, by the root of their part."""
-        given, largest = np.zeros(self._shape, dtype=np.float32), float(np.abs(residual).max())
-        if largest == 0.0:
-            return np.zeros(self.size)
-        given[0, self._at] = self._root * residual / largest
-        found = self._inverse(given, np.empty(self._shape, dtype=np.float32))[0, self._at]
-        return np.asarray(largest * self._root * found)
+        given = np.zeros(self._shape, dtype=np.float32)
+        given.ravel()[self._at] = self._root * residual
+        found = self._inverse(given, np.empty(self._shape, dtype=np.float32)).ravel()[self._at]
+        return np.asarray(self._unit * self._root * found)

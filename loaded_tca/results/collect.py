@@ -16,7 +16,7 @@ from loaded_tca.reference.hertz import line_contact
 from loaded_tca.results.load_factors import load_factors
 from loaded_tca.results.mesh_cycle import MeshCycle, dataset_of
 from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.results.slice_pressure import largest_slice_pressures
+from loaded_tca.results.slice_pressure import SlicePeak, largest_slice_pressures
 from loaded_tca.scene import Scene
 from loaded_tca.unloaded import heelwards
 
@@ -37,7 +37,8 @@ def mesh_cycle(scene: Scene, pair: GearPair, carried: Carried) -> MeshCycle:
     numbers: dict[str, Array] = {}
     maps: dict[tuple[int, ...], PressureMap | None] = dict.fromkeys(contacts)
     rough = {place: loaded for place, loaded in contacts.items() if loaded is not None and _is_rough(loaded)}
-    peaks = dict(zip(rough, largest_slice_pressures(pair, [*rough.values()]), strict=True)) if rough else {}
+    under = [(one.contact, one.separation, one.solution.pressure) for one in rough.values()]
+    peaks = dict(zip(rough, largest_slice_pressures(pair, under), strict=True)) if rough else {}
     for place, loaded in contacts.items():
         if loaded is None:
             continue
@@ -92,14 +93,13 @@ def _is_rough(loaded: LoadedContact) -> bool:
 
 
 def _numbers(
-    pair: GearPair, loaded: LoadedContact, one: PressureMap, of_slices: tuple[float, tuple[float, float]] | None
+    pair: GearPair, loaded: LoadedContact, one: PressureMap, of_slices: SlicePeak | None
 ) -> dict[str, float | bool | int]:
     """What a result has of one loaded contact, by the names of its dataset; the peak is ``of_slices`` if given."""
     solution = loaded.solution
     width, length = loaded.extent
     if of_slices is not None:
-        peak, place = of_slices
-        radius, axial = one.place(*place)
+        peak, (radius, axial) = of_slices.pressure, one.place(*of_slices.place)
     else:
         peak, (radius, axial) = solution.peak_pressure, loaded.peak_place
     slope = abs(float(loaded.separation.axes[1] @ heelwards(pair, loaded.contact)))

@@ -21,10 +21,9 @@ import math
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Mask
+from loaded_tca.arrays import Array
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.pressure_map import Maps, PressureMap
-from loaded_tca.separation import Separation
 from loaded_tca.unloaded import ContactPath
 
 STRIPS = 30
@@ -50,7 +49,7 @@ def load_factors(pair: GearPair, path: ContactPath, maps: Maps, mean_length: flo
     face_load_factor, transverse_load_factor : (m,) array
         NaN with one position and without load; the latter without a mean length too.
     """
-    borders = np.linspace(*common_face(pair, path), STRIPS + 1)
+    borders = strip_borders(pair, path)
     factors = np.full((2, len(maps)), math.nan)
     for torque, positions in enumerate(maps):
         strips, largest = np.zeros(STRIPS), 0.0
@@ -80,17 +79,29 @@ def strip_forces(pair: GearPair, one: PressureMap, borders: Array) -> tuple[Arra
         That of a cell is shared out by the overlap of its extent along the contact; all of it is within the strips.
     length : float [mm]
     """
-    loaded = one.pressure > 0.0
-    shares, length = strip_shares(pair, one, loaded, borders)
-    return shares @ one.pressure[loaded] * (one.spacing[0] * one.spacing[1]), length
+    shares, length = strip_shares(pair, one, borders)
+    return shares @ one.pressure[one.pressure > 0.0] * one.spacing[0] * one.spacing[1], length
 
 
-def strip_shares(pair: GearPair, grid: PressureMap | Separation, cells: Mask, borders: Array) -> tuple[Array, float]:
-    """Parts (n, k) of the force of k cells of a grid that fall to n strips of the face, and the length as above."""
-    dy = grid.spacing[1]
-    across, along = cells.nonzero()
-    middles = grid.origin + grid.x[across, None] * grid.axes[0] + grid.y[along, None] * grid.axes[1]
-    ends = [_lengthwise(pair, middles + side * dy * grid.axes[1]) for side in (-0.5, 0.5)]
+def strip_shares(pair: GearPair, one: PressureMap, borders: Array) -> tuple[Array, float]:
+    """Shares of strips of the face in the forces of the cells under pressure, and the length of ``strip_forces``.
+
+    Parameters
+    ----------
+    pair : GearPair
+    one : PressureMap
+    borders : (n + 1,) array [mm]
+
+    Returns
+    -------
+    shares : (n, m) array
+        Of the m cells with pressure > 0, in the order of the map; each column adds up to one.
+    length : float [mm]
+    """
+    across, along = np.nonzero(one.pressure)
+    middles = one.origin + one.x[across, None] * one.axes[0] + one.y[along, None] * one.axes[1]
+    dy = one.spacing[1]
+    ends = [_lengthwise(pair, middles + side * dy * one.axes[1]) for side in (-0.5, 0.5)]
     slope = np.abs(ends[1] - ends[0]).mean() / dy if across.size else 1.0
     width = float(borders[1] - borders[0])
     low, high = np.sort(np.clip(ends, borders[0], borders[-1]), axis=0)
@@ -98,7 +109,12 @@ def strip_shares(pair: GearPair, grid: PressureMap | Separation, cells: Mask, bo
     return np.diff(below, axis=0, prepend=0.0, append=1.0), width / slope if slope else math.inf
 
 
-def common_face(pair: GearPair, path: ContactPath) -> tuple[float, float]:
+def strip_borders(pair: GearPair, path: ContactPath) -> Array:
+    """Borders of the strips along the pinion's lengthwise coordinate, (STRIPS + 1,) [mm]."""
+    return np.linspace(*_common_face(pair, path), STRIPS + 1)
+
+
+def _common_face(pair: GearPair, path: ContactPath) -> tuple[float, float]:
     """Ends of the part of the face that both gears cover, along the pinion's lengthwise coordinate [mm]."""
     points = path.point[path.in_contact]
     radius, _, axial = pair.to_wheel(points)

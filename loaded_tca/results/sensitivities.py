@@ -2,28 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Indices, real
 from loaded_tca.compliance import tooth_compliance
-from loaded_tca.errors import InputError, require
-from loaded_tca.loaded.cycle import farthest_apart
-from loaded_tca.loaded.free_edges import edge_compliance
-from loaded_tca.loaded.load_sharing import ToothPair, tooth_pairs_at
-from loaded_tca.loaded.pair_coupling import BendingModel
-from loaded_tca.loaded.sensitivity import LoadedGrid, Tangent, followed_changes
-from loaded_tca.loaded.tooth_contact import contact_problem
-from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.errors import require
+from loaded_tca.loaded.sensitivity import Tangents
+from loaded_tca.results.figure_slopes import (
+    EXPONENT,
+    face_load_factor_slopes,
+    line_load_slopes,
+    peak_pressure_slopes,
+    pressure_norm,
+)
 from loaded_tca.results.key_figures import harmonic_coefficients
-from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.separation import sample_separation
-from loaded_tca.separation.gap_change import PairChange, gap_change, pair_changes
-from loaded_tca.unloaded import trace_contact, trace_teeth
+from loaded_tca.results.loaded_grids import loaded_grids, unloaded_contacts
+from loaded_tca.separation.gap_change import contact_changes, pair_changes
 
 if TYPE_CHECKING:
     import xarray
@@ -33,18 +34,16 @@ if TYPE_CHECKING:
 TORQUE = "load.pinion_torque_Nm"
 NEWTON_MILLIMETRES = 1e3
 """Of a newton metre."""
-LINEAR = 1e-7
+LINEAR = 1e-6
 """Tolerance of the linear systems, which are known to the grid's percent."""
-LEVERS_ALIKE = 1e-2
-"""Relative difference of levers that comes from the slopes of modifications alone."""
 
 
 @dataclass(frozen=True, eq=False)
 class Sensitivities:
     """Derivatives of a result to keys of its scene; NaN where nothing is in contact or nothing is loaded.
 
-    Found when they are asked for: the transmission error costs one linear problem for each state, the others one more
-    for each loaded tooth pair, however many keys there are.
+    Found when they are asked for: the transmission error costs one linear problem for each state, a torque and
+    position under load; the others one more for each loaded tooth pair, however many keys there are.
 
     Attributes
     ----------
@@ -52,51 +51,191 @@ class Sensitivities:
         As of ``scene.with_changes``; the unit of each is in its name.
     result : MeshCycle
         What they are derivatives of.
-    states : tuple of State
-        Torques and positions under load.
+    tangents : Tangents
+        Of all states.
+    places : (2, states) int array
+        Torque and position of each state, by index.
+    pairs : (grids,) int array
+        Tooth pair of each grid of the tangents, by index.
+    gaps : (keys, n) array [mm per unit]
+        Growth of the gaps at the active cells.
+    lever_torques : (keys, grids) array [N mm per unit]
+        Growth of the torque of each pair by that of its lever: levers are those of the unloaded contact points, which
+        move.
     """
 
     keys: tuple[str, ...]
     result: MeshCycle
-    states: tuple[State, ...]
+    tangents: Tangents
+    places: Indices
+    pairs: Indices
+    gaps: Array
+    lever_torques: Array
+
+    @cached_property
+    def torques(self) -> Array:
+        """Growth of the torques that the forces balance with the levers as they are, (keys, states) [N mm per unit]."""
+        first = np.searchsorted(self.tangents.state, np.arange(self.places.shape[1]))
+        return self._raised - np.add.reduceat(self.lever_torques, first, axis=1)
+
+    @property
+    def _raised(self) -> Array:
+        """Growth of the torque of the pinion (keys, 1) [N mm per unit]."""
+        return np.array([[NEWTON_MILLIMETRES if key == TORQUE else 0.0] for key in self.keys])
+
+    @property
+    def _grids(self) -> Indices:
+        """Torque, position and pair of each grid, (3, grids)."""
+        return np.concatenate([self.places[:, self.tangents.state], [self.pairs]])
+
+    def _by_pair(self, values: Array) -> Array:
+        """Numbers (keys, grids) as (torque, position, pair, key)."""
+        found = np.full((*self.result.load_share.shape, len(self.keys)), np.nan)
+        found[*self._grids] = values.T
+        return found
+
+    def _of_each_pair(self, slopes: Array) -> Array:
+        """Changes (keys, grids) of a number of each grid whose derivatives by its forces are ``slopes`` (n,)."""
+        state, grid = self.tangents.state, self.tangents.grid
+        found, place = np.zeros((len(self.keys), state.size)), np.arange(state.size) - np.searchsorted(state, state)
+        for number in range(place.max() + 1):
+            own = place == number
+            change = self.tangents.functional_change(np.where(own[grid], slopes, 0.0), self.gaps, self.torques)
+            found[:, own] = change[:, state[own]]
+        return found
 
     @cached_property
     def transmission_error(self) -> Array:
         """Of the loaded, absolute transmission error, (torque, position, key) [rad per unit of the key]."""
         found = np.full((*self.result.transmission_error.shape, len(self.keys)), np.nan)
-        for state in self.states:
-            change = state.tangent.rotation_change(state.gaps, state.torques)
-            found[state.torque, state.position] = -self.result.gear_pair.driving * change
+        change = self.tangents.rotation_change(self.gaps, self.torques)
+        found[*self.places] = -self.result.gear_pair.driving * change.T
         return found
 
     @cached_property
     def load_share(self) -> Array:
         """Of the shares in the torque, (torque, position, pair, key) [1 per unit]; zero where nothing is carried."""
-        found = np.full((*self.result.load_share.shape, len(self.keys)), np.nan)
-        for state in self.states:
-            place = state.torque, state.position
-            found[place][~np.isnan(self.result.load_share[place])] = 0.0
-            torque, tangent = float(self.result.torque[state.torque]), state.tangent
-            for pair, part, lever in zip(state.pairs, tangent.parts, state.lever_torques, strict=True):
-                slopes = np.zeros(tangent.pinion_levers.shape)
-                slopes[part] = tangent.pinion_levers[part]
-                own = tangent.functional_change(slopes, state.gaps, state.torques)[0] + lever
-                raised = np.array([NEWTON_MILLIMETRES if key == TORQUE else 0.0 for key in self.keys])
-                found[*place, pair] = (own - self.result.load_share[*place, pair] * raised) / torque
+        state = self.tangents.state
+        torque, share = self.result.torque[self.places[0]][state], self.result.load_share[*self._grids]
+        own = self._of_each_pair(self.tangents.pinion_levers) + self.lever_torques
+        found = self._by_pair((own - share * self._raised) / torque)
+        shared = ~np.isnan(self.result.load_share) & np.isfinite(self.transmission_error).any(axis=-1)[..., None]
+        found[shared & np.isnan(found).all(axis=-1)] = 0.0
         return found
 
     @cached_property
     def line_load(self) -> Array:
         """Of the largest force per length along each contact, (torque, position, pair, key) [N/mm per unit]."""
-        found = np.full((*self.result.load_share.shape, len(self.keys)), np.nan)
-        for state in self.states:
-            tangent = state.tangent
-            for pair, part, grid in zip(state.pairs, tangent.parts, tangent.grids, strict=True):
-                slopes = np.zeros(tangent.pinion_levers.shape)
-                slopes[part] = _line_load_slopes(grid)
-                change = tangent.functional_change(slopes, state.gaps, state.torques)[0]
-                found[state.torque, state.position, pair] = change
+        slopes = self.tangents.gathered(
+            line_load_slopes(grid.pressure, grid.problem.spacing) for grid in self.tangents.grids
+        )
+        return self._by_pair(self._of_each_pair(slopes))
+
+    @cached_property
+    def peak_pressure(self) -> Array:
+        """Of the peak pressure of each contact, (torque, position, pair, key) [MPa per unit].
+
+        Of a contact at an edge or a relief start that of its largest slice pressure, with the curvature held.
+        """
+        result, grids = self.result, self.tangents.grids
+        rough = np.asarray(np.logical_or(result.on_edge, result.on_relief_start))[*self._grids]
+        contacts = [(grid.contact, grid.separation, grid.pressure) for grid in grids]
+        slopes = peak_pressure_slopes(result.gear_pair, contacts, rough.tolist())
+        return self._by_pair(self._of_each_pair(self.tangents.gathered(slopes)))
+
+    def pressure_norm(self, exponent: float = EXPONENT) -> Array:
+        r"""Of the norm of the pressure over all contacts of a position, (torque, position, key) [MPa per unit].
+
+        Smooth where the place of the peak jumps: (integral of p^m dA over 1 mm^2)^(1/m), m the exponent.
+        """
+        grids = self.tangents.grids
+        norms, slopes = zip(
+            *(pressure_norm(one.pressure, one.separation.cover, one.problem.spacing, exponent) for one in grids),
+            strict=True,
+        )
+        largest = np.maximum.reduceat(norms, np.searchsorted(self.tangents.state, np.arange(self.places.shape[1])))
+        parts = np.array(norms) / largest[self.tangents.state]
+        whole = np.bincount(self.tangents.state, parts**exponent)[self.tangents.state]
+        weights = (parts / whole ** (1.0 / exponent)) ** (exponent - 1.0)
+        row = self.tangents.gathered(slopes) * weights[self.tangents.grid]
+        found = np.full((*self.result.transmission_error.shape, len(self.keys)), np.nan)
+        found[*self.places] = self.tangents.functional_change(row, self.gaps, self.torques).T
         return found
+
+    @cached_property
+    def face_load_factor(self) -> Array:
+        """Of K_Hbeta, (torque, key) [1 per unit]; the strip with the largest force is held. NaN with one position."""
+        result, found = self.result, np.full((len(self.result.torque), len(self.keys)), np.nan)
+        of_maps = [face_load_factor_slopes(result.gear_pair, result.path, positions) for positions in result.maps]
+        slopes = [
+            np.zeros(grid.active.shape) if (own := of_maps[t][n][k]) is None else own
+            for (t, n, k), grid in zip(self._grids.T.tolist(), self.tangents.grids, strict=True)
+        ]
+        change = self.tangents.functional_change(self.tangents.gathered(slopes), self.gaps, self.torques)
+        for t in np.flatnonzero(np.isfinite(result.face_load_factor)).tolist():
+            found[t] = change[:, self.places[0] == t].sum(axis=1)
+        return found
+
+    @property
+    def mesh_stiffness(self) -> Array:
+        """Tangent c of the torque over the rotation, as ``MeshCycle.mesh_stiffness``, (torque, position) [N/(mm um)].
+
+        That of the cells in contact as they are, and so what the derivatives by the torque belong to: whole cells come
+        into contact, so that it scatters by about a percent over the positions. ``MeshCycle.mesh_stiffness`` is a
+        chord, made up for its width, which scatters less.
+        """
+        pair, found = self.result.gear_pair, np.full(self.result.transmission_error.shape, np.nan)
+        found[*self.places] = self.tangents.stiffness / (1e3 * math.prod(pair.base_radii) * pair.face_width)
+        return found
+
+    @cached_property
+    def weight_maps(self) -> tuple[tuple[tuple[Array | None, ...], ...], ...]:
+        """Where removal counts: by torque, position and pair (nx, ny) on the grids of ``result.maps``; None as there.
+
+        Rotation of the wheel [rad] by one millimetre removed at a cell alone; removed at all cells it is 1/l2, and the
+        transmission error falls by as much. The weights are in the ratio of dp/dT.
+        """
+        found: dict[tuple[int, ...], Array] = {}
+        row = self.tangents.weights / self.tangents.spread(self.tangents.stiffness)
+        for place, grid, own in zip(
+            self._grids.T.tolist(), self.tangents.grids, np.split(row, self.tangents.ends[:-1]), strict=True
+        ):
+            found[tuple(place)] = np.zeros(grid.active.shape)
+            found[tuple(place)][grid.active] = own
+        torques, positions, pairs = (range(length) for length in self.result.load_share.shape)
+        return tuple(tuple(tuple(found.get((t, n, k)) for k in pairs) for n in positions) for t in torques)
+
+    def spread(self, deviations: Mapping[str, float]) -> xarray.Dataset:
+        """Standard deviations of the figures, to first order, if keys scatter independently of each other.
+
+        Parameters
+        ----------
+        deviations : mapping of str to float
+            Keys of these sensitivities -> standard deviation in the unit of the key, >= 0.
+
+        Returns
+        -------
+        xarray.Dataset
+            By the names of ``dataset``, without its dimension key. Where a figure is at its least, as the peak-to-peak
+            of an optimum, or has a kink, first order tells too little: compare with a Monte Carlo study
+            (:class:`loaded_tca.studies.Study`).
+
+        Raises
+        ------
+        InputError
+            If a key is not one of these, or a deviation no finite number >= 0.
+        """
+        require(
+            (bool(deviations), "deviations: none given; a key and its standard deviation are needed"),
+            *((key in self.keys, f"{key}: is none of the keys; allowed {', '.join(self.keys)}") for key in deviations),
+            *(
+                (0.0 <= real(value) < math.inf, f"{key}: found {value!r:.60}; allowed a finite deviation >= 0")
+                for key, value in deviations.items()
+            ),
+        )
+        slopes = self.dataset
+        parts = [slopes.sel(key=key, drop=True) * float(value) for key, value in deviations.items()]
+        return sum(part**2 for part in parts) ** 0.5
 
     @property
     def dataset(self) -> xarray.Dataset:
@@ -104,11 +243,12 @@ class Sensitivities:
         import xarray
 
         coordinates = {name: self.result.dataset[name] for name in ("torque", "pinion_angle", "pair")}
-        arrays = {
-            "transmission_error": (("torque", "position", "key"), self.transmission_error),
-            "load_share": (("torque", "position", "pair", "key"), self.load_share),
-            "line_load": (("torque", "position", "pair", "key"), self.line_load),
+        dimensions = {
+            ("torque", "position"): ("transmission_error",),
+            ("torque", "position", "pair"): ("load_share", "line_load", "peak_pressure"),
+            ("torque",): ("peak_to_peak", "face_load_factor"),
         }
+        arrays = {name: ((*own, "key"), getattr(self, name)) for own, names in dimensions.items() for name in names}
         return xarray.Dataset(arrays, {**coordinates, "key": list(self.keys)})
 
     @property
@@ -143,139 +283,27 @@ def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
         (not isinstance(keys, str), f"keys: {keys!r:.80} is one text; allowed is a list of keys"),
         (len(set(keys)) == len(keys), "keys: a key is given twice"),
     )
-    wanted, pair = result.scene.analysis, result.gear_pair
-    named = [key for key in keys if key != TORQUE]
+    pair, named = result.gear_pair, [key for key in keys if key != TORQUE]
     changes, at = pair_changes(result.scene, named), [keys.index(key) for key in named]
-    angles, alone = result.pinion_angle, not wanted.load_sharing
-    unloaded, apart = _unloaded(pair, angles, alone)
-    both = None
-    if _levers_differ(unloaded):
-        both = [[_unloaded(side, angles, alone)[0] for side in (change.below, change.above)] for change in changes]
-    bending = None if wanted.compliance == "contact" else tooth_compliance(pair, neighbours=apart)
-    states = []
-    for t, n in np.ndindex(result.transmission_error.shape):
-        grids, places = [], []
-        for k, number in enumerate(result.dataset["pair"].values.tolist()):
-            one = result.maps[t][n][k]
-            if one is not None and one.pressure.any():
-                grid = _loaded_grid(result, pair, one, unloaded[n][number], bending)
-                if grid.active.any():
-                    grids.append(grid)
-                    places.append(k)
-        if not grids:
-            continue
-        tangent = Tangent(grids, bending, tolerance=LINEAR)
-        grown = [gap_change(pair, grid.contact, grid.separation, changes) for grid in grids]
-        followed = followed_changes(pair, grids, grown, bending, wanted.free_edges)
-        levers = np.zeros((2, len(grids), len(changes)))
-        if both is not None:
-            for place in np.ndindex(levers.shape[1:]):
-                number, change = grids[place[0]].number, place[1]
-                levers[:, *place] = _lever_change(changes[change], both[change], n, number)
-        back = pair.driving * (result.path.transmission_error[n] - result.transmission_error[t, n])
-        for rest, grid, own in zip(followed, grids, levers[1], strict=True):
-            beyond = back - unloaded[n][grid.number].initial_separation
-            rest -= (beyond * own)[:, None, None]
-        gaps = np.zeros((len(keys), tangent.pinion_levers.size))
-        gaps[at] = tangent.gathered(followed)
-        forces = np.array([grid.pressure.sum() * grid.problem.cell_area for grid in grids])
-        lever_torques, torques = np.zeros((len(grids), len(keys))), np.full(len(keys), NEWTON_MILLIMETRES)
-        lever_torques[:, at] = forces[:, None] * levers[0]
-        torques[at] = -lever_torques[:, at].sum(axis=0)
-        states.append(State(t, n, tuple(places), tangent, gaps, torques, lever_torques))
-    return Sensitivities(tuple(keys), result, tuple(states))
-
-
-@dataclass(frozen=True, eq=False)
-class State:
-    """What the keys change in the equilibrium of one torque and position.
-
-    Attributes
-    ----------
-    torque, position : int
-        Indices.
-    pairs : tuple of int
-        Indices of the pairs under load.
-    tangent : Tangent
-    gaps : (keys, n) array [mm per unit]
-        Growth of the gaps at the active cells, on grids that follow their contacts.
-    torques : (keys,) array [N mm per unit]
-        Growth of the torque that the forces balance with the levers as they are.
-    lever_torques : (pairs, keys) array [N mm per unit]
-        Growth of the torque of each pair by that of its lever: levers are those of the unloaded contact points, which
-        move.
-    """
-
-    torque: int
-    position: int
-    pairs: tuple[int, ...]
-    tangent: Tangent
-    gaps: Array
-    torques: Array
-    lever_torques: Array
-
-
-Unloaded = list[dict[int, ToothPair]]
-"""Unloaded contacts by position and number of the tooth pair, in the angles of their own teeth."""
-
-
-def _unloaded(pair: GearPair, angles: Array, alone: bool) -> tuple[Unloaded, int]:
-    """Unloaded contacts, and how many pitches those of a position are apart."""
-    if alone:
-        path = trace_contact(pair, angles)
-        return [{0: ToothPair(0, path[n], 0.0)} for n in range(len(path))], 1
-    mesh = trace_teeth(pair, angles)
-    found: Unloaded = [{one.pair: one for one in tooth_pairs_at(mesh, n)} for n in range(len(mesh))]
-    return found, max(farthest_apart(mesh), 1)
-
-
-def _levers_differ(unloaded: Unloaded) -> bool:
-    """Whether the levers depend on the place of the contact, as on bevel gears, by more than its slopes.
-
-    Contacts on edges have normals, and so levers, of their own.
-    """
-    contacts = [one.contact for at_one in unloaded for one in at_one.values() if not one.contact.on_edge]
-    levers = np.array([(contact.pinion_lever, contact.wheel_lever) for contact in contacts])
-    return not contacts or bool((np.ptp(levers, axis=0) > LEVERS_ALIKE * levers.max(axis=0)).any())
-
-
-def _lever_change(change: PairChange, sides: Sequence[Unloaded], position: int, number: int) -> tuple[float, float]:
-    """Changes of the levers about pinion and wheel [mm per unit]; none where a pair gets out of reach."""
-    below, above = (side[position].get(number) for side in sides)
-    if below is None or above is None:
-        return 0.0, 0.0
-    one, two = below.contact, above.contact
-    moved = two.pinion_lever - one.pinion_lever, two.wheel_lever - one.wheel_lever
-    return moved[0] / change.difference, moved[1] / change.difference
-
-
-def _loaded_grid(
-    result: MeshCycle, pair: GearPair, one: PressureMap, of: ToothPair, bending: BendingModel | None
-) -> LoadedGrid:
-    """The contact problem that a map solves, made again."""
-    number, contact = of.pair, of.contact
-    (nx, ny), (dx, dy) = one.pressure.shape, one.spacing
-    separation = sample_separation(pair, contact, cells=(nx, ny), box=(0.5 * nx * dx, 0.5 * ny * dy))
-    if not np.allclose(separation.origin, one.origin, rtol=0.0, atol=1e-6 * pair.module):
-        raise InputError("sensitivities: the pressure maps of the result do not belong to its scene")
-    bent = None if bending is None else bending.within(number, separation)
-    ends = edge_compliance(pair, separation) if result.scene.analysis.free_edges else None
-    problem = contact_problem(pair, separation, float(one.pressure.sum()) * dx * dy, bent, ends)
-    return LoadedGrid(number, contact, separation, problem, one.pressure)
-
-
-def _line_load_slopes(grid: LoadedGrid) -> Array:
-    """Derivative [1/mm] of the largest line load to the forces of the active cells of a grid.
-
-    The largest one is that of the parabola through the highest slice and its neighbours, since the two in the middle
-    of an even grid may be alike; at an end of the contact it is that of the slice.
-    """
-    line = grid.pressure.sum(axis=0)
-    top = int(line.argmax())
-    weights = np.zeros(line.size)
-    weights[top] = 1.0
-    if 0 < top < line.size - 1 and min(line[top - 1], line[top + 1]) > 0.0:
-        before, after = line[top] - line[top - 1], line[top] - line[top + 1]
-        place = 0.5 * (before - after) / (before + after) if before + after > 0.0 else 0.0
-        weights[top - 1 : top + 2] = 0.5 * place * (place - 1.0), 1.0 - place**2, 0.5 * place * (place + 1.0)
-    return np.asarray(weights[grid.active.nonzero()[1]] / grid.problem.spacing[1])
+    unloaded, apart = unloaded_contacts(pair, result.pinion_angle, alone=not result.scene.analysis.load_sharing)
+    bending = None if result.scene.analysis.compliance == "contact" else tooth_compliance(pair, neighbours=apart)
+    places, grids = loaded_grids(result, pair, unloaded, bending)
+    require((bool(grids), "sensitivities: no tooth pair of the result carries load"))
+    states, first = np.unique(places[:2], axis=1, return_index=True)
+    tangents = Tangents([grids[start:end] for start, end in pairwise([*first, len(grids)])], bending, tolerance=LINEAR)
+    contacts, separations = [grid.contact for grid in grids], [grid.separation for grid in grids]
+    found = contact_changes(pair, contacts, separations, [grid.active for grid in grids], changes)
+    # the gears of a pair are turned back into contact first, then closed under load
+    position, initial = (
+        places[1],
+        np.array([unloaded[n][grid.number].initial_separation for n, grid in zip(places[1], grids, strict=True)]),
+    )
+    turned = (
+        pair.driving * (result.path.transmission_error[position] - result.transmission_error[*places[:2]]) - initial
+    )
+    beyond = found.at_contact - turned * found.levers[1]
+    gaps, forces = np.zeros((len(keys), tangents.grid.size)), result.normal_force[*places]
+    gaps[at] = found.gaps - found.at_contact[:, tangents.grid] * found.lever_parts + beyond[:, tangents.grid]
+    lever_torques = np.zeros((len(keys), len(grids)))
+    lever_torques[at] = forces * found.levers[0]
+    return Sensitivities(tuple(keys), result, tangents, states, places[2], gaps, lever_torques)

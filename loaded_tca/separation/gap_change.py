@@ -6,10 +6,18 @@ normal n moves along it by
 .. math:: ds = \frac{d\Theta + \nabla F \cdot dr}{\nabla F \cdot n},
           \qquad dh = ds_\text{wheel} - ds_\text{pinion},
 
-with no flank met anew: for a modification of the shape f, dTheta = -s f |grad F_nominal| da. dTheta is the central
-difference of Theta at the points that are met, between the flanks of the scene a step either side of its value, and
-dr that of the places of the wheel. Theta is an explicit function, linear in nearly every amount, so that the
-difference is the derivative to about 1e-9, of fitted and measured flanks and of machine settings as of involutes.
+with no flank met anew. For a modification of the shape f, dTheta = -s f |grad F_nominal| da: only the terms that
+the key changes are computed. Of fitted and measured flanks and of machine settings dTheta is the central difference
+of Theta between the flanks a step either side, and dr that of the places of the wheel. Theta is an explicit function,
+linear in nearly every amount, so that the difference is the derivative to about 1e-9.
+
+The contact point moves by s [mm] in the tangent plane, to where the gap with the wheel turned back into contact is
+least, and the normal there is the pinion's:
+
+.. math:: s = -B^{-1} \nabla \Bigl(dh - dh_0 \frac{l_2(x)}{l_2}\Bigr), \qquad
+          dn = (\nabla n_\text{pinion}) s - \nabla ds_\text{pinion},
+
+B the relative curvature. The levers (r x n).e follow.
 """
 
 from __future__ import annotations
@@ -17,16 +25,19 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from numbers import Real
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.errors import AccuracyWarning, GeometryError, InputError
+from loaded_tca.flanks.modification import removal_change
+from loaded_tca.flanks.spline import SplineFlank
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import Scene
 from loaded_tca.scene.section import Section, contents
-from loaded_tca.separation.normal_gap import FlankPoints, NormalGap
+from loaded_tca.separation.normal_gap import TOGETHER, FlankPoints, NormalGap
 from loaded_tca.separation.sample import Separation
 from loaded_tca.unloaded import ContactPoint
 
@@ -35,6 +46,8 @@ STEPS = {"um": 1.0, "deg": 1e-4, "mm": 1e-4}
 1e-9, and rounding, 1e-16 of an angle, is less than that too."""
 OF_SETTINGS = 100.0
 """The same, so many times as large, of machine settings and cutters: generated flanks are known to 1e-11 mm."""
+BESIDE = 1e-3
+"""Distance of the points beside the contact point that slopes are taken of, over the module."""
 SECTIONS = ("modifications", "machine", "cutter")
 """Of a gear, whose keys shape its flanks and, to first order, nothing else."""
 
@@ -58,21 +71,16 @@ class PairChange:
     above: GearPair
     difference: float
 
+    @property
+    def of_modifications(self) -> bool:
+        """Whether the pairs differ in modifications alone."""
+        return self.key.split(".")[1] == "modifications"
 
-@dataclass(frozen=True, eq=False)
-class GapChange:
-    """Derivatives of the gap of one contact on its grid, zero where there is no material.
-
-    Attributes
-    ----------
-    by_key : (keys, nx, ny) array
-        Growth of the gap [mm] per unit of each key, both gears held at their angles.
-    by_place : (2, nx, ny) array
-        Slope of the gap along x and y of the grid [1].
-    """
-
-    by_key: Array
-    by_place: Array
+    @cached_property
+    def moved_wheel(self) -> tuple[Array, Array]:
+        """Derivatives of the wheel's origin (3,) [mm per unit] and axes (3, 3) [1 per unit]."""
+        shift, turn = (getattr(self.above, name) - getattr(self.below, name) for name in ("wheel_origin", "wheel_axes"))
+        return shift / self.difference, turn / self.difference
 
 
 def pair_changes(scene: Scene, keys: Sequence[str]) -> list[PairChange]:
@@ -109,14 +117,17 @@ def _pair_change(scene: Scene, pair: GearPair, key: str) -> PairChange:
     step, reason = STEPS[key.rpartition("_")[2]], None
     if key.split(".")[1] in SECTIONS[1:]:
         step *= OF_SETTINGS
+    linear = ".modifications." in key and key.endswith("_um")  # one side is enough
     sides = [(value, pair), (value, pair)]
-    for side, trial in enumerate((value - step, value + step)):
+    for side, trial in ((1, value + step), (0, value - step)):
+        if linear and sides[1][0] > value:
+            break
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", AccuracyWarning)  # told of the scene itself
                 sides[side] = trial, scene.with_changes({key: trial}).pair()
         except (InputError, GeometryError) as error:
-            reason = error
+            reason = reason or error
     (low, below), (high, above) = sides
     if reason is not None and low == high:
         raise reason
@@ -144,59 +155,135 @@ def value_at(scene: Scene, key: str) -> float:
     return float(value)
 
 
-def gap_change(
-    pair: GearPair, contact: ContactPoint, separation: Separation, changes: Sequence[PairChange]
-) -> GapChange:
-    """Derivatives of the gap of a contact on its grid.
+@dataclass(frozen=True, eq=False)
+class ContactChanges:
+    """Derivatives of many contacts on their grids.
+
+    Attributes
+    ----------
+    gaps : (keys, n) array [mm per unit of the key]
+        Growth of the gaps at chosen cells of all grids, in one row, with the gears held at their angles.
+    lever_parts : (n,) array
+        Lever of the wheel's flank at each cell over that at the contact point of its grid: how much it moves if the
+        wheel is turned.
+    at_contact : (keys, contacts) array [mm per unit of the key]
+        Growth of the gap at the contact points.
+    levers : (2, keys, contacts) array [mm per unit of the key]
+        Growth of the levers about the axes of pinion and wheel, as the contact point moves; zero where it lies on an
+        edge or on a relief start, which hold it.
+    """
+
+    gaps: Array
+    lever_parts: Array
+    at_contact: Array
+    levers: Array
+
+
+def contact_changes(
+    pair: GearPair,
+    contacts: Sequence[ContactPoint],
+    separations: Sequence[Separation],
+    cells: Sequence[Mask],
+    changes: Sequence[PairChange],
+) -> ContactChanges:
+    """Derivatives of contacts to keys of the scene.
 
     Parameters
     ----------
     pair : GearPair
-    contact : ContactPoint
+    contacts : sequence of ContactPoint
         Whose gears are held at their angles.
-    separation : Separation
-        Its grid.
+    separations : sequence of Separation
+        The grid of each.
+    cells : sequence of (nx, ny) bool array
+        Cells of each grid that are asked for, all with material.
     changes : sequence of PairChange
 
     Returns
     -------
-    GapChange
+    ContactChanges
     """
-    there = np.isfinite(separation.cut_gap)
-    gap = NormalGap(pair, contact, separation.axes)
-    points = gap.flank_points(separation.x[None, :, None], separation.y[None, None, :])
-    first, second = (_inside(one, there) for one in points)
-    by_key, by_place = np.zeros((len(changes), *there.shape)), np.zeros((2, *there.shape))
-    for number, change in enumerate(changes):
-        by_key[number, there] = _grown(change, pair, first, second)
-    # the rest of the slope of a flank is that of the plane itself
-    for axis, direction in enumerate(separation.axes[:2]):
-        at_wheel = second.gradient @ (pair.wheel_axes @ direction) / second.steepness
-        by_place[axis, there] = first.gradient @ direction / first.steepness - at_wheel
-    return GapChange(by_key, by_place)
+    gap = NormalGap(pair, contacts, np.array([one.axes for one in separations]))
+    steep, at_contact, levers = _at_contact_points(pair, contacts, separations, gap, changes)
+    places = [
+        (grid.x[across], grid.y[along])
+        for grid, (across, along) in zip(separations, (np.nonzero(one) for one in cells), strict=True)
+    ]
+    contact = np.repeat(np.arange(len(places)), [x.size for x, _ in places])
+    x, y = (np.concatenate(part)[:, None] for part in zip(*places, strict=True))
+    gaps, lever_parts = np.zeros((len(changes), contact.size)), np.zeros(contact.size)
+    for first in range(0, contact.size, TOGETHER):
+        part = slice(first, first + TOGETHER)
+        pinion, wheel = gap.of(contact[part]).flank_points(x[part], y[part])
+        grown = _grown(pair, changes, pinion, wheel)
+        gaps[:, part], lever_parts[part] = (grown[1] - grown[0])[..., 0], (steep[contact[part]] / wheel.steepness[:, 0])
+    return ContactChanges(gaps, lever_parts, at_contact, levers)
 
 
-def _inside(points: FlankPoints, there: Array) -> FlankPoints:
-    """Those of the cells (nx, ny) with material, in one row."""
-    return FlankPoints(*(part[0][there] for part in vars(points).values()))
+def _at_contact_points(
+    pair: GearPair,
+    contacts: Sequence[ContactPoint],
+    separations: Sequence[Separation],
+    gap: NormalGap,
+    changes: Sequence[PairChange],
+) -> tuple[Array, Array, Array]:
+    """Steepness of the wheel's flank (contacts,), growth of the gap (keys, contacts) and levers (2, keys, contacts)."""
+    beside = BESIDE * pair.module
+    x, y = (beside * np.tile(part, (len(contacts), 1)) for part in ([0.0, -1.0, 1.0, 0.0, 0.0], [0.0, 0, 0, -1.0, 1.0]))
+    pinion, wheel = gap.flank_points(x, y)
+    grown = _grown(pair, changes, pinion, wheel)
+    steep, at_contact = wheel.steepness[:, 0], (grown[1] - grown[0])[..., 0]
+    left = grown[1] - grown[0] - at_contact[..., None] * (steep[:, None] / wheel.steepness)
+
+    def slope(values: Array, axis: int = -1) -> Array:
+        """Derivatives by x and y, in the place of the five points."""
+        low, high = (values.take([first, first + 2], axis=axis) for first in (1, 2))
+        return np.asarray((high - low) / (2.0 * beside))
+
+    bends = np.array([one.curvatures for one in separations])
+    free = np.array([not (one.on_edge or one.on_relief_start) for one in contacts])
+    bent = free[:, None] & (bends > 0.0)
+    bent[:, 1] &= [not one.on_line for one in contacts]
+    shift = np.where(bent, -slope(left) / np.where(bent, bends, 1.0), 0.0)  # (keys, contacts, 2)
+    normal = pinion.gradient / np.linalg.norm(pinion.gradient, axis=-1, keepdims=True)
+    normal *= np.sign(pinion.steepness)[..., None]
+    plane = np.array([one.axes[:2] for one in separations])  # (contacts, 2, 3)
+    turned = np.einsum("kcs,csi->kci", shift, slope(normal, axis=1)) - np.einsum("kcs,csi->kci", slope(grown[0]), plane)
+    moved = np.einsum("kcs,csi->kci", shift, plane)
+    point, out = np.array([one.point for one in contacts]), np.array([one.axes[2] for one in separations])
+    levers = np.zeros((2, *at_contact.shape))
+    for gear, (origin, axis) in enumerate(
+        ((np.zeros(3), np.array([0.0, 0.0, 1.0])), (pair.wheel_origin, pair.wheel_axes[2]))
+    ):
+        arm = point - origin
+        sense = np.sign(np.cross(arm, out) @ axis)
+        levers[gear] = (np.cross(moved, out) + np.cross(arm, turned)) @ axis
+        for key, change in enumerate(changes if gear == 1 else ()):
+            shifted, tilted = change.moved_wheel
+            levers[gear, key] += np.cross(arm, out) @ tilted[2] - np.cross(shifted, out) @ axis
+        levers[gear] *= np.where(free, sense, 0.0)
+    return steep, at_contact, levers
 
 
-def _grown(change: PairChange, pair: GearPair, pinion: FlankPoints, wheel: FlankPoints) -> Array:
-    """Growth of the gap [mm] per unit of a key."""
-    owner, growth = change.key.partition(".")[0], np.zeros(pinion.rho.shape)
-    if owner == "pinion":
-        growth -= _turned(change, "pinion", pinion) / pinion.steepness
-    elif owner == "wheel":
-        growth += _turned(change, "wheel", wheel) / wheel.steepness
-    else:
-        below, above = change.below, change.above
-        turn, shift = above.wheel_axes - below.wheel_axes, above.wheel_origin - below.wheel_origin
-        moved = pair.wheel_axes @ shift - wheel.point @ pair.wheel_axes @ turn.T  # in the frame of the wheel
-        growth += (wheel.gradient * moved).sum(axis=-1) / (change.difference * wheel.steepness)
-    return growth
-
-
-def _turned(change: PairChange, gear: str, points: FlankPoints) -> Array:
-    """DTheta per unit of the key at points of a flank [rad]."""
-    low, high = (getattr(side, gear).flank.theta(points.rho, points.z).value for side in (change.below, change.above))
-    return np.asarray((high - low) / change.difference)
+def _grown(pair: GearPair, changes: Sequence[PairChange], pinion: FlankPoints, wheel: FlankPoints) -> Array:
+    """Growth ds of the flanks of pinion and wheel along the normal (2, keys, ...) [mm per unit of the key]."""
+    grown = np.zeros((2, len(changes), *pinion.rho.shape))
+    for gear, (name, own, points) in enumerate((("pinion", pair.pinion, pinion), ("wheel", pair.wheel, wheel))):
+        per_turn = 1.0 / points.steepness
+        per_length = -own.flank.side * own.flank.gradient_norm(points.rho, points.z).value * per_turn
+        for key, change in enumerate(changes):
+            below, above = (getattr(side, name).flank for side in (change.below, change.above))
+            if not change.key.startswith(name):
+                continue
+            if change.of_modifications and not isinstance(above, SplineFlank):
+                grown[gear, key] = removal_change(below, above, points.rho, points.z) * per_length
+            else:
+                low, high = (flank.theta(points.rho, points.z).value for flank in (below, above))
+                grown[gear, key] = (high - low) * per_turn
+            grown[gear, key] /= change.difference
+    for key, change in enumerate(changes):
+        if change.key.startswith("mounting"):
+            shift, turn = change.moved_wheel
+            moved = pair.wheel_axes @ shift - wheel.point @ pair.wheel_axes @ turn.T  # in the frame of the wheel
+            grown[1, key] = (wheel.gradient * moved).sum(axis=-1) / wheel.steepness
+    return grown

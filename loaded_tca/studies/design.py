@@ -33,8 +33,7 @@ from loaded_tca.studies.design_model import (
     SMOOTHING,
     DesignModel,
     Evaluation,
-    beside_ends,
-    pressure_norm,
+    mean_pressure_norm,
 )
 from loaded_tca.studies.run import accuracy_warnings
 from loaded_tca.studies.study import is_finite
@@ -445,12 +444,8 @@ def _analysed(scene: Scene) -> dict[str, Any]:
     }
     found |= {name: np.array([of(row, SMOOTHING)[0] for row in errors]) for name, of in OF_ERRORS.items()}
     for name, at_edges in (("pressure_MPa", False), ("edge_pressure_MPa", True)):
-        norms = []
-        for rows in result.maps:
-            maps = [[one for one in row if one is not None] for row in rows[:-1]]
-            kept = [[np.where(beside_ends(one.gap) == at_edges, one.pressure, 0.0) for one in row] for row in maps]
-            norms.append(pressure_norm(kept, [[one.spacing[0] * one.spacing[1] for one in row] for row in maps]))
-        found[name] = np.array(norms)
+        positions = ([[one for one in row if one is not None] for row in rows[:-1]] for rows in result.maps)
+        found[name] = np.array([mean_pressure_norm(rows, at_edges=at_edges)[0] for rows in positions])
     return found
 
 

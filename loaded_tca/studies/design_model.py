@@ -13,6 +13,7 @@ solution for the transmission error and one more for each other figure, however 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
@@ -21,16 +22,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.ndimage import binary_dilation
 
-from loaded_tca.arrays import Array, Mask
+from loaded_tca.arrays import Array
 from loaded_tca.compliance import require_teeth, tooth_compliance, way_out_told
 from loaded_tca.errors import InputError, require
 from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.held_contacts import HeldContacts, ShapedContacts
 from loaded_tca.loaded.load_sharing import SharedLoad
-from loaded_tca.loaded.sensitivity import LoadedGrid, Tangent
+from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
 from loaded_tca.loaded.together import found_together
 from loaded_tca.loaded.tooth_contact import GridChoice
-from loaded_tca.results.load_factors import STRIPS, common_face, strip_shares
+from loaded_tca.results.figure_slopes import EXPONENT, face_load_factor_slopes, pressure_norm
+from loaded_tca.results.load_factors import load_factors
+from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.scene import Scene
 from loaded_tca.separation.gap_change import value_at
 from loaded_tca.studies.study import Distribution, Study, is_finite
@@ -40,12 +43,13 @@ CELLS = (24, 40)
 """Of every contact, where the scene gives none."""
 SMOOTHING = 0.01
 """tau of the span [um]: it exceeds the span by 2 tau ln(N) at the most."""
-EXPONENT = 12
 TOLERANCE = 1e-6
-"""Of contacts and of the balance of the tooth pairs, relative."""
+"""Of contacts, relative."""
+AGREEMENT = 10.0
+"""That of the balance of the tooth pairs over it."""
 FEWEST_POSITIONS = 4
-State = tuple[int, int, int]
-"""Sample, torque, position."""
+LINEAR = 1e-7
+"""Of the linear systems of gradients, relative."""
 
 
 class DesignModel:
@@ -111,8 +115,6 @@ class DesignModel:
         self.held = [self._sample(*one) for one in zip(self.deviations, self.own_deviations, strict=True)]
         pair = self.held[0].pair
         self.driving, self.micrometres = pair.driving, 1e3 * pair.base_radii[1]
-        faces = [common_face(one.pair, one.mesh.leading_contact) for one in self.held]
-        self.strips = [np.linspace(*face, STRIPS + 1) for face in faces]
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Made anew by pickle, for other processes: held contacts are large, and quickly made."""
@@ -173,7 +175,7 @@ class DesignModel:
             If a contact, or the balance of the tooth pairs, is not solved to the tolerance.
         """
         values = self.values(x)
-        grid = GridChoice(self.cells, tolerance=self.tolerance, free_edges=self.scene.analysis.free_edges, agreement=self.tolerance)
+        grid = GridChoice(self.cells, tolerance=self.tolerance, free_edges=self.scene.analysis.free_edges, agreement=AGREEMENT * self.tolerance)
         while True:
             grown = sum(one.grown for one in self.held)
             shaped = [ShapedContacts(*one) for one in zip(self.held, values + self.own_deviations, strict=True)]
@@ -285,9 +287,9 @@ class Evaluation:
         shape = len(model.deviations), model.torques.size, model.positions
         self.transmission_error = np.array([error for error, _ in states]).reshape(shape)
         shared = [[LoadedGrid.of(one.tooth_pair.pair, one.loaded) for one in state.shares] for _, state in states]
-        self._grids = dict(zip(np.ndindex(shape), shared, strict=True))
-        self._tangents: dict[State, Tangent] = {}
-        self._found: dict[tuple[str, int, int], tuple[float, Sequence[Array]]] = {}
+        self._grids = {place: [one for one in shared[k] if one.active.any()] for k, place in enumerate(np.ndindex(shape))}
+        self._tangents: dict[tuple[int, int], tuple[Tangents, Array]] = {}
+        self._found: dict[tuple[str, int, int], tuple[float, Array]] = {}
 
     @property
     def figures(self) -> dict[str, Array]:
@@ -312,82 +314,87 @@ class Evaluation:
     def _chosen(self, torques: Sequence[int] | None) -> Sequence[int]:
         return range(self.model.torques.size) if torques is None else torques
 
-    def _figure(self, name: str, s: int, t: int) -> tuple[float, Sequence[Array]]:
-        """A figure, and its derivatives to the errors [um] or to the forces of the active cells at each position."""
+    def _figure(self, name: str, s: int, t: int) -> tuple[float, Array]:
+        """A figure, and its derivatives to the errors of the positions [um], or to the forces of all active cells."""
         if (name, s, t) not in self._found:
-            errors = self.model.micrometres * self.transmission_error[s, t]
             if name in OF_ERRORS:
+                errors = self.model.micrometres * self.transmission_error[s, t]
                 self._found[name, s, t] = OF_ERRORS[name](errors, self.model.smoothing)
-            elif name == "face_load_factor":
-                self._found[name, s, t] = self._face_load_factor(s, t)
             else:
-                self._found[name, s, t] = self._pressure(s, t, at_edges=name == "edge_pressure_MPa")
+                positions = [self._grids[s, t, n] for n in range(self.model.positions)]
+                value, slopes = OF_FORCES[name](self.model.held[s], positions)
+                grids = (grid for position in positions for grid in position)
+                active = [slope[grid.active] for slope, grid in zip(slopes, grids, strict=True)]
+                self._found[name, s, t] = value, np.concatenate(active)
         return self._found[name, s, t]
 
     def _gradient(self, name: str, s: int, t: int) -> Array:
-        _, slopes = self._figure(name, s, t)
-        found = np.zeros(len(self.model.keys))
-        for n, slope in enumerate(slopes):
-            tangent, gaps = self._tangent((s, t, n))
-            if name in OF_ERRORS:
-                change = -self.model.driving * tangent.rotation_change(gaps)
-                found += self.model.micrometres * slope * change
-            elif slope.any():
-                found += tangent.functional_change(slope, gaps)[0]
-        return found
+        slopes = self._figure(name, s, t)[1]
+        tangents, gaps = self._tangents_of(s, t)
+        if name in OF_ERRORS:
+            scale = -self.model.driving * self.model.micrometres
+            return np.asarray(scale * tangents.rotation_change(gaps) @ slopes)
+        return np.asarray(tangents.functional_change(slopes, gaps).sum(axis=-1))
 
-    def _tangent(self, state: State) -> tuple[Tangent, Array]:
-        """Linear answer of a state, and the growth of the gaps at its active cells (keys, n) [mm per unit]."""
-        if state not in self._tangents:
-            self._tangents[state] = Tangent(self._grids[state], self.model.held[state[0]].bending)
-        slopes = self._slopes[state[0]]
-        return self._tangents[state], self._tangents[state].gathered([slopes[g.contact] for g in self._tangents[state].grids])
+    def _tangents_of(self, s: int, t: int) -> tuple[Tangents, Array]:
+        """Linear answers of all positions, and the growth of the gaps at their active cells (keys, n) [mm per unit]."""
+        if (s, t) not in self._tangents:
+            states = [self._grids[s, t, n] for n in range(self.model.positions)]
+            tangents = Tangents(states, self.model.held[s].bending, LINEAR)
+            gaps = tangents.gathered(self._slopes[s][grid.contact] for grid in tangents.grids)
+            self._tangents[s, t] = tangents, gaps
+        return self._tangents[s, t]
 
     @cached_property
     def _slopes(self) -> list[dict[ContactPoint, Array]]:
         """Derivatives of the gaps of each sample."""
         return [one.slopes(self.x + own) for one, own in zip(self.model.held, self.model.own_deviations, strict=True)]
 
-    def _pressure(self, s: int, t: int, *, at_edges: bool) -> tuple[float, Sequence[Array]]:
-        """Norm of the pressure of the cells beside an end of a flank, or of all others."""
-        pressures = [
-            [np.where(beside_ends(one.separation.gap) == at_edges, one.pressure, 0.0) for one in self._grids[s, t, n]]
-            for n in range(self.model.positions)
-        ]
-        areas = [[one.problem.cell_area for one in self._grids[s, t, n]] for n in range(self.model.positions)]
-        norm, slopes = pressure_norm(pressures, areas), []
-        for n, own in enumerate(pressures):
-            active = [one[grid.active] for one, grid in zip(own, self._grids[s, t, n], strict=True)]
-            relative = np.concatenate([np.zeros(0), *active]) / (norm or 1.0)
-            slopes.append(relative ** (EXPONENT - 1) / self.model.positions)
-        return norm, slopes
 
-    def _face_load_factor(self, s: int, t: int) -> tuple[float, Sequence[Array]]:
-        """Largest force of a strip of the face over the mean; the strip with the largest one is held in derivatives."""
-        held, forces, shares = self.model.held[s], np.zeros(STRIPS), []
-        for n in range(self.model.positions):
-            own = [np.zeros((STRIPS, 0))]
-            for grid in self._grids[s, t, n]:
-                loaded = grid.pressure > 0.0
-                parts, _ = strip_shares(held.pair, grid.separation, loaded, self.model.strips[s])
-                forces += parts @ grid.pressure[loaded] * grid.problem.cell_area
-                own.append(parts[:, grid.active[loaded]])
-            shares.append(np.concatenate(own, axis=1))
-        top, mean = int(forces.argmax()), float(forces.mean())
-        factor = float(forces[top]) / mean
-        return factor, [(parts[top] - factor / STRIPS) / mean for parts in shares]
+Positions = Sequence[Sequence[LoadedGrid]]
+"""Loaded contacts of each position, the last one of the scene left out."""
 
 
-def beside_ends(gap: Array) -> Mask:
-    """Cells of a gap (nx, ny) with the end of a flank, or of the grid, beside them."""
-    beyond = np.pad(np.isinf(gap), 1, constant_values=True)
-    return np.asarray(binary_dilation(beyond, np.ones((3, 3), dtype=bool))[1:-1, 1:-1])
+def pressure(_: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
+    """Norm of the pressure [MPa] of all cells that have no end of a flank beside them, and its derivatives."""
+    return mean_pressure_norm([[_map_of(grid) for grid in position] for position in positions], at_edges=False)
 
 
-def pressure_norm(pressures: Sequence[Sequence[Array]], areas: Sequence[Sequence[float]]) -> float:
-    """Norm [MPa] of pressures by position and contact, on cells of such areas [mm^2]; see the module."""
-    sums = [area * float((one**EXPONENT).sum()) for row in zip(pressures, areas, strict=True) for one, area in zip(*row, strict=True)]
-    return float((sum(sums) / len(pressures)) ** (1.0 / EXPONENT))
+def edge_pressure(_: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
+    """The same of the cells that have one beside them."""
+    return mean_pressure_norm([[_map_of(grid) for grid in position] for position in positions], at_edges=True)
+
+
+def face_load_factor(held: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
+    """K_Hbeta and its derivatives, the strip with the largest force held."""
+    maps = [tuple(_map_of(grid) for grid in position) for position in positions]
+    path, closed = held.mesh.leading_contact, (*maps, ())  # of load factors the last position does not count
+    factor = float(load_factors(held.pair, path, (closed,), math.nan)[0][0])
+    slopes = face_load_factor_slopes(held.pair, path, closed)
+    return factor, [one for row in slopes for one in row if one is not None]
+
+
+def _map_of(grid: LoadedGrid) -> PressureMap:
+    one = grid.separation
+    return PressureMap(one.x, one.y, one.spacing, grid.pressure, one.gap, one.origin, one.axes)
+
+
+def mean_pressure_norm(positions: Sequence[Sequence[PressureMap]], *, at_edges: bool) -> tuple[float, list[Array]]:
+    """Norm [MPa] of the pressures of cells beside the ends of the flanks, or of all others, as a mean over positions.
+
+    Also returns its derivatives by the forces of the cells of all maps [1/mm^2].
+    """
+    found = []
+    for one in (one for position in positions for one in position):
+        beyond = np.pad(np.isinf(one.gap), 1, constant_values=True)
+        beside = binary_dilation(beyond, np.ones((3, 3), dtype=bool))[1:-1, 1:-1]
+        kept = np.where(beside == at_edges, one.pressure, 0.0)
+        found.append(pressure_norm(kept, np.ones(kept.shape), one.spacing))
+    largest = max((norm for norm, _ in found), default=0.0)
+    if largest == 0.0:
+        return 0.0, [slopes for _, slopes in found]
+    norm = largest * (sum((own / largest) ** EXPONENT for own, _ in found) / len(positions)) ** (1.0 / EXPONENT)
+    return norm, [slopes * (own / norm) ** (EXPONENT - 1.0) / len(positions) for own, slopes in found]
 
 
 def span(errors: Array, _: float) -> tuple[float, Array]:
@@ -422,7 +429,7 @@ def mean(errors: Array, _: float) -> tuple[float, Array]:
 
 
 OF_ERRORS = {"span_um": span, "smooth_span_um": smooth_span, "mean_transmission_error_um": mean}
-OF_FORCES = ("pressure_MPa", "edge_pressure_MPa", "face_load_factor")
+OF_FORCES = {"pressure_MPa": pressure, "edge_pressure_MPa": edge_pressure, "face_load_factor": face_load_factor}
 FIGURES = (*OF_ERRORS, *OF_FORCES)
 """Figures of a design under one torque with one sample: peak-to-peak transmission error at the wheel's base circle, the
 same with smooth maxima, its mean; norm of the pressure away from the ends of the flanks, and beside them; K_Hbeta."""

@@ -1,4 +1,4 @@
-"""The tangent of a position: against dense problems solved anew, closed forms, limits."""
+"""The tangents of states: against dense problems solved anew, closed forms, limits."""
 
 from functools import cache
 from types import SimpleNamespace
@@ -12,9 +12,9 @@ from loaded_tca.contact import ContactProblem
 from loaded_tca.contact.love import influence_coefficients
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.loaded.load_sharing import share_load, tooth_pairs_at
-from loaded_tca.loaded.sensitivity import LoadedGrid, Tangent
+from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
 from loaded_tca.loaded.tooth_contact import GridChoice
-from loaded_tca.separation.gap_change import gap_change, pair_changes
+from loaded_tca.separation.gap_change import contact_changes, pair_changes
 from loaded_tca.unloaded import trace_teeth
 from tests.samples.results import SCENES
 
@@ -107,8 +107,11 @@ class DensePairs:
             active, held = (active | add | release) & ~(drop | over), (held | over) & ~release
         raise AssertionError("no active set found")
 
-    def tangent(self):
-        forces, _, _ = self.solve()
+    def tangent(self, torques=(TORQUE,)):
+        return Tangents([self._grids(torque) for torque in torques], self)
+
+    def _grids(self, torque):
+        forces, _, _ = self.solve(torque)
         pressures = np.split(forces / self.area, 2)
         capped = [problem.cap for problem in self.problems]
         pressures = [
@@ -120,7 +123,7 @@ class DensePairs:
             pinion, wheel = LEVERS[number]
             contact = SimpleNamespace(pinion_lever=pinion, wheel_lever=wheel)
             grids.append(LoadedGrid(number, contact, None, problem, pressure))
-        return Tangent(grids, self)
+        return grids
 
 
 @cache
@@ -176,9 +179,9 @@ def test_numbers_of_the_forces_change_by_their_adjoint_as_by_the_forces(pairs):
     scale = forces.max()
     slopes = power * (forces / scale) ** (power - 1.0) / scale
     expected = slopes @ ((above[0] - below[0]) / step)[active]
-    by_gap, by_torque = tangent.functional_change(slopes, np.stack([change[active], 0.0 * change[active]]))
-    assert_allclose(by_gap, [expected, 0.0], rtol=OTHERS)
-    assert_allclose(by_torque, slopes @ tangent.force_by_torque, rtol=OTHERS)
+    gaps = np.stack([change[active], 0.0 * change[active]])
+    found = tangent.functional_change(slopes, gaps, np.array([[0.0], [1.0]]))
+    assert_allclose(found[:, 0], [expected, slopes @ tangent.force_by_torque], rtol=OTHERS)
 
 
 def test_share_of_a_pair_changes_as_the_dense_problem_solved_anew(pairs):
@@ -186,7 +189,7 @@ def test_share_of_a_pair_changes_as_the_dense_problem_solved_anew(pairs):
     first = np.arange(pairs.gap.size) < pairs.gap.size // 2
     slopes = np.where(first, pairs.pinion, 0.0) / TORQUE
     expected = slopes @ (above[0] - below[0]) / step
-    found = pairs.tangent().functional_change(slopes[active], change[active])[0]
+    found = pairs.tangent().functional_change(slopes[active], change[active])
     assert_allclose(found, expected, rtol=OTHERS)
 
 
@@ -202,11 +205,13 @@ def test_removal_even_over_all_flanks_turns_the_wheel_by_itself_over_the_lever(p
     assert_allclose(tangent.weights @ tangent.wheel_levers / tangent.stiffness, 1.0, rtol=TRANSMISSION_ERROR)
 
 
-def test_tangent_without_an_active_cell_is_zero():
-    pairs = dense()
-    contact = SimpleNamespace(pinion_lever=47.0, wheel_lever=80.0)
-    tangent = Tangent([LoadedGrid(0, contact, None, pairs.problems[0], np.zeros(SHAPE))])
-    assert tangent.stiffness == 0.0
+def test_states_are_found_together_as_each_alone(pairs):
+    torques = (0.6 * TORQUE, TORQUE)
+    together = pairs.tangent(torques)
+    alone = [pairs.tangent((torque,)) for torque in torques]
+    assert_allclose(together.stiffness, [one.stiffness[0] for one in alone], rtol=TRANSMISSION_ERROR)
+    weights = np.concatenate([one.weights for one in alone])
+    assert_allclose(together.weights, weights, rtol=0, atol=OTHERS * weights.max())
 
 
 def test_linear_system_that_is_not_solved_in_time_is_an_error(monkeypatch):
@@ -222,9 +227,11 @@ def test_helical_pair_turns_with_centre_distance_and_axial_offset_by_closed_form
     pair, gear = scene.pair(), scene.mesh().pinion
     candidates = tooth_pairs_at(trace_teeth(pair, [turn * pair.pitch]), 0)
     shared = share_load(pair, candidates, 130e3, GridChoice(cells=(32, 32)))
-    tangent = Tangent([LoadedGrid.of(share.tooth_pair.pair, share.loaded) for share in shared.shares])
+    grids = [LoadedGrid.of(share.tooth_pair.pair, share.loaded) for share in shared.shares]
+    tangent = Tangents([grids])
     changes = pair_changes(scene, ["mounting.centre_distance_error_mm", "mounting.axial_offset_mm"])
-    grown = [gap_change(pair, one.tooth_pair.contact, one.loaded.separation, changes).by_key for one in shared.shares]
-    found = -pair.driving * tangent.rotation_change(tangent.gathered(grown)) * pair.base_radii[1]
+    contacts, separations = [grid.contact for grid in grids], [grid.separation for grid in grids]
+    grown = contact_changes(pair, contacts, separations, [grid.active for grid in grids], changes).gaps
+    found = -pair.driving * tangent.rotation_change(grown)[:, 0] * pair.base_radii[1]
     closed = [-np.sin(scene.mesh().working_pressure_angle), np.tan(abs(gear.base_helix_angle))]
     assert_allclose(found, closed, rtol=1e-3)

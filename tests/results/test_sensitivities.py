@@ -62,8 +62,8 @@ def test_transmission_error_of_real_pairs_changes_as_whole_analyses_do(name, key
     assert_allclose(found, expected, rtol=0, atol=REAL_PAIRS * np.abs(expected).max())
 
 
-@pytest.mark.parametrize("name", ["load_share", "line_load"])
-def test_shares_and_line_loads_of_a_helical_pair_change_as_whole_analyses_do(name):
+@pytest.mark.parametrize("name", ["load_share", "line_load", "peak_pressure"])
+def test_figures_of_tooth_pairs_of_a_helical_pair_change_as_whole_analyses_do(name):
     same, first = analysed("mesh_cycle_helical", False), (0, 0)  # in the middle a corner carries 2 % on a few cells
     expected = slope_through_analyses("mesh_cycle_helical", False, CROWNING, 0.5, name)[0]
     found = getattr(same.sensitivities([CROWNING]), name)[*first, :, 0]
@@ -124,6 +124,82 @@ def test_peak_to_peak_and_harmonics_follow_from_the_positions():
     assert_allclose(found.peak_to_peak[:, 0], span, rtol=1e-6)
     waves = [np.abs(np.fft.rfft(error[:, :-1])[:, 1:4]) / 4.0 for error in (one.transmission_error, moved)]
     assert_allclose(found.harmonics(3)[..., 0], (waves[1] - waves[0]) / step, rtol=1e-3)
+
+
+def test_load_factor_changes_as_whole_analyses_do():
+    key = "pinion.modifications.tip_relief_um"  # of one that moves no load along the face the strips stay
+    expected = slope_through_analyses("mesh_cycle_spur", False, key, 1.0, "face_load_factor")
+    found = analysed("mesh_cycle_spur", False).sensitivities([key]).face_load_factor[0]
+    assert_allclose(found, expected, rtol=REAL_PAIRS)
+
+
+def test_pressure_norm_of_a_position_is_near_its_peak_and_changes_with_it():
+    one = analysed("mesh_cycle_spur", False)
+    found = one.sensitivities([TORQUE])
+    place = 0, 0  # two contacts alike
+    norm, peak = found.pressure_norm(200.0)[*place, 0], np.nanmax(found.peak_pressure[*place, :, 0])
+    assert_allclose(norm, peak, rtol=0.05)  # as the 200th root of their areas over 1 mm^2, and of two
+
+
+def test_pressure_norm_grows_with_the_torque_as_between_two_analyses():
+    step = 1.0
+    norms = []
+    for by in (-step, step):
+        one = analysed("mesh_cycle_spur", False, ((TORQUE, 130.0 + by),))
+        (parts,) = [[m for m in row if m is not None] for row in one.maps[0][:1]]
+        norms.append(sum((m.pressure**8).sum() * m.spacing[0] * m.spacing[1] for m in parts) ** 0.125)
+    found = analysed("mesh_cycle_spur", False, ((TORQUE, 130.0),)).sensitivities([TORQUE]).pressure_norm(8.0)[0, 0, 0]
+    assert_allclose(found, (norms[1] - norms[0]) / (2.0 * step), rtol=REAL_PAIRS)
+
+
+def test_tangent_stiffness_is_what_the_derivative_by_the_torque_says_and_near_the_chord():
+    one = result("mesh_cycle_helical")
+    found = one.sensitivities([TORQUE])
+    rate = 1e3 * one.gear_pair.driving * -(found.transmission_error[..., 0] ** -1.0) * 1.0
+    lengths = 1e3 * np.prod(one.gear_pair.base_radii) * one.face_width
+    assert_allclose(found.mesh_stiffness, rate / lengths, rtol=SOLVED)
+    assert_allclose(found.mesh_stiffness, one.mesh_stiffness, rtol=REAL_PAIRS)
+
+
+def test_maps_of_weights_take_the_same_off_the_transmission_error_as_even_removal():
+    one = result("mesh_cycle_helical")
+    found = one.sensitivities([CROWNING])
+    for t, n in np.ndindex(one.transmission_error.shape):
+        parts = [part for part in found.weight_maps[t][n] if part is not None]
+        assert_allclose(sum(part.sum() for part in parts) * one.path.wheel_lever[n], 1.0, rtol=1e-3)
+        assert all(
+            (part[pressed.pressure == 0.0] == 0.0).all()
+            for part, pressed in zip(parts, (m for m in one.maps[t][n] if m is not None), strict=True)
+        )
+
+
+def test_spread_adds_up_the_squares_of_independent_deviations():
+    one = result("mesh_cycle_helical")
+    found = one.sensitivities([CROWNING, SLOPE])
+    both = found.spread({CROWNING: 2.0, SLOPE: 3.0})
+    for name in ("transmission_error", "peak_pressure", "face_load_factor"):
+        slopes = getattr(found, name)
+        assert_allclose(both[name], np.hypot(2.0 * slopes[..., 0], 3.0 * slopes[..., 1]), rtol=1e-12)
+    assert_allclose(found.spread({SLOPE: 3.0})["peak_to_peak"], 3.0 * np.abs(found.peak_to_peak[:, 1]), rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("deviations", "told"),
+    [
+        ({"nothing": 1.0}, "nothing: is none of the keys"),
+        ({CROWNING: -1.0}, "found -1.0"),
+        ({CROWNING: "1"}, "found '1'"),
+        ({}, "none given"),
+    ],
+)
+def test_spread_under_deviations_that_are_none_is_one_clear_error(deviations, told):
+    with pytest.raises(InputError, match=told):
+        result("mesh_cycle_helical").sensitivities([CROWNING]).spread(deviations)
+
+
+def test_result_without_any_load_has_no_sensitivities():
+    with pytest.raises(InputError, match="no tooth pair of the result carries load"):
+        result("mesh_cycle_helical", torques=(0.0,)).sensitivities([CROWNING])
 
 
 def test_state_without_load_has_no_sensitivities():

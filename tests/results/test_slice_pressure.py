@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca import AccuracyWarning, analyse, read_scene
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
@@ -79,13 +79,18 @@ def loaded(pair, cells=(48, 48), load=2700.0, position=0.0):
     return solve_under_load(pair, trace_contact(pair, [position])[0], load, GridChoice(cells=cells, tolerance=1e-8))
 
 
+def under_pressure(contact):
+    return contact.contact, contact.separation, contact.solution.pressure
+
+
 @pytest.mark.parametrize("helix_deg", [0.0, 20.0])
 def test_slice_pressure_is_the_peak_of_a_slender_contact(helix_deg):
     """Where both exist they agree: the ellipse is 80 times as long as wide, and longer than the 0.75 mm averaged."""
     pair = sam_paper(helix_deg)
     contact = loaded(pair)
-    ((pressure, (x, y)),) = largest_slice_pressures(pair, [contact])
-    assert_allclose(pressure, contact.solution.peak_pressure, rtol=2e-3)  # that of Hertz on 48 cells
+    (peak,) = largest_slice_pressures(pair, [under_pressure(contact)])
+    x, y = peak.place
+    assert_allclose(peak.pressure, contact.solution.peak_pressure, rtol=2e-3)  # that of Hertz on 48 cells
     assert abs(x) < contact.separation.spacing[0]
     assert abs(y) < 0.05 * contact.extent[1]
 
@@ -93,10 +98,13 @@ def test_slice_pressure_is_the_peak_of_a_slender_contact(helix_deg):
 def test_slice_pressures_of_several_contacts_are_those_of_each():
     """To the bit, on grids of any number of slices."""
     pair = sam_paper(20.0)
-    contacts = [loaded(pair, cells, position=position) for cells, position in (((24, 16), 0.1), ((16, 48), 0.0))]
-    each = [largest_slice_pressures(pair, [contact])[0] for contact in contacts]
-    assert largest_slice_pressures(pair, contacts) == each
-    assert largest_slice_pressures(pair, contacts[::-1]) == each[::-1]
+    grids = ((24, 16), 0.1), ((16, 48), 0.0)
+    contacts = [under_pressure(loaded(pair, cells, position=position)) for cells, position in grids]
+    for order in (contacts, contacts[::-1]):
+        for together, contact in zip(largest_slice_pressures(pair, order), order, strict=True):
+            (alone,) = largest_slice_pressures(pair, [contact])
+            assert (together.pressure, together.place) == (alone.pressure, alone.place)
+            assert_array_equal(together.slopes, alone.slopes)
 
 
 def test_slice_pressure_takes_line_load_and_curvature_of_its_own_place():

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import read_scene, sample_separation, trace_contact
 from loaded_tca.errors import InputError
-from loaded_tca.separation.gap_change import gap_change, pair_changes
+from loaded_tca.separation.gap_change import contact_changes, pair_changes
 from loaded_tca.separation.normal_gap import NormalGap
 from tests.samples.results import SCENES
 
@@ -74,10 +74,18 @@ def difference(scene, key, contact, separation, steps):
     return np.where(there, (gaps[1] - gaps[0]) / (2.0 * step), 0.0)
 
 
+def grown(pair, contact, separation, scene, keys):
+    """Growth of the gap with the gears held, (keys, nx, ny); zero where there is no material."""
+    there = np.isfinite(separation.cut_gap)
+    found = np.zeros((len(keys), *there.shape))
+    found[:, there] = contact_changes(pair, [contact], [separation], [there], pair_changes(scene, keys)).gaps
+    return found
+
+
 def check(scene, keys, steps=LENGTHS):
     pair, contact, separation = grid_of(scene)
-    found = gap_change(pair, contact, separation, pair_changes(scene, keys))
-    for key, change in zip(keys, found.by_key, strict=True):
+    found = grown(pair, contact, separation, scene, keys)
+    for key, change in zip(keys, found, strict=True):
         expected = difference(scene, key, contact, separation, steps)
         assert np.abs(expected).max() > 0.0, key
         assert_allclose(change, expected, rtol=0, atol=AGREEMENT * np.abs(expected).max(), err_msg=key)
@@ -146,24 +154,49 @@ def test_gap_change_with_machine_settings_is_the_difference_of_gaps():
     check(scene, keys, {"mm": 5e-3, "deg": 5e-3})  # generated flanks are known to 1e-11 mm
 
 
-def test_slope_of_the_gap_is_its_difference_over_the_place():
-    scene = scene_of("spiral_bevel")
-    pair, contact, separation = grid_of(scene)
-    step, x, y = 1e-5, separation.x[None, :, None], separation.y[None, None]
-    gap = NormalGap(pair, contact, separation.axes)
-    there = np.isfinite(separation.cut_gap)
-    found = gap_change(pair, contact, separation, []).by_place
-    for by, (dx, dy) in zip(found, ((step, 0.0), (0.0, step)), strict=True):
-        expected = (gap.at(x + dx, y + dy)[0] - gap.at(x - dx, y - dy)[0])[0] / (2.0 * step)
-        assert_allclose(by[there], expected[there], rtol=0, atol=AGREEMENT * np.abs(expected[there]).max())
+LEVERS = {
+    "helical": ("mesh_cycle_helical", {}, ("pinion.modifications.profile_crowning_um", "mounting.misalignment_um")),
+    "spiral bevel": (
+        "spiral_bevel",
+        BEVEL,
+        (
+            "pinion.modifications.helix_slope_um",
+            "wheel.modifications.profile_slope_um",
+            "mounting.offset_mm",
+            "mounting.pinion_axial_mm",
+            "mounting.shaft_angle_error_deg",
+        ),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", LEVERS)
+def test_levers_change_as_those_of_contact_points_traced_anew(name):
+    file, changes, keys = LEVERS[name]
+    scene = scene_of(file, **changes)
+    pair, contact, separation = grid_of(scene, cells=(3, 3))
+    levers = contact_changes(pair, [contact], [separation], [np.ones((3, 3), bool)], pair_changes(scene, keys)).levers
+    for key, found in zip(keys, levers[..., 0].T, strict=True):
+        step, trials = LENGTHS[key.rpartition("_")[2]], []
+        *sections, last = key.split(".")
+        value = scene
+        for section in (*sections, last):
+            value = getattr(value, section)
+        for trial in (value - step, value + step):
+            trials.append(trace_contact(scene.with_changes({key: trial}).pair(), [contact.pinion_angle])[0])
+        expected = [
+            (getattr(trials[1], f"{g}_lever") - getattr(trials[0], f"{g}_lever")) / (2 * step)
+            for g in ("pinion", "wheel")
+        ]
+        assert_allclose(found, expected, rtol=0, atol=1e-3 * np.abs(expected).max(), err_msg=key)
 
 
 def test_gap_of_an_amount_that_may_not_fall_below_zero_grows_as_above_it():
     scene, key = scene_of("mesh_cycle_helical"), "wheel.modifications.lead_crowning_um"
     pair, contact, separation = grid_of(scene)
-    at_zero = gap_change(pair, contact, separation, pair_changes(scene, [key])).by_key
+    at_zero = grown(pair, contact, separation, scene, [key])
     above = scene.with_changes({key: 5.0})
-    five = gap_change(above.pair(), contact, separation, pair_changes(above, [key])).by_key
+    five = grown(above.pair(), contact, separation, above, [key])
     # the flank is met up to 5 um away along the normal, and the normals differ by 1e-3
     assert_allclose(at_zero, five, rtol=0, atol=1e-3 * five.max())
 
@@ -172,7 +205,7 @@ def test_gap_of_helical_gears_grows_by_the_sine_of_the_pressure_angle_with_the_c
     scene = scene_of("mesh_cycle_helical", **{"pinion.modifications.profile_crowning_um": 0.0})
     pair, contact, separation = grid_of(scene, cells=(3, 3))
     keys = ["mounting.centre_distance_error_mm", "mounting.axial_offset_mm"]
-    apart, along = gap_change(pair, contact, separation, pair_changes(scene, keys)).by_key[:, 1, 1]
+    apart, along = grown(pair, contact, separation, scene, keys)[:, 1, 1]
     gear, working = scene.mesh().pinion, scene.mesh().working_pressure_angle
     # at the contact point the normal is that of the plane of action, within the slope of the crowning, 1e-4
     assert_allclose(abs(apart), math.sin(working) * math.cos(gear.base_helix_angle), rtol=1e-3)

@@ -1,0 +1,94 @@
+"""The contact problems behind the pressure maps of a result, made again."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from loaded_tca.arrays import Array, Indices
+from loaded_tca.errors import InputError
+from loaded_tca.loaded.cycle import farthest_apart
+from loaded_tca.loaded.free_edges import edge_compliances
+from loaded_tca.loaded.load_sharing import ToothPair, tooth_pairs_at
+from loaded_tca.loaded.pair_coupling import BendingModel
+from loaded_tca.loaded.sensitivity import LoadedGrid
+from loaded_tca.loaded.tooth_contact import contact_problem
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.pressure_map import PressureMap
+from loaded_tca.separation.sample import Separation, sample_separations
+from loaded_tca.unloaded import ContactPoint, trace_contact, trace_teeth
+from loaded_tca.unloaded.curvature import relative_curvatures
+
+if TYPE_CHECKING:
+    from loaded_tca.results.mesh_cycle import MeshCycle
+
+SAME = 1e-6
+"""Distance of two contact points, over the module, that are the same."""
+
+Unloaded = list[dict[int, ToothPair]]
+"""Unloaded contacts by position and number of the tooth pair, in the angles of their own teeth."""
+
+
+def unloaded_contacts(pair: GearPair, angles: Array, *, alone: bool) -> tuple[Unloaded, int]:
+    """Unloaded contacts, and how many pitches those of a position are apart."""
+    if alone:
+        path = trace_contact(pair, angles)
+        return [{0: ToothPair(0, path[n], 0.0)} for n in range(len(path))], 1
+    mesh = trace_teeth(pair, angles)
+    found: Unloaded = [{one.pair: one for one in tooth_pairs_at(mesh, n)} for n in range(len(mesh))]
+    return found, max(farthest_apart(mesh), 1)
+
+
+def loaded_grids(
+    result: MeshCycle, pair: GearPair, unloaded: Unloaded, bending: BendingModel | None
+) -> tuple[Indices, list[LoadedGrid]]:
+    """Torque, position and pair (3, grids) by index, and the contact problems that the maps solve, made again."""
+    places, numbers = np.argwhere(result.normal_force > 0.0), result.dataset["pair"].values.tolist()
+    maps = [one for t, n, k in places.tolist() if (one := result.maps[t][n][k]) is not None]
+    contacts = [unloaded[n][numbers[k]].contact for _, n, k in places.tolist()]
+    if any(
+        not np.allclose(one.origin, contact.point, rtol=0.0, atol=SAME * pair.module)
+        for one, contact in zip(maps, contacts, strict=True)
+    ):
+        raise InputError("sensitivities: the pressure maps of the result do not belong to its scene")
+    separations = _separations(pair, contacts, maps)
+    ends = edge_compliances(pair, separations) if result.scene.analysis.free_edges else [None] * len(maps)
+    grids = []
+    for (t, n, k), one, contact, separation, end in zip(
+        places.tolist(), maps, contacts, separations, ends, strict=True
+    ):
+        if isinstance(end, InputError):
+            raise end
+        bent = None if bending is None else bending.within(numbers[k], separation)
+        problem = contact_problem(pair, separation, float(result.normal_force[t, n, k]), bent, end)
+        grids.append(LoadedGrid(numbers[k], contact, separation, problem, one.pressure))
+    active = [grid.active.any() for grid in grids]
+    return places[active].T, [grid for grid, own in zip(grids, active, strict=True) if own]
+
+
+def _separations(pair: GearPair, contacts: Sequence[ContactPoint], maps: Sequence[PressureMap]) -> list[Separation]:
+    """Grids of maps; where the flanks do not end the gap is that under load, which is of no account here."""
+    bends = relative_curvatures(pair, contacts)
+    ends = [bool(np.isinf(one.gap).any()) for one in maps]
+    shapes = [one.pressure.shape for one, cut in zip(maps, ends, strict=True) if cut]
+    spacings = [one.spacing for one, cut in zip(maps, ends, strict=True) if cut]
+    sampled = iter(
+        sample_separations(
+            pair,
+            [contact for contact, cut in zip(contacts, ends, strict=True) if cut],
+            cells=shapes,
+            loads=[None] * len(shapes),
+            boxes=[(0.5 * nx * dx, 0.5 * ny * dy) for (nx, ny), (dx, dy) in zip(shapes, spacings, strict=True)],
+        )
+    )
+    found = []
+    for one, bend, cut in zip(maps, bends, ends, strict=True):
+        whole, principal = np.ones(one.gap.shape), (bend.across, bend.along)
+        place = one.x, one.y, one.spacing, one.origin, one.axes, principal
+        made = next(sampled) if cut else Separation(one.gap, *place, whole, one.gap)
+        if not isinstance(made, Separation):
+            raise made
+        found.append(made)
+    return found
