@@ -114,16 +114,18 @@ def held(
 ) -> list[HeldContact]:
     """Sample contacts in boxes about middles, and meet the flanks there."""
     contacts = [one.contact for one in tooth_pairs]
-    given = {"cells": [cells] * len(contacts), "loads": [None] * len(contacts)}
-    separations = []
-    for one in sample_separations(pair, contacts, **given, boxes=boxes, middles=middles):
+    count = len(contacts)
+    separations, ends = [], []
+    for one in sample_separations(
+        pair, contacts, cells=[cells] * count, loads=[None] * count, boxes=boxes, middles=middles
+    ):
         if not isinstance(one, Separation):
             raise one
         separations.append(one)
-    ends = edge_compliances(pair, separations) if free_edges else [None] * len(separations)
-    for matrix in ends:
+    for matrix in edge_compliances(pair, separations) if free_edges else [None] * count:
         if isinstance(matrix, InputError):
             raise matrix
+        ends.append(matrix)
     found, size = [], max(1, TOGETHER // math.prod(cells))
     for first in range(0, len(contacts), size):
         some = slice(first, first + size)
@@ -132,8 +134,8 @@ def held(
         points = NormalGap(pair, contacts[some], axes).flank_points(x[:, :, None], y[:, None])
         for k, separation in enumerate(separations[some]):
             there = np.isfinite(separation.cut_gap)
-            met = (MetPoints(one.rho[k][there], one.z[k][there], one.steepness[k][there]) for one in points)
-            found.append(HeldContact(tooth_pairs[first + k], separation, there, *met, ends[first + k]))  # type: ignore[arg-type]
+            pinion, wheel = (MetPoints(one.rho[k][there], one.z[k][there], one.steepness[k][there]) for one in points)
+            found.append(HeldContact(tooth_pairs[first + k], separation, there, pinion, wheel, ends[first + k]))
     return found
 
 
@@ -176,8 +178,10 @@ class HeldContacts:
 
     Attributes
     ----------
-    grown : int
-        How often a larger grid took the place of one.
+    start : (keys,) array
+        Values of the keys in the scene.
+    contacts : list of lists of ContactPoint
+        Of each position.
     """
 
     def __init__(
@@ -190,8 +194,8 @@ class HeldContacts:
         bending: BendingModel | None = None,
     ) -> None:
         self.scene, self.pair, self.mesh, self.keys = scene, mesh.pair, mesh, tuple(ranges)
-        self.start = np.array([float(value_at(scene, key)) for key in self.keys])
-        self.grown, self._torque, self._cells = 0, torque, cells
+        self.start = np.array([value_at(scene, key) for key in self.keys])
+        self._torque, self._cells = torque, cells
         self.bending = None if bending is None else _HeldBending(bending)
         spans, each = np.array([*ranges.values()]), np.eye(self.start.size, dtype=bool)
         shapes = [self.pair, *(self.pair_at(np.where(own, ends, self.start)) for ends in spans.T for own in each)]
@@ -212,7 +216,7 @@ class HeldContacts:
             return self._scene(values).pair()
 
     def gaps(self, values: Array, contacts: Iterable[ContactPoint] | None = None) -> dict[ContactPoint, Array]:
-        """Gaps (nx, ny) [mm] with other values of the keys, the gears held at their angles; default: of all contacts."""
+        """Gaps (nx, ny) [mm] with other values of the keys, the gears held at their angles; of all contacts or some."""
         held_gaps = {one: self._held[one].separation.cut_gap for one in (self._held if contacts is None else contacts)}
         if self._slopes is not None:
             change = values - self.start
@@ -227,6 +231,11 @@ class HeldContacts:
     def __getitem__(self, contact: ContactPoint) -> HeldContact:
         return self._held[contact]
 
+    def holds(self, shared: SharedLoad) -> bool:
+        """Whether all contacts of a state were solved on the grids that are held now."""
+        loaded = [share.loaded for share in shared.shares]
+        return all(one.separation.y is self._held[one.contact].separation.y for one in loaded)
+
     def grow(self, contact: ContactPoint, half_lengths: tuple[float, float]) -> None:
         """Hold a contact in a larger box from now on."""
         one = self._held[contact]
@@ -234,7 +243,6 @@ class HeldContacts:
         edges = self.scene.analysis.free_edges
         (larger,) = held(self.pair, [one.tooth_pair], self._cells, [half_lengths], [middle], free_edges=edges)
         self._held[contact] = larger
-        self.grown += 1
         if self._slopes is not None:
             self._slopes |= self._slopes_at(self.start, [contact])
 
@@ -258,14 +266,16 @@ class HeldContacts:
         probes = held(pair, tooth_pairs, PROBE, [box] * count, [(0.0, 0.0)] * count, free_edges=False)
         closed = np.zeros((count, *PROBE), dtype=bool)
         for shape in shapes:
-            closed |= self._closed(probes, np.array([one.separation.cut_gap + one.growth(pair, shape) for one in probes]))
+            closed |= self._closed(
+                probes, np.array([one.separation.cut_gap + one.growth(pair, shape) for one in probes])
+            )
         kept, boxes, middles = [], [], []
         for probe, mask in zip(probes, closed, strict=True):
             if not mask.any():
                 continue
             grid = probe.separation
-            low, high = np.array([_span(grid.x, mask.any(axis=1)), _span(grid.y, mask.any(axis=0))]).T
-            first, last = _span(grid.y, probe.there.any(axis=0))
+            low, high = np.array([_span(grid.x, mask, 0), _span(grid.y, mask, 1)]).T
+            first, last = _span(grid.y, probe.there, 1)
             middle, half = 0.5 * (low + high), 0.5 * MARGIN * (high - low)
             beyond = 2.0 * half[1] / self._cells[1]  # a cell without material, where the flank ends
             bottom, top = max(middle[1] - half[1], first - beyond), min(middle[1] + half[1], last + beyond)
@@ -343,7 +353,7 @@ class ShapedContacts:
             try:
                 request = steps.throw(answer) if isinstance(answer, LoadedTCAError) else steps.send(answer)
             except StopIteration as end:
-                return end.value  # type: ignore[no-any-return]
+                return end.value
             if isinstance(request, Gap):
                 answer = self._grid(request)
             elif isinstance(request, Ends):
@@ -363,7 +373,7 @@ class ShapedContacts:
         return self._keep(contact, self._contacts.gaps(self._values, [contact])[contact])
 
 
-def _span(places: Array, cells: Mask) -> tuple[float, float]:
-    """Ends of the cells of a row that are marked, whole cells counted [mm]."""
-    there, step = places[cells], float(places[1] - places[0])
+def _span(places: Array, cells: Mask, axis: int) -> tuple[float, float]:
+    """Ends along an axis of the marked cells (nx, ny) whose middles are at these places, whole cells counted [mm]."""
+    there, step = places[np.unique(cells.nonzero()[axis])], float(places[1] - places[0])
     return float(there[0]) - 0.5 * step, float(there[-1]) + 0.5 * step

@@ -54,11 +54,11 @@ CONFIRMED = 0.5
 """Part of the gain on held contacts that the full analysis must confirm. Analyses scatter by 2 to 4 nm, held contacts
 are coarser: a gain that is much larger than both is confirmed nearly whole, one of their size is none."""
 LIMITS_CONFIRMED = 0.05
-"""Part of a limit by which the full analysis may exceed it: K_Hbeta and pressures of two grids differ by some percent."""
+"""Part of a limit by which the full analysis may exceed it: K_Hbeta and pressures on two grids differ by percents."""
 KIND = "design"
 Limits = Mapping[str, float | Mapping[float, float]]
 Progress = Callable[[int, float, float], None]
-"""Called with how many designs were evaluated, the objective of the last one, and the part by which it exceeds a limit."""
+"""Called with the number of designs evaluated, the objective of the last one, the part by which it exceeds a limit."""
 
 
 @dataclass(frozen=True)
@@ -252,7 +252,9 @@ def optimise(
         tasks = [executor.submit(_searched, model, wanted, given, point) for point in points]
         searches = [task.result() for task in tasks]
     history = [trial for found in searches for trial in found]
-    best = min(history, key=lambda trial: (trial.excess > KEPT, trial.excess if trial.excess > KEPT else trial.objective))
+    best = min(
+        history, key=lambda trial: (trial.excess > KEPT, trial.excess if trial.excess > KEPT else trial.objective)
+    )
     if best.excess > KEPT:
         raise InputError(_told_unmet(model, given, best.x))
     result = _analysed_result(model, wanted, history, best.x, executor)
@@ -300,13 +302,14 @@ class _Search:
         from scipy.optimize import minimize
 
         first = abs(value(point)) or 1.0
-        minimize(
+        limit: Any = {"type": "ineq", "fun": self._room, "jac": self._room_slopes}
+        minimize(  # type: ignore[call-overload]
             lambda z: value(z) / first,
             point,
             jac=lambda z: slope(z) / first,
             method="SLSQP",
             bounds=[(0.0, 1.0)] * point.size,
-            constraints=[{"type": "ineq", "fun": self._room, "jac": self._room_slopes}] if limited else [],
+            constraints=[limit] if limited else [],
             options={"maxiter": MOST_ITERATIONS, "ftol": ACCURACY},
         )
 
@@ -520,7 +523,9 @@ PARTS: dict[str, Part] = {
         "rad",
         "loaded transmission error on held contacts, without the last position, the first one of the next pitch",
     ),
-    **{f"held_{name}": (ANALYSED[:3], unit, f"{told}, on held contacts") for name, (unit, told) in FIGURE_TEXTS.items()},
+    **{
+        f"held_{name}": (ANALYSED[:3], unit, f"{told}, on held contacts") for name, (unit, told) in FIGURE_TEXTS.items()
+    },
     "held_objective": (ANALYSED[:1], "", "what was minimised, on held contacts"),
     "history_x": (("evaluation", "key"), "1", "value of the key"),
     "history_objective": (("evaluation",), "", "objective on held contacts"),

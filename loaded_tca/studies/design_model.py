@@ -14,7 +14,7 @@ solution for the transmission error and one more for each other figure, however 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -106,10 +106,10 @@ class DesignModel:
         self.torques = np.asarray(scene.torques if torques is None else torques, dtype=float)
         self.samples, self.seed, self.multiple = samples, seed, multiple
         self.smoothing, self.tolerance = smoothing, tolerance
-        given = scene.analysis.cells
-        self.cells = tuple(cells or given or CELLS)
+        across, along = cells or scene.analysis.cells or CELLS
+        self.cells = across, along
         self._check()
-        self.start = np.array([float(value_at(scene, key)) for key in self.keys])
+        self.start = np.array([value_at(scene, key) for key in self.keys])
         self.deviations = self._samples()
         self.own_deviations = [np.array([one.get(key, 0.0) for key in self.keys]) for one in self.deviations]
         self.held = [self._sample(*one) for one in zip(self.deviations, self.own_deviations, strict=True)]
@@ -125,7 +125,7 @@ class DesignModel:
     def with_scatter(self, multiple: float) -> DesignModel:
         """The model with samples that deviate so many times as far from the medians of their distributions."""
         make, (given, options) = self.__reduce__()
-        return make(given, {**options, "multiple": multiple})  # type: ignore[no-any-return]
+        return make(given, {**options, "multiple": multiple})
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -175,19 +175,21 @@ class DesignModel:
             If a contact, or the balance of the tooth pairs, is not solved to the tolerance.
         """
         values = self.values(x)
-        grid = GridChoice(self.cells, tolerance=self.tolerance, free_edges=self.scene.analysis.free_edges, agreement=AGREEMENT * self.tolerance)
-        while True:
-            grown = sum(one.grown for one in self.held)
+        grid = GridChoice(
+            self.cells,
+            tolerance=self.tolerance,
+            free_edges=self.scene.analysis.free_edges,
+            agreement=AGREEMENT * self.tolerance,
+        )
+        states = list(np.ndindex(len(self.held), self.torques.size, self.positions))
+        found: dict[tuple[int, ...], tuple[float, SharedLoad]] = {}
+        while states:
             shaped = [ShapedContacts(*one) for one in zip(self.held, values + self.own_deviations, strict=True)]
-            order = [
-                one.shared(n, torque, grid)
-                for one in shaped
-                for torque in self.torques.tolist()
-                for n in range(self.positions)
-            ]
-            found = found_together(self.held[0].pair, order)
-            if sum(one.grown for one in self.held) == grown:  # else some were solved on grids that are held no more
-                return Evaluation(self, values, tuple(found))
+            steps = [shaped[s].shared(n, float(self.torques[t]), grid) for s, t, n in states]
+            found |= zip(states, found_together(self.held[0].pair, steps), strict=True)
+            # once more those on grids that another state has outgrown meanwhile
+            states = [state for state, (_, one) in found.items() if not self.held[state[0]].holds(one)]
+        return Evaluation(self, values, [*found.values()])
 
     def _samples(self) -> list[dict[str, float]]:
         """What the keys of the scatter have, or deviate by, in each sample."""
@@ -215,7 +217,7 @@ class DesignModel:
         found = {}
         for key, by in deviation.items():
             shapes = not key.startswith("mounting.")
-            found[key] = by + (values.get(key, float(value_at(self.scene, key))) if shapes else 0.0)
+            found[key] = by + (values.get(key, value_at(self.scene, key)) if shapes else 0.0)
         return found
 
     def _sample(self, deviation: Mapping[str, float], own: Array) -> HeldContacts:
@@ -227,39 +229,53 @@ class DesignModel:
             require_teeth(pair)
             with way_out_told():
                 bending = tooth_compliance(pair, neighbours=max(farthest_apart(mesh), 1))
-        ranges = {key: (low + by, high + by) for (key, (low, high)), by in zip(self.variables.items(), own, strict=True)}
+        ranges = {
+            key: (low + by, high + by) for (key, (low, high)), by in zip(self.variables.items(), own, strict=True)
+        }
         return HeldContacts(scene, mesh, ranges, float(self.torques.max()), self.cells, bending)
 
     def _check(self) -> None:
-        problems = []
-        if not self.variables:
-            problems.append("variables: none given; a design varies one key at least")
-        for key, bounds in self.variables.items():
-            try:
-                value = float(value_at(self.scene, key))
-            except InputError as error:
-                problems += [f"{key}: {problem}" for problem in error.problems]
-                continue
-            if key.startswith("mounting."):
-                problems.append(f"{key}: a mounting error, which no design shapes; allowed in scatter")
-            elif not (isinstance(bounds, Sequence) and len(bounds) == 2 and all(map(is_finite, bounds)) and bounds[0] < bounds[1]):
-                problems.append(f"{key}: range {bounds!r:.60}; allowed two numbers (low, high), low < high")
-            elif not bounds[0] <= value <= bounds[1]:
-                problems.append(f"{key}: the scene, where the design starts, has {value:g}; allowed {bounds[0]:g} to {bounds[1]:g}")
+        wanted, torques = self.scene.analysis, self.torques
+        problems = [
+            problem for key, bounds in self.variables.items() for problem in _problems_of(self.scene, key, bounds)
+        ]
         for key in self.scatter:
-            try:
-                value_at(self.scene, key)
-            except InputError as error:
-                problems += [f"scatter: {key}: {problem}" for problem in error.problems]
-        if not self.torques.size or not (np.isfinite(self.torques) & (self.torques > 0.0)).all():
-            problems.append(f"torques: found {self.torques.tolist()}; allowed one or more [N mm], each above 0")
-        wanted = self.scene.analysis
-        if wanted.positions < FEWEST_POSITIONS:
-            problems.append(f"analysis.positions: {wanted.positions}; allowed from {FEWEST_POSITIONS} on: a span needs them")
-        if not wanted.load_sharing:
-            problems.append("analysis.load_sharing: false; allowed true: designs let all tooth pairs share the load")
+            problems += _problems_of(self.scene, key)
+        checks = (
+            (bool(self.variables), "variables: none given; a design varies one key at least"),
+            (
+                bool(torques.size) and bool((np.isfinite(torques) & (torques > 0.0)).all()),
+                f"torques: found {torques.tolist()}; allowed one or more [N mm], each above 0",
+            ),
+            (
+                wanted.positions >= FEWEST_POSITIONS,
+                f"analysis.positions: {wanted.positions}; allowed from {FEWEST_POSITIONS} on, for peak-to-peak values",
+            ),
+            (
+                wanted.load_sharing,
+                "analysis.load_sharing: false; allowed true: in a design all tooth pairs share the load",
+            ),
+        )
+        problems += [told for holds, told in checks if not holds]
         if problems:
             raise InputError(problems)
+
+
+def _problems_of(scene: Scene, key: str, bounds: Any = None) -> Iterator[str]:
+    """Problems of a key that scatters, or of one that varies within bounds."""
+    try:
+        value = value_at(scene, key)
+    except InputError as error:
+        yield from (f"{key}: {problem}" for problem in error.problems)
+        return
+    if bounds is None:
+        return
+    if key.startswith("mounting."):
+        yield f"{key}: a mounting error, which no design shapes; allowed in scatter"
+    elif not (np.shape(bounds) == (2,) and all(map(is_finite, bounds)) and bounds[0] < bounds[1]):
+        yield f"{key}: range {bounds!r:.60}; allowed two numbers, the lower one first"
+    elif not bounds[0] <= value <= bounds[1]:
+        yield f"{key}: the scene, where a design starts, has {value:g}; allowed {bounds[0]:g} to {bounds[1]:g}"
 
 
 def _within(bounds: tuple[str, tuple[float, float]], value: float) -> tuple[bool, str]:
@@ -287,7 +303,9 @@ class Evaluation:
         shape = len(model.deviations), model.torques.size, model.positions
         self.transmission_error = np.array([error for error, _ in states]).reshape(shape)
         shared = [[LoadedGrid.of(one.tooth_pair.pair, one.loaded) for one in state.shares] for _, state in states]
-        self._grids = {place: [one for one in shared[k] if one.active.any()] for k, place in enumerate(np.ndindex(shape))}
+        self._grids = {
+            place: [one for one in shared[k] if one.active.any()] for k, place in enumerate(np.ndindex(shape))
+        }
         self._tangents: dict[tuple[int, int], tuple[Tangents, Array]] = {}
         self._found: dict[tuple[str, int, int], tuple[float, Array]] = {}
 

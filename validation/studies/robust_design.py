@@ -13,9 +13,9 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -26,6 +26,7 @@ from scipy.stats import norm
 
 from loaded_tca import read_scene
 from loaded_tca.studies.design import DesignModel, DesignResult, Objective, optimise, robustness
+from validation.contact.speed_against_error import machine
 from validation.table import Row
 
 ROOT = Path(__file__).parents[2]
@@ -49,6 +50,8 @@ STEP = 0.1
 """Of differences [um]."""
 POPULATION, GENERATIONS = 4, 15
 """Of differential evolution: for each of five variables, and after the first: 320 evaluations."""
+OF_GRIDS = 0.015
+"""Held contacts and those that an analysis makes anew: single transmission errors differ by up to 5 nm."""
 GIVE_UP = 60
 """Evaluations after which a search by differences is ended."""
 
@@ -159,40 +162,98 @@ def by_evolution(counted: Counted) -> Any:
 
 def rows() -> list[Row]:
     """Objective before and after, evaluations, and what is left of a design for one torque under scatter."""
-    case, source, assumed = "robust design", "prototype of the method", "order of the Sobol points"
+    case, source, assumed = (
+        "robust design",
+        "prototype of the method",
+        "order of the Sobol points, positions at both ends",
+    )
     result, _ = by_gradients()
-    before, after = (REPORTED.of(result.dataset["held_span_um"].values[n])[0] for n in (0, 1))
+    before, after = (REPORTED.of(one)[0] for one in result.dataset["held_span_um"].values)
     analysed = REPORTED.of(result.dataset["span_um"].values[1])[0]
     alone = reported(for_one_torque().optimum)
+    late, beyond = max(0.0, result.evaluations - MOST_EVALUATIONS), max(0.0, after - ASKED)
     return [
-        Row(case, source, "mean + sigma of the TE before [um]", PROTOTYPE_START, before, 0.01, assumed),
-        Row(case, source, f"after, beyond {ASKED} um [um]", 0.0, max(0.0, after - ASKED), 0.0, assumed),
-        Row(case, source, f"evaluations beyond {MOST_EVALUATIONS}", 0.0, max(0.0, result.evaluations - MOST_EVALUATIONS), 0.0),
-        Row(case, "the package's analysis", "after, by the full analysis [um]", analysed, after, ANALYSIS),
-        Row(case, "design for one torque", "robust one is better under scatter", 1.0, float(after < alone), 0.0),
+        Row(
+            case, source, "mean + sigma of the peak-to-peak TE before [um]", PROTOTYPE_START, before, OF_GRIDS, assumed
+        ),
+        Row(case, source, f"the same after: beyond {ASKED} um [um]", 0.0, beyond, 0.0, assumed),
+        Row(case, source, f"evaluations: beyond {MOST_EVALUATIONS}", 0.0, late, 0.0),
+        Row(case, "analysis of the package", "the same after [um]", analysed, after, OF_GRIDS),
+        Row(case, "design for one torque", "robust design is better under scatter", 1.0, float(after < alone), 0.0),
     ]
 
 
 def page() -> str:
-    """Markdown of all searches, and the curves over the scatter."""
+    """Measure everything; the page."""
     result, seconds = by_gradients()
-    before, after = (REPORTED.of(result.dataset["held_span_um"].values[n])[0] for n in (0, 1))
-    searches = {
-        f"differences of SciPy's default step, ended after {GIVE_UP}": by_differences(None),
-        f"differences of {STEP:g} um, ended after {GIVE_UP}": by_differences(STEP),
+    analysed = [REPORTED.of(one)[0] for one in result.dataset["span_um"].values]
+    before, after = (REPORTED.of(one)[0] for one in result.dataset["held_span_um"].values)
+    one = for_one_torque()
+    found = {
+        "SLSQP, differences of SciPy's default step": Counted(GIVE_UP).row(by_differences(None)),
+        f"SLSQP, differences of {STEP:g} um": Counted(GIVE_UP).row(by_differences(STEP)),
+        "differential evolution": Counted(1000).row(by_evolution),
     }
-    found = {name: Counted(GIVE_UP).row(search) for name, search in searches.items()}
-    found["differential evolution"] = Counted(1000).row(by_evolution)
-    table = [
-        f"| exact gradients | {result.evaluations} | {seconds:.0f} | {after:.4f} |",
+    searches = [
+        f"| SLSQP, exact gradients | {result.evaluations} | {seconds:.0f} | {after:.4f} |",
         *(f"| {name} | {count} | {took:.0f} | {value:.4f} |" for name, (count, took, value) in found.items()),
     ]
-    designs = {"start": result.start, "one torque": for_one_torque().optimum, "robust": result.optimum}
+    designs = {"start": result.start, "one torque": one.optimum, "robust": result.optimum}
     curves = robustness(model(), designs, MULTIPLES, REPORTED)["objective"].values
-    nominal = for_one_torque().dataset["span_um"].values[:, 0, 0]
-    lines = [f"| {m:g} | " + " | ".join(f"{v:.4f}" for v in column) + " |" for m, column in zip(MULTIPLES, curves.T, strict=True)]
-    values = [
-        f"| `{key}` | " + " | ".join(f"{one[key]:.2f}" for one in designs.values()) + " |" for key in result.optimum
-    ]
-    analysed = [REPORTED.of(one)[0] for one in result.dataset["span_um"].values]
-    return f"""..."""
+    scattered = _table(
+        ("multiple", *designs), ((f"{m:g}", *column) for m, column in zip(MULTIPLES, curves.T, strict=True))
+    )
+    values = _table(
+        ("key", *designs), ((f"`{key}`", *(own[key] for own in designs.values())) for key in result.optimum)
+    )
+    alone = [float(span) for span in one.dataset["span_um"].values[:, 0, 0]]
+    return f"""# A micro-geometry that stays quiet under scatter
+
+Written by `python -m validation.studies.robust_design`; {machine()}.
+
+The helical pair 23/81 of `examples/scenes/design_helical.toml`, flanks alone, without free edges, under 50, 100, 250 and
+300 N m. Four Sobol points stand for the scatter: a misalignment with a standard deviation of 8 um over 30 mm, a centre
+distance with 10 um. Two crownings, a helix slope and two tip reliefs are free. Minimised is the mean + sigma over the
+samples of the peak-to-peak transmission error, its mean over the torques; the norm of the pressure away from the ends
+of the flanks stays below 1300 MPa at 300 N m.
+
+## Searches
+
+All on the same held contacts of 24 x 40 cells. Seconds are of one process; those with exact gradients include both
+analyses of the package. Searches by differences end after {GIVE_UP} evaluations at the latest. The start has
+{before:.4f} um; a prototype of the method, with grids of its own, had {PROTOTYPE_START} um and reached 0.3854 um in
+19 evaluations.
+
+| search | evaluations | seconds | mean + sigma [um] |
+| --- | --- | --- | --- |
+{chr(10).join(searches)}
+
+The analysis of the package, on grids that it makes anew for each design, finds {analysed[0]:.4f} um before and
+{analysed[1]:.4f} um after.
+
+## Designed for one torque, and for the scatter
+
+The design for one torque, as the literature has it, minimises the peak-to-peak transmission error at 250 N m without
+mounting errors: {alone[0]:.3f} um before, {alone[1]:.3f} um after. The scatter of four torques takes that away. Mean +
+sigma [um] over a multiple of the scatter:
+
+{scattered}
+
+{values}
+"""
+
+
+def _table(head: Iterable[str], lines: Iterable[Iterable[Any]]) -> str:
+    """Markdown table; numbers with four digits."""
+    head = [*head]
+    cells = [[one if isinstance(one, str) else f"{one:.4g}" for one in line] for line in lines]
+    return "\n".join("| " + " | ".join(line) + " |" for line in (head, ["---"] * len(head), *cells))
+
+
+def main() -> None:
+    """Write the page."""
+    PAGE.write_text(page(), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
