@@ -211,18 +211,17 @@ def page() -> str:
 
 Written by `python -m validation.studies.robust_design`; {machine()}.
 
-The helical pair 23/81 of `examples/scenes/design_helical.toml`, flanks alone, without free edges, under 50, 100, 250 and
-300 N m. Four Sobol points stand for the scatter: a misalignment with a standard deviation of 8 um over 30 mm, a centre
-distance with 10 um. Two crownings, a helix slope and two tip reliefs are free. Minimised is the mean + sigma over the
-samples of the peak-to-peak transmission error, its mean over the torques; the norm of the pressure away from the ends
-of the flanks stays below 1300 MPa at 300 N m.
+The helical pair 23/81 of `examples/scenes/design_helical.toml`, flanks alone, without free edges, under 50, 100, 250
+and 300 N m. Four Sobol points stand for the scatter: a misalignment with a standard deviation of 8 um over 30 mm, a
+centre distance with 10 um. Two crownings, a helix slope and two tip reliefs are free. Minimised is the mean + sigma
+over the samples of the peak-to-peak transmission error, its mean over the torques; the norm of the pressure away from
+the ends of the flanks stays below 1300 MPa at 300 N m.
 
 ## Searches
 
 All on the same held contacts of 24 x 40 cells. Seconds are of one process; those with exact gradients include both
-analyses of the package. Searches by differences end after {GIVE_UP} evaluations at the latest. The start has
-{before:.4f} um; a prototype of the method, with grids of its own, had {PROTOTYPE_START} um and reached 0.3854 um in
-19 evaluations.
+analyses of the package. Searches by differences end after {GIVE_UP} evaluations at the latest. The start has {before:.4f}
+um; a prototype of the method, with grids of its own, had {PROTOTYPE_START} um and reached 0.3854 um in 19 evaluations.
 
 | search | evaluations | seconds | mean + sigma [um] |
 | --- | --- | --- | --- |
@@ -234,7 +233,7 @@ The analysis of the package, on grids that it makes anew for each design, finds 
 ## Designed for one torque, and for the scatter
 
 The design for one torque, as the literature has it, minimises the peak-to-peak transmission error at 250 N m without
-mounting errors: {alone[0]:.3f} um before, {alone[1]:.3f} um after. The scatter of four torques takes that away. Mean +
+mounting errors: {alone[0]:.3f} um before, {alone[1]:.3f} um after. Four torques and the scatter take that away. Mean +
 sigma [um] over a multiple of the scatter:
 
 {scattered}
