@@ -399,7 +399,11 @@ def robustness(
     model: DesignModel,
     designs: Mapping[str, Mapping[str, float]],
     multiples: Sequence[float],
-    objective: Objective = Objective(),
+    objective: str = "mean + k sigma",
+    *,
+    k: float = 1.0,
+    percentile: float = 90.0,
+    figure: str = "smooth_span_um",
 ) -> xarray.Dataset:
     """Objective of designs over a multiple of the scatter, on held contacts.
 
@@ -411,7 +415,8 @@ def robustness(
         Name -> values of the keys.
     multiples : sequence of float
         By which the samples deviate farther than in the model; 0: no scatter.
-    objective : Objective
+    objective, k, percentile, figure
+        As of :func:`optimise`.
 
     Returns
     -------
@@ -420,12 +425,13 @@ def robustness(
     """
     import xarray
 
-    require((bool(model.scatter), "model: without scatter, of which there are multiples"))
+    wanted = Objective(objective, k, percentile, figure)
+    require((bool(model.scatter), "model: without scatter; allowed one with scatter, of which there are multiples"))
     values = [model.values(one) for one in designs.values()]
     found = np.empty((len(designs), len(multiples)))
     for column, multiple in enumerate(multiples):
         scaled = model.with_scatter(multiple)
-        found[:, column] = [objective.of(scaled.evaluate(x).figure(objective.figure))[0] for x in values]
+        found[:, column] = [wanted.of(scaled.evaluate(x).figure(figure))[0] for x in values]
     coordinates = {"design": [*designs], "multiple": np.asarray(multiples, dtype=float)}
     return xarray.Dataset({"objective": (("design", "multiple"), found)}, coordinates)
 
