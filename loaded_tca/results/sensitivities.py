@@ -119,7 +119,7 @@ class Sensitivities:
         torque, share = self.result.torque[self.places[0]][state], self.result.load_share[*self._grids]
         own = self._of_each_pair(self.tangents.pinion_levers) + self.lever_torques
         found = self._by_pair((own - share * self._raised) / torque)
-        shared = ~np.isnan(self.result.load_share) & np.isfinite(self.transmission_error).any(axis=-1)[..., None]
+        shared = ~np.isnan(self.result.load_share) & np.isfinite(self.transmission_error).any(axis=-1, keepdims=True)
         found[shared & np.isnan(found).all(axis=-1)] = 0.0
         return found
 
@@ -138,7 +138,7 @@ class Sensitivities:
         Of a contact at an edge or a relief start that of its largest slice pressure, with the curvature held.
         """
         result, grids = self.result, self.tangents.grids
-        rough = np.asarray(np.logical_or(result.on_edge, result.on_relief_start))[*self._grids]
+        rough = ((result.on_edge > 0) | (result.on_relief_start > 0))[*self._grids]
         contacts = [(grid.contact, grid.separation, grid.pressure) for grid in grids]
         slopes = peak_pressure_slopes(result.gear_pair, contacts, rough.tolist())
         return self._by_pair(self._of_each_pair(self.tangents.gathered(slopes)))
