@@ -118,6 +118,22 @@ def test_keys_that_bend_the_gap_are_followed():
     assert_allclose(exact[0, 0, 0], ((above - below) / 0.01)[0, 0], rtol=1e-2)
 
 
+@pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # the pinion is pointed, no matter here
+def test_machine_settings_shape_flanks_too():
+    """Gradients as of differences, and errors within 20 nm of the analysis: spans are 500 nm."""
+    few = {**ALONE, "analysis.positions": 4, "analysis.accuracy": 1e-2, "analysis.load_sharing": True}
+    scene = read_scene(SCENES / "face_milled_19x62_matched.toml").with_changes({**few, "analysis.cells": None})
+    radial = {"pinion.machine.radial_mm": (96.872, 96.882)}
+    one = model(variables=radial, scatter=None, scene=scene, cells=(24, 40), tolerance=1e-10)
+    evaluation, (varied,) = one.evaluate([96.880]), one.scenes([96.880])
+    sides = [one.evaluate([96.880 + step]).figure("mean_transmission_error_um") for step in (-1e-6, 1e-6)]
+    gradient = evaluation.gradient("mean_transmission_error_um")[..., 0]
+    assert_allclose(gradient, (sides[1] - sides[0]) / 2e-6, rtol=1e-3)
+    whole = analyse(varied)
+    nanometres = 1e6 * whole.wheel_base_radius * (evaluation.transmission_error[0] - whole.transmission_error[:, :-1])
+    assert np.abs(nanometres).max() < 20.0
+
+
 def test_scatter_of_a_variable_deviates_from_the_design():
     one = model(scatter={CROWNING: [-1.0, 1.0]})
     design = {CROWNING: 4.0, SLOPE: 0.0, RELIEF: 8.0}
