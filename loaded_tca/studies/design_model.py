@@ -86,6 +86,17 @@ class DesignModel:
         With every problem of the arguments.
     GeometryError
         If the gears cannot exist or mesh with a value of a key that is allowed here.
+
+    Examples
+    --------
+    >>> from loaded_tca import parse_scene
+    >>> from loaded_tca.cli import DEMO_SCENE
+    >>> few = {"analysis.positions": 4, "analysis.compliance": "contact", "analysis.free_edges": False}
+    >>> scene = parse_scene(DEMO_SCENE.read_text()).with_changes(few)
+    >>> model = DesignModel(scene, {"pinion.modifications.lead_crowning_um": (0.0, 10.0)}, cells=(12, 16))
+    >>> crowned = model.evaluate([8.0])
+    >>> bool(crowned.gradient("face_load_factor").item() > 0.0)  # more crowning, less of the face carries
+    True
     """
 
     def __init__(
