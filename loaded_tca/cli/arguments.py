@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import NoReturn
@@ -55,6 +56,19 @@ SUBSURFACE = """files in DIR:
   subsurface.csv            the same over the depth, below the highest pressure
   subsurface_max_shear.png, subsurface_von_mises.png
 Stresses in MPa, tension positive, of a half-space without friction; docs/results.md says more."""
+SENSITIVITIES = """KEY is a key of the scene, TOLERANCE its standard deviation, in the unit that the key ends in.
+Default keys: the modifications that the gears have, with starts and lengths of reliefs, all mounting errors (but
+misalignment_um, which adds to out_of_plane_deg), and the torque. Default tolerances: 1 um, 0.01 mm, 0.01 deg;
+0.1 mm and 0.1 deg of starts and lengths of reliefs; of the torque a hundredth of the largest.
+
+files in DIR:
+  sensitivities.nc          derivatives of every position, pair and figure, all torques
+  sensitivities.csv         one row per torque and key: what a unit of it, and its tolerance, changes in key figures
+  tornado.png               sensitivity times tolerance, a panel for each key figure
+  sensitivity_curves.png    what each tolerance changes in the transmission error over the positions
+  transmission_error_band.png  transmission error with the standard deviation by all tolerances, all torques
+  removal_weights.png       where on the flanks removed material changes the transmission error
+All to first order; docs/results.md says more."""
 STUDY = """files in DIR:
   study.nc                  all figures of all variants, to be read by loaded_tca.studies.load_study or xarray
   study.csv                 the same, one row per variant and torque
@@ -121,6 +135,14 @@ def command_line() -> argparse.ArgumentParser:
     compare.add_argument(
         "--position", metavar="N", type=int, help="position of the maps in the first result, from 1; default: own peaks"
     )
+    slopes = command(
+        "sensitivities", run_by.sensitivities, "show what keys of the scene and their tolerances change", SENSITIVITIES
+    )
+    slopes.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
+    told = "for instance mounting.axial_offset_mm=0.05"
+    slopes.add_argument("--keys", metavar="KEY[=TOLERANCE]", nargs="+", type=_tolerance, help=told)
+    slopes.add_argument("--out", metavar="DIR", type=_path, help=f"directory for the files; default: {own}")
+    slopes.add_argument("--torque", metavar="NM", type=float, help="pinion torque shown; default: largest, bands all")
     ease_off = command("ease-off", run_by.ease_off, "draw the ease-off of a scene, without load", EASE_OFF)
     _add_scene(ease_off)
     ease_off.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the picture")
@@ -177,6 +199,19 @@ def _numbers(text: str) -> tuple[int, ...]:
     if not all(part.isdecimal() for part in text.split(",")):
         raise argparse.ArgumentTypeError(f"{text}: allowed whole numbers with commas between them, as 0,12")
     return tuple(map(int, text.split(",")))
+
+
+def _tolerance(text: str) -> tuple[str, float | None]:
+    """Key, and its standard deviation if that is given."""
+    key, equals, value = (part.strip() for part in text.partition("="))
+    try:
+        tolerance = float(value) if equals else None
+    except ValueError:
+        tolerance = math.nan
+    if not key or not (tolerance is None or 0.0 < tolerance < math.inf):
+        allowed = "KEY or KEY=TOLERANCE, the tolerance a number above 0, as mounting.axial_offset_mm=0.05"
+        raise argparse.ArgumentTypeError(f"{text!r:.60}: allowed {allowed}")
+    return key, tolerance
 
 
 def _add_scene(parser: argparse.ArgumentParser) -> None:

@@ -13,13 +13,16 @@ from loaded_tca.cli.named import (
     result_file,
     result_of,
     scene_of,
+    tolerances_of,
 )
-from loaded_tca.cli.terminal import STUDY_BAR, bar_of, print_files, progress_bar
+from loaded_tca.cli.terminal import BAR, STUDY_BAR, bar_of, print_files, progress_bar
 from loaded_tca.errors import InputError, require
 
 # The modules that compute and draw take most of a second to import: each command imports what it needs.
 
 DEMO_DIRECTORY = Path("loaded-tca-demo")
+DERIVATIVES = "transmission_error", "load_share", "line_load", "peak_pressure", "face_load_factor"
+"""Of a result; each takes linear problems of its own."""
 DEMO_SCENE = Path(__file__).parents[1] / "demo.toml"
 
 
@@ -118,6 +121,31 @@ def compare(options: argparse.Namespace) -> None:
     }
     written = write_comparison(comparison, options.out, pictures)
     print(summary, end="\n\n")
+    print_files(written)
+
+
+def sensitivities(options: argparse.Namespace) -> None:
+    """Find what keys and their tolerances change in a result, and write tables and pictures of it."""
+    from loaded_tca.output.sensitivity_files import sensitivities_text, write_sensitivities
+    from loaded_tca.plots import png_of
+    from loaded_tca.plots.sensitivities import sensitivity_pictures
+    from loaded_tca.plots.style import highest_torque
+
+    result, directory, torque, _ = result_of(options)
+    torque = highest_torque(result) if torque is None else torque
+    tolerances = tolerances_of(options, result.scene)
+    with bar_of(f"derivatives to {len(tolerances)} keys", len(DERIVATIVES), BAR) as show:
+        found = result.sensitivities(list(tolerances))
+        for done, name in enumerate(DERIVATIVES, 1):
+            getattr(found, name)
+            if show is not None:
+                show(done, len(DERIVATIVES))
+    text = sensitivities_text(found, tolerances, torque)
+    pictures = sensitivity_pictures(found, tolerances, torque)
+    written = write_sensitivities(
+        found, tolerances, directory, {f"{name}.png": png_of(figure) for name, figure in pictures.items()}
+    )
+    print(text, end="\n\n")
     print_files(written)
 
 

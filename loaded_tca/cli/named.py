@@ -1,4 +1,4 @@
-"""What the command line names: scenes with their changes, results, directories, engines of studies."""
+"""What the command line names: scenes with their changes, results, tolerances, directories, engines of studies."""
 
 from __future__ import annotations
 
@@ -43,13 +43,34 @@ def result_of(options: argparse.Namespace) -> tuple[MeshCycle, Path, int | None,
         if f"{torque:.6g}" not in known:
             raise InputError(f"--torque {torque:g}: the result has {', '.join(known)} N m")
         torque = known.index(f"{torque:.6g}")
-    position = index_of_position(options.position, result)
-    chosen = {"torque_{:g}_Nm": options.torque, "position_{}": options.position}
+    given = getattr(options, "position", None)
+    position = index_of_position(given, result)
+    chosen = {"torque_{:g}_Nm": options.torque, "position_{}": given}
     chosen |= {"pair_{}": getattr(options, "pair", None), "below_{}": getattr(options, "gear", None)}
     names = [name.format(value) for name, value in chosen.items() if value not in (None, "pinion")]
     directory = options.out or path.parent / "_".join(names)  # files of a part do not replace those of the whole
     check_place(directory)
     return result, directory, torque, position
+
+
+def tolerances_of(options: argparse.Namespace, scene: Scene) -> dict[str, float]:
+    """Keys of a scene that the command line names, or the usual ones, with their standard deviations."""
+    from loaded_tca.results.tolerances import default_tolerances
+    from loaded_tca.scene.section import key_at
+
+    given: list[tuple[str, float | None]] = options.keys or []
+    problems: list[str] = []
+    for key in dict.fromkeys(key for key, _ in given):
+        try:
+            key_at(type(scene), key)
+        except InputError as error:
+            problems += error.problems
+        if [one for one, _ in given].count(key) > 1:
+            problems.append(f"{key}: given twice")
+    if problems:
+        raise InputError(f"--keys {problem}" for problem in problems)
+    usual = default_tolerances(scene, [key for key, _ in given] or None)
+    return usual | {key: tolerance for key, tolerance in given if tolerance is not None}
 
 
 def result_file(path: Path) -> Path:

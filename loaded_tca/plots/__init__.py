@@ -6,10 +6,14 @@ from pathlib import Path
 
 from loaded_tca.plots.comparison import plot_compared_maps, plot_comparison
 from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
+from loaded_tca.plots.design import plot_before_and_after, plot_peak_to_peak_over_torque, plot_robustness
 from loaded_tca.plots.ease_off import plot_ease_off
 from loaded_tca.plots.envelope import plot_contact_patterns, plot_pressure_envelope
+from loaded_tca.plots.first_order import plot_first_order_scatter
 from loaded_tca.plots.flanks import plot_contact_path, plot_full_mesh
 from loaded_tca.plots.pressure_map import plot_pressure_map
+from loaded_tca.plots.removal import plot_removal_weights
+from loaded_tca.plots.sensitivities import plot_sensitivity_curves, plot_tornado, plot_transmission_error_band
 from loaded_tca.plots.sharing import (
     plot_harmonics,
     plot_line_load,
@@ -37,11 +41,13 @@ __all__ = [
     "PICTURES",
     "draw_teeth",
     "plot_all",
+    "plot_before_and_after",
     "plot_compared_maps",
     "plot_comparison",
     "plot_contact_path",
     "plot_contact_patterns",
     "plot_ease_off",
+    "plot_first_order_scatter",
     "plot_full_mesh",
     "plot_harmonics",
     "plot_line_load",
@@ -51,8 +57,12 @@ __all__ = [
     "plot_mesh_stiffness",
     "plot_path_pressure",
     "plot_peak_pressure",
+    "plot_peak_to_peak_over_torque",
     "plot_pressure_envelope",
     "plot_pressure_map",
+    "plot_removal_weights",
+    "plot_robustness",
+    "plot_sensitivity_curves",
     "plot_stress_below",
     "plot_study",
     "plot_study_heat_map",
@@ -63,7 +73,9 @@ __all__ = [
     "plot_study_scatter_matrix",
     "plot_subsurface",
     "plot_teeth",
+    "plot_tornado",
     "plot_transmission_error",
+    "plot_transmission_error_band",
     "plot_vh_check",
     "png_of",
     "save_figure",

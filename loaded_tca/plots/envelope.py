@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.plots import style
 from loaded_tca.plots.flanks import ToPicture, both_flanks, colour_scale, loaded_maps
 from loaded_tca.plots.style import COLOURS, highest_torque, load, range_of_positions
@@ -94,8 +94,9 @@ def _passing(result: MeshCycle, torque: int, to_picture: ToPicture, field: Array
             if one is None or not one.pressure.any():
                 before = None
                 continue
-            points, pressure = _cells(one, to_picture, field)
-            yield to_picture(points), pressure
+            loaded = one.pressure > 0.0
+            cells = to_picture(points_of_cells(one, loaded, to_picture, field))
+            yield cells.reshape(-1, 2), np.repeat(one.pressure[loaded], cells.shape[1])
             points, height = _ridge(one)
             ridge = to_picture(points), height
             if before is not None:
@@ -106,17 +107,17 @@ def _passing(result: MeshCycle, torque: int, to_picture: ToPicture, field: Array
             before = ridge
 
 
-def _cells(one: PressureMap, to_picture: ToPicture, field: Array) -> tuple[Array, Array]:
-    """Points (k, 3) within the cells under pressure, so close that none leaves a field empty, and their pressure."""
+def points_of_cells(one: PressureMap, cells: Mask, to_picture: ToPicture, field: Array) -> Array:
+    """Points (n, m, 3) within the n cells of a mask (nx, ny), m in each: so close that no field stays empty."""
     corners = to_picture(one.corners)
     across, along = (
         1 + int(POINTS_OF_A_FIELD * (np.abs(np.diff(corners, axis=axis)) / field).max()) for axis in (0, 1)
     )
-    rows, columns = np.nonzero(one.pressure)
+    rows, columns = np.nonzero(cells)
     (dx, dy), (u, v) = one.spacing, ((np.arange(count) + 0.5) / count - 0.5 for count in (across, along))
-    x = (one.x[rows, None, None] + dx * u[:, None] + np.zeros(along)).reshape(-1, 1)
-    y = (one.y[columns, None, None] + dy * v + np.zeros((across, 1))).reshape(-1, 1)
-    return one.origin + x * one.axes[0] + y * one.axes[1], np.repeat(one.pressure[rows, columns], across * along)
+    x = (one.x[rows, None, None] + dx * u[:, None] + np.zeros(along)).reshape(len(rows), -1, 1)
+    y = (one.y[columns, None, None] + dy * v + np.zeros((across, 1))).reshape(len(rows), -1, 1)
+    return one.origin + x * one.axes[0] + y * one.axes[1]
 
 
 def _ridge(one: PressureMap) -> tuple[Array, Array]:

@@ -6,6 +6,7 @@ from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.reached_edges import reached_edges
 from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.stress_below import StressBelow, stress_below
+from loaded_tca.results.tolerances import default_tolerances, key_figure_slopes
 
 load_result = MeshCycle.load
 
@@ -16,6 +17,8 @@ __all__ = [
     "Sensitivities",
     "StressBelow",
     "compare_results",
+    "default_tolerances",
+    "key_figure_slopes",
     "load_result",
     "reached_edges",
     "stress_below",

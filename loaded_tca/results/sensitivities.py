@@ -119,7 +119,7 @@ class Sensitivities:
         torque, share = self.result.torque[self.places[0]][state], self.result.load_share[*self._grids]
         own = self._of_each_pair(self.tangents.pinion_levers) + self.lever_torques
         found = self._by_pair((own - share * self._raised) / torque)
-        shared = ~np.isnan(self.result.load_share) & np.isfinite(self.transmission_error).any(axis=-1)[..., None]
+        shared = ~np.isnan(self.result.load_share) & np.isfinite(self.transmission_error).any(axis=-1, keepdims=True)
         found[shared & np.isnan(found).all(axis=-1)] = 0.0
         return found
 

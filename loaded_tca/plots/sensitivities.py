@@ -1,0 +1,264 @@
+"""Pictures of sensitivities: what tolerances do to key figures and to the transmission error, to first order."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from itertools import cycle
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import InputError, require
+from loaded_tca.plots import style
+from loaded_tca.plots.labels import label_of
+from loaded_tca.plots.removal import plot_removal_weights
+from loaded_tca.plots.study_panels import panels_of, without_unit
+from loaded_tca.plots.style import DISTINCT_COLOURS, MARKERS, highest_torque, load, loads, range_of_positions
+from loaded_tca.results.key_figures import mean_over_a_pitch
+from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.sensitivities import Sensitivities
+from loaded_tca.results.summary import shown
+from loaded_tca.results.tolerances import default_tolerances, key_figure_slopes
+
+RAISED, LOWERED = "#0072b2", "#e69f00"
+"""Of a key that is raised, and lowered, by its tolerance: told apart by colour-blind readers and in grey."""
+MOST_BARS = 12
+MOST_CURVES = 8
+CURVE_COLOURS = (*DISTINCT_COLOURS, "black", "0.55")
+SMALLEST_SPAN_UM = 1e-4
+BANDS = ((1.0, 0.45), (2.0, 0.2))
+"""Standard deviations either side, and how opaque the band is."""
+BASE_CIRCLE = "at the wheel's base circle [µm]"
+LESS_MEAN = "the same, less its mean [µm]"
+
+
+def sensitivity_pictures(found: Sensitivities, tolerances: Mapping[str, float], torque: int) -> dict[str, Figure]:
+    """Return all pictures of sensitivities under one torque by the names of their files, bands under all torques."""
+    return {
+        "tornado": plot_tornado(found, tolerances, torque=torque),
+        "sensitivity_curves": plot_sensitivity_curves(found, tolerances, torque),
+        "transmission_error_band": plot_transmission_error_band(found, tolerances),
+        "removal_weights": plot_removal_weights(found, torque),
+    }
+
+
+def plot_tornado(
+    found: Sensitivities,
+    tolerances: Mapping[str, float] | None = None,
+    figures: Sequence[str] | None = None,
+    torque: int | None = None,
+) -> Figure:
+    """Tornado chart: what each key does to key figures when it is raised, or lowered, by its tolerance.
+
+    A panel for each figure, its bars sorted by their lengths; of many keys those with the longest. First order:
+    sensitivity times tolerance.
+
+    Parameters
+    ----------
+    found : Sensitivities
+    tolerances : mapping of str to float, optional
+        Standard deviations of the keys, in their units; default: ``default_tolerances``.
+    figures : sequence of str, optional
+        Names of :func:`loaded_tca.results.key_figure_slopes`; default: all that are known.
+    torque : int, optional
+        Index of the torque; default: the largest one.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If a figure is not one of these, or a key has no tolerance.
+    """
+    result = found.result
+    torque = highest_torque(result) if torque is None else torque
+    spread = _spread(found, tolerances)
+    changes = {name: values[torque] * spread for name, values in key_figure_slopes(found).items()}
+    unknown = [name for name in figures or () if name not in changes]
+    require((not unknown, f"figures: {', '.join(unknown)} unknown; allowed {', '.join(changes)}"))
+    chosen = figures or [name for name, values in changes.items() if np.isfinite(values).any()]
+    if not chosen:
+        raise InputError(f"nothing is under load with {style.torque_label(result, torque)}: no derivatives")
+    now = result.key_figures()[torque]
+    labels = [_with_tolerance(key, one) for key, one in zip(found.keys, spread.tolist(), strict=True)]
+    bars = min(len(labels), MOST_BARS)
+    drawing, panels = panels_of(len(chosen), (6.5, 1.0 + 0.3 * max(bars, 3)))
+    for axes, name in zip(panels, chosen, strict=True):
+        _draw_tornado(axes, changes[name], labels)
+        together = math.sqrt(float((changes[name] ** 2).sum()))
+        label = label_of(name)
+        unit = label.partition(" [")[2].rstrip("]")
+        title = f"now {shown(now[name], name)} {unit}, standard deviation by all keys {together:.3g} {unit}"
+        axes.set_title(" ".join(title.split()).replace(" ,", ","), fontsize="small")
+        axes.set_xlabel(f"change of the {label}")
+    drawing.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, fontsize="small")
+    left_out = f", {bars} of {len(labels)} keys" * (bars < len(labels))
+    about = f"sensitivity times tolerance{left_out}, {load(result, torque)}", "lengths at the wheel's base circle"
+    style.set_title(drawing, result, *about)
+    return drawing
+
+
+def _draw_tornado(axes: Axes, changes: Array, labels: Sequence[str]) -> None:
+    """Bars either side of zero, the longest on top; a word where nothing is known."""
+    axes.grid(alpha=0.3, axis="x")
+    axes.axvline(0.0, color="black", linewidth=0.8)
+    known = np.flatnonzero(np.isfinite(changes))
+    if not known.size:
+        axes.set_yticks([])
+        style.tell(axes, "not known")
+    order = known[np.argsort(-np.abs(changes[known]), kind="stable")][:MOST_BARS]
+    places = np.arange(len(order))
+    axes.barh(places, changes[order], color=RAISED, label="key raised by its tolerance")
+    axes.barh(places, -changes[order], color=LOWERED, label="key lowered by its tolerance")
+    axes.set_yticks(places, [labels[k] for k in order], fontsize="small")
+    axes.invert_yaxis()
+    longest = float(np.abs(changes[order]).max(initial=0.0)) or 1.0
+    axes.set_xlim(-1.05 * longest, 1.05 * longest)
+    axes.xaxis.set_major_locator(MaxNLocator(5))
+
+
+def plot_sensitivity_curves(
+    found: Sensitivities, tolerances: Mapping[str, float] | None = None, torque: int | None = None
+) -> Figure:
+    """Change of the transmission error over the positions by the tolerance of each key: absolute, and about its mean.
+
+    Of many keys those whose curves vary most.
+
+    Parameters
+    ----------
+    found : Sensitivities
+    tolerances : mapping of str to float, optional
+        Standard deviations of the keys, in their units; default: ``default_tolerances``.
+    torque : int, optional
+        Index of the torque; default: the largest one.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If a key has no tolerance.
+    """
+    result = found.result
+    torque = highest_torque(result) if torque is None else torque
+    spread = _spread(found, tolerances)
+    curves = 1e3 * result.wheel_base_radius * found.transmission_error[torque] * spread
+    figure = Figure(figsize=(8.0, 7.0), layout="constrained")
+    absolute, about_mean = figure.subplots(2, 1, sharex=True)
+    known = np.isfinite(curves).all(axis=1)
+    swings = np.ptp(curves[known], axis=0) if known.any() else np.zeros(len(spread))
+    drawn = np.sort(np.argsort(-swings, kind="stable")[:MOST_CURVES])
+    angle = np.degrees(result.pinion_angle)
+    for k, colour, marker in zip(drawn.tolist(), CURVE_COLOURS, cycle(MARKERS), strict=False):
+        label, curve = _with_tolerance(found.keys[k], float(spread[k]), "+"), curves[:, k]
+        absolute.plot(angle, curve, color=colour, marker=marker, markersize=4.0, label=label)
+        about_mean.plot(angle, curve - mean_over_a_pitch(curve), color=colour, marker=marker, markersize=4.0)
+    absolute.set_ylabel(f"change of the transmission error\n{BASE_CIRCLE}")
+    about_mean.set_ylabel(LESS_MEAN)
+    about_mean.set_xlabel("pinion angle [deg]")
+    if not known.any():
+        style.tell(absolute, style.NO_LOAD)
+    for axes in (absolute, about_mean):
+        style.widen(axes, SMALLEST_SPAN_UM)
+        axes.grid(alpha=0.3)
+    figure.legend(*absolute.get_legend_handles_labels(), loc="outside lower center", ncols=2, fontsize="small")
+    which = f"{len(drawn)} of {len(spread)} keys" if len(drawn) < len(spread) else "each key"
+    about = f"change by the tolerance of {which}, {load(result, torque)}", range_of_positions(result)
+    style.set_title(figure, result, *about)
+    return figure
+
+
+def plot_transmission_error_band(
+    found: Sensitivities, tolerances: Mapping[str, float] | None = None, torque: int | None = None
+) -> Figure:
+    """Transmission error over the positions with bands of one and two standard deviations, absolute and about its mean.
+
+    A row for each torque, of many torques four. The bands are those of independent keys, to first order.
+
+    Parameters
+    ----------
+    found : Sensitivities
+    tolerances : mapping of str to float, optional
+        Standard deviations of the keys, in their units; default: ``default_tolerances``.
+    torque : int, optional
+        Index of the only torque to show.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If a key has no tolerance.
+    """
+    result = found.result
+    given = dict(zip(found.keys, _spread(found, tolerances).tolist(), strict=True))
+    shown_torques = style.torques_with_panels(result) if torque is None else [torque]
+    length = 1e3 * result.wheel_base_radius
+    sigma = length * found.spread(given)["transmission_error"].values
+    figure = Figure(figsize=(10.0, 2.2 + 2.3 * len(shown_torques)), layout="constrained")
+    rows = figure.subplots(len(shown_torques), 2, squeeze=False, sharex=True)
+    colours = {index: colour for index, _, colour, _ in style.torque_styles(result)}
+    angle = np.degrees(result.pinion_angle)
+    for index, (absolute, about_mean) in zip(shown_torques, rows.tolist(), strict=True):
+        curve = length * result.transmission_error[index]
+        slopes = length * found.transmission_error[index] * list(given.values())
+        about = slopes - [mean_over_a_pitch(slope) for slope in slopes.T]
+        _draw_band(absolute, angle, curve, sigma[index], colours[index])
+        swing = curve - mean_over_a_pitch(curve)
+        _draw_band(about_mean, angle, swing, np.sqrt((about**2).sum(axis=-1)), colours[index])
+        absolute.set_ylabel(f"transmission error\n{BASE_CIRCLE}")
+        about_mean.set_ylabel(LESS_MEAN)
+        if len(result.torque) > 1:
+            absolute.set_title(style.torque_label(result, index), fontsize="small")
+    for axes in rows[-1]:
+        axes.set_xlabel("pinion angle [deg]")
+    handles = _legend_of_bands(rows[0, 0])
+    figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize="small")
+    under = loads(result) if torque is None else load(result, torque)
+    what = f"scatter by the tolerances of {len(given)} key{'s' * (len(given) > 1)}, to first order"
+    style.set_title(figure, result, f"{what}, {under}", range_of_positions(result))
+    return figure
+
+
+def _draw_band(axes: Axes, angle: Array, curve: Array, sigma: Array, colour: str) -> None:
+    """A curve with its bands."""
+    for times, opacity in BANDS:
+        axes.fill_between(angle, curve - times * sigma, curve + times * sigma, color=colour, alpha=opacity, linewidth=0)
+    axes.plot(angle, curve, color="black", marker=".", markersize=4.0, linewidth=1.2)
+    style.widen(axes, SMALLEST_SPAN_UM)
+    axes.grid(alpha=0.3)
+
+
+def _legend_of_bands(axes: Axes) -> list[Artist]:
+    """Handles for the result and its bands in the legend, those of one panel."""
+    (line,), bands = axes.lines, axes.collections
+    line.set_label("this result")
+    for band, (times, _) in zip(bands, BANDS, strict=True):
+        band.set_label(f"± {times:g} standard deviation{'s' * (times > 1.0)}")
+    return [line, *bands]
+
+
+def _spread(found: Sensitivities, tolerances: Mapping[str, float] | None) -> Array:
+    """Standard deviations (keys,)."""
+    result: MeshCycle = found.result
+    known = default_tolerances(result.scene, found.keys) if tolerances is None else tolerances
+    missing = [key for key in found.keys if key not in known]
+    require((not missing, f"tolerances: none given for {', '.join(missing)}"))
+    return np.array([known[key] for key in found.keys])
+
+
+def _with_tolerance(key: str, tolerance: float, sign: str = "±") -> str:
+    """A key in words with its tolerance and unit."""
+    label = label_of(key)
+    return f"{without_unit(label)} {sign} {tolerance:.4g} {label.partition(' [')[2].rstrip(']')}".rstrip()

@@ -1,0 +1,104 @@
+"""Tolerances of the keys of a scene, and what keys do to the key figures of a result, to first order."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from numbers import Real
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.results.key_figures import mean_over_a_pitch
+from loaded_tca.results.sensitivities import TORQUE
+from loaded_tca.scene import Scene
+from loaded_tca.scene.section import contents
+
+if TYPE_CHECKING:
+    from loaded_tca.results.sensitivities import Sensitivities
+
+USUAL = {"um": 1.0, "mm": 0.01, "deg": 0.01}
+"""Standard deviation of a key by the unit at the end of its name."""
+OF_RELIEF_ENDS = 10.0
+"""The same, so many times as large, where a relief starts or how long it is."""
+OF_THE_TORQUE = 0.01
+"""Standard deviation of the torque, as a part of the largest."""
+TWICE = "misalignment_um"
+"""Mounting error that adds to another one, which would count twice with it."""
+
+
+def default_tolerances(scene: Scene, keys: Iterable[str] | None = None) -> dict[str, float]:
+    """Return standard deviations that are usual for keys of a scene.
+
+    1 um; 0.01 mm and 0.01 deg, ten times as much where a relief starts or how long it is; of the torque a hundredth of
+    the largest.
+
+    Parameters
+    ----------
+    scene : Scene
+    keys : iterable of str, optional
+        As of ``scene.with_changes``. Default: all modifications that the gears have, with the starts and lengths of
+        reliefs, all mounting errors, and the torque. Of those that add to each other (``mounting.misalignment_um`` to
+        ``mounting.out_of_plane_deg``) only one is among them.
+
+    Returns
+    -------
+    dict of str to float
+        In the unit of the key.
+
+    Examples
+    --------
+    >>> from loaded_tca import read_scene
+    >>> default_tolerances(read_scene("examples/scenes/helical.toml"), ["mounting.in_plane_deg"])
+    {'mounting.in_plane_deg': 0.01}
+    """
+    return {key: _usual(scene, key) for key in (_varied(scene) if keys is None else keys)}
+
+
+def _varied(scene: Scene) -> list[str]:
+    """Modifications that the gears have, mounting errors and the torque."""
+    found = []
+    for gear in ("pinion", "wheel"):
+        for name, value in contents(getattr(scene, gear).modifications).items():
+            if isinstance(value, Real) and value and name.rpartition("_")[2] in USUAL:
+                found.append(f"{gear}.modifications.{name}")
+    found += [f"mounting.{name}" for name in contents(scene.mounting) if name != TWICE]
+    return [*found, TORQUE]
+
+
+def _usual(scene: Scene, key: str) -> float:
+    if key == TORQUE:
+        return OF_THE_TORQUE * 1e-3 * max(scene.torques)
+    name = key.rpartition(".")[2]
+    of_relief_end = "relief" in name and not name.endswith("_um")
+    return USUAL.get(name.rpartition("_")[2], 1.0) * (OF_RELIEF_ENDS if of_relief_end else 1.0)
+
+
+def key_figure_slopes(found: Sensitivities) -> dict[str, Array]:
+    """Return derivatives of key figures to the keys, by the names of ``MeshCycle.key_figures``.
+
+    Parameters
+    ----------
+    found : Sensitivities
+
+    Returns
+    -------
+    dict of str to (torque, key) array
+        In the unit at the end of the name per unit of the key; NaN where the figure is not known or nothing is loaded.
+        The peak pressure is that of the place which has the highest one.
+    """
+    result = found.result
+    length = 1e3 * result.wheel_base_radius
+    means = [[mean_over_a_pitch(slope) for slope in slopes.T] for slopes in found.transmission_error]
+    peaks = [result.peak_contact(torque) for torque in range(len(result.torque))]
+    unknown = np.full(len(found.keys), math.nan)
+    return {
+        "transmission_error_mean_um": length * np.array(means),
+        "transmission_error_span_um": length * found.peak_to_peak,
+        "transmission_error_order_1_um": length * found.harmonics(1)[:, 0],
+        "face_load_factor": found.face_load_factor,
+        "peak_pressure_MPa": np.array(
+            [unknown if at is None else found.peak_pressure[torque][at] for torque, at in enumerate(peaks)]
+        ),
+    }

@@ -1,0 +1,91 @@
+"""Which keys a scene has, how large their tolerances usually are, and what keys do to key figures."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca import read_scene
+from loaded_tca.results import default_tolerances, key_figure_slopes
+from tests.samples.results import SCENES, result
+
+TORQUE = "load.pinion_torque_Nm"
+
+
+def scene(name, **changes):
+    values = {key.replace("__", "."): value for key, value in changes.items()}
+    return read_scene(SCENES / f"{name}.toml").with_changes(values)
+
+
+def test_keys_are_the_modifications_that_the_gears_have_the_mounting_errors_and_the_torque():
+    relief = {
+        "wheel__modifications__tip_relief_um": 12.0,
+        "wheel__modifications__tip_relief_start_mm": 180.0,
+        "wheel__modifications__end_relief_um": 5.0,
+        "wheel__modifications__end_relief_length_mm": 4.0,
+    }
+    found = default_tolerances(scene("mesh_cycle_helical", **relief))
+    assert found == {
+        "pinion.modifications.lead_crowning_um": 1.0,
+        "pinion.modifications.profile_crowning_um": 1.0,
+        "wheel.modifications.end_relief_um": 1.0,
+        "wheel.modifications.end_relief_length_mm": 0.1,
+        "wheel.modifications.tip_relief_um": 1.0,
+        "wheel.modifications.tip_relief_start_mm": 0.1,
+        "mounting.in_plane_deg": 0.01,
+        "mounting.out_of_plane_deg": 0.01,
+        "mounting.centre_distance_error_mm": 0.01,
+        "mounting.axial_offset_mm": 0.01,
+        TORQUE: 2.6,
+    }
+
+
+def test_mounting_errors_are_those_of_the_kind_of_gears():
+    found = default_tolerances(scene("mesh_cycle_bevel"))
+    errors = {key: one for key, one in found.items() if key.startswith("mounting.")}
+    assert errors == {
+        "mounting.offset_mm": 0.01,
+        "mounting.pinion_axial_mm": 0.01,
+        "mounting.wheel_axial_mm": 0.01,
+        "mounting.shaft_angle_error_deg": 0.01,
+    }
+
+
+def test_roll_angle_of_a_relief_start_has_a_tolerance_of_its_own():
+    key = "pinion.modifications.tip_relief_start_roll_deg"
+    assert default_tolerances(scene("mesh_cycle_spur"), [key]) == {key: 0.1}
+
+
+@pytest.mark.parametrize("name", ["mesh_cycle_helical", "mesh_cycle_bevel", "face_milled_19x62_matched"])
+def test_every_default_key_is_one_that_a_result_can_be_derived_by(name):
+    cycle = result(name, positions=2, torques=(50.0,))
+    found = cycle.sensitivities(list(default_tolerances(cycle.scene)))
+    assert np.isfinite(found.transmission_error).any(axis=(0, 1)).all()
+
+
+def test_mean_transmission_error_follows_the_centre_distance_as_involutes_do():
+    """The driven flank moves along the line of action by sin(alpha_wt) for each mm that the axes part."""
+    cycle = result("mesh_cycle_helical", positions=5, torques=(40.0, 260.0))
+    slopes = key_figure_slopes(cycle.sensitivities(["mounting.centre_distance_error_mm"]))
+    expected = -1e3 * math.sin(cycle.scene.mesh().working_pressure_angle)
+    assert_allclose(slopes["transmission_error_mean_um"], expected, rtol=2e-3)
+    # and it does nothing else: these are the changes by a hundredth of a millimetre
+    assert_allclose(1e-2 * slopes["transmission_error_span_um"], 0.0, atol=0.02)
+
+
+def test_peak_pressure_of_a_point_contact_grows_with_the_cube_root_of_the_torque():
+    cycle = result(torques=(50.0, 80.0))
+    figures = cycle.key_figures()
+    found = key_figure_slopes(cycle.sensitivities([TORQUE]))["peak_pressure_MPa"][:, 0]
+    expected = [one["peak_pressure_MPa"] / (3.0 * one["pinion_torque_Nm"]) for one in figures]
+    assert_allclose(found, expected, rtol=0.03)  # 20 x 24 cells; the curvature changes a little over the ellipse
+
+
+def test_figures_that_are_not_known_have_no_slopes():
+    slopes = key_figure_slopes(result(positions=1).sensitivities([TORQUE]))
+    assert {name for name, values in slopes.items() if np.isnan(values).all()} == {
+        "transmission_error_span_um",
+        "transmission_error_order_1_um",
+        "face_load_factor",
+    }
