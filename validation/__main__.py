@@ -44,6 +44,7 @@ CASES = (
     "loaded.mesh_stiffness",
     "loaded.local_term",
     "loaded.numbers_to_copy",
+    "loaded.sensitivities",
     "calculix.mesh_cycle",
     "contact.subsurface",
     "contact.free_edge",

@@ -350,4 +350,4 @@ def add_shifted_bending(
                 ) / step
                 growth[j], growth[i] = by_shift @ forces[i], growth[i] + by_shift.T @ forces[j]
         for j, grown in growth.items():
-            gaps[np.ix_(rows, parts[j])] += shifts[:, i, None] * grown[slices[j]]
+            gaps[np.array(rows)[:, None], parts[j]] += shifts[:, i, None] * grown[slices[j]]
