@@ -109,7 +109,10 @@ class Sensitivities:
 
     @cached_property
     def transmission_error(self) -> Array:
-        """Of the loaded, absolute transmission error, (torque, position, key) [rad per unit of the key]."""
+        """Of the loaded, absolute transmission error, (torque, position, key) [rad per unit of the key].
+
+        That by the torque is one over ``MeshCycle.mesh_stiffness``, as an angle.
+        """
         found = np.full((*self.result.transmission_error.shape, len(self.keys)), np.nan)
         change = self.tangents.rotation_change(self.gaps, self.torques)
         found[*self.places] = -self.result.gear_pair.driving * change.T
@@ -177,18 +180,6 @@ class Sensitivities:
         change = self.tangents.functional_change(self.tangents.gathered(slopes), self.gaps, self.torques)
         for t in np.flatnonzero(np.isfinite(result.face_load_factor)).tolist():
             found[t] = change[:, self.places[0] == t].sum(axis=1)
-        return found
-
-    @property
-    def mesh_stiffness(self) -> Array:
-        """Tangent c of the torque over the rotation, as ``MeshCycle.mesh_stiffness``, (torque, position) [N/(mm um)].
-
-        That of the cells in contact as they are, and so what the derivatives by the torque belong to: whole cells come
-        into contact, so that it scatters by about a percent over the positions. ``MeshCycle.mesh_stiffness`` is a
-        chord, made up for its width, which scatters less.
-        """
-        pair, found = self.result.gear_pair, np.full(self.result.transmission_error.shape, np.nan)
-        found[*self.places] = self.tangents.stiffness / (1e3 * math.prod(pair.base_radii) * pair.face_width)
         return found
 
     @cached_property
