@@ -45,6 +45,7 @@ CASES = (
     "loaded.local_term",
     "loaded.numbers_to_copy",
     "studies.robust_design",
+    "loaded.sensitivities",
     "calculix.mesh_cycle",
     "contact.subsurface",
     "contact.free_edge",
