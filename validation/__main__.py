@@ -46,6 +46,8 @@ CASES = (
     "loaded.local_term",
     "loaded.root_stress",
     "loaded.numbers_to_copy",
+    "studies.robust_design",
+    "loaded.sensitivities",
     "calculix.mesh_cycle",
     "contact.subsurface",
     "contact.free_edge",
