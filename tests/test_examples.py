@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import trace_contact
 from loaded_tca.scene import read_scene
-from loaded_tca.studies import load_study, read_study
+from loaded_tca.studies import load_design, load_study, read_study
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 
@@ -59,6 +59,15 @@ def test_study_on_a_cluster_follows_hertz(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert loaded(EXAMPLES / "study_on_dask.py").main() == pytest.approx(2.0, abs=5e-3)  # the flanks bend a little
     assert (load_study("study_on_dask.nc")["status"] == "ok").all()
+
+
+@pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # contacts that reach an edge
+def test_designed_pair_is_quieter(tmp_path, monkeypatch):
+    """By the whole analysis, on average and in its scatter."""
+    monkeypatch.chdir(tmp_path)
+    before, after = loaded(EXAMPLES / "design_helical.py").main().objective
+    assert after < 0.85 * before
+    assert load_design("design_helical.nc").objective == (before, after)
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda path: path.stem)

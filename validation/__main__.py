@@ -44,6 +44,7 @@ CASES = (
     "loaded.mesh_stiffness",
     "loaded.local_term",
     "loaded.numbers_to_copy",
+    "studies.robust_design",
     "loaded.sensitivities",
     "calculix.mesh_cycle",
     "contact.subsurface",

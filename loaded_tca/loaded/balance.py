@@ -11,8 +11,9 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError
 
-EXPONENTS = (0.3, 3.0)
-"""Range of the exponent of a contact deformation over the force; above 1: at a cap on the pressure."""
+EXPONENTS = (0.05, 3.0)
+"""Range of the exponent of a contact deformation over the force; above 1: at a cap on the pressure; far below 2/3: in a
+corner of a flank, where cells with little material touch before those that carry."""
 POINT_EXPONENT = 2.0 / 3.0
 TELLING = 0.05
 """Relative difference of two loads from which an exponent follows: whole cells hide it where they are closer, ..."""

@@ -245,7 +245,8 @@ class _Balance:
         self.solved: list[LoadedContact | None] = [None] * len(tooth_pairs)
         self.compliance = np.zeros((len(contacts), len(contacts)))
         self.first_grids: list[Separation] = []
-        self.agreement = AGREEMENT_ON_CELLS if grid.cells is not None else AGREEMENT * grid.accuracy
+        usual = AGREEMENT_ON_CELLS if grid.cells is not None else AGREEMENT * grid.accuracy
+        self.agreement = usual if grid.agreement is None else grid.agreement
 
     def _first_law(self, contact: ContactPoint) -> PowerLaw:
         """Hertz's law of the curvatures at the contact point, or of a slender contact over the face."""

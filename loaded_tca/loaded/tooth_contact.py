@@ -46,13 +46,15 @@ MOST_BOXES = 8
 class GridChoice:
     """How finely a contact is resolved: on ``cells`` as given, or on as many as ``accuracy`` needs.
 
-    ``free_edges``: whether the tips and faces of the teeth are softer than a half-space.
+    ``free_edges``: whether the tips and faces of the teeth are softer than a half-space. ``agreement``: to which the
+    rotations of the tooth pairs agree, relative; None: as the cells or the accuracy ask for.
     """
 
     cells: tuple[int, int] | None = None
     accuracy: float = 1e-3
     tolerance: float = 1e-6
     free_edges: bool = False
+    agreement: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -113,7 +113,7 @@ def pair_changes(scene: Scene, keys: Sequence[str]) -> list[PairChange]:
 
 
 def _pair_change(scene: Scene, pair: GearPair, key: str) -> PairChange:
-    value = _value(scene, key)
+    value = value_at(scene, key)
     step, reason = STEPS[key.rpartition("_")[2]], None
     if key.split(".")[1] in SECTIONS[1:]:
         step *= OF_SETTINGS
@@ -134,7 +134,7 @@ def _pair_change(scene: Scene, pair: GearPair, key: str) -> PairChange:
     return PairChange(key, below, above, high - low)
 
 
-def _value(scene: Scene, key: str) -> float:
+def value_at(scene: Scene, key: str) -> float:
     """Value of a key that shapes or moves flanks; InputError if it does not."""
     *sections, name = key.split(".")
     value: object = scene

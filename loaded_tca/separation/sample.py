@@ -172,6 +172,7 @@ def sample_separations(
     loads: Sequence[float | None],
     boxes: Sequence[tuple[float, float] | None],
     guesses: Sequence[tuple[float, float] | None] | None = None,
+    middles: Sequence[tuple[float, float]] | None = None,
     accuracy: float = 1e-3,
 ) -> list[Separation | InputError | GeometryError]:
     """Gaps of n contacts: of each what :func:`sample_separation` returns or raises, whatever stands beside it.
@@ -182,6 +183,8 @@ def sample_separations(
     contacts : sequence of n ContactPoint
     cells, loads, boxes, guesses : sequences of n
         For each contact, as of :func:`sample_separation`.
+    middles : sequence of n (float, float), optional [mm]
+        Where the middles of the boxes lie, from the contact points across and along; default: there.
     accuracy : float
         Of all contacts whose cells are None.
     """
@@ -215,18 +218,22 @@ def sample_separations(
         sized = [(index, box) for index, box in half_lengths.items() if shapes[index] == shape]
         size = max(1, TOGETHER // math.prod(shape))
         for part in (dict(sized[first : first + size]) for first in range(0, len(sized), size)):
-            gaps = _sampled(pair, [contacts[index] for index in part], np.array([*part.values()]), shape)
+            places = np.zeros((len(part), 2)) if middles is None else np.array([middles[index] for index in part])
+            gaps = _sampled(pair, [contacts[index] for index in part], np.array([*part.values()]), places, shape)
             found.update(zip(part, gaps, strict=True))
     return [found[index] for index in range(len(contacts))]
 
 
 def _sampled(
-    pair: GearPair, contacts: Sequence[ContactPoint], boxes: Array, shape: tuple[int, int]
+    pair: GearPair, contacts: Sequence[ContactPoint], boxes: Array, middles: Array, shape: tuple[int, int]
 ) -> Iterator[Separation]:
-    """Gaps of n contacts in boxes of half lengths (n, 2), on grids of one shape."""
+    """Gaps of n contacts in boxes of half lengths and about middles (n, 2), on grids of one shape."""
     curvatures = relative_curvatures(pair, contacts)
     spacings = 2.0 * boxes / shape
-    x, y = ((np.arange(n) - 0.5 * (n - 1)) * step[:, None] for n, step in zip(shape, spacings.T, strict=True))
+    x, y = (
+        middle[:, None] + (np.arange(n) - 0.5 * (n - 1)) * step[:, None]
+        for n, step, middle in zip(shape, spacings.T, middles.T, strict=True)
+    )
     gap = NormalGap(pair, contacts, np.array([curvature.axes for curvature in curvatures]))
     heights, distances = gap.with_edges(x[:, :, None], y[:, None])
     covers = _covers(distances, spacings)

@@ -4,6 +4,7 @@ The engine is any ``concurrent.futures.Executor``. An executor belongs to its ca
 variant, writes down each one that is done, and goes on where it stopped when it is run again.
 """
 
+from loaded_tca.studies.design import DesignModel, DesignResult, load_design, optimise, robustness
 from loaded_tca.studies.figures import figures
 from loaded_tca.studies.pool import process_pool
 from loaded_tca.studies.ranking import rank_variants
@@ -15,13 +16,18 @@ from loaded_tca.studies.summary import study_summary
 from loaded_tca.studies.vh_study import vh_study
 
 __all__ = [
+    "DesignModel",
+    "DesignResult",
     "Study",
     "figures",
+    "load_design",
     "load_study",
+    "optimise",
     "parse_study",
     "process_pool",
     "rank_variants",
     "read_study",
+    "robustness",
     "run_study",
     "study_summary",
     "vh_study",

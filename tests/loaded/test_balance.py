@@ -32,6 +32,12 @@ def test_exponent_stays_in_its_range(approach, expected):
     assert PowerLaw(1000.0, 0.004).through(2000.0, approach).exponent == expected
 
 
+def test_law_of_a_corner_hardly_deforms():
+    """Cells with little material are in contact long before those that carry: the exponent is that of the two loads."""
+    law = PowerLaw(1.30, 0.0012625).through(1.14, 0.0012495)
+    assert_allclose(law.exponent, np.log(0.0012495 / 0.0012625) / np.log(1.14 / 1.30), rtol=1e-12)
+
+
 def test_no_force_where_nothing_is_closed():
     assert PowerLaw(1000.0, 0.004).force_at(0.0) == PowerLaw(1000.0, 0.004).force_at(-1.0) == 0.0
 

@@ -131,3 +131,15 @@ def test_contact_that_fails_is_told_at_its_place_and_stops_no_other():
 
 def test_nothing_asked_for_is_nothing_found():
     assert sample_separations(sam_paper(), [], cells=[], loads=[], boxes=[]) == []
+
+
+def test_box_beside_the_contact_point_is_a_part_of_a_larger_one():
+    pair = sam_paper()
+    contact = trace_contact(pair, [0.0])[0]
+    given = {"cells": [(8, 12)], "loads": [None], "boxes": [(0.2, 3.0)], "middles": [(0.1, -2.0)]}
+    (beside,) = sample_separations(pair, [contact], **given)
+    whole = sample_separation(pair, contact, cells=(12, 20), box=(0.3, 5.0))
+    for part, axis in (("x", slice(4, 12)), ("y", slice(0, 12))):
+        np.testing.assert_allclose(getattr(beside, part), getattr(whole, part)[axis], atol=1e-12)
+    np.testing.assert_allclose(beside.gap, whole.gap[4:, :12], atol=1e-12)
+    np.testing.assert_allclose(beside.cover, whole.cover[4:, :12])

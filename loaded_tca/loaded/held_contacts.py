@@ -1,0 +1,379 @@
+r"""Contacts of a scene on grids that are made once, for many shapes of its flanks: only their gaps change.
+
+Boxes, grids, the points at which the normals of the contact meet the flanks, the compliance of teeth and free edges
+belong to the flanks as they are at first. With other values of keys that shape flanks, Theta at these points changes
+by dTheta, and the gap on the held grid by
+
+.. math:: dh = \left(\frac{d\Theta}{\nabla F \cdot n}\right)_\text{wheel}
+             - \left(\frac{d\Theta}{\nabla F \cdot n}\right)_\text{pinion},
+
+which is exact to first order in the slope that the change adds: a modification of 40 um moves the points by as much
+along the normal, and Theta there by less than a nanometre. The smallest gap of a contact is no longer zero: it is
+taken out of the gap and counts as initial separation of the tooth pair, as a rotation of the wheel by the lever of the
+contact, which is held, too. So a mesh cycle becomes a smooth function of the keys: what an analysis that makes its
+boxes anew owes to their cells, 2 to 4 nm of transmission error, stays the same from shape to shape.
+
+Where a contact grows beyond its grid, a larger one takes its place.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from loaded_tca.arrays import Array, Mask
+from loaded_tca.errors import AccuracyWarning, InputError, LoadedTCAError
+from loaded_tca.loaded.free_edges import edge_compliances
+from loaded_tca.loaded.load_sharing import SharedLoad, ToothPair, tooth_pairs_at, torque_shared
+from loaded_tca.loaded.pair_coupling import BendingModel
+from loaded_tca.loaded.together import Ends, Gap, Result, Steps
+from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.scene import Scene
+from loaded_tca.separation import Separation
+from loaded_tca.separation.gap_change import pair_changes, value_at
+from loaded_tca.separation.normal_gap import TOGETHER, NormalGap
+from loaded_tca.separation.sample import sample_separations
+from loaded_tca.unloaded import ContactPoint, MeshPath
+
+PROBE = (33, 65)
+"""Cells of the coarse grids that tell where contacts may be."""
+PROBE_ACROSS = 0.25
+"""Half of their width across, over the module; a contact is at most half as wide."""
+SLENDER = 4.7
+"""ln(4 L/b) - 1 of a contact line over a face: its line load is pi E*/(2 SLENDER) times how far it is closed."""
+NEAR, NEAR_LENGTH = 1.6, 0.008
+"""Tooth pairs are held that so many times the rotation, and so much [mm] more, would close."""
+MARGIN = 1.25
+"""Box over the contacts that are expected in it."""
+STRAIGHT = 1e-7
+"""Change of a slope [mm over the range of a key] below which the gap is a linear function of the keys."""
+
+
+@dataclass(frozen=True, eq=False)
+class MetPoints:
+    """Points of a flank that normals meet, in one row: (n,) each; steepness as of ``FlankPoints`` [1/mm]."""
+
+    rho: Array
+    z: Array
+    steepness: Array
+
+    def moved(self, one: GearPair, two: GearPair, gear: str) -> Array:
+        """How far the flank of ``two`` stands beyond that of ``one`` along the normals (n,) [mm]."""
+        before, after = (getattr(pair, gear).flank.theta(self.rho, self.z).value for pair in (one, two))
+        return np.asarray((after - before) / self.steepness)
+
+
+@dataclass(frozen=True, eq=False)
+class HeldContact:
+    """Grid of one tooth pair at one position, with what belongs to it whatever the shape of the flanks is.
+
+    Attributes
+    ----------
+    tooth_pair : ToothPair
+    separation : Separation
+        With the flanks as they are at first.
+    there : (nx, ny) bool array
+        Cells with material, n of them.
+    pinion, wheel : MetPoints
+        Of these cells.
+    ends : (ny, ny) array or None [mm/N]
+        Compliance of free edges.
+    """
+
+    tooth_pair: ToothPair
+    separation: Separation
+    there: Mask
+    pinion: MetPoints
+    wheel: MetPoints
+    ends: Array | None
+
+    def growth(self, one: GearPair, two: GearPair, gears: Sequence[str] = ("pinion", "wheel")) -> Array:
+        """Growth of the gap (nx, ny) [mm] from the flanks of one pair to those of another."""
+        found = np.zeros(self.there.shape)
+        if "pinion" in gears:
+            found[self.there] -= self.pinion.moved(one, two, "pinion")
+        if "wheel" in gears:
+            found[self.there] += self.wheel.moved(one, two, "wheel")
+        return found
+
+
+def held(
+    pair: GearPair,
+    tooth_pairs: Sequence[ToothPair],
+    cells: tuple[int, int],
+    boxes: Sequence[tuple[float, float]],
+    middles: Sequence[tuple[float, float]],
+    *,
+    free_edges: bool,
+) -> list[HeldContact]:
+    """Sample contacts in boxes about middles, and meet the flanks there."""
+    contacts = [one.contact for one in tooth_pairs]
+    count = len(contacts)
+    separations, ends = [], []
+    for one in sample_separations(
+        pair, contacts, cells=[cells] * count, loads=[None] * count, boxes=boxes, middles=middles
+    ):
+        if not isinstance(one, Separation):
+            raise one
+        separations.append(one)
+    for matrix in edge_compliances(pair, separations) if free_edges else [None] * count:
+        if isinstance(matrix, InputError):
+            raise matrix
+        ends.append(matrix)
+    found, size = [], max(1, TOGETHER // math.prod(cells))
+    for first in range(0, len(contacts), size):
+        some = slice(first, first + size)
+        axes = np.array([one.axes for one in separations[some]])
+        x, y = (np.array([getattr(one, name) for one in separations[some]]) for name in ("x", "y"))
+        points = NormalGap(pair, contacts[some], axes).flank_points(x[:, :, None], y[:, None])
+        for k, separation in enumerate(separations[some]):
+            there = np.isfinite(separation.cut_gap)
+            pinion, wheel = (MetPoints(one.rho[k][there], one.z[k][there], one.steepness[k][there]) for one in points)
+            found.append(HeldContact(tooth_pairs[first + k], separation, there, pinion, wheel, ends[first + k]))
+    return found
+
+
+class _HeldBending:
+    """A bending model that keeps what it has told of a grid, known by the array of its slices."""
+
+    def __init__(self, model: BendingModel) -> None:
+        self._model = model
+        self._known: dict[tuple[int, ...], tuple[tuple[Array, ...], Array]] = {}
+
+    def within(self, number: int, separation: Separation) -> Array:
+        key = number, id(separation.y)
+        if key not in self._known:
+            self._known[key] = (separation.y,), self._model.within(number, separation)
+        return self._known[key][1]
+
+    def between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
+        key = at[0], id(at[1].y), under[0], id(under[1].y)
+        if key not in self._known:
+            self._known[key] = (at[1].y, under[1].y), self._model.between(at, under)
+        return self._known[key][1]
+
+
+class HeldContacts:
+    """Contacts of a scene at all positions of a pitch, on held grids.
+
+    Parameters
+    ----------
+    scene : Scene
+        The flanks at first.
+    mesh : MeshPath
+        Its unloaded contact.
+    ranges : mapping of str to (float, float)
+        Keys that shape flanks, and the range of each.
+    torque : float [N mm]
+        The largest one, whose contacts the boxes hold for the scene and for each key at either end of its range.
+    cells : (int, int)
+        Of every grid.
+    bending : BendingModel, optional
+
+    Attributes
+    ----------
+    start : (keys,) array
+        Values of the keys in the scene.
+    contacts : list of lists of ContactPoint
+        Of each position.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        mesh: MeshPath,
+        ranges: Mapping[str, tuple[float, float]],
+        torque: float,
+        cells: tuple[int, int],
+        bending: BendingModel | None = None,
+    ) -> None:
+        self.scene, self.pair, self.mesh, self.keys = scene, mesh.pair, mesh, tuple(ranges)
+        self.start = np.array([value_at(scene, key) for key in self.keys])
+        self._torque, self._cells = torque, cells
+        self.bending = None if bending is None else _HeldBending(bending)
+        spans, each = np.array([*ranges.values()]), np.eye(self.start.size, dtype=bool)
+        shapes = [self.pair, *(self.pair_at(np.where(own, ends, self.start)) for ends in spans.T for own in each)]
+        self._held: dict[ContactPoint, HeldContact] = {}
+        self.contacts: list[list[ContactPoint]] = []
+        for position in range(len(mesh)):
+            found = self._held_at(position, shapes)
+            self._held.update((one.tooth_pair.contact, one) for one in found)
+            self.contacts.append([one.tooth_pair.contact for one in found])
+        first, last = (self._slopes_at(values) for values in (self.start, spans[:, 1]))
+        bends = [np.abs(last[one] - first[one]).max(axis=(1, 2)) @ np.ptp(spans, axis=1) for one in first]
+        self._slopes = first if max(bends) <= STRAIGHT else None
+
+    def pair_at(self, values: Array) -> GearPair:
+        """The gears with other values of the keys."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", AccuracyWarning)  # told of the scene itself
+            return self._scene(values).pair()
+
+    def gaps(self, values: Array, contacts: Iterable[ContactPoint] | None = None) -> dict[ContactPoint, Array]:
+        """Gaps (nx, ny) [mm] with other values of the keys, the gears held at their angles; of all contacts or some."""
+        held_gaps = {one: self._held[one].separation.cut_gap for one in (self._held if contacts is None else contacts)}
+        if self._slopes is not None:
+            change = values - self.start
+            return {contact: gap + np.tensordot(change, self._slopes[contact], 1) for contact, gap in held_gaps.items()}
+        pair = self.pair_at(values)
+        return {contact: gap + self._held[contact].growth(self.pair, pair) for contact, gap in held_gaps.items()}
+
+    def slopes(self, values: Array) -> dict[ContactPoint, Array]:
+        """Derivatives (keys, nx, ny) [mm per unit of the key] of :meth:`gaps`."""
+        return self._slopes_at(values) if self._slopes is None else self._slopes
+
+    def __getitem__(self, contact: ContactPoint) -> HeldContact:
+        return self._held[contact]
+
+    def holds(self, shared: SharedLoad) -> bool:
+        """Whether all contacts of a state were solved on the grids that are held now."""
+        loaded = [share.loaded for share in shared.shares]
+        return all(one.separation.y is self._held[one.contact].separation.y for one in loaded)
+
+    def grow(self, contact: ContactPoint, half_lengths: tuple[float, float]) -> None:
+        """Hold a contact in a larger box from now on."""
+        one = self._held[contact]
+        middle = float(one.separation.x.mean()), float(one.separation.y.mean())
+        edges = self.scene.analysis.free_edges
+        (larger,) = held(self.pair, [one.tooth_pair], self._cells, [half_lengths], [middle], free_edges=edges)
+        self._held[contact] = larger
+        if self._slopes is not None:
+            self._slopes |= self._slopes_at(self.start, [contact])
+
+    def _scene(self, values: Array) -> Scene:
+        return self.scene.with_changes(dict(zip(self.keys, values.tolist(), strict=True)))
+
+    def _slopes_at(self, values: Array, contacts: Iterable[ContactPoint] | None = None) -> dict[ContactPoint, Array]:
+        changes = pair_changes(self._scene(values), self.keys)
+        found = {}
+        for contact in self._held if contacts is None else contacts:
+            one = self._held[contact]
+            grown = [one.growth(by.below, by.above, (by.key.partition(".")[0],)) / by.difference for by in changes]
+            found[contact] = np.array(grown)
+        return found
+
+    def _held_at(self, position: int, shapes: Sequence[GearPair]) -> list[HeldContact]:
+        """Contacts of a position that one of the shapes may bring under load, in boxes that hold them."""
+        tooth_pairs, pair = tooth_pairs_at(self.mesh, position), self.pair
+        heights = (flank.extent[0] for flank in (pair.pinion.flank, pair.wheel.flank))
+        box, count = (PROBE_ACROSS * pair.module, math.hypot(pair.face_width, *heights)), len(tooth_pairs)
+        probes = held(pair, tooth_pairs, PROBE, [box] * count, [(0.0, 0.0)] * count, free_edges=False)
+        closed = np.zeros((count, *PROBE), dtype=bool)
+        for shape in shapes:
+            closed |= self._closed(
+                probes, np.array([one.separation.cut_gap + one.growth(pair, shape) for one in probes])
+            )
+        kept, boxes, middles = [], [], []
+        for probe, mask in zip(probes, closed, strict=True):
+            if not mask.any():
+                continue
+            grid = probe.separation
+            low, high = np.array([_span(grid.x, mask, 0), _span(grid.y, mask, 1)]).T
+            first, last = _span(grid.y, probe.there, 1)
+            middle, half = 0.5 * (low + high), 0.5 * MARGIN * (high - low)
+            beyond = 2.0 * half[1] / self._cells[1]  # a cell without material, where the flank ends
+            bottom, top = max(middle[1] - half[1], first - beyond), min(middle[1] + half[1], last + beyond)
+            kept.append(probe.tooth_pair)
+            boxes.append((float(half[0]), float(0.5 * (top - bottom))))
+            middles.append((float(middle[0]), float(0.5 * (top + bottom))))
+        found = held(pair, kept, self._cells, boxes, middles, free_edges=self.scene.analysis.free_edges)
+        return [one for one in found if one.there.any()]  # less than a cell at a corner is none
+
+    def _closed(self, probes: Sequence[HeldContact], gaps: Array) -> Mask:
+        """Cells (pairs, nx, ny) in contact if strips across carry line loads in proportion to how far they are closed.
+
+        All pairs share the torque. One that only nearly carries load is told as if it did.
+        """
+        contacts = [one.tooth_pair.contact for one in probes]
+        levers, wheel_levers = np.array([(one.pinion_lever, one.wheel_lever) for one in contacts]).T
+        apart = wheel_levers * [one.tooth_pair.initial_separation for one in probes]
+        stiffness = 0.5 * math.pi * self.pair.contact_modulus / SLENDER
+        lowest = gaps.min(axis=1)
+        floors = lowest + apart[:, None]  # (pairs, ny), with the wheel where it is unloaded
+        weights = stiffness * levers * [one.separation.spacing[1] for one in probes]
+        order = np.argsort(floors, axis=None)[: np.isfinite(floors).sum()]
+        heights, parts = floors.ravel()[order], np.broadcast_to(weights[:, None], floors.shape).ravel()[order]
+        levels = (self._torque + np.cumsum(parts * heights)) / np.cumsum(parts)
+        level = float(levels[(levels <= np.append(heights[1:], np.inf)).argmax()])
+        nearly = heights[0] + NEAR * (level - heights[0]) + NEAR_LENGTH
+        carries = (floors < level).any(axis=1, keepdims=True)
+        closing = np.maximum(np.where(carries, level, nearly) - floors, 0.0)
+        rise = closing / SLENDER
+        depth = gaps - np.where(np.isfinite(lowest), lowest, 0.0)[:, None]
+        return np.asarray((depth <= rise[:, None]) & (closing > 0.0)[:, None])
+
+
+class ShapedContacts:
+    """Held contacts with one shape of the flanks, to be solved under torques.
+
+    Parameters
+    ----------
+    contacts : HeldContacts
+    values : (keys,) array
+    """
+
+    def __init__(self, contacts: HeldContacts, values: Array) -> None:
+        self._contacts, self._values = contacts, values
+        self._lowest: dict[ContactPoint, float] = {}
+        self._separations: dict[ContactPoint, Separation] = {}
+        self._ends: dict[Separation, Array | None] = {}
+        for contact, gap in contacts.gaps(values).items():
+            self._lowest[contact] = float(gap.min())
+            self._keep(contact, gap)
+
+    def _keep(self, contact: ContactPoint, gap: Array) -> Separation:
+        one, raised = self._contacts[contact], gap - self._lowest[contact]
+        whole = np.where(np.isfinite(one.separation.gap), raised, np.inf)
+        found = self._separations[contact] = replace(one.separation, gap=whole, cut_gap=raised)
+        self._ends[found] = one.ends
+        return found
+
+    def shared(self, position: int, torque: float, grid: GridChoice) -> Steps[tuple[float, SharedLoad]]:
+        """Share a torque [N mm] at a position: the loaded transmission error [rad], and what the pairs carry."""
+        contacts, pair = self._contacts, self._contacts.pair
+        there = [contacts[contact].tooth_pair for contact in contacts.contacts[position]]
+        beyond = [one.initial_separation + self._lowest[one.contact] / one.contact.wheel_lever for one in there]
+        first = min(beyond)
+        tooth_pairs = [replace(one, initial_separation=rest - first) for one, rest in zip(there, beyond, strict=True)]
+        steps = torque_shared(pair, tooth_pairs, torque, grid, contacts.bending)
+        found = yield from self._answered(steps)
+        unloaded = float(contacts.mesh.transmission_error[position])
+        return unloaded - pair.driving * (first + found.rotation), found
+
+    def _answered(self, steps: Steps[Result]) -> Steps[Result]:
+        """Answer what is asked for of grids; contact problems are passed on."""
+        answer: Any = None
+        while True:
+            try:
+                request = steps.throw(answer) if isinstance(answer, LoadedTCAError) else steps.send(answer)
+            except StopIteration as end:
+                return end.value
+            if isinstance(request, Gap):
+                answer = self._grid(request)
+            elif isinstance(request, Ends):
+                answer = self._ends[request.separation]
+            else:
+                try:
+                    answer = yield request
+                except LoadedTCAError as error:
+                    answer = error
+
+    def _grid(self, request: Gap) -> Separation:
+        """The held grid of a contact, or a larger one where it has outgrown that."""
+        contact, grid = request.contact, self._separations[request.contact]
+        if request.box is None or all(np.less_equal(request.box, grid.half_lengths)):
+            return grid
+        self._contacts.grow(contact, request.box)
+        return self._keep(contact, self._contacts.gaps(self._values, [contact])[contact])
+
+
+def _span(places: Array, cells: Mask, axis: int) -> tuple[float, float]:
+    """Ends along an axis of the marked cells (nx, ny) whose middles are at these places, whole cells counted [mm]."""
+    there, step = places[np.unique(cells.nonzero()[axis])], float(places[1] - places[0])
+    return float(there[0]) - 0.5 * step, float(there[-1]) + 0.5 * step

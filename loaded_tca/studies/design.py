@@ -1,0 +1,540 @@
+r"""Micro-geometry designed with exact gradients: quiet on average, or still quiet where the mounting scatters.
+
+With J_s the mean over the torques of a figure of sample s, the objective is its mean over the samples, mean + k sigma,
+or a percentile. It is minimised by sequential quadratic programming (``scipy.optimize``, SLSQP) over the keys scaled to
+their ranges, under limits on other figures. All of it works on held contacts (:class:`DesignModel`); at the end the
+package's own analysis of start and optimum, at the accuracy of the scene, has to confirm what was found.
+
+References
+----------
+Kraft 1994, ACM Trans. Math. Softw. 20, 262-281 (SLSQP); Bertsimas, Nohadani & Teo 2010, Oper. Res. 58, 161-178 (robust
+optimisation by gradients).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+from warnings import catch_warnings, simplefilter
+
+import numpy as np
+
+from loaded_tca.analysis import analyse
+from loaded_tca.arrays import Array
+from loaded_tca.errors import ConvergenceError, InputError, require
+from loaded_tca.results.files import FilePath, Part, read_dataset, variables_of, write_dataset
+from loaded_tca.scene import Scene
+from loaded_tca.studies.design_model import (
+    FIGURES,
+    OF_ERRORS,
+    SMOOTHING,
+    DesignModel,
+    Evaluation,
+    mean_pressure_norm,
+)
+from loaded_tca.studies.run import accuracy_warnings
+from loaded_tca.studies.study import is_finite
+from loaded_tca.threads import one_thread
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["DesignModel", "DesignResult", "Evaluation", "load_design", "optimise", "robustness"]
+
+OBJECTIVES = ("mean", "mean + k sigma", "percentile")
+MOST_ITERATIONS = 50
+ACCURACY = 1e-3
+"""Of the objective, relative, at which SLSQP stops: held contacts scatter by 0.2 to 0.7 nm."""
+KEPT = 2e-3
+"""Part of a limit by which a design may exceed it and still meet it: SLSQP meets limits to rounding of its steps."""
+CONFIRMED = 0.5
+"""Part of the gain on held contacts that the full analysis must confirm. Analyses scatter by 2 to 4 nm, held contacts
+are coarser: a gain that is much larger than both is confirmed nearly whole, one of their size is none."""
+LIMITS_CONFIRMED = 0.05
+"""Part of a limit by which the full analysis may exceed it: K_Hbeta and pressures on two grids differ by percents."""
+KIND = "design"
+Limits = Mapping[str, float | Mapping[float, float]]
+Progress = Callable[[int, float, float], None]
+"""Called with the number of designs evaluated, the objective of the last one, the part by which it exceeds a limit."""
+
+
+@dataclass(frozen=True)
+class Objective:
+    """What is minimised: a figure, mean over the torques, as it scatters over the samples.
+
+    Attributes
+    ----------
+    kind : {"mean", "mean + k sigma", "percentile"}
+    k : float
+        Standard deviations on top of the mean.
+    percentile : float
+        From 0 to 100.
+    figure : str
+        One of ``FIGURES``.
+    """
+
+    kind: str = "mean + k sigma"
+    k: float = 1.0
+    percentile: float = 90.0
+    figure: str = "smooth_span_um"
+
+    def __post_init__(self) -> None:
+        require(
+            (self.kind in OBJECTIVES, f"objective: {self.kind!r:.60}; allowed {', '.join(map(repr, OBJECTIVES))}"),
+            (self.figure in FIGURES, f"figure: {self.figure!r:.60}; allowed {', '.join(FIGURES)}"),
+            (0.0 <= self.k < math.inf, f"k: {self.k}; allowed a finite number from 0 on"),
+            (0.0 <= self.percentile <= 100.0, f"percentile: {self.percentile}; allowed 0 to 100"),
+        )
+
+    @property
+    def told(self) -> str:
+        """In words."""
+        if self.kind == "percentile":
+            return f"percentile {self.percentile:g}"
+        return self.kind if self.kind == "mean" else f"mean + {self.k:g} sigma"
+
+    def of(self, figures: Array) -> tuple[float, Array]:
+        """Value of figures (sample, torque), and its derivatives to them."""
+        values = figures.mean(axis=1)
+        if self.kind == "percentile":
+            order, place = np.argsort(values), 0.01 * self.percentile * (values.size - 1)
+            low, part = int(place), place - int(place)
+            weights = np.zeros(values.size)
+            weights[order[low]] += 1.0 - part
+            weights[order[min(low + 1, values.size - 1)]] += part
+            value = float(weights @ values)
+        else:
+            weights, value, sigma = np.full(values.size, 1.0 / values.size), float(values.mean()), float(values.std())
+            if self.kind == "mean + k sigma":
+                value += self.k * sigma
+                weights += self.k * (values - values.mean()) / (values.size * sigma) if sigma > 0.0 else 0.0
+        return value, np.broadcast_to(weights[:, None] / figures.shape[1], figures.shape)
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Highest value of a figure under some torques, with every sample."""
+
+    figure: str
+    torques: tuple[int, ...]
+    highest: float
+
+
+@dataclass(frozen=True, eq=False)
+class DesignResult:
+    """A design that was found, and what the package's own analysis says of it and of the start.
+
+    Attributes
+    ----------
+    dataset : xarray.Dataset
+        Over ``design`` ("start", "optimum"), sample, torque, position and key: ``value`` of the keys, analysed
+        ``transmission_error`` [rad], ``peak_pressure`` [MPa], load factors and ``FIGURES``; those on held contacts as
+        ``held_...``; ``history_x``, ``history_objective`` and ``history_excess`` over the evaluations.
+    """
+
+    dataset: xarray.Dataset
+
+    @property
+    def start(self) -> dict[str, float]:
+        """Values of the keys where the design started."""
+        return self._values("start")
+
+    @property
+    def optimum(self) -> dict[str, float]:
+        """Values of the keys that were found."""
+        return self._values("optimum")
+
+    def _values(self, design: str) -> dict[str, float]:
+        values = self.dataset["value"].sel(design=design).values.tolist()
+        return dict(zip(self.dataset["key"].values.tolist(), values, strict=True))
+
+    @property
+    def objective(self) -> tuple[float, float]:
+        """Objective of start and optimum by the full analysis."""
+        before, after = self.dataset["objective"].values.tolist()
+        return before, after
+
+    @property
+    def held_objective(self) -> tuple[float, float]:
+        """Objective of start and optimum on held contacts."""
+        before, after = self.dataset["held_objective"].values.tolist()
+        return before, after
+
+    @property
+    def evaluations(self) -> int:
+        """How many designs were evaluated."""
+        return int(self.dataset.sizes["evaluation"])
+
+    def save(self, path: FilePath) -> None:
+        """Write the result to a NetCDF-3 file, to be read by :func:`load_design`."""
+        write_dataset(path, self.dataset)
+
+
+def load_design(path: FilePath) -> DesignResult:
+    """Read the result of a design.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is damaged, or is no design.
+    """
+    dataset = read_dataset(path)
+    if dataset.attrs.get("kind") != KIND:
+        raise InputError(f"{path}: a result of loaded_tca, but no design; read it with load_result or load_study")
+    return DesignResult(dataset)
+
+
+def optimise(
+    model: DesignModel,
+    objective: str = "mean + k sigma",
+    limits: Limits | None = None,
+    *,
+    k: float = 1.0,
+    percentile: float = 90.0,
+    figure: str = "smooth_span_um",
+    starts: int = 1,
+    seed: int = 0,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+) -> DesignResult:
+    """Design the micro-geometry of a model.
+
+    Parameters
+    ----------
+    model : DesignModel
+    objective : {"mean", "mean + k sigma", "percentile"}
+        Of the figure, its mean over the torques, over the samples of the scatter.
+    limits : mapping, optional
+        Figure -> its highest value under every torque with every sample, or a mapping of torques [N mm] to values.
+        ``edge_pressure_MPa`` keeps contacts away from the ends of the flanks.
+    k : float
+        Standard deviations on top of the mean.
+    percentile : float
+        From 0 to 100.
+    figure : str
+        One of ``FIGURES``; the default has derivatives everywhere.
+    starts : int
+        Designs to start from: that of the scene, then points of a scrambled Sobol sequence within the ranges.
+    seed : int
+        Of these.
+    executor : concurrent.futures.Executor, optional
+        For the starts and for the final analyses; it stays the caller's. Default: this process.
+    progress : callable, optional
+        Called after every evaluation in this process.
+
+    Returns
+    -------
+    DesignResult
+
+    Raises
+    ------
+    InputError
+        Before work starts, with every problem of the arguments; after it, if no design met a limit, which is named.
+    ConvergenceError
+        If the analysis at the accuracy of the scene does not confirm the optimum; ``last`` is the DesignResult.
+    """
+    wanted = Objective(objective, k, percentile, figure)
+    given = _limits(model, limits or {})
+    whole = isinstance(starts, int) and not isinstance(starts, bool) and starts >= 1
+    require((whole, f"starts: {starts!r:.60}; allowed a whole number from 1 on"))
+    low, range_ = model.bounds[:, 0], np.ptp(model.bounds, axis=1)
+    points = [(model.start - low) / range_]
+    if starts > 1:
+        from scipy.stats import qmc  # half a second
+
+        points += [*qmc.Sobol(low.size, scramble=True, rng=seed).random_base2((starts - 2).bit_length())[: starts - 1]]
+    if executor is None:
+        searches = [_Search(model, wanted, given, progress).from_point(point) for point in points]
+    else:
+        tasks = [executor.submit(_searched, model, wanted, given, point) for point in points]
+        searches = [task.result() for task in tasks]
+    history = [trial for found in searches for trial in found]
+    best = min(
+        history, key=lambda trial: (trial.excess > KEPT, trial.excess if trial.excess > KEPT else trial.objective)
+    )
+    if best.excess > KEPT:
+        raise InputError(_told_unmet(model, given, best.x))
+    result = _analysed_result(model, wanted, history, best.x, executor)
+    _require_confirmed(result, given)
+    return result
+
+
+class Trial(NamedTuple):
+    """A design that was evaluated: values (keys,), objective, largest part by which a figure exceeds its limit."""
+
+    x: Array
+    objective: float
+    excess: float
+
+
+class _Search:
+    """SLSQP from one start, over the keys scaled to their ranges; the objective is scaled by its first value."""
+
+    def __init__(
+        self, model: DesignModel, objective: Objective, limits: Sequence[Limit], progress: Progress | None = None
+    ) -> None:
+        self._model, self._objective, self._limits, self._progress = model, objective, limits, progress
+        self._low, self._range = model.bounds[:, 0], np.ptp(model.bounds, axis=1)
+        self._last: Evaluation | None = None
+        self.history: list[Trial] = []
+
+    def from_point(self, point: Array) -> list[Trial]:
+        """Designs that were evaluated on the way from a point, (keys,) from 0 to 1."""
+        self._minimise(self._value, self._slope, point, limited=bool(self._limits))
+        if self._nearest().excess > KEPT:  # first any design that meets the limits, then the best one
+            self._minimise(self._violation, self._violation_slope, self._point(self._nearest().x), limited=False)
+            if self._nearest().excess <= KEPT:
+                self._minimise(self._value, self._slope, self._point(self._nearest().x), limited=True)
+        return self.history
+
+    def _nearest(self) -> Trial:
+        return min(self.history, key=lambda trial: trial.excess)
+
+    def _point(self, x: Array) -> Array:
+        return (x - self._low) / self._range
+
+    def _minimise(
+        self, value: Callable[[Array], float], slope: Callable[[Array], Array], point: Array, *, limited: bool
+    ) -> None:
+        from scipy.optimize import minimize
+
+        first = abs(value(point)) or 1.0
+        limit: Any = {"type": "ineq", "fun": self._room, "jac": self._room_slopes}
+        minimize(  # type: ignore[call-overload]
+            lambda z: value(z) / first,
+            point,
+            jac=lambda z: slope(z) / first,
+            method="SLSQP",
+            bounds=[(0.0, 1.0)] * point.size,
+            constraints=[limit] if limited else [],
+            options={"maxiter": MOST_ITERATIONS, "ftol": ACCURACY},
+        )
+
+    def _evaluated(self, point: Array) -> Evaluation:
+        x = np.clip(self._low + point * self._range, *self._model.bounds.T)
+        if self._last is None or not np.array_equal(self._last.x, x):
+            self._last = self._model.evaluate(x)
+            value, _ = self._objective.of(self._last.figure(self._objective.figure))
+            excess = -float(self._room(point).min(initial=math.inf))
+            self.history.append(Trial(x, value, excess))
+            if self._progress is not None:
+                self._progress(len(self.history), value, excess)
+        return self._last
+
+    def _value(self, point: Array) -> float:
+        return self._objective.of(self._evaluated(point).figure(self._objective.figure))[0]
+
+    def _slope(self, point: Array) -> Array:
+        found, figure = self._evaluated(point), self._objective.figure
+        _, weights = self._objective.of(found.figure(figure))
+        return np.asarray(self._range * np.tensordot(weights, found.gradient(figure), 2))
+
+    def _room(self, point: Array) -> Array:
+        """What is left up to each limit, as a part of it: (limits times samples times torques,)."""
+        found = self._evaluated(point)
+        rooms = [1.0 - found.figure(one.figure, one.torques).ravel() / one.highest for one in self._limits]
+        return np.concatenate([np.zeros(0), *rooms])
+
+    def _room_slopes(self, point: Array) -> Array:
+        found = self._evaluated(point)
+        rows = [-found.gradient(one.figure, one.torques).reshape(-1, point.size) / one.highest for one in self._limits]
+        return np.asarray(self._range * np.concatenate(rows))
+
+    def _violation(self, point: Array) -> float:
+        """Sum of the squares by which limits are exceeded."""
+        return float((np.minimum(self._room(point), 0.0) ** 2).sum())
+
+    def _violation_slope(self, point: Array) -> Array:
+        return np.asarray(2.0 * np.minimum(self._room(point), 0.0) @ self._room_slopes(point))
+
+
+def _searched(model: DesignModel, objective: Objective, limits: Sequence[Limit], point: Array) -> list[Trial]:
+    """A search in whatever process this is called."""
+    with one_thread():
+        return _Search(model, objective, limits).from_point(point)
+
+
+def _limits(model: DesignModel, limits: Limits) -> list[Limit]:
+    """Checked limits; every problem at once."""
+    problems, found = [], []
+    for figure, given in limits.items():
+        if figure not in FIGURES:
+            problems.append(f"limits: {figure!r:.60} is no figure; allowed {', '.join(FIGURES)}")
+            continue
+        by_torque = given if isinstance(given, Mapping) else {None: given}
+        for torque, highest in by_torque.items():
+            chosen = tuple(np.flatnonzero(True if torque is None else np.isclose(model.torques, torque)).tolist())
+            chosen = tuple(range(model.torques.size)) if torque is None else chosen
+            if not chosen:
+                told = ", ".join(f"{one:g}" for one in model.torques)
+                problems.append(f"limits: {figure}: {torque!r:.40} N mm is no torque of the model; allowed {told}")
+            elif not (is_finite(highest) and highest > 0.0):
+                problems.append(f"limits: {figure}: {highest!r:.60}; allowed a finite number above 0")
+            else:
+                found.append(Limit(figure, chosen, float(highest)))
+    if problems:
+        raise InputError(problems)
+    return found
+
+
+def _told_unmet(model: DesignModel, limits: Sequence[Limit], x: Array) -> list[str]:
+    """The limits that the best design found exceeds, and by how much."""
+    found, told = model.evaluate(x), []
+    place = ", ".join(f"{key} = {value:.4g}" for key, value in zip(model.keys, x.tolist(), strict=True))
+    for one in limits:
+        largest = float(found.figure(one.figure, one.torques).max())
+        if largest > (1.0 + KEPT) * one.highest:
+            part = 100.0 * (largest / one.highest - 1.0)
+            told.append(
+                f"limits: {one.figure}: no design found meets {one.highest:g}; at the best one it is {largest:.4g}, "
+                f"{part:.2g} % more ({place})"
+            )
+    return told
+
+
+def robustness(
+    model: DesignModel,
+    designs: Mapping[str, Mapping[str, float]],
+    multiples: Sequence[float],
+    objective: str = "mean + k sigma",
+    *,
+    k: float = 1.0,
+    percentile: float = 90.0,
+    figure: str = "smooth_span_um",
+) -> xarray.Dataset:
+    """Objective of designs over a multiple of the scatter, on held contacts.
+
+    Parameters
+    ----------
+    model : DesignModel
+        With a scatter.
+    designs : mapping of str to mapping
+        Name -> values of the keys.
+    multiples : sequence of float
+        By which the samples deviate farther than in the model; 0: no scatter.
+    objective, k, percentile, figure
+        As of :func:`optimise`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``objective`` over design and multiple.
+    """
+    import xarray
+
+    wanted = Objective(objective, k, percentile, figure)
+    require((bool(model.scatter), "model: without scatter; allowed one with scatter, of which there are multiples"))
+    values = [model.values(one) for one in designs.values()]
+    found = np.empty((len(designs), len(multiples)))
+    for column, multiple in enumerate(multiples):
+        scaled = model.with_scatter(multiple)
+        found[:, column] = [wanted.of(scaled.evaluate(x).figure(figure))[0] for x in values]
+    coordinates = {"design": [*designs], "multiple": np.asarray(multiples, dtype=float)}
+    return xarray.Dataset({"objective": (("design", "multiple"), found)}, coordinates)
+
+
+def _analysed(scene: Scene) -> dict[str, Any]:
+    """What is kept of the analysis of a scene, over its torques; in whatever process this is called."""
+    with one_thread(), accuracy_warnings() as told:
+        result = analyse(scene)
+    with np.errstate(all="ignore"), catch_warnings():
+        simplefilter("ignore", RuntimeWarning)  # all NaN where nothing is in contact
+        peak = np.nanmax(result.peak_pressure, axis=2)
+    errors = 1e3 * result.wheel_base_radius * result.transmission_error[:, :-1]
+    found = {
+        "transmission_error": result.transmission_error,
+        "peak_pressure": peak,
+        "face_load_factor": result.face_load_factor,
+        "transverse_load_factor": result.transverse_load_factor,
+        "warnings": [*dict.fromkeys(told)],
+    }
+    found |= {name: np.array([of(row, SMOOTHING)[0] for row in errors]) for name, of in OF_ERRORS.items()}
+    for name, at_edges in (("pressure_MPa", False), ("edge_pressure_MPa", True)):
+        positions = ([[one for one in row if one is not None] for row in rows[:-1]] for rows in result.maps)
+        found[name] = np.array([mean_pressure_norm(rows, at_edges=at_edges)[0] for rows in positions])
+    return found
+
+
+def _analysed_result(
+    model: DesignModel, objective: Objective, history: Sequence[Trial], x: Array, executor: Executor | None
+) -> DesignResult:
+    """The result of a search, with the full analyses of start and optimum."""
+    import xarray
+
+    designs = (model.start, x)
+    scenes = [scene for design in designs for scene in model.scenes(design)]
+    found = [*(map if executor is None else executor.map)(_analysed, scenes)]
+    lines = dict.fromkeys(line for one in found for line in one.pop("warnings"))
+    shape = len(designs), len(model.deviations)
+    arrays = {name: np.array([one[name] for one in found]).reshape(*shape, *found[0][name].shape) for name in found[0]}
+    held = [model.evaluate(design) for design in designs]
+    arrays |= {f"held_{name}": np.array([one.figure(name) for one in held]) for name in FIGURES}
+    arrays["held_transmission_error"] = np.array([one.transmission_error for one in held])
+    for prefix in ("", "held_"):
+        arrays[f"{prefix}objective"] = np.array([objective.of(one)[0] for one in arrays[prefix + objective.figure]])
+    arrays |= {"value": np.array(designs), "scatter": np.array([[*one.values()] for one in model.deviations])}
+    arrays |= {f"history_{name}": np.array([getattr(one, name) for one in history]) for name in Trial._fields}
+    coordinates = {
+        "design": ["start", "optimum"],
+        "key": [*model.keys],
+        "torque": ("torque", model.torques, {"units": "N mm"}),
+        **({"scatter_key": [*model.scatter]} if model.scatter else {}),
+    }
+    attributes = {"kind": KIND, "scene_toml": model.scene.to_toml(), "warnings": "\n".join(lines)}
+    attributes |= {"objective": objective.told, "figure": objective.figure}
+    return DesignResult(xarray.Dataset(variables_of(PARTS, arrays), coordinates, attributes))
+
+
+def _require_confirmed(result: DesignResult, limits: Sequence[Limit]) -> None:
+    """ConvergenceError if the full analysis does not show what the held contacts do."""
+    (start, optimum), (held_start, held_optimum) = result.objective, result.held_objective
+    problems, gain, held_gain = [], start - optimum, held_start - held_optimum
+    if gain < held_gain * (CONFIRMED if held_gain > 0.0 else 1.0 / CONFIRMED):
+        problems.append(
+            f"the objective goes from {held_start:.4g} to {held_optimum:.4g} on held contacts, but from {start:.4g} to "
+            f"{optimum:.4g} by the analysis"
+        )
+    for one in limits:
+        if one.figure != "edge_pressure_MPa":  # a number of the grid where edges are sharp
+            largest = float(result.dataset[one.figure].sel(design="optimum").values[:, one.torques].max())
+            if largest > (1.0 + LIMITS_CONFIRMED) * one.highest:
+                problems.append(f"{one.figure} is {largest:.4g} by the analysis, its limit {one.highest:g}")
+    if problems:
+        told = "; ".join(problems)
+        raise ConvergenceError(f"design: not confirmed: {told}; try more cells of the model", last=result)
+
+
+ANALYSED = "design", "sample", "torque", "position"
+FIGURE_TEXTS = {
+    "span_um": ("um", "peak-to-peak loaded transmission error at the wheel's base circle"),
+    "smooth_span_um": ("um", "the same with smooth maxima"),
+    "mean_transmission_error_um": ("um", "mean loaded transmission error at the wheel's base circle"),
+    "pressure_MPa": ("MPa", "norm of the pressure away from the ends of the flanks"),
+    "edge_pressure_MPa": ("MPa", "norm of the pressure beside the ends of the flanks"),
+    "face_load_factor": ("1", "K_Hbeta"),
+}
+PARTS: dict[str, Part] = {
+    "value": (("design", "key"), "1", "value of the key, in the unit at the end of its name"),
+    "scatter": (("sample", "scatter_key"), "1", "value of the key, or its deviation from that of the design"),
+    "transmission_error": (ANALYSED, "rad", "loaded transmission error"),
+    "peak_pressure": (ANALYSED, "MPa", "largest peak pressure of the tooth pairs"),
+    "transverse_load_factor": (ANALYSED[:3], "1", "K_Halpha"),
+    **{name: (ANALYSED[:3], *told) for name, told in FIGURE_TEXTS.items()},
+    "objective": (ANALYSED[:1], "", "what was minimised, by the full analysis"),
+    "held_transmission_error": (
+        (*ANALYSED[:3], "held_position"),
+        "rad",
+        "loaded transmission error on held contacts, without the last position, the first one of the next pitch",
+    ),
+    **{
+        f"held_{name}": (ANALYSED[:3], unit, f"{told}, on held contacts") for name, (unit, told) in FIGURE_TEXTS.items()
+    },
+    "held_objective": (ANALYSED[:1], "", "what was minimised, on held contacts"),
+    "history_x": (("evaluation", "key"), "1", "value of the key"),
+    "history_objective": (("evaluation",), "", "objective on held contacts"),
+    "history_excess": (("evaluation",), "1", "part by which a figure exceeds its limit; negative within all limits"),
+}
+"""What the dataset of a result holds."""

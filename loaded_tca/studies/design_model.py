@@ -1,0 +1,464 @@
+r"""Figures of a loaded mesh as smooth functions of the micro-geometry, with exact gradients, under scatter.
+
+All contacts are held (:mod:`loaded_tca.loaded.held_contacts`): an evaluation changes their gaps, shares the torque
+over the tooth pairs at all positions, under all torques and of all samples of the scatter together, and reads off
+
+.. math:: \mathrm{span} = \tau \ln \sum_n e^{\mathrm{TE}_n/\tau} + \tau \ln \sum_n e^{-\mathrm{TE}_n/\tau}, \qquad
+          \hat p = \Bigl(\tfrac1N \sum_n \sum_c A_c\, p_c^m / 1\,\mathrm{mm}^2\Bigr)^{1/m}, \quad m = 12,
+
+over N positions of a pitch and all cells c of their contacts. Gradients are those of the discrete problem, one linear
+solution for the transmission error and one more for each other figure, however many keys there are
+(:mod:`loaded_tca.loaded.sensitivity`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.ndimage import binary_dilation
+
+from loaded_tca.arrays import Array
+from loaded_tca.compliance import require_teeth, tooth_compliance, way_out_told
+from loaded_tca.errors import InputError, require
+from loaded_tca.loaded.cycle import farthest_apart
+from loaded_tca.loaded.held_contacts import HeldContacts, ShapedContacts
+from loaded_tca.loaded.load_sharing import SharedLoad
+from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
+from loaded_tca.loaded.together import found_together
+from loaded_tca.loaded.tooth_contact import GridChoice
+from loaded_tca.results.figure_slopes import EXPONENT, face_load_factor_slopes, pressure_norm
+from loaded_tca.results.load_factors import load_factors
+from loaded_tca.results.pressure_map import PressureMap
+from loaded_tca.scene import Scene
+from loaded_tca.separation.gap_change import value_at
+from loaded_tca.studies.study import Distribution, Study, is_finite
+from loaded_tca.unloaded import ContactPoint, trace_teeth
+
+CELLS = (24, 40)
+"""Of every contact, where the scene gives none."""
+SMOOTHING = 0.01
+"""tau of the span [um]: it exceeds the span by 2 tau ln(N) at the most."""
+TOLERANCE = 1e-6
+"""Of contacts, relative."""
+AGREEMENT = 10.0
+"""That of the balance of the tooth pairs over it."""
+FEWEST_POSITIONS = 4
+LINEAR = 1e-7
+"""Of the linear systems of gradients, relative."""
+
+
+class DesignModel:
+    """Micro-geometry to be designed: keys that vary within ranges, under a scatter of others.
+
+    Parameters
+    ----------
+    scene : Scene
+        Where the design starts; says what is in the model, ``analysis.positions`` over how many positions.
+    variables : mapping of str to (float, float)
+        Keys of modifications, machine settings and cutters of either gear, as of ``scene.with_changes`` -> lowest and
+        highest value, between which that of the scene lies.
+    scatter : mapping of str to frozen distribution of ``scipy.stats``, optional
+        Keys of mounting errors -> their distributions; of keys of flanks -> the distributions of what they deviate by
+        from the value of the design. Or to given values, all equally many, each of them a sample.
+    torques : sequence of float, optional [N mm]
+        Of the pinion; default: those of the scene.
+    samples : int
+        Of the scatter; as of :class:`Study`.
+    seed : int
+        Of the samples.
+    multiple : float
+        Samples deviate so many times as far from the medians of their distributions.
+    cells : (int, int), optional
+        Of every contact across and along; default: ``analysis.cells``, or 24 and 40.
+    smoothing : float [um]
+        tau of the smooth span.
+    tolerance : float
+        Of contacts and of the balance of the tooth pairs, relative.
+
+    Raises
+    ------
+    InputError
+        With every problem of the arguments.
+    GeometryError
+        If the gears cannot exist or mesh with a value of a key that is allowed here.
+
+    Examples
+    --------
+    >>> from loaded_tca import parse_scene
+    >>> from loaded_tca.cli import DEMO_SCENE
+    >>> few = {"analysis.positions": 4, "analysis.compliance": "contact", "analysis.free_edges": False}
+    >>> scene = parse_scene(DEMO_SCENE.read_text()).with_changes(few)
+    >>> model = DesignModel(scene, {"pinion.modifications.lead_crowning_um": (0.0, 10.0)}, cells=(12, 16))
+    >>> crowned = model.evaluate([8.0])
+    >>> bool(crowned.gradient("face_load_factor").item() > 0.0)  # more crowning, less of the face carries
+    True
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        variables: Mapping[str, tuple[float, float]],
+        scatter: Mapping[str, Distribution | Sequence[float]] | None = None,
+        torques: Sequence[float] | None = None,
+        *,
+        samples: int = 8,
+        seed: int = 0,
+        multiple: float = 1.0,
+        cells: tuple[int, int] | None = None,
+        smoothing: float = SMOOTHING,
+        tolerance: float = TOLERANCE,
+    ) -> None:
+        self.scene, self.variables, self.scatter = scene, dict(variables), dict(scatter or {})
+        self.torques = np.asarray(scene.torques if torques is None else torques, dtype=float)
+        self.samples, self.seed, self.multiple = samples, seed, multiple
+        self.smoothing, self.tolerance = smoothing, tolerance
+        across, along = cells or scene.analysis.cells or CELLS
+        self.cells = across, along
+        self._check()
+        self.start = np.array([value_at(scene, key) for key in self.keys])
+        self.deviations = self._samples()
+        self.own_deviations = [np.array([one.get(key, 0.0) for key in self.keys]) for one in self.deviations]
+        self.held = [self._sample(*one) for one in zip(self.deviations, self.own_deviations, strict=True)]
+        pair = self.held[0].pair
+        self.driving, self.micrometres = pair.driving, 1e3 * pair.base_radii[1]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Made anew by pickle, for other processes: held contacts are large, and quickly made."""
+        given = self.scene, self.variables, self.scatter, self.torques
+        options = "samples", "seed", "multiple", "cells", "smoothing", "tolerance"
+        return _made, (given, {name: getattr(self, name) for name in options})
+
+    def with_scatter(self, multiple: float) -> DesignModel:
+        """The model with samples that deviate so many times as far from the medians of their distributions."""
+        make, (given, options) = self.__reduce__()
+        return make(given, {**options, "multiple": multiple})
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Keys that vary, in the order of all arrays over them."""
+        return tuple(self.variables)
+
+    @property
+    def bounds(self) -> Array:
+        """Lowest and highest values (keys, 2)."""
+        return np.array([*self.variables.values()], dtype=float)
+
+    def values(self, x: Mapping[str, float] | ArrayLike) -> Array:
+        """Values (keys,) of a mapping or of an array of them; InputError if they are not within the ranges."""
+        if isinstance(x, Mapping):
+            require(
+                *((key in self.variables, f"{key}: unknown; allowed {', '.join(self.keys)}") for key in x),
+                *((key in x, f"{key}: missing") for key in self.keys),
+            )
+            x = [x[key] for key in self.keys]
+        found = np.asarray(x, dtype=float)
+        require((found.shape == self.start.shape, f"x: shape {found.shape}; allowed {self.start.shape}"))
+        require(*(_within(*one) for one in zip(self.variables.items(), found.tolist(), strict=True)))
+        return found
+
+    def scenes(self, x: Mapping[str, float] | ArrayLike) -> list[Scene]:
+        """The scene of a design with each sample of the scatter, as the package analyses it under the torques."""
+        values = dict(zip(self.keys, self.values(x).tolist(), strict=True))
+        torques = {"analysis.torques_Nm": (1e-3 * self.torques).tolist()}
+        return [self.scene.with_changes({**values, **self._at(one, values), **torques}) for one in self.deviations]
+
+    def evaluate(self, x: Mapping[str, float] | ArrayLike) -> Evaluation:
+        """Solve all states of a design.
+
+        Parameters
+        ----------
+        x : mapping of key to value, or (keys,) array
+
+        Returns
+        -------
+        Evaluation
+
+        Raises
+        ------
+        InputError
+            If a value is not within its range.
+        ConvergenceError
+            If a contact, or the balance of the tooth pairs, is not solved to the tolerance.
+        """
+        values = self.values(x)
+        grid = GridChoice(
+            self.cells,
+            tolerance=self.tolerance,
+            free_edges=self.scene.analysis.free_edges,
+            agreement=AGREEMENT * self.tolerance,
+        )
+        states = list(np.ndindex(len(self.held), self.torques.size, self.positions))
+        found: dict[tuple[int, ...], tuple[float, SharedLoad]] = {}
+        while states:
+            shaped = [ShapedContacts(*one) for one in zip(self.held, values + self.own_deviations, strict=True)]
+            steps = [shaped[s].shared(n, float(self.torques[t]), grid) for s, t, n in states]
+            found |= zip(states, found_together(self.held[0].pair, steps), strict=True)
+            # once more those on grids that another state has outgrown meanwhile
+            states = [state for state, (_, one) in found.items() if not self.held[state[0]].holds(one)]
+        return Evaluation(self, values, [*found.values()])
+
+    def _samples(self) -> list[dict[str, float]]:
+        """What the keys of the scatter have, or deviate by, in each sample."""
+        if not self.scatter:
+            return [{}]
+        given = {key: one for key, one in self.scatter.items() if not hasattr(one, "ppf")}
+        drawn: dict[str, Any] = {key: one for key, one in self.scatter.items() if key not in given}
+        require((not given or not drawn, "scatter: distributions and given values; allowed one or the other"))
+        if given:
+            study = Study(self.scene, table=given)
+            medians = {key: float(np.median(column)) for key, column in study.table.items()}
+        else:
+            study = Study(self.scene, distributions=drawn, samples=self.samples, seed=self.seed)
+            medians = {key: float(one.ppf(0.5)) for key, one in drawn.items()}
+        samples = (study.changes(sample) for sample in range(len(study)))
+        return [{key: medians[key] + self.multiple * (by - medians[key]) for key, by in one.items()} for one in samples]
+
+    @property
+    def positions(self) -> int:
+        """Positions of a pitch; the last one of the scene is the first one of the next pitch."""
+        return self.scene.analysis.positions - 1
+
+    def _at(self, deviation: Mapping[str, float], values: Mapping[str, float]) -> dict[str, float]:
+        """Values of the keys that scatter, of one sample; those that shape flanks deviate from their values."""
+        found = {}
+        for key, by in deviation.items():
+            shapes = not key.startswith("mounting.")
+            found[key] = by + (values.get(key, value_at(self.scene, key)) if shapes else 0.0)
+        return found
+
+    def _sample(self, deviation: Mapping[str, float], own: Array) -> HeldContacts:
+        scene = self.scene.with_changes(self._at(deviation, dict(zip(self.keys, self.start.tolist(), strict=True))))
+        pair = scene.pair()
+        mesh = trace_teeth(pair, pair.pitch * (np.arange(self.positions) / self.positions - 0.5))
+        bending = None
+        if scene.analysis.compliance != "contact":
+            require_teeth(pair)
+            with way_out_told():
+                bending = tooth_compliance(pair, neighbours=max(farthest_apart(mesh), 1))
+        ranges = {
+            key: (low + by, high + by) for (key, (low, high)), by in zip(self.variables.items(), own, strict=True)
+        }
+        return HeldContacts(scene, mesh, ranges, float(self.torques.max()), self.cells, bending)
+
+    def _check(self) -> None:
+        wanted, torques = self.scene.analysis, self.torques
+        problems = [
+            problem for key, bounds in self.variables.items() for problem in _problems_of(self.scene, key, bounds)
+        ]
+        for key in self.scatter:
+            problems += _problems_of(self.scene, key)
+        checks = (
+            (bool(self.variables), "variables: none given; a design varies one key at least"),
+            (
+                bool(torques.size) and bool((np.isfinite(torques) & (torques > 0.0)).all()),
+                f"torques: found {torques.tolist()}; allowed one or more [N mm], each above 0",
+            ),
+            (
+                wanted.positions >= FEWEST_POSITIONS,
+                f"analysis.positions: {wanted.positions}; allowed from {FEWEST_POSITIONS} on, for peak-to-peak values",
+            ),
+            (
+                wanted.load_sharing,
+                "analysis.load_sharing: false; allowed true: in a design all tooth pairs share the load",
+            ),
+        )
+        problems += [told for holds, told in checks if not holds]
+        if problems:
+            raise InputError(problems)
+
+
+def _problems_of(scene: Scene, key: str, bounds: Any = None) -> Iterator[str]:
+    """Problems of a key that scatters, or of one that varies within bounds."""
+    try:
+        value = value_at(scene, key)
+    except InputError as error:
+        yield from (f"{key}: {problem}" for problem in error.problems)
+        return
+    if bounds is None:
+        return
+    if key.startswith("mounting."):
+        yield f"{key}: a mounting error, which no design shapes; allowed in scatter"
+    elif not (np.shape(bounds) == (2,) and all(map(is_finite, bounds)) and bounds[0] < bounds[1]):
+        yield f"{key}: range {bounds!r:.60}; allowed two numbers, the lower one first"
+    elif not bounds[0] <= value <= bounds[1]:
+        yield f"{key}: the scene, where a design starts, has {value:g}; allowed {bounds[0]:g} to {bounds[1]:g}"
+
+
+def _within(bounds: tuple[str, tuple[float, float]], value: float) -> tuple[bool, str]:
+    key, (low, high) = bounds
+    return low <= value <= high, f"{key}: {value:g}; allowed {low:g} to {high:g}"
+
+
+def _made(given: tuple[Any, ...], options: dict[str, Any]) -> DesignModel:
+    return DesignModel(*given, **options)
+
+
+class Evaluation:
+    """Figures of a design and their gradients, found when they are asked for.
+
+    Attributes
+    ----------
+    model : DesignModel
+    x : (keys,) array
+    transmission_error : (sample, torque, position) array [rad]
+        Loaded, absolute.
+    """
+
+    def __init__(self, model: DesignModel, x: Array, states: Sequence[tuple[float, SharedLoad]]) -> None:
+        self.model, self.x = model, x
+        shape = len(model.deviations), model.torques.size, model.positions
+        self.transmission_error = np.array([error for error, _ in states]).reshape(shape)
+        shared = [[LoadedGrid.of(one.tooth_pair.pair, one.loaded) for one in state.shares] for _, state in states]
+        self._grids = {
+            place: [one for one in shared[k] if one.active.any()] for k, place in enumerate(np.ndindex(shape))
+        }
+        self._tangents: dict[tuple[int, int], tuple[Tangents, Array]] = {}
+        self._found: dict[tuple[str, int, int], tuple[float, Array]] = {}
+
+    @property
+    def figures(self) -> dict[str, Array]:
+        """All of ``FIGURES``, (sample, torque) each."""
+        return {name: self.figure(name) for name in FIGURES}
+
+    @property
+    def gradients(self) -> dict[str, Array]:
+        """Their gradients, (sample, torque, key) each, per unit of the key."""
+        return {name: self.gradient(name) for name in FIGURES}
+
+    def figure(self, name: str, torques: Sequence[int] | None = None) -> Array:
+        """One of ``FIGURES``, (sample, torque), under some of the torques by their indices, or under all."""
+        samples, chosen = range(len(self.model.deviations)), self._chosen(torques)
+        return np.array([[self._figure(name, s, t)[0] for t in chosen] for s in samples])
+
+    def gradient(self, name: str, torques: Sequence[int] | None = None) -> Array:
+        """Its gradient, (sample, torque, key), per unit of the key."""
+        samples, chosen = range(len(self.model.deviations)), self._chosen(torques)
+        return np.array([[self._gradient(name, s, t) for t in chosen] for s in samples])
+
+    def _chosen(self, torques: Sequence[int] | None) -> Sequence[int]:
+        return range(self.model.torques.size) if torques is None else torques
+
+    def _figure(self, name: str, s: int, t: int) -> tuple[float, Array]:
+        """A figure, and its derivatives to the errors of the positions [um], or to the forces of all active cells."""
+        if (name, s, t) not in self._found:
+            if name in OF_ERRORS:
+                errors = self.model.micrometres * self.transmission_error[s, t]
+                self._found[name, s, t] = OF_ERRORS[name](errors, self.model.smoothing)
+            else:
+                positions = [self._grids[s, t, n] for n in range(self.model.positions)]
+                value, slopes = OF_FORCES[name](self.model.held[s], positions)
+                grids = (grid for position in positions for grid in position)
+                active = [slope[grid.active] for slope, grid in zip(slopes, grids, strict=True)]
+                self._found[name, s, t] = value, np.concatenate(active)
+        return self._found[name, s, t]
+
+    def _gradient(self, name: str, s: int, t: int) -> Array:
+        slopes = self._figure(name, s, t)[1]
+        tangents, gaps = self._tangents_of(s, t)
+        if name in OF_ERRORS:
+            scale = -self.model.driving * self.model.micrometres
+            return np.asarray(scale * tangents.rotation_change(gaps) @ slopes)
+        return np.asarray(tangents.functional_change(slopes, gaps).sum(axis=-1))
+
+    def _tangents_of(self, s: int, t: int) -> tuple[Tangents, Array]:
+        """Linear answers of all positions, and the growth of the gaps at their active cells (keys, n) [mm per unit]."""
+        if (s, t) not in self._tangents:
+            states = [self._grids[s, t, n] for n in range(self.model.positions)]
+            tangents = Tangents(states, self.model.held[s].bending, LINEAR)
+            gaps = tangents.gathered(self._slopes[s][grid.contact] for grid in tangents.grids)
+            self._tangents[s, t] = tangents, gaps
+        return self._tangents[s, t]
+
+    @cached_property
+    def _slopes(self) -> list[dict[ContactPoint, Array]]:
+        """Derivatives of the gaps of each sample."""
+        return [one.slopes(self.x + own) for one, own in zip(self.model.held, self.model.own_deviations, strict=True)]
+
+
+Positions = Sequence[Sequence[LoadedGrid]]
+"""Loaded contacts of each position, the last one of the scene left out."""
+
+
+def pressure(_: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
+    """Norm of the pressure [MPa] of all cells that have no end of a flank beside them, and its derivatives."""
+    return mean_pressure_norm([[_map_of(grid) for grid in position] for position in positions], at_edges=False)
+
+
+def edge_pressure(_: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
+    """The same of the cells that have one beside them."""
+    return mean_pressure_norm([[_map_of(grid) for grid in position] for position in positions], at_edges=True)
+
+
+def face_load_factor(held: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
+    """K_Hbeta and its derivatives, the strip with the largest force held."""
+    maps = [tuple(_map_of(grid) for grid in position) for position in positions]
+    path, closed = held.mesh.leading_contact, (*maps, ())  # of load factors the last position does not count
+    factor = float(load_factors(held.pair, path, (closed,), math.nan)[0][0])
+    slopes = face_load_factor_slopes(held.pair, path, closed)
+    return factor, [one for row in slopes for one in row if one is not None]
+
+
+def _map_of(grid: LoadedGrid) -> PressureMap:
+    one = grid.separation
+    return PressureMap(one.x, one.y, one.spacing, grid.pressure, one.gap, one.origin, one.axes)
+
+
+def mean_pressure_norm(positions: Sequence[Sequence[PressureMap]], *, at_edges: bool) -> tuple[float, list[Array]]:
+    """Norm [MPa] of the pressures of cells beside the ends of the flanks, or of all others, as a mean over positions.
+
+    Also returns its derivatives by the forces of the cells of all maps [1/mm^2].
+    """
+    found = []
+    for one in (one for position in positions for one in position):
+        beyond = np.pad(np.isinf(one.gap), 1, constant_values=True)
+        beside = binary_dilation(beyond, np.ones((3, 3), dtype=bool))[1:-1, 1:-1]
+        kept = np.where(beside == at_edges, one.pressure, 0.0)
+        found.append(pressure_norm(kept, np.ones(kept.shape), one.spacing))
+    largest = max((norm for norm, _ in found), default=0.0)
+    if largest == 0.0:
+        return 0.0, [slopes for _, slopes in found]
+    norm = largest * (sum((own / largest) ** EXPONENT for own, _ in found) / len(positions)) ** (1.0 / EXPONENT)
+    return norm, [slopes * (own / norm) ** (EXPONENT - 1.0) / len(positions) for own, slopes in found]
+
+
+def span(errors: Array, _: float) -> tuple[float, Array]:
+    """Largest less smallest of errors (n,), and its derivatives, those at these two places."""
+    weights = np.zeros(errors.size)
+    weights[errors.argmax()] += 1.0
+    weights[errors.argmin()] -= 1.0
+    return float(np.ptp(errors)), weights
+
+
+def smooth_span(errors: Array, smoothing: float) -> tuple[float, Array]:
+    """The same with smooth maxima, which are larger by up to ``smoothing`` ln n each.
+
+    Examples
+    --------
+    >>> value, weights = smooth_span(np.array([0.0, 0.3, 0.3]), 0.01)
+    >>> round(value, 6), weights.round(6)
+    (0.306931, array([-1. ,  0.5,  0.5]))
+    """
+    value, weights = 0.0, np.zeros(errors.size)
+    for sign in (1.0, -1.0):
+        top = float((sign * errors).max())
+        parts = np.exp((sign * errors - top) / smoothing)
+        value += top + smoothing * float(np.log(parts.sum()))
+        weights += sign * parts / parts.sum()
+    return value, weights
+
+
+def mean(errors: Array, _: float) -> tuple[float, Array]:
+    """Mean of errors (n,), and its derivatives."""
+    return float(errors.mean()), np.full(errors.size, 1.0 / errors.size)
+
+
+OF_ERRORS = {"span_um": span, "smooth_span_um": smooth_span, "mean_transmission_error_um": mean}
+OF_FORCES = {"pressure_MPa": pressure, "edge_pressure_MPa": edge_pressure, "face_load_factor": face_load_factor}
+FIGURES = (*OF_ERRORS, *OF_FORCES)
+"""Figures of a design under one torque with one sample: peak-to-peak transmission error at the wheel's base circle, the
+same with smooth maxima, its mean; norm of the pressure away from the ends of the flanks, and beside them; K_Hbeta."""

@@ -1,0 +1,302 @@
+"""Designs: gradients of held contacts, held contacts beside the whole analysis, the search, and what is refused."""
+
+import pickle
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.stats import norm
+
+from loaded_tca import analyse, read_scene
+from loaded_tca.errors import ConvergenceError, InputError
+from loaded_tca.results.files import write_dataset
+from loaded_tca.separation.gap_change import value_at
+from loaded_tca.studies import DesignModel, Study, load_design, optimise, robustness
+from loaded_tca.studies import design as designs
+from loaded_tca.studies.design_model import FIGURES, smooth_span
+
+SCENES = Path(__file__).parents[2] / "examples" / "scenes"
+ALONE = {"analysis.compliance": "contact", "analysis.free_edges": False}
+SCENE = read_scene(SCENES / "mesh_cycle_helical.toml").with_changes(
+    {**ALONE, "analysis.positions": 5, "analysis.torques_Nm": [130.0], "pinion.modifications.tip_relief_um": 8.0}
+    | {"pinion.modifications.tip_relief_start_roll_deg": 26.0}
+)
+CROWNING, SLOPE = "pinion.modifications.lead_crowning_um", "wheel.modifications.helix_slope_um"
+RELIEF = "pinion.modifications.tip_relief_um"
+VARIABLES = {CROWNING: (1.0, 12.0), SLOPE: (-10.0, 10.0), RELIEF: (0.0, 30.0)}
+MISALIGNMENT = "mounting.misalignment_um"
+SCATTER = {MISALIGNMENT: [-6.0, 6.0]}
+
+
+def model(variables=VARIABLES, scatter=SCATTER, cells=(16, 24), scene=SCENE, **options):
+    return DesignModel(scene, variables, scatter, cells=cells, **options)
+
+
+@pytest.fixture(scope="module")
+def beside():
+    """A design, and those a step of 5e-4 um below and above it in each key: no cell enters or leaves between them."""
+    one, x = model(tolerance=1e-11), np.array([5.3, 2.1, 9.0])
+    steps = 5e-4 * np.eye(3)
+    return one.evaluate(x), [[one.evaluate(x + sign * step) for sign in (-1.0, 1.0)] for step in steps]
+
+
+@pytest.fixture(scope="module")
+def found():
+    """A design under a limit that holds at the optimum, too."""
+    told = []
+    result = optimise(model(), limits={"face_load_factor": {130e3: 1.9}}, progress=lambda *one: told.append(one))
+    return result, told
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_gradients_are_those_of_differences(beside, name):
+    """To 1e-5, all that the differences tell: the balance of the tooth pairs keeps 1e-10 of the rotation."""
+    evaluation, sides = beside
+    exact = evaluation.gradients[name]
+    differences = np.stack([(high.figures[name] - low.figures[name]) / 1e-3 for low, high in sides], axis=-1)
+    assert_allclose(exact, differences, atol=1e-5 * np.abs(exact).max())
+
+
+def test_material_off_the_whole_flank_turns_the_wheel_by_its_length():
+    """Profile crowning, lead crowning and reliefs take off less: the mean error grows by at most one um per um."""
+    evaluation = model().evaluate({CROWNING: 5.0, SLOPE: 0.0, RELIEF: 8.0})
+    slopes = -evaluation.gradient("mean_transmission_error_um")[..., [0, 2]]
+    assert (slopes >= -1e-3).all()
+    assert (slopes < 1.0 / np.cos(np.radians(15.0))).all()
+
+
+def test_a_helix_slope_makes_up_for_misalignment():
+    """A flank turned by as much, to the side that parts, carries as if all were straight; relief ends differ by 2 %."""
+    one = model(scatter={MISALIGNMENT: [0.0, 10.0]})
+    straight, turned = (one.evaluate([2.0, slope, 8.0]).figure("face_load_factor")[:, 0] for slope in (0.0, 10.0))
+    assert straight[1] > 2.0 * straight[0]
+    assert_allclose(turned[::-1], straight, rtol=0.05)
+    assert_allclose(turned[1], straight[0], rtol=0.02)
+
+
+@pytest.mark.parametrize(
+    ("changes", "allowed"),
+    [
+        pytest.param({}, 8.0, id="flanks alone"),
+        pytest.param({"analysis.compliance": "contact+tooth", "analysis.free_edges": True}, 12.0, id="teeth that bend"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # one contact reaches an edge
+def test_held_contacts_have_the_errors_of_the_whole_analysis(changes, allowed):
+    """Within nanometres: the analysis makes boxes of its own for each state, held contacts have 24 x 40 cells."""
+    one = model(cells=(24, 40), scene=SCENE.with_changes(changes), scatter={MISALIGNMENT: [4.0]})
+    x = {CROWNING: 8.0, SLOPE: -3.0, RELIEF: 14.0}
+    evaluation, (scene,) = one.evaluate(x), one.scenes(x)
+    whole = analyse(scene.with_changes({"analysis.accuracy": 2e-3}))
+    nanometres = 1e6 * whole.wheel_base_radius * (evaluation.transmission_error[0] - whole.transmission_error[:, :-1])
+    assert np.abs(nanometres).max() < allowed
+    assert_allclose(evaluation.figure("face_load_factor")[0], whole.face_load_factor, rtol=0.05)
+
+
+def test_a_contact_that_outgrows_its_grid_gets_a_larger_one():
+    narrow = model(variables={CROWNING: (4.9, 5.1)}, scatter=None)
+    contacts = narrow.held[0]
+    contact = contacts.contacts[0][0]
+    across, along = contacts[contact].separation.half_lengths
+    wanted = narrow.evaluate(narrow.start).transmission_error
+    contacts.grow(contact, (0.4 * across, 0.4 * along))
+    found = narrow.evaluate(narrow.start).transmission_error
+    assert min(np.divide(contacts[contact].separation.half_lengths, (across, along))) > 0.4
+    length = 1e6 * narrow.held[0].pair.base_radii[1]
+    assert_allclose(length * found, length * wanted, atol=20.0)  # on other cells of a grid of 16 x 24 of them
+
+
+def test_keys_that_bend_the_gap_are_followed():
+    """The start of a relief is no amount: gaps at its values, slopes anew for each design."""
+    start = "pinion.modifications.tip_relief_start_roll_deg"
+    one = model(variables={start: (24.0, 29.0), RELIEF: (0.0, 30.0)}, scatter=None, tolerance=1e-9)
+    x, step = np.array([25.0, 15.0]), np.array([0.005, 0.0])
+    exact = one.evaluate(x).gradient("mean_transmission_error_um")
+    below, above = (one.evaluate(x + sign * step).figure("mean_transmission_error_um") for sign in (-1.0, 1.0))
+    assert_allclose(exact[0, 0, 0], ((above - below) / 0.01)[0, 0], rtol=1e-2)
+
+
+@pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # the pinion is pointed, no matter here
+def test_machine_settings_shape_flanks_too():
+    """Gradients as of differences, and errors within 20 nm of the analysis: spans are 500 nm."""
+    few = {**ALONE, "analysis.positions": 4, "analysis.accuracy": 1e-2, "analysis.load_sharing": True}
+    scene = read_scene(SCENES / "face_milled_19x62_matched.toml").with_changes({**few, "analysis.cells": None})
+    radial = {"pinion.machine.radial_mm": (96.872, 96.882)}
+    one = model(variables=radial, scatter=None, scene=scene, cells=(24, 40), tolerance=1e-10)
+    evaluation, (varied,) = one.evaluate([96.880]), one.scenes([96.880])
+    sides = [one.evaluate([96.880 + step]).figure("mean_transmission_error_um") for step in (-1e-6, 1e-6)]
+    gradient = evaluation.gradient("mean_transmission_error_um")[..., 0]
+    assert_allclose(gradient, (sides[1] - sides[0]) / 2e-6, rtol=1e-3)
+    whole = analyse(varied)
+    nanometres = 1e6 * whole.wheel_base_radius * (evaluation.transmission_error[0] - whole.transmission_error[:, :-1])
+    assert np.abs(nanometres).max() < 20.0
+
+
+def test_scatter_of_a_variable_deviates_from_the_design():
+    one = model(scatter={CROWNING: [-1.0, 1.0]})
+    design = {CROWNING: 4.0, SLOPE: 0.0, RELIEF: 8.0}
+    assert [value_at(scene, CROWNING) for scene in one.scenes(design)] == [3.0, 5.0]
+    figures = one.evaluate(design).figure("mean_transmission_error_um")
+    alone = model(scatter=None)
+    for sample, crowning in enumerate((3.0, 5.0)):
+        wanted = alone.evaluate({CROWNING: crowning, SLOPE: 0.0, RELIEF: 8.0}).figure("mean_transmission_error_um")
+        assert_allclose(figures[sample], wanted[0], atol=5e-3)
+
+
+def test_samples_of_distributions_are_those_of_a_study_about_their_medians():
+    scatter = {MISALIGNMENT: norm(1.0, 5.0)}
+    one = model(variables={CROWNING: (1.0, 12.0)}, scatter=scatter, samples=4, seed=3)
+    study = Study(SCENE, distributions=scatter, samples=4, seed=3)
+    drawn = [study.changes(k)[MISALIGNMENT] for k in range(4)]
+    assert_allclose([each[MISALIGNMENT] for each in one.deviations], drawn)
+    half = [each[MISALIGNMENT] for each in one.with_scatter(0.5).deviations]
+    assert_allclose(half, [1.0 + 0.5 * (value - 1.0) for value in drawn])
+
+
+def test_a_design_is_quieter_within_its_limit(found):
+    result, told = found
+    before, after = result.objective
+    assert after < 0.9 * before
+    assert [count for count, _, _ in told] == list(range(1, result.evaluations + 1))
+    assert result.dataset["face_load_factor"].sel(design="optimum").max() < 1.05 * 1.9
+    assert all(low <= result.optimum[key] <= high for key, (low, high) in VARIABLES.items())
+    assert result.start == {CROWNING: 5.0, SLOPE: 0.0, RELIEF: 8.0}
+
+
+def test_a_result_comes_back_from_its_file(found, tmp_path):
+    result, _ = found
+    result.save(tmp_path / "design.nc")
+    again = load_design(tmp_path / "design.nc")
+    assert again.optimum == result.optimum
+    assert again.objective == result.objective
+    assert again.dataset.identical(result.dataset)
+
+
+def test_a_file_of_something_else_is_no_design(found, tmp_path):
+    write_dataset(tmp_path / "other.nc", found[0].dataset.assign_attrs(kind="study"))
+    with pytest.raises(InputError, match="but no design"):
+        load_design(tmp_path / "other.nc")
+
+
+def test_a_robust_design_does_not_lose_by_scatter(found):
+    """At its own scatter it is better than the start; without scatter both have less than with it."""
+    result, _ = found
+    curves = robustness(model(), {"start": result.start, "optimum": result.optimum}, [0.0, 1.0])["objective"].values
+    assert curves[1, 1] < curves[0, 1]
+    assert (curves[:, 0] <= curves[:, 1] + 0.005).all()
+
+
+def test_starts_and_analyses_on_an_executor(found):
+    """Threads stand for any: the first start is that of the scene, so that more of them find no worse design."""
+    with ThreadPoolExecutor(2) as executor:
+        result = optimise(model(), limits={"face_load_factor": {130e3: 1.9}}, starts=2, executor=executor)
+    assert result.held_objective[1] <= found[0].held_objective[1] * 1.001
+    assert result.evaluations > found[0].evaluations
+
+
+def test_a_model_is_made_again_elsewhere():
+    one = model(variables={CROWNING: (1.0, 12.0)})
+    again = pickle.loads(pickle.dumps(one))
+    assert_allclose(again.evaluate([5.0]).transmission_error, one.evaluate([5.0]).transmission_error, rtol=1e-12)
+
+
+def test_objectives_over_the_samples():
+    """Mean, standard deviation and third quartile of the means over the torques, 1 to 4; their derivatives."""
+    figures = np.array([[0.0, 2.0], [1.0, 3.0], [2.5, 3.5], [3.0, 5.0]])
+    expected = {"mean": 2.5, "mean + k sigma": 2.5 + 2.0 * np.sqrt(1.25), "percentile": 3.25}
+    for kind, value in expected.items():
+        objective = designs.Objective(kind, k=2.0, percentile=75.0)
+        found, weights = objective.of(figures)
+        assert found == pytest.approx(value, rel=1e-12)
+        change = 1e-6 * np.arange(8.0).reshape(4, 2)
+        assert_allclose((weights * change).sum(), objective.of(figures + change)[0] - found, rtol=1e-4)
+
+
+def test_smooth_span_is_above_the_span_by_little():
+    errors = np.linspace(0.0, 0.4, 9)
+    value, _ = smooth_span(errors, 0.01)
+    assert 0.4 <= value <= 0.4 + 0.02 * np.log(9.0)
+
+
+@pytest.mark.parametrize(
+    ("changed", "told"),
+    [
+        ({"variables": {}}, "variables: none given"),
+        ({"variables": {"pinion.modifications.no_um": (0.0, 1.0)}}, "pinion.modifications.no_um: unknown key"),
+        ({"variables": {"pinion.teeth": (20, 40)}}, "pinion.teeth: does not change the gap alone"),
+        ({"variables": {MISALIGNMENT: (-1.0, 1.0)}}, "mounting.misalignment_um: a mounting error"),
+        ({"variables": {CROWNING: (9.0, 2.0)}}, r"lead_crowning_um: range \(9.0, 2.0\); allowed two numbers"),
+        (
+            {"variables": {CROWNING: (6.0, 9.0)}},
+            "lead_crowning_um: the scene, where a design starts, has 5; allowed 6 to 9",
+        ),
+        ({"variables": {CROWNING: 6.0}}, "lead_crowning_um: range 6.0; allowed two numbers"),
+        ({"scatter": {"mounting.no_um": [1.0]}}, "mounting.no_um: unknown key"),
+        ({"scatter": {MISALIGNMENT: [1.0], CROWNING: norm(0.0, 1.0)}}, "distributions and given values"),
+        ({"torques": []}, r"torques: found \[\]; allowed one or more"),
+        ({"torques": [-1.0]}, r"torques: found \[-1.0\]; allowed one or more"),
+        ({"scene": SCENE.with_changes({"analysis.positions": 2})}, "analysis.positions: 2; allowed from"),
+        ({"scene": SCENE.with_changes({"analysis.load_sharing": False})}, "analysis.load_sharing: false; allowed true"),
+    ],
+)
+def test_a_model_that_cannot_be_is_refused(changed, told):
+    with pytest.raises(InputError, match=told):
+        model(**changed)
+
+
+def test_designs_off_the_ranges_are_refused():
+    one = model(variables={CROWNING: (1.0, 12.0)}, scatter=None)
+    with pytest.raises(InputError, match="lead_crowning_um: 13; allowed 1 to 12"):
+        one.evaluate([13.0])
+    with pytest.raises(InputError, match="nothing: unknown; allowed"):
+        one.evaluate({CROWNING: 5.0, "nothing": 1.0})
+    with pytest.raises(InputError, match="lead_crowning_um: missing"):
+        one.evaluate({})
+    with pytest.raises(InputError, match="x: shape"):
+        one.evaluate([5.0, 5.0])
+    with pytest.raises(InputError, match="model: without scatter"):
+        robustness(one, {}, [1.0])
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ({"objective": "median"}, "objective: 'median'; allowed 'mean', "),
+        ({"figure": "noise"}, "figure: 'noise'; allowed span_um"),
+        ({"k": -1.0}, "k: -1.0; allowed"),
+        ({"percentile": 101.0}, "percentile: 101.0; allowed 0 to 100"),
+        ({"starts": 0}, "starts: 0; allowed a whole number"),
+        ({"limits": {"noise": 1.0}}, "limits: 'noise' is no figure; allowed span_um"),
+        ({"limits": {"face_load_factor": {99e3: 1.5}}}, "face_load_factor: 99000.0 N mm is no torque of the model"),
+        ({"limits": {"face_load_factor": -1.5}}, "face_load_factor: -1.5; allowed a finite number above 0"),
+    ],
+)
+def test_a_search_that_cannot_be_is_refused(options, told):
+    with pytest.raises(InputError, match=told):
+        optimise(model(variables={CROWNING: (1.0, 12.0)}, scatter=None), **options)
+
+
+def test_a_limit_that_no_design_meets_is_told():
+    """Hertz's pressure of a line is above 500 MPa."""
+    one = model(variables={CROWNING: (1.0, 12.0)}, scatter=None)
+    with pytest.raises(
+        InputError, match=r"pressure_MPa: no design found meets 300; at the best one it is \d+.*lead_crow"
+    ):
+        optimise(one, limits={"pressure_MPa": 300.0})
+
+
+def test_an_optimum_that_the_analysis_does_not_confirm_is_an_error(monkeypatch):
+    """An analysis that finds the same for all designs confirms none."""
+    one = model(variables={CROWNING: (1.0, 12.0)}, scatter=None)
+    start = designs._analysed(one.scenes(one.start)[0])
+    monkeypatch.setattr(designs, "_analysed", lambda _: dict(start))
+    with pytest.raises(
+        ConvergenceError, match=r"not confirmed: the objective goes from .* on held contacts, but"
+    ) as told:
+        optimise(one)
+    assert told.value.last.optimum != told.value.last.start
+    monkeypatch.setattr(designs, "_analysed", lambda _: {**start, "face_load_factor": np.array([9.0])})
+    with pytest.raises(ConvergenceError, match="face_load_factor is 9 by the analysis, its limit 3"):
+        optimise(one, limits={"face_load_factor": 3.0})
