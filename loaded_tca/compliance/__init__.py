@@ -1,4 +1,4 @@
-"""Tooth compliance by finite elements: bending, shear, foundation, coupling of neighbouring teeth."""
+"""Tooth compliance by finite elements: bending, shear, foundation, coupling of neighbouring teeth; root stress."""
 
 from typing import TYPE_CHECKING
 
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     )
     from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_compliance
     from loaded_tca.compliance.layout import MeshDensity
+    from loaded_tca.compliance.root_stress import RootStress, root_stress_model
 else:
     __getattr__, __dir__ = lazy_names(__name__)
 
@@ -21,10 +22,12 @@ __all__ = [
     "FlankLine",
     "GearCompliance",
     "MeshDensity",
+    "RootStress",
     "ToothCompliance",
     "default_density",
     "gear_compliance",
     "require_teeth",
+    "root_stress_model",
     "tooth_compliance",
     "way_out_told",
 ]

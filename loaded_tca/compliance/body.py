@@ -5,7 +5,7 @@ A solid gear (bore diameter 0) is that ring and its core, held where its journal
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -15,7 +15,7 @@ from scipy.sparse import csr_array
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.dissection import Factorisation, factorise
 from loaded_tca.compliance.finite_elements import Discretisation, discretise, node_offsets
-from loaded_tca.compliance.geometry import BodyNodes, body_nodes, cuts_at_bore
+from loaded_tca.compliance.geometry import BodyNodes, body_nodes, cuts_at_bore, rim_growth
 from loaded_tca.compliance.layout import MeshDensity, RingLayout
 from loaded_tca.flanks.base import Flank, outward_normal
 from loaded_tca.material import Material
@@ -28,8 +28,8 @@ CORE = 2
 """Layers of a solid gear below the diameter of its journals."""
 
 
-def gear_nodes(gear: Gear, density: MeshDensity) -> BodyNodes:
-    """Nodes of the whole ring of a gear.
+def gear_nodes(gear: Gear, density: MeshDensity, outline: int = 65) -> BodyNodes:
+    """Nodes of the whole ring of a gear, between so many points along each flank and fillet.
 
     They follow the flanks without modifications, so that variants of the micro-geometry share one model. Bending grows
     with about the third power of the thickness: modifications of 0.2 % of the module change a transmission error by
@@ -42,13 +42,17 @@ def gear_nodes(gear: Gear, density: MeshDensity) -> BodyNodes:
     GeometryError
         If the tooth is pointed or cut off.
     """
-    resolution = Resolution(flank=65, fillet=65, land=9, lengthwise=2 * density.lengthwise + 1)
+    step = 1 if density.thin_ends else 2
+    planes = density.planes // step
+    resolution = Resolution(flank=outline, fillet=outline, land=9, lengthwise=int(planes[-1]) + 1)
     tooth = build_tooth(gear.nominal_flanks, gear.form, resolution)
+    tooth = replace(tooth, outline=tooth.outline[:, planes], foot=tooth.foot[:, planes])
     sections, root = gear.form.sections, tooth.outline[0]
     radius = np.hypot(root[:, 0], root[:, 1])
     bore = gear.bore_radius(sections.coordinate(radius, root[:, 2]))
-    core, cuts = CORE if gear.is_solid else 0, cuts_at_bore(radius, bore, density.rim)
-    return body_nodes(tooth, sections, bore, RingLayout(gear.form.teeth, density, core, cuts))
+    growth = rim_growth(radius, bore, density, gear.form.teeth)
+    core, cuts = CORE if gear.is_solid else 0, cuts_at_bore(radius, bore, density.rim, growth)
+    return body_nodes(tooth, sections, bore, RingLayout(gear.form.teeth, density, core, cuts, growth))
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,6 +114,12 @@ class ToothFrame:
         """The side s = +1 or -1 of the flank in contact."""
         return self.gear.flank.side
 
+    @cached_property
+    def face_parts(self) -> Array:
+        """Parts of the face width (k,) at which sections of nodes stand, 0 to 1."""
+        coordinate = self.nodes.coordinate
+        return (coordinate - coordinate[0]) / (coordinate[-1] - coordinate[0])
+
     @property
     def flank(self) -> Flank:
         """The flank in contact, without modifications."""
@@ -121,11 +131,13 @@ class ToothFrame:
         assert sector.density is not None
         return sector.first + 2 * sector.density.land + round(2 * sector.density.through * part)
 
-    def _flank_rows(self) -> slice:
-        """Rows of nodes on the flank, from its root."""
+    def _flank_rows(self, tooth: int = 0) -> slice:
+        """Rows of nodes on the flank of a tooth, from its root."""
         layout = self.nodes.layout
-        first = layout.base_row + 2 * layout.density.fillet
-        return slice(first, first + 2 * layout.density.flank + 1)
+        density = layout.sector(tooth).density
+        assert density is not None
+        first = layout.base_row + 2 * density.fillet
+        return slice(first, first + 2 * density.flank + 1)
 
     def _flank_ends(self, where: Array) -> list[Array]:
         """Radii (m,) of the images of root and tip of the flank, at coordinates (m,) of sections."""
@@ -173,11 +185,11 @@ class ToothFrame:
         found = bracket_root(beyond, np.zeros(len(point)), FIRST_CHORD * scale, xmin=0.0, args=every)
         return np.asarray(find_root(beyond, found.bracket, args=every).x)
 
-    def on_flank(self, places: FlankPlaces, number: Indices) -> SurfacePlaces:
-        """Places among the nodes (columns, rows, layers) numbered ``number``, on the flank in contact."""
-        rows = self._flank_rows()
+    def on_flank(self, places: FlankPlaces, number: Indices, tooth: int = 0) -> SurfacePlaces:
+        """Places among the nodes (columns, rows, layers) numbered ``number``, on the flank in contact of a tooth."""
+        rows, column = self._flank_rows(tooth), self._column(0.5 + 0.5 * self.side, tooth)
         row = rows.start + places.height * (rows.stop - 1 - rows.start)
-        return _among_nodes(number[self._column(0.5 + 0.5 * self.side)], row, places.length * (number.shape[2] - 1))
+        return _among_nodes(number[column], row, np.interp(places.length, self.face_parts, np.arange(number.shape[2])))
 
     def on_middle(self, places: FlankPlaces, tooth: int, number: Indices) -> SurfacePlaces:
         """Places below those of a flank, on the middle of a tooth of the model."""

@@ -17,7 +17,7 @@ from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_comp
 from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.compliance.torsion import body_torsion
 from loaded_tca.errors import AccuracyWarning, GeometryError, InputError, named, require
-from loaded_tca.material import LARGEST_RATIO_IN_BENDING
+from loaded_tca.material import LARGEST_RATIO_IN_BENDING, Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
@@ -76,7 +76,7 @@ class ToothCompliance:
             Symmetric.
         """
         distance = np.abs(separation.y[:, None] - separation.y)
-        on_pinion, on_wheel = self._lines(number, separation)
+        on_pinion, on_wheel = self.lines(number, separation)
         return self.pinion.within(on_pinion, distance) + self.wheel.within(on_wheel, distance)
 
     def between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
@@ -97,11 +97,14 @@ class ToothCompliance:
         InputError
             If the pairs are further apart than the modelled teeth.
         """
-        there, here = self._lines(*at), self._lines(*under)
+        there, here = self.lines(*at), self.lines(*under)
         return self.pinion.between(there[0], here[0]) + self.wheel.between(there[1], here[1])
 
-    def _lines(self, number: int, separation: Separation) -> tuple[FlankLine, FlankLine]:
-        """Middles of the slices of a grid on both flanks; kept as long as the grid is."""
+    def lines(self, number: int, separation: Separation) -> tuple[FlankLine, FlankLine]:
+        """Middles of the slices of a grid on the flanks of pinion and wheel; kept as long as the grid is.
+
+        Parameters are those of :meth:`within`. Normal forces of the slices at these lines load the roots of the teeth.
+        """
         known = _LINES.setdefault(separation, {})
         if number not in known:
             known[number] = self._lines_of(number, separation)
@@ -198,11 +201,16 @@ def tooth_compliance(pair: GearPair, *, neighbours: int = 1, density: MeshDensit
     found = []
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         with named(name):
-            ratio = gear.material.poisson_ratio
-            bends = ratio <= LARGEST_RATIO_IN_BENDING
-            require((bends, f"poisson_ratio: {ratio} is above {LARGEST_RATIO_IN_BENDING}: finite elements would lock"))
+            require_bending(gear.material)
             found.append(gear_compliance(gear, replace(density or default_density(gear), neighbours=neighbours)))
     return ToothCompliance(pair, *found)
+
+
+def require_bending(material: Material) -> None:
+    """Refuse a material whose finite elements would lock."""
+    ratio = material.poisson_ratio
+    bends = ratio <= LARGEST_RATIO_IN_BENDING
+    require((bends, f"poisson_ratio: {ratio} is above {LARGEST_RATIO_IN_BENDING}: finite elements would lock"))
 
 
 def default_density(gear: Gear) -> MeshDensity:

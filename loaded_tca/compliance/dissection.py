@@ -13,8 +13,9 @@ multifrontal solution of indefinite sparse symmetric linear equations, ACM Trans
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,12 +23,17 @@ from scipy.linalg import cholesky, solve_triangular
 from scipy.sparse import csr_array
 
 from loaded_tca.arrays import Array, Indices
-from loaded_tca.errors import GeometryError
+from loaded_tca.contact.checks import machine_memory
+from loaded_tca.errors import GeometryError, require
 from loaded_tca.threads import one_blas_thread
 
 Flags = NDArray[np.bool_]
 LEAF = 8
 """Elements that are not halved any more."""
+RESERVE = 1.25
+"""Memory of an elimination over that of its matrices; measured: 1.1 to 1.2, of bodies of 0.05 to 0.7 GiB."""
+BYTES_OF_LOADS = 2.0**27
+"""Most memory of the displacements under loads that are passed through the fronts at a time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,15 +72,21 @@ class Factorisation:
 
         Only fronts between a load or a reading and the end of the elimination are passed.
         """
-        below, above = self._reached(loads), self._reached(readings)
-        active = np.flatnonzero(below | above)
+        above = self._reached(readings)
+        active = np.flatnonzero(above | self._reached(loads))
         place = np.full(self.size, -1)
         place[active] = np.arange(len(active))
-        down = [front.renumbered(place) for front in self.fronts if below[front.inside].any()]
         up = [front.renumbered(place) for front in self.fronts if above[front.inside].any()]
-        found = loads[:, active].T.toarray()
-        _substitute(down, up, found)
-        return np.asarray(readings[:, active] @ found)
+        result = np.empty((readings.shape[0], loads.shape[0]))
+        step = max(1, int(BYTES_OF_LOADS / (8.0 * max(1, len(active)))))
+        for first in range(0, loads.shape[0], step):
+            block = loads[first : first + step]
+            below = self._reached(block)
+            down = [front.renumbered(place) for front in self.fronts if below[front.inside].any()]
+            found = block[:, active].T.toarray()
+            _substitute(down, up, found)
+            result[:, first : first + step] = readings[:, active] @ found
+        return result
 
     def _reached(self, rows: csr_array) -> Flags:
         """Unknowns (size,) that an elimination reaches from those in the rows of a sparse matrix."""
@@ -128,42 +140,63 @@ def factorise(
     ------
     GeometryError
         If the matrix is not positive definite: the body is not held.
+    InputError
+        If the factor takes more memory than the machine has.
     """
     n, size = len(dofs), len(free)
     kinds = np.arange(n) if kinds is None else kinds
     places = np.column_stack([np.zeros(n, dtype=int) if blocks is None else blocks, places])
-    touching = np.bincount(dofs.ravel(), minlength=size)
-    work = _Elimination(matrices, kinds, np.where(free[dofs], dofs, size), places, touching)
+    plan = _Plan(kinds, np.where(free[dofs], dofs, size), places, np.bincount(dofs.ravel(), minlength=size))
+    unknowns, last = plan.add(np.arange(n))
+    needed, limit = plan.bytes, machine_memory()
+    told = f"{size} unknowns need {needed / 2**30:.3g} GiB, the machine has {limit / 2**30:.3g} GiB"
+    require((needed <= limit, f"mesh of the gear body: {told}; take fewer elements"))
     with one_blas_thread():
-        unknowns, whole = work.eliminate(np.arange(n))
-    return Factorisation(tuple(front.renumbered(unknowns) for front in whole.fronts), size)
+        factors = plan.factors(matrices)
+    return Factorisation(tuple(plan.fronts(factors, last, unknowns)), size)
 
 
 @dataclass(frozen=True, eq=False)
-class _Part:
-    """Some elements without what only they touch, in numbers of their own.
+class _Step:
+    """One elimination, in numbers of its own: of a few elements, or of what two earlier ones leave.
 
-    ``matrix`` is what is left for the unknowns ``border``, with a last row and column of zeros.
+    Attributes
+    ----------
+    size : int
+        Unknowns of its elements.
+    order : (m,) int array
+        Those that are left before it, first the ``count`` that it eliminates.
+    elements : (n,) int array
+    dofs : (n, k) int array
+        Unknowns of each element; those that are held have the number ``size``.
+    halves : tuple of (int, array)
+        Numbers of earlier steps, and what their unknowns are called here; none: the elements are put together.
     """
 
-    fronts: list[_Front]
-    border: Indices
-    matrix: Array
+    size: int
+    order: Indices
+    count: int
+    elements: Indices
+    dofs: Indices
+    halves: tuple[tuple[int, Indices], ...]
 
 
 @dataclass(frozen=True, eq=False)
-class _Elimination:
-    """The elimination while it goes on; held unknowns all have the number after the last one."""
+class _Plan:
+    """All eliminations in their order, before any number is known; held unknowns have the number after the last one.
 
-    matrices: Array
+    Parts that are alike are one step.
+    """
+
     kinds: Indices
     dofs: Indices
     places: Indices
     touching: Indices
-    known: dict[tuple[bytes, ...], _Part] = field(default_factory=dict)
+    steps: list[_Step] = field(default_factory=list)
+    known: dict[tuple[bytes, ...], int] = field(default_factory=dict)
 
-    def eliminate(self, elements: Indices) -> tuple[Indices, _Part]:
-        """Eliminate what lies inside some elements: their unknowns, and the part in numbers among these."""
+    def add(self, elements: Indices) -> tuple[Indices, int]:
+        """Plan to eliminate what lies inside some elements: their unknowns, and the number of the last step."""
         flat, held = self.dofs[elements].ravel(), len(self.touching)
         order, place = np.arange(len(flat)), np.empty(held + 1, dtype=int)
         place[flat[::-1]] = order[::-1]
@@ -174,29 +207,72 @@ class _Elimination:
         inner = count == self.touching[unknowns]
         key = self.kinds[elements].tobytes(), dofs.tobytes(), inner.tobytes()
         if key not in self.known:
-            self.known[key] = self._part(elements, unknowns, dofs, inner)
+            step = self._step(elements, unknowns, dofs, inner)
+            self.known[key] = len(self.steps)
+            self.steps.append(step)
         return unknowns, self.known[key]
 
-    def _part(self, elements: Indices, unknowns: Indices, dofs: Indices, inner: Flags) -> _Part:
-        """Sum up the elements or both halves, and eliminate the unknowns that are told to be inside."""
-        if len(elements) <= LEAF:
-            order = np.concatenate([np.flatnonzero(inner), np.flatnonzero(~inner)])
-            fronts, matrix = [], _assembled(dofs, self.matrices[self.kinds[elements]], order)
-        else:
-            place, halves = np.empty(len(self.touching), dtype=int), []
-            place[unknowns] = np.arange(len(unknowns))
+    def _step(self, elements: Indices, unknowns: Indices, dofs: Indices, inner: Flags) -> _Step:
+        """Plan the elimination of the unknowns that are told to be inside, and those of both halves before it."""
+        left, halves = np.ones(len(unknowns), dtype=bool), []
+        if len(elements) > LEAF:
+            left[:] = False
             for half in self._halves(elements):
-                own, part = self.eliminate(half)
-                fronts = [front.renumbered(place[own]) for front in part.fronts]
-                halves.append(_Part(fronts, place[own][part.border], part.matrix))
-            left = np.zeros(len(unknowns), dtype=bool)
-            left[np.concatenate([half.border for half in halves])] = True
-            order = np.concatenate([np.flatnonzero(inner & left), np.flatnonzero(~inner)])
-            fronts, matrix = [front for half in halves for front in half.fronts], _sum(halves, order, len(unknowns))
-        count = len(order) - int(np.count_nonzero(~inner))
-        factor, coupling, rest = _eliminated(matrix, count)
-        fronts.append(_Front(order[:count], order[count:], factor, coupling))
-        return _Part(fronts, order[count:], rest)
+                own, number = self.add(half)
+                place = np.empty(len(self.touching), dtype=int)
+                place[unknowns] = np.arange(len(unknowns))
+                step = self.steps[number]
+                halves.append((number, place[own]))
+                left[place[own][step.order[step.count :]]] = True
+            elements, dofs = elements[:0], dofs[:0]
+        eliminated = np.flatnonzero(inner & left)
+        order = np.concatenate([eliminated, np.flatnonzero(~inner)])
+        return _Step(len(unknowns), order, len(eliminated), elements, dofs, tuple(halves))
+
+    @property
+    def bytes(self) -> float:
+        """Most memory that the elimination takes at a time: factors so far, what is left of parts, and its work."""
+        most = kept = 0.0
+        live, uses = dict[int, float](), self._uses()
+        for number, step in enumerate(self.steps):
+            size, rest = len(step.order), len(step.order) - step.count
+            work = size**2 + max(2 * size**2 if step.halves else 0, 2 * (step.count + rest) * step.count + rest**2)
+            most = max(most, kept + sum(live.values()) + work)
+            kept += size * step.count
+            live[number] = rest**2
+            _drop(live, uses, step)
+        return RESERVE * 8.0 * most
+
+    def _uses(self) -> list[int]:
+        """How many halves each step is."""
+        halves = [half for step in self.steps for half, _ in step.halves]
+        return np.bincount(np.array(halves, dtype=int), minlength=len(self.steps)).tolist()
+
+    def factors(self, matrices: Array) -> list[tuple[Array, Array]]:
+        """L11 and L21 of the Cholesky factor of every step; what a step leaves is kept as long as another needs it."""
+        found, uses = [], self._uses()
+        left: dict[int, Array] = {}
+        for number, step in enumerate(self.steps):
+            factor, coupling, left[number] = _eliminated(self._matrix(step, matrices, left), step.count)
+            found.append((factor, coupling))
+            _drop(left, uses, step)
+        return found
+
+    def _matrix(self, step: _Step, matrices: Array, left: dict[int, Array]) -> Array:
+        """Stiffness of the unknowns that are left before a step."""
+        if not step.halves:
+            return _assembled(step.dofs, matrices[self.kinds[step.elements]], step.order)
+        earlier = [self.steps[half] for half, _ in step.halves]
+        borders = [here[half.order[half.count :]] for (_, here), half in zip(step.halves, earlier, strict=True)]
+        return _sum(borders, [left[half] for half, _ in step.halves], step.order, step.size)
+
+    def fronts(self, factors: list[tuple[Array, Array]], number: int, unknowns: Indices) -> Iterator[_Front]:
+        """Fronts in the order of elimination up to a step, in the numbers that its unknowns have in the whole."""
+        step = self.steps[number]
+        for half, here in step.halves:
+            yield from self.fronts(factors, half, unknowns[here])
+        order = unknowns[step.order]
+        yield _Front(order[: step.count], order[step.count :], *factors[number])
 
     def _halves(self, elements: Indices) -> tuple[Indices, Indices]:
         """Both halves: of several blocks in a row, else cut across the direction with most elements."""
@@ -219,20 +295,31 @@ def _assembled(dofs: Indices, matrices: Array, order: Indices) -> Array:
     return total[:-1, :-1]
 
 
-def _sum(parts: Sequence[_Part], order: Indices, size: int) -> Array:
-    """Dense sum of what is left of parts, in the order of the unknowns ``order`` out of ``size``."""
+def _sum(borders: Sequence[Indices], matrices: Sequence[Array], order: Indices, size: int) -> Array:
+    """Dense sum of what is left of parts for their ``borders``, in the order of the unknowns ``order`` out of ``size``.
+
+    The last row and column of each matrix are zeros.
+    """
     total = np.zeros((len(order), len(order)))
-    for part in parts:
-        where = np.full(size, len(part.border))
-        where[part.border] = np.arange(len(part.border))
-        total += part.matrix.take(where[order], axis=0).take(where[order], axis=1)
+    for border, matrix in zip(borders, matrices, strict=True):
+        where = np.full(size, len(border))
+        where[border] = np.arange(len(border))
+        total += matrix.take(where[order], axis=0).take(where[order], axis=1)
     return total
+
+
+def _drop(left: dict[int, Any], uses: list[int], step: _Step) -> None:
+    """Forget what halves of a step have left, where no later step needs it."""
+    for half, _ in step.halves:
+        uses[half] -= 1
+        if not uses[half]:
+            del left[half]
 
 
 def _eliminated(matrix: Array, count: int) -> tuple[Array, Array, Array]:
     """Factor of the first ``count`` unknowns, their coupling with the others, and what is left for these."""
     if not count:
-        return matrix[:0, :0], matrix[:, :0], np.pad(matrix, (0, 1))
+        return np.empty((0, 0)), np.empty((len(matrix), 0)), np.pad(matrix, (0, 1))
     try:
         factor = cholesky(matrix[:count, :count], lower=True, check_finite=False)
     except np.linalg.LinAlgError:

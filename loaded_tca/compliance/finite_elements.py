@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.errors import GeometryError
@@ -158,10 +159,65 @@ class Discretisation:
             matrices[:, :, a, :, a] += trace
         matrices = matrices.reshape(-1, k * d, k * d)
         other = np.flatnonzero(self.turns.any(axis=1) | (self.shares != np.eye(k)).any(axis=(1, 2)))
-        turns = _turn(self.turns[other], d)
-        change = (self.shares[other, :, None, :, None] * turns.transpose(0, 2, 1, 3)[:, None]).reshape(-1, k * d, k * d)
+        change = self._to_own_nodes(other)
         matrices[other] = change.transpose(0, 2, 1) @ matrices[other] @ change
         return matrices
+
+    def _to_own_nodes(self, kinds: Indices) -> Array:
+        """Matrices (n, k d, k d) from degrees of freedom of elements of some kinds to their own nodes and frame."""
+        k, d = self.elements.shape[1], self.dimension
+        turns = _turn(self.turns[kinds], d)
+        return (self.shares[kinds, :, None, :, None] * turns.transpose(0, 2, 1, 3)[:, None]).reshape(-1, k * d, k * d)
+
+    def free_surface_stress(
+        self, elements: Indices, places: Array, along: Indices, material: Material
+    ) -> tuple[Array, csr_array]:
+        r"""Points on a free surface, and the stress there across the lengthwise lines, as rows of a matrix.
+
+        .. math:: \sigma_t = \frac{E}{1 - \nu^2} (\varepsilon_t + \nu \varepsilon_l)
+
+        l is the direction of the last local axis, t the tangent of the surface normal to it; in the plane, strain being
+        plane, :math:`\varepsilon_l = 0`. No derivative across the surface enters.
+
+        Parameters
+        ----------
+        elements : (m,) int array
+            Of the pitch whose frame is not turned.
+        places : (m, d) array
+            Local coordinates, 0 to 1 along each edge.
+        along : (m,) int array
+            Local axis that runs in the surface across the lengthwise lines.
+        material : Material
+
+        Returns
+        -------
+        (m, d) array [mm]
+        (m, d nodes) sparse array [MPa/mm]
+        """
+        k, d = self.elements.shape[1], self.dimension
+        element, each = _element(d), np.arange(len(elements))
+        kinds = self.kinds[elements]
+        nodes = self.shares[kinds] @ self.points[self.elements[elements]]
+        shape, local = (
+            np.stack([np.broadcast_to(element.lbasis(places.T, i)[n], (*((d,) * n), len(each))).T for i in range(k)], 1)
+            for n in (0, 1)
+        )
+        tangents = np.einsum("mka,mkx->max", local, nodes)
+        across, slope = tangents[each, along], local[each, :, along]
+        stress = np.zeros((len(each), k, d))
+        if d == 3:
+            lengthwise = tangents[:, 2]
+            square = (lengthwise**2).sum(axis=1)[:, None]
+            part = (across * lengthwise).sum(axis=1)[:, None] / square
+            across, slope = across - part * lengthwise, slope - part * local[:, :, 2]
+            stress += material.poisson_ratio * (local[:, :, 2] / square)[..., None] * lengthwise[:, None]
+        stress += (slope / (across**2).sum(axis=1)[:, None])[..., None] * across[:, None]
+        stress *= material.plane_strain_modulus
+        own, which = np.unique(kinds, return_inverse=True)
+        values = np.einsum("mi,mij->mj", stress.reshape(len(each), -1), self._to_own_nodes(own)[which])
+        starts = np.arange(len(each) + 1) * k * d
+        rows = csr_array((values.ravel(), self.dofs[elements].ravel(), starts), shape=(len(each), self.points.size))
+        return np.einsum("mk,mkx->mx", shape, nodes), rows
 
 
 def discretise(

@@ -21,11 +21,13 @@ import os
 import tempfile
 import zipfile
 from collections import OrderedDict
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from threading import Lock
+from typing import TypeVar, cast
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebpts2
@@ -44,12 +46,13 @@ FOLDER = "LOADED_TCA_CACHE"
 """Environment variable: where to keep models on disk, or "off"."""
 MOST_IN_MEMORY = 8
 MOST_ON_DISK = 64
-"""Files of 0.1 to 2 MB each; the oldest go."""
+"""Files of 0.1 to 2 MB each, of root stress 1 to 10; the oldest go."""
 SAME_OUTLINE = 1e-9
 """Numbers are the same if they agree to this part of the size of the gear: far above rounding."""
 UNREADABLE = OSError, EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile
-_recent: OrderedDict[str, ToothFlexibility] = OrderedDict()
+_recent: OrderedDict[str, object] = OrderedDict()
 _lock = Lock()
+Model = TypeVar("Model")
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,13 +116,27 @@ def kept_flexibility(frame: ToothFrame) -> ToothFlexibility:
 
     For parameters and errors see :func:`loaded_tca.compliance.flexibility.tooth_flexibility`.
     """
-    key, folder = key_of(frame), _folder()
+    return kept(key_of(frame), ToothFlexibility, lambda: tooth_flexibility(frame))
+
+
+def kept(key: str, kind: type[Model], make: Callable[[], Model]) -> Model:
+    """What is known under a key, made if it is not known yet; its arrays cannot be written to.
+
+    Parameters
+    ----------
+    key : str
+        As :func:`key_of` makes them.
+    kind : type
+        A dataclass of arrays alone.
+    make : callable
+    """
+    folder = _folder()
     with _lock:
         found = _recent.get(key)
     if found is None and folder is not None:
-        found = _read(folder / f"{key}.npz", key)
+        found = _read(folder / f"{key}.npz", key, kind)
     if found is None:
-        found = tooth_flexibility(frame)
+        found = make()
         if folder is not None:
             _write(folder, key, found)
     with _lock:
@@ -129,7 +146,7 @@ def kept_flexibility(frame: ToothFrame) -> ToothFlexibility:
             _recent.popitem(last=False)
     for values in vars(found).values():
         values.setflags(write=False)
-    return found
+    return cast(Model, found)
 
 
 def forget() -> None:
@@ -138,13 +155,13 @@ def forget() -> None:
         _recent.clear()
 
 
-def key_of(frame: ToothFrame) -> str:
-    """Digest of all that the flexibility of a gear's teeth depends on."""
+def key_of(frame: ToothFrame, places: FlankPlaces | None = None, what: str = "") -> str:
+    """Digest of all that the flexibility of a gear's teeth depends on, or ``what`` else of forces at ``places``."""
     nodes, material = frame.nodes, frame.gear.material
-    places = grid_of_places(frame)[-1]
+    places = places or grid_of_places(frame)[-1]
     size = float(np.nanmax(np.abs(nodes.points)))
     plain = frame.side, nodes.layout, float(material.youngs_modulus), float(material.poisson_ratio), f"{size:.9e}"
-    digest = hashlib.sha256(f"{_programme()} {plain}".encode())
+    digest = hashlib.sha256(f"{_programme()} {what}{plain}".encode())
     for lengths in (nodes.outline, nodes.points, places.point, places.depth):
         digest.update(_rounded(lengths / size))
     digest.update(_rounded(places.normal))
@@ -177,33 +194,33 @@ def _folder() -> Path | None:
     return None
 
 
-def _read(path: Path, key: str) -> ToothFlexibility | None:
+def _read(path: Path, key: str, kind: type[Model]) -> Model | None:
     """Return what a file keeps under a key; None if it is not there, damaged, or another gear's."""
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             told = str(file["digest"])
-            found = ToothFlexibility(**{name: file[name] for name in file.files if name != "digest"})
+            found = kind(**{name: file[name] for name in file.files if name != "digest"})
             return found if told == _digest(key, found) else None
     except UNREADABLE:
         return None
 
 
-def _digest(key: str, flexibility: ToothFlexibility) -> str:
+def _digest(key: str, model: object) -> str:
     """Digest of a key and of all numbers that are kept under it."""
     digest = hashlib.sha256(key.encode())
-    for name, array in vars(flexibility).items():
+    for name, array in vars(model).items():
         digest.update(f"{name} {array.dtype} {array.shape}".encode() + np.ascontiguousarray(array).tobytes())
     return digest.hexdigest()
 
 
-def _write(folder: Path, key: str, flexibility: ToothFlexibility) -> None:
+def _write(folder: Path, key: str, model: object) -> None:
     """Write a file as a whole or not at all, and remove the oldest beyond the most."""
     with contextlib.suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
         descriptor, unfinished = tempfile.mkstemp(dir=folder, suffix=".unfinished")
         try:
             with os.fdopen(descriptor, "wb") as file:
-                np.savez(file, digest=np.array(_digest(key, flexibility)), **vars(flexibility))
+                np.savez(file, digest=np.array(_digest(key, model)), **vars(model))
             os.replace(unfinished, folder / f"{key}.npz")
         finally:
             Path(unfinished).unlink(missing_ok=True)

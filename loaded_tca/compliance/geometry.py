@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import brentq
 from scipy.optimize.elementwise import find_root
 
 from loaded_tca.arrays import Array
@@ -21,18 +22,23 @@ from loaded_tca.tooth.sections import Sections, in_space
 from loaded_tca.tooth.surface import ToothSurface
 
 FILLET_SHARE = 0.5
-"""Part of the fillet's length that belongs to the tooth; the rest to the columns of the space."""
+"""Part of the fillet that belongs to the tooth; the rest to the columns of the space."""
+TURNING = 0.75
+"""Part of the measure along a fillet that is how far its tangent turns, below thin layers; the rest is its length."""
 SAG = 0.2
 """Sag of the lowest row of the tooth over its width."""
 SHALLOW = 0.3
 """The same at most over the depth of the rim."""
-GROWTH = 1.8
-"""Each layer of the rim is so much thicker than the one above."""
+GROWTH, MOST_GROWTH = 1.8, 30.0
+"""Each layer of the rim is so much thicker than the one above; at most, where the uppermost has its own thickness."""
 LARGEST_RATIO = 1.6
 """Outer over inner radius of an element at the bore. Displacements in a twisted ring go with r and 1/r, of which one
 quadratic element takes off 0.06 % of the twist at this ratio, 0.25 % at 2, 5 % at 5.5; default bores need no cut."""
 HOLE = 0.1
 """Free hole in the core of a solid gear, over the diameter of its journals: the mesh is a ring."""
+SHORTEST_LAND = 0.05
+"""Half of the root land over the way from the end of the tooth's rows to the middle of the space: the end of the fillet
+is followed by no edge of elements where it is shorter."""
 SHARP = math.pi / 3.0
 """Bend of an edge between its halves from which it is made straight; 29 deg on usual teeth. With fewer elements
 along a foot they bend more, to 66 where one folded; made straight, that made a face-milled pinion 4 % too stiff."""
@@ -71,13 +77,15 @@ class BodyNodes:
 class _Side:
     """One side of a tooth in the images, radius and angle (n, k): the flank from its root up, the foot on down.
 
-    The foot is the fillet with the length ``fillet`` (k,) [mm], then half the root land.
+    The foot is the fillet, then half the root land; ``length`` (n, k) [mm] runs along it. So does ``measure`` (n, k),
+    to 1 at the end of the fillet: with the length or, where elements are to follow sharp fillets, mostly with how far
+    the tangent turns.
     """
 
     flank: tuple[Array, Array]
     foot: tuple[Array, Array]
-    foot_length: Array
-    fillet: Array
+    length: Array
+    measure: Array
 
     def on_flank(self, height: Array) -> tuple[Array, Array]:
         """Radius and angle (n, k) at parts (n,) of the flank's height."""
@@ -87,10 +95,30 @@ class _Side:
 
     def on_foot(self, part: Array) -> tuple[Array, Array]:
         """Radius and angle (n, k): part 0 is the flank, 1 the end of the tooth's rows, 2 the middle of the space."""
-        split = FILLET_SHARE * self.fillet
-        part = part[:, None]
-        length = np.where(part <= 1.0, part * split, split + (part - 1.0) * (self.foot_length[-1] - split))
-        radius, angle = (_interpolated(length, self.foot_length, values) for values in self.foot)
+        part, whole = part[:, None], self.measure[-1]
+        lower = FILLET_SHARE + (part - 1.0) * (whole - FILLET_SHARE)
+        return self._at_measure(np.where(part <= 1.0, part * FILLET_SHARE, lower))
+
+    def beyond_tooth(self, density: MeshDensity) -> tuple[Array, Array]:
+        """Radius and angle (n, k) of nodes from the end of the tooth's rows to the middle of the space.
+
+        Below thin layers the fillet ends between two elements, where there is a root land: stress has a bend there.
+        """
+        whole = self.measure[-1]
+        root_land = (whole - 1.0) / (whole - FILLET_SHARE)
+        part = np.linspace(0.0, 1.0, 2 * density.land + 1)
+        if density.skin == 0.0 or density.land == 1 or root_land.min() < SHORTEST_LAND:
+            return self.on_foot(1.0 + part)
+        count = min(max(1, round(density.land * float(root_land.mean()))), density.land // 2)
+        on_fillet = np.linspace(FILLET_SHARE, 1.0, 2 * (density.land - count) + 1)[:, None]
+        beyond = 1.0 + np.linspace(0.0, 1.0, 2 * count + 1)[1:, None] * (whole - 1.0)
+        return self._at_measure(np.concatenate([on_fillet + 0.0 * whole, beyond]))
+
+    def _at_measure(self, measure: Array) -> tuple[Array, Array]:
+        """Radius and angle (n, k) of corners of elements at values of the measure, of others half way between these."""
+        length = _interpolated(measure, self.measure, self.length)
+        length[1::2] = 0.5 * (length[:-1:2] + length[2::2])
+        radius, angle = (_interpolated(length, self.length, values) for values in self.foot)
         return radius, angle
 
 
@@ -126,10 +154,13 @@ def body_nodes(tooth: ToothSurface, sections: Sections, bore_radius: Array, layo
 
     circles = coordinate, np.broadcast_to(bore_radius, lowest.shape)
     bore = find_root(beyond_bore, (0.0 * lowest, lowest), args=circles).x
-    sides = _side(tooth, images, 1), _side(tooth, images, -1)
     radius, angle = np.full((2, *layout.shape, len(coordinate)), np.nan)
     unlike = {sector.density: sector for sector in layout.sectors}
-    blocks = {density: _sector(sector, layout, sides, bore) for density, sector in unlike.items()}
+    blocks = {}
+    for density, sector in unlike.items():
+        by_turning = TURNING if density is not None and density.skin else 0.0
+        sides = _side(tooth, images, 1, by_turning), _side(tooth, images, -1, by_turning)
+        blocks[density] = _sector(sector, layout, sides, bore)
     for sector in layout.sectors:
         turn = 2.0 * math.pi / tooth.teeth * sector.number
         columns = slice(sector.first, sector.first + 2 * sector.columns)
@@ -138,14 +169,21 @@ def body_nodes(tooth: ToothSurface, sections: Sections, bore_radius: Array, layo
     return BodyNodes(layout, sections, coordinate, radius, angle, outline)
 
 
-def _side(tooth: ToothSurface, outline: tuple[Array, Array], sign: int) -> _Side:
-    """One side of the outline, from the root of its flank up and down."""
+def _side(tooth: ToothSurface, outline: tuple[Array, Array], sign: int, by_turning: float) -> _Side:
+    """One side of the outline, from the root of its flank up and down; its fillet measured in part by turning."""
     joints = tooth.joints if sign > 0 else tuple(len(tooth.outline) - 1 - joint for joint in tooth.joints[::-1])
     radius, angle = outline if sign > 0 else (outline[0][::-1], outline[1][::-1])
     flank, foot = slice(joints[4], joints[5] + 1), slice(joints[5], None)
-    length = lengths_along(polar(radius[foot], angle[foot]))
+    place, end = polar(radius[foot], angle[foot]), joints[6] - joints[5]
+    length = lengths_along(place)
+    measure = length / length[end]
+    step = np.diff(place, axis=0)
+    direction = np.unwrap(np.arctan2(step[..., 1], step[..., 0]), axis=0)
+    turn = np.abs(np.diff(direction[:end], axis=0))
+    turned = np.concatenate([np.zeros_like(turn[:1]), np.cumsum(turn, axis=0), turn.sum(axis=0)[None]])
+    measure[: end + 1] += by_turning * (turned / turned[-1] - measure[: end + 1])
     ends = (radius[flank][::-1], angle[flank][::-1]), (radius[foot], angle[foot])
-    return _Side(*ends, length, length[joints[6] - joints[5]])
+    return _Side(*ends, length, measure)
 
 
 def _sector(sector: SectorLayout, layout: RingLayout, sides: tuple[_Side, _Side], bore: Array) -> tuple[Array, Array]:
@@ -161,8 +199,7 @@ def _sector(sector: SectorLayout, layout: RingLayout, sides: tuple[_Side, _Side]
         columns = slice(2 * density.land, 2 * (density.land + density.through) + 1)
         filled = slice(layout.base_row, layout.base_row + block[0].shape[1])
         radius[columns, filled], angle[columns, filled] = block
-        part = 1.0 + np.linspace(0.0, 1.0, 2 * density.land + 1)
-        right, left = (_without_folds(*side.on_foot(part)) for side in sides)
+        right, left = (_without_folds(*side.beyond_tooth(density)) for side in sides)
         top = tuple(np.concatenate([left[n][::-1], block[n][:, 0], right[n]]) for n in range(2))
     filled = slice(0, layout.base_row + 1)
     part = np.linspace(HOLE, 1.0, 2 * layout.core + 1)[:-1, None]
@@ -192,18 +229,41 @@ def _tooth(density: MeshDensity, sides: tuple[_Side, _Side], bore: Array) -> tup
         tuple(np.concatenate(both) for both in zip(side.on_foot(below), side.on_flank(up), strict=True))
         for side in sides
     )
-    across = np.linspace(0.0, 1.0, 2 * density.through + 1)[:, None, None]
+    across = _graded(density)[:, None, None]
     angle = left[1] + across * (right[1] - left[1])
     width = 0.5 * (left[0] + right[0]) * (right[1] - left[1])
     deepest = np.minimum(SAG * width[0], SHALLOW * (np.minimum(left[0][0], right[0][0]) - bore))
     sag = np.concatenate([below, 0.0 * up])[:, None] * deepest
+    if density.skin:  # rows are far apart where the fillet is straight: as much of the sag lies between them
+        drop = left[0] + right[0] - left[0][2 * density.fillet] - right[0][2 * density.fillet]
+        sag = np.maximum(drop / drop[0], 0.0) * deepest
     radius = left[0] + across * (right[0] - left[0]) - 4.0 * across * (1.0 - across) * sag
     return radius, angle
 
 
-def cuts_at_bore(root: Array, bore: Array, layers: int) -> int:
+def _graded(density: MeshDensity) -> Array:
+    """Parts of the thickness of the tooth at which its columns of nodes stand, middles of elements among them."""
+    layer = np.arange(density.through)
+    thickness = density.grading ** np.minimum(layer, layer[::-1])
+    corners = np.append(0.0, np.cumsum(thickness)) / thickness.sum()
+    return np.interp(np.arange(2 * density.through + 1), 2 * np.arange(density.through + 1), corners)
+
+
+def rim_growth(root: Array, bore: Array, density: MeshDensity, teeth: int) -> float:
+    """Thickness of each layer of a rim over that of the one above; radii (k,) of root and bore in one section [mm]."""
+    if density.skin == 0.0:
+        return GROWTH
+    part = density.skin * 2.0 * math.pi / teeth / float((1.0 - bore / root).mean())
+    powers = np.arange(density.rim)
+    if part * density.rim >= 1.0:
+        return 1.0
+    growth = brentq(lambda growth: part * (growth**powers).sum() - 1.0, 1.0, MOST_GROWTH)
+    return round(growth, 6)  # equal gears have equal layouts
+
+
+def cuts_at_bore(root: Array, bore: Array, layers: int, growth: float) -> int:
     """Layers of at most the largest ratio of radii that the lowest layer of a rim is cut into; radii (k,) [mm]."""
-    lowest = (GROWTH**layers - GROWTH ** (layers - 1)) / (GROWTH**layers - 1.0)
+    lowest = growth ** (layers - 1) / (growth ** np.arange(layers)).sum()
     ratio = 1.0 + lowest * float((root / bore).max() - 1.0)
     return max(1, math.ceil(math.log(ratio) / math.log(LARGEST_RATIO)))
 
@@ -215,7 +275,8 @@ def _rim(top: Array, bore: Array, layout: RingLayout) -> Array:
     """
     layers, cuts = layout.density.rim, layout.cuts
     above = layers - 0.5 * np.arange(2 * layers + 1)
-    part = (GROWTH**above - 1.0) / (GROWTH**layers - 1.0)
+    growth = layout.growth
+    part = (growth**above - 1.0) / (growth**layers - 1.0) if growth != 1.0 else above / layers
     radius = top[:, None] - part[:, None] * (top - bore)[:, None]
     if cuts == 1:
         return radius

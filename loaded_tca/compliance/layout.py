@@ -15,6 +15,8 @@ import numpy as np
 from loaded_tca.arrays import Array, Indices, count_problems
 from loaded_tca.errors import InputError
 
+LARGEST_GRADING, LARGEST_SKIN = 10.0, 0.1
+
 
 @dataclass(frozen=True)
 class MeshDensity:
@@ -34,11 +36,20 @@ class MeshDensity:
         Across the face.
     neighbours : int
         Neighbouring teeth on either side that are modelled; of further ones the rim alone.
+    grading : float
+        Thickness of each layer through the tooth over that of the next one towards the flank.
+    skin : float
+        Thickness of the uppermost layer of the rim over the pitch along the root circle; 0: each layer of the rim is
+        1.8 times as thick as the one above. Above 0 an edge of elements also follows the end of the fillet.
+    thin_ends : bool
+        Whether the two outermost layers at each end of the face are half as thick as the others; ``lengthwise`` is
+        even then, and 6 at least.
 
     Raises
     ------
     InputError
-        If a number is not a whole one, not positive, or ``through`` is odd.
+        If a number is not a whole one, not positive, or ``through`` is odd; if ``grading`` is not between 1 and 10,
+        ``skin`` not between 0 and 0.1, or ``lengthwise`` does not suit ``thin_ends``.
     """
 
     through: int = 4
@@ -48,14 +59,32 @@ class MeshDensity:
     rim: int = 4
     lengthwise: int = 10
     neighbours: int = 1
+    grading: float = 1.0
+    skin: float = 0.0
+    thin_ends: bool = False
 
     def __post_init__(self) -> None:
-        elements = {name: count for name, count in vars(self).items() if name != "neighbours"}
+        other = "neighbours", "grading", "skin", "thin_ends"
+        elements = {name: count for name, count in vars(self).items() if name not in other}
         problems = count_problems(elements, 1) + count_problems({"neighbours": self.neighbours}, 0)
+        if not 1.0 <= self.grading <= LARGEST_GRADING:
+            problems.append(f"grading: {self.grading} is not between 1 and {LARGEST_GRADING:g}")
+        if not problems and self.thin_ends and (self.lengthwise % 2 or self.lengthwise < 6):
+            problems.append(f"lengthwise: {self.lengthwise} is not an even number from 6 on, which thin_ends asks for")
+        if not 0.0 <= self.skin <= LARGEST_SKIN:
+            problems.append(f"skin: {self.skin} is not between 0 and {LARGEST_SKIN:g}")
         if not problems and self.through % 2:
             problems.append(f"through: {self.through} is not even: the middle of the tooth must be a line of nodes")
         if problems:
             raise InputError(problems)
+
+    @property
+    def planes(self) -> Indices:
+        """Where nodes stand across the face (2 lengthwise + 1,), in quarters of a layer that is not thin."""
+        thin = 2 * self.thin_ends
+        thickness = np.full(self.lengthwise, 4)
+        thickness[:thin] = thickness[self.lengthwise - thin :] = 2
+        return np.append(0, np.cumsum(np.repeat(thickness // 2, 2)))
 
     def coarse(self) -> MeshDensity:
         """Density of the neighbouring teeth, which move almost as rigid bodies."""
@@ -88,12 +117,15 @@ class RingLayout:
         Layers of a solid gear below those of the rim; 0: a bore.
     cuts : int
         Layers that the lowest layer of the rim is cut into.
+    growth : float
+        Thickness of each layer of the rim over that of the one above, before the lowest is cut.
     """
 
     teeth: int
     density: MeshDensity
     core: int = 0
     cuts: int = 1
+    growth: float = 1.8
 
     @property
     def neighbours(self) -> int:
@@ -165,6 +197,34 @@ class RingLayout:
     def elements(self) -> Indices:
         """Lowest column and row (n, 2) of each element of a section."""
         return np.concatenate([self._elements_of(sector) for sector in self.sectors])
+
+    def foot(self, side: int) -> tuple[Indices, Indices]:
+        """Elements of a section along one foot of the resolved tooth, from its flank to the middle of the space.
+
+        Parameters
+        ----------
+        side : int
+            +1 or -1.
+
+        Returns
+        -------
+        lowest : (n, 2) int array
+            Lowest column and row of each element.
+        ends : (n, 2, 2) int array
+            Both ends of its edge on the surface on the way down: 0 or 1 from the lowest node, in columns and rows.
+        """
+        density, first = self.density, self.sector(0).first
+        down = np.arange(density.fillet)[::-1]
+        out = np.arange(density.land)
+        right = int(side > 0)
+        beside = density.land + (density.through - 1) * right  # the outermost column of the tooth
+        beyond = density.land + density.through + out if right else density.land - 1 - out
+        tooth = np.column_stack([np.full_like(down, first + 2 * beside), self.base_row + 2 * down])
+        land = np.column_stack([first + 2 * beyond, np.full_like(out, self.base_row - 2)])
+        on_tooth = np.array([[right, 1], [right, 0]])
+        on_land = np.array([[1 - right, 1], [right, 1]])
+        ends = np.concatenate([np.tile(on_tooth, (len(down), 1, 1)), np.tile(on_land, (len(out), 1, 1))])
+        return np.concatenate([tooth, land]), ends
 
     def _elements_of(self, sector: SectorLayout) -> Indices:
         rim = _block(sector.first, sector.columns, 0, self.base_row // 2)

@@ -14,6 +14,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError, named
 from loaded_tca.loaded.load_sharing import SharedLoad, tooth_pairs_at, torque_shared
 from loaded_tca.loaded.pair_coupling import BendingModel
+from loaded_tca.loaded.sensitivity import LoadedGrid, torque_rates
 from loaded_tca.loaded.together import Result, Steps, found_together
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, contact_under_load
 from loaded_tca.pairs.gear_pair import GearPair
@@ -44,7 +45,8 @@ class Carried:
     rotation : (m, n) array [rad]
         Of the wheel back by the load; NaN where nothing is in contact.
     torque_rate : (m, n) array [N mm/rad]
-        Tangent of the torque over the rotation.
+        Tangent of the torque over the rotation with the cells in contact as they are; zero without load, NaN where
+        nothing is in contact.
     share : (m, n, pairs) array
         In the torque.
     tooth_deflection : (m, n, pairs) array [mm]
@@ -86,24 +88,23 @@ def carried_by_one(
     """
     shape = len(torques), len(path)
     contacts: Contacts = [[[None] for _ in range(shape[1])] for _ in range(shape[0])]
-    rotation, rate, deflection = np.full((3, *shape), math.nan)
+    rotation, deflection = np.full((2, *shape), math.nan)
 
     def steps(t: int, n: int) -> Steps[LoadedContact | None]:
         contact = path[n]
         if not contact.in_contact:
             return None
         with _told_where(torques[t], contact.pinion_angle):
-            loaded = yield from contact_under_load(pair, contact, torques[t] / contact.pinion_lever, grid, bending)
-            return (yield from loaded.with_stiffness())
+            return (yield from contact_under_load(pair, contact, torques[t] / contact.pinion_lever, grid, bending))
 
     for (t, n), loaded in _found(pair, shape, steps, progress):
         contacts[t][n][0] = loaded
         if loaded is not None:
             deflection[t, n] = loaded.own_tooth_deflection
             rotation[t, n] = loaded.solution.approach / loaded.contact.wheel_lever
-            rate[t, n] = loaded.contact.pinion_lever * loaded.contact.wheel_lever * loaded.stiffness
     share = np.broadcast_to(np.where(path.in_contact, 1.0, math.nan)[:, None], (*shape, 1)).copy()
     number = np.zeros(1, dtype=int)
+    rate = _torque_rates(number, contacts, bending)
     return Carried(path, torques, number, (path,), contacts, rotation, rate, share, deflection[..., None])
 
 
@@ -154,7 +155,7 @@ def carried_by_all(
         paths=tuple(in_gear_angles),
         contacts=contacts,
         rotation=np.array([one.rotation for one in shared.values()]).reshape(shape),
-        torque_rate=np.array([one.torque_rate for one in shared.values()]).reshape(shape),
+        torque_rate=_torque_rates(mesh.pairs[columns], contacts, bending),
         share=share,
         tooth_deflection=deflection,
     )
@@ -171,6 +172,18 @@ def _found(
     told = None if progress is None else lambda done: progress(done, len(states))
     found = found_together(pair, [steps(*state) for state in states], told)
     return list(zip(states, found, strict=True))
+
+
+def _torque_rates(pairs: NDArray[np.int_], contacts: Contacts, bending: BendingModel | None) -> Array:
+    """Tangents of all torques and positions; NaN where nothing is in contact."""
+    states = [
+        [(number, one) for number, one in zip(pairs.tolist(), at, strict=True) if one is not None]
+        for positions in contacts
+        for at in positions
+    ]
+    rates = torque_rates([[LoadedGrid.of(number, loaded) for number, loaded in state] for state in states], bending)
+    rates[[not state for state in states]] = math.nan
+    return rates.reshape(len(contacts), -1)
 
 
 @contextmanager

@@ -341,7 +341,7 @@ class ShapedContacts:
         beyond = [one.initial_separation + self._lowest[one.contact] / one.contact.wheel_lever for one in there]
         first = min(beyond)
         tooth_pairs = [replace(one, initial_separation=rest - first) for one, rest in zip(there, beyond, strict=True)]
-        steps = torque_shared(pair, tooth_pairs, torque, grid, contacts.bending, with_stiffness=False)
+        steps = torque_shared(pair, tooth_pairs, torque, grid, contacts.bending)
         found = yield from self._answered(steps)
         unloaded = float(contacts.mesh.transmission_error[position])
         return unloaded - pair.driving * (first + found.rotation), found

@@ -138,8 +138,6 @@ class SharedLoad:
         Of the wheel back by the load; zero without load.
     shares : tuple of Share
         Of the k pairs that carry load; without load the leading one.
-    compliance : (k, k) array [mm/N]
-        Of their teeth, the mean over the forces.
     residual : float
         Largest difference of the rotation that a pair asks for from the common one, over the rotation.
     balances : int
@@ -149,21 +147,8 @@ class SharedLoad:
     torque: float
     rotation: float
     shares: tuple[Share, ...]
-    compliance: Array
     residual: float
     balances: int
-
-    @property
-    def torque_rate(self) -> float:
-        """Tangent dT1/d rotation of the whole mesh [N mm/rad]; zero where a load is next to none."""
-        stiffness = np.array([share.loaded.stiffness for share in self.shares])
-        if not stiffness.all():
-            return 0.0
-        contacts = [share.tooth_pair.contact for share in self.shares]
-        deflections = self.compliance.copy()
-        np.fill_diagonal(deflections, 1.0 / stiffness)
-        forces = np.linalg.solve(deflections, [contact.wheel_lever for contact in contacts])
-        return float(forces @ [contact.pinion_lever for contact in contacts])
 
 
 def share_load(
@@ -225,12 +210,8 @@ def torque_shared(
     torque: float,
     grid: GridChoice,
     bending: BendingModel | None = None,
-    with_stiffness: bool = True,
 ) -> Steps[SharedLoad]:
-    """Share a torque over the tooth pairs of one position, step by step; see :func:`share_load`.
-
-    Without the stiffness of the contacts, which takes one more solution of each, if it is not asked for.
-    """
+    """Share a torque over the tooth pairs of one position, step by step; see :func:`share_load`."""
     if not 0.0 <= torque < math.inf:
         raise InputError(f"torque: {torque!r} N mm is not a finite number >= 0")
     if not tooth_pairs:
@@ -239,15 +220,8 @@ def torque_shared(
     smallest = SMALLEST_SHARED * pair.contact_modulus * pair.module**2
     if torque <= smallest * leading.contact.pinion_lever:
         loaded = yield from contact_under_load(pair, leading.contact, 0.0, grid)
-        share = Share(leading, (yield from loaded.with_stiffness()), 0.0)
-        return SharedLoad(0.0, 0.0, (share,), np.zeros((1, 1)), 0.0, 0)
-    found = yield from _Balance(pair, tooth_pairs, torque, grid, bending).steps()
-    if not with_stiffness:
-        return found
-    shares = []
-    for share in found.shares:
-        shares.append(replace(share, loaded=(yield from share.loaded.with_stiffness())))
-    return replace(found, shares=tuple(shares))
+        return SharedLoad(0.0, 0.0, (Share(leading, loaded, 0.0),), 0.0, 0)
+    return (yield from _Balance(pair, tooth_pairs, torque, grid, bending).steps())
 
 
 class _Balance:
@@ -471,8 +445,7 @@ class _Balance:
         asked = np.array([share.rotation for share in shares])
         rotation = float(asked @ forces[carrying] / forces[carrying].sum())
         residual = float(np.abs(asked - rotation).max()) / rotation
-        part = self.compliance[np.ix_(carrying, carrying)]
-        return SharedLoad(self.torque, rotation, tuple(shares), part, residual, count)
+        return SharedLoad(self.torque, rotation, tuple(shares), residual, count)
 
 
 def tooth_pairs_at(mesh: MeshPath, position: int) -> tuple[ToothPair, ...]:

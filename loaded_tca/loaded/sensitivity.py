@@ -26,6 +26,7 @@ Bonnans & Shapiro 2000, Perturbation Analysis of Optimization Problems, chapter 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -46,7 +47,11 @@ from loaded_tca.unloaded import ContactPoint
 
 TOLERANCE = 1e-10
 """Of the linear systems, relative: the derivatives are exact to 1e-8."""
+RATE_TOLERANCE = 1e-6
+"""The same where c alone is wanted, which then errs by at most as much."""
 MOST_ITERATIONS = 500
+CELLS_TOGETHER = 2**15
+"""Of the states whose tangents :func:`torque_rates` finds together, about: more take more memory and save no time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,8 +112,8 @@ class Tangents:
     grid : (n,) int array
         That each cell belongs to.
     pinion_levers, wheel_levers : (n,) array [mm]
-    by_rotation, weights : (n,) array [N/rad]
-        u and v: v/c is the rotation by a unit of material removed at a cell, where it counts and how much.
+    by_rotation : (n,) array [N/rad]
+        u.
     stiffness : (states,) array [N mm/rad]
         c, the tangent dT/d rotation.
 
@@ -134,9 +139,13 @@ class Tangents:
         levers = [(grid.contact.pinion_lever, grid.contact.wheel_lever) for grid in self.grids]
         self.pinion_levers, self.wheel_levers = np.array(levers).reshape(-1, 2).T[:, self.grid]
         self.by_rotation = self.solved(self.wheel_levers)
-        # on parallel axes both levers have one ratio, but for the slopes of modifications: nothing is left to solve
-        self.weights = self.solved(self.pinion_levers, self.pinion_levers / self.wheel_levers * self.by_rotation)
         self.stiffness = self.summed(self.pinion_levers * self.by_rotation)
+
+    @cached_property
+    def weights(self) -> Array:
+        """Of the cells (n,) [N/rad]: v; v/c is the rotation by a unit of material removed there."""
+        # on parallel axes both levers have one ratio, but for the slopes of modifications: nothing is left to solve
+        return self.solved(self.pinion_levers, self.pinion_levers / self.wheel_levers * self.by_rotation)
 
     def gathered(self, values: Iterable[Array]) -> Array:
         """Values (..., nx, ny) of each grid at the active cells, in one row (..., n)."""
@@ -147,13 +156,18 @@ class Tangents:
         return np.add.reduceat(values, self._first, axis=-1)
 
     @cached_property
+    def _sizes(self) -> Indices:
+        """Cells of each state."""
+        return np.bincount(self.state[self.grid])
+
+    @cached_property
     def _first(self) -> Indices:
         """First cell of each state."""
-        return np.searchsorted(self.state[self.grid], np.arange(self.state[-1] + 1))
+        return np.cumsum(self._sizes) - self._sizes
 
     def spread(self, values: Array) -> Array:
         """Numbers (..., states) at the cells (..., n) of each state."""
-        return values[..., self.state[self.grid]]
+        return np.repeat(values, self._sizes, axis=-1)
 
     def rotation_change(self, gaps: Array, torques: Array | float = 0.0) -> Array:
         """DLambda (..., states) [rad] by changes (..., n) of the gaps [mm] and (..., states) of the torques [N mm]."""
@@ -220,17 +234,40 @@ class Tangents:
             residual -= self.spread(step) * moved
             before = np.where(left, product, 1.0)
         raise ConvergenceError(
-            f"sensitivities: a linear system of {displacement.size} cells is not solved to {self._tolerance:.0e} in "
+            f"tangents: a linear system of {displacement.size} cells is not solved to {self._tolerance:.0e} in "
             f"{MOST_ITERATIONS} iterations",
             last=forces,
         )
 
     def _preconditioned(self, residual: Array) -> Array:
         """Approximate inverse of the half-spaces; of cut cells, which are more compliant, by the root of their part."""
-        found, largest = np.empty(residual.size), float(np.abs(residual).max())
+        found = np.empty(residual.size)
+        largest = math.ldexp(1.0, math.frexp(float(np.abs(residual).max()))[1])  # which rounds nothing
         for block in self._blocks:
             found[block.cells] = block.preconditioned(residual[block.cells] / largest)
         return largest * found
+
+
+def torque_rates(
+    states: Sequence[Sequence[LoadedGrid]], bending: BendingModel | None = None, tolerance: float = RATE_TOLERANCE
+) -> Array:
+    """Tangents c (states,) [N mm/rad] of the torque over the rotation, many states at a time.
+
+    A contact without a cell between the bounds gives way without more force: it has no part in c, which is zero where
+    no contact has any.
+
+    Parameters
+    ----------
+    states, bending, tolerance
+        As of :class:`Tangents`; grids may be without active cells.
+    """
+    active = [[grid for grid in state if grid.active.any()] for state in states]
+    found = np.zeros(len(states))
+    sizes = np.cumsum([sum(grid.active.size for grid in state) for state in active])
+    for _, group in groupby(np.flatnonzero([len(state) > 0 for state in active]), lambda n: sizes[n] // CELLS_TOGETHER):
+        some = list(group)
+        found[some] = Tangents([active[n] for n in some], bending, tolerance).stiffness
+    return found
 
 
 def _coupling(states: Sequence[Sequence[LoadedGrid]], bending: BendingModel) -> csr_array:

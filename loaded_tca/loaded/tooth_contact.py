@@ -25,10 +25,6 @@ from loaded_tca.unloaded import ContactPoint
 
 FIRST_CELLS = (16, 16)
 """Grid from which an accuracy is approached, doubled as often as needed."""
-CHORD = 0.8
-"""Part of the load down to which the stiffness is taken."""
-CHORD_TOLERANCE = 1e-5
-"""Of the solution at that end: 1e-4 of the stiffness."""
 EXACT = 1e-9
 """Tolerance of the solver where the approach is given: forces then balance a torque to that."""
 MARGIN_LEFT = 0.8
@@ -79,8 +75,6 @@ class LoadedContact:
         Displacement of the slices under the load of other tooth pairs, if there are any.
     bending : (ny, ny) array or None [mm/N]
         Slice compliance of the teeth, without that of free edges.
-    stiffness : float [N/mm]
-        dF/d deflection, see :func:`with_stiffness`; zero without load, NaN where it was not asked for.
     """
 
     contact: ContactPoint
@@ -90,7 +84,6 @@ class LoadedContact:
     tolerance: float = 1e-6
     coupling_deflection: Array | None = None
     bending: Array | None = None
-    stiffness: float = math.nan
 
     @property
     def at_edge(self) -> bool:
@@ -200,21 +193,6 @@ class LoadedContact:
             return deflection
         return float(deflection - self.coupling_deflection @ force / force.sum())
 
-    def with_stiffness(self) -> Steps[LoadedContact]:
-        """Return the contact with its stiffness, of the power law through the load and 0.8 of it.
-
-        The deflection is that of the flanks and of the teeth beneath them, under other loads as they are. A contact
-        grows by whole cells, so that the exact tangent of the discrete problem (``contact_stiffness``) scatters by a
-        percent or two about that of the continuum; a chord scatters less, and the power makes up for its width.
-        """
-        solution = self.solution
-        if solution.load <= 0.0:
-            return replace(self, stiffness=0.0)
-        problem = replace(solution.problem, load=CHORD * solution.load)
-        less = (yield self._task(problem, max(self.tolerance, CHORD_TOLERANCE))).approach_under_load
-        exponent = math.log(less / solution.approach_under_load) / math.log(CHORD)
-        return replace(self, stiffness=solution.load / (exponent * solution.approach_under_load))
-
     def under(self, load: float, coupling: Array | None = None) -> Steps[LoadedContact]:
         """Return the contact under another load > 0 [N] near this one, on the same grid and as closely solved.
 
@@ -224,7 +202,8 @@ class LoadedContact:
         """
         gap, before = self.separation.cut_gap, self.solution
         problem = replace(before.problem, load=load, gap=gap if coupling is None else gap + coupling)
-        solution, coarser = (yield self._task(problem, self.tolerance)), before.coarser
+        start = under_other_load(before.pressure, load / before.load)
+        solution, coarser = (yield Task(problem, self.tolerance, start)), before.coarser
         if coarser is not None:
             first, higher = before.problem.first_contact, float(solution.pressure.max() / before.pressure.max())
             deeper = solution.approach_under_load / before.approach_under_load
@@ -248,11 +227,6 @@ class LoadedContact:
         solution = replace(solution, problem=problem, coarser=before.coarser)
         return replace(self, solution=solution, coupling_deflection=coupling)
 
-    def _task(self, problem: ContactProblem, tolerance: float) -> Task:
-        """A problem on the same grid, to be solved from this pressure."""
-        assert problem.load is not None
-        return Task(problem, tolerance, under_other_load(self.solution.pressure, problem.load / self.solution.load))
-
 
 def solve_under_load(
     pair: GearPair,
@@ -262,16 +236,8 @@ def solve_under_load(
     bending: BendingModel | None = None,
     number: int = 0,
 ) -> LoadedContact:
-    """Contact of one tooth pair at one position under a normal force, with its stiffness.
-
-    For parameters and errors see :func:`contact_under_load`.
-    """
-
-    def steps() -> Steps[LoadedContact]:
-        loaded = yield from contact_under_load(pair, contact, load, grid, bending, number)
-        return (yield from loaded.with_stiffness())
-
-    return found_alone(pair, steps())
+    """Contact of one tooth pair at one position under a normal force; see :func:`contact_under_load`."""
+    return found_alone(pair, contact_under_load(pair, contact, load, grid, bending, number))
 
 
 def contact_under_load(

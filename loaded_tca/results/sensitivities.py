@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -14,6 +14,7 @@ import numpy as np
 from loaded_tca.arrays import Array, Indices, real
 from loaded_tca.compliance import tooth_compliance
 from loaded_tca.errors import require
+from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.sensitivity import Tangents
 from loaded_tca.results.figure_slopes import (
     EXPONENT,
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
 TORQUE = "load.pinion_torque_Nm"
 NEWTON_MILLIMETRES = 1e3
 """Of a newton metre."""
+STEP = 1e-2
+"""By which a contact point is shifted to see how the bending changes, over the width of its grid."""
 LINEAR = 1e-6
 """Tolerance of the linear systems, which are known to the grid's percent."""
 
@@ -106,7 +109,10 @@ class Sensitivities:
 
     @cached_property
     def transmission_error(self) -> Array:
-        """Of the loaded, absolute transmission error, (torque, position, key) [rad per unit of the key]."""
+        """Of the loaded, absolute transmission error, (torque, position, key) [rad per unit of the key].
+
+        That by the torque is one over ``MeshCycle.mesh_stiffness``, as an angle.
+        """
         found = np.full((*self.result.transmission_error.shape, len(self.keys)), np.nan)
         change = self.tangents.rotation_change(self.gaps, self.torques)
         found[*self.places] = -self.result.gear_pair.driving * change.T
@@ -174,18 +180,6 @@ class Sensitivities:
         change = self.tangents.functional_change(self.tangents.gathered(slopes), self.gaps, self.torques)
         for t in np.flatnonzero(np.isfinite(result.face_load_factor)).tolist():
             found[t] = change[:, self.places[0] == t].sum(axis=1)
-        return found
-
-    @property
-    def mesh_stiffness(self) -> Array:
-        """Tangent c of the torque over the rotation, as ``MeshCycle.mesh_stiffness``, (torque, position) [N/(mm um)].
-
-        That of the cells in contact as they are, and so what the derivatives by the torque belong to: whole cells come
-        into contact, so that it scatters by about a percent over the positions. ``MeshCycle.mesh_stiffness`` is a
-        chord, made up for its width, which scatters less.
-        """
-        pair, found = self.result.gear_pair, np.full(self.result.transmission_error.shape, np.nan)
-        found[*self.places] = self.tangents.stiffness / (1e3 * math.prod(pair.base_radii) * pair.face_width)
         return found
 
     @cached_property
@@ -304,6 +298,47 @@ def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
     beyond = found.at_contact - turned * found.levers[1]
     gaps, forces = np.zeros((len(keys), tangents.grid.size)), result.normal_force[*places]
     gaps[at] = found.gaps - found.at_contact[:, tangents.grid] * found.lever_parts + beyond[:, tangents.grid]
+    if bending is not None:
+        add_shifted_bending(gaps, at, found.shifts, tangents, bending)
     lever_torques = np.zeros((len(keys), len(grids)))
     lever_torques[at] = forces * found.levers[0]
     return Sensitivities(tuple(keys), result, tangents, states, places[2], gaps, lever_torques)
+
+
+def add_shifted_bending(
+    gaps: Array, rows: Sequence[int], shifts: Array, tangents: Tangents, bending: BendingModel
+) -> None:
+    """Add to the gaps what teeth bend more under the forces as they are, as contact points move.
+
+    The teeth bend under a contact as under forces on the line through its contact point, which moves across the
+    contact while the grid of the half-spaces is held.
+
+    Parameters
+    ----------
+    gaps : (keys, n) array [mm per unit]
+        Changed in place.
+    rows : sequence of int
+        Those of the keys in the shifts.
+    shifts : (m, grids) array [mm per unit]
+        Of the contact points along x.
+    tangents : Tangents
+    bending : BendingModel
+    """
+    parts = np.split(np.arange(tangents.grid.size), tangents.ends[:-1])
+    slices = [grid.active.nonzero()[1] for grid in tangents.grids]
+    forces = [grid.pressure.sum(axis=0) * math.prod(grid.problem.spacing) for grid in tangents.grids]
+    for i in np.flatnonzero(shifts.any(axis=0)).tolist():
+        number, separation = tangents.grids[i].number, tangents.grids[i].separation
+        step = STEP * separation.spacing[0] * len(separation.x)
+        moved = replace(separation, origin=separation.origin + step * separation.axes[0])
+        by_shift = (bending.within(number, moved) - bending.within(number, separation)) / step
+        growth = {i: by_shift @ forces[i]}
+        for j in np.flatnonzero(tangents.state == tangents.state[i]).tolist():
+            if j != i:
+                other = tangents.grids[j].number, tangents.grids[j].separation
+                by_shift = (
+                    bending.between(other, (number, moved)) - bending.between(other, (number, separation))
+                ) / step
+                growth[j], growth[i] = by_shift @ forces[i], growth[i] + by_shift.T @ forces[j]
+        for j, grown in growth.items():
+            gaps[np.array(rows)[:, None], parts[j]] += shifts[:, i, None] * grown[slices[j]]

@@ -171,12 +171,15 @@ class ContactChanges:
     levers : (2, keys, contacts) array [mm per unit of the key]
         Growth of the levers about the axes of pinion and wheel, as the contact point moves; zero where it lies on an
         edge or on a relief start, which hold it.
+    shifts : (keys, contacts) array [mm per unit of the key]
+        By which the contact point moves across the contact, along x of its grid; zero likewise.
     """
 
     gaps: Array
     lever_parts: Array
     at_contact: Array
     levers: Array
+    shifts: Array
 
 
 def contact_changes(
@@ -204,7 +207,7 @@ def contact_changes(
     ContactChanges
     """
     gap = NormalGap(pair, contacts, np.array([one.axes for one in separations]))
-    steep, at_contact, levers = _at_contact_points(pair, contacts, separations, gap, changes)
+    steep, at_contact, levers, shifts = _at_contact_points(pair, contacts, separations, gap, changes)
     places = [
         (grid.x[across], grid.y[along])
         for grid, (across, along) in zip(separations, (np.nonzero(one) for one in cells), strict=True)
@@ -217,7 +220,7 @@ def contact_changes(
         pinion, wheel = gap.of(contact[part]).flank_points(x[part], y[part])
         grown = _grown(pair, changes, pinion, wheel)
         gaps[:, part], lever_parts[part] = (grown[1] - grown[0])[..., 0], (steep[contact[part]] / wheel.steepness[:, 0])
-    return ContactChanges(gaps, lever_parts, at_contact, levers)
+    return ContactChanges(gaps, lever_parts, at_contact, levers, shifts)
 
 
 def _at_contact_points(
@@ -226,8 +229,8 @@ def _at_contact_points(
     separations: Sequence[Separation],
     gap: NormalGap,
     changes: Sequence[PairChange],
-) -> tuple[Array, Array, Array]:
-    """Steepness of the wheel's flank (contacts,), growth of the gap (keys, contacts) and levers (2, keys, contacts)."""
+) -> tuple[Array, Array, Array, Array]:
+    """Steepness of the wheel's flank (contacts,), and ``at_contact``, ``levers`` and ``shifts`` of the changes."""
     beside = BESIDE * pair.module
     x, y = (beside * np.tile(part, (len(contacts), 1)) for part in ([0.0, -1.0, 1.0, 0.0, 0.0], [0.0, 0, 0, -1.0, 1.0]))
     pinion, wheel = gap.flank_points(x, y)
@@ -262,7 +265,7 @@ def _at_contact_points(
             shifted, tilted = change.moved_wheel
             levers[gear, key] += np.cross(arm, out) @ tilted[2] - np.cross(shifted, out) @ axis
         levers[gear] *= np.where(free, sense, 0.0)
-    return steep, at_contact, levers
+    return steep, at_contact, levers, shift[..., 0]
 
 
 def _grown(pair: GearPair, changes: Sequence[PairChange], pinion: FlankPoints, wheel: FlankPoints) -> Array:

@@ -7,7 +7,7 @@ from scipy.sparse.linalg import spsolve
 from loaded_tca.compliance import dissection
 from loaded_tca.compliance.dissection import factorise
 from loaded_tca.compliance.finite_elements import discretise
-from loaded_tca.errors import GeometryError
+from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.material import Material
 
 ROUNDING = 1e-9
@@ -96,3 +96,37 @@ def test_a_body_that_is_not_held_is_refused():
     free = np.ones(2 * len(mesh.points), dtype=bool)
     with pytest.raises(GeometryError, match="not held"):
         factorise(mesh.stiffness(Material()), mesh.dofs, mesh.lowest // 2, free)
+
+
+def test_flexibility_is_the_same_for_loads_one_by_one(rng, monkeypatch):
+    mesh = ring()
+    free = free_unknowns(mesh)
+    factor = factorise(mesh.stiffness(Material()), mesh.dofs, mesh.lowest // 2, free)
+    loads, readings = np.zeros((2, len(free))), np.zeros((3, len(free)))
+    loads[:, np.flatnonzero(free)[::7]] = rng.standard_normal((2, len(np.flatnonzero(free)[::7])))
+    readings[:, np.flatnonzero(free)[-3:]] = rng.standard_normal((3, 3))
+    together = factor.flexibility(csr_array(loads), csr_array(readings))
+    monkeypatch.setattr(dissection, "BYTES_OF_LOADS", 1.0)
+    found = factor.flexibility(csr_array(loads), csr_array(readings))
+    assert_allclose(found, together, atol=ROUNDING * np.abs(together).max())
+
+
+def test_memory_is_told_before_it_is_taken(monkeypatch):
+    mesh = ring()
+    monkeypatch.setattr(dissection, "machine_memory", lambda: 1e4)
+    monkeypatch.setattr(dissection._Plan, "factors", lambda *_: pytest.fail("memory was taken"))
+    with pytest.raises(
+        InputError, match=r"mesh of the gear body: \d+ unknowns need .* GiB, the machine has 9.31e-06 GiB"
+    ):
+        factorise(mesh.stiffness(Material()), mesh.dofs, mesh.lowest // 2, free_unknowns(mesh))
+
+
+def test_planned_memory_is_that_of_the_factor_at_least_and_not_of_all_that_parts_leave(monkeypatch):
+    mesh, plans = ring(48, 16), []
+    bytes_of = dissection._Plan.bytes.fget
+    monkeypatch.setattr(dissection._Plan, "bytes", property(lambda plan: plans.append(plan) or bytes_of(plan)))
+    factor = factorise(mesh.stiffness(Material()), mesh.dofs, mesh.lowest // 2, free_unknowns(mesh))
+    kept = sum(front.factor.nbytes + front.coupling.nbytes for front in factor.fronts)
+    (plan,) = plans
+    left = sum(8.0 * (len(step.order) - step.count) ** 2 for step in plan.steps)
+    assert kept < bytes_of(plan) < dissection.RESERVE * (kept + left)

@@ -9,8 +9,11 @@ from skfem.models.elasticity import lame_parameters, linear_elasticity
 from loaded_tca.compliance.body import gear_nodes
 from loaded_tca.compliance.finite_elements import discretise
 from loaded_tca.compliance.layout import MeshDensity
+from loaded_tca.compliance.root_stress import surface_places
 from loaded_tca.errors import GeometryError
+from loaded_tca.gears import bevel_mesh
 from loaded_tca.material import Material
+from loaded_tca.pairs.bevel import bevel_pair
 from tests.samples.bodies import WIDTH, pinion
 
 STEEL = Material()
@@ -131,3 +134,36 @@ def test_an_element_inside_out_is_refused():
     points[0, 0] = [3.0, 3.0]
     with pytest.raises(GeometryError, match="inside out"):
         discretise(points, np.array([[0, 0], [2, 0]]))
+
+
+def strained(gear, strain, side):
+    """Points (n, m, 3) and tangent angles of a foot, and the stress there of an even strain of the whole body."""
+    nodes = gear_nodes(gear, MeshDensity(4, 2, 2, 3, 3, 6, 1, 2.0, 0.02, True))
+    lowest, spans, _ = nodes.layout.bricks
+    mesh = discretise(nodes.points, lowest, nodes.layout.turns, spans)
+    columns = np.empty(len(mesh.points), dtype=int)
+    columns[mesh.number[mesh.number >= 0]] = np.nonzero(mesh.number >= 0)[0]
+    cosine, sine = np.cos(nodes.layout.turns[columns]), np.sin(nodes.layout.turns[columns])
+    x, y, z = strain @ mesh.points.T
+    displacement = np.stack([cosine * x + sine * y, cosine * y - sine * x, z], axis=-1)
+    point, rows, angle = surface_places(mesh, nodes, side, STEEL)
+    return point, angle, (rows @ displacement.ravel()).reshape(point.shape[1], point.shape[0]).T
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_stress_of_a_free_surface_is_that_of_its_strain_across_and_along(side, rng):
+    """Elements have even strains exactly, next to turned pitches and thick layers, too."""
+    strain = rng.standard_normal((3, 3))
+    strain += strain.T
+    _, angle, stress = strained(pinion(), strain, side)
+    across = np.stack([-np.cos(angle), side * np.sin(angle), 0.0 * angle], axis=-1)
+    expected = np.einsum("...a,ab,...b->...", across, strain, across) + STEEL.poisson_ratio * strain[2, 2]
+    expected *= STEEL.plane_strain_modulus
+    assert_allclose(stress, expected, atol=1e-9 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_stress_of_a_free_surface_of_a_bevel_gear_in_an_even_growth_is_the_same_everywhere(side):
+    gear = bevel_pair(bevel_mesh((20, 40), outer_module=4.0, face_width=12.0, spiral_angle=0.5)).pinion
+    _, _, stress = strained(gear, np.eye(3), side)
+    assert_allclose(stress, STEEL.youngs_modulus / (1.0 - STEEL.poisson_ratio), rtol=1e-9)

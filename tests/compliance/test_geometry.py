@@ -119,3 +119,44 @@ def test_a_sharp_fillet_does_not_fold_the_body():
     gear = scene.pair().pinion
     mesh, _ = gear_body(gear_nodes(gear, replace(DENSITY, land=2)), gear.material)
     assert len(mesh.elements) > 100
+
+
+def test_layers_below_the_surface_are_as_thin_as_asked_for():
+    density = MeshDensity(through=6, rim=5, lengthwise=2, grading=3.0, skin=0.01)
+    gear = pinion()
+    nodes, first = gear_nodes(gear, density), 2 * density.land
+    tooth = nodes.angle[first : first + 13 : 2, nodes.layout.base_row + 2 * density.fillet + 4, 0]
+    assert_allclose(np.diff(tooth) / np.diff(tooth)[0], [1.0, 3.0, 9.0, 9.0, 3.0, 1.0], rtol=1e-9)
+    root = spur_mesh().pinion.root_radius
+    rim = nodes.radius[0, : nodes.layout.base_row + 1 : 2, 0]
+    assert_allclose(rim[-1] - rim[-2], 0.01 * 2.0 * math.pi / 25 * root, rtol=1e-4)
+    assert_allclose(np.diff(rim)[1:] / np.diff(rim)[:-1], 1.0 / nodes.layout.growth, rtol=1e-9)
+    assert_allclose(rim[[0, -1]], [0.55 * root, root])
+
+
+def test_rim_too_thin_for_its_uppermost_layer_has_even_layers():
+    density = MeshDensity(rim=4, lengthwise=2, skin=0.1)
+    nodes = gear_nodes(pinion(bore_diameter=65.0), density)
+    assert nodes.layout.growth == 1.0
+    assert_allclose(np.diff(nodes.radius[0, : nodes.layout.base_row + 1, 0], 2), 0.0, atol=1e-9)
+
+
+def test_fillet_ends_between_two_elements_below_thin_layers():
+    """Beyond it all nodes lie on the root circle, before it none does."""
+    gear, density = pinion(), MeshDensity(land=4, lengthwise=2, skin=0.01)
+    nodes = gear_nodes(gear, density, 257)
+    layout = nodes.layout
+    first = layout.sector(0).first + 2 * (density.land + density.through)
+    radius, angle = (
+        values[first : first + 2 * density.land + 1, layout.base_row, 0] for values in (nodes.radius, nodes.angle)
+    )
+    root = spur_mesh().pinion.root_radius
+    assert (radius[:6] > root + 1e-4).all()
+    assert_allclose(radius[6:], root, rtol=1e-9)
+    assert angle[6] < angle[8]
+
+
+def test_ends_of_the_face_have_layers_half_as_thick():
+    nodes = gear_nodes(pinion(), MeshDensity(lengthwise=8, thin_ends=True))
+    assert_allclose(np.diff(nodes.coordinate[::2]), 20.0 / 12 * np.array([1, 1, 2, 2, 2, 2, 1, 1]))
+    assert_allclose(nodes.coordinate[[0, -1]], [-10.0, 10.0])

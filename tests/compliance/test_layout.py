@@ -65,3 +65,38 @@ def test_density_tells_every_problem():
 def test_an_odd_number_of_elements_through_the_tooth_is_refused():
     with pytest.raises(InputError, match="through: 3 is not even"):
         MeshDensity(through=3)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"grading": 0.9}, "grading: 0.9 is not between 1 and 10"),
+        ({"grading": np.nan}, "grading: nan is not between 1 and 10"),
+        ({"skin": -0.1}, "skin: -0.1 is not between 0 and 0.1"),
+        ({"skin": 0.2}, "skin: 0.2 is not between 0 and 0.1"),
+        ({"thin_ends": True, "lengthwise": 9}, "lengthwise: 9 is not an even number from 6 on"),
+        ({"thin_ends": True, "lengthwise": 4}, "lengthwise: 4 is not an even number from 6 on"),
+    ],
+)
+def test_gradings_out_of_range_are_refused(change, message):
+    with pytest.raises(InputError, match=message):
+        MeshDensity(**change)
+
+
+def test_outermost_layers_of_thin_ends_are_half_as_thick():
+    assert MeshDensity(lengthwise=3).planes.tolist() == [0, 2, 4, 6, 8, 10, 12]
+    thickness = np.diff(MeshDensity(lengthwise=8, thin_ends=True).planes[::2])
+    assert thickness.tolist() == [2, 2, 4, 4, 4, 4, 2, 2]
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_elements_of_a_foot_follow_each_other_to_the_middle_of_the_space(side):
+    layout = RingLayout(9, MeshDensity(through=4, fillet=3, land=2, neighbours=1))
+    lowest, ends = layout.foot(side)
+    corners = lowest[:, None] + 2 * ends
+    np.testing.assert_array_equal(corners[1:, 0], corners[:-1, 1])
+    first, columns = layout.sector(0).first, 2 * layout.sector(0).columns
+    assert corners[-1, 1].tolist() == [first + (columns if side > 0 else 0), layout.base_row]
+    assert corners[0, 0, 1] == layout.base_row + 6
+    present = {tuple(place) for place in layout.elements.tolist()}
+    assert all(tuple(place) in present for place in lowest.tolist())

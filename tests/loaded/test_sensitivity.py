@@ -1,25 +1,29 @@
 """The tangents of states: against dense problems solved anew, closed forms, limits."""
 
+from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca import read_scene
-from loaded_tca.contact import ContactProblem
+from loaded_tca.contact import ContactProblem, contact_stiffness
 from loaded_tca.contact.love import influence_coefficients
 from loaded_tca.errors import ConvergenceError
+from loaded_tca.loaded.cycle import carried_by_one
 from loaded_tca.loaded.load_sharing import share_load, tooth_pairs_at
-from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
+from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents, torque_rates
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.separation.gap_change import contact_changes, pair_changes
-from loaded_tca.unloaded import trace_teeth
+from loaded_tca.unloaded import trace_contact, trace_teeth
 from tests.samples.results import SCENES
 
 TRANSMISSION_ERROR, OTHERS = 1e-8, 1e-6
 """Agreement asked for with dense problems whose set of active cells stays."""
+RATE = 3e-6
+"""Of the rate of the torque, whose linear systems are solved to 1e-6."""
 MODULUS, TORQUE = 113187.0, 6000.0  # MPa, N mm
 SHAPE, SPACING = (10, 9), (0.02, 0.15)
 LEVERS = {0: (47.0, 80.0), 1: (46.0, 81.0)}  # mm, of pinion and wheel: as of a bevel pair
@@ -108,9 +112,9 @@ class DensePairs:
         raise AssertionError("no active set found")
 
     def tangent(self, torques=(TORQUE,)):
-        return Tangents([self._grids(torque) for torque in torques], self)
+        return Tangents([self.grids(torque) for torque in torques], self)
 
-    def _grids(self, torque):
+    def grids(self, torque):
         forces, _, _ = self.solve(torque)
         pressures = np.split(forces / self.area, 2)
         capped = [problem.cap for problem in self.problems]
@@ -214,9 +218,43 @@ def test_states_are_found_together_as_each_alone(pairs):
     assert_allclose(together.weights, weights, rtol=0, atol=OTHERS * weights.max())
 
 
+def test_rate_of_the_torque_is_that_of_the_dense_problem_solved_anew(pairs):
+    step = 0.5
+    rotations = [pairs.solve(TORQUE + sign * step)[1] for sign in (-1.0, 1.0)]
+    assert_allclose(torque_rates([pairs.grids(TORQUE)], pairs), 2.0 * step / np.ptp(rotations), rtol=RATE)
+
+
+def test_rates_are_the_same_to_the_last_bit_whatever_is_found_together(pairs, monkeypatch):
+    states = [pairs.grids(part * TORQUE) for part in (0.3, 0.6, 0.8, 1.0)]
+    together = torque_rates(states, pairs)
+    monkeypatch.setattr("loaded_tca.loaded.sensitivity.CELLS_TOGETHER", 1)
+    assert_array_equal(torque_rates(states, pairs), together)
+
+
+def test_contacts_without_a_cell_between_the_bounds_have_no_part_in_the_rate():
+    pairs = dense(900.0)
+    first, second = pairs.grids(TORQUE)
+    capped, none = (replace(first, pressure=p * np.isfinite(first.problem.gap)) for p in (first.problem.cap, 0.0))
+    states = [[capped], [second], [capped, none], [capped, second, none], []]
+    rate = torque_rates([[second]])[0]
+    assert_array_equal(torque_rates(states, pairs), [0.0, rate, 0.0, rate, 0.0])
+    assert rate > 0.0
+    assert_array_equal(torque_rates([]), [])
+
+
+def test_rate_of_one_contact_is_that_of_a_flat_punch_of_its_cells():
+    pair = read_scene(SCENES / "mesh_cycle_bevel.toml").pair()
+    path = trace_contact(pair, pair.pitch * np.array([-0.1, 0.2]))
+    carried = carried_by_one(pair, path, np.array([30e3, 0.0, 90e3]), GridChoice(cells=(32, 32), tolerance=1e-8))
+    levers = path.pinion_lever * path.wheel_lever
+    punches = [[levers[n] * contact_stiffness(carried.contacts[t][n][0].solution) for n in (0, 1)] for t in (0, 2)]
+    assert_allclose(carried.torque_rate[[0, 2]], punches, rtol=RATE)
+    assert_array_equal(carried.torque_rate[1], 0.0)
+
+
 def test_linear_system_that_is_not_solved_in_time_is_an_error(monkeypatch):
     monkeypatch.setattr("loaded_tca.loaded.sensitivity.MOST_ITERATIONS", 2)
-    with pytest.raises(ConvergenceError, match=r"sensitivities: a linear system of .* in 2 iterations"):
+    with pytest.raises(ConvergenceError, match=r"tangents: a linear system of .* in 2 iterations"):
         dense().tangent()
 
 

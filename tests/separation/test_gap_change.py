@@ -171,12 +171,12 @@ LEVERS = {
 
 
 @pytest.mark.parametrize("name", LEVERS)
-def test_levers_change_as_those_of_contact_points_traced_anew(name):
+def test_levers_and_places_change_as_those_of_contact_points_traced_anew(name):
     file, changes, keys = LEVERS[name]
     scene = scene_of(file, **changes)
     pair, contact, separation = grid_of(scene, cells=(3, 3))
-    levers = contact_changes(pair, [contact], [separation], [np.ones((3, 3), bool)], pair_changes(scene, keys)).levers
-    for key, found in zip(keys, levers[..., 0].T, strict=True):
+    changes = contact_changes(pair, [contact], [separation], [np.ones((3, 3), bool)], pair_changes(scene, keys))
+    for key, found, shift in zip(keys, changes.levers[..., 0].T, changes.shifts[:, 0], strict=True):
         step, trials = LENGTHS[key.rpartition("_")[2]], []
         *sections, last = key.split(".")
         value = scene
@@ -189,6 +189,9 @@ def test_levers_change_as_those_of_contact_points_traced_anew(name):
             for g in ("pinion", "wheel")
         ]
         assert_allclose(found, expected, rtol=0, atol=1e-3 * np.abs(expected).max(), err_msg=key)
+        moved = (trials[1].point - trials[0].point) / (2 * step)
+        expected_shift, atol = moved @ separation.axes[0], 1e-3 * np.linalg.norm(moved)
+        assert_allclose(shift, expected_shift, rtol=0, atol=atol, err_msg=key)
 
 
 def test_gap_of_an_amount_that_may_not_fall_below_zero_grows_as_above_it():

@@ -1,6 +1,6 @@
 """Published cylindrical pairs.
 
-- ``fzg_c14_geometry``, ``iso_tr_6336_30``: geometry, forces, stress factors and stiffness;
+- ``fzg_c14_geometry``, ``fzg_c14_root_stress``, ``iso_tr_6336_30``: geometry, forces, stress factors and stiffness;
 - ``sam_paper``: peak pressure of the crowned pairs of the SAM paper;
 - ``line_contact``: pressure in the middle of unmodified pairs against Hertz's line contact.
 """

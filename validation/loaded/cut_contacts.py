@@ -18,6 +18,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.loaded.load_sharing import share_load, tooth_pairs_at
+from loaded_tca.loaded.sensitivity import LoadedGrid, torque_rates
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair
@@ -29,7 +30,7 @@ GRIDS = (24, 28, 32, 40, 48, 64)
 CLOSE = np.linspace(0.96, 1.04, 9)
 POSITIONS = (-0.4, -0.15, 0.1, 0.35)  # pitches; within the transfer of load from pair to pair stiffness has no parabola
 SCATTER = 1e-3
-STIFFNESS = 4e-3  # a difference of two contacts: four times as sensitive
+STIFFNESS = 4e-3  # the tangent of the cells in contact as they are: it feels each that enters or leaves
 MONOTONE = 1e-6  # what the solver leaves; the rotation falls by 1e-4 and more
 TOLERANCE = 1e-7  # of the solver: a thousandth of the scatter, and less
 NAMES = ("rotation", "mesh stiffness", "load share")
@@ -85,7 +86,8 @@ def _numbers(pair: GearPair, states: list[tuple[float, int]]) -> Array:
         grid = GridChoice(cells=(cells, cells), tolerance=TOLERANCE)
         shared = [share_load(pair, tooth_pairs_at(mesh, n), torque, grid) for n in range(len(POSITIONS))]
         share = [max(part.torque for part in one.shares) / torque for one in shared]
-        found.append([[one.rotation for one in shared], [one.torque_rate for one in shared], share])
+        states = [[LoadedGrid.of(part.tooth_pair.pair, part.loaded) for part in one.shares] for one in shared]
+        found.append([[one.rotation for one in shared], torque_rates(states), share])
     return np.array(found).swapaxes(0, 1)
 
 

@@ -1,0 +1,394 @@
+r"""Stress at the roots of the teeth of one gear under forces on its flanks, by finite elements in space.
+
+Root stress is linear in the forces of the contacts, so that one table holds it: stress at places of both fillets of a
+tooth under unit forces all over the flanks in contact of the same tooth and of its neighbours. The mesh is that of the
+tooth compliance but for thin layers below the surface: the layers of thick elements miss the largest stress by 5 to
+14 %. Fillets are free surfaces, so that the strain of the surface gives the stress across the lengthwise lines of the
+tooth, and no derivative across thin elements enters:
+
+.. math:: \sigma_t = \frac{E}{1 - \nu^2} (\varepsilon_t + \nu \varepsilon_l)
+
+It is found where quadratic elements have the strain best, at two places of each edge along the profile, and splines go
+through these. Notches and the spread of the load along the face are part of it: no factor multiplies it.
+
+References
+----------
+Barlow 1976, Optimal stress locations in finite element models, Int. J. Numer. Meth. Engng 10, 243-251.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.polynomial.chebyshev import chebpts2, chebvander
+from scipy.interpolate import CubicSpline
+from scipy.optimize import brentq
+from scipy.sparse import csr_array, vstack
+
+from loaded_tca.arrays import Array, Indices
+from loaded_tca.compliance.body import FlankPlaces, ToothFrame, gear_body, gear_nodes
+from loaded_tca.compliance.compliance import default_density, require_bending
+from loaded_tca.compliance.finite_elements import Discretisation
+from loaded_tca.compliance.flexibility import LEAST_LENGTHS, LENGTHS_PER_LAYER, MOST_IN_MEMORY, kept, key_of
+from loaded_tca.compliance.geometry import BodyNodes
+from loaded_tca.compliance.influence import FlankLine
+from loaded_tca.compliance.layout import LARGEST_GRADING, MeshDensity
+from loaded_tca.material import Material
+from loaded_tca.pairs.gear import Gear
+from loaded_tca.tooth.build import Resolution, build_tooth
+from loaded_tca.tooth.geometry import ToothGeometry
+from loaded_tca.tooth.profile import polar
+
+DENSITY = MeshDensity(through=8, flank=6, fillet=4, land=5, rim=6, neighbours=2, grading=2.5, skin=0.04 / math.pi)
+"""Elements of a section: layers through the tooth of 1 : 2.5 : 6 : 16 from both flanks, the rim's uppermost layer of
+0.04 modules."""
+LAYER_OVER_RADIUS, THINNEST, SHARPEST = 0.2, 0.002, 0.05
+"""Thickness of the outermost layers over the radius of a fillet that is so sharp that they are thinner than usual; the
+least over the pitch; and the part of a fillet that may be sharper than that radius."""
+STRAIGHT = 1e-9
+"""Turn of the tangent between two places of a fillet that counts as none [rad]."""
+OUTLINE = 257
+"""Points along each flank and fillet between which nodes are drawn."""
+BEST = 0.5 + np.array([-0.5, 0.5]) / math.sqrt(3.0)
+"""Where along an edge quadratic elements have the strain best."""
+HEIGHTS, LOWEST, OFFSET = 8, 0.03, 0.15
+"""Places along the profile that are loaded: Chebyshev points of log(0.15 + h), h from 0.03 to 1. Stress under a force
+changes the faster with its height the nearer it is to the fillet."""
+HEIGHTS_BESIDE, LENGTHS_BESIDE = 5, 1.0
+"""The same on the neighbours of a tooth, whose forces are further away, and places along the face for each layer."""
+LEAST_ANGLE, TOP = math.radians(15.0), 0.125
+"""Tangent angle and part of the fillet, as elements follow it, from which on stress is told: above either, a force low
+on the flank has local stress, not bending."""
+STATIONS, PER_LAYER = 91, 4
+"""Places along a fillet and in each layer of elements along the face, between which nothing is interpolated any more:
+the largest of them is within 0.05 % of the maximum."""
+
+
+@dataclass(frozen=True, eq=False)
+class RootInfluence:
+    """What finite elements say of the root stress of one gear.
+
+    Attributes
+    ----------
+    stress : (2, n, m, a b) array [MPa/N]
+        On the side of the flank in contact and on the back of tooth 0, at places along the profile and along the face,
+        under unit forces on its own flank, at Chebyshev points of the range of log(0.15 + height) and of the face.
+    stress_beside : (teeth, 2, n, m, c d) array [MPa/N]
+        The same under forces at fewer places of the teeth ``-neighbours`` to ``+neighbours``; none on tooth 0.
+    counts : (2, 2) int array
+        a, b; c, d.
+    along_face : (m,) array
+        Parts of the face width: both ends, and the middles of the layers of elements.
+    point : (2, n, m, 3) array [mm]
+        In the frame of the tooth.
+    tangent_angle : (2, n, m) array [rad]
+        Between the profile of a section and the middle of the tooth.
+    """
+
+    stress: Array
+    stress_beside: Array
+    counts: Indices
+    along_face: Array
+    point: Array
+    tangent_angle: Array
+
+
+@dataclass(frozen=True, eq=False)
+class RootStress:
+    """Root stress of one gear, made once.
+
+    Attributes
+    ----------
+    frame : ToothFrame
+    table : RootInfluence
+    """
+
+    frame: ToothFrame
+    table: RootInfluence
+
+    @property
+    def neighbours(self) -> int:
+        """Teeth on either side of a loaded one whose stress is known."""
+        return len(self.table.stress_beside) // 2
+
+    @cached_property
+    def tangent_angle(self) -> Array:
+        """Between fillet and middle of the tooth at all places (2, stations, p) [rad]; first the flank in contact."""
+        return self._at_places(self.table.tangent_angle)
+
+    @cached_property
+    def point(self) -> Array:
+        """All places (2, stations, p, 3) in the frame of the tooth [mm]."""
+        return np.stack([self._at_places(self.table.point[..., axis]) for axis in range(3)], axis=-1)
+
+    def stress(self, tooth: int, loads: Iterable[tuple[FlankLine, Array]]) -> Array:
+        """Stress at the root of one tooth [MPa], tension positive.
+
+        Parameters
+        ----------
+        tooth : int
+            Tooth of the gear, counted in the sense of +theta.
+        loads : iterable of (FlankLine, (m,) array)
+            Places on flanks in contact, and the normal forces there [N]; those on teeth further away than the
+            neighbours of the model leave no stress.
+
+        Returns
+        -------
+        (2, stations, p) array
+            On the side of the flank in contact and on the back; from a tangent angle of 15 degrees, or the end of the
+            flank, down to the middle of the space; along the face, both ends included.
+        """
+        total = np.zeros(self.table.stress.shape[:-1])
+        for line, forces in loads:
+            found = self._influence(tooth, line)
+            if found is not None:
+                stress, shares = found
+                total += stress @ (forces @ shares)
+        return self._at_places(total)
+
+    def per_force(self, tooth: int, line: FlankLine, place: tuple[int, int, int]) -> Array:
+        """Stress at one place of those of :meth:`stress` per force at places (m,) of a line [MPa/N]."""
+        found, (side, station, along) = self._influence(tooth, line), place
+        if found is None:
+            return np.zeros(len(line.rho))
+        stress, shares = found
+        profile, face = self._along_profile[side, :, station], self._along_face[along]
+        return np.asarray(shares @ np.einsum("m,mn,nma->a", face, profile, stress[side]))
+
+    def _influence(self, tooth: int, line: FlankLine) -> tuple[Array, Array] | None:
+        """Stress (2, n, m, q) of a tooth under forces at the places of the table on that of a line, and their shares.
+
+        The shares are (places of the line, q); None beyond the neighbours of the model.
+        """
+        teeth = self.frame.gear.form.teeth
+        away = (line.tooth - tooth + teeth // 2) % teeth - teeth // 2
+        if abs(away) > self.neighbours:
+            return None
+        height, length = self.frame.parts(line.rho, line.z)
+        across, along = (
+            chebvander(2.0 * part - 1.0, count - 1) @ np.linalg.inv(chebvander(chebpts2(count), count - 1))
+            for part, count in zip((_part_of_range(height), length), self.table.counts[int(away != 0)], strict=True)
+        )
+        beside = [tooth for tooth in range(-self.neighbours, self.neighbours + 1) if tooth]
+        stress = self.table.stress_beside[beside.index(away)] if away else self.table.stress
+        return stress, (across[:, :, None] * along[:, None, :]).reshape(len(height), -1)
+
+    def _at_places(self, values: Array) -> Array:
+        """Values (2, stations, p) at all places, by splines between those of the table (2, n, m)."""
+        return np.einsum("smqn,snm,pm->sqp", self._along_profile, values, self._along_face, optimize=True)
+
+    @cached_property
+    def _along_profile(self) -> Array:
+        """Shares (2, m, stations, n) of the places of the table along the profile in the stations."""
+        sides, n, m = self.table.tangent_angle.shape
+        fillet = self.frame.nodes.layout.density.fillet
+        found = np.empty((sides, m, STATIONS, n))
+        for side in range(sides):
+            for k in range(m):
+                steps = np.linalg.norm(np.diff(self.table.point[side, :, k], axis=0), axis=1)
+                arc = np.append(0.0, np.cumsum(steps))
+                start = first_told(arc, self.table.tangent_angle[side, :, k], fillet)
+                found[side, k] = CubicSpline(arc, np.eye(n))(np.linspace(start, arc[-1], STATIONS))
+        return found
+
+    @cached_property
+    def _along_face(self) -> Array:
+        """Shares (p, m) of the places of the table along the face in all places along it."""
+        known = self.table.along_face
+        wanted = np.linspace(0.0, 1.0, PER_LAYER * (len(known) - 2) + 1)
+        return np.asarray(CubicSpline(known, np.eye(len(known)))(wanted))
+
+
+def root_stress_model(gear: Gear, density: MeshDensity | None = None) -> RootStress:
+    """Load a gear body by unit forces all over its flanks, or take what is known of it.
+
+    Gears whose flanks differ in their modifications alone share one model: the last few are kept in memory, more of
+    them on disk, as those of the tooth compliance.
+
+    Parameters
+    ----------
+    gear : Gear
+    density : MeshDensity, optional
+        Default: thin layers below the surface, and as many across the face as its width asks for.
+
+    Raises
+    ------
+    InputError
+        If the bore reaches the teeth, Poisson's ratio is above 0.49, or the machine has not the memory.
+    GeometryError
+        If the tooth is pointed or cut off, or the mesh is turned inside out.
+
+    Examples
+    --------
+    >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
+    >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
+    >>> mesh = CylindricalMesh(*(CylindricalGear(teeth=z, normal_module=3.0, face_width=10.0) for z in (25, 37)))
+    >>> roots = root_stress_model(cylindrical_pair(mesh).pinion)
+    >>> line = FlankLine(0, np.full(9, 37.978), np.linspace(-4.0, 4.0, 9))  # highest point of single contact
+    >>> stress = roots.stress(0, [(line, np.full(9, 1000.0 / 9.0))])  # 1000 N
+    >>> tension = stress[0].max()
+    >>> round(float(tension), -1)  # MPa
+    90.0
+    """
+    require_bending(gear.material)
+    density = density or stress_density(gear)
+    return _model(gear.geometry.unmodified, gear.flank.side, gear.material, gear.bore_diameter, density)
+
+
+def stress_density(gear: Gear) -> MeshDensity:
+    """Thin layers below the surface, and as many across the face as its width asks for, thin ones at its ends.
+
+    Sharp fillets have thinner layers, a part of their radius.
+    """
+    layers = 2 * math.ceil(0.5 * default_density(gear).lengthwise) + 2
+    density = replace(DENSITY, lengthwise=layers, thin_ends=True)
+    skin = round(min(DENSITY.skin, max(LAYER_OVER_RADIUS * sharpest(gear.geometry.unmodified), THINNEST)), 6)
+    if skin > 0.99 * DENSITY.skin:
+        return density
+    powers = np.arange(DENSITY.through // 2)
+    thinner = (DENSITY.grading**powers).sum() * DENSITY.skin / skin  # half the tooth over its outermost layer
+    grading = brentq(lambda grading: (grading**powers).sum() - thinner, 1.0, LARGEST_GRADING)
+    return replace(density, skin=skin, grading=round(grading, 6))
+
+
+@lru_cache(maxsize=MOST_IN_MEMORY)
+def sharpest(teeth: ToothGeometry) -> float:
+    """Smallest radius of both fillets in all sections, over the pitch along the root circle."""
+    form, resolution = teeth.form(), Resolution(flank=9, fillet=129, land=3, lengthwise=5)
+    tooth = build_tooth((teeth.nominal(1), teeth.nominal(-1)), form, resolution)
+    x, y, z = np.moveaxis(tooth.outline, -1, 0)
+    radius = form.sections.radius(np.hypot(x, y), z)
+    place = radius * np.exp(1j * np.arctan2(y, x))
+    found = []
+    for first, last in (tooth.joints[1:3], tooth.joints[5:7]):
+        step = np.diff(place[first : last + 1], axis=0)
+        turn = np.abs(np.angle(step[1:] / step[:-1]))
+        found.append(np.quantile(np.abs(step[1:]) / np.maximum(turn, STRAIGHT), SHARPEST, axis=0))
+    return float((np.array(found) / (2.0 * math.pi / tooth.teeth * radius[0])).min())
+
+
+@lru_cache(maxsize=MOST_IN_MEMORY)
+def _model(
+    teeth: ToothGeometry, side: int, material: Material, bore_diameter: float | None, density: MeshDensity
+) -> RootStress:
+    """Root stress of a gear without modifications, by all that it is made of: whose are equal share one model."""
+    gear = Gear.of(teeth, side, material, bore_diameter)
+    frame = ToothFrame(gear, gear_nodes(gear, density, OUTLINE))
+    key = key_of(frame, _loaded_places(frame, False)[-1], "root stress ")
+    return RootStress(frame, kept(key, RootInfluence, lambda: root_influence(frame)))
+
+
+def _loaded_places(frame: ToothFrame, beside: bool) -> tuple[int, int, FlankPlaces]:
+    """How many heights a and lengths b the table has, and the places (a b) that they make on a flank."""
+    layers = frame.nodes.layout.density.lengthwise
+    heights = HEIGHTS_BESIDE if beside else HEIGHTS
+    lengths = max(LEAST_LENGTHS, math.ceil((LENGTHS_BESIDE if beside else LENGTHS_PER_LAYER) * layers))
+    low, high = (math.log(OFFSET + height) for height in (LOWEST, 1.0))
+    parts = np.minimum(np.exp(low + (0.5 + 0.5 * chebpts2(heights)) * (high - low)) - OFFSET, 1.0)
+    grid = np.meshgrid(parts, 0.5 + 0.5 * chebpts2(lengths), indexing="ij")
+    return heights, lengths, frame.places(*(part.ravel() for part in grid))
+
+
+def _part_of_range(height: Array) -> Array:
+    """Where heights (m,) lie in the range of log(0.15 + height)."""
+    low, high = (math.log(OFFSET + end) for end in (LOWEST, 1.0))
+    return (np.log(OFFSET + np.maximum(height, LOWEST)) - low) / (high - low)
+
+
+def root_influence(frame: ToothFrame) -> RootInfluence:
+    """Load a gear body by unit forces all over its flanks in contact.
+
+    Parameters
+    ----------
+    frame : ToothFrame
+        With thin layers below the surface.
+    """
+    mesh, factor = gear_body(frame.nodes, frame.gear.material)
+    near, size = frame.nodes.layout.neighbours, len(mesh.points)
+    *count, own = _loaded_places(frame, False)
+    *count_beside, other = _loaded_places(frame, True)
+    loads = [frame.on_flank(own, mesh.number).along(-own.normal, size)]
+    loads += [
+        frame.on_flank(other, mesh.number, tooth).along(-other.normal, size)
+        for tooth in range(-near, near + 1)
+        if tooth
+    ]
+    along_face = np.concatenate([[0.0], frame.face_parts[1::2], [1.0]])
+    sides = [surface_places(mesh, frame.nodes, side, frame.gear.material) for side in (frame.side, -frame.side)]
+    point, angle = np.stack([side[0] for side in sides]), np.stack([side[2] for side in sides])
+    readings = vstack([rows for _, rows, _ in sides], format="csr")
+    stress = factor.flexibility(vstack(loads, format="csr"), readings)
+    stress = stress.reshape(2, len(along_face), -1, stress.shape[1]).swapaxes(1, 2)
+    split = len(own.height)
+    beside = stress[..., split:].reshape(*stress.shape[:-1], 2 * near, -1)
+    return RootInfluence(
+        np.ascontiguousarray(stress[..., :split]),
+        np.ascontiguousarray(np.moveaxis(beside, -2, 0)),
+        np.array([count, count_beside]),
+        along_face,
+        point,
+        angle,
+    )
+
+
+def surface_places(
+    mesh: Discretisation, nodes: BodyNodes, side: int, material: Material
+) -> tuple[Array, csr_array, Array]:
+    """Places where the stress of one side of tooth 0 is read: from the end of its flank to the middle of the space.
+
+    Returns
+    -------
+    (n, m, 3) array [mm]
+    (m n, 3 nodes) sparse array [MPa/mm]
+        Stress of displacements.
+    (n, m) array [rad]
+        Tangent angles.
+    """
+    lowest, ends = nodes.layout.foot(side)
+    layers = nodes.layout.density.lengthwise
+    layer = np.concatenate([[0], np.arange(layers), [layers - 1]])
+    local = np.concatenate([[0.0], np.full(layers, 0.5), [1.0]])
+    edge, spot = np.divmod(np.arange(2 * len(lowest)), 2)
+    edge, part = np.append(edge, edge[-1]), np.append(BEST[spot], 1.0)  # last the middle of the space itself
+    number = np.full((*mesh.number.shape[:2], 2 * layers), -1)
+    number[tuple(mesh.lowest.T)] = np.arange(len(mesh.lowest))
+    elements = number[lowest[edge, 0], lowest[edge, 1]][:, 2 * layer].T  # (m, n)
+    in_section = ends[edge, 0] + part[:, None] * (ends[edge, 1] - ends[edge, 0])  # (n, 2)
+    m, n = elements.shape
+    spots = np.concatenate([np.tile(in_section, (m, 1)), np.repeat(local, n)[:, None]], axis=1)
+    along = np.abs(ends[edge, 1] - ends[edge, 0]).argmax(axis=1)
+    point, rows = mesh.free_surface_stress(elements.ravel(), spots, np.tile(along, m), material)
+    plane = np.concatenate([[0], 2 * np.arange(layers) + 1, [2 * layers]])
+    angle = tangent_angles(nodes, side, lowest[edge], ends[edge], part, plane)
+    return point.reshape(m, n, 3).transpose(1, 0, 2), rows, angle
+
+
+def first_told(arc: Array, angle: Array, fillet: int) -> float:
+    """Length along the profile from which on stress is told, of lengths (n,) and tangent angles (n,) of the places.
+
+    ``fillet`` elements are on the upper half of the fillet, two places on each.
+    """
+    edge = np.arange(2 * fillet)
+    start = float(np.interp(2.0 * TOP * fillet, edge // 2 + BEST[edge % 2], arc[: 2 * fillet]))
+    low = np.flatnonzero(angle < LEAST_ANGLE)
+    if not low.size:
+        return start
+    last = min(int(low[-1]), len(arc) - 2)
+    return max(start, float(np.interp(LEAST_ANGLE, angle[last : last + 2], arc[last : last + 2])))
+
+
+def tangent_angles(nodes: BodyNodes, side: int, lowest: Indices, ends: Indices, part: Array, planes: Indices) -> Array:
+    """Angles (n, m) between the middle of tooth 0 and its profile, at parts (n,) of edges of elements on one side."""
+    density, first = nodes.layout.density, nodes.layout.sector(0).first
+    row = nodes.layout.base_row + 2 * density.fillet + density.flank  # half way up the flank
+    middle = nodes.angle[first + 2 * density.land + density.through, row, planes]
+    node = lowest[:, None] + ends[:, :1] * 2 + np.arange(3)[:, None] * (ends[:, 1:] - ends[:, :1])  # (n, 3, 2)
+    columns, rows = node[..., 0] % nodes.layout.shape[0], node[..., 1]
+    place = polar(nodes.radius[columns, rows][..., planes], nodes.angle[columns, rows][..., planes] - middle)
+    slopes = np.stack([4.0 * part - 3.0, 4.0 - 8.0 * part, 4.0 * part - 1.0])  # of the quadratic shape functions
+    along = np.einsum("in,nimx->nmx", slopes, place)
+    return np.arctan2(side * along[..., 1], -along[..., 0])

@@ -1,0 +1,278 @@
+"""Closed forms of ISO 6336-3, method B, for external cylindrical gears: nominal tooth root stress.
+
+Load at the outer point of single contact, bending of the section where tangents of 30 degrees touch both fillets, and a
+factor for the notch. Left out, since a scene has no such data: K_A, K_V, K_Falpha, life, notch sensitivity, surface and
+size factors, rim thickness (Y_B) and deep teeth (Y_DT), and with these permissible stress and safety. Formulas of the
+edition of 2006; the examples are FZG C14 gears of GEARpie.
+"""
+
+from dataclasses import dataclass
+from math import acos, cos, degrees, hypot, inf, pi, radians, sin, sqrt, tan
+
+from scipy.optimize import brentq
+
+from loaded_tca.errors import GeometryError, require, require_positive
+from loaded_tca.reference.iso6336 import virtual_teeth
+
+_HELIX_ANGLE_LIMIT = radians(30.0)
+_TANGENT = pi / 3.0  # 60 degrees: the tangents of 30 degrees of external gears
+_LARGEST_HEIGHT_OVER_WIDTH = 1.0 / 3.0
+
+
+@dataclass(frozen=True)
+class RootSection:
+    """Critical section of a tooth, in normal modules.
+
+    Attributes
+    ----------
+    thickness : float
+        s_Fn/m_n, between the points where tangents of 30 degrees touch the fillets.
+    lever : float
+        h_Fe/m_n, of a load at the outer point of single contact.
+    radius : float
+        rho_F/m_n, of the fillet there.
+    load_angle, pressure_angle : float [rad]
+        alpha_Fen, of the load against the normal of the tooth's middle; alpha_n of the basic rack.
+    """
+
+    thickness: float
+    lever: float
+    radius: float
+    load_angle: float
+    pressure_angle: float
+
+    @property
+    def form_factor(self) -> float:
+        r"""Form factor Y_F: nominal bending stress.
+
+        .. math:: Y_F = \frac{6\,(h_{Fe}/m_n) \cos\alpha_{Fen}}{(s_{Fn}/m_n)^2 \cos\alpha_n}
+        """
+        return 6.0 * self.lever * cos(self.load_angle) / (self.thickness**2 * cos(self.pressure_angle))
+
+    @property
+    def stress_correction_factor(self) -> float:
+        r"""Stress correction factor Y_S: the notch.
+
+        .. math::
+            Y_S = (1.2 + 0.13 L)\,q_s^{1/(1.21 + 2.3/L)},\qquad L = \frac{s_{Fn}}{h_{Fe}},\quad
+            q_s = \frac{s_{Fn}}{2 \rho_F}
+
+        fitted for :math:`1 \le q_s < 8`.
+        """
+        slenderness, notch = self.thickness / self.lever, 0.5 * self.thickness / self.radius
+        return (1.2 + 0.13 * slenderness) * notch ** (1.0 / (1.21 + 2.3 / slenderness))
+
+
+def root_section(
+    teeth: int,
+    profile_shift: float,
+    tip_diameter: float,
+    transverse_contact_ratio: float,
+    *,
+    helix_angle: float = 0.0,
+    pressure_angle: float = radians(20.0),
+    dedendum_coefficient: float = 1.25,
+    root_radius_coefficient: float = 0.38,
+) -> RootSection:
+    r"""Critical section of an external gear without protuberance, cut by a rack.
+
+    .. math::
+        E = \frac{\pi}{4} - h_{fP} \tan\alpha_n - \rho_{fP}\,\frac{1 - \sin\alpha_n}{\cos\alpha_n},\quad
+        G = \rho_{fP} - h_{fP} + x,\quad
+        H = \frac{2}{z_n} \left(\frac{\pi}{2} - E\right) - \frac{\pi}{3},\quad
+        \vartheta = \frac{2 G}{z_n} \tan\vartheta - H
+
+    .. math::
+        s_{Fn} = z_n \sin\left(\frac{\pi}{3} - \vartheta\right) + \sqrt{3} \left(\frac{G}{\cos\vartheta}
+        - \rho_{fP}\right),\qquad
+        \rho_F = \rho_{fP} + \frac{2 G^2}{\cos\vartheta\,(z_n \cos^2\vartheta - 2 G)}
+
+    with all lengths in normal modules.
+
+    Parameters
+    ----------
+    teeth : int
+        z.
+    profile_shift : float
+        x; as generated, for the thickness of the tooth that is cut.
+    tip_diameter : float
+        d_a/m_n.
+    transverse_contact_ratio : float
+        eps_alpha of the pair.
+    helix_angle, pressure_angle : float [rad]
+        beta, alpha_n.
+    dedendum_coefficient, root_radius_coefficient : float
+        h_fP/m_n, rho_fP/m_n of the rack.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range; every one is told.
+    GeometryError
+        If there is no such section, or the outer point of single contact lies below the base circle.
+
+    References
+    ----------
+    ISO 6336-3:2006, form factor Y_F, method B.
+
+    Examples
+    --------
+    >>> section = root_section(16, 0.1817, 82.635 / 4.5, 1.4626, root_radius_coefficient=0.375)
+    >>> round(section.form_factor, 2), round(section.stress_correction_factor, 2)
+    (1.69, 1.85)
+    """
+    require(
+        (teeth >= 3, f"teeth: {teeth} is below 3"),
+        (0.0 < pressure_angle < 0.25 * pi, f"pressure_angle: {pressure_angle} rad is not between 0 and 45 deg"),
+        (abs(helix_angle) < 0.25 * pi, f"helix_angle: {helix_angle} rad is not within 45 deg"),
+        (-2.0 < profile_shift < 2.0, f"profile_shift: {profile_shift} is not between -2 and 2"),
+        (
+            1.0 <= transverse_contact_ratio < 3.0,
+            f"transverse_contact_ratio: {transverse_contact_ratio} is not in [1, 3)",
+        ),
+        (0.0 < tip_diameter < inf, f"tip_diameter: {tip_diameter} is not positive and finite"),
+        (0.0 < dedendum_coefficient < inf, f"dedendum_coefficient: {dedendum_coefficient} is not positive and finite"),
+        (0.0 < root_radius_coefficient < inf, f"root_radius_coefficient: {root_radius_coefficient} is not positive"),
+    )
+    rho, z = root_radius_coefficient, virtual_teeth(teeth, helix_angle, pressure_angle)
+    gap = 0.25 * pi - dedendum_coefficient * tan(pressure_angle)
+    gap -= rho * (1.0 - sin(pressure_angle)) / cos(pressure_angle)
+    depth = rho - dedendum_coefficient + profile_shift
+    angle = _touching_angle(depth, 2.0 / z * (0.5 * pi - gap) - _TANGENT, z)
+    below = depth / cos(angle) - rho
+    thickness = z * sin(_TANGENT - angle) + sqrt(3.0) * below
+    radius = rho + 2.0 * depth**2 / (cos(angle) * (z * cos(angle) ** 2 - 2.0 * depth))
+    diameter, load_angle, half = _single_contact(
+        teeth, z, profile_shift, tip_diameter, transverse_contact_ratio, helix_angle, pressure_angle
+    )
+    lever = 0.5 * ((cos(half) - sin(half) * tan(load_angle)) * diameter - z * cos(_TANGENT - angle) - below)
+    if not (thickness > 0.0 and lever > 0.0 and radius > 0.0):
+        raise GeometryError(
+            f"no critical section: thickness {thickness:.4g}, lever {lever:.4g}, radius {radius:.4g} m_n"
+        )
+    return RootSection(thickness, lever, radius, load_angle, pressure_angle)
+
+
+def _touching_angle(depth: float, offset: float, teeth: float) -> float:
+    """Angle theta at which the tangent of 30 degrees touches the fillet [rad]."""
+
+    def difference(angle: float) -> float:
+        return angle - 2.0 * depth / teeth * tan(angle) + offset
+
+    low, high = 0.0, 0.49 * pi
+    if difference(low) * difference(high) > 0.0:
+        raise GeometryError("no critical section: no tangent of 30 degrees touches the fillet")
+    return float(brentq(difference, low, high, xtol=1e-15))
+
+
+def _single_contact(
+    teeth: int,
+    virtual: float,
+    profile_shift: float,
+    tip_diameter: float,
+    transverse_contact_ratio: float,
+    helix_angle: float,
+    pressure_angle: float,
+) -> tuple[float, float, float]:
+    """d_en/m_n of the outer point of single contact of the virtual gear, alpha_Fen and gamma_e [rad]."""
+    base = 0.5 * virtual * cos(pressure_angle)
+    contact_ratio = transverse_contact_ratio / (1.0 - (sin(helix_angle) * cos(pressure_angle)) ** 2)
+    tip = 0.5 * (virtual + tip_diameter - teeth / cos(helix_angle))
+    if tip <= base:
+        raise GeometryError(f"tip_diameter: {tip_diameter} m_n lies inside the base circle")
+    roll = sqrt(tip**2 - base**2) - pi * cos(pressure_angle) * (contact_ratio - 1.0)
+    if roll < 0.0:
+        raise GeometryError("the outer point of single contact lies below the base circle")
+    diameter = 2.0 * hypot(roll, base)
+    angle = acos(2.0 * base / diameter)
+    half = (0.5 * pi + 2.0 * tan(pressure_angle) * profile_shift) / virtual
+    half += tan(pressure_angle) - pressure_angle - tan(angle) + angle
+    return diameter, angle - half, half
+
+
+def helix_angle_factor(helix_angle: float, overlap_ratio: float) -> float:
+    r"""Helix angle factor Y_beta of the edition of 2006.
+
+    .. math:: Y_\beta = 1 - \varepsilon_\beta \frac{\beta}{120°}
+
+    with 1 in the place of an overlap ratio above 1 and 30 degrees in that of a helix angle above.
+
+    Parameters
+    ----------
+    helix_angle : float [rad]
+        beta, of either hand.
+    overlap_ratio : float
+        eps_beta.
+
+    References
+    ----------
+    ISO 6336-3:2006, helix angle factor.
+
+    Examples
+    --------
+    >>> helix_angle_factor(radians(15.0), 0.8)
+    0.9
+    """
+    require(
+        (0.0 <= overlap_ratio < inf, f"overlap_ratio: {overlap_ratio} is negative or not finite"),
+        (abs(helix_angle) < 0.5 * pi, f"helix_angle: {helix_angle} rad is not within 90 deg"),
+    )
+    return 1.0 - min(1.0, overlap_ratio) * degrees(min(abs(helix_angle), _HELIX_ANGLE_LIMIT)) / 120.0
+
+
+def nominal_root_stress(tangential_force: float, face_width: float, normal_module: float, factors: float) -> float:
+    r"""Nominal tooth root stress sigma_F0 [MPa].
+
+    .. math:: \sigma_{F0} = \frac{F_t}{b\,m_n} Y_F Y_S Y_\beta
+
+    Parameters
+    ----------
+    tangential_force : float [N]
+        F_t; of the standard at the reference cylinder, 2 T_1/d_1.
+    face_width, normal_module : float [mm]
+        b, m_n.
+    factors : float
+        Product of Y_F, Y_S and Y_beta.
+
+    References
+    ----------
+    ISO 6336-3:2006, nominal tooth root stress.
+
+    Examples
+    --------
+    >>> round(nominal_root_stress(5464.48, 14.0, 4.5, 1.689 * 1.851), 0)
+    271.0
+    """
+    require_positive(
+        tangential_force=tangential_force, face_width=face_width, normal_module=normal_module, factors=factors
+    )
+    return tangential_force / (face_width * normal_module) * factors
+
+
+def face_load_factor(contact_face_load_factor: float, height_over_width: float) -> float:
+    r"""Face load factor of root stress K_Fbeta.
+
+    .. math:: K_{F\beta} = K_{H\beta}^{N_F},\qquad N_F = \frac{1}{1 + h/b + (h/b)^2}
+
+    with 1/3 in the place of a larger h/b.
+
+    Parameters
+    ----------
+    contact_face_load_factor : float
+        K_Hbeta, at least 1.
+    height_over_width : float
+        Height of the tooth over the face width h/b, of the narrower gear.
+
+    References
+    ----------
+    ISO 6336-1:2006, face load factors.
+
+    Examples
+    --------
+    >>> round(face_load_factor(1.5, 0.2), 4)
+    1.3868
+    """
+    require_positive(height_over_width=height_over_width)
+    require((1.0 <= contact_face_load_factor < inf, f"contact_face_load_factor: {contact_face_load_factor} is below 1"))
+    ratio = min(height_over_width, _LARGEST_HEIGHT_OVER_WIDTH)
+    return contact_face_load_factor ** (1.0 / (1.0 + ratio + ratio**2))

@@ -1,0 +1,135 @@
+from math import cos, inf, nan, pi, radians
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+from loaded_tca.errors import GeometryError, InputError
+from loaded_tca.gears import CylindricalGear, CylindricalMesh
+from loaded_tca.gears.cylindrical import involute
+from loaded_tca.reference.iso6336_3 import face_load_factor, helix_angle_factor, nominal_root_stress, root_section
+
+ROUNDING = 1e-12
+USUAL = {"teeth": 25, "profile_shift": 0.0, "tip_diameter": 27.0, "transverse_contact_ratio": 1.6}
+
+
+@pytest.mark.parametrize(
+    ("member", "form", "correction", "stress"), [(0, 1.689, 1.851, 271.19), (1, 1.583, 1.917, 263.17)]
+)
+def test_fzg_c14_has_the_digits_that_gearpie_prints(member, form, correction, stress):
+    """200 N m; F_t on the operating pitch circle of 73.2 mm, tips not shortened, fillets of 0.375 modules."""
+    gears = [CylindricalGear(z, 4.5, 14.0, profile_shift=x) for z, x in ((16, 0.1817), (24, 0.1715))]
+    ratio, gear = CylindricalMesh(*gears).transverse_contact_ratio, gears[member]
+    tip = 2.0 * gear.tip_radius / 4.5
+    section = root_section(gear.teeth, gear.profile_shift, tip, ratio, root_radius_coefficient=0.375)
+    assert_allclose(section.form_factor, form, atol=5e-4)
+    assert_allclose(section.stress_correction_factor, correction, atol=5e-4)
+    factors = section.form_factor * section.stress_correction_factor
+    assert_allclose(nominal_root_stress(400e3 / 73.2, 14.0, 4.5, factors), stress, atol=5e-3)
+
+
+@pytest.mark.parametrize("shift", [-0.1, 0.0, 0.4])
+def test_critical_section_is_that_of_the_fillet_that_the_rack_cuts(shift):
+    """Where the tangent of the trochoid, found by itself, has 30 degrees to the middle of the tooth."""
+    gear = CylindricalGear(25, 1.0, 10.0, profile_shift=shift)
+    radius, angle = gear.root_fillet(20001)
+    half = gear.half_thickness_angle_at_base - involute(float(np.arccos(gear.base_radius / radius[0])))
+    azimuth = half + np.abs(angle - angle[0])
+    x, y = radius * np.cos(azimuth), radius * np.sin(azimuth)
+    slope = np.arctan2(np.diff(y), -np.diff(x))
+    place = int(np.abs(slope - radians(30.0)).argmin())
+    section = root_section(25, shift, 2.0 * gear.tip_radius, 1.6)
+    assert_allclose(section.thickness, y[place] + y[place + 1], rtol=1e-4)
+    bend = np.diff(slope) / np.hypot(np.diff(x), np.diff(y))[1:]
+    assert_allclose(section.radius, 1.0 / bend[place], rtol=1e-3)
+
+
+def test_lever_at_a_contact_ratio_of_1_is_that_of_a_load_at_the_tip():
+    section = root_section(**{**USUAL, "transverse_contact_ratio": 1.0})
+    base, tip = 12.5 * cos(radians(20.0)), 13.5
+    angle = np.arccos(base / tip)
+    half = 0.5 * pi / 25 + np.tan(radians(20.0)) - radians(20.0) - np.tan(angle) + angle
+    assert_allclose(section.load_angle, angle - half, rtol=ROUNDING)
+    longer = root_section(**{**USUAL, "transverse_contact_ratio": 1.3})
+    assert longer.lever < section.lever
+    assert longer.thickness == section.thickness
+
+
+@given(st.floats(0.0, 0.5))
+def test_virtual_gear_of_a_helical_one_is_thinner_at_no_angle(angle):
+    """More virtual teeth stand on thicker roots."""
+    straight = root_section(**USUAL)
+    helical = root_section(**{**USUAL, "tip_diameter": 25.0 / cos(angle) + 2.0}, helix_angle=angle)
+    assert helical.thickness >= straight.thickness - ROUNDING
+    left = root_section(**{**USUAL, "tip_diameter": 25.0 / cos(angle) + 2.0}, helix_angle=-angle)
+    assert left == helical
+
+
+def test_sharper_fillet_has_a_larger_notch_factor():
+    factors = [root_section(**USUAL, root_radius_coefficient=rho).stress_correction_factor for rho in (0.25, 0.38)]
+    assert factors[0] > factors[1] > 1.0
+
+
+def test_helix_angle_factor_keeps_its_limits():
+    assert helix_angle_factor(0.4, 0.0) == helix_angle_factor(0.0, 2.0) == 1.0
+    assert_allclose(helix_angle_factor(radians(45.0), 3.0), 0.75, rtol=ROUNDING)
+    assert helix_angle_factor(-0.2, 0.5) == helix_angle_factor(0.2, 0.5)
+
+
+@given(st.floats(1.0, 3.0), st.floats(0.01, 2.0))
+def test_face_load_factor_lies_between_1_and_that_of_contact(contact, ratio):
+    found = face_load_factor(contact, ratio)
+    assert 1.0 <= found <= contact
+    assert_allclose(face_load_factor(contact, 5.0), contact ** (9.0 / 13.0), rtol=ROUNDING)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"teeth": 2}, "teeth: 2 is below 3"),
+        ({"profile_shift": nan}, "profile_shift: nan is not between -2 and 2"),
+        ({"tip_diameter": inf}, "tip_diameter: inf is not positive and finite"),
+        ({"transverse_contact_ratio": 0.9}, r"transverse_contact_ratio: 0.9 is not in \[1, 3\)"),
+        ({"helix_angle": 1.0}, "helix_angle: 1.0 rad is not within 45 deg"),
+        ({"pressure_angle": 0.0}, "pressure_angle: 0.0 rad is not between 0 and 45 deg"),
+        ({"dedendum_coefficient": 0.0}, "dedendum_coefficient: 0.0 is not positive"),
+        ({"root_radius_coefficient": -0.1}, "root_radius_coefficient: -0.1 is not positive"),
+    ],
+)
+def test_section_tells_what_is_out_of_range(change, message):
+    with pytest.raises(InputError, match=message):
+        root_section(**{**USUAL, **change})
+
+
+def test_section_tells_every_problem_at_once():
+    with pytest.raises(InputError) as refused:
+        root_section(2, 3.0, -1.0, 1.6)
+    assert [problem.split(":")[0] for problem in refused.value.problems] == ["teeth", "profile_shift", "tip_diameter"]
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"tip_diameter": 20.0}, "inside the base circle"),
+        ({"teeth": 8, "tip_diameter": 10.0, "transverse_contact_ratio": 2.9}, "below the base circle"),
+        ({"root_radius_coefficient": 30.0}, "no critical section"),
+    ],
+)
+def test_gears_without_a_section_are_refused(change, message):
+    with pytest.raises(GeometryError, match=message):
+        root_section(**{**USUAL, **change})
+
+
+def test_factors_refuse_what_is_out_of_range():
+    with pytest.raises(InputError, match=r"contact_face_load_factor: 0.9 is below 1"):
+        face_load_factor(0.9, 0.2)
+    with pytest.raises(InputError, match=r"height_over_width: 0.0 is not positive"):
+        face_load_factor(1.2, 0.0)
+    with pytest.raises(InputError, match=r"overlap_ratio: -1.0 is negative"):
+        helix_angle_factor(0.2, -1.0)
+    with pytest.raises(InputError, match=r"helix_angle: 2.0 rad is not within 90 deg"):
+        helix_angle_factor(2.0, 1.0)
+    with pytest.raises(InputError, match=r"face_width: 0.0 is not positive"):
+        nominal_root_stress(1.0, 0.0, 1.0, 1.0)
