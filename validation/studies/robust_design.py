@@ -204,7 +204,7 @@ def page() -> str:
         ("multiple", *designs), ((f"{m:g}", *column) for m, column in zip(MULTIPLES, curves.T, strict=True))
     )
     values = _table(
-        ("key", *designs), ((f"`{key}`", *(own[key] for own in designs.values())) for key in result.optimum)
+        ("key", *designs), ((f"`{key}`", *(round(own[key], 3) for own in designs.values())) for key in result.optimum)
     )
     alone = [float(span) for span in one.dataset["span_um"].values[:, 0, 0]]
     return f"""# A micro-geometry that stays quiet under scatter
