@@ -46,8 +46,8 @@ __all__ = ["DesignModel", "DesignResult", "Evaluation", "load_design", "optimise
 
 OBJECTIVES = ("mean", "mean + k sigma", "percentile")
 MOST_ITERATIONS = 50
-ACCURACY = 1e-3
-"""Of the objective, relative, at which SLSQP stops: held contacts scatter by 0.2 to 0.7 nm."""
+ACCURACY = 1e-5
+"""Of the objective, relative, at which SLSQP stops. At 1e-3 it gives up where a short step gains little, half way."""
 KEPT = 2e-3
 """Part of a limit by which a design may exceed it and still meet it: SLSQP meets limits to rounding of its steps."""
 CONFIRMED = 0.5
@@ -249,7 +249,7 @@ def optimise(
     if executor is None:
         searches = [_Search(model, wanted, given, progress).from_point(point) for point in points]
     else:
-        tasks = [executor.submit(_searched, model, wanted, given, point) for point in points]
+        tasks = [executor.submit(_searched, model.__reduce__(), wanted, given, point) for point in points]
         searches = [task.result() for task in tasks]
     history = [trial for found in searches for trial in found]
     best = min(
@@ -351,10 +351,16 @@ class _Search:
         return np.asarray(2.0 * np.minimum(self._room(point), 0.0) @ self._room_slopes(point))
 
 
-def _searched(model: DesignModel, objective: Objective, limits: Sequence[Limit], point: Array) -> list[Trial]:
-    """A search in whatever process this is called."""
+def _searched(
+    made: tuple[Callable[..., DesignModel], tuple[Any, ...]],
+    objective: Objective,
+    limits: Sequence[Limit],
+    point: Array,
+) -> list[Trial]:
+    """A search on a model of its own, in whatever process and thread this is called."""
+    make, given = made
     with one_thread():
-        return _Search(model, objective, limits).from_point(point)
+        return _Search(make(*given), objective, limits).from_point(point)
 
 
 def _limits(model: DesignModel, limits: Limits) -> list[Limit]:

@@ -14,7 +14,7 @@ solution for the transmission error and one more for each other figure, however 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -127,7 +127,7 @@ class DesignModel:
         pair = self.held[0].pair
         self.driving, self.micrometres = pair.driving, 1e3 * pair.base_radii[1]
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[Callable[..., DesignModel], tuple[Any, ...]]:
         """Made anew by pickle, for other processes: held contacts are large, and quickly made."""
         given = self.scene, self.variables, self.scatter, self.torques
         options = "samples", "seed", "multiple", "cells", "smoothing", "tolerance"

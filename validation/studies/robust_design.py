@@ -25,7 +25,7 @@ from scipy.optimize import differential_evolution, minimize
 from scipy.stats import norm
 
 from loaded_tca import read_scene
-from loaded_tca.studies.design import DesignModel, DesignResult, Objective, optimise, robustness
+from loaded_tca.studies.design import ACCURACY, DesignModel, DesignResult, Objective, optimise, robustness
 from validation.contact.speed_against_error import machine
 from validation.table import Row
 
@@ -124,7 +124,7 @@ def by_differences(step: float | None) -> Callable[[Counted], Any]:
     """SLSQP with differences of a step [um], None: SciPy's default of 1.5e-8 of a range."""
 
     def minimised(counted: Counted) -> Any:
-        options: dict[str, Any] = {"ftol": 1e-3, "maxiter": 50}
+        options: dict[str, Any] = {"ftol": ACCURACY, "maxiter": 50}
         point, size = (model().start - counted.low) / counted.range, model().start.size
         first = counted.both(point)[0]
 
@@ -204,7 +204,7 @@ def page() -> str:
         ("multiple", *designs), ((f"{m:g}", *column) for m, column in zip(MULTIPLES, curves.T, strict=True))
     )
     values = _table(
-        ("key", *designs), ((f"`{key}`", *(own[key] for own in designs.values())) for key in result.optimum)
+        ("key", *designs), ((f"`{key}`", *(round(own[key], 3) for own in designs.values())) for key in result.optimum)
     )
     alone = [float(span) for span in one.dataset["span_um"].values[:, 0, 0]]
     return f"""# A micro-geometry that stays quiet under scatter
