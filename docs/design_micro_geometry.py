@@ -20,8 +20,6 @@ def main() -> None:
     scene = SCENE.with_changes({"analysis.positions": 9})
     model = DesignModel(scene, VARIABLES, SCATTER, torques=TORQUES, samples=8, seed=1)
     result = optimise(model, "mean + k sigma", limits={"pressure_MPa": {300e3: 1300.0}})
-    print(result.evaluations, "evaluations; mean + sigma", result.objective, "on held contacts", result.held_objective)
-    print(result.start, result.optimum, sep="\n")
     kept = robustness(model, {"start": result.start, "optimum": result.optimum}, np.linspace(0.0, 2.0, 9))
     for name, figure in {
         "before_and_after": plot_before_and_after(result.dataset),

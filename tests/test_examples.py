@@ -62,12 +62,13 @@ def test_study_on_a_cluster_follows_hertz(tmp_path, monkeypatch):
 
 
 @pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # contacts that reach an edge
-def test_designed_pair_is_quieter(tmp_path, monkeypatch):
+@pytest.mark.parametrize("name", ["design_helical", "design_bevel"])
+def test_designed_pair_is_quieter(name, tmp_path, monkeypatch):
     """By the whole analysis, on average and in its scatter."""
     monkeypatch.chdir(tmp_path)
-    before, after = loaded(EXAMPLES / "design_helical.py").main().objective
+    before, after = loaded(EXAMPLES / f"{name}.py").main().objective
     assert after < 0.85 * before
-    assert load_design("design_helical.nc").objective == (before, after)
+    assert load_design(f"{name}.nc").objective == (before, after)
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda path: path.stem)

@@ -439,7 +439,9 @@ def robustness(
         scaled = model.with_scatter(multiple)
         found[:, column] = [wanted.of(scaled.evaluate(x).figure(figure))[0] for x in values]
     coordinates = {"design": [*designs], "multiple": np.asarray(multiples, dtype=float)}
-    return xarray.Dataset({"objective": (("design", "multiple"), found)}, coordinates)
+    unit, text = FIGURE_TEXTS[objective.figure]
+    told = {"long_name": f"{objective.told} of {text}", "units": unit}
+    return xarray.Dataset({"objective": (("design", "multiple"), found, told)}, coordinates)
 
 
 def _analysed(scene: Scene) -> dict[str, Any]:
@@ -516,7 +518,7 @@ def _require_confirmed(result: DesignResult, limits: Sequence[Limit]) -> None:
 ANALYSED = "design", "sample", "torque", "position"
 FIGURE_TEXTS = {
     "span_um": ("um", "peak-to-peak loaded transmission error at the wheel's base circle"),
-    "smooth_span_um": ("um", "the same with smooth maxima"),
+    "smooth_span_um": ("um", "smooth peak-to-peak loaded transmission error at the wheel's base circle"),
     "mean_transmission_error_um": ("um", "mean loaded transmission error at the wheel's base circle"),
     "pressure_MPa": ("MPa", "norm of the pressure away from the ends of the flanks"),
     "edge_pressure_MPa": ("MPa", "norm of the pressure beside the ends of the flanks"),
