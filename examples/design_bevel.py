@@ -1,8 +1,8 @@
 """Design the crownings of a spiral bevel pair whose mounting scatters.
 
 Lead crowning, helix slope and profile crowning of the pinion are found by exact gradients; the offset and the axial
-place of the pinion scatter. At the end the whole analysis confirms the design. Writes design_bevel.nc. Flanks alone and few
-positions keep it short: leave FEW out for a design to be made.
+place of the pinion scatter. At the end the whole analysis confirms the design. Writes design_bevel.nc. Flanks alone
+and few positions keep it short: leave FEW out for a design to be made.
 """
 
 from pathlib import Path

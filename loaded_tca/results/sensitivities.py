@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -219,6 +219,7 @@ class Sensitivities:
         InputError
             If a key is not one of these, or a deviation no finite number >= 0.
         """
+        require((isinstance(deviations, Mapping), f"deviations: {deviations!r:.60}; allowed a mapping of keys"))
         require(
             (bool(deviations), "deviations: none given; a key and its standard deviation are needed"),
             *((key in self.keys, f"{key}: is none of the keys; allowed {', '.join(self.keys)}") for key in deviations),
@@ -273,9 +274,13 @@ class Sensitivities:
 
 def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
     """Derivatives of a result to keys of its scene; see :meth:`MeshCycle.sensitivities`."""
+    listed = isinstance(keys, Iterable) and not isinstance(keys, str | bytes)
+    require((listed, f"keys: {keys!r:.80}; allowed is a list of keys"))
+    keys = [*keys]
     require(
-        (not isinstance(keys, str), f"keys: {keys!r:.80} is one text; allowed is a list of keys"),
-        (len(set(keys)) == len(keys), "keys: a key is given twice"),
+        (bool(keys), "keys: none given"),
+        *((isinstance(key, str), f"keys: {key!r:.60} is no text; allowed are keys of the scene") for key in keys),
+        *((keys.count(key) == 1, f"keys: {key} is given twice") for key in {str(key): None for key in keys}),
     )
     pair, named = result.gear_pair, [key for key in keys if key != TORQUE]
     changes, at = pair_changes(result.scene, named), [keys.index(key) for key in named]

@@ -23,7 +23,7 @@ from warnings import catch_warnings, simplefilter
 import numpy as np
 
 from loaded_tca.analysis import analyse
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, real
 from loaded_tca.errors import ConvergenceError, InputError, require
 from loaded_tca.results.files import FilePath, Part, read_dataset, variables_of, write_dataset
 from loaded_tca.scene import Scene
@@ -36,7 +36,7 @@ from loaded_tca.studies.design_model import (
     mean_pressure_norm,
 )
 from loaded_tca.studies.run import accuracy_warnings
-from loaded_tca.studies.study import is_finite
+from loaded_tca.studies.study import MOST_VARIANTS, is_finite, is_whole
 from loaded_tca.threads import one_thread
 
 if TYPE_CHECKING:
@@ -85,8 +85,8 @@ class Objective:
         require(
             (self.kind in OBJECTIVES, f"objective: {self.kind!r:.60}; allowed {', '.join(map(repr, OBJECTIVES))}"),
             (self.figure in FIGURES, f"figure: {self.figure!r:.60}; allowed {', '.join(FIGURES)}"),
-            (0.0 <= self.k < math.inf, f"k: {self.k}; allowed a finite number from 0 on"),
-            (0.0 <= self.percentile <= 100.0, f"percentile: {self.percentile}; allowed 0 to 100"),
+            (0.0 <= real(self.k) < math.inf, f"k: {self.k!r:.60}; allowed a finite number from 0 on"),
+            (0.0 <= real(self.percentile) <= 100.0, f"percentile: {self.percentile!r:.60}; allowed 0 to 100"),
         )
 
     @property
@@ -238,8 +238,10 @@ def optimise(
     """
     wanted = Objective(objective, k, percentile, figure)
     given = _limits(model, limits or {})
-    whole = isinstance(starts, int) and not isinstance(starts, bool) and starts >= 1
-    require((whole, f"starts: {starts!r:.60}; allowed a whole number from 1 on"))
+    require(
+        (is_whole(starts, 1, MOST_VARIANTS), f"starts: {starts!r:.60}; allowed a whole number from 1 on"),
+        (is_whole(seed, 0, math.inf), f"seed: {seed!r:.60}; allowed a whole number from 0 on"),
+    )
     low, range_ = model.bounds[:, 0], np.ptp(model.bounds, axis=1)
     points = [(model.start - low) / range_]
     if starts > 1:
@@ -366,14 +368,17 @@ def _searched(
 def _limits(model: DesignModel, limits: Limits) -> list[Limit]:
     """Checked limits; every problem at once."""
     problems, found = [], []
+    require((isinstance(limits, Mapping), f"limits: {limits!r:.60}; allowed a mapping of figures to highest values"))
     for figure, given in limits.items():
         if figure not in FIGURES:
             problems.append(f"limits: {figure!r:.60} is no figure; allowed {', '.join(FIGURES)}")
             continue
         by_torque = given if isinstance(given, Mapping) else {None: given}
+        if not by_torque:
+            problems.append(f"limits: {figure}: none given; allowed a highest value, or one for each of some torques")
         for torque, highest in by_torque.items():
-            chosen = tuple(np.flatnonzero(True if torque is None else np.isclose(model.torques, torque)).tolist())
-            chosen = tuple(range(model.torques.size)) if torque is None else chosen
+            near = [True if torque is None else math.isclose(one, real(torque), rel_tol=1e-6) for one in model.torques]
+            chosen = tuple(np.flatnonzero(near).tolist())
             if not chosen:
                 told = ", ".join(f"{one:g}" for one in model.torques)
                 problems.append(f"limits: {figure}: {torque!r:.40} N mm is no torque of the model; allowed {told}")
@@ -439,8 +444,8 @@ def robustness(
         scaled = model.with_scatter(multiple)
         found[:, column] = [wanted.of(scaled.evaluate(x).figure(figure))[0] for x in values]
     coordinates = {"design": [*designs], "multiple": np.asarray(multiples, dtype=float)}
-    unit, text = FIGURE_TEXTS[objective.figure]
-    told = {"long_name": f"{objective.told} of {text}", "units": unit}
+    unit, text = FIGURE_TEXTS[figure]
+    told = {"long_name": f"{wanted.told} of the {text}", "units": unit}
     return xarray.Dataset({"objective": (("design", "multiple"), found, told)}, coordinates)
 
 
@@ -500,7 +505,7 @@ def _require_confirmed(result: DesignResult, limits: Sequence[Limit]) -> None:
     """ConvergenceError if the full analysis does not show what the held contacts do."""
     (start, optimum), (held_start, held_optimum) = result.objective, result.held_objective
     problems, gain, held_gain = [], start - optimum, held_start - held_optimum
-    if gain < held_gain * (CONFIRMED if held_gain > 0.0 else 1.0 / CONFIRMED):
+    if not gain >= held_gain * (CONFIRMED if held_gain > 0.0 else 1.0 / CONFIRMED):  # nor is NaN
         problems.append(
             f"the objective goes from {held_start:.4g} to {held_optimum:.4g} on held contacts, but from {start:.4g} to "
             f"{optimum:.4g} by the analysis"
@@ -508,7 +513,7 @@ def _require_confirmed(result: DesignResult, limits: Sequence[Limit]) -> None:
     for one in limits:
         if one.figure != "edge_pressure_MPa":  # a number of the grid where edges are sharp
             largest = float(result.dataset[one.figure].sel(design="optimum").values[:, one.torques].max())
-            if largest > (1.0 + LIMITS_CONFIRMED) * one.highest:
+            if not largest <= (1.0 + LIMITS_CONFIRMED) * one.highest:
                 problems.append(f"{one.figure} is {largest:.4g} by the analysis, its limit {one.highest:g}")
     if problems:
         told = "; ".join(problems)

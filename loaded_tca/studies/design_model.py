@@ -22,9 +22,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.ndimage import binary_dilation
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, numbers, real
 from loaded_tca.compliance import require_teeth, tooth_compliance, way_out_told
-from loaded_tca.errors import InputError, require
+from loaded_tca.errors import InputError, named, require
 from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.held_contacts import HeldContacts, ShapedContacts
 from loaded_tca.loaded.load_sharing import SharedLoad
@@ -36,7 +36,7 @@ from loaded_tca.results.load_factors import load_factors
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.scene import Scene
 from loaded_tca.separation.gap_change import value_at
-from loaded_tca.studies.study import Distribution, Study, is_finite
+from loaded_tca.studies.study import Distribution, Study, is_finite, is_whole
 from loaded_tca.unloaded import ContactPoint, trace_teeth
 
 CELLS = (24, 40)
@@ -47,7 +47,7 @@ TOLERANCE = 1e-6
 """Of contacts, relative."""
 AGREEMENT = 10.0
 """That of the balance of the tooth pairs over it."""
-FEWEST_POSITIONS = 4
+FEWEST_POSITIONS, FEWEST_CELLS = 4, 4
 LINEAR = 1e-7
 """Of the linear systems of gradients, relative."""
 
@@ -113,17 +113,19 @@ class DesignModel:
         smoothing: float = SMOOTHING,
         tolerance: float = TOLERANCE,
     ) -> None:
+        for name, given in (("variables", variables), ("scatter", scatter or {})):
+            require((isinstance(given, Mapping), f"{name}: {given!r:.60}; allowed a mapping of keys"))
         self.scene, self.variables, self.scatter = scene, dict(variables), dict(scatter or {})
-        self.torques = np.asarray(scene.torques if torques is None else torques, dtype=float)
+        self.torques = np.atleast_1d(numbers("torques", scene.torques if torques is None else torques))
         self.samples, self.seed, self.multiple = samples, seed, multiple
         self.smoothing, self.tolerance = smoothing, tolerance
-        across, along = cells or scene.analysis.cells or CELLS
-        self.cells = across, along
+        self.cells = cells or scene.analysis.cells or CELLS
         self._check()
         self.start = np.array([value_at(scene, key) for key in self.keys])
         self.deviations = self._samples()
         self.own_deviations = [np.array([one.get(key, 0.0) for key in self.keys]) for one in self.deviations]
-        self.held = [self._sample(*one) for one in zip(self.deviations, self.own_deviations, strict=True)]
+        with named("within the ranges, with the scatter"):
+            self.held = [self._sample(*one) for one in zip(self.deviations, self.own_deviations, strict=True)]
         pair = self.held[0].pair
         self.driving, self.micrometres = pair.driving, 1e3 * pair.base_radii[1]
 
@@ -170,6 +172,9 @@ class DesignModel:
     def evaluate(self, x: Mapping[str, float] | ArrayLike) -> Evaluation:
         """Solve all states of a design.
 
+        Where a contact outgrows its grid, a larger one takes its place from then on: figures of designs before and
+        after differ by what two grids differ, some nanometres.
+
         Parameters
         ----------
         x : mapping of key to value, or (keys,) array
@@ -200,6 +205,8 @@ class DesignModel:
             found |= zip(states, found_together(self.held[0].pair, steps), strict=True)
             # once more those on grids that another state has outgrown meanwhile
             states = [state for state, (_, one) in found.items() if not self.held[state[0]].holds(one)]
+        idle = {t for (_, t, _), (_, one) in found.items() if one.torque == 0.0}
+        require(*((False, f"torques: {self.torques[t]:g} N mm is next to none; allowed more") for t in sorted(idle)))
         return Evaluation(self, values, [*found.values()])
 
     def _samples(self) -> list[dict[str, float]]:
@@ -247,16 +254,32 @@ class DesignModel:
 
     def _check(self) -> None:
         wanted, torques = self.scene.analysis, self.torques
-        problems = [
-            problem for key, bounds in self.variables.items() for problem in _problems_of(self.scene, key, bounds)
-        ]
+        problems = []
+        for key, bounds in self.variables.items():
+            problems += [*_problems_of_key(self.scene, key)] or [*_problems_of_range(self.scene, key, bounds)]
         for key in self.scatter:
-            problems += _problems_of(self.scene, key)
+            problems += _problems_of_key(self.scene, key)
         checks = (
             (bool(self.variables), "variables: none given; a design varies one key at least"),
             (
-                bool(torques.size) and bool((np.isfinite(torques) & (torques > 0.0)).all()),
+                bool(torques.size) and torques.ndim == 1 and bool((np.isfinite(torques) & (torques > 0.0)).all()),
                 f"torques: found {torques.tolist()}; allowed one or more [N mm], each above 0",
+            ),
+            (
+                np.shape(self.cells) == (2,) and all(is_whole(one, FEWEST_CELLS, math.inf) for one in self.cells),
+                f"cells: found {self.cells!r:.60}; allowed two whole numbers from {FEWEST_CELLS} on",
+            ),
+            (
+                0.0 < real(self.smoothing) < math.inf,
+                f"smoothing: found {self.smoothing!r:.60}; allowed a finite length [um] above 0",
+            ),
+            (
+                0.0 < real(self.tolerance) < 1.0,
+                f"tolerance: found {self.tolerance!r:.60}; allowed a number between 0 and 1",
+            ),
+            (
+                0.0 <= real(self.multiple) < math.inf,
+                f"multiple: found {self.multiple!r:.60}; allowed a finite number from 0 on",
             ),
             (
                 wanted.positions >= FEWEST_POSITIONS,
@@ -272,20 +295,24 @@ class DesignModel:
             raise InputError(problems)
 
 
-def _problems_of(scene: Scene, key: str, bounds: Any = None) -> Iterator[str]:
-    """Problems of a key that scatters, or of one that varies within bounds."""
+def _problems_of_key(scene: Scene, key: Any) -> Iterator[str]:
+    """Problems of a key that varies or scatters."""
+    if not isinstance(key, str):
+        yield f"{key!r:.60}: no text; allowed a key as of scene.with_changes"
+        return
     try:
-        value = value_at(scene, key)
+        value_at(scene, key)
     except InputError as error:
         yield from (f"{key}: {problem}" for problem in error.problems)
-        return
-    if bounds is None:
-        return
+
+
+def _problems_of_range(scene: Scene, key: str, bounds: Any) -> Iterator[str]:
+    """Problems of the range of a key that varies."""
     if key.startswith("mounting."):
         yield f"{key}: a mounting error, which no design shapes; allowed in scatter"
     elif not (np.shape(bounds) == (2,) and all(map(is_finite, bounds)) and bounds[0] < bounds[1]):
         yield f"{key}: range {bounds!r:.60}; allowed two numbers, the lower one first"
-    elif not bounds[0] <= value <= bounds[1]:
+    elif not bounds[0] <= (value := value_at(scene, key)) <= bounds[1]:
         yield f"{key}: the scene, where a design starts, has {value:g}; allowed {bounds[0]:g} to {bounds[1]:g}"
 
 
@@ -332,16 +359,24 @@ class Evaluation:
 
     def figure(self, name: str, torques: Sequence[int] | None = None) -> Array:
         """One of ``FIGURES``, (sample, torque), under some of the torques by their indices, or under all."""
-        samples, chosen = range(len(self.model.deviations)), self._chosen(torques)
+        samples, chosen = range(len(self.model.deviations)), self._chosen(name, torques)
         return np.array([[self._figure(name, s, t)[0] for t in chosen] for s in samples])
 
     def gradient(self, name: str, torques: Sequence[int] | None = None) -> Array:
         """Its gradient, (sample, torque, key), per unit of the key."""
-        samples, chosen = range(len(self.model.deviations)), self._chosen(torques)
+        samples, chosen = range(len(self.model.deviations)), self._chosen(name, torques)
         return np.array([[self._gradient(name, s, t) for t in chosen] for s in samples])
 
-    def _chosen(self, torques: Sequence[int] | None) -> Sequence[int]:
-        return range(self.model.torques.size) if torques is None else torques
+    def _chosen(self, name: str, torques: Sequence[int] | None) -> Sequence[int]:
+        every = range(self.model.torques.size)
+        require(
+            (name in FIGURES, f"figure: {name!r:.60}; allowed {', '.join(FIGURES)}"),
+            (
+                torques is None or {*torques} <= {*every},
+                f"torques: {torques!r:.60}; allowed indices 0 to {len(every) - 1}",
+            ),
+        )
+        return every if torques is None else torques
 
     def _figure(self, name: str, s: int, t: int) -> tuple[float, Array]:
         """A figure, and its derivatives to the errors of the positions [um], or to the forces of all active cells."""

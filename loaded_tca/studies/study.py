@@ -98,11 +98,11 @@ class Study:
             raise InputError(f"factors: all together {count:.4g} variants; allowed up to {MOST_VARIANTS}")
 
     def _problems_of_numbers(self) -> Iterator[str]:
-        if not _is_whole(self.seed, 0, math.inf):
+        if not is_whole(self.seed, 0, math.inf):
             yield f"seed: found {shown(self.seed)}; allowed a whole number from 0 on"
         if not self.distributions and self.samples is not None:
             yield "samples: given without distributions, of which they are"
-        elif self.distributions and not _is_whole(self.samples, 1, MOST_VARIANTS):
+        elif self.distributions and not is_whole(self.samples, 1, MOST_VARIANTS):
             found = "missing" if self.samples is None else f"found {shown(self.samples)}"
             yield f"samples: {found}; allowed a whole number from 1 to {MOST_VARIANTS}, with distributions"
 
@@ -182,12 +182,13 @@ class Study:
         from scipy.stats import qmc  # half a second, which studies without distributions do not need
 
         sobol = qmc.Sobol(len(self.distributions), scramble=True, rng=self.seed)
-        unit = sobol.random_base2((self.samples - 1).bit_length())[: self.samples]
+        unit = sobol.random_base2(int(self.samples - 1).bit_length())[: self.samples]
         columns = zip(self.distributions.values(), np.clip(unit, NEVER, 1.0 - NEVER).T, strict=True)
         return np.stack([np.asarray(one.ppf(column), dtype=float) for one, column in columns], axis=1)
 
 
-def _is_whole(value: Any, low: float, high: float) -> bool:
+def is_whole(value: Any, low: float, high: float) -> bool:
+    """Whether a value is a whole number, but no boolean, within a range."""
     return isinstance(value, Integral) and not isinstance(value, bool) and low <= int(value) <= high
 
 

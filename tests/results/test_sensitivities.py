@@ -202,6 +202,7 @@ def test_spread_adds_up_the_squares_of_independent_deviations():
         ({CROWNING: -1.0}, "found -1.0"),
         ({CROWNING: "1"}, "found '1'"),
         ({}, "none given"),
+        ([CROWNING], "allowed a mapping"),
     ],
 )
 def test_spread_under_deviations_that_are_none_is_one_clear_error(deviations, told):
@@ -229,7 +230,10 @@ def test_state_without_load_has_no_sensitivities():
         (["pinion.modifications.lead_crownin_um"], "unknown key"),
         (["pinion.teeth"], "does not change the gap alone"),
         ([CROWNING, CROWNING], "given twice"),
-        (CROWNING, "one text"),
+        (CROWNING, "allowed is a list of keys"),
+        (None, "allowed is a list of keys"),
+        ([], "none given"),
+        ([CROWNING, 3], "3 is no text"),
     ],
 )
 def test_keys_that_are_no_parameters_are_one_clear_error(keys, told):

@@ -238,6 +238,17 @@ def test_smooth_span_is_above_the_span_by_little():
         ({"variables": {CROWNING: 6.0}}, "lead_crowning_um: range 6.0; allowed two numbers"),
         ({"scatter": {"mounting.no_um": [1.0]}}, "mounting.no_um: unknown key"),
         ({"scatter": {MISALIGNMENT: [1.0], CROWNING: norm(0.0, 1.0)}}, "distributions and given values"),
+        ({"variables": {CROWNING: None}}, "lead_crowning_um: range None; allowed two numbers"),
+        ({"variables": {3: (1.0, 2.0)}}, "3: no text; allowed a key"),
+        ({"variables": [CROWNING]}, "variables: .*; allowed a mapping"),
+        ({"scatter": {CROWNING: [-6.0, 6.0]}}, "with the scatter: .*lead_crowning_um: found -"),
+        ({"smoothing": 0.0}, "smoothing: found 0.0; allowed a finite length"),
+        ({"smoothing": float("nan")}, "smoothing: found nan"),
+        ({"tolerance": "a"}, "tolerance: found 'a'"),
+        ({"multiple": -1.0}, "multiple: found -1.0"),
+        ({"cells": (1, 1)}, r"cells: found \(1, 1\); allowed two whole numbers from 4 on"),
+        ({"cells": 5}, "cells: found 5"),
+        ({"torques": "abc"}, "torques: .* not 'abc'"),
         ({"torques": []}, r"torques: found \[\]; allowed one or more"),
         ({"torques": [-1.0]}, r"torques: found \[-1.0\]; allowed one or more"),
         ({"scene": SCENE.with_changes({"analysis.positions": 2})}, "analysis.positions: 2; allowed from"),
@@ -259,6 +270,12 @@ def test_designs_off_the_ranges_are_refused():
         one.evaluate({})
     with pytest.raises(InputError, match="x: shape"):
         one.evaluate([5.0, 5.0])
+    with pytest.raises(InputError, match="figure: 'no'; allowed span_um"):
+        one.evaluate([5.0]).figure("no")
+    with pytest.raises(InputError, match="allowed indices 0 to"):
+        one.evaluate([5.0]).gradient("span_um", [7])
+    with pytest.raises(InputError, match="1e-09 N mm is next to none"):
+        model(variables={CROWNING: (1.0, 12.0)}, scatter=None, torques=[1e-9, 1e5]).evaluate([5.0])
     with pytest.raises(InputError, match="model: without scatter"):
         robustness(one, {}, [1.0])
 
@@ -270,7 +287,12 @@ def test_designs_off_the_ranges_are_refused():
         ({"figure": "noise"}, "figure: 'noise'; allowed span_um"),
         ({"k": -1.0}, "k: -1.0; allowed"),
         ({"percentile": 101.0}, "percentile: 101.0; allowed 0 to 100"),
+        ({"k": "1"}, "k: '1'; allowed"),
         ({"starts": 0}, "starts: 0; allowed a whole number"),
+        ({"seed": -1}, "seed: -1; allowed a whole number"),
+        ({"limits": [1.0]}, "limits: .*; allowed a mapping"),
+        ({"limits": {"span_um": {}}}, "limits: span_um: none given"),
+        ({"limits": {"span_um": {"a": 1.0}}}, "span_um: 'a' N mm is no torque of the model"),
         ({"limits": {"noise": 1.0}}, "limits: 'noise' is no figure; allowed span_um"),
         ({"limits": {"face_load_factor": {99e3: 1.5}}}, "face_load_factor: 99000.0 N mm is no torque of the model"),
         ({"limits": {"face_load_factor": -1.5}}, "face_load_factor: -1.5; allowed a finite number above 0"),
