@@ -293,24 +293,20 @@ def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
     contacts, separations = [grid.contact for grid in grids], [grid.separation for grid in grids]
     found = contact_changes(pair, contacts, separations, [grid.active for grid in grids], changes)
     # the gears of a pair are turned back into contact first, then closed under load
-    position, initial = (
-        places[1],
-        np.array([unloaded[n][grid.number].initial_separation for n, grid in zip(places[1], grids, strict=True)]),
-    )
-    turned = (
-        pair.driving * (result.path.transmission_error[position] - result.transmission_error[*places[:2]]) - initial
-    )
+    initial = [unloaded[n][grid.number].initial_separation for n, grid in zip(places[1], grids, strict=True)]
+    back = result.path.transmission_error[places[1]] - result.transmission_error[*places[:2]]
+    turned = pair.driving * back - initial
     beyond = found.at_contact - turned * found.levers[1]
     gaps, forces = np.zeros((len(keys), tangents.grid.size)), result.normal_force[*places]
     gaps[at] = found.gaps - found.at_contact[:, tangents.grid] * found.lever_parts + beyond[:, tangents.grid]
     if bending is not None:
-        add_shifted_bending(gaps, at, found.shifts, tangents, bending)
+        _add_shifted_bending(gaps, at, found.shifts, tangents, bending)
     lever_torques = np.zeros((len(keys), len(grids)))
     lever_torques[at] = forces * found.levers[0]
     return Sensitivities(tuple(keys), result, tangents, states, places[2], gaps, lever_torques)
 
 
-def add_shifted_bending(
+def _add_shifted_bending(
     gaps: Array, rows: Sequence[int], shifts: Array, tangents: Tangents, bending: BendingModel
 ) -> None:
     """Add to the gaps what teeth bend more under the forces as they are, as contact points move.
