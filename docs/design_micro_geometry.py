@@ -22,8 +22,8 @@ def main() -> None:
     result = optimise(model, "mean + k sigma", limits={"pressure_MPa": {300e3: 1300.0}})
     kept = robustness(model, {"start": result.start, "optimum": result.optimum}, np.linspace(0.0, 2.0, 9))
     for name, figure in {
-        "before_and_after": plot_before_and_after(result.dataset),
-        "over_torque": plot_peak_to_peak_over_torque(result.dataset),
+        "before_and_after": plot_before_and_after(result),
+        "over_torque": plot_peak_to_peak_over_torque(result),
         "robustness": plot_robustness(kept),
     }.items():
         figure.savefig(FOLDER / f"design_{name}.png", dpi=100)

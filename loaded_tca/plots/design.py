@@ -17,7 +17,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Callable
 from itertools import cycle
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -34,6 +34,8 @@ from loaded_tca.scene import Scene, parse_scene
 if TYPE_CHECKING:
     import xarray
 
+    from loaded_tca.studies.design import DesignResult
+
 COLOURS = DISTINCT_COLOURS[1], DISTINCT_COLOURS[0], *DISTINCT_COLOURS[2:]
 TORQUE_AXIS = "pinion torque [N m]"
 SMALLEST_SPAN_UM = 1e-3
@@ -42,15 +44,15 @@ LONGEST_LABEL = 48
 BASE_CIRCLE = "at the wheel's base circle [µm]"
 
 
-def plot_before_and_after(design: xarray.Dataset, torque: int | None = None) -> Figure:
+def plot_before_and_after(design: xarray.Dataset | DesignResult, torque: int | None = None) -> Figure:
     """Transmission error and peak pressure over the positions, load factor and peak-to-peak over the torque.
 
     Lines are the mean of the samples, bands all of them.
 
     Parameters
     ----------
-    design : xarray.Dataset
-        As the top of this module describes it.
+    design : DesignResult or xarray.Dataset
+        What ``studies.optimise`` returns, or a dataset as the top of this module describes it.
     torque : int, optional
         Index of the torque of the curves over the positions; default: the largest one.
 
@@ -63,7 +65,7 @@ def plot_before_and_after(design: xarray.Dataset, torque: int | None = None) -> 
     InputError
         If a variable is missing.
     """
-    _require(design, "transmission_error", "peak_pressure", "span_um", "face_load_factor")
+    design = _with(design, "transmission_error", "peak_pressure", "span_um", "face_load_factor")
     scene = _scene(design)
     pair = scene.pair()
     torques = 1e-3 * design["torque"].values
@@ -89,13 +91,13 @@ def plot_before_and_after(design: xarray.Dataset, torque: int | None = None) -> 
     return _finished(figure, design, error, scene.title, _designs(design))
 
 
-def plot_peak_to_peak_over_torque(design: xarray.Dataset) -> Figure:
+def plot_peak_to_peak_over_torque(design: xarray.Dataset | DesignResult) -> Figure:
     """Peak-to-peak transmission error over the torque: mean of the samples, and the band of all of them.
 
     Parameters
     ----------
-    design : xarray.Dataset
-        As the top of this module describes it.
+    design : DesignResult or xarray.Dataset
+        What ``studies.optimise`` returns, or a dataset as the top of this module describes it.
 
     Returns
     -------
@@ -106,7 +108,7 @@ def plot_peak_to_peak_over_torque(design: xarray.Dataset) -> Figure:
     InputError
         If a variable is missing.
     """
-    _require(design, "span_um")
+    design = _with(design, "span_um")
     figure, axes = style.one_panel()
     _draw(axes, design, "span_um", 1e-3 * design["torque"].values)
     axes.set(xlabel=TORQUE_AXIS, ylabel=f"peak-to-peak transmission error\n{BASE_CIRCLE}")
@@ -122,7 +124,7 @@ def plot_robustness(design: xarray.Dataset) -> Figure:
     Parameters
     ----------
     design : xarray.Dataset
-        As the top of this module describes it.
+        What ``studies.robustness`` returns.
 
     Returns
     -------
@@ -131,9 +133,10 @@ def plot_robustness(design: xarray.Dataset) -> Figure:
     Raises
     ------
     InputError
-        If it has no objective.
+        If it has no objective over a multiple of the scatter.
     """
-    _require(design, "objective")
+    design = _with(design, "objective")
+    require(("multiple" in design.dims, "design: no robustness curve; allowed what studies.robustness returns"))
     objective = design["objective"].transpose("design", "multiple")
     figure, axes = style.one_panel()
     for name, curve, (colour, marker) in zip(_names(design), objective.values, _styles(), strict=False):
@@ -146,9 +149,13 @@ def plot_robustness(design: xarray.Dataset) -> Figure:
     return _finished(figure, design, axes, f"robustness, {_designs(design)}")
 
 
-def _require(design: xarray.Dataset, *names: str) -> None:
-    missing = [name for name in names if name not in design]
+def _with(design: xarray.Dataset | DesignResult, *names: str) -> xarray.Dataset:
+    """The dataset, of a result of a design its own, if it has the variables."""
+    given: Any = design
+    dataset: xarray.Dataset = getattr(given, "dataset", given)
+    missing = [name for name in names if name not in dataset]
     require((not missing, f"design: {', '.join(missing)} missing; the dataset of a design has them"))
+    return dataset
 
 
 def _draw(

@@ -75,6 +75,9 @@ class Sensitivities:
     gaps: Array
     lever_torques: Array
 
+    def __repr__(self) -> str:
+        return f"Sensitivities({len(self.keys)} keys, {self.places.shape[1]} states)"
+
     @cached_property
     def torques(self) -> Array:
         """Growth of the torques that the forces balance with the levers as they are, (keys, states) [N mm per unit]."""

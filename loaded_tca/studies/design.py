@@ -137,6 +137,14 @@ class DesignResult:
 
     dataset: xarray.Dataset
 
+    def __repr__(self) -> str:
+        before, after = self.objective
+        told = self.dataset.attrs["warnings"].count("\n") + 1 if self.dataset.attrs["warnings"] else 0
+        values = ", ".join(f"{key} = {value:.4g}" for key, value in self.optimum.items())
+        figure = f"{self.dataset.attrs['objective']} of {self.dataset.attrs['figure']}"
+        warned = f", {told} accuracy warnings in dataset.attrs" if told else ""
+        return f"DesignResult({figure}: {before:.4g} -> {after:.4g}, {values}{warned})"
+
     @property
     def start(self) -> dict[str, float]:
         """Values of the keys where the design started."""
@@ -209,13 +217,15 @@ def optimise(
         Of the figure, its mean over the torques, over the samples of the scatter.
     limits : mapping, optional
         Figure -> its highest value under every torque with every sample, or a mapping of torques [N mm] to values.
-        ``edge_pressure_MPa`` keeps contacts away from the ends of the flanks.
+        ``pressure_MPa`` is a norm, above or below the highest pressure by up to a fifth; ``edge_pressure_MPa`` keeps
+        contacts away from the ends of the flanks.
     k : float
         Standard deviations on top of the mean.
     percentile : float
         From 0 to 100.
     figure : str
-        One of ``FIGURES``; the default has derivatives everywhere.
+        "span_um", "smooth_span_um" (which has derivatives everywhere), "mean_transmission_error_um", "pressure_MPa",
+        "edge_pressure_MPa" or "face_load_factor".
     starts : int
         Designs to start from: that of the scene, then points of a scrambled Sobol sequence within the ranges.
     seed : int

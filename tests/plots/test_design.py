@@ -1,5 +1,7 @@
 """Pictures of a design: what is drawn is what its dataset holds."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import xarray
@@ -122,3 +124,14 @@ def test_every_picture_is_drawn(plot, one, tmp_path):
 def test_what_a_design_does_not_have_is_told(plot, name):
     with pytest.raises(InputError, match=f"design: {name} missing"):
         plot(design().drop_vars(name, errors="ignore"))
+
+
+@pytest.mark.parametrize("plot", PLOTS)
+def test_result_of_a_design_is_drawn_as_its_dataset(plot):
+    found = plot(SimpleNamespace(dataset=design()))
+    assert_allclose(found.axes[0].lines[0].get_ydata(), plot(design()).axes[0].lines[0].get_ydata(), rtol=0)
+
+
+def test_robustness_curve_of_a_result_without_one_is_refused():
+    with pytest.raises(InputError, match="no robustness curve; allowed what"):
+        plot_robustness(design().assign(objective=("design", [1.0, 0.5])))

@@ -165,6 +165,12 @@ def test_a_design_is_quieter_within_its_limit(found):
     assert result.start == {CROWNING: 5.0, SLOPE: 0.0, RELIEF: 8.0}
 
 
+def test_a_result_says_what_was_found(found):
+    result, _ = found
+    before, after = result.objective
+    assert f"mean + 1 sigma of smooth_span_um: {before:.4g} -> {after:.4g}, {CROWNING} = " in repr(result)
+
+
 def test_a_result_comes_back_from_its_file(found, tmp_path):
     result, _ = found
     result.save(tmp_path / "design.nc")
