@@ -56,18 +56,18 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
     )
     if wanted.load_sharing:
         mesh = trace_teeth(pair, angles)
-        bending = _bending(scene, pair, farthest_apart(mesh))
+        bending = bending_of(scene, pair, farthest_apart(mesh))
         carried = carried_by_all(pair, mesh, torques, grid, bending, progress)
     else:
         path = trace_contact(pair, angles)
-        bending = _bending(scene, pair, 1)
+        bending = bending_of(scene, pair, 1)
         carried = carried_by_one(pair, path, torques, grid, bending, progress)
     torsion = 0.0 if bending is None else sum(bending.body_torsion)
     warn_of_accuracy(pair, grid, carried, load_sharing=wanted.load_sharing, body_torsion=torsion)
     return mesh_cycle(scene, pair, carried)
 
 
-def _bending(scene: Scene, pair: GearPair, neighbours: int) -> ToothCompliance | None:
+def bending_of(scene: Scene, pair: GearPair, neighbours: int) -> ToothCompliance | None:
     """Bending of the teeth, where loaded ones are up to so many pitches apart; None if the scene asks for none."""
     if scene.analysis.compliance == "contact":
         return None

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from scipy.ndimage import binary_dilation
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.results.files import Part
 
 
@@ -74,11 +74,16 @@ class PressureMap:
         return self.origin + x[:, None, None] * self.axes[0] + y[:, None] * self.axes[1]
 
     @cached_property
+    def beside_end(self) -> Mask:
+        """Cells (nx, ny) beside the end of the material or of the grid, or beyond that of the material."""
+        beyond = np.pad(np.isinf(self.gap), 1, constant_values=True)
+        return np.asarray(binary_dilation(beyond, np.ones((3, 3), dtype=bool))[1:-1, 1:-1])
+
+    @cached_property
     def edge_cell(self) -> tuple[int, int]:
         """Indices of the cell with the largest pressure of those beside the end of the material or of the grid."""
-        beyond = np.pad(np.isinf(self.gap), 1, constant_values=True)
-        beside = binary_dilation(beyond, np.ones((3, 3), dtype=bool))[1:-1, 1:-1]
-        across, along = np.unravel_index(int(np.where(beside, self.pressure, -1.0).argmax()), beside.shape)
+        beside = np.where(self.beside_end, self.pressure, -1.0)
+        across, along = np.unravel_index(int(beside.argmax()), beside.shape)
         return int(across), int(along)
 
     def place(self, x: float, y: float) -> tuple[float, float]:

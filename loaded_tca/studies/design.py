@@ -18,7 +18,6 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
-from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
@@ -463,13 +462,10 @@ def _analysed(scene: Scene) -> dict[str, Any]:
     """What is kept of the analysis of a scene, over its torques; in whatever process this is called."""
     with one_thread(), accuracy_warnings() as told:
         result = analyse(scene)
-    with np.errstate(all="ignore"), catch_warnings():
-        simplefilter("ignore", RuntimeWarning)  # all NaN where nothing is in contact
-        peak = np.nanmax(result.peak_pressure, axis=2)
     errors = 1e3 * result.wheel_base_radius * result.transmission_error[:, :-1]
     found = {
         "transmission_error": result.transmission_error,
-        "peak_pressure": peak,
+        "peak_pressure": np.fmax.reduce(result.peak_pressure, axis=2),
         "face_load_factor": result.face_load_factor,
         "transverse_load_factor": result.transverse_load_factor,
         "warnings": [*dict.fromkeys(told)],

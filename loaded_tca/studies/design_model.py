@@ -20,10 +20,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.ndimage import binary_dilation
 
+from loaded_tca.analysis import bending_of
 from loaded_tca.arrays import Array, numbers, real
-from loaded_tca.compliance import require_teeth, tooth_compliance, way_out_told
 from loaded_tca.errors import InputError, named, require
 from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.held_contacts import HeldContacts, ShapedContacts
@@ -242,11 +241,7 @@ class DesignModel:
         scene = self.scene.with_changes(self._at(deviation, dict(zip(self.keys, self.start.tolist(), strict=True))))
         pair = scene.pair()
         mesh = trace_teeth(pair, pair.pitch * (np.arange(self.positions) / self.positions - 0.5))
-        bending = None
-        if scene.analysis.compliance != "contact":
-            require_teeth(pair)
-            with way_out_told():
-                bending = tooth_compliance(pair, neighbours=max(farthest_apart(mesh), 1))
+        bending = bending_of(scene, pair, farthest_apart(mesh))
         ranges = {
             key: (low + by, high + by) for (key, (low, high)), by in zip(self.variables.items(), own, strict=True)
         }
@@ -450,9 +445,7 @@ def mean_pressure_norm(positions: Sequence[Sequence[PressureMap]], *, at_edges: 
     """
     found = []
     for one in (one for position in positions for one in position):
-        beyond = np.pad(np.isinf(one.gap), 1, constant_values=True)
-        beside = binary_dilation(beyond, np.ones((3, 3), dtype=bool))[1:-1, 1:-1]
-        kept = np.where(beside == at_edges, one.pressure, 0.0)
+        kept = np.where(one.beside_end == at_edges, one.pressure, 0.0)
         found.append(pressure_norm(kept, np.ones(kept.shape), one.spacing))
     largest = max((norm for norm, _ in found), default=0.0)
     if largest == 0.0:
