@@ -14,7 +14,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError, named
 from loaded_tca.loaded.load_sharing import SharedLoad, tooth_pairs_at, torque_shared
 from loaded_tca.loaded.pair_coupling import BendingModel
-from loaded_tca.loaded.sensitivity import LoadedGrid, torque_rates
+from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_states
 from loaded_tca.loaded.together import Result, Steps, found_together
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, contact_under_load
 from loaded_tca.pairs.gear_pair import GearPair
@@ -44,9 +44,8 @@ class Carried:
         By torque, position and pair.
     rotation : (m, n) array [rad]
         Of the wheel back by the load; NaN where nothing is in contact.
-    torque_rate : (m, n) array [N mm/rad]
-        Tangent of the torque over the rotation with the cells in contact as they are; zero without load, NaN where
-        nothing is in contact.
+    states : LoadedStates
+        Torque by torque all positions, with the cells in contact as they are.
     share : (m, n, pairs) array
         In the torque.
     tooth_deflection : (m, n, pairs) array [mm]
@@ -59,9 +58,14 @@ class Carried:
     paths: tuple[ContactPath, ...]
     contacts: Contacts
     rotation: Array
-    torque_rate: Array
+    states: LoadedStates
     share: Array
     tooth_deflection: Array
+
+    @property
+    def torque_rate(self) -> Array:
+        """Tangent (m, n) of the torque over the rotation [N mm/rad]; zero without load, NaN where nothing touches."""
+        return np.where(np.isnan(self.rotation), math.nan, self.states.stiffness.reshape(self.rotation.shape))
 
 
 def carried_by_one(
@@ -104,8 +108,8 @@ def carried_by_one(
             rotation[t, n] = loaded.solution.approach / loaded.contact.wheel_lever
     share = np.broadcast_to(np.where(path.in_contact, 1.0, math.nan)[:, None], (*shape, 1)).copy()
     number = np.zeros(1, dtype=int)
-    rate = _torque_rates(number, contacts, bending)
-    return Carried(path, torques, number, (path,), contacts, rotation, rate, share, deflection[..., None])
+    states = _loaded_states(number, contacts, bending)
+    return Carried(path, torques, number, (path,), contacts, rotation, states, share, deflection[..., None])
 
 
 def carried_by_all(
@@ -155,7 +159,7 @@ def carried_by_all(
         paths=tuple(in_gear_angles),
         contacts=contacts,
         rotation=np.array([one.rotation for one in shared.values()]).reshape(shape),
-        torque_rate=_torque_rates(mesh.pairs[columns], contacts, bending),
+        states=_loaded_states(mesh.pairs[columns], contacts, bending),
         share=share,
         tooth_deflection=deflection,
     )
@@ -174,16 +178,15 @@ def _found(
     return list(zip(states, found, strict=True))
 
 
-def _torque_rates(pairs: NDArray[np.int_], contacts: Contacts, bending: BendingModel | None) -> Array:
-    """Tangents of all torques and positions; NaN where nothing is in contact."""
+def _loaded_states(pairs: NDArray[np.int_], contacts: Contacts, bending: BendingModel | None) -> LoadedStates:
+    """Tooth pairs under load of all torques and positions."""
+    numbers = pairs.tolist()
     states = [
-        [(number, one) for number, one in zip(pairs.tolist(), at, strict=True) if one is not None]
+        [LoadedGrid.of(number, one) for number, one in zip(numbers, at, strict=True) if one is not None]
         for positions in contacts
         for at in positions
     ]
-    rates = torque_rates([[LoadedGrid.of(number, loaded) for number, loaded in state] for state in states], bending)
-    rates[[not state for state in states]] = math.nan
-    return rates.reshape(len(contacts), -1)
+    return loaded_states(states, bending)
 
 
 @contextmanager

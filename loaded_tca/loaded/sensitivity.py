@@ -51,7 +51,7 @@ RATE_TOLERANCE = 1e-6
 """The same where c alone is wanted, which then errs by at most as much."""
 MOST_ITERATIONS = 500
 CELLS_TOGETHER = 2**15
-"""Of the states whose tangents :func:`torque_rates` finds together, about: more take more memory and save no time."""
+"""Of the states whose answers :func:`loaded_states` finds together, about: more take more memory and save no time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +68,8 @@ class LoadedGrid:
         Half-spaces, slice compliance and cover on that grid; its gap is of no account.
     pressure : (nx, ny) array [MPa]
         Its solution.
+    bending : (ny, ny) array or None [mm/N]
+        Compliance of its slices by the teeth, without that of free edges.
     """
 
     number: int
@@ -75,11 +77,13 @@ class LoadedGrid:
     separation: Separation
     problem: ContactProblem
     pressure: Array
+    bending: Array | None = None
 
     @classmethod
     def of(cls, number: int, loaded: LoadedContact) -> LoadedGrid:
         """Of a solved contact."""
-        return cls(number, loaded.contact, loaded.separation, loaded.solution.problem, loaded.solution.pressure)
+        solution = loaded.solution
+        return cls(number, loaded.contact, loaded.separation, solution.problem, solution.pressure, loaded.bending)
 
     @cached_property
     def active(self) -> Mask:
@@ -100,6 +104,8 @@ class Tangents:
         That the pairs of a state displace each other by; default: they do not.
     tolerance : float
         Of the linear systems, relative.
+    by_rotation : (n,) array, optional [N/rad]
+        u, if it is known.
 
     Attributes
     ----------
@@ -124,7 +130,11 @@ class Tangents:
     """
 
     def __init__(
-        self, states: Sequence[Sequence[LoadedGrid]], bending: BendingModel | None = None, tolerance: float = TOLERANCE
+        self,
+        states: Sequence[Sequence[LoadedGrid]],
+        bending: BendingModel | None = None,
+        tolerance: float = TOLERANCE,
+        by_rotation: Array | None = None,
     ) -> None:
         self._tolerance = tolerance
         self.grids = tuple(grid for state in states for grid in state)
@@ -138,7 +148,7 @@ class Tangents:
         self._coupling = None if bending is None else _coupling(states, bending)
         levers = [(grid.contact.pinion_lever, grid.contact.wheel_lever) for grid in self.grids]
         self.pinion_levers, self.wheel_levers = np.array(levers).reshape(-1, 2).T[:, self.grid]
-        self.by_rotation = self.solved(self.wheel_levers)
+        self.by_rotation = self.solved(self.wheel_levers) if by_rotation is None else by_rotation
         self.stiffness = self.summed(self.pinion_levers * self.by_rotation)
 
     @cached_property
@@ -164,6 +174,10 @@ class Tangents:
     def _first(self) -> Indices:
         """First cell of each state."""
         return np.cumsum(self._sizes) - self._sizes
+
+    def by_state(self, values: Array) -> list[Array]:
+        """Values (n,) of each state."""
+        return np.split(values, self._first[1:])
 
     def spread(self, values: Array) -> Array:
         """Numbers (..., states) at the cells (..., n) of each state."""
@@ -248,26 +262,53 @@ class Tangents:
         return largest * found
 
 
-def torque_rates(
-    states: Sequence[Sequence[LoadedGrid]], bending: BendingModel | None = None, tolerance: float = RATE_TOLERANCE
-) -> Array:
-    """Tangents c (states,) [N mm/rad] of the torque over the rotation, many states at a time.
+@dataclass(frozen=True, eq=False)
+class LoadedStates:
+    """Tooth pairs under load of many states, and how their forces answer to the rotation.
 
-    A contact without a cell between the bounds gives way without more force: it has no part in c, which is zero where
-    no contact has any.
+    Attributes
+    ----------
+    grids : tuple of tuples of LoadedGrid
+        Of each state those with a cell between the bounds: the others give way without more force.
+    bending : BendingModel or None
+        That the pairs of a state displace each other by.
+    by_rotation : tuple of arrays [N/rad]
+        u at the active cells of each state.
+    stiffness : (states,) array [N mm/rad]
+        c, the tangent dT/d rotation; zero where no grid has a cell between the bounds.
+    """
+
+    grids: tuple[tuple[LoadedGrid, ...], ...]
+    bending: BendingModel | None
+    by_rotation: tuple[Array, ...]
+    stiffness: Array
+
+    def tangents(self, tolerance: float) -> Tangents:
+        """Linear answers of all states that have any, their systems to be solved to a tolerance."""
+        states = [state for state in self.grids if state]
+        return Tangents(states, self.bending, tolerance, np.concatenate(self.by_rotation))
+
+
+def loaded_states(
+    states: Sequence[Sequence[LoadedGrid]], bending: BendingModel | None = None, tolerance: float = RATE_TOLERANCE
+) -> LoadedStates:
+    """Answers of the forces of many states to the rotation, some states at a time.
 
     Parameters
     ----------
     states, bending, tolerance
         As of :class:`Tangents`; grids may be without active cells.
     """
-    active = [[grid for grid in state if grid.active.any()] for state in states]
-    found = np.zeros(len(states))
-    sizes = np.cumsum([sum(grid.active.size for grid in state) for state in active])
-    for _, group in groupby(np.flatnonzero([len(state) > 0 for state in active]), lambda n: sizes[n] // CELLS_TOGETHER):
+    grids = tuple(tuple(grid for grid in state if grid.active.any()) for state in states)
+    stiffness, by_rotation = np.zeros(len(grids)), [np.zeros(0)] * len(grids)
+    sizes = np.cumsum([sum(grid.active.size for grid in state) for state in grids])
+    for _, group in groupby(np.flatnonzero([len(state) > 0 for state in grids]), lambda n: sizes[n] // CELLS_TOGETHER):
         some = list(group)
-        found[some] = Tangents([active[n] for n in some], bending, tolerance).stiffness
-    return found
+        tangents = Tangents([grids[n] for n in some], bending, tolerance)
+        stiffness[some] = tangents.stiffness
+        for n, own in zip(some, tangents.by_state(tangents.by_rotation), strict=True):
+            by_rotation[n] = own
+    return LoadedStates(grids, bending, tuple(by_rotation), stiffness)
 
 
 def _coupling(states: Sequence[Sequence[LoadedGrid]], bending: BendingModel) -> csr_array:

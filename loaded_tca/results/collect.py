@@ -78,6 +78,7 @@ def mesh_cycle(scene: Scene, pair: GearPair, carried: Carried) -> MeshCycle:
         path=path,
         paths=tuple(carried.paths[k] for k in order),
         maps=stacked,
+        states=carried.states,
     )
 
 

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Indices
+from loaded_tca.arrays import Array
+from loaded_tca.compliance import tooth_compliance
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.free_edges import edge_compliances
-from loaded_tca.loaded.load_sharing import ToothPair, tooth_pairs_at
-from loaded_tca.loaded.pair_coupling import BendingModel
-from loaded_tca.loaded.sensitivity import LoadedGrid
+from loaded_tca.loaded.load_sharing import tooth_pairs_at
+from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_states
 from loaded_tca.loaded.tooth_contact import contact_problem
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.pressure_map import PressureMap
@@ -27,45 +27,47 @@ if TYPE_CHECKING:
 SAME = 1e-6
 """Distance of two contact points, over the module, that are the same."""
 
-Unloaded = list[dict[int, ToothPair]]
-"""Unloaded contacts by position and number of the tooth pair, in the angles of their own teeth."""
 
+def states_of_maps(result: MeshCycle) -> LoadedStates:
+    """Contact problems that the pressure maps of a result solve, and how they answer.
 
-def unloaded_contacts(pair: GearPair, angles: Array, *, alone: bool) -> tuple[Unloaded, int]:
-    """Unloaded contacts, and how many pitches those of a position are apart."""
-    if alone:
-        path = trace_contact(pair, angles)
-        return [{0: ToothPair(0, path[n], 0.0)} for n in range(len(path))], 1
-    mesh = trace_teeth(pair, angles)
-    found: Unloaded = [{one.pair: one for one in tooth_pairs_at(mesh, n)} for n in range(len(mesh))]
-    return found, max(farthest_apart(mesh), 1)
-
-
-def loaded_grids(
-    result: MeshCycle, pair: GearPair, unloaded: Unloaded, bending: BendingModel | None
-) -> tuple[Indices, list[LoadedGrid]]:
-    """Torque, position and pair (3, grids) by index, and the contact problems that the maps solve, made again."""
-    places, numbers = np.argwhere(result.normal_force > 0.0), result.dataset["pair"].values.tolist()
-    maps = [one for t, n, k in places.tolist() if (one := result.maps[t][n][k]) is not None]
-    contacts = [unloaded[n][numbers[k]].contact for _, n, k in places.tolist()]
+    Raises
+    ------
+    InputError
+        If the maps do not belong to the scene of the result.
+    """
+    pair, wanted, numbers = result.gear_pair, result.scene.analysis, result.pair.tolist()
+    unloaded, apart = _unloaded_contacts(pair, result.pinion_angle, alone=not wanted.load_sharing)
+    bending = None if wanted.compliance == "contact" else tooth_compliance(pair, neighbours=apart)
+    places = np.argwhere(result.normal_force > 0.0).tolist()
+    maps = [one for t, n, k in places if (one := result.maps[t][n][k]) is not None]
+    contacts = [unloaded[n][numbers[k]] for _, n, k in places]
     if any(
         not np.allclose(one.origin, contact.point, rtol=0.0, atol=SAME * pair.module)
         for one, contact in zip(maps, contacts, strict=True)
     ):
         raise InputError("sensitivities: the pressure maps of the result do not belong to its scene")
     separations = _separations(pair, contacts, maps)
-    ends = edge_compliances(pair, separations) if result.scene.analysis.free_edges else [None] * len(maps)
-    grids = []
-    for (t, n, k), one, contact, separation, end in zip(
-        places.tolist(), maps, contacts, separations, ends, strict=True
-    ):
+    ends = edge_compliances(pair, separations) if wanted.free_edges else [None] * len(maps)
+    positions = len(result.path)
+    states: list[list[LoadedGrid]] = [[] for _ in range(len(result.torque) * positions)]
+    for (t, n, k), one, contact, separation, end in zip(places, maps, contacts, separations, ends, strict=True):
         if isinstance(end, InputError):
             raise end
         bent = None if bending is None else bending.within(numbers[k], separation)
         problem = contact_problem(pair, separation, float(result.normal_force[t, n, k]), bent, end)
-        grids.append(LoadedGrid(numbers[k], contact, separation, problem, one.pressure))
-    active = [grid.active.any() for grid in grids]
-    return places[active].T, [grid for grid, own in zip(grids, active, strict=True) if own]
+        states[t * positions + n].append(LoadedGrid(numbers[k], contact, separation, problem, one.pressure, bent))
+    return loaded_states(states, bending)
+
+
+def _unloaded_contacts(pair: GearPair, angles: Array, *, alone: bool) -> tuple[list[dict[int, ContactPoint]], int]:
+    """Contacts by position and number of the tooth pair, and how many pitches those of a position are apart."""
+    if alone:
+        path = trace_contact(pair, angles)
+        return [{0: path[n]} for n in range(len(path))], 1
+    mesh = trace_teeth(pair, angles)
+    found = [{one.pair: one.contact for one in tooth_pairs_at(mesh, n)} for n in range(len(mesh))]
+    return found, max(farthest_apart(mesh), 1)
 
 
 def _separations(pair: GearPair, contacts: Sequence[ContactPoint], maps: Sequence[PressureMap]) -> list[Separation]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.torsion import body_torsion
 from loaded_tca.errors import InputError, require
+from loaded_tca.loaded.sensitivity import LoadedStates
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.files import Buffer, FilePath, Part, arrays_of, netcdf_of, read_dataset, replacing, variables_of
 from loaded_tca.results.key_figures import harmonic_coefficients, key_figures
@@ -151,6 +152,9 @@ class MeshCycle:
         Unloaded contact of each pair, in the angles of the gears; NaN where it is out of reach.
     maps : tuple of tuple of tuple of PressureMap or None
         ``maps[torque][position][pair]`` by index; None where a pair carries nothing.
+    states : LoadedStates or None
+        The contact problems behind the maps, of all positions torque by torque, for sensitivities; None if the result
+        comes from a file, which does not keep them: they are made again when they are needed.
     """
 
     scene: Scene
@@ -158,6 +162,7 @@ class MeshCycle:
     path: ContactPath
     paths: tuple[ContactPath, ...]
     maps: Maps
+    states: LoadedStates | None = field(default=None, repr=False, compare=False)
 
     def __getattr__(self, name: str) -> Any:
         if name not in QUANTITIES or name not in self.dataset:

@@ -6,13 +6,11 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from loaded_tca.arrays import Array, Indices, real
-from loaded_tca.compliance import tooth_compliance
 from loaded_tca.errors import require
 from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.sensitivity import Tangents
@@ -24,7 +22,7 @@ from loaded_tca.results.figure_slopes import (
     pressure_norm,
 )
 from loaded_tca.results.key_figures import harmonic_coefficients
-from loaded_tca.results.loaded_grids import loaded_grids, unloaded_contacts
+from loaded_tca.results.loaded_grids import states_of_maps
 from loaded_tca.separation.gap_change import contact_changes, pair_changes
 
 if TYPE_CHECKING:
@@ -287,26 +285,27 @@ def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
     )
     pair, named = result.gear_pair, [key for key in keys if key != TORQUE]
     changes, at = pair_changes(result.scene, named), [keys.index(key) for key in named]
-    unloaded, apart = unloaded_contacts(pair, result.pinion_angle, alone=not result.scene.analysis.load_sharing)
-    bending = None if result.scene.analysis.compliance == "contact" else tooth_compliance(pair, neighbours=apart)
-    places, grids = loaded_grids(result, pair, unloaded, bending)
-    require((bool(grids), "sensitivities: no tooth pair of the result carries load"))
-    states, first = np.unique(places[:2], axis=1, return_index=True)
-    tangents = Tangents([grids[start:end] for start, end in pairwise([*first, len(grids)])], bending, tolerance=LINEAR)
+    loaded = result.states or states_of_maps(result)
+    count = [len(state) for state in loaded.grids]
+    require((any(count), "sensitivities: no tooth pair of the result carries load"))
+    tangents = loaded.tangents(LINEAR)
+    grids, pairs = tangents.grids, result.pair.tolist()
+    places = np.array(np.unravel_index(np.flatnonzero(count), result.transmission_error.shape))
+    columns = np.array([pairs.index(grid.number) for grid in grids])
+    at_grids = (*places[:, tangents.state], columns)
     contacts, separations = [grid.contact for grid in grids], [grid.separation for grid in grids]
     found = contact_changes(pair, contacts, separations, [grid.active for grid in grids], changes)
     # the gears of a pair are turned back into contact first, then closed under load
-    initial = [unloaded[n][grid.number].initial_separation for n, grid in zip(places[1], grids, strict=True)]
-    back = result.path.transmission_error[places[1]] - result.transmission_error[*places[:2]]
-    turned = pair.driving * back - initial
+    touching = np.array([path.transmission_error for path in result.paths])[columns, at_grids[1]]
+    turned = pair.driving * (touching - result.transmission_error[at_grids[:2]])
     beyond = found.at_contact - turned * found.levers[1]
-    gaps, forces = np.zeros((len(keys), tangents.grid.size)), result.normal_force[*places]
+    gaps = np.zeros((len(keys), tangents.grid.size))
     gaps[at] = found.gaps - found.at_contact[:, tangents.grid] * found.lever_parts + beyond[:, tangents.grid]
-    if bending is not None:
-        _add_shifted_bending(gaps, at, found.shifts, tangents, bending)
+    if loaded.bending is not None:
+        _add_shifted_bending(gaps, at, found.shifts, tangents, loaded.bending)
     lever_torques = np.zeros((len(keys), len(grids)))
-    lever_torques[at] = forces * found.levers[0]
-    return Sensitivities(tuple(keys), result, tangents, states, places[2], gaps, lever_torques)
+    lever_torques[at] = result.normal_force[at_grids] * found.levers[0]
+    return Sensitivities(tuple(keys), result, tangents, places, columns, gaps, lever_torques)
 
 
 def _add_shifted_bending(
@@ -335,7 +334,7 @@ def _add_shifted_bending(
         number, separation = tangents.grids[i].number, tangents.grids[i].separation
         step = STEP * separation.spacing[0] * len(separation.x)
         moved = replace(separation, origin=separation.origin + step * separation.axes[0])
-        by_shift = (bending.within(number, moved) - bending.within(number, separation)) / step
+        by_shift = (bending.within(number, moved) - tangents.grids[i].bending) / step
         growth = {i: by_shift @ forces[i]}
         for j in np.flatnonzero(tangents.state == tangents.state[i]).tolist():
             if j != i:

@@ -14,7 +14,7 @@ from loaded_tca.contact.love import influence_coefficients
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.loaded.cycle import carried_by_one
 from loaded_tca.loaded.load_sharing import share_load, tooth_pairs_at
-from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents, torque_rates
+from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents, loaded_states
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.separation.gap_change import contact_changes, pair_changes
 from loaded_tca.unloaded import trace_contact, trace_teeth
@@ -221,14 +221,14 @@ def test_states_are_found_together_as_each_alone(pairs):
 def test_rate_of_the_torque_is_that_of_the_dense_problem_solved_anew(pairs):
     step = 0.5
     rotations = [pairs.solve(TORQUE + sign * step)[1] for sign in (-1.0, 1.0)]
-    assert_allclose(torque_rates([pairs.grids(TORQUE)], pairs), 2.0 * step / np.ptp(rotations), rtol=RATE)
+    assert_allclose(loaded_states([pairs.grids(TORQUE)], pairs).stiffness, 2.0 * step / np.ptp(rotations), rtol=RATE)
 
 
 def test_rates_are_the_same_to_the_last_bit_whatever_is_found_together(pairs, monkeypatch):
     states = [pairs.grids(part * TORQUE) for part in (0.3, 0.6, 0.8, 1.0)]
-    together = torque_rates(states, pairs)
+    together = loaded_states(states, pairs).stiffness
     monkeypatch.setattr("loaded_tca.loaded.sensitivity.CELLS_TOGETHER", 1)
-    assert_array_equal(torque_rates(states, pairs), together)
+    assert_array_equal(loaded_states(states, pairs).stiffness, together)
 
 
 def test_contacts_without_a_cell_between_the_bounds_have_no_part_in_the_rate():
@@ -236,10 +236,10 @@ def test_contacts_without_a_cell_between_the_bounds_have_no_part_in_the_rate():
     first, second = pairs.grids(TORQUE)
     capped, none = (replace(first, pressure=p * np.isfinite(first.problem.gap)) for p in (first.problem.cap, 0.0))
     states = [[capped], [second], [capped, none], [capped, second, none], []]
-    rate = torque_rates([[second]])[0]
-    assert_array_equal(torque_rates(states, pairs), [0.0, rate, 0.0, rate, 0.0])
+    rate = loaded_states([[second]]).stiffness[0]
+    assert_array_equal(loaded_states(states, pairs).stiffness, [0.0, rate, 0.0, rate, 0.0])
     assert rate > 0.0
-    assert_array_equal(torque_rates([]), [])
+    assert_array_equal(loaded_states([]).stiffness, [])
 
 
 def test_rate_of_one_contact_is_that_of_a_flat_punch_of_its_cells():

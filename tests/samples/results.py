@@ -85,7 +85,7 @@ def assert_same(first, second):
         assert first == second
     elif is_dataclass(first):
         assert type(first) is type(second)
-        for entry in fields(first):
+        for entry in (entry for entry in fields(first) if entry.compare):
             assert_same(getattr(first, entry.name), getattr(second, entry.name))
     elif isinstance(first, tuple):
         assert len(first) == len(second)

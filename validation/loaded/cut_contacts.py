@@ -18,7 +18,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.loaded.load_sharing import share_load, tooth_pairs_at
-from loaded_tca.loaded.sensitivity import LoadedGrid, torque_rates
+from loaded_tca.loaded.sensitivity import LoadedGrid, loaded_states
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair
@@ -87,7 +87,7 @@ def _numbers(pair: GearPair, states: list[tuple[float, int]]) -> Array:
         shared = [share_load(pair, tooth_pairs_at(mesh, n), torque, grid) for n in range(len(POSITIONS))]
         share = [max(part.torque for part in one.shares) / torque for one in shared]
         states = [[LoadedGrid.of(part.tooth_pair.pair, part.loaded) for part in one.shares] for one in shared]
-        found.append([[one.rotation for one in shared], torque_rates(states), share])
+        found.append([[one.rotation for one in shared], loaded_states(states).stiffness, share])
     return np.array(found).swapaxes(0, 1)
 
 
