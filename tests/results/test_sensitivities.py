@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose, assert_array_equal
+from numpy.testing import assert_allclose
 
 from loaded_tca import analyse, load_result, read_scene
 from loaded_tca.errors import AccuracyWarning, InputError
