@@ -300,7 +300,8 @@ def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
     turned = pair.driving * (touching - result.transmission_error[at_grids[:2]])
     beyond = found.at_contact - turned * found.levers[1]
     gaps = np.zeros((len(keys), tangents.grid.size))
-    gaps[at] = found.gaps - found.at_contact[:, tangents.grid] * found.lever_parts + beyond[:, tangents.grid]
+    for row, grown, held, further in zip(at, found.gaps, found.at_contact, beyond, strict=True):  # rows fit a cache
+        gaps[row] = grown - held[tangents.grid] * found.lever_parts + further[tangents.grid]
     if loaded.bending is not None:
         _add_shifted_bending(gaps, at, found.shifts, tangents, loaded.bending)
     lever_torques = np.zeros((len(keys), len(grids)))
