@@ -188,15 +188,6 @@ class Tangents:
         return np.asarray((self.summed(gaps * self.weights) + torques) / self.stiffness)
 
     @property
-    def rotation_by_torque(self) -> Array:
-        """DLambda/dT (states,) [rad/(N mm)]."""
-        return np.asarray(1.0 / self.stiffness)
-
-    def force_change(self, gaps: Array) -> Array:
-        """Changes (n,) of the forces [N] by a change (n,) of the gaps [mm], under the same torques."""
-        return np.asarray(self.by_rotation * self.spread(self.rotation_change(gaps)) - self.solved(gaps))
-
-    @property
     def force_by_torque(self) -> Array:
         """df/dT (n,) [1/mm]."""
         return np.asarray(self.by_rotation / self.spread(self.stiffness))
