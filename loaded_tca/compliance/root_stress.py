@@ -21,7 +21,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebpts2, chebvander
@@ -193,7 +193,7 @@ class RootStress:
         """Shares (places of a line, q) of the places of the table, those of neighbours if ``beside``."""
         height, length = self.frame.parts(line.rho, line.z)
         across, along = (
-            chebvander(2.0 * part - 1.0, count - 1) @ np.linalg.inv(chebvander(chebpts2(count), count - 1))
+            chebvander(2.0 * part - 1.0, count - 1) @ _lagrange(count)
             for part, count in zip((_part_of_range(height), length), self.table.counts[beside], strict=True)
         )
         return np.asarray((across[:, :, None] * along[:, None, :]).reshape(len(height), -1))
@@ -313,6 +313,12 @@ def _loaded_places(frame: ToothFrame, beside: bool) -> tuple[int, int, FlankPlac
     parts = np.minimum(np.exp(low + (0.5 + 0.5 * chebpts2(heights)) * (high - low)) - OFFSET, 1.0)
     grid = np.meshgrid(parts, 0.5 + 0.5 * chebpts2(lengths), indexing="ij")
     return heights, lengths, frame.places(*(part.ravel() for part in grid))
+
+
+@cache
+def _lagrange(count: int) -> Array:
+    """Chebyshev coefficients (count, count) of the Lagrange polynomials of so many places."""
+    return np.asarray(np.linalg.inv(chebvander(chebpts2(count), count - 1)))
 
 
 def _part_of_range(height: Array) -> Array:

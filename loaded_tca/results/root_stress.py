@@ -20,6 +20,7 @@ from loaded_tca.errors import NotAskedError
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.files import Part
 from loaded_tca.results.pressure_map import Maps, PressureMap
+from loaded_tca.threads import one_blas_thread
 
 if TYPE_CHECKING:
     from loaded_tca.results.mesh_cycle import MeshCycle
@@ -122,7 +123,8 @@ def root_stress_arrays(
         Where a tooth pair is in contact; elsewhere all is NaN.
     maps : Maps
     """
-    found = [_of_gear(pair, gear, model, numbers, known, maps) for gear, model in enumerate(models)]
+    with one_blas_thread():  # the matrices are small: threads waiting for each other cost more
+        found = [_of_gear(pair, gear, model, numbers, known, maps) for gear, model in enumerate(models)]
     arrays = {name: np.stack([one[name] for one in found], axis=-1) for name in ROOT_QUANTITIES if name in found[0]}
     for name in ("root_tension_place", "root_compression_place"):
         arrays[name] = np.moveaxis(arrays[name], -1, -2)
