@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from loaded_tca.compliance import ToothCompliance, require_teeth, tooth_compliance, way_out_told
-from loaded_tca.errors import require
+from loaded_tca.compliance import RootStress, ToothCompliance, require_teeth, root_stress_model, tooth_compliance, way_out_told
+from loaded_tca.errors import named, require
 from loaded_tca.loaded.cycle import Progress, carried_by_all, carried_by_one, farthest_apart
 from loaded_tca.loaded.effort import expected_effort
 from loaded_tca.loaded.tooth_contact import GridChoice
@@ -54,6 +54,7 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
         tolerance=wanted.tolerance,
         free_edges=wanted.free_edges,
     )
+    roots = roots_of(scene, pair)
     if wanted.load_sharing:
         mesh = trace_teeth(pair, angles)
         bending = bending_of(scene, pair, farthest_apart(mesh))
@@ -64,13 +65,25 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
         carried = carried_by_one(pair, path, torques, grid, bending, progress)
     torsion = 0.0 if bending is None else sum(bending.body_torsion)
     warn_of_accuracy(pair, grid, carried, load_sharing=wanted.load_sharing, body_torsion=torsion)
-    return mesh_cycle(scene, pair, carried)
+    return mesh_cycle(scene, pair, carried, roots)
 
 
 def bending_of(scene: Scene, pair: GearPair, neighbours: int) -> ToothCompliance | None:
     """Bending of the teeth, where loaded ones are up to so many pitches apart; None if the scene asks for none."""
     if scene.analysis.compliance == "contact":
         return None
-    require_teeth(pair)
+    require_teeth(pair, scene.analysis.without_bodies)
     with way_out_told():
         return tooth_compliance(pair, neighbours=max(neighbours, 1))
+
+
+def roots_of(scene: Scene, pair: GearPair) -> tuple[RootStress, ...]:
+    """Root stress of unit forces on pinion and wheel; nothing if the scene does not ask for it."""
+    if not scene.analysis.root_stress:
+        return ()
+    require_teeth(pair, scene.analysis.without_bodies)
+    found = []
+    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+        with way_out_told("analysis.root_stress = false"), named(name):
+            found.append(root_stress_model(gear))
+    return tuple(found)

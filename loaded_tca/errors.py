@@ -91,6 +91,10 @@ def read_text(path: str | os.PathLike[str], largest: int) -> str:
         raise InputError(f"{name}: not a text file in UTF-8 (line {line})") from None
 
 
+class NotAskedError(InputError, AttributeError):
+    """A number that a result has only where its scene asks for it; says by which key."""
+
+
 class GeometryError(LoadedTCAError, ValueError):
     """Gears or flanks that cannot exist or cannot touch; says which flank, and where."""
 

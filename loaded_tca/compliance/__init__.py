@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from loaded_tca.compliance.compliance import (
         ToothCompliance,
         default_density,
+        flank_lines,
         require_teeth,
         tooth_compliance,
         way_out_told,
@@ -25,6 +26,7 @@ __all__ = [
     "RootStress",
     "ToothCompliance",
     "default_density",
+    "flank_lines",
     "gear_compliance",
     "require_teeth",
     "root_stress_model",

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Protocol
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -107,32 +108,64 @@ class ToothCompliance:
         """
         known = _LINES.setdefault(separation, {})
         if number not in known:
-            known[number] = self._lines_of(number, separation)
+            known[number] = flank_lines(self.pair, number, separation)
         return known[number]
 
-    def _lines_of(self, number: int, separation: Separation) -> tuple[FlankLine, FlankLine]:
-        points = separation.origin + separation.y[:, None] * separation.axes[1]
-        radius, _, axial = self.pair.to_wheel(points)
-        tooth = self.pair.sense * number
-        on_pinion = FlankLine(-tooth, np.hypot(points[:, 0], points[:, 1]), points[:, 2])
-        return on_pinion, FlankLine(tooth, radius, axial)
+
+class ContactGrid(Protocol):
+    """Where the slices of a contact lie; a separation and a pressure map are such grids."""
+
+    @property
+    def y(self) -> Array:
+        """Middles of the slices along the contact (ny,) [mm], from the contact point."""
+
+    @property
+    def origin(self) -> Array:
+        """The contact point (3,) in the fixed frame [mm]."""
+
+    @property
+    def axes(self) -> Array:
+        """Directions across, along and normal to the contact (3, 3), in rows, in the fixed frame."""
+
+
+def flank_lines(pair: GearPair, number: int, grid: ContactGrid) -> tuple[FlankLine, FlankLine]:
+    """Middles of the slices of a contact's grid on the flanks of pinion and wheel.
+
+    Parameters
+    ----------
+    pair : GearPair
+    number : int
+        Of the tooth pair: 0 is in contact at the pitch point at phi1 = 0, +1 comes into mesh after it.
+    grid : Separation or PressureMap
+        In the angles of its own tooth: as if it were pair 0.
+    """
+    points = grid.origin + grid.y[:, None] * grid.axes[1]
+    radius, _, axial = pair.to_wheel(points)
+    tooth = pair.sense * number
+    on_pinion = FlankLine(-tooth, np.hypot(points[:, 0], points[:, 1]), points[:, 2])
+    return on_pinion, FlankLine(tooth, radius, axial)
+
+
+TEETH_DO_NOT_BEND = 'analysis.compliance = "contact"'
 
 
 @contextmanager
-def way_out_told() -> Iterator[None]:
-    """Say how an analysis can do without teeth that bend, after whatever these do not allow."""
+def way_out_told(way_out: str = TEETH_DO_NOT_BEND) -> Iterator[None]:
+    """Say what to set so that an analysis does without gear bodies, after whatever these do not allow."""
     try:
         yield
     except (InputError, GeometryError) as error:
-        raise type(error)(f'{error}; or set analysis.compliance = "contact"') from None
+        raise type(error)(f"{error}; or set {way_out}") from None
 
 
-def require_teeth(pair: GearPair) -> None:
+def require_teeth(pair: GearPair, way_out: str = TEETH_DO_NOT_BEND) -> None:
     """Refuse gears whose teeth cannot be built, so that an analysis cannot let them bend.
 
     Parameters
     ----------
     pair : GearPair
+    way_out : str
+        What a scene may say so that nothing asks for complete teeth.
 
     Raises
     ------
@@ -147,7 +180,7 @@ def require_teeth(pair: GearPair) -> None:
         If a tooth is so with its modifications alone: it bends as the one without them.
     """
     gears = (("pinion", pair.pinion), ("wheel", pair.wheel))
-    with way_out_told():
+    with way_out_told(way_out):
         for name, gear in gears:
             with named(name):
                 _require_tooth(gear.geometry.unmodified)

@@ -19,9 +19,9 @@ Barlow 1976, Optimal stress locations in finite element models, Int. J. Numer. M
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebpts2, chebvander
@@ -118,12 +118,12 @@ class RootStress:
     @cached_property
     def tangent_angle(self) -> Array:
         """Between fillet and middle of the tooth at all places (2, stations, p) [rad]; first the flank in contact."""
-        return self._at_places(self.table.tangent_angle)
+        return self._at_places(self.table.tangent_angle[..., None])[0]
 
     @cached_property
     def point(self) -> Array:
         """All places (2, stations, p, 3) in the frame of the tooth [mm]."""
-        return np.stack([self._at_places(self.table.point[..., axis]) for axis in range(3)], axis=-1)
+        return np.moveaxis(self._at_places(self.table.point), 0, -1)
 
     def stress(self, tooth: int, loads: Iterable[tuple[FlankLine, Array]]) -> Array:
         """Stress at the root of one tooth [MPa], tension positive.
@@ -142,44 +142,66 @@ class RootStress:
             On the side of the flank in contact and on the back; from a tangent angle of 15 degrees, or the end of the
             flank, down to the middle of the space; along the face, both ends included.
         """
-        total = np.zeros(self.table.stress.shape[:-1])
-        for line, forces in loads:
-            found = self._influence(tooth, line)
-            if found is not None:
-                stress, shares = found
-                total += stress @ (forces @ shares)
-        return self._at_places(total)
+        states = [(line.tooth, *(one[None] for one in self.forces_of_table(line, forces))) for line, forces in loads]
+        return self.stresses(tooth, states)[0]
+
+    def forces_of_table(self, line: FlankLine, forces: Array) -> tuple[Array, Array]:
+        """Forces at the places of the table, (a b,) and (c d,), that stand for those at the places of a line.
+
+        The first load the roots of their own tooth, the second those of its neighbours.
+        """
+        return forces @ self._shares(line, 0), forces @ self._shares(line, 1)
+
+    def stresses(self, tooth: int, loads: Sequence[tuple[int, Array, Array]]) -> Array:
+        """Stress at the root of one tooth in many states at once [MPa]: (states, 2, stations, p) as of :meth:`stress`.
+
+        Parameters
+        ----------
+        tooth : int
+        loads : sequence of (int, (states, a b) array, (states, c d) array)
+            Loaded teeth, and what :meth:`forces_of_table` makes of the forces on them.
+        """
+        shape = self.table.stress.shape[:-1]
+        total = np.zeros((math.prod(shape), len(loads[0][1]) if loads else 1))
+        for loaded, *forces in loads:
+            away = self._away(tooth, loaded)
+            if abs(away) <= self.neighbours:
+                stress = self._stress(away)
+                total += stress.reshape(len(total), -1) @ forces[int(away != 0)].T
+        return self._at_places(total.reshape(*shape, -1))
 
     def per_force(self, tooth: int, line: FlankLine, place: tuple[int, int, int]) -> Array:
         """Stress at one place of those of :meth:`stress` per force at places (m,) of a line [MPa/N]."""
-        found, (side, station, along) = self._influence(tooth, line), place
-        if found is None:
-            return np.zeros(len(line.rho))
-        stress, shares = found
-        profile, face = self._along_profile[side, :, station], self._along_face[along]
-        return np.asarray(shares @ np.einsum("m,mn,nma->a", face, profile, stress[side]))
-
-    def _influence(self, tooth: int, line: FlankLine) -> tuple[Array, Array] | None:
-        """Stress (2, n, m, q) of a tooth under forces at the places of the table on that of a line, and their shares.
-
-        The shares are (places of the line, q); None beyond the neighbours of the model.
-        """
-        teeth = self.frame.gear.form.teeth
-        away = (line.tooth - tooth + teeth // 2) % teeth - teeth // 2
+        away, (side, station, along) = self._away(tooth, line.tooth), place
         if abs(away) > self.neighbours:
-            return None
+            return np.zeros(len(line.rho))
+        profile, face = self._along_profile[side, :, station], self._along_face[along]
+        per_force = np.einsum("m,mn,nma->a", face, profile, self._stress(away)[side])
+        return np.asarray(self._shares(line, int(away != 0)) @ per_force)
+
+    def _away(self, tooth: int, loaded: int) -> int:
+        """How many pitches a loaded tooth stands behind another."""
+        teeth = self.frame.gear.form.teeth
+        return (loaded - tooth + teeth // 2) % teeth - teeth // 2
+
+    def _stress(self, away: int) -> Array:
+        """Stress (2, n, m, q) under forces at the places of the table, on a tooth so many pitches away."""
+        beside = [tooth for tooth in range(-self.neighbours, self.neighbours + 1) if tooth]
+        return self.table.stress_beside[beside.index(away)] if away else self.table.stress
+
+    def _shares(self, line: FlankLine, beside: int) -> Array:
+        """Shares (places of a line, q) of the places of the table, those of neighbours if ``beside``."""
         height, length = self.frame.parts(line.rho, line.z)
         across, along = (
-            chebvander(2.0 * part - 1.0, count - 1) @ np.linalg.inv(chebvander(chebpts2(count), count - 1))
-            for part, count in zip((_part_of_range(height), length), self.table.counts[int(away != 0)], strict=True)
+            chebvander(2.0 * part - 1.0, count - 1) @ _lagrange(count)
+            for part, count in zip((_part_of_range(height), length), self.table.counts[beside], strict=True)
         )
-        beside = [tooth for tooth in range(-self.neighbours, self.neighbours + 1) if tooth]
-        stress = self.table.stress_beside[beside.index(away)] if away else self.table.stress
-        return stress, (across[:, :, None] * along[:, None, :]).reshape(len(height), -1)
+        return np.asarray((across[:, :, None] * along[:, None, :]).reshape(len(height), -1))
 
     def _at_places(self, values: Array) -> Array:
-        """Values (2, stations, p) at all places, by splines between those of the table (2, n, m)."""
-        return np.einsum("smqn,snm,pm->sqp", self._along_profile, values, self._along_face, optimize=True)
+        """Values (states, 2, stations, p) at all places, by splines between those of the table (2, n, m, states)."""
+        in_sections = self._along_profile @ values.swapaxes(1, 2)  # (2, m, stations, states)
+        return np.einsum("pm,smqt->tsqp", self._along_face, in_sections, optimize=True)
 
     @cached_property
     def _along_profile(self) -> Array:
@@ -291,6 +313,12 @@ def _loaded_places(frame: ToothFrame, beside: bool) -> tuple[int, int, FlankPlac
     parts = np.minimum(np.exp(low + (0.5 + 0.5 * chebpts2(heights)) * (high - low)) - OFFSET, 1.0)
     grid = np.meshgrid(parts, 0.5 + 0.5 * chebpts2(lengths), indexing="ij")
     return heights, lengths, frame.places(*(part.ravel() for part in grid))
+
+
+@cache
+def _lagrange(count: int) -> Array:
+    """Chebyshev coefficients (count, count) of the Lagrange polynomials of so many places."""
+    return np.asarray(np.linalg.inv(chebvander(chebpts2(count), count - 1)))
 
 
 def _part_of_range(height: Array) -> Array:

@@ -15,6 +15,9 @@ BENDING, FREE_EDGES = 2.0, 1.3
 """Factors of that time where teeth bend and where edges are free; measured."""
 TEETH_SECONDS, TEETH_BYTES = 3.0, 400e6
 """Of the finite element models of both gears; measured."""
+ROOT_SECONDS, ROOT_BYTES = 6.0, 0.9e9
+"""Of the models of root stress, whose elements are thinner, for faces 7 modules wide; wider ones take up to three times
+as much, and are refused by themselves where the machine has not the memory. Measured."""
 PROGRAMME_BYTES, KEPT_BYTES_PER_CELL = 150e6, 150.0
 """Of the libraries, and of each cell until the result is written; measured with 1 to 15 contacts of 512 x 512 cells."""
 CELLS_TIMES_ACCURACY, FEWEST_CELLS = 1.7, 1024
@@ -101,4 +104,6 @@ def expected_effort(scene: Scene) -> Effort:
         seconds *= FREE_EDGES
     if wanted.compliance != "contact":
         seconds, memory = BENDING * seconds + TEETH_SECONDS, memory + TEETH_BYTES
+    if wanted.root_stress:
+        seconds, memory = seconds + ROOT_SECONDS, memory + ROOT_BYTES
     return Effort(contacts, cells, seconds, memory, certain=wanted.cells is not None)

@@ -18,6 +18,7 @@ from loaded_tca.results.mesh_cycle import CYCLE, PAIRS, PATH_PARTS, QUANTITIES, 
 from loaded_tca.results.pressure_map import MAP_PARTS
 from loaded_tca.results.reached_edges import NAMES as EDGES
 from loaded_tca.results.reached_edges import reached_edges
+from loaded_tca.results.root_stress import GEARS, OVER_CYCLE, ROOT_MAPS, ROOT_QUANTITIES
 from loaded_tca.results.summary import without_rounding
 
 RESULT, SUMMARY, POSITIONS, CONTACTS = "result.nc", "summary.json", "positions.csv", "contacts.csv"
@@ -38,6 +39,8 @@ COLUMNS = {
     "tooth_deflection": ("tooth_deflection_um", 1e3),
     "peak_radius": ("peak_pinion_diameter_mm", 2.0),
     "peak_axial": ("peak_pinion_axial_mm", 1.0),
+    "root_tension_angle": ("root_tension_angle_deg", math.degrees(1.0)),
+    "root_compression_angle": ("root_compression_angle_deg", math.degrees(1.0)),
     "pinion_angle": ("pinion_angle_deg", math.degrees(1.0)),
     "torque": ("pinion_torque_Nm", 1e-3),
     "pair": ("tooth_pair", 1.0),
@@ -124,6 +127,10 @@ def positions_csv(result: MeshCycle) -> str:
             columns[column] = (result.at_position(name) if dimensions == PAIRS else getattr(result, name)) * factor
     columns["transmission_error_um"] = result.transmission_error * result.wheel_base_radius * 1e3
     columns |= {f"load_share_pair_{number}": result.load_share[..., k] for k, number in enumerate(result.pair)}
+    for name, (dimensions, unit, _) in ROOT_QUANTITIES.items():
+        if dimensions == OVER_CYCLE and result.scene.analysis.root_stress:
+            column, factor = _column(name, unit)
+            columns |= {f"{gear}_{column}": factor * getattr(result, name)[..., k] for k, gear in enumerate(GEARS)}
     return csv_table({name: np.broadcast_to(values, shape).ravel() for name, values in columns.items()})
 
 
@@ -188,6 +195,12 @@ def describe_results() -> str:
     columns = {name: _column(name, unit)[0] for name, (axes, unit, _) in QUANTITIES.items() if axes}
     columns["load_share"] += "`, `load_share_pair_0`, `..."
     lines = ["### The result and `result.dataset`", "", *_described(QUANTITIES, columns)]
+    in_tables = {
+        name: "`, `".join(f"{gear}_{_column(name, unit)[0]}" for gear in GEARS)
+        for name, (axes, unit, _) in ROOT_QUANTITIES.items()
+        if axes == OVER_CYCLE
+    }
+    lines += ["", "### Root stress, where the scene asks for it", "", *_described(ROOT_QUANTITIES | ROOT_MAPS, in_tables)]
     lines += ["", "### `result.path` and `result.paths[pair]`: the unloaded contact", "", *_described(PATH_PARTS)]
     lines += ["", "### `result.maps[torque][position][pair]`: one pressure map", "", *_described(MAP_PARTS)]
     return "\n".join(lines) + "\n"

@@ -13,6 +13,7 @@ from loaded_tca.plots.first_order import plot_first_order_scatter
 from loaded_tca.plots.flanks import plot_contact_path, plot_full_mesh
 from loaded_tca.plots.pressure_map import plot_pressure_map
 from loaded_tca.plots.removal import plot_removal_weights
+from loaded_tca.plots.root_stress import plot_root_stress, plot_root_stress_cycle, plot_root_stress_over_torque
 from loaded_tca.plots.sensitivities import plot_sensitivity_curves, plot_tornado, plot_transmission_error_band
 from loaded_tca.plots.sharing import (
     plot_harmonics,
@@ -62,6 +63,9 @@ __all__ = [
     "plot_pressure_map",
     "plot_removal_weights",
     "plot_robustness",
+    "plot_root_stress",
+    "plot_root_stress_cycle",
+    "plot_root_stress_over_torque",
     "plot_sensitivity_curves",
     "plot_stress_below",
     "plot_study",
@@ -96,6 +100,9 @@ PICTURES = (
     "line_load_distribution",
     "pressure_envelope",
     "path_pressure",
+    "root_stress",
+    "root_stress_cycle",
+    "root_stress_over_torque",
 )
 """Names of the pictures that a result has, without their ending."""
 MORE_PICTURES = ("contact_patterns", "full_mesh")
@@ -134,7 +141,8 @@ def plot_all(
         position, ``pressure_map_edge.png``; if Hertz holds in other positions only, ``pressure_map_hertz.png`` of the
         highest pressure where it holds. Where tooth pairs share the load: ``load_share.png``, ``harmonics.png``,
         ``mesh_stiffness.png``, ``line_load.png``, ``line_load_distribution.png``, ``pressure_envelope.png``,
-        ``path_pressure.png``. With ``more``: under several torques ``contact_patterns.png``, and ``full_mesh.png``.
+        ``path_pressure.png``. With root stress: ``root_stress.png``; of several positions ``root_stress_cycle.png``; of
+        several torques ``root_stress_over_torque.png``. With ``more``: under several torques ``contact_patterns.png``, and ``full_mesh.png``.
 
     Raises
     ------
@@ -174,5 +182,11 @@ def plot_all(
             figures["contact_patterns"] = plot_contact_patterns(result)
         if more and peak is not None:
             figures["full_mesh"] = plot_full_mesh(result, position, torque)
+    if result.scene.analysis.root_stress:
+        figures["root_stress"] = plot_root_stress(result, torque)
+        if len(result.path) > 1:
+            figures["root_stress_cycle"] = plot_root_stress_cycle(result)
+        if len(result.torque) > 1:
+            figures["root_stress_over_torque"] = plot_root_stress_over_torque(result)
     contents = {f"{name}.png": png_of(figure) for name, figure in figures.items()}
     return replace_together(directory, contents, {f"{name}.png" for name in (*PICTURES, *MORE_PICTURES)} - {*contents})

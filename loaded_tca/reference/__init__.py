@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 from loaded_tca.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from loaded_tca.reference import hertz, iso6336, punch, weber_banaschek
+    from loaded_tca.reference import hertz, iso6336, iso6336_3, punch, weber_banaschek
 else:
     __getattr__, __dir__ = lazy_names(__name__)
 
-__all__ = ["hertz", "iso6336", "punch", "weber_banaschek"]
+__all__ = ["hertz", "iso6336", "iso6336_3", "punch", "weber_banaschek"]

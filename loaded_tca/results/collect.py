@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from importlib.metadata import version
 
 import numpy as np
 
 from loaded_tca.arrays import Array
+from loaded_tca.compliance import RootStress
 from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.tooth_contact import LoadedContact
 from loaded_tca.pairs.gear_pair import GearPair
@@ -16,12 +18,13 @@ from loaded_tca.reference.hertz import line_contact
 from loaded_tca.results.load_factors import load_factors
 from loaded_tca.results.mesh_cycle import MeshCycle, dataset_of
 from loaded_tca.results.pressure_map import PressureMap
+from loaded_tca.results.root_stress import root_stress_arrays
 from loaded_tca.results.slice_pressure import SlicePeak, largest_slice_pressures
 from loaded_tca.scene import Scene
 from loaded_tca.unloaded import heelwards
 
 
-def mesh_cycle(scene: Scene, pair: GearPair, carried: Carried) -> MeshCycle:
+def mesh_cycle(scene: Scene, pair: GearPair, carried: Carried, roots: Sequence[RootStress] = ()) -> MeshCycle:
     """Collect the result of an analysis, its tooth pairs in the order of the mesh.
 
     Parameters
@@ -30,6 +33,8 @@ def mesh_cycle(scene: Scene, pair: GearPair, carried: Carried) -> MeshCycle:
     pair : GearPair
         Of the scene.
     carried : Carried
+    roots : sequence of RootStress
+        Of pinion and wheel, where the scene asks for root stress.
     """
     order = np.argsort(carried.pairs)
     share = carried.share[..., order]
@@ -72,6 +77,9 @@ def mesh_cycle(scene: Scene, pair: GearPair, carried: Carried) -> MeshCycle:
         "load_share": share,
         "tooth_deflection": np.where(apart, math.nan, carried.tooth_deflection[..., order]),
     }
+    if roots:
+        in_contact = ~np.isnan(arrays["normal_force"]).all(axis=-1)
+        arrays |= root_stress_arrays(pair, roots, arrays["pair"].tolist(), in_contact, stacked)
     return MeshCycle(
         scene=scene,
         dataset=dataset_of(arrays, version("loaded_tca")),

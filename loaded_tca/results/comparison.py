@@ -33,9 +33,13 @@ MAIN = {
     "transverse_load_factor": "load factor K_Halpha",
     "line_load_at_largest_force_N_per_mm": "line load under the largest force [N/mm]",
     "loaded_contact_ratio": "tooth pairs under load, mean",
+    "pinion_root_tension_MPa": "root tension of the pinion [MPa]",
+    "wheel_root_tension_MPa": "root tension of the wheel [MPa]",
+    "pinion_root_compression_MPa": "root compression of the pinion [MPa]",
+    "wheel_root_compression_MPa": "root compression of the wheel [MPa]",
 }
 """Key figures of the summary and their labels."""
-PLACES = "pinion_angle_at", "axial_at"
+PLACES = "pinion_angle_at", "_axial_"
 """Parts of the names of figures that count from a zero of no meaning: they have no relative difference."""
 NOT_COMPARED = "title", "load.pinion_torque_Nm", "analysis.torques_Nm"
 """Keys of the scenes that a comparison does not name."""
@@ -70,10 +74,13 @@ class Comparison:
         import xarray
 
         owned = [result.key_figures() for result in self.results.values()]
-        names = [name for name in owned[0][0] if name != "pinion_torque_Nm"]
+        names = [name for name in dict.fromkeys(name for own in owned for name in own[0]) if name != "pinion_torque_Nm"]
         value = np.array(
             [
-                [[without_rounding(own[k][name], name) for own, k in zip(owned, row, strict=True)] for name in names]
+                [
+                    [without_rounding(own[k].get(name, math.nan), name) for own, k in zip(owned, row, strict=True)]
+                    for name in names
+                ]
                 for row in self.indices
             ]
         )
@@ -129,6 +136,8 @@ class Comparison:
             table.append((key, _written(first), *(cell for other in others for cell in (_written(other), "", ""))))
         under = self.figures.isel(torque=at)
         for name, label in MAIN.items():
+            if name not in under.figure:
+                continue
             one = under.sel(figure=name)
             if not one.value.isnull().all():
                 table.append((label, *_cells(name, *(one[part].values for part in one))))

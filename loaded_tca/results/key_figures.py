@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
+from loaded_tca.results.root_figures import root_figures
 
 if TYPE_CHECKING:
     from loaded_tca.results.mesh_cycle import MeshCycle
@@ -165,6 +166,7 @@ def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
         "edge_positions": count(result.on_edge[torque]),
         "relief_start_positions": count(result.on_relief_start[torque]),
         "capped_positions": count(highest >= CAPPED * result.max_pressure),
+        **(root_figures(result, torque) if result.scene.analysis.root_stress else {}),
     }
 
 

@@ -19,6 +19,7 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.files import Buffer, FilePath, Part, arrays_of, netcdf_of, read_dataset, replacing, variables_of
 from loaded_tca.results.key_figures import harmonic_coefficients, key_figures
 from loaded_tca.results.pressure_map import MAP_PARTS, SIZES, Maps, maps_from, stacked_maps
+from loaded_tca.results.root_stress import ROOT_PARTS, RootStressMap, not_asked, root_stress_maps
 from loaded_tca.results.sensitivities import Sensitivities, sensitivities
 from loaded_tca.results.summary import signed, summary_text
 from loaded_tca.scene import Scene, parse_scene
@@ -123,10 +124,13 @@ IN_FILES: dict[str, Part] = {
 
 
 def dataset_of(arrays: Mapping[str, Any], version: str) -> xarray.Dataset:
-    """Make the dataset of a mesh cycle of the arrays of all ``QUANTITIES`` and the version that made them."""
+    """Make the dataset of a mesh cycle of the arrays of all ``QUANTITIES`` and the version that made them.
+
+    Those of ``ROOT_PARTS`` are part of it where there are any.
+    """
     import xarray
 
-    variables = variables_of(QUANTITIES, arrays)
+    variables = variables_of(QUANTITIES | {name: part for name, part in ROOT_PARTS.items() if name in arrays}, arrays)
     coordinates = {name: variables.pop(name) for name in COORDINATES}
     return xarray.Dataset(variables, coordinates, {"version": version})
 
@@ -135,7 +139,7 @@ def dataset_of(arrays: Mapping[str, Any], version: str) -> xarray.Dataset:
 class MeshCycle:
     """Loaded contact over the positions of a pitch, under each torque.
 
-    Every name of ``QUANTITIES`` is an attribute too: ``result.peak_pressure`` is the NumPy array of
+    Every name of ``QUANTITIES`` and, with root stress, of ``ROOT_PARTS`` is an attribute too: ``result.peak_pressure`` is the NumPy array of
     ``result.dataset["peak_pressure"]``, with the axes (torque, position, pair) whatever their lengths. NaN where a pair
     carries nothing, but its ``normal_force`` and ``load_share``, which are zero; flags and counts are 0 there. What is
     computed from these numbers is computed when it is asked for, so that it follows what is written into the dataset.
@@ -165,13 +169,15 @@ class MeshCycle:
     states: LoadedStates | None = field(default=None, repr=False, compare=False)
 
     def __getattr__(self, name: str) -> Any:
-        if name not in QUANTITIES or name not in self.dataset:
+        if name in (*ROOT_PARTS, "root_stress") and not self.scene.analysis.root_stress:
+            raise not_asked(name)
+        if name not in (*QUANTITIES, *ROOT_PARTS) or name not in self.dataset:
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
         values = self.dataset[name].values
         return values if values.ndim else values.item()
 
     def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *QUANTITIES]
+        return [*super().__dir__(), *QUANTITIES, *(name for name in ROOT_PARTS if name in self.dataset)]
 
     def __repr__(self) -> str:
         peak = np.nanmax(self.peak_pressure, initial=0.0)
@@ -187,6 +193,19 @@ class MeshCycle:
     def gear_pair(self) -> GearPair:
         """The gears of the scene in space."""
         return self.scene.pair()
+
+    @cached_property
+    def root_stress(self) -> tuple[RootStressMap, RootStressMap]:
+        """Root stress of pinion and wheel over fillet and face: at the largest tension, and envelopes over the mesh.
+
+        Raises
+        ------
+        NotAskedError
+            If the scene does not ask for root stress.
+        """
+        if not self.scene.analysis.root_stress:
+            raise not_asked("root_stress")
+        return root_stress_maps(self)
 
     def without_body_torsion(self, stiffness: float) -> float:
         """Mesh stiffness that is left without the twist of the gear bodies, as c_gamma of ISO 6336-1 has none.
@@ -383,15 +402,16 @@ class MeshCycle:
                 f"{path}: a study, not the result of a mesh cycle; read it with loaded_tca.studies.load_study"
             )
         try:
-            arrays = arrays_of(file, QUANTITIES | IN_FILES)
+            scene = parse_scene(str(file.attrs.get("scene_toml", "")), source="scene_toml")
+            in_dataset = QUANTITIES | (ROOT_PARTS if scene.analysis.root_stress else {})
+            arrays = arrays_of(file, in_dataset | IN_FILES)
             expected = {**SIZES, "end": 2, "edge": 8, "path": 1 + file.sizes["pair"]}
             checks = [(name, file.sizes[name] == size, f"{size}") for name, size in expected.items()]
             checks += [(name, file.sizes[name] > 0, "at least 1") for name in PAIRS]
             require(*((holds, f"{name}: {file.sizes[name]} long, expected {size}") for name, holds, size in checks))
-            scene = parse_scene(str(file.attrs.get("scene_toml", "")), source="scene_toml")
         except InputError as error:
             raise InputError([f"{path}: not the result of a mesh cycle", *error.problems]) from None
-        added = {name: file.variables[name] for name in file.data_vars if name not in QUANTITIES | IN_FILES}
+        added = {name: file.variables[name] for name in file.data_vars if name not in in_dataset | IN_FILES}
         leading, *paths = (
             ContactPath(**{entry.name: arrays[f"path_{entry.name}"][k] for entry in fields(ContactPath)})
             for k in range(expected["path"])

@@ -68,6 +68,11 @@ class PressureMap:
         return np.append(self.x, self.x[-1] + dx) - 0.5 * dx, np.append(self.y, self.y[-1] + dy) - 0.5 * dy
 
     @property
+    def slice_force(self) -> Array:
+        """Normal force of the cells at each place along the contact (ny,) [N]."""
+        return np.asarray(self.pressure.sum(axis=0) * math.prod(self.spacing))
+
+    @property
     def corners(self) -> Array:
         """Corners (nx + 1, ny + 1, 3) of the cells in the tangent plane, in the fixed frame [mm]."""
         x, y = self.borders

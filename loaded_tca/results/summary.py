@@ -49,6 +49,15 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
         "tooth pairs under load, mean | fewest | most",
         ("loaded_contact_ratio", "fewest_loaded_pairs", "most_loaded_pairs"),
     ),
+    ("root tension of pinion | wheel [MPa]", ("pinion_root_tension_MPa", "wheel_root_tension_MPa")),
+    ("  tangent angle [deg]", ("pinion_root_tension_angle_deg", "wheel_root_tension_angle_deg")),
+    ("  axial place on the gear [mm]", ("pinion_root_tension_axial_mm", "wheel_root_tension_axial_mm")),
+    ("  stress ratio R there", ("pinion_root_stress_ratio", "wheel_root_stress_ratio")),
+    (
+        "  ISO 6336-3, sigma_F0 K_Fbeta [MPa]",
+        ("pinion_root_stress_iso_6336_MPa", "wheel_root_stress_iso_6336_MPa"),
+    ),
+    ("root compression of pinion | wheel [MPa]", ("pinion_root_compression_MPa", "wheel_root_compression_MPa")),
     ("most cells across | along, worst residual", ("most_cells_across", "most_cells_along", "worst_solver_residual")),
 )
 """Label and key figures of each line of the summary."""
@@ -62,6 +71,7 @@ ONLY_IF_KNOWN = (
     "loaded_contact_ratio",
     "_where_hertz_holds_",
     "_there_",
+    "_root_",
 )
 """Figures whose line is left out where no torque has them."""
 
@@ -70,6 +80,10 @@ NOTES = (
     ("edge_positions", "the contact reaches an edge of a flank"),
     ("relief_start_positions", "the start of a linear relief lies in the contact: no Hertz there"),
 )
+ON_BACK = ("pinion_root_tension_on_back", "wheel_root_tension_on_back")
+"""Key figures that say on which side of the tooth the root tension lies."""
+BESIDE_ISO = "root stress has no safety, K_A, K_V, life and material factors, neither that of ISO 6336-3"
+"""What stands beside stress by the standard."""
 """Key figure that counts positions, and what holds at these."""
 
 
@@ -84,10 +98,10 @@ def summary_text(title: str, scope: str, figures: Sequence[Figures]) -> str:
         Of each torque, as ``MeshCycle.key_figures`` gives them.
     """
     rows = [
-        (label, [" | ".join(shown(entry[name], name) for name in names) for entry in figures])
+        (label, [" | ".join(shown(entry.get(name, math.nan), name) for name in names) for entry in figures])
         for label, names in ROWS
         if not any(part in name for name in names for part in ONLY_IF_KNOWN)
-        or any(math.isfinite(entry[name]) for entry in figures for name in names)
+        or any(math.isfinite(entry.get(name, math.nan)) for entry in figures for name in names)
     ]
     width = 2 + max(len(cell) for _, cells in rows for cell in cells)
     labels = max(len(label) for label, _ in rows)
@@ -123,6 +137,12 @@ def _notes(figures: Sequence[Figures]) -> Iterator[str]:
     yield from _counted(figures, apart, "no tooth pair is in contact")
     for name, sentence in NOTES:
         yield from _counted(figures, [entry[name] for entry in figures], sentence)
+    for name in ON_BACK:
+        back = [bool(entry.get(name, False)) for entry in figures]
+        if any(back):
+            yield f"the root tension of the {name.split('_')[0]} lies on the back of a tooth{_for_torques(figures, back)}"
+    if any(math.isfinite(entry.get("root_face_load_factor_iso_6336", math.nan)) for entry in figures):
+        yield BESIDE_ISO
     cap = figures[0]["max_pressure_MPa"]
     if math.isfinite(cap):
         counts = [entry["capped_positions"] for entry in figures]

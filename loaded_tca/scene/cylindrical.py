@@ -7,10 +7,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
-from loaded_tca.errors import GeometryError, require
+from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, common_face_width, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
+from loaded_tca.reference import iso6336_3
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
@@ -175,6 +176,26 @@ class CylindricalScene(BlankScene):
         width = common_face_width(mesh, self.mounting.axial_offset_mm)
         return mesh.transverse_contact_ratio * width / math.cos(mesh.pinion.base_helix_angle)
 
+    def nominal_root_stress(self, torque: float) -> tuple[float, float]:
+        """Nominal root stress sigma_F0 of pinion and wheel [MPa] after ISO 6336-3, method B, over the common face.
+
+        NaN where the standard has no critical section of the tooth.
+        """
+        mesh = self.mesh()
+        width = common_face_width(mesh, self.mounting.axial_offset_mm)
+        force = torque / mesh.pinion.reference_radius
+        pinion, wheel = (force * _root_stress_per_force(mesh, gear, width) for gear in (mesh.pinion, mesh.wheel))
+        return pinion, wheel
+
+    def root_face_load_factor(self, contact_face_load_factor: float) -> float:
+        """Face load factor of root stress K_Fbeta after ISO 6336-1, teeth as high as those of the higher ones."""
+        if math.isnan(contact_face_load_factor):
+            return math.nan
+        mesh = self.mesh()
+        width = common_face_width(mesh, self.mounting.axial_offset_mm)
+        height = max(gear.tip_radius - gear.root_radius for gear in (mesh.pinion, mesh.wheel))
+        return iso6336_3.face_load_factor(max(1.0, contact_face_load_factor), height / width)
+
     def geometry_rows(self) -> Sequence[Row]:
         """Return centre distance, contact ratios and diameters."""
         mesh = self.mesh()
@@ -214,6 +235,26 @@ class CylindricalScene(BlankScene):
             return notes + _overlap(replace(mesh, centre_distance=distance), "mounted centre distance")
         except GeometryError as problem:
             return [*notes, f"at the mounted centre distance of {distance:.4f} mm: {problem}"]
+
+
+def _root_stress_per_force(mesh: CylindricalMesh, gear: CylindricalGear, width: float) -> float:
+    """sigma_F0 over the tangential force at the reference cylinders [MPa/N]; NaN without a critical section."""
+    try:
+        section = iso6336_3.root_section(
+            gear.teeth,
+            gear.profile_shift,
+            2.0 * gear.tip_radius / gear.normal_module,
+            mesh.transverse_contact_ratio,
+            helix_angle=gear.helix_angle,
+            pressure_angle=gear.pressure_angle,
+            dedendum_coefficient=gear.dedendum_coefficient,
+            root_radius_coefficient=gear.rack_tip_radius / gear.normal_module,
+        )
+        helix = iso6336_3.helix_angle_factor(gear.helix_angle, mesh.overlap_ratio)
+        factors = section.form_factor * section.stress_correction_factor * helix
+        return iso6336_3.nominal_root_stress(1.0, width, gear.normal_module, factors)
+    except (InputError, GeometryError):
+        return math.nan
 
 
 def _backlash(mesh: CylindricalMesh) -> float:

@@ -84,6 +84,15 @@ class Scene(Section, ABC):
             )
             for place in ("material", "pinion.material", "wheel.material")
         ),
+        *(
+            rule(
+                (f"{place}.poisson_ratio", "analysis.root_stress"),
+                lambda ratio, root_stress: not root_stress or ratio <= LARGEST_RATIO_IN_BENDING,
+                f"found {{0:g}}; allowed up to {LARGEST_RATIO_IN_BENDING} with analysis.root_stress = true: finite "
+                "elements of a material that keeps its volume lock; or set analysis.root_stress = false",
+            )
+            for place in ("material", "pinion.material", "wheel.material")
+        ),
     )
 
     @abstractmethod
@@ -151,11 +160,11 @@ class Scene(Section, ABC):
 
     @property
     def rigid_bores(self) -> tuple[float, float] | None:
-        """Diameters of bores or journals of both gears [mm] that are held where teeth bend; None where they do not.
+        """Diameters of bores or journals of both gears [mm] that are held; None where no gear body is meshed.
 
         See :attr:`GearPair.rigid_bores`.
         """
-        return None if self.analysis.compliance == "contact" else self.pair().rigid_bores
+        return self.pair().rigid_bores if self.analysis.without_bodies else None
 
     @abstractmethod
     def active_starts(self) -> tuple[float, float]:
@@ -173,6 +182,17 @@ class Scene(Section, ABC):
     @property
     def mean_contact_length(self) -> float:
         """Mean length of all contact lines over a pitch [mm]; NaN for gears of which ISO 6336-1 does not speak."""
+        return math.nan
+
+    def nominal_root_stress(self, torque: float) -> tuple[float, float]:
+        """Nominal root stress sigma_F0 of pinion and wheel [MPa] after ISO 6336-3 under a pinion torque [N mm].
+
+        NaN for gears of which the standard does not speak.
+        """
+        return math.nan, math.nan
+
+    def root_face_load_factor(self, contact_face_load_factor: float) -> float:
+        """Face load factor of root stress K_Fbeta after ISO 6336-1 by K_Hbeta; NaN where it does not say it."""
         return math.nan
 
     @abstractmethod

@@ -224,6 +224,17 @@ class Analysis(Section):
         "what deforms under load: the flanks, or the teeth and bodies, too",
         "contact+tooth",
     )
+    root_stress: bool = key(
+        Choice((False, True)),
+        "whether the stress at the roots of the teeth is found, by finite elements of both gears",
+        False,
+    )
     torques_Nm: tuple[float, ...] | None = key(
         List(TORQUE_Nm, 1, 1000), "several pinion torques, all analysed", None, "the one of [load]"
     )
+
+    @property
+    def without_bodies(self) -> str:
+        """What to set so that no gear body is meshed; empty where none is."""
+        ways = [] if self.compliance == "contact" else ['analysis.compliance = "contact"']
+        return " and ".join([*ways, *(["analysis.root_stress = false"] if self.root_stress else [])])

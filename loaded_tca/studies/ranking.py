@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-MAIN_FIGURES = ("transmission_error_span_um", "peak_pressure_MPa", "face_load_factor")
+ROOT_TENSION = "pinion_root_tension_MPa", "wheel_root_tension_MPa"
+MAIN_FIGURES = ("transmission_error_span_um", "peak_pressure_MPa", "face_load_factor", *ROOT_TENSION)
 """Figures by which variants are compared unless others are asked for; the first one ranks them."""
 
 

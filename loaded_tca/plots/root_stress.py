@@ -1,0 +1,170 @@
+"""Root stress: over fillet and face of both gears, over the mesh cycle, and over the torque."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+from loaded_tca.arrays import Array
+from loaded_tca.plots import style
+from loaded_tca.plots.style import ACCENT, DISTINCT_COLOURS, HEADROOM, highest_torque, load, loads, range_of_positions
+from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.root_stress import GEARS, RootStressMap
+
+DIVERGING = "RdBu_r"
+"""White without stress, red in tension, blue in compression: told apart by colour-blind readers."""
+TENSION, COMPRESSION = "-", "--"
+GEAR_COLOURS = DISTINCT_COLOURS[0], DISTINCT_COLOURS[1]
+NOMINAL = ":"
+
+
+def plot_root_stress(result: MeshCycle, torque: int | None = None) -> Figure:
+    """Root stress over fillet and face of both gears under one torque, on one scale of colours.
+
+    Above at the position of the largest tension, below the largest and the smallest stress that a tooth sees in a whole
+    turn. Each panel has both sides of a tooth, from its root in the middle of the space on its back (left) to that on
+    the side in contact (right); dots are the places of the extremes.
+
+    Parameters
+    ----------
+    result : MeshCycle
+    torque : int, optional
+        Index of the torque; default: the largest one.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    NotAskedError
+        If the scene of the result does not ask for root stress.
+    """
+    torque = highest_torque(result) if torque is None else torque
+    maps = result.root_stress
+    figure = Figure(figsize=(10.0, 9.0), layout="constrained")
+    panels = figure.subplots(3, 2, sharex=True, sharey="col")
+    largest = max(float(np.nanmax(np.abs(part[torque]), initial=0.0)) for one in maps for part in _shown(one))
+    scale = Normalize(-largest or -1.0, largest or 1.0)
+    for column, (gear, one) in enumerate(zip(GEARS, maps, strict=True)):
+        titles = "at its largest tension", "largest stress in a turn", "smallest stress in a turn"
+        for axes, part, title in zip(panels[:, column], _shown(one), titles, strict=True):
+            _draw_fillets(axes, one, part[torque], scale)
+            axes.set_title(f"{gear}, {title}", fontsize="medium")
+        panels[0, column].set_ylabel("")
+        for axes in panels[:, column]:
+            axes.set_ylabel(f"axial place on the {gear} [mm]")
+        panels[-1, column].set_xlabel("tangent angle [deg]: back of the tooth | side in contact")
+    figure.colorbar(ScalarMappable(scale, DIVERGING), ax=panels, label="root stress [MPa], tension positive")
+    style.set_title(figure, result, f"root stress, {load(result, torque)}", range_of_positions(result))
+    return figure
+
+
+def _shown(one: RootStressMap) -> tuple[Array, Array, Array]:
+    return one.at_tension, one.largest, one.smallest
+
+
+def _draw_fillets(axes: Axes, one: RootStressMap, stress: Array, scale: Normalize) -> None:
+    """Both sides of a tooth, the back mirrored to the left; a dot at the largest tension and compression."""
+    for side, sign in ((0, 1.0), (1, -1.0)):
+        angle, axial = sign * np.degrees(one.tangent_angle[side]), one.point[side, ..., 2]
+        axes.pcolormesh(angle, axial, stress[side], cmap=DIVERGING, norm=scale, shading="gouraud", rasterized=True)
+    for place, marker in ((np.nanargmax(stress), "o"), (np.nanargmin(stress), "s")) if np.isfinite(stress).all() else ():
+        side, station, along = np.unravel_index(place, stress.shape)
+        value = stress[side, station, along]
+        x = (1.0, -1.0)[side] * math.degrees(one.tangent_angle[side, station, along])
+        axes.plot(x, one.point[side, station, along, 2], marker, color="black", markersize=4.0)
+        axes.annotate(f"{value:.0f}", (x, one.point[side, station, along, 2]), (4.0, 4.0), textcoords="offset points")
+    axes.axvspan(-10.0, 10.0, color=style.NO_MATERIAL)
+    axes.text(0.0, 0.5, "tooth", transform=axes.get_xaxis_transform(), ha="center", va="center", rotation=90.0)
+
+
+def plot_root_stress_cycle(result: MeshCycle) -> Figure:
+    """Largest tension and compression at the roots of all teeth over the positions, of both gears on one scale.
+
+    Thin vertical lines stand where the number of loaded tooth pairs changes under the largest torque.
+
+    Parameters
+    ----------
+    result : MeshCycle
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    NotAskedError
+        If the scene of the result does not ask for root stress.
+    """
+    tension, compression = result.root_tension, result.root_compression
+    figure = Figure(figsize=(10.0, 5.5), layout="constrained")
+    panels = figure.subplots(1, 2, sharex=True, sharey=True)
+    angle = np.degrees(result.pinion_angle)
+    pairs = result.loaded_pairs[highest_torque(result)]
+    changes = 0.5 * (angle[1:] + angle[:-1])[np.diff(pairs) != 0]
+    for gear, axes in enumerate(panels):
+        for torque, label, colour, marker in style.torque_styles(result):
+            look = {"color": colour, "marker": marker, "markersize": 4.0}
+            axes.plot(angle, tension[torque, :, gear], TENSION, label=label, **look)
+            axes.plot(angle, compression[torque, :, gear], COMPRESSION, **look)
+        axes.axhline(0.0, color="black", linewidth=0.8)
+        for change in changes:
+            axes.axvline(change, color="0.5", linewidth=0.8, linestyle=":")
+        axes.set_title(GEARS[gear], fontsize="medium")
+        axes.set_xlabel("pinion angle [deg]")
+        axes.grid(alpha=0.3)
+    panels[0].set_ylabel("root stress [MPa]")
+    panels[0].plot([], [], TENSION, color="black", label="largest tension")
+    panels[0].plot([], [], COMPRESSION, color="black", label="largest compression")
+    if len(changes):
+        panels[0].plot([], [], ":", color="0.5", label="number of loaded pairs changes")
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
+    style.set_title(figure, result, f"root stress over the mesh, {loads(result)}", range_of_positions(result))
+    return figure
+
+
+def plot_root_stress_over_torque(result: MeshCycle) -> Figure:
+    """Largest tension and compression of the whole mesh cycle over the torque, beside stress after ISO 6336-3.
+
+    Parameters
+    ----------
+    result : MeshCycle
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    NotAskedError
+        If the scene of the result does not ask for root stress.
+    """
+    _ = result.root_stress
+    figures, order = result.key_figures(), np.argsort(result.torque)
+    figure = Figure(figsize=(8.0, 5.5), layout="constrained")
+    axes = figure.add_subplot()
+    torque = 1e-3 * result.torque[order]
+    curves = (
+        ("root_tension", "largest tension", {"linestyle": TENSION, "marker": "o"}),
+        ("root_compression", "largest compression", {"linestyle": COMPRESSION, "marker": "s"}),
+        ("root_stress_iso_6336", "ISO 6336-3, σ_F0 K_Fβ", {"linestyle": NOMINAL, "marker": "^"}),
+    )
+    for gear, colour in zip(GEARS, GEAR_COLOURS, strict=True):
+        for name, label, look in curves:
+            values = np.array([figures[k][f"{gear}_{name}_MPa"] for k in order])
+            if np.isfinite(values).any():
+                axes.plot(torque, values, color=colour, markersize=5.0, label=f"{gear}: {label}", **look)
+    axes.axhline(0.0, color="black", linewidth=0.8)
+    axes.set_xlim(0.0, (1.0 + HEADROOM) * torque[-1] or None)
+    axes.set_xlabel("pinion torque [N m]")
+    axes.set_ylabel("root stress [MPa]")
+    axes.grid(alpha=0.3)
+    return style.finished(
+        figure, axes, result, "root stress over the torque", range_of_positions(result), columns=2
+    )

@@ -1,0 +1,53 @@
+"""Key figures of root stress, beside those of ISO 6336-3."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from loaded_tca.results.root_stress import GEARS, PLACE
+
+if TYPE_CHECKING:
+    from loaded_tca.results.mesh_cycle import MeshCycle
+
+
+def root_figures(result: MeshCycle, torque: int) -> dict[str, float]:
+    """Return the figures of root stress under one torque, by names that end in their unit; NaN: not known.
+
+    Parameters
+    ----------
+    result : MeshCycle
+        Of a scene that asks for root stress.
+    torque : int
+        Index of the torque.
+    """
+    found: dict[str, float] = {}
+    nominal = result.scene.nominal_root_stress(float(result.torque[torque]))
+    factor = result.scene.root_face_load_factor(float(result.face_load_factor[torque]))
+    for gear, name in enumerate(GEARS):
+        found |= _extreme(result, torque, gear, "root_tension") | _extreme(result, torque, gear, "root_compression")
+        found[f"{name}_root_stress_ratio"] = float(result.root_stress_ratio[torque, gear])
+        found[f"{name}_nominal_root_stress_iso_6336_MPa"] = nominal[gear]
+        found[f"{name}_root_stress_iso_6336_MPa"] = nominal[gear] * factor
+    return found | {"root_face_load_factor_iso_6336": factor}
+
+
+def _extreme(result: MeshCycle, torque: int, gear: int, name: str) -> dict[str, float]:
+    """Largest tension or compression of a gear over the positions, and where it is."""
+    stress, figure = getattr(result, name)[torque, :, gear], f"{GEARS[gear]}_{name}"
+    position = int(np.where(np.isnan(stress), -1.0, np.abs(stress)).argmax())
+
+    def there(part: str) -> float:
+        return float(getattr(result, f"{name}{part}")[torque, position, gear])
+
+    place = getattr(result, f"{name}_place")[torque, position, gear]
+    stressed = bool(abs(stress[position]) > 0.0)
+    return {
+        f"{figure}_MPa": there(""),
+        f"pinion_angle_at_{figure}_deg": math.degrees(result.pinion_angle[position]) if stressed else math.nan,
+        f"{figure}_angle_deg": math.degrees(there("_angle")),
+        f"{figure}_axial_mm": there("_axial"),
+        f"{figure}_on_back": bool(place[PLACE.index("side")] == 1),
+    }

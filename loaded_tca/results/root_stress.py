@@ -1,0 +1,202 @@
+"""Root stress of both gears over the mesh cycle: its extremes, and where along fillets and faces they lie.
+
+Normal forces of all slices of the pressure maps load the models of :mod:`loaded_tca.compliance.root_stress`; loads of
+all tooth pairs add up at the root of each tooth. All that stands in a result is found from its maps.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loaded_tca.arrays import Array, Indices
+from loaded_tca.compliance import RootStress, flank_lines
+from loaded_tca.errors import NotAskedError
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.files import Part
+from loaded_tca.results.pressure_map import Maps, PressureMap
+from loaded_tca.threads import one_blas_thread
+
+if TYPE_CHECKING:
+    from loaded_tca.results.mesh_cycle import MeshCycle
+
+GEARS = "pinion", "wheel"
+STATES_AT_A_TIME = 32
+"""Positions whose stress is held in memory at once, 10 to 20 MB of each tooth."""
+
+OVER_CYCLE = ("torque", "position", "gear")
+ROOT_QUANTITIES: dict[str, Part] = {
+    "root_tension": (OVER_CYCLE, "MPa", "largest stress at the roots of all teeth of pinion and wheel, on both sides"),
+    "root_compression": (OVER_CYCLE, "MPa", "smallest stress there, negative in compression"),
+    "root_tension_angle": (OVER_CYCLE, "rad", "tangent of the fillet to the middle of the tooth, at the tension"),
+    "root_compression_angle": (OVER_CYCLE, "rad", "the same at the compression"),
+    "root_tension_axial": (OVER_CYCLE, "mm", "axial coordinate on the gear itself, at the tension"),
+    "root_compression_axial": (OVER_CYCLE, "mm", "the same at the compression"),
+    "root_tension_place": (
+        (*OVER_CYCLE, "index"),
+        "1",
+        "tooth, counted in the sense of +theta; side, 0 that in contact; station along the fillet; place along the "
+        "face; -1 where nothing is known",
+    ),
+    "root_compression_place": ((*OVER_CYCLE, "index"), "1", "the same of the compression"),
+    "root_stress_ratio": (
+        ("torque", "gear"),
+        "1",
+        "smallest over largest stress in a whole turn where a tooth has its largest tension",
+    ),
+}
+"""Numbers of both gears that a result has where its scene asks for root stress."""
+PLACE = "tooth", "side", "station", "along"
+"""What the axis ``index`` counts."""
+
+ON_FILLETS: dict[str, Part] = {
+    "root_angle": (("side", "station"), "rad", "tangent of the fillet to the middle of the tooth"),
+    "root_point": (("side", "station"), "mm", "places in the frame of the tooth"),
+    "root_stress_at_tension": (("torque", "side", "station"), "MPa", "stress of the tooth with the largest tension"),
+    "root_stress_largest": (("torque", "side", "station"), "MPa", "largest stress of a tooth in a whole turn"),
+    "root_stress_smallest": (("torque", "side", "station"), "MPa", "smallest stress of a tooth in a whole turn"),
+}
+"""Arrays of each gear over both sides of a tooth, stations along the fillet and places along the face."""
+ROOT_MAPS: dict[str, Part] = {
+    f"{gear}_{name}": ((*axes, f"{gear}_along", *(("vector",) if name == "root_point" else ())), unit, text)
+    for gear in GEARS
+    for name, (axes, unit, text) in ON_FILLETS.items()
+}
+"""The same by their names in a file; places along the face are as many as the width of each gear asks for."""
+ROOT_PARTS = ROOT_QUANTITIES | ROOT_MAPS
+
+
+@dataclass(frozen=True, eq=False)
+class RootStressMap:
+    """Root stress of one gear over fillet and face, for both sides of a tooth: first that in contact, then its back.
+
+    Attributes
+    ----------
+    tangent_angle : (2, stations, p) array [rad]
+        Between the fillet and the middle of the tooth.
+    point : (2, stations, p, 3) array [mm]
+        Places in the frame of the tooth, whose third coordinate is the gear's own z.
+    at_tension : (torque, 2, stations, p) array [MPa]
+        Of the tooth with the largest tension, at the position where it has it.
+    largest, smallest : (torque, 2, stations, p) array [MPa]
+        Envelopes: extremes that a tooth sees in its whole turn. Out of mesh it has no stress.
+    """
+
+    tangent_angle: Array
+    point: Array
+    at_tension: Array
+    largest: Array
+    smallest: Array
+
+
+def root_stress_maps(result: MeshCycle) -> tuple[RootStressMap, RootStressMap]:
+    """Root stress of pinion and wheel over fillet and face, of a result that has it."""
+    pinion, wheel = (
+        RootStressMap(*(result.dataset[f"{gear}_{name}"].values for name in ON_FILLETS)) for gear in GEARS
+    )
+    return pinion, wheel
+
+
+def not_asked(name: str) -> NotAskedError:
+    """Error of a result without root stress."""
+    return NotAskedError(f"{name}: the scene of the result does not ask for it; set analysis.root_stress = true")
+
+
+def root_stress_arrays(
+    pair: GearPair, models: Sequence[RootStress], numbers: Sequence[int], known: NDArray[np.bool_], maps: Maps
+) -> dict[str, Array]:
+    """Arrays of ``ROOT_PARTS`` of what the tooth pairs carry.
+
+    Parameters
+    ----------
+    pair : GearPair
+    models : (RootStress, RootStress)
+        Of pinion and wheel.
+    numbers : sequence of int
+        Of the tooth pairs.
+    known : (torque, position) bool array
+        Where a tooth pair is in contact; elsewhere all is NaN.
+    maps : Maps
+    """
+    with one_blas_thread():  # the matrices are small: threads waiting for each other cost more
+        found = [_of_gear(pair, gear, model, numbers, known, maps) for gear, model in enumerate(models)]
+    arrays = {name: np.stack([one[name] for one in found], axis=-1) for name in ROOT_QUANTITIES if name in found[0]}
+    for name in ("root_tension_place", "root_compression_place"):
+        arrays[name] = np.moveaxis(arrays[name], -1, -2)
+    return arrays | {f"{gear}_{name}": one[name] for gear, one in zip(GEARS, found, strict=True) for name in ON_FILLETS}
+
+
+def _of_gear(
+    pair: GearPair, gear: int, model: RootStress, numbers: Sequence[int], known: NDArray[np.bool_], maps: Maps
+) -> dict[str, Array]:
+    """The same of one gear, without the axis of the gears."""
+    fillets = model.tangent_angle.shape
+    extreme = {sign: np.where(known, 0.0, math.nan) for sign in (1, -1)}  # magnitudes of tension and compression
+    place = {sign: np.full((*known.shape, len(PLACE)), -1) for sign in extreme}
+    at_tension, largest, smallest = np.where(known.any(axis=1), 0.0, math.nan) * np.ones((3, *fillets, 1))
+    for t, positions, tooth, stress in _stresses(pair, gear, model, numbers, maps):
+        largest[..., t] = np.maximum(largest[..., t], stress.max(axis=0))
+        smallest[..., t] = np.minimum(smallest[..., t], stress.min(axis=0))
+        for sign, so_far in extreme.items():
+            signed = (sign * stress).reshape(len(stress), -1)
+            where = signed.argmax(axis=-1)
+            value = signed[np.arange(len(where)), where]
+            if sign > 0 and value.max() > np.nanmax(so_far[t]):
+                at_tension[..., t] = stress[value.argmax()]
+            more = value > so_far[t, positions]
+            chosen = positions[more]
+            so_far[t, chosen] = value[more]
+            place[sign][t, chosen, 0] = tooth
+            place[sign][t, chosen, 1:] = np.stack(np.unravel_index(where[more], fillets), axis=-1)
+    on_fillet = (np.moveaxis(one, -1, 0) for one in (at_tension, largest, smallest))
+    arrays = dict(zip(ON_FILLETS, (model.tangent_angle, model.point, *on_fillet), strict=True))
+    for sign, name in ((1, "root_tension"), (-1, "root_compression")):
+        there, stressed = tuple(np.moveaxis(place[sign], -1, 0)[1:]), extreme[sign] > 0.0
+        arrays[name] = sign * extreme[sign] + 0.0
+        arrays[f"{name}_angle"] = np.where(stressed, model.tangent_angle[there], math.nan)
+        arrays[f"{name}_axial"] = np.where(stressed, model.point[(*there, 2)], math.nan)
+        arrays[f"{name}_place"] = place[sign]
+    return arrays | {"root_stress_ratio": _ratio(arrays["root_stress_largest"], arrays["root_stress_smallest"])}
+
+
+def _stresses(
+    pair: GearPair, gear: int, model: RootStress, numbers: Sequence[int], maps: Maps
+) -> Iterator[tuple[int, Indices, int, Array]]:
+    """Torque, positions (n,) under load, tooth, and its stress there (n, 2, stations, p), for every tooth with any."""
+    for t, rows in enumerate(maps):
+        loaded = np.array([n for n, row in enumerate(rows) if any(row)], dtype=int)
+        for first in range(0, len(loaded), STATES_AT_A_TIME):
+            positions = loaded[first : first + STATES_AT_A_TIME]
+            loads = list(_loads(pair, gear, model, numbers, [rows[n] for n in positions]))
+            teeth = [tooth for tooth, *_ in loads]
+            count = min(np.ptp(teeth) + 1 + 2 * model.neighbours, pair.teeth[gear])
+            for tooth in range(min(teeth) - model.neighbours, min(teeth) - model.neighbours + count):
+                yield t, positions, tooth, model.stresses(tooth, loads)
+
+
+def _loads(
+    pair: GearPair, gear: int, model: RootStress, numbers: Sequence[int], rows: Sequence[Sequence[PressureMap | None]]
+) -> Iterator[tuple[int, Array, Array]]:
+    """Loaded teeth, and forces at the places of the model's table (states, ...) that stand for those of the maps."""
+    for k, number in enumerate(numbers):
+        both: list[Array] = []
+        for state, row in enumerate(rows):
+            if (one := row[k]) is not None:
+                line = flank_lines(pair, number, one)[gear]
+                forces = model.forces_of_table(line, one.slice_force)
+                both = both or [np.zeros((len(rows), len(force))) for force in forces]
+                both[0][state], both[1][state] = forces
+        if both:
+            yield line.tooth, both[0], both[1]
+
+
+def _ratio(largest: Array, smallest: Array) -> Array:
+    """Smallest over largest stress (torque,) at the place of the largest tension of envelopes (torque, ...)."""
+    high, low = (envelope.reshape(len(envelope), -1) for envelope in (largest, smallest))
+    place = np.arange(len(high)), np.where(np.isnan(high), 0.0, high).argmax(axis=-1)
+    return np.divide(low[place], high[place], out=np.full(len(high), math.nan), where=high[place] > 0.0)
