@@ -170,14 +170,29 @@ class RootStress:
                 total += stress.reshape(len(total), -1) @ forces[int(away != 0)].T
         return self._at_places(total.reshape(*shape, -1))
 
-    def per_force(self, tooth: int, line: FlankLine, place: tuple[int, int, int]) -> Array:
-        """Stress at one place of those of :meth:`stress` per force at places (m,) of a line [MPa/N]."""
-        away, (side, station, along) = self._away(tooth, line.tooth), place
+    def per_force(self, tooth: int, line: FlankLine, side: int, stations: Indices, along: Indices) -> Array:
+        """Stress at some places of those of :meth:`stress` per force on a line [MPa/N].
+
+        Parameters
+        ----------
+        tooth : int
+        line : FlankLine
+            m places.
+        side : int
+            0 that of the flank in contact, 1 the back.
+        stations, along : (s,), (a,) int array
+            Along the fillet and along the face.
+
+        Returns
+        -------
+        (s, a, m) array
+        """
+        away = self._away(tooth, line.tooth)
         if abs(away) > self.neighbours:
-            return np.zeros(len(line.rho))
-        profile, face = self._along_profile[side, :, station], self._along_face[along]
-        per_force = np.einsum("m,mn,nma->a", face, profile, self._stress(away)[side])
-        return np.asarray(self._shares(line, int(away != 0)) @ per_force)
+            return np.zeros((len(stations), len(along), len(line.rho)))
+        in_sections = self._along_profile[side][:, stations] @ self._stress(away)[side].swapaxes(0, 1)  # (m, s, q)
+        of_table = np.tensordot(self._along_face[along], in_sections, 1)  # (a, s, q)
+        return np.asarray((of_table @ self._shares(line, int(away != 0)).T).swapaxes(0, 1))
 
     def _away(self, tooth: int, loaded: int) -> int:
         """How many pitches a loaded tooth stands behind another."""

@@ -85,6 +85,11 @@ class LoadedGrid:
         solution = loaded.solution
         return cls(number, loaded.contact, loaded.separation, solution.problem, solution.pressure, loaded.bending)
 
+    @property
+    def slice_force(self) -> Array:
+        """Force on every slice (ny,) [N]."""
+        return np.asarray(self.pressure.sum(axis=0) * math.prod(self.problem.spacing))
+
     @cached_property
     def active(self) -> Mask:
         """Cells between the bounds, (nx, ny)."""

@@ -7,7 +7,7 @@ all tooth pairs add up at the root of each tooth. All that stands in a result is
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,11 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array, Indices
-from loaded_tca.compliance import RootStress, flank_lines
+from loaded_tca.compliance import FlankLine, RootStress, flank_lines
 from loaded_tca.errors import NotAskedError
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.files import Part
 from loaded_tca.results.pressure_map import Maps, PressureMap
+from loaded_tca.results.slice_pressure import top_weights
 from loaded_tca.threads import one_blas_thread
 
 if TYPE_CHECKING:
@@ -193,6 +194,34 @@ def _loads(
                 both[0][state], both[1][state] = forces
         if both:
             yield line.tooth, both[0], both[1]
+
+
+def stress_at_extreme(
+    model: RootStress, loads: Sequence[tuple[FlankLine, Array]], place: Sequence[int]
+) -> Callable[[FlankLine], Array]:
+    """Stress about an extreme as it follows from forces: a function of a line, per force on it (m,) [MPa/N].
+
+    Through the stress about the place go parabolas along the fillet and along the face; what they have at their top is
+    smooth as the extreme moves.
+
+    Parameters
+    ----------
+    model : RootStress
+    loads : sequence of (FlankLine, (m,) array [N])
+        Under which the extreme lies there.
+    place : sequence of int
+        As of ``root_tension_place``: tooth, side, station, along the face.
+    """
+    tooth, side, *middle = place
+    near = [
+        np.arange(max(at - 1, 0), min(at + 2, count))
+        for at, count in zip(middle, model.tangent_angle.shape[1:], strict=True)
+    ]
+    stress = np.abs(sum(model.per_force(tooth, line, side, *near) @ forces for line, forces in loads))
+    at, across = (at - own[0] for at, own in zip(middle, near, strict=True))
+    through = stress[:, across], stress[at]
+    weights = [top_weights(one) if one.size == 3 else np.eye(one.size)[one.argmax()] for one in through]
+    return lambda line: np.einsum("s,a,sam->m", *weights, model.per_force(tooth, line, side, *near))
 
 
 def _ratio(largest: Array, smallest: Array) -> Array:

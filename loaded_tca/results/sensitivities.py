@@ -6,11 +6,13 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from loaded_tca.arrays import Array, Indices, real
+from loaded_tca.compliance import flank_lines, root_stress_model
 from loaded_tca.errors import require
 from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.sensitivity import Tangents
@@ -23,6 +25,8 @@ from loaded_tca.results.figure_slopes import (
 )
 from loaded_tca.results.key_figures import harmonic_coefficients
 from loaded_tca.results.loaded_grids import states_of_maps
+from loaded_tca.results.root_stress import stress_at_extreme
+from loaded_tca.separation import Separation
 from loaded_tca.separation.gap_change import contact_changes, pair_changes
 
 if TYPE_CHECKING:
@@ -63,6 +67,8 @@ class Sensitivities:
     lever_torques : (keys, grids) array [N mm per unit]
         Growth of the torque of each pair by that of its lever: levers are those of the unloaded contact points, which
         move.
+    shifts : (keys, grids) array [mm per unit]
+        By which they move across their contacts, and with them the lines along which contacts load the teeth.
     """
 
     keys: tuple[str, ...]
@@ -72,6 +78,7 @@ class Sensitivities:
     pairs: Indices
     gaps: Array
     lever_torques: Array
+    shifts: Array
 
     def __repr__(self) -> str:
         return f"Sensitivities({len(self.keys)} keys, {self.places.shape[1]} states)"
@@ -184,6 +191,42 @@ class Sensitivities:
         return found
 
     @cached_property
+    def root_tension(self) -> Array:
+        """Of the largest tension at the roots, (torque, position, gear, key) [MPa per unit]; its place is held.
+
+        NotAskedError without root stress.
+        """
+        return self._of_root_stress("root_tension")
+
+    @cached_property
+    def root_compression(self) -> Array:
+        """Of the largest compression likewise: where it is negative, compression grows."""
+        return self._of_root_stress("root_compression")
+
+    def _of_root_stress(self, name: str) -> Array:
+        """The stress about an extreme follows the forces, and the lines along which they load the teeth."""
+        places, pair, grids = getattr(self.result, f"{name}_place"), self.result.gear_pair, self.tangents.grids
+        found = np.full((*places.shape[:-1], len(self.keys)), np.nan)
+        in_states = np.split(np.arange(len(grids)), np.flatnonzero(np.diff(self.tangents.state)) + 1)
+        for gear, own in enumerate((pair.pinion, pair.wheel)):
+            model, by_force, moved = root_stress_model(own), [], np.zeros((len(self.keys), len(in_states)))
+            for state, ((t, n), numbers) in enumerate(zip(self.places.T.tolist(), in_states, strict=True)):
+                lines = [flank_lines(pair, grids[i].number, grids[i].separation)[gear] for i in numbers]
+                loads = [(line, grids[i].slice_force) for line, i in zip(lines, numbers, strict=True)]
+                per_force = stress_at_extreme(model, loads, places[t, n, gear].tolist())
+                for (line, forces), i in zip(loads, numbers, strict=True):
+                    stress = per_force(line)
+                    by_force.append(np.broadcast_to(stress, grids[i].active.shape))
+                    if self.shifts[:, i].any():
+                        beyond, step = _shifted(grids[i].separation)
+                        further = per_force(flank_lines(pair, grids[i].number, beyond)[gear])
+                        moved[:, state] += self.shifts[:, i] * ((further - stress) / step @ forces)
+            slopes = self.tangents.gathered(by_force)
+            change = self.tangents.functional_change(slopes, self.gaps, self.torques) + moved
+            found[(*self.places, gear)] = change.T
+        return found
+
+    @cached_property
     def weight_maps(self) -> tuple[tuple[tuple[Array | None, ...], ...], ...]:
         """Where removal counts: by torque, position and pair (nx, ny) on the grids of ``result.maps``; None as there.
 
@@ -244,6 +287,8 @@ class Sensitivities:
             ("torque", "position", "pair"): ("load_share", "line_load", "peak_pressure"),
             ("torque",): ("peak_to_peak", "face_load_factor"),
         }
+        if self.result.scene.analysis.root_stress:
+            dimensions["torque", "position", "gear"] = "root_tension", "root_compression"
         arrays = {name: ((*own, "key"), getattr(self, name)) for own, names in dimensions.items() for name in names}
         return xarray.Dataset(arrays, {**coordinates, "key": list(self.keys)})
 
@@ -302,16 +347,22 @@ def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
     gaps = np.zeros((len(keys), tangents.grid.size))
     for row, grown, held, further in zip(at, found.gaps, found.at_contact, beyond, strict=True):  # rows fit a cache
         gaps[row] = grown - held[tangents.grid] * found.lever_parts + further[tangents.grid]
-    if loaded.bending is not None:
-        _add_shifted_bending(gaps, at, found.shifts, tangents, loaded.bending)
     lever_torques = np.zeros((len(keys), len(grids)))
     lever_torques[at] = result.normal_force[at_grids] * found.levers[0]
-    return Sensitivities(tuple(keys), result, tangents, places, columns, gaps, lever_torques)
+    shifts = np.zeros(lever_torques.shape)
+    shifts[at] = found.shifts
+    if loaded.bending is not None:
+        _add_shifted_bending(gaps, shifts, tangents, loaded.bending)
+    return Sensitivities(tuple(keys), result, tangents, places, columns, gaps, lever_torques, shifts)
 
 
-def _add_shifted_bending(
-    gaps: Array, rows: Sequence[int], shifts: Array, tangents: Tangents, bending: BendingModel
-) -> None:
+def _shifted(separation: Separation) -> tuple[Separation, float]:
+    """A grid moved across its contact, and how far [mm]."""
+    step = STEP * separation.spacing[0] * len(separation.x)
+    return replace(separation, origin=separation.origin + step * separation.axes[0]), step
+
+
+def _add_shifted_bending(gaps: Array, shifts: Array, tangents: Tangents, bending: BendingModel) -> None:
     """Add to the gaps what teeth bend more under the forces as they are, as contact points move.
 
     The teeth bend under a contact as under forces on the line through its contact point, which moves across the
@@ -321,20 +372,17 @@ def _add_shifted_bending(
     ----------
     gaps : (keys, n) array [mm per unit]
         Changed in place.
-    rows : sequence of int
-        Those of the keys in the shifts.
-    shifts : (m, grids) array [mm per unit]
+    shifts : (keys, grids) array [mm per unit]
         Of the contact points along x.
     tangents : Tangents
     bending : BendingModel
     """
-    parts = np.split(np.arange(tangents.grid.size), tangents.ends[:-1])
+    parts = [slice(*ends) for ends in pairwise([0, *tangents.ends.tolist()])]
     slices = [grid.active.nonzero()[1] for grid in tangents.grids]
-    forces = [grid.pressure.sum(axis=0) * math.prod(grid.problem.spacing) for grid in tangents.grids]
+    forces = [grid.slice_force for grid in tangents.grids]
     for i in np.flatnonzero(shifts.any(axis=0)).tolist():
         number, separation = tangents.grids[i].number, tangents.grids[i].separation
-        step = STEP * separation.spacing[0] * len(separation.x)
-        moved = replace(separation, origin=separation.origin + step * separation.axes[0])
+        moved, step = _shifted(separation)
         by_shift = (bending.within(number, moved) - tangents.grids[i].bending) / step
         growth = {i: by_shift @ forces[i]}
         for j in np.flatnonzero(tangents.state == tangents.state[i]).tolist():
@@ -345,4 +393,4 @@ def _add_shifted_bending(
                 ) / step
                 growth[j], growth[i] = by_shift @ forces[i], growth[i] + by_shift.T @ forces[j]
         for j, grown in growth.items():
-            gaps[np.array(rows)[:, None], parts[j]] += shifts[:, i, None] * grown[slices[j]]
+            gaps[:, parts[j]] += shifts[:, i, None] * grown[slices[j]]

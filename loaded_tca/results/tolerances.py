@@ -11,6 +11,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.results.key_figures import mean_over_a_pitch
+from loaded_tca.results.root_stress import GEARS
 from loaded_tca.results.sensitivities import TORQUE
 from loaded_tca.scene import Scene
 from loaded_tca.scene.section import contents
@@ -86,14 +87,15 @@ def key_figure_slopes(found: Sensitivities) -> dict[str, Array]:
     -------
     dict of str to (torque, key) array
         In the unit at the end of the name per unit of the key; NaN where the figure is not known or nothing is loaded.
-        The peak pressure is that of the place which has the highest one.
+        The peak pressure is that of the place which has the highest one, the root tension, where the scene asks for
+        it, that of the position.
     """
     result = found.result
     length = 1e3 * result.wheel_base_radius
     means = [[mean_over_a_pitch(slope) for slope in slopes.T] for slopes in found.transmission_error]
     peaks = [result.peak_contact(torque) for torque in range(len(result.torque))]
     unknown = np.full(len(found.keys), math.nan)
-    return {
+    slopes = {
         "transmission_error_mean_um": length * np.array(means),
         "transmission_error_span_um": length * found.peak_to_peak,
         "transmission_error_order_1_um": length * found.harmonics(1)[:, 0],
@@ -102,3 +104,7 @@ def key_figure_slopes(found: Sensitivities) -> dict[str, Array]:
             [unknown if at is None else found.peak_pressure[torque][at] for torque, at in enumerate(peaks)]
         ),
     }
+    for gear, name in enumerate(GEARS if result.scene.analysis.root_stress else ()):
+        at = np.nan_to_num(result.root_tension[..., gear]).argmax(axis=1)
+        slopes[f"{name}_root_tension_MPa"] = found.root_tension[np.arange(len(at)), at, gear]
+    return slopes
