@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from loaded_tca.compliance import RootStress, ToothCompliance, require_teeth, root_stress_model, tooth_compliance, way_out_told
+from loaded_tca.compliance import (
+    RootStress,
+    ToothCompliance,
+    require_teeth,
+    root_stress_model,
+    tooth_compliance,
+    way_out_told,
+)
 from loaded_tca.errors import named, require
 from loaded_tca.loaded.cycle import Progress, carried_by_all, carried_by_one, farthest_apart
 from loaded_tca.loaded.effort import expected_effort

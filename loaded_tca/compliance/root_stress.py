@@ -142,7 +142,10 @@ class RootStress:
             On the side of the flank in contact and on the back; from a tangent angle of 15 degrees, or the end of the
             flank, down to the middle of the space; along the face, both ends included.
         """
-        states = [(line.tooth, *(one[None] for one in self.forces_of_table(line, forces))) for line, forces in loads]
+        states = []
+        for line, forces in loads:
+            own, beside = self.forces_of_table(line, forces)
+            states.append((line.tooth, own[None], beside[None]))
         return self.stresses(tooth, states)[0]
 
     def forces_of_table(self, line: FlankLine, forces: Array) -> tuple[Array, Array]:

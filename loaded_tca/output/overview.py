@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-import numpy as np
-
 from loaded_tca.compliance import require_teeth
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
 from loaded_tca.loaded.effort import expected_effort, rounded
@@ -73,10 +71,9 @@ def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     yield "analysis, roughly: time [s], memory [GiB]", rounded(effort.seconds), rounded(effort.gibibytes)
     if wanted.root_stress:
         yield "root stress", "on"
-        stresses = np.transpose([scene.nominal_root_stress(torque) for torque in torques])
-        for name, row in zip(("pinion", "wheel"), stresses, strict=True):
-            if np.isfinite(row).all():
-                yield f"nominal root stress of the {name}, ISO [MPa]", *(f"{stress:.4g}" for stress in row)
+        for name, nominal in zip(("pinion", "wheel"), scene.nominal_root_stress, strict=True):
+            if math.isfinite(nominal):
+                yield f"nominal root stress, ISO, {name} [MPa]", *(f"{nominal * torque:.4g}" for torque in torques)
     if wanted.without_bodies:
         require_teeth(pair, wanted.without_bodies)
         yield "bores or journals held rigid, diameter [mm]", *(f"{bore:.4f}" for bore in pair.rigid_bores)

@@ -200,7 +200,12 @@ def describe_results() -> str:
         for name, (axes, unit, _) in ROOT_QUANTITIES.items()
         if axes == OVER_CYCLE
     }
-    lines += ["", "### Root stress, where the scene asks for it", "", *_described(ROOT_QUANTITIES | ROOT_MAPS, in_tables)]
+    lines += [
+        "",
+        "### Root stress, where the scene asks for it",
+        "",
+        *_described(ROOT_QUANTITIES | ROOT_MAPS, in_tables),
+    ]
     lines += ["", "### `result.path` and `result.paths[pair]`: the unloaded contact", "", *_described(PATH_PARTS)]
     lines += ["", "### `result.maps[torque][position][pair]`: one pressure map", "", *_described(MAP_PARTS)]
     return "\n".join(lines) + "\n"

@@ -142,7 +142,8 @@ def plot_all(
         highest pressure where it holds. Where tooth pairs share the load: ``load_share.png``, ``harmonics.png``,
         ``mesh_stiffness.png``, ``line_load.png``, ``line_load_distribution.png``, ``pressure_envelope.png``,
         ``path_pressure.png``. With root stress: ``root_stress.png``; of several positions ``root_stress_cycle.png``; of
-        several torques ``root_stress_over_torque.png``. With ``more``: under several torques ``contact_patterns.png``, and ``full_mesh.png``.
+        several torques ``root_stress_over_torque.png``. With ``more``: under several torques
+        ``contact_patterns.png``, and ``full_mesh.png``.
 
     Raises
     ------

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 
 from loaded_tca.arrays import Array
 from loaded_tca.plots import style
-from loaded_tca.plots.style import ACCENT, DISTINCT_COLOURS, HEADROOM, highest_torque, load, loads, range_of_positions
+from loaded_tca.plots.style import DISTINCT_COLOURS, HEADROOM, highest_torque, load, loads, range_of_positions
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.root_stress import GEARS, RootStressMap
 
@@ -53,11 +55,11 @@ def plot_root_stress(result: MeshCycle, torque: int | None = None) -> Figure:
     scale = Normalize(-largest or -1.0, largest or 1.0)
     for column, (gear, one) in enumerate(zip(GEARS, maps, strict=True)):
         titles = "at its largest tension", "largest stress in a turn", "smallest stress in a turn"
-        for axes, part, title in zip(panels[:, column], _shown(one), titles, strict=True):
+        marked = (1.0, -1.0), (1.0,), (-1.0,)
+        for axes, part, title, signs in zip(panels[:, column], _shown(one), titles, marked, strict=True):
             _draw_fillets(axes, one, part[torque], scale)
+            _mark_extremes(axes, one, part[torque], signs)
             axes.set_title(f"{gear}, {title}", fontsize="medium")
-        panels[0, column].set_ylabel("")
-        for axes in panels[:, column]:
             axes.set_ylabel(f"axial place on the {gear} [mm]")
         panels[-1, column].set_xlabel("tangent angle [deg]: back of the tooth | side in contact")
     figure.colorbar(ScalarMappable(scale, DIVERGING), ax=panels, label="root stress [MPa], tension positive")
@@ -70,18 +72,24 @@ def _shown(one: RootStressMap) -> tuple[Array, Array, Array]:
 
 
 def _draw_fillets(axes: Axes, one: RootStressMap, stress: Array, scale: Normalize) -> None:
-    """Both sides of a tooth, the back mirrored to the left; a dot at the largest tension and compression."""
+    """Both sides of a tooth, the back mirrored to the left."""
     for side, sign in ((0, 1.0), (1, -1.0)):
         angle, axial = sign * np.degrees(one.tangent_angle[side]), one.point[side, ..., 2]
         axes.pcolormesh(angle, axial, stress[side], cmap=DIVERGING, norm=scale, shading="gouraud", rasterized=True)
-    for place, marker in ((np.nanargmax(stress), "o"), (np.nanargmin(stress), "s")) if np.isfinite(stress).all() else ():
-        side, station, along = np.unravel_index(place, stress.shape)
-        value = stress[side, station, along]
-        x = (1.0, -1.0)[side] * math.degrees(one.tangent_angle[side, station, along])
-        axes.plot(x, one.point[side, station, along, 2], marker, color="black", markersize=4.0)
-        axes.annotate(f"{value:.0f}", (x, one.point[side, station, along, 2]), (4.0, 4.0), textcoords="offset points")
     axes.axvspan(-10.0, 10.0, color=style.NO_MATERIAL)
     axes.text(0.0, 0.5, "tooth", transform=axes.get_xaxis_transform(), ha="center", va="center", rotation=90.0)
+
+
+def _mark_extremes(axes: Axes, one: RootStressMap, stress: Array, signs: tuple[float, ...]) -> None:
+    """A dot and a number where the stress times a sign is largest; nothing without stress."""
+    for sign in signs:
+        if np.nanmax(sign * stress, initial=0.0) > 0.0:
+            side, station, along = np.unravel_index(np.nanargmax(sign * stress), stress.shape)
+            x = (1.0, -1.0)[side] * math.degrees(one.tangent_angle[side, station, along])
+            place = x, one.point[side, station, along, 2]
+            axes.plot(*place, "o", color="black", markeredgecolor="white", markersize=5.0)
+            told = axes.annotate(f"{stress[side, station, along]:.0f}", place, (5.0, 4.0), textcoords="offset points")
+            told.set_path_effects([withStroke(linewidth=2.5, foreground="white")])
 
 
 def plot_root_stress_cycle(result: MeshCycle) -> Figure:
@@ -123,7 +131,7 @@ def plot_root_stress_cycle(result: MeshCycle) -> Figure:
     panels[0].plot([], [], TENSION, color="black", label="largest tension")
     panels[0].plot([], [], COMPRESSION, color="black", label="largest compression")
     if len(changes):
-        panels[0].plot([], [], ":", color="0.5", label="number of loaded pairs changes")
+        panels[0].plot([], [], ":", color="0.5", label="loaded pairs change (largest torque)")
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
     style.set_title(figure, result, f"root stress over the mesh, {loads(result)}", range_of_positions(result))
     return figure
@@ -150,21 +158,20 @@ def plot_root_stress_over_torque(result: MeshCycle) -> Figure:
     figure = Figure(figsize=(8.0, 5.5), layout="constrained")
     axes = figure.add_subplot()
     torque = 1e-3 * result.torque[order]
-    curves = (
+    curves: tuple[tuple[str, str, dict[str, Any]], ...] = (
         ("root_tension", "largest tension", {"linestyle": TENSION, "marker": "o"}),
         ("root_compression", "largest compression", {"linestyle": COMPRESSION, "marker": "s"}),
-        ("root_stress_iso_6336", "ISO 6336-3, σ_F0 K_Fβ", {"linestyle": NOMINAL, "marker": "^"}),
+        ("root_stress_iso_6336", "ISO 6336-3, $σ_{F0} K_{Fβ}$", {"linestyle": NOMINAL, "marker": "^"}),
     )
     for gear, colour in zip(GEARS, GEAR_COLOURS, strict=True):
         for name, label, look in curves:
             values = np.array([figures[k][f"{gear}_{name}_MPa"] for k in order])
             if np.isfinite(values).any():
-                axes.plot(torque, values, color=colour, markersize=5.0, label=f"{gear}: {label}", **look)
+                filled = colour if gear == GEARS[0] else "none"  # where both lie on each other both are seen
+                axes.plot(torque, values, color=colour, markerfacecolor=filled, label=f"{gear}: {label}", **look)
     axes.axhline(0.0, color="black", linewidth=0.8)
     axes.set_xlim(0.0, (1.0 + HEADROOM) * torque[-1] or None)
     axes.set_xlabel("pinion torque [N m]")
     axes.set_ylabel("root stress [MPa]")
     axes.grid(alpha=0.3)
-    return style.finished(
-        figure, axes, result, "root stress over the torque", range_of_positions(result), columns=2
-    )
+    return style.finished(figure, axes, result, "root stress over the torque", range_of_positions(result), columns=2)

@@ -139,10 +139,11 @@ def dataset_of(arrays: Mapping[str, Any], version: str) -> xarray.Dataset:
 class MeshCycle:
     """Loaded contact over the positions of a pitch, under each torque.
 
-    Every name of ``QUANTITIES`` and, with root stress, of ``ROOT_PARTS`` is an attribute too: ``result.peak_pressure`` is the NumPy array of
-    ``result.dataset["peak_pressure"]``, with the axes (torque, position, pair) whatever their lengths. NaN where a pair
-    carries nothing, but its ``normal_force`` and ``load_share``, which are zero; flags and counts are 0 there. What is
-    computed from these numbers is computed when it is asked for, so that it follows what is written into the dataset.
+    Every name of ``QUANTITIES`` and, with root stress, of ``ROOT_PARTS`` is an attribute too: ``result.peak_pressure``
+    is the NumPy array of ``result.dataset["peak_pressure"]``, with the axes (torque, position, pair) whatever their
+    lengths. NaN where a pair carries nothing, but its ``normal_force`` and ``load_share``, which are zero; flags and
+    counts are 0 there. What is computed from these numbers is computed when it is asked for, so that it follows what is
+    written into the dataset.
 
     Attributes
     ----------

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from loaded_tca.reference.iso6336_3 import face_load_factor
 from loaded_tca.results.root_stress import GEARS, PLACE
 
 if TYPE_CHECKING:
@@ -24,14 +25,15 @@ def root_figures(result: MeshCycle, torque: int) -> dict[str, float]:
         Index of the torque.
     """
     found: dict[str, float] = {}
-    nominal = result.scene.nominal_root_stress(float(result.torque[torque]))
-    factor = result.scene.root_face_load_factor(float(result.face_load_factor[torque]))
+    nominal = [float(result.torque[torque]) * per_torque for per_torque in result.scene.nominal_root_stress]
+    ratio, factor = result.scene.tooth_height_over_width, float(result.face_load_factor[torque])
+    of_roots = math.nan if math.isnan(ratio + factor) else face_load_factor(max(1.0, factor), ratio)
     for gear, name in enumerate(GEARS):
         found |= _extreme(result, torque, gear, "root_tension") | _extreme(result, torque, gear, "root_compression")
         found[f"{name}_root_stress_ratio"] = float(result.root_stress_ratio[torque, gear])
         found[f"{name}_nominal_root_stress_iso_6336_MPa"] = nominal[gear]
-        found[f"{name}_root_stress_iso_6336_MPa"] = nominal[gear] * factor
-    return found | {"root_face_load_factor_iso_6336": factor}
+        found[f"{name}_root_stress_iso_6336_MPa"] = nominal[gear] * of_roots
+    return found | {"root_face_load_factor_iso_6336": of_roots}
 
 
 def _extreme(result: MeshCycle, torque: int, gear: int, name: str) -> dict[str, float]:

@@ -97,9 +97,7 @@ class RootStressMap:
 
 def root_stress_maps(result: MeshCycle) -> tuple[RootStressMap, RootStressMap]:
     """Root stress of pinion and wheel over fillet and face, of a result that has it."""
-    pinion, wheel = (
-        RootStressMap(*(result.dataset[f"{gear}_{name}"].values for name in ON_FILLETS)) for gear in GEARS
-    )
+    pinion, wheel = (RootStressMap(*(result.dataset[f"{gear}_{name}"].values for name in ON_FILLETS)) for gear in GEARS)
     return pinion, wheel
 
 

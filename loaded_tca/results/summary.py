@@ -140,7 +140,8 @@ def _notes(figures: Sequence[Figures]) -> Iterator[str]:
     for name in ON_BACK:
         back = [bool(entry.get(name, False)) for entry in figures]
         if any(back):
-            yield f"the root tension of the {name.split('_')[0]} lies on the back of a tooth{_for_torques(figures, back)}"
+            gear = name.partition("_")[0]
+            yield f"the root tension of the {gear} lies on the back of a tooth{_for_torques(figures, back)}"
     if any(math.isfinite(entry.get("root_face_load_factor_iso_6336", math.nan)) for entry in figures):
         yield BESIDE_ISO
     cap = figures[0]["max_pressure_MPa"]

@@ -176,25 +176,23 @@ class CylindricalScene(BlankScene):
         width = common_face_width(mesh, self.mounting.axial_offset_mm)
         return mesh.transverse_contact_ratio * width / math.cos(mesh.pinion.base_helix_angle)
 
-    def nominal_root_stress(self, torque: float) -> tuple[float, float]:
-        """Nominal root stress sigma_F0 of pinion and wheel [MPa] after ISO 6336-3, method B, over the common face.
+    @property
+    def nominal_root_stress(self) -> tuple[float, float]:
+        """Nominal root stress sigma_F0 after ISO 6336-3, method B, over the common face, per torque [MPa/(N mm)].
 
         NaN where the standard has no critical section of the tooth.
         """
         mesh = self.mesh()
         width = common_face_width(mesh, self.mounting.axial_offset_mm)
-        force = torque / mesh.pinion.reference_radius
-        pinion, wheel = (force * _root_stress_per_force(mesh, gear, width) for gear in (mesh.pinion, mesh.wheel))
-        return pinion, wheel
+        pinion, wheel = (_root_stress_per_force(mesh, gear, width) for gear in (mesh.pinion, mesh.wheel))
+        return pinion / mesh.pinion.reference_radius, wheel / mesh.pinion.reference_radius
 
-    def root_face_load_factor(self, contact_face_load_factor: float) -> float:
-        """Face load factor of root stress K_Fbeta after ISO 6336-1, teeth as high as those of the higher ones."""
-        if math.isnan(contact_face_load_factor):
-            return math.nan
+    @property
+    def tooth_height_over_width(self) -> float:
+        """Height of the higher teeth over the common face width, h/b of ISO 6336-1."""
         mesh = self.mesh()
         width = common_face_width(mesh, self.mounting.axial_offset_mm)
-        height = max(gear.tip_radius - gear.root_radius for gear in (mesh.pinion, mesh.wheel))
-        return iso6336_3.face_load_factor(max(1.0, contact_face_load_factor), height / width)
+        return max(gear.tip_radius - gear.root_radius for gear in (mesh.pinion, mesh.wheel)) / width
 
     def geometry_rows(self) -> Sequence[Row]:
         """Return centre distance, contact ratios and diameters."""

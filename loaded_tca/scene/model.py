@@ -184,15 +184,17 @@ class Scene(Section, ABC):
         """Mean length of all contact lines over a pitch [mm]; NaN for gears of which ISO 6336-1 does not speak."""
         return math.nan
 
-    def nominal_root_stress(self, torque: float) -> tuple[float, float]:
-        """Nominal root stress sigma_F0 of pinion and wheel [MPa] after ISO 6336-3 under a pinion torque [N mm].
+    @property
+    def nominal_root_stress(self) -> tuple[float, float]:
+        """Nominal root stress sigma_F0 of pinion and wheel after ISO 6336-3 per pinion torque [MPa/(N mm)].
 
         NaN for gears of which the standard does not speak.
         """
         return math.nan, math.nan
 
-    def root_face_load_factor(self, contact_face_load_factor: float) -> float:
-        """Face load factor of root stress K_Fbeta after ISO 6336-1 by K_Hbeta; NaN where it does not say it."""
+    @property
+    def tooth_height_over_width(self) -> float:
+        """Height of the teeth over the common face width, h/b of ISO 6336-1; NaN where it does not speak of them."""
         return math.nan
 
     @abstractmethod

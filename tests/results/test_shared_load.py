@@ -276,7 +276,8 @@ def test_numbers_of_every_pair_have_the_axes_torque_position_pair():
 @pytest.mark.parametrize("make", [cycle, helical])
 def test_every_picture_of_a_shared_load_is_drawn(make, tmp_path):
     drawn = {path.stem for path in plot_all(make(), tmp_path)}
-    assert drawn >= set(PICTURES) - {"pressure_map_edge", "pressure_map_hertz"}
+    on_request = {name for name in PICTURES if name.startswith("root_stress")}
+    assert drawn >= set(PICTURES) - on_request - {"pressure_map_edge", "pressure_map_hertz"}
 
 
 def test_more_pictures_are_drawn_on_request_and_go_without(tmp_path):
