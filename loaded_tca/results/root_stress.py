@@ -123,17 +123,17 @@ def root_stress_arrays(
     maps : Maps
     """
     with one_blas_thread():  # the matrices are small: threads waiting for each other cost more
-        found = [_of_gear(pair, gear, model, numbers, known, maps) for gear, model in enumerate(models)]
+        found = [root_stress_of_gear(pair, gear, model, numbers, known, maps) for gear, model in enumerate(models)]
     arrays = {name: np.stack([one[name] for one in found], axis=-1) for name in ROOT_QUANTITIES if name in found[0]}
     for name in ("root_tension_place", "root_compression_place"):
         arrays[name] = np.moveaxis(arrays[name], -1, -2)
     return arrays | {f"{gear}_{name}": one[name] for gear, one in zip(GEARS, found, strict=True) for name in ON_FILLETS}
 
 
-def _of_gear(
+def root_stress_of_gear(
     pair: GearPair, gear: int, model: RootStress, numbers: Sequence[int], known: NDArray[np.bool_], maps: Maps
 ) -> dict[str, Array]:
-    """The same of one gear, without the axis of the gears."""
+    """Arrays of one gear: those of :func:`root_stress_arrays` without the axis of the gears."""
     fillets = model.tangent_angle.shape
     extreme = {sign: np.where(known, 0.0, math.nan) for sign in (1, -1)}  # magnitudes of tension and compression
     place = {sign: np.full((*known.shape, len(PLACE)), -1) for sign in extreme}
@@ -199,8 +199,8 @@ def stress_at_extreme(
 ) -> Callable[[FlankLine], Array]:
     """Stress about an extreme as it follows from forces: a function of a line, per force on it (m,) [MPa/N].
 
-    Through the stress about the place go parabolas along the fillet and along the face; what they have at their top is
-    smooth as the extreme moves.
+    Through the stress about the place go parabolas along the fillet and along the face; by what their tops exceed it
+    counts, so that the stress is smooth as the extreme moves.
 
     Parameters
     ----------
@@ -217,9 +217,11 @@ def stress_at_extreme(
     ]
     stress = np.abs(sum(model.per_force(tooth, line, side, *near) @ forces for line, forces in loads))
     at, across = (at - own[0] for at, own in zip(middle, near, strict=True))
-    through = stress[:, across], stress[at]
-    weights = [top_weights(one) if one.size == 3 else np.eye(one.size)[one.argmax()] for one in through]
-    return lambda line: np.einsum("s,a,sam->m", *weights, model.per_force(tooth, line, side, *near))
+    weights = np.zeros(stress.shape)
+    weights[at, across] = -1.0
+    for through, own in ((stress[:, across], weights[:, across]), (stress[at], weights[at])):
+        own += top_weights(through) if through.size == 3 else np.eye(through.size)[through.argmax()]
+    return lambda line: np.tensordot(weights, model.per_force(tooth, line, side, *near), 2)
 
 
 def _ratio(largest: Array, smallest: Array) -> Array:

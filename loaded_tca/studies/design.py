@@ -29,10 +29,12 @@ from loaded_tca.scene import Scene
 from loaded_tca.studies.design_model import (
     FIGURES,
     OF_ERRORS,
+    OF_ROOTS,
     SMOOTHING,
     DesignModel,
     Evaluation,
     mean_pressure_norm,
+    root_tension_norm,
 )
 from loaded_tca.studies.run import accuracy_warnings
 from loaded_tca.studies.study import MOST_VARIANTS, is_finite, is_whole
@@ -224,7 +226,8 @@ def optimise(
         From 0 to 100.
     figure : str
         "span_um", "smooth_span_um" (which has derivatives everywhere), "mean_transmission_error_um", "pressure_MPa",
-        "edge_pressure_MPa" or "face_load_factor".
+        "edge_pressure_MPa", "face_load_factor"; with ``analysis.root_stress`` also "pinion_root_tension_MPa" and
+        "wheel_root_tension_MPa".
     starts : int
         Designs to start from: that of the scene, then points of a scrambled Sobol sequence within the ranges.
     seed : int
@@ -246,6 +249,7 @@ def optimise(
         If the analysis at the accuracy of the scene does not confirm the optimum; ``last`` is the DesignResult.
     """
     wanted = Objective(objective, k, percentile, figure)
+    model.require_figure("figure", figure)
     given = _limits(model, limits or {})
     require(
         (is_whole(starts, 1, MOST_VARIANTS), f"starts: {starts!r:.60}; allowed a whole number from 1 on"),
@@ -376,11 +380,14 @@ def _searched(
 
 def _limits(model: DesignModel, limits: Limits) -> list[Limit]:
     """Checked limits; every problem at once."""
-    problems, found = [], []
+    problems: list[str] = []
+    found = []
     require((isinstance(limits, Mapping), f"limits: {limits!r:.60}; allowed a mapping of figures to highest values"))
     for figure, given in limits.items():
-        if figure not in FIGURES:
-            problems.append(f"limits: {figure!r:.60} is no figure; allowed {', '.join(FIGURES)}")
+        try:
+            model.require_figure("limits", figure)
+        except InputError as error:
+            problems += error.problems
             continue
         by_torque = given if isinstance(given, Mapping) else {None: given}
         if not by_torque:
@@ -471,6 +478,8 @@ def _analysed(scene: Scene) -> dict[str, Any]:
         "warnings": [*dict.fromkeys(told)],
     }
     found |= {name: np.array([of(row, SMOOTHING)[0] for row in errors]) for name, of in OF_ERRORS.items()}
+    for gear, name in enumerate(OF_ROOTS if scene.analysis.root_stress else ()):
+        found[name] = np.array([root_tension_norm(row) for row in result.root_tension[:, :-1, gear]])
     for name, at_edges in (("pressure_MPa", False), ("edge_pressure_MPa", True)):
         positions = ([[one for one in row if one is not None] for row in rows[:-1]] for rows in result.maps)
         found[name] = np.array([mean_pressure_norm(rows, at_edges=at_edges)[0] for rows in positions])
@@ -490,7 +499,7 @@ def _analysed_result(
     shape = len(designs), len(model.deviations)
     arrays = {name: np.array([one[name] for one in found]).reshape(*shape, *found[0][name].shape) for name in found[0]}
     held = [model.evaluate(design) for design in designs]
-    arrays |= {f"held_{name}": np.array([one.figure(name) for one in held]) for name in FIGURES}
+    arrays |= {f"held_{name}": np.array([one.figure(name) for one in held]) for name in model.figures}
     arrays["held_transmission_error"] = np.array([one.transmission_error for one in held])
     for prefix in ("", "held_"):
         arrays[f"{prefix}objective"] = np.array([objective.of(one)[0] for one in arrays[prefix + objective.figure]])
@@ -504,7 +513,8 @@ def _analysed_result(
     }
     attributes = {"kind": KIND, "scene_toml": model.scene.to_toml(), "warnings": "\n".join(lines)}
     attributes |= {"objective": objective.told, "figure": objective.figure}
-    return DesignResult(xarray.Dataset(variables_of(PARTS, arrays), coordinates, attributes))
+    parts = {name: part for name, part in PARTS.items() if name in arrays}  # root tension, where the scene asks for it
+    return DesignResult(xarray.Dataset(variables_of(parts, arrays), coordinates, attributes))
 
 
 def _require_confirmed(result: DesignResult, limits: Sequence[Limit]) -> None:
@@ -534,6 +544,7 @@ FIGURE_TEXTS = {
     "pressure_MPa": ("MPa", "norm of the pressure away from the ends of the flanks"),
     "edge_pressure_MPa": ("MPa", "norm of the pressure beside the ends of the flanks"),
     "face_load_factor": ("1", "K_Hbeta"),
+    **{name: ("MPa", f"root tension of the {name.partition('_')[0]}, smooth maximum") for name in OF_ROOTS},
 }
 PARTS: dict[str, Part] = {
     "value": (("design", "key"), "1", "value of the key, in the unit at the end of its name"),

@@ -15,14 +15,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from loaded_tca.analysis import bending_of
+from loaded_tca.analysis import bending_of, roots_of
 from loaded_tca.arrays import Array, numbers, real
+from loaded_tca.compliance import flank_lines
 from loaded_tca.errors import InputError, named, require
 from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.held_contacts import HeldContacts, ShapedContacts
@@ -33,6 +34,7 @@ from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.results.figure_slopes import EXPONENT, face_load_factor_slopes, pressure_norm
 from loaded_tca.results.load_factors import load_factors
 from loaded_tca.results.pressure_map import PressureMap
+from loaded_tca.results.root_stress import GEARS, root_stress_of_gear, stress_at_extreme
 from loaded_tca.scene import Scene
 from loaded_tca.separation.gap_change import value_at
 from loaded_tca.studies.study import Distribution, Study, is_finite, is_whole
@@ -47,6 +49,8 @@ TOLERANCE = 1e-6
 AGREEMENT = 10.0
 """That of the balance of the tooth pairs over it."""
 FEWEST_POSITIONS, FEWEST_CELLS = 4, 4
+ROOT_EXPONENT = 50.0
+"""Of the norm of the root tension over the positions: 3 % above the largest if four of them are alike."""
 LINEAR = 1e-7
 """Of the linear systems of gradients, relative."""
 
@@ -127,6 +131,7 @@ class DesignModel:
             self.held = [self._sample(*one) for one in zip(self.deviations, self.own_deviations, strict=True)]
         pair = self.held[0].pair
         self.driving, self.micrometres = pair.driving, 1e3 * pair.base_radii[1]
+        self.roots = roots_of(scene, pair)
 
     def __reduce__(self) -> tuple[Callable[..., DesignModel], tuple[Any, ...]]:
         """Made anew by pickle, for other processes: held contacts are large, and quickly made."""
@@ -143,6 +148,16 @@ class DesignModel:
     def keys(self) -> tuple[str, ...]:
         """Keys that vary, in the order of all arrays over them."""
         return tuple(self.variables)
+
+    @property
+    def figures(self) -> tuple[str, ...]:
+        """Those of ``FIGURES`` that the scene asks for: root tension only with ``analysis.root_stress``."""
+        return tuple(name for name in FIGURES if name not in OF_ROOTS or self.roots)
+
+    def require_figure(self, argument: str, name: Any) -> None:
+        """InputError, naming the argument, if the model does not have a figure."""
+        way = "; root tension needs analysis.root_stress = true" if name in OF_ROOTS else ""
+        require((name in self.figures, f"{argument}: {name!r:.60}; allowed {', '.join(self.figures)}{way}"))
 
     @property
     def bounds(self) -> Array:
@@ -344,13 +359,13 @@ class Evaluation:
 
     @property
     def figures(self) -> dict[str, Array]:
-        """All of ``FIGURES``, (sample, torque) each."""
-        return {name: self.figure(name) for name in FIGURES}
+        """All of the model, (sample, torque) each."""
+        return {name: self.figure(name) for name in self.model.figures}
 
     @property
     def gradients(self) -> dict[str, Array]:
         """Their gradients, (sample, torque, key) each, per unit of the key."""
-        return {name: self.gradient(name) for name in FIGURES}
+        return {name: self.gradient(name) for name in self.model.figures}
 
     def figure(self, name: str, torques: Sequence[int] | None = None) -> Array:
         """One of ``FIGURES``, (sample, torque), under some of the torques by their indices, or under all."""
@@ -364,8 +379,8 @@ class Evaluation:
 
     def _chosen(self, name: str, torques: Sequence[int] | None) -> Sequence[int]:
         every = range(self.model.torques.size)
+        self.model.require_figure("figure", name)
         require(
-            (name in FIGURES, f"figure: {name!r:.60}; allowed {', '.join(FIGURES)}"),
             (
                 torques is None or {*torques} <= {*every},
                 f"torques: {torques!r:.60}; allowed indices 0 to {len(every) - 1}",
@@ -381,7 +396,7 @@ class Evaluation:
                 self._found[name, s, t] = OF_ERRORS[name](errors, self.model.smoothing)
             else:
                 positions = [self._grids[s, t, n] for n in range(self.model.positions)]
-                value, slopes = OF_FORCES[name](self.model.held[s], positions)
+                value, slopes = OF_FORCES[name](self.model, self.model.held[s], positions)
                 grids = (grid for position in positions for grid in position)
                 active = [slope[grid.active] for slope, grid in zip(slopes, grids, strict=True)]
                 self._found[name, s, t] = value, np.concatenate(active)
@@ -414,23 +429,54 @@ Positions = Sequence[Sequence[LoadedGrid]]
 """Loaded contacts of each position, the last one of the scene left out."""
 
 
-def pressure(_: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
+def pressure(_: DesignModel, __: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
     """Norm of the pressure [MPa] of all cells that have no end of a flank beside them, and its derivatives."""
     return mean_pressure_norm([[_map_of(grid) for grid in position] for position in positions], at_edges=False)
 
 
-def edge_pressure(_: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
+def edge_pressure(_: DesignModel, __: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
     """The same of the cells that have one beside them."""
     return mean_pressure_norm([[_map_of(grid) for grid in position] for position in positions], at_edges=True)
 
 
-def face_load_factor(held: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
+def face_load_factor(_: DesignModel, held: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
     """K_Hbeta and its derivatives, the strip with the largest force held."""
     maps = [tuple(_map_of(grid) for grid in position) for position in positions]
     path, closed = held.mesh.leading_contact, (*maps, ())  # of load factors the last position does not count
     factor = float(load_factors(held.pair, path, (closed,), math.nan)[0][0])
     slopes = face_load_factor_slopes(held.pair, path, closed)
     return factor, [one for row in slopes for one in row if one is not None]
+
+
+def root_tension(gear: int, model: DesignModel, held: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
+    """Smooth maximum over the positions of the root tension of a gear [MPa], and its derivatives."""
+    root, numbers = model.roots[gear], sorted({grid.number for position in positions for grid in position})
+    rows = [{grid.number: _map_of(grid) for grid in position} for position in positions]
+    maps = (tuple(tuple(row.get(number) for number in numbers) for row in rows),)
+    found = root_stress_of_gear(held.pair, gear, root, numbers, np.ones((1, len(rows)), dtype=bool), maps)
+    tension, slopes = np.zeros(len(positions)), []
+    for n, position in enumerate(positions):
+        lines = [flank_lines(held.pair, grid.number, grid.separation)[gear] for grid in position]
+        loads = [(line, grid.slice_force) for line, grid in zip(lines, position, strict=True)]
+        at_top = stress_at_extreme(root, loads, found["root_tension_place"][0, n].tolist())
+        by_slice = [at_top(line) for line in lines]
+        tension[n] = sum(own @ forces for own, (_, forces) in zip(by_slice, loads, strict=True))
+        slopes.append([np.broadcast_to(own, grid.active.shape) for own, grid in zip(by_slice, position, strict=True)])
+    norm = root_tension_norm(tension)
+    weights = (tension / norm) ** (ROOT_EXPONENT - 1.0)
+    return norm, [weight * own for weight, row in zip(weights, slopes, strict=True) for own in row]
+
+
+def root_tension_norm(tension: Array) -> float:
+    """Norm of the root tension of the positions (n,) [MPa]: its largest one, or more by up to ln n over the exponent.
+
+    Examples
+    --------
+    >>> round(root_tension_norm(np.array([200.0, 300.0, 290.0])), 1)
+    301.1
+    """
+    largest = float(tension.max())
+    return largest * float(((tension / largest) ** ROOT_EXPONENT).sum()) ** (1.0 / ROOT_EXPONENT)
 
 
 def _map_of(grid: LoadedGrid) -> PressureMap:
@@ -486,7 +532,14 @@ def mean(errors: Array, _: float) -> tuple[float, Array]:
 
 
 OF_ERRORS = {"span_um": span, "smooth_span_um": smooth_span, "mean_transmission_error_um": mean}
-OF_FORCES = {"pressure_MPa": pressure, "edge_pressure_MPa": edge_pressure, "face_load_factor": face_load_factor}
+OF_ROOTS = {f"{name}_root_tension_MPa": partial(root_tension, gear) for gear, name in enumerate(GEARS)}
+OF_FORCES: dict[str, Callable[[DesignModel, HeldContacts, Positions], tuple[float, list[Array]]]] = {
+    "pressure_MPa": pressure,
+    "edge_pressure_MPa": edge_pressure,
+    "face_load_factor": face_load_factor,
+    **OF_ROOTS,
+}
 FIGURES = (*OF_ERRORS, *OF_FORCES)
 """Figures of a design under one torque with one sample: peak-to-peak transmission error at the wheel's base circle, the
-same with smooth maxima, its mean; norm of the pressure away from the ends of the flanks, and beside them; K_Hbeta."""
+same with smooth maxima, its mean; norm of the pressure away from the ends of the flanks, and beside them; K_Hbeta;
+root tension of either gear, a smooth maximum over the positions."""

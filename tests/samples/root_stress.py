@@ -6,7 +6,6 @@ from functools import cache
 from unittest.mock import patch
 
 from loaded_tca.analysis import analyse, roots_of
-from loaded_tca.compliance import root_stress_model
 from loaded_tca.compliance.root_stress import DENSITY
 from loaded_tca.errors import AccuracyWarning
 from loaded_tca.scene import read_scene
@@ -34,7 +33,7 @@ def scene(name="mesh_cycle_spur", **changes):
 
 def coarsely():
     """A context in which models of root stress are coarse."""
-    return patch("loaded_tca.analysis.root_stress_model", lambda gear: root_stress_model(gear, COARSE))
+    return patch("loaded_tca.compliance.root_stress.stress_density", lambda _: COARSE)
 
 
 def analysed(scene, progress=None):

@@ -16,6 +16,7 @@ from loaded_tca.separation.gap_change import value_at
 from loaded_tca.studies import DesignModel, Study, load_design, optimise, robustness
 from loaded_tca.studies import design as designs
 from loaded_tca.studies.design_model import FIGURES, smooth_span
+from tests.samples.root_stress import coarsely
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
 ALONE = {"analysis.compliance": "contact", "analysis.free_edges": False}
@@ -37,7 +38,11 @@ def model(variables=VARIABLES, scatter=SCATTER, cells=(16, 24), scene=SCENE, **o
 @pytest.fixture(scope="module")
 def beside():
     """A design, and those a step of 5e-4 um below and above it in each key: no cell enters or leaves between them."""
-    one, x = model(tolerance=1e-11), np.array([5.3, 2.1, 9.0])
+    with coarsely():
+        one, x = (
+            model(scene=SCENE.with_changes({"analysis.root_stress": True}), tolerance=1e-11),
+            np.array([5.3, 2.1, 9.0]),
+        )
     steps = 5e-4 * np.eye(3)
     return one.evaluate(x), [[one.evaluate(x + sign * step) for sign in (-1.0, 1.0)] for step in steps]
 
@@ -153,6 +158,20 @@ def test_samples_of_distributions_are_those_of_a_study_about_their_medians():
     assert_allclose([each[MISALIGNMENT] for each in one.deviations], drawn)
     half = [each[MISALIGNMENT] for each in one.with_scatter(0.5).deviations]
     assert_allclose(half, [1.0 + 0.5 * (value - 1.0) for value in drawn])
+
+
+def test_root_tension_is_designed_and_limited():
+    """A helix slope takes the load off the end of the face to which the misalignment brings it."""
+    scene, name = SCENE.with_changes({"analysis.root_stress": True}), "pinion_root_tension_MPa"
+    with coarsely():
+        one = model({SLOPE: (-15.0, 15.0)}, {MISALIGNMENT: [8.0]}, scene=scene)
+        least = optimise(one, "mean", figure=name)
+        before, after = least.objective
+        highest = 0.5 * (before + after)
+        held = optimise(one, "mean", limits={name: highest})
+    assert after < 0.97 * before
+    assert_allclose(least.optimum[SLOPE], 8.0, atol=2.0)  # um over the face, as the misalignment
+    assert held.dataset[name].sel(design="optimum").item() < 1.01 * highest
 
 
 def test_a_design_is_quieter_within_its_limit(found):
@@ -299,7 +318,9 @@ def test_designs_off_the_ranges_are_refused():
         ({"limits": [1.0]}, "limits: .*; allowed a mapping"),
         ({"limits": {"span_um": {}}}, "limits: span_um: none given"),
         ({"limits": {"span_um": {"a": 1.0}}}, "span_um: 'a' N mm is no torque of the model"),
-        ({"limits": {"noise": 1.0}}, "limits: 'noise' is no figure; allowed span_um"),
+        ({"limits": {"wheel_root_tension_MPa": 300.0}}, "root tension needs analysis.root_stress = true"),
+        ({"figure": "pinion_root_tension_MPa"}, "root tension needs analysis.root_stress = true"),
+        ({"limits": {"noise": 1.0}}, "limits: 'noise'; allowed span_um"),
         ({"limits": {"face_load_factor": {99e3: 1.5}}}, "face_load_factor: 99000.0 N mm is no torque of the model"),
         ({"limits": {"face_load_factor": -1.5}}, "face_load_factor: -1.5; allowed a finite number above 0"),
     ],
