@@ -7,7 +7,14 @@ from loaded_tca.lazy import lazy_names
 if TYPE_CHECKING:
     from loaded_tca.analysis import analyse
     from loaded_tca.contact import solve_contact
-    from loaded_tca.errors import AccuracyWarning, ConvergenceError, GeometryError, InputError, LoadedTCAError
+    from loaded_tca.errors import (
+        AccuracyWarning,
+        ConvergenceError,
+        GeometryError,
+        InputError,
+        LoadedTCAError,
+        NotAskedError,
+    )
     from loaded_tca.results import MeshCycle, load_result
     from loaded_tca.scene import Scene, parse_scene, read_scene
     from loaded_tca.separation import sample_separation
@@ -22,6 +29,7 @@ __all__ = [
     "InputError",
     "LoadedTCAError",
     "MeshCycle",
+    "NotAskedError",
     "Scene",
     "analyse",
     "load_result",

@@ -40,8 +40,8 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
     Raises
     ------
     InputError, GeometryError
-        If the scene's parts do not fit each other, the flanks are never in contact, or the grids it asks for exceed
-        the memory of the machine.
+        If the scene's parts do not fit each other, the flanks are never in contact, or the grids or models of root
+        stress that it asks for exceed the memory of the machine.
     ConvergenceError
         If a contact, or the balance of the tooth pairs, is not solved to the tolerance.
 

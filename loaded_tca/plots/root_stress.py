@@ -88,7 +88,8 @@ def _mark_extremes(axes: Axes, one: RootStressMap, stress: Array, signs: tuple[f
             x = (1.0, -1.0)[side] * math.degrees(one.tangent_angle[side, station, along])
             place = x, one.point[side, station, along, 2]
             axes.plot(*place, "o", color="black", markeredgecolor="white", markersize=5.0)
-            told = axes.annotate(f"{stress[side, station, along]:.0f}", place, (5.0, 4.0), textcoords="offset points")
+            number = f"{stress[side, station, along]:.0f}"
+            told = axes.annotate(number, place, (0.0, 6.0), textcoords="offset points", ha="center")
             told.set_path_effects([withStroke(linewidth=2.5, foreground="white")])
 
 

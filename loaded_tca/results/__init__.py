@@ -4,6 +4,7 @@ from loaded_tca.results.comparison import Comparison, compare_results
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.reached_edges import reached_edges
+from loaded_tca.results.root_stress import RootStressMap
 from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.stress_below import StressBelow, stress_below
 from loaded_tca.results.tolerances import default_tolerances, key_figure_slopes
@@ -14,6 +15,7 @@ __all__ = [
     "Comparison",
     "MeshCycle",
     "PressureMap",
+    "RootStressMap",
     "Sensitivities",
     "StressBelow",
     "compare_results",

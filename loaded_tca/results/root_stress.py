@@ -137,23 +137,24 @@ def root_stress_of_gear(
     fillets = model.tangent_angle.shape
     extreme = {sign: np.where(known, 0.0, math.nan) for sign in (1, -1)}  # magnitudes of tension and compression
     place = {sign: np.full((*known.shape, len(PLACE)), -1) for sign in extreme}
-    at_tension, largest, smallest = np.where(known.any(axis=1), 0.0, math.nan) * np.ones((3, *fillets, 1))
+    blank = np.where(known.any(axis=1), 0.0, math.nan)[:, None, None, None]
+    at_tension, largest, smallest = blank + np.zeros((3, len(known), *fillets))
     for t, positions, tooth, stress in _stresses(pair, gear, model, numbers, maps):
-        largest[..., t] = np.maximum(largest[..., t], stress.max(axis=0))
-        smallest[..., t] = np.minimum(smallest[..., t], stress.min(axis=0))
+        largest[t] = np.maximum(largest[t], stress.max(axis=0))
+        smallest[t] = np.minimum(smallest[t], stress.min(axis=0))
         for sign, so_far in extreme.items():
             signed = (sign * stress).reshape(len(stress), -1)
             where = signed.argmax(axis=-1)
             value = signed[np.arange(len(where)), where]
             if sign > 0 and value.max() > np.nanmax(so_far[t]):
-                at_tension[..., t] = stress[value.argmax()]
+                at_tension[t] = stress[value.argmax()]
             more = value > so_far[t, positions]
             chosen = positions[more]
             so_far[t, chosen] = value[more]
             place[sign][t, chosen, 0] = tooth
             place[sign][t, chosen, 1:] = np.stack(np.unravel_index(where[more], fillets), axis=-1)
-    on_fillet = (np.moveaxis(one, -1, 0) for one in (at_tension, largest, smallest))
-    arrays = dict(zip(ON_FILLETS, (model.tangent_angle, model.point, *on_fillet), strict=True))
+    on_fillets = model.tangent_angle, model.point, at_tension, largest, smallest
+    arrays = dict(zip(ON_FILLETS, on_fillets, strict=True))
     for sign, name in ((1, "root_tension"), (-1, "root_compression")):
         there, stressed = tuple(np.moveaxis(place[sign], -1, 0)[1:]), extreme[sign] > 0.0
         arrays[name] = sign * extreme[sign] + 0.0

@@ -46,6 +46,7 @@ def test_memory_holds_at_least_the_maps_of_the_result():
         {"load_sharing": True},
         {"free_edges": True},
         {"compliance": "contact+tooth"},
+        {"root_stress": True},
         {"accuracy": 1e-4},
         {"cells": (100, 100), "accuracy": None},
     ],
