@@ -143,16 +143,16 @@ def root_stress_of_gear(
         largest[t] = np.maximum(largest[t], stress.max(axis=0))
         smallest[t] = np.minimum(smallest[t], stress.min(axis=0))
         for sign, so_far in extreme.items():
-            signed = (sign * stress).reshape(len(stress), -1)
-            where = signed.argmax(axis=-1)
-            value = signed[np.arange(len(where)), where]
+            signed = sign * stress
+            where = np.stack(np.unravel_index(signed.reshape(len(stress), -1).argmax(axis=-1), fillets), axis=-1)
+            value = np.array([_top(*one) for one in zip(signed, where, strict=True)])
             if sign > 0 and value.max() > np.nanmax(so_far[t]):
                 at_tension[t] = stress[value.argmax()]
             more = value > so_far[t, positions]
             chosen = positions[more]
             so_far[t, chosen] = value[more]
             place[sign][t, chosen, 0] = tooth
-            place[sign][t, chosen, 1:] = np.stack(np.unravel_index(where[more], fillets), axis=-1)
+            place[sign][t, chosen, 1:] = where[more]
     on_fillets = model.tangent_angle, model.point, at_tension, largest, smallest
     arrays = dict(zip(ON_FILLETS, on_fillets, strict=True))
     for sign, name in ((1, "root_tension"), (-1, "root_compression")):
@@ -212,17 +212,32 @@ def stress_at_extreme(
         As of ``root_tension_place``: tooth, side, station, along the face.
     """
     tooth, side, *middle = place
-    near = [
-        np.arange(max(at - 1, 0), min(at + 2, count))
-        for at, count in zip(middle, model.tangent_angle.shape[1:], strict=True)
-    ]
-    stress = np.abs(sum(model.per_force(tooth, line, side, *near) @ forces for line, forces in loads))
-    at, across = (at - own[0] for at, own in zip(middle, near, strict=True))
-    weights = np.zeros(stress.shape)
-    weights[at, across] = -1.0
-    for through, own in ((stress[:, across], weights[:, across]), (stress[at], weights[at])):
-        own += top_weights(through) if through.size == 3 else np.eye(through.size)[through.argmax()]
+    near = _next_to(middle, model.tangent_angle.shape[1:])
+    stress = sum(model.per_force(tooth, line, side, *near) @ forces for line, forces in loads)
+    weights = _weights_of_top(np.abs(stress))
     return lambda line: np.tensordot(weights, model.per_force(tooth, line, side, *near), 2)
+
+
+def _next_to(place: Sequence[int], shape: tuple[int, ...]) -> list[Indices]:
+    """Indices along each axis of a place and those beside it, as far as there are any."""
+    return [np.arange(max(at - 1, 0), min(at + 2, count)) for at, count in zip(place, shape, strict=True)]
+
+
+def _weights_of_top(values: Array) -> Array:
+    """Weights of values about their largest one (up to 3, up to 3) in the sum of it and of what parabolas exceed it."""
+    at, across = np.unravel_index(int(values.argmax()), values.shape)
+    weights = np.zeros(values.shape)
+    weights[at, across] = -1.0
+    for through, own in ((values[:, across], weights[:, across]), (values[at], weights[at])):
+        own += top_weights(through) if through.size == 3 else np.eye(through.size)[through.argmax()]
+    return weights
+
+
+def _top(values: Array, place: Sequence[int]) -> float:
+    """Top of values (2, stations, p) about their largest one."""
+    side, *middle = place
+    near = values[side][np.ix_(*_next_to(middle, values.shape[1:]))]
+    return float((_weights_of_top(near) * near).sum())
 
 
 def _ratio(largest: Array, smallest: Array) -> Array:

@@ -19,7 +19,14 @@ MESH = 1e-5
 """Meshes of mirrored teeth are mirror images but for the rounding of their nodes."""
 SHARED = 5e-4
 """Forces of several pairs, where the shares of these are iterated another way round."""
+TOP = 1e-3
+"""By which parabolas along fillet and face exceed the largest stress of the places that they go through."""
 GEARS = "pinion", "wheel"
+
+
+def assert_extreme(found, largest):
+    assert (found >= largest).all()
+    assert (found <= (1.0 + TOP) * largest).all()
 
 
 def arrays_of(cycle, maps=None, known=None, name="mesh_cycle_spur"):
@@ -69,8 +76,8 @@ def test_extremes_are_those_of_the_sum_over_the_pairs_at_all_teeth_of_the_gear(n
     assert len(loads[0]) > 1
     for gear, model in enumerate(models(name)):
         stress = np.array([model.stress(tooth, loads[gear]) for tooth in range(pair.teeth[gear])])
-        assert_allclose(cycle.root_tension[t, n, gear], stress.max(), rtol=ROUNDING)
-        assert_allclose(cycle.root_compression[t, n, gear], stress.min(), rtol=ROUNDING)
+        assert_extreme(cycle.root_tension[t, n, gear], stress.max())
+        assert_extreme(-cycle.root_compression[t, n, gear], -stress.min())
         for what, extreme in (("tension", stress.max()), ("compression", stress.min())):
             tooth, *place = getattr(cycle, f"root_{what}_place")[t, n, gear]
             assert_allclose(stress[(tooth, *place)], extreme, rtol=ROUNDING)
@@ -113,9 +120,9 @@ def test_stress_is_proportional_to_the_forces():
 def test_envelopes_hold_the_extremes_of_every_position_and_nothing_beyond():
     cycle = result()
     for gear, one in enumerate(cycle.root_stress):
-        assert_array_equal(one.largest.max(axis=(1, 2, 3)), cycle.root_tension[..., gear].max(axis=1))
-        assert_array_equal(one.smallest.min(axis=(1, 2, 3)), cycle.root_compression[..., gear].min(axis=1))
-        assert_array_equal(one.at_tension.max(axis=(1, 2, 3)), cycle.root_tension[..., gear].max(axis=1))
+        assert_extreme(cycle.root_tension[..., gear].max(axis=1), one.largest.max(axis=(1, 2, 3)))
+        assert_extreme(-cycle.root_compression[..., gear].min(axis=1), -one.smallest.min(axis=(1, 2, 3)))
+        assert_extreme(cycle.root_tension[..., gear].max(axis=1), one.at_tension.max(axis=(1, 2, 3)))
         assert (one.largest >= one.at_tension).all()
         assert (one.smallest <= one.at_tension).all()
         assert (one.largest >= 0.0).all()  # out of mesh
@@ -325,7 +332,7 @@ def test_material_that_locks_is_refused_by_the_scene():
 
 
 def test_model_of_a_gear_is_made_once_for_all_analyses(monkeypatch):
-    first = result()
+    first = analysed(scene())  # cached results may be older than what is kept of models
     monkeypatch.setattr("loaded_tca.compliance.root_stress.root_influence", lambda _: 1 / 0)
     again = analysed(scene(**{"analysis.torques_Nm": (200.0,), "pinion.modifications.lead_crowning_um": 6.0}))
     assert_allclose(again.root_tension[0], first.root_tension[1], rtol=0.1)
