@@ -32,6 +32,10 @@ and where tooth pairs share the load
   line_load_distribution.png    along the contacts on the flanks, under the largest torque
   pressure_envelope.png     the highest pressure on the flanks, under the largest torque
   path_pressure.png         from the begin to the end of contact, all torques
+and with analysis.root_stress = true
+  root_stress.png           over fillet and face of both gears, with its envelopes, under the largest torque
+  root_stress_cycle.png     tension and compression over the positions, all torques
+  root_stress_over_torque.png   tension and compression over several torques
 and, only with 'plot --all'
   contact_patterns.png      the highest pressure on the flanks under each of several torques, on one scale
   full_mesh.png             all tooth pairs at the position of pressure_map.png on the flanks
