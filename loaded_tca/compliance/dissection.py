@@ -296,15 +296,17 @@ def _assembled(dofs: Indices, matrices: Array, order: Indices) -> Array:
 
 
 def _sum(borders: Sequence[Indices], matrices: Sequence[Array], order: Indices, size: int) -> Array:
-    """Dense sum of what is left of parts for their ``borders``, in the order of the unknowns ``order`` out of ``size``.
+    """Dense sum of what is left of two halves for their ``borders``, in the order of unknowns ``order`` out of ``size``.
 
     The last row and column of each matrix are zeros.
     """
-    total = np.zeros((len(order), len(order)))
+    parts = []
     for border, matrix in zip(borders, matrices, strict=True):
         where = np.full(size, len(border))
         where[border] = np.arange(len(border))
-        total += matrix.take(where[order], axis=0).take(where[order], axis=1)
+        parts.append(matrix.take(where[order], axis=1).take(where[order], axis=0))  # fewer rows in the slow copy
+    total, other = parts
+    total += other
     return total
 
 
