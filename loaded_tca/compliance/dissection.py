@@ -296,7 +296,7 @@ def _assembled(dofs: Indices, matrices: Array, order: Indices) -> Array:
 
 
 def _sum(borders: Sequence[Indices], matrices: Sequence[Array], order: Indices, size: int) -> Array:
-    """Dense sum of what is left of two halves for their ``borders``, in the order of unknowns ``order`` out of ``size``.
+    """Dense sum of what is left of two halves for their ``borders``, in the order of unknowns ``order`` of ``size``.
 
     The last row and column of each matrix are zeros.
     """
