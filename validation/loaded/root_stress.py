@@ -380,9 +380,10 @@ def measured(name: str) -> list[str]:
     """One line of the table of a mesh of ``MESHES``: errors, processor time and memory of making the model."""
     changes, density = MESHES[name]
     gear = spur_pair_gear(**changes)
-    told, before, start = told_memory(gear, density), peak_memory(), time.process_time()
+    before, start = peak_memory(), time.process_time()
     model = model_of(gear, density)
     seconds, memory = time.process_time() - start, peak_memory() - before
+    told = told_memory(gear, density)
     plane = plane_curves(spur_pair_gear(), in_plane(density), loaded_radii())
     errors = [
         100.0 * float(np.abs(curve.largest(sign)[0] * LINE_LOAD / np.array(values) - 1.0).max())
@@ -515,9 +516,9 @@ sharp: edge radii of 0.016 of the pitch. At the very ends of inclined teeth, whe
 
 Cylindrical gears have the trochoid of the basic rack with its tip radius rho_fP, up to all round. m 3, without profile
 shift, 1 N/mm at the HPSTC beside a wheel of 37 teeth. "ISO" is Y_F Y_S of ISO 6336-3, method B. From 0.2 on both agree
-to 5 %, and to 2 % in how stress falls with the radius; of sharper racks the closed form says less, which has one notch
-factor for all. Errors of the mesh are against sections of 2.25 times as many elements each way, with outermost layers
-of a quarter.
+to 5 %, and to 2 % in how stress falls with the radius; for sharper racks the closed form says less, and the more so the
+more teeth there are. Errors of the mesh are against sections of 2.25 times as many elements each way, with outermost
+layers of a quarter.
 
 {of_forms()}
 
