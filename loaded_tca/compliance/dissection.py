@@ -148,7 +148,7 @@ def factorise(
     places = np.column_stack([np.zeros(n, dtype=int) if blocks is None else blocks, places])
     plan = _Plan(kinds, np.where(free[dofs], dofs, size), places, np.bincount(dofs.ravel(), minlength=size))
     unknowns, last = plan.add(np.arange(n))
-    needed, limit = plan.bytes, machine_memory()
+    needed, limit = plan.bytes + matrices.nbytes, machine_memory()
     told = f"{size} unknowns need {needed / 2**30:.3g} GiB, the machine has {limit / 2**30:.3g} GiB"
     require((needed <= limit, f"mesh of the gear body: {told}; take fewer elements"))
     with one_blas_thread():
