@@ -55,7 +55,7 @@ CASES = (
 )
 
 
-LONG = ("loaded.sensitivities", "studies.robust_design")
+LONG = ("loaded.root_stress_families", "loaded.sensitivities", "studies.robust_design")
 """Cases of minutes, which the tests leave out."""
 
 

@@ -148,7 +148,7 @@ def factorise(
     places = np.column_stack([np.zeros(n, dtype=int) if blocks is None else blocks, places])
     plan = _Plan(kinds, np.where(free[dofs], dofs, size), places, np.bincount(dofs.ravel(), minlength=size))
     unknowns, last = plan.add(np.arange(n))
-    needed, limit = plan.bytes, machine_memory()
+    needed, limit = plan.bytes + matrices.nbytes, machine_memory()
     told = f"{size} unknowns need {needed / 2**30:.3g} GiB, the machine has {limit / 2**30:.3g} GiB"
     require((needed <= limit, f"mesh of the gear body: {told}; take fewer elements"))
     with one_blas_thread():
@@ -296,15 +296,17 @@ def _assembled(dofs: Indices, matrices: Array, order: Indices) -> Array:
 
 
 def _sum(borders: Sequence[Indices], matrices: Sequence[Array], order: Indices, size: int) -> Array:
-    """Dense sum of what is left of parts for their ``borders``, in the order of the unknowns ``order`` out of ``size``.
+    """Dense sum of what is left of two halves for their ``borders``, in the order of unknowns ``order`` of ``size``.
 
     The last row and column of each matrix are zeros.
     """
-    total = np.zeros((len(order), len(order)))
+    parts = []
     for border, matrix in zip(borders, matrices, strict=True):
         where = np.full(size, len(border))
         where[border] = np.arange(len(border))
-        total += matrix.take(where[order], axis=0).take(where[order], axis=1)
+        parts.append(matrix.take(where[order], axis=1).take(where[order], axis=0))  # fewer rows in the slow copy
+    total, other = parts
+    total += other
     return total
 
 

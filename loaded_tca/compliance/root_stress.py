@@ -82,7 +82,7 @@ class RootInfluence:
     counts : (2, 2) int array
         a, b; c, d.
     along_face : (m,) array
-        Parts of the face width: both ends, and the middles of the layers of elements.
+        Parts of the face width, as :func:`read_planes` says.
     point : (2, n, m, 3) array [mm]
         In the frame of the tooth.
     tangent_angle : (2, n, m) array [rad]
@@ -239,7 +239,7 @@ class RootStress:
     def _along_face(self) -> Array:
         """Shares (p, m) of the places of the table along the face in all places along it."""
         known = self.table.along_face
-        wanted = np.linspace(0.0, 1.0, PER_LAYER * (len(known) - 2) + 1)
+        wanted = np.linspace(0.0, 1.0, PER_LAYER * self.frame.nodes.layout.density.lengthwise + 1)
         return np.asarray(CubicSpline(known, np.eye(len(known)))(wanted))
 
 
@@ -363,7 +363,7 @@ def root_influence(frame: ToothFrame) -> RootInfluence:
         for tooth in range(-near, near + 1)
         if tooth
     ]
-    along_face = np.concatenate([[0.0], frame.face_parts[1::2], [1.0]])
+    along_face = frame.face_parts[read_planes(frame.nodes.layout.density.lengthwise)]
     sides = [surface_places(mesh, frame.nodes, side, frame.gear.material) for side in (frame.side, -frame.side)]
     point, angle = np.stack([side[0] for side in sides]), np.stack([side[2] for side in sides])
     readings = vstack([rows for _, rows, _ in sides], format="csr")
@@ -381,6 +381,15 @@ def root_influence(frame: ToothFrame) -> RootInfluence:
     )
 
 
+def read_planes(layers: int) -> Indices:
+    """Numbers (m,) of the sections of nodes in which stress is read, of layers of elements along the face.
+
+    The ends, the middles of all layers, and where the outermost layers end: beside the ends stress rises and falls
+    within two layers, and splines between middles alone miss its maximum there by 2 to 3 %.
+    """
+    return np.unique(np.concatenate([[0, 2, 2 * layers - 2, 2 * layers], np.arange(1, 2 * layers, 2)]))
+
+
 def surface_places(
     mesh: Discretisation, nodes: BodyNodes, side: int, material: Material
 ) -> tuple[Array, csr_array, Array]:
@@ -396,8 +405,9 @@ def surface_places(
     """
     lowest, ends = nodes.layout.foot(side)
     layers = nodes.layout.density.lengthwise
-    layer = np.concatenate([[0], np.arange(layers), [layers - 1]])
-    local = np.concatenate([[0.0], np.full(layers, 0.5), [1.0]])
+    plane = read_planes(layers)
+    layer = (plane - (plane > layers)) // 2  # between two of them, the one further from the end
+    local = 0.5 * plane - layer
     edge, spot = np.divmod(np.arange(2 * len(lowest)), 2)
     edge, part = np.append(edge, edge[-1]), np.append(BEST[spot], 1.0)  # last the middle of the space itself
     number = np.full((*mesh.number.shape[:2], 2 * layers), -1)
@@ -408,7 +418,6 @@ def surface_places(
     spots = np.concatenate([np.tile(in_section, (m, 1)), np.repeat(local, n)[:, None]], axis=1)
     along = np.abs(ends[edge, 1] - ends[edge, 0]).argmax(axis=1)
     point, rows = mesh.free_surface_stress(elements.ravel(), spots, np.tile(along, m), material)
-    plane = np.concatenate([[0], 2 * np.arange(layers) + 1, [2 * layers]])
     angle = tangent_angles(nodes, side, lowest[edge], ends[edge], part, plane)
     return point.reshape(m, n, 3).transpose(1, 0, 2), rows, angle
 

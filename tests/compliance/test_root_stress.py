@@ -1,3 +1,5 @@
+import subprocess
+import sys
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -6,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from loaded_tca.compliance import FlankLine, MeshDensity, dissection, root_stress_model
+from loaded_tca.compliance import FlankLine, MeshDensity, root_stress_model
 from loaded_tca.compliance import flexibility as kept
 from loaded_tca.compliance import root_stress as module
 from loaded_tca.compliance.body import ToothFrame, gear_nodes
@@ -28,6 +30,7 @@ from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.scene import read_scene
 from tests.samples.bodies import pinion, spur_mesh
+from validation.loaded.root_stress import told_memory
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
 LAYERS = 8
@@ -73,10 +76,10 @@ def test_side_in_contact_is_pulled_and_the_back_is_pressed_near_30_to_45_degrees
 
 
 def test_neighbours_of_a_loaded_tooth_are_pressed_before_it_and_pulled_behind_it():
-    """-37.8 and 34.9 MPa under 100 N/mm in the plane; in space, in the middle of the face, up to 10 % more."""
+    """-37.2 and 35.1 MPa under 100 N/mm in the plane, by a mesh four times as fine; in space up to 10 % more."""
     before, behind = (model().stress(tooth, [line()])[..., LAYERS * PER_LAYER // 2] for tooth in (-1, 1))
-    assert_allclose(before[0].min() / 1.05, -0.378, rtol=0.05)
-    assert_allclose(behind[1].max() / 1.05, 0.349, rtol=0.05)
+    assert_allclose(before[0].min() / 1.05, -0.372, rtol=0.05)
+    assert_allclose(behind[1].max() / 1.05, 0.351, rtol=0.05)
 
 
 def test_stress_fades_from_tooth_to_tooth_and_is_nothing_beyond_the_model():
@@ -104,6 +107,38 @@ def test_stress_per_force_is_the_derivative_at_a_place(tooth):
     stress = model().stress(tooth, [(where, force)])
     found = model().per_force(tooth, where, 1, np.arange(19, 22), np.array([11])) @ force
     assert_allclose(found, stress[1, 19:22, 11:12], atol=ROUNDING)
+
+
+def test_stress_per_force_is_what_one_more_newton_anywhere_on_the_line_does():
+    where, force = line(part=0.6, middle=2.0)
+    every = np.eye(len(force))[::6]
+    for tooth, place in ((0, (0, 30, 17)), (0, (1, 64, 0)), (1, (1, 40, 32)), (-2, (0, 90, 5))):
+        change = [
+            model().stress(tooth, [(where, force + one)])[place] - model().stress(tooth, [(where, force)])[place]
+            for one in every
+        ]
+        assert_allclose(every @ model().per_force(tooth, where, place), change, atol=ROUNDING)
+
+
+def test_stress_beside_the_ends_of_inclined_teeth_does_not_depend_on_the_layers():
+    """It rises and falls there within two layers: splines between middles of layers alone were 2.5 % off."""
+    gear = bevel_pair(bevel_mesh((20, 40), outer_module=4.0, face_width=12.0, spiral_angle=np.radians(35.0))).wheel
+    found = []
+    for layers in (10, 20):
+        density = MeshDensity(4, 3, 3, 3, 4, layers, 1, 2.5, 0.03, True)
+        bevel = RootStress(frame := ToothFrame(gear, gear_nodes(gear, density, 257)), root_influence(frame))
+        places, weights = np.polynomial.legendre.leggauss(40)
+        flank = bevel.frame.places(0.6 + 0.09 * places, 0.2 + 0.15 * places)
+        x, y, z = flank.point.T
+        found.append(bevel.stress(0, [(FlankLine(0, np.hypot(x, y), z), weights)])[1].min())
+    assert_allclose(found[0], found[1], rtol=0.01)
+
+
+def test_stress_is_read_alike_at_both_ends():
+    for layers in (1, 2, 6, 9):
+        planes = module.read_planes(layers)
+        assert_array_equal(planes, 2 * layers - planes[::-1])
+        assert set(planes) == {0, 2, 2 * layers - 2, 2 * layers} | set(range(1, 2 * layers, 2))
 
 
 def test_stress_of_a_spur_gear_is_the_same_from_either_end():
@@ -239,12 +274,37 @@ def test_materials_that_lock_and_models_beyond_the_memory_are_refused(monkeypatc
         root_influence(ToothFrame(pinion(), gear_nodes(pinion(), SMALL)))
 
 
-def test_memory_that_is_told_is_below_1_gib_for_7_modules_and_2_gib_for_20(monkeypatch):
+PEAK = """
+import sys
+from tests.compliance.test_root_stress import SMALL, ToothFrame, gear_nodes, root_influence, steep
+from validation.loaded.root_stress import peak_memory
+gear = steep(float(sys.argv[1]))
+frame = ToothFrame(gear, gear_nodes(gear, SMALL))
+before = peak_memory()
+root_influence(frame)
+print(peak_memory() - before)
+"""
+
+
+def steep(helix_angle):
+    return cylindrical_pair(spur_mesh(helix_angle=helix_angle)).pinion
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="peaks are told by Linux alone")
+@pytest.mark.parametrize("helix_angle", [0.0, 0.5])
+def test_memory_that_is_told_is_what_a_process_takes(helix_angle):
+    """An allocator keeps some that is free, and what is reserved for that is not always taken.
+
+    Elements of helical teeth are all unlike, so that their matrices are a part of it.
+    """
+    told = told_memory(steep(helix_angle), SMALL)
+    run = [sys.executable, "-c", PEAK, str(helix_angle)]
+    taken = float(subprocess.run(run, capture_output=True, text=True, check=True).stdout)
+    assert 0.75 * told < taken < 1.25 * told
+
+
+def test_memory_that_is_told_is_below_1_gib_for_7_modules_and_2_gib_for_20():
     """The interpreter and the tables take 0.15 GiB more: measured 0.72 and 1.4 to 1.7 GiB."""
-    told = []
-    monkeypatch.setattr(dissection._Plan, "factors", lambda plan, _: told.append(plan.bytes / 2.0**30) or 1 / 0)
     for width, most in ((20.0, 0.8), (60.0, 1.8)):
         gear = cylindrical_pair(spur_mesh(width, 0.35)).pinion
-        with pytest.raises(ZeroDivisionError):
-            root_influence(ToothFrame(gear, gear_nodes(gear, stress_density(gear), 257)))
-        assert 0.3 * most < told[-1] < most
+        assert 0.3 * most < told_memory(gear, stress_density(gear)) < most
