@@ -117,7 +117,9 @@ def test_stress_per_force_is_what_one_more_newton_anywhere_on_the_line_does():
             model().stress(tooth, [(where, force + one)])[place] - model().stress(tooth, [(where, force)])[place]
             for one in every
         ]
-        assert_allclose(every @ model().per_force(tooth, where, place), change, atol=ROUNDING)
+        (side, *spot) = place
+        found = model().per_force(tooth, where, side, *(np.array([one]) for one in spot))[0, 0]
+        assert_allclose(every @ found, change, atol=ROUNDING)
 
 
 def test_stress_beside_the_ends_of_inclined_teeth_does_not_depend_on_the_layers():

@@ -440,10 +440,8 @@ def of_other_figures() -> str:
                 for one in (of["face_load_factor"], of["root_tension"]):
                     cells.append(percent(one.over_largest(one.steady)))
                 found.append([PAIRS[name], f"`{short(key)}`", setting, *cells])
-    figures = (
-        "load share | line load | line load, at edges | peak pressure | peak pressure, at edges | K_Hbeta | root tension"
-    )
-    return lines(f"pair | key | setting | {figures}", found)
+    figures = "load share | line load | line load, at edges | peak pressure | peak pressure, at edges | K_Hbeta"
+    return lines(f"pair | key | setting | {figures} | root tension", found)
 
 
 def of_closed_forms() -> str:
@@ -563,8 +561,8 @@ theirs.
 
 {of_transmission_error()}
 
-The twist of the helical pair, which moves the transmission error least, is off by 0.1 to 0.2 nm/um on {GRIDS[1]} cells. That
-is the grid:
+The twist of the helical pair, which moves the transmission error least, is off by 0.1 to 0.2 nm/um on {GRIDS[1]} cells.
+That is the grid:
 
 {of_twist()}
 
