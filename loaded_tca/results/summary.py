@@ -82,7 +82,7 @@ NOTES = (
 )
 ON_BACK = ("pinion_root_tension_on_back", "wheel_root_tension_on_back")
 """Key figures that say on which side of the tooth the root tension lies."""
-BESIDE_ISO = "root stress has no safety, K_A, K_V, life and material factors, neither that of ISO 6336-3"
+BESIDE_ISO = "no safety, K_A, K_V, life or material factors are in root stress, neither computed nor after ISO 6336-3"
 """What stands beside stress by the standard."""
 """Key figure that counts positions, and what holds at these."""
 
