@@ -96,7 +96,7 @@ def test_summary_tells_root_stress_only_where_it_is_asked_for():
         "root compression of pinion | wheel [MPa]",
         "  stress ratio R there",
         "  ISO 6336-3, sigma_F0 K_Fbeta [MPa]",
-        "note: root stress has no safety, K_A, K_V, life and material factors",
+        "note: no safety, K_A, K_V, life or material factors are in root stress",
     ):
         assert sum(line.startswith(label) for line in lines) == 1
     (tension,) = (line for line in lines if line.startswith("root tension of"))
