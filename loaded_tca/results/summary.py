@@ -80,11 +80,11 @@ NOTES = (
     ("edge_positions", "the contact reaches an edge of a flank"),
     ("relief_start_positions", "the start of a linear relief lies in the contact: no Hertz there"),
 )
+"""Key figure that counts positions, and what holds at these."""
 ON_BACK = ("pinion_root_tension_on_back", "wheel_root_tension_on_back")
 """Key figures that say on which side of the tooth the root tension lies."""
 BESIDE_ISO = "no safety, K_A, K_V, life or material factors are in root stress, neither computed nor after ISO 6336-3"
 """What stands beside stress by the standard."""
-"""Key figure that counts positions, and what holds at these."""
 
 
 def summary_text(title: str, scope: str, figures: Sequence[Figures]) -> str:
