@@ -11,12 +11,15 @@ from validation.calculix.campaign import Record
 from validation.calculix.crowned_run import run_crowned
 from validation.calculix.mesh_study import run_study
 from validation.calculix.model import Meshing
+from validation.calculix.root_campaign import run_root_study, run_roots
 from validation.calculix.tables import (
     CONTACTS_FILE,
     CROWNED_FILE,
     FLAT_FILE,
     MESH_FILE,
     POSITIONS_FILE,
+    ROOT_MESH_FILE,
+    ROOTS_FILE,
     provenance,
     write_table,
 )
@@ -30,6 +33,13 @@ PLANE = (
     "Plane strain, CPE8R, whole rings; {per_half_width:g} elements (nodes twice as dense) to the Hertz half width of a",
     "contact. seconds: processor time. variant tip_relief: 15 um on both gears, parabolic over the roll length from",
     "d 76.200 and 112.450 mm.",
+)
+ROOTS = (
+    "Plane strain, CPE8R, whole rings; elements on the fillets no larger than 0.12 mm. Stress along the fillet at its",
+    "nodes, a spline between them: the largest of both gears over both fillets of all teeth in contact and of their",
+    "neighbours, from a tangent angle of 15 deg to the middle of the tooth on; that angle, the tooth pair of the tooth",
+    "and its side, loaded or back. seconds: processor time. variant tip_relief: 15 um on both gears, parabolic over the",
+    "roll length from d 76.200 and 112.450 mm.",
 )
 
 
@@ -52,6 +62,19 @@ def keep_cycles(program: str, records: list[Record]) -> None:
         "radii: of the largest pressure. corner: whose tip corner the contact reaches; pressures there are the mesh's.",
     )
     write_table(CONTACTS_FILE, provenance(program, [*plane, *SIGNS, *notes]), _contact_rows(records))
+
+
+def keep_roots(program: str, work: Path) -> None:
+    """Tables of the root stress of the cycles and of its mesh study, run if need be."""
+    head = provenance(program, [*ROOTS, *SIGNS])
+    rows = [{**_key(record), **row} for record in run_roots(work) for row in _root_rows(record)]
+    write_table(ROOTS_FILE, head, rows)
+    rows = [
+        {**_key(record), "way": record["way"], "fillet_mm": record["fillet"], **row}
+        for record in run_root_study(work)
+        for row in _root_rows(record)
+    ]
+    write_table(ROOT_MESH_FILE, head, rows)
 
 
 def keep_study(program: str, work: Path) -> None:
@@ -86,6 +109,19 @@ def _position_row(record: Record) -> dict[str, object]:
         "iterations": record["iterations"],
         "seconds": record["seconds"],
     }
+
+
+def _root_rows(record: Record) -> Iterator[dict[str, object]]:
+    """Rows of both gears of one position."""
+    for root in record["roots"]:
+        row = {"pinion_angle_rad": record["pinion_angle"], "gear": root["gear"]}
+        for sign in ("tension", "compression"):
+            row[f"{sign}_MPa"] = root[sign]["stress"]
+            row[f"{sign}_angle_deg"] = root[sign]["angle"]
+            row[f"{sign}_pair"] = root[sign]["tooth"]
+            row[f"{sign}_side"] = root[sign]["side"]
+        row["transmission_error_um"] = record["transmission_error"]
+        yield {**row, "nodes": record["nodes"], "seconds": record["seconds"]}
 
 
 def _contact_rows(records: list[Record]) -> Iterator[dict[str, object]]:

@@ -152,6 +152,33 @@ def _force(block: str) -> ContactForce:
     return ContactForce(-values[16], -values[5], np.array(values[6:9]), values[15])
 
 
+def nodal_stresses(path: Path) -> Array:
+    """Stresses (steps, n, 6) [MPa] of the nodes 1 to n: xx, yy, zz, xy, yz, zx; from the .frd file.
+
+    Raises
+    ------
+    RuntimeError
+        If they are not there for all nodes.
+    """
+    steps: list[list[list[float]]] = []
+    reading, count = False, 0
+    with path.open() as lines:
+        for line in lines:
+            if line.startswith(" -1") and reading:
+                steps[-1].append([int(line[3:13]), *(float(line[at : at + 12]) for at in range(13, 85, 12))])
+            elif line.startswith("    2C"):
+                count = int(line.split()[1])
+            elif line.startswith(" -4"):
+                reading = line.startswith(" -4  STRESS")
+                if reading:
+                    steps.append([])
+            elif line.startswith(" -3"):
+                reading = False
+    if not steps or any([row[0] for row in step] != list(range(1, count + 1)) for step in steps):
+        raise RuntimeError(f"{path}: no stress of all nodes")
+    return np.array(steps)[:, :, 1:]
+
+
 def _pressures(path: Path, steps: int) -> tuple[Array, Array]:
     """Places and pressures of the slave nodes that carry load, from the .frd file."""
     places: dict[int, list[float]] = {}

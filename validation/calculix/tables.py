@@ -14,6 +14,8 @@ DATA = Path(__file__).parent / "data"
 POSITIONS_FILE = DATA / "calculix_spur_25_37_positions.csv"
 CONTACTS_FILE = DATA / "calculix_spur_25_37_contacts.csv"
 MESH_FILE = DATA / "calculix_spur_25_37_mesh_study.csv"
+ROOTS_FILE = DATA / "calculix_spur_25_37_roots.csv"
+ROOT_MESH_FILE = DATA / "calculix_spur_25_37_roots_mesh_study.csv"
 CROWNED_FILE = DATA / "calculix_crowned_pair.json"
 FLAT_FILE = DATA / "calculix_flat_pair.json"
 
