@@ -97,6 +97,28 @@ def run(text: str, stem: Path, pairs: list[int], steps: int) -> Run:
     RuntimeError
         If the program fails or does not reach the last step; its files are left for a look.
     """
+    log, seconds = execute(text, stem)
+    _check_corrections(log, stem)
+    hub, forces = _printed(stem.with_suffix(".dat").read_text(), pairs, steps)
+    points, pressures = _pressures(stem.with_suffix(".frd"), steps)
+    return Run(hub, forces, points, pressures, seconds, len(re.findall(r"^ iteration \d+", log, re.MULTILINE)))
+
+
+def execute(text: str, stem: Path) -> tuple[str, float]:
+    """Write the deck and run the program on one core: what it printed, and its processor time [s].
+
+    Parameters
+    ----------
+    text : str
+        The deck.
+    stem : Path
+        Of the files, without suffix.
+
+    Raises
+    ------
+    RuntimeError
+        If the program fails; its files are left for a look.
+    """
     stem.parent.mkdir(parents=True, exist_ok=True)
     stem.with_suffix(".inp").write_text(text)
     began = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -114,10 +136,7 @@ def run(text: str, stem: Path, pairs: list[int], steps: int) -> Run:
     stem.with_suffix(".log").write_text(done.stdout + done.stderr)
     if done.returncode != 0 or "Job finished" not in done.stdout:
         raise RuntimeError(f"{PROGRAM} did not finish: see {stem.with_suffix('.log')}")
-    _check_corrections(done.stdout, stem)
-    hub, forces = _printed(stem.with_suffix(".dat").read_text(), pairs, steps)
-    points, pressures = _pressures(stem.with_suffix(".frd"), steps)
-    return Run(hub, forces, points, pressures, seconds, len(re.findall(r"^ iteration \d+", done.stdout, re.MULTILINE)))
+    return done.stdout, seconds
 
 
 def _check_corrections(log: str, stem: Path) -> None:
