@@ -70,9 +70,7 @@ def fillets(form: ToothForm, nodes: Array, middle: float, centre: float) -> tupl
     radius = np.hypot(nodes[:, 0] - centre, nodes[:, 1])
     away = (np.arctan2(nodes[:, 1], nodes[:, 0] - centre) - middle + math.pi) % (2.0 * math.pi) - math.pi
     on_land = np.abs(radius - form.root_radius) < OFF_PROFILE
-    on_fillet = (radius < form.fillet[0][0]) & (
-        np.abs(np.abs(away) - form.half_angle(radius)) * radius < OFF_PROFILE
-    )
+    on_fillet = (radius < form.fillet[0][0]) & (np.abs(np.abs(away) - form.half_angle(radius)) * radius < OFF_PROFILE)
     reach = (on_land & (np.abs(away) > form.fillet[1][-1]) | on_fillet) & (
         np.abs(away) < 0.5 * form.pitch + OFF_PROFILE / form.root_radius
     )

@@ -123,7 +123,14 @@ def sections(
     wheel = _fineness(position.wheel, {k: touch.wheel_radius for k, touch in touches.items()}, widths, meshing)
     return (
         gear_section(position.pinion, pinion, rim_layers(position.pinion, meshing), position.pinion_tooth(), 0.0, -1),
-        gear_section(position.wheel, wheel, rim_layers(position.wheel, meshing), position.wheel_tooth(), position.centre_distance, 1),
+        gear_section(
+            position.wheel,
+            wheel,
+            rim_layers(position.wheel, meshing),
+            position.wheel_tooth(),
+            position.centre_distance,
+            1,
+        ),
     )
 
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from io import StringIO
+from itertools import pairwise
 
 import numpy as np
 
@@ -107,7 +108,7 @@ class LoadedRing:
         hexahedra = ring.hexahedra()[:, 1:] - ring.first_node
         places, weights = np.polynomial.legendre.leggauss(PLACES_IN_LAYER)
         total: dict[int, Array] = {}
-        for layer, (low, high) in enumerate(zip(levels[:-1], levels[1:], strict=True)):
+        for layer, (low, high) in enumerate(pairwise(levels.tolist())):
             for part, weight in zip(places, weights, strict=True):
                 height = 0.5 * (low + high) + 0.5 * part * (high - low)
                 radius = math.hypot(self.form.base_radius, rolls[0] + rolls[1] * height)
@@ -169,21 +170,24 @@ class LoadedRing:
         """
         ring, found = self.ring, []
         for fillet in fillets(self.form, ring.bottom.nodes, 0.0, 0.0):
+            x, y = ring.bottom.nodes[fillet.nodes].T
+            along = _units(np.stack([-ring.twist * y, ring.twist * x, np.ones(len(x))], axis=-1))
+            across = np.column_stack([fillet.tangent, np.zeros(len(x))])
+            across = _units(across - np.einsum("nk,nk->n", across, along)[:, None] * along)
             columns = []
             for level, height in enumerate(ring.levels):
+                turned = np.column_stack([across[:, :2] @ _turn(ring.twist * height), across[:, 2]])
                 nodes = ring.plane(level)[fillet.nodes] - ring.first_node
-                turn = _turn(ring.twist * height)
-                lengthwise = ring.twist * np.column_stack([-ring.bottom.nodes[fillet.nodes, 1], ring.bottom.nodes[fillet.nodes, 0]])
-                lengthwise = np.column_stack([lengthwise @ turn, np.ones(len(nodes))])
-                lengthwise /= np.linalg.norm(lengthwise, axis=1, keepdims=True)
-                across = np.column_stack([fillet.tangent @ turn, np.zeros(len(nodes))])
-                across -= np.einsum("nk,nk->n", across, lengthwise)[:, None] * lengthwise
-                across /= np.linalg.norm(across, axis=1, keepdims=True)
                 tensor = nodal[nodes][:, [0, 3, 5, 3, 1, 4, 5, 4, 2]].reshape(-1, 3, 3)
-                columns.append(np.einsum("nj,njk,nk->n", across, tensor, across))
+                columns.append(np.einsum("nj,njk,nk->n", turned, tensor, turned))
             angle, told = fillet.told(np.stack(columns, axis=-1))
             found.append(told)
         return angle, (found[0], found[1])
+
+
+def _units(vectors: Array) -> Array:
+    """Vectors (n, 3) of unit length."""
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
 
 
 def loaded_ring(form: ToothForm, width: float, radius: float, meshing: RingMeshing = RingMeshing()) -> LoadedRing:
@@ -221,17 +225,16 @@ def _even(radius: float, size: float) -> Fineness:
 def _serendipity(u: float, v: float) -> tuple[Array, Array]:
     """Shape functions (8,) of a quadratic face and their slopes (8, 2)."""
     a, b = AROUND.T
-    corner = (a != 0.0) & (b != 0.0)
-    mid_u = a == 0.0
-    value = np.where(
-        corner,
-        0.25 * (1.0 + a * u) * (1.0 + b * v) * (a * u + b * v - 1.0),
-        np.where(mid_u, 0.5 * (1.0 - u**2) * (1.0 + b * v), 0.5 * (1.0 - v**2) * (1.0 + a * u)),
-    )
-    along_u = np.where(
-        corner, 0.25 * a * (1.0 + b * v) * (2.0 * a * u + b * v), np.where(mid_u, -u * (1.0 + b * v), 0.5 * a * (1.0 - v**2))
-    )
-    along_v = np.where(
-        corner, 0.25 * b * (1.0 + a * u) * (a * u + 2.0 * b * v), np.where(mid_u, 0.5 * b * (1.0 - u**2), -v * (1.0 + a * u))
-    )
+    one, other = 1.0 + a * u, 1.0 + b * v
+    between_u, between_v = a == 0.0, b == 0.0
+    value = 0.25 * one * other * (a * u + b * v - 1.0)
+    along_u = 0.25 * a * other * (2.0 * a * u + b * v)
+    along_v = 0.25 * b * one * (a * u + 2.0 * b * v)
+    for chosen, new, slope_u, slope_v in (
+        (between_u, 0.5 * (1.0 - u**2) * other, -u * other, 0.5 * b * (1.0 - u**2)),
+        (between_v, 0.5 * (1.0 - v**2) * one, 0.5 * a * (1.0 - v**2), -v * one),
+    ):
+        value, along_u, along_v = (
+            np.where(chosen, *both) for both in ((new, value), (slope_u, along_u), (slope_v, along_v))
+        )
     return value, np.stack([along_u, along_v], axis=-1)

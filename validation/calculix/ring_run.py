@@ -17,11 +17,13 @@ from validation.calculix.tooth_form import ToothForm
 LINE_LOAD = 100.0
 """Normal force per length of face, its mean [N/mm]."""
 LOADS = {"even": 0.0, "uneven": 1.0}
-"""Relative change of the line load from mid-face to the end of the face: the uneven one rises from 0 to twice the mean."""
+"""Relative change of the line load from mid-face to the end of the face: the uneven one rises from 0 to twice the
+mean."""
 HELICES = {"spur": 0.0, "helical": 20.0}
 """Helix angles [deg]."""
 ROLLS = {"spur": 14.16257, "helical": 17.4}
-"""Roll length of the loaded line at mid-face [mm]; of the spur pinion the highest point of single contact with 37 teeth."""
+"""Roll length of the loaded line at mid-face [mm]; of the spur pinion that of the highest point of single contact with
+a wheel of 37 teeth."""
 WAYS = {"standard": RingMeshing(), "finer": RingMeshing(fillet=0.17, flank=0.6, beside=2.0, end=0.4, layer=1.7)}
 ANGLES = np.arange(15.0, 80.5, 0.5)
 """Tangent angles of the kept curves [deg]."""
@@ -85,5 +87,6 @@ def run_ring(work: Path, name: str, way: str) -> Record:
 
 def _largest(record: Record) -> str:
     return ", ".join(
-        f"{load} {max(record[load]['loaded']['extreme']):.2f} {min(record[load]['back']['extreme']):.2f}" for load in LOADS
+        f"{load} {max(record[load]['loaded']['extreme']):.2f} {min(record[load]['back']['extreme']):.2f}"
+        for load in LOADS
     )

@@ -82,7 +82,9 @@ def read_roots(path: Path = ROOTS_FILE) -> dict[str, RootCycle]:
     cycles = {}
     for variant in dict.fromkeys(str(row["variant"]) for row in table):
         own = {
-            gear: sorted((r for r in table if (r["variant"], r["gear"]) == (variant, gear)), key=lambda r: r["position"])
+            gear: sorted(
+                (r for r in table if (r["variant"], r["gear"]) == (variant, gear)), key=lambda r: r["position"]
+            )
             for gear in GEARS
         }
         stress, angle = (
@@ -135,10 +137,11 @@ def _radii(pair: GearPair, contact: LoadedContact) -> tuple[float, float]:
 
 
 def _extremes(gear: Gear, loads: Sequence[list[Load]]) -> dict[str, tuple[Array, Array]]:
-    """Largest stress [MPa] of every position and its tangent angle [deg], over the loaded teeth and their neighbours."""
+    """Largest stress [MPa] of every position and its tangent angle [deg], of loaded teeth and their neighbours."""
     section = replace(DENSITY, lengthwise=1)
     radii = np.array([load.radius for position in loads for load in position])
-    curves = {away: plane_curves(gear, section, radii, away) for away in range(-section.neighbours, section.neighbours + 1)}
+    near = range(-section.neighbours, section.neighbours + 1)
+    curves = {away: plane_curves(gear, section, radii, away) for away in near}
     angle = [np.degrees(side.angle) for side in curves[0]]
     found: dict[str, list[tuple[float, float]]] = {sign: [] for sign in SIGNS}
     first = 0
@@ -148,7 +151,7 @@ def _extremes(gear: Gear, loads: Sequence[list[Load]]) -> dict[str, tuple[Array,
             sum(
                 load.line_load * curves[load.tooth - tooth][side].stress[:, first + n]
                 for n, load in enumerate(position)
-                if abs(load.tooth - tooth) <= section.neighbours
+                if load.tooth - tooth in near
             )
             for tooth in teeth
             for side in (0, 1)
@@ -167,7 +170,11 @@ def rows() -> list[Row]:
     if not kept:
         return []
     ours = model(WIDE)
-    return [row for variant, cycle in kept.items() for row in rows_of(variant, cycle, root_cycle(ours, variant, cycle.pinion_angle))]
+    return [
+        row
+        for variant, cycle in kept.items()
+        for row in rows_of(variant, cycle, root_cycle(ours, variant, cycle.pinion_angle))
+    ]
 
 
 def rows_of(variant: str, kept: RootCycle, ours: RootCycle) -> Iterator[Row]:
@@ -176,7 +183,9 @@ def rows_of(variant: str, kept: RootCycle, ours: RootCycle) -> Iterator[Row]:
     for (gear, sign), values in kept.stress.items():
         factor, found = SIGNS[sign], ours.stress[gear, sign]
         highest = factor * (factor * values).max()
-        yield Row(case, SOURCE, f"{gear}, {sign}, largest [MPa]", highest, factor * (factor * found).max(), OF_THE_MAXIMUM)
+        yield Row(
+            case, SOURCE, f"{gear}, {sign}, largest [MPa]", highest, factor * (factor * found).max(), OF_THE_MAXIMUM
+        )
         apart = np.abs(found - values) / abs(highest)
         note = f"position {int(apart.argmax())}"
         words = f"{gear}, {sign}, largest difference of {len(values)} positions, of the largest"
