@@ -75,9 +75,10 @@ K_Fbeta = K_Hbeta^N_F, N_F = 0.692 (h/b no more than 1/3):
 
 K_Fbeta is larger in every line, for three reasons:
 
-- A load on one place of the face bends the tooth beside it, too. The load of the crowned pair changes over about a
-  tooth height, so that the root sees a mean over that length, not the peak. N_F is meant for this, but h/b is limited
-  to 1/3: for a face as narrow as this one (h/b 0.34), and a load that falls to nothing, the exponent is too near to 1.
+- A load on one place of the face bends the tooth beside it, too: the root sees a mean over about a tooth height of
+  the face, not the peak. N_F stands for this, but it comes from h/b alone and knows nothing of how the load falls: it
+  would fit a peak that is wide beside the height of the tooth. Here (h/b 0.34) the load of the crowned pair falls from
+  its peak to nothing within one and a half tooth heights.
 - An even load does not stress the root evenly: the middle of the face has 1.04 of the stress of plane strain, the ends
   have 0.73 of it, because nothing holds the material lengthwise there. A load that is largest at the end, as that of a
   misaligned pair, meets the sections with the least stress per load: the largest stress under the linear load lies
