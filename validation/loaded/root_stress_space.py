@@ -129,13 +129,18 @@ def rows_of(case: str, kept: Table, curves: Table, ours: Fillets) -> Iterator[Ro
         note = f"at {heights[apart.argmax()]:g} mm"
         words = f"{name} along the face, largest difference of {len(heights)} sections, of the largest"
         yield Row(case, SOURCE, words, 0.0, float(apart.max()), IN_SPACE, note=note)
-        worst, where = 0.0, ""
-        for height in dict.fromkeys(float(curve["height_mm"]) for curve in curves):
-            own = [curve for curve in curves if curve["height_mm"] == height]
-            angles, stress = (np.array([float(curve[key]) for curve in own]) for key in ("angle_deg", f"{side}_MPa"))
-            apart = np.abs(ours.along(side, height, angles) - stress) / abs(highest)
-            if apart.max() > worst:
-                worst, where = float(apart.max()), f"at {height:g} mm, {angles[apart.argmax()]:g} deg"
-        if where:
-            words = f"along the fillet, {side} side, largest difference of the kept sections, of the largest"
-            yield Row(case, SOURCE, words, 0.0, worst, IN_SPACE, note=where)
+        for place, ends, tolerance in (("inner sections", False, IN_SPACE), ("end faces", True, None)):
+            worst, where = 0.0, ""
+            for height in dict.fromkeys(float(curve["height_mm"]) for curve in curves):
+                if (abs(height) == 0.5 * FACE_WIDTH) != ends:
+                    continue
+                own = [curve for curve in curves if curve["height_mm"] == height]
+                angles, stress = (
+                    np.array([float(curve[key]) for curve in own]) for key in ("angle_deg", f"{side}_MPa")
+                )
+                apart = np.abs(ours.along(side, height, angles) - stress) / abs(highest)
+                if apart.max() > worst:
+                    worst, where = float(apart.max()), f"at {height:g} mm, {angles[apart.argmax()]:g} deg"
+            if where:
+                words = f"along the fillet, {side} side, {place}, largest difference, of the largest"
+                yield Row(case, SOURCE, words, 0.0, worst, tolerance, note=where)
