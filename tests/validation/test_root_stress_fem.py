@@ -122,7 +122,6 @@ def test_nodal_forces_have_the_sum_and_the_moments_of_the_line_load(name, change
     assert abs(moment) == pytest.approx(whole * form.base_radius * math.cos(base_helix), rel=1e-3)
     assert moment < 0.0  # onto the flank at the larger angle
     assert abs(values[:, 2].sum()) == pytest.approx(whole * math.sin(base_helix), abs=1e-3 * whole)
-    centre = (nodes[:, 2] * np.linalg.norm(values, axis=1)).sum() / np.linalg.norm(values, axis=1).sum()
     along = values @ values.sum(axis=0) / whole
     centre = float(nodes[:, 2] @ along / along.sum())
     assert centre == pytest.approx(change * WIDTH / 6.0, abs=0.02)
