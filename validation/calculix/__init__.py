@@ -8,5 +8,7 @@ Nothing here is imported by the package, and the geometry is written down once m
 - ``case``, ``tooth_form``, ``mesh_position``, ``steel``: gears, loads, positions and material of the runs;
 - ``grading``, ``section``, ``model``, ``deck``: from a position to the mesh and the input deck; ``crowned`` in space;
 - ``run``, ``evaluate``, ``campaign``, ``crowned_run``, ``mesh_study``: the runs and what is read from them;
+- ``fillet``, ``roots``, ``root_campaign``: root stress over the mesh in plane strain; ``ring``, ``ring_run``: in space
+  under line loads;
 - ``keep``, ``tables``: the tables in ``data/``.
 """

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 from validation.calculix.campaign import run_all
-from validation.calculix.keep import keep_cycles, keep_in_space, keep_study
+from validation.calculix.keep import keep_cycles, keep_in_space, keep_rings, keep_roots, keep_study
 from validation.calculix.run import program_version
 
 
@@ -20,6 +20,8 @@ def main() -> int:
     keep_study(program, work)
     keep_in_space(program, work)
     keep_cycles(program, run_all(work, asked.every))
+    keep_roots(program, work)
+    keep_rings(program, work)
     return 0
 
 

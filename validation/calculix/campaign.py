@@ -13,7 +13,8 @@ from validation.calculix.deck import LOAD_STEPS, PlaneDeck
 from validation.calculix.evaluate import evaluate, truncated
 from validation.calculix.mesh_position import Position
 from validation.calculix.model import Meshing, plane_deck, unloaded_setback
-from validation.calculix.run import Run, UnsettledError, run
+from validation.calculix.roots import root_stress
+from validation.calculix.run import Run, UnsettledError, nodal_stresses, run
 from validation.calculix.steel import PENALTY
 
 FIRST_STIFFNESS = 14.0
@@ -36,6 +37,7 @@ def run_position(
     meshing: Meshing = Meshing(),
     penalty: float = PENALTY,
     label: str = "",
+    roots: bool = False,
 ) -> Record:
     """Results of one position, run until the wheel was placed as far behind as the load makes it.
 
@@ -53,6 +55,8 @@ def run_position(
     penalty : float [MPa/mm]
     label : str
         Tells runs of the same position apart.
+    roots : bool
+        Whether the stress at the roots of the teeth is wanted.
     """
     stem = work / f"{variant}_{torque:g}_{index:02d}{label}"
     kept = stem.with_suffix(".json")
@@ -61,7 +65,7 @@ def run_position(
     seconds = 0.0
     for _ in range(ATTEMPTS):
         place = position(variant, index, setback)
-        deck, done = _run_settled(place, torque, meshing, penalty, stem)
+        deck, done = _run_settled(place, torque, meshing, penalty, stem, roots)
         result, seconds = evaluate(place, deck, done), seconds + done.seconds
         expected, setback = setback, -1e-3 * result.transmission_error
         if abs(setback - expected) < max(SETBACK_ERROR * setback, SETBACK_ERROR_LENGTH):
@@ -79,17 +83,24 @@ def run_position(
         "seconds": done.seconds,
         "seconds_with_attempts": seconds,
     }
+    if roots:
+        record["roots"] = [asdict(root) for root in root_stress(place, deck, nodal_stresses(stem.with_suffix(".frd")))]
     kept.write_text(json.dumps(record))
     for suffix in (".frd", ".12d"):
         stem.with_suffix(suffix).unlink(missing_ok=True)
     return record
 
 
-def _run_settled(place: Position, torque: float, meshing: Meshing, penalty: float, stem: Path) -> tuple[PlaneDeck, Run]:
-    """One run; with more steps before the last two where a step does not come to rest."""
-    problems = []
-    for steps in (LOAD_STEPS, (0.9, *LOAD_STEPS), (0.7, 0.85, *LOAD_STEPS)):
-        deck = plane_deck(place, line_load(torque), meshing, penalty, steps)
+def _run_settled(
+    place: Position, torque: float, meshing: Meshing, penalty: float, stem: Path, stress: bool
+) -> tuple[PlaneDeck, Run]:
+    """One run; with more steps before the last ones where a step does not come to rest.
+
+    Stress needs no second step, which gives the stiffness.
+    """
+    problems, last = [], LOAD_STEPS[-1:] if stress else LOAD_STEPS
+    for steps in (last, (0.9, *last), (0.7, 0.85, *last)):
+        deck = plane_deck(place, line_load(torque), meshing, penalty, steps, stress)
         try:
             return deck, run(deck.text(), stem, list(deck.flanks), len(steps))
         except UnsettledError as problem:

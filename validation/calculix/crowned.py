@@ -69,6 +69,11 @@ class Spatial:
         """Number of the last element."""
         return self.first_element + len(self.bottom.elements) * self.layers - 1
 
+    @property
+    def heights(self) -> Array:
+        """Of the planes between the layers (layers + 1,) [mm]."""
+        return np.linspace(0.0, self.half_face, self.layers + 1)
+
     def plane(self, level: int) -> Ints:
         """Numbers of all nodes between two layers."""
         return self.first_node + len(self.bottom.nodes) * level + np.arange(len(self.bottom.nodes))
@@ -81,9 +86,9 @@ class Spatial:
 
     def coordinates(self) -> Array:
         """Number, x, y, z of all nodes: the planes, then the corners halfway between them."""
-        step = self.half_face / self.layers
-        planes = [self._at(level * step) for level in range(self.layers + 1)]
-        between = [self._at((layer + 0.5) * step)[self.corners] for layer in range(self.layers)]
+        heights = self.heights
+        planes = [self._at(height) for height in heights]
+        between = [self._at(height)[self.corners] for height in 0.5 * (heights[1:] + heights[:-1])]
         places = np.concatenate([*planes, *between])
         return np.column_stack([np.arange(self.first_node, self.last_node + 1), places])
 
@@ -145,7 +150,7 @@ class SpatialDeck:
             np.savetxt(out, body.coordinates(), fmt="%d,%.12g,%.12g,%.12g")
         out.write("*ELEMENT,TYPE=C3D20R,ELSET=EALL\n")
         for body in bodies:
-            out.writelines(_element_lines(body.hexahedra()))
+            out.writelines(element_lines(body.hexahedra()))
         write_material(out, "")
         self._write_contact(out)
         self._write_hubs(out)
@@ -201,6 +206,6 @@ def crowned_deck(
     return position, SpatialDeck(first, second, flanks, force)
 
 
-def _element_lines(table: Ints) -> list[str]:
+def element_lines(table: Ints) -> list[str]:
     """Lines of at most sixteen entries, as the program wants them."""
     return [f"{','.join(map(str, row[:16]))},\n{','.join(map(str, row[16:]))}\n" for row in table.tolist()]

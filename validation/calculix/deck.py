@@ -36,6 +36,8 @@ class PlaneDeck:
         Torque on the pinion's slice over its bore radius.
     penalty : float [MPa/mm]
     load_steps : tuple of float
+    stress : bool
+        Whether the stress of all nodes is asked for.
     """
 
     pinion: Section
@@ -45,6 +47,7 @@ class PlaneDeck:
     hub_force: float
     penalty: float = PENALTY
     load_steps: tuple[float, ...] = LOAD_STEPS
+    stress: bool = False
 
     @property
     def hub_node(self) -> int:
@@ -63,7 +66,7 @@ class PlaneDeck:
         write_material(out, f"{THICKNESS}\n")
         self._write_contact(out)
         self._write_hubs(out)
-        write_steps(out, self.hub_node, self.hub_force, self.load_steps, self.flanks)
+        write_steps(out, self.hub_node, self.hub_force, self.load_steps, self.flanks, self.stress)
         return out.getvalue()
 
     def _write_bodies(self, out: StringIO) -> None:
@@ -132,7 +135,9 @@ def write_turning_together(out: StringIO, nodes: Ints) -> None:
         out.write(f"*EQUATION\n2\n{node},2,1.,{nodes[0]},2,-1.\n")
 
 
-def write_steps(out: StringIO, hub: int, force: float, load_steps: Iterable[float], pairs: Iterable[int]) -> None:
+def write_steps(
+    out: StringIO, hub: int, force: float, load_steps: Iterable[float], pairs: Iterable[int], stress: bool = False
+) -> None:
     """One static step a torque, and what is printed for it."""
     write_set(out, "HUB", [hub])
     for factor in load_steps:
@@ -142,4 +147,7 @@ def write_steps(out: StringIO, hub: int, force: float, load_steps: Iterable[floa
             out.write(
                 f"*CONTACT PRINT,SLAVE={surface_name('P', pair)},MASTER={surface_name('W', pair)}{LAST_ONLY}\nCF\n"
             )
-        out.write(f"*CONTACT FILE{LAST_ONLY}\nCDIS,CSTR\n*END STEP\n")
+        out.write(f"*CONTACT FILE{LAST_ONLY}\nCDIS,CSTR\n")
+        if stress:
+            out.write(f"*EL FILE{LAST_ONLY}\nS\n")
+        out.write("*END STEP\n")

@@ -11,11 +11,23 @@ from validation.calculix.tooth_form import Array
 SAMPLES = 4001
 
 
-def graded(length: float, place: float, core: float, finest: float, growth: float, coarsest: float) -> Array:
+GROWTH_FROM_ENDS = 0.35
+"""Growth of the element size per length away from an end that has a size of its own."""
+
+
+def graded(
+    length: float,
+    place: float,
+    core: float,
+    finest: float,
+    growth: float,
+    coarsest: float,
+    ends: tuple[float, float] = (math.inf, math.inf),
+) -> Array:
     """Nodes from 0 to ``length``, fine about one place and growing away from it.
 
     The size is ``finest`` within ``core`` of the place and grows by ``growth`` per length beyond, up to ``coarsest``;
-    the elements share the integral of its inverse evenly.
+    both ends may have sizes of their own that are smaller. The elements share the integral of its inverse evenly.
 
     Returns
     -------
@@ -25,6 +37,8 @@ def graded(length: float, place: float, core: float, finest: float, growth: floa
     fine = np.clip(place + core * np.linspace(-2.0, 2.0, SAMPLES), 0.0, length)
     line = np.unique(np.concatenate([np.linspace(0.0, length, SAMPLES), fine]))
     size = np.minimum(finest + growth * np.maximum(np.abs(line - place) - core, 0.0), coarsest)
+    for end, away in zip(ends, (line, length - line), strict=True):
+        size = np.minimum(size, end + GROWTH_FROM_ENDS * away)
     density = 1.0 / size
     count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(line))])
     elements = max(1, math.ceil(count[-1]))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from validation.calculix.grading import graded
 from validation.calculix.mesh_position import Position, ToothPair
 from validation.calculix.section import Fineness, Ints, Section, gear_section
 from validation.calculix.steel import PENALTY, half_width
-from validation.calculix.tooth_form import ToothForm
+from validation.calculix.tooth_form import Array, ToothForm
 
 PAIRS = (-2, -1, 0, 1, 2)
 REACH = 0.3
@@ -41,6 +41,8 @@ class Meshing:
         Largest element of a loaded tooth, of its neighbours, and of all others.
     rim : float
         Size of the first layer of the rim over its height.
+    fillet : float [mm]
+        Largest element on the fillets of loaded teeth and their neighbours, if less.
     """
 
     per_half_width: float = 5.0
@@ -49,6 +51,7 @@ class Meshing:
     beside: float = 2.0
     far: float = 4.0
     rim: float = 0.1
+    fillet: float = math.inf
 
     def finer(self, factor: float) -> Meshing:
         """The same with all elements smaller by a factor."""
@@ -59,6 +62,7 @@ class Meshing:
             self.beside / factor,
             self.far / factor,
             self.rim / factor,
+            self.fillet / factor,
         )
 
 
@@ -80,6 +84,7 @@ def plane_deck(
     meshing: Meshing,
     penalty: float = PENALTY,
     load_steps: tuple[float, ...] = LOAD_STEPS,
+    stress: bool = False,
 ) -> PlaneDeck:
     """Deck of a plane strain slice.
 
@@ -92,6 +97,8 @@ def plane_deck(
     meshing : Meshing
     penalty : float [MPa/mm]
     load_steps : tuple of float
+    stress : bool
+        Whether the stress of all nodes is asked for.
     """
     touches = touching_pairs(position)
     pinion, wheel = sections(position, touches, line_load, meshing)
@@ -104,7 +111,7 @@ def plane_deck(
         for reach in [surface_reach(position, touch, line_load)]
     }
     force = line_load * position.pinion.base_radius / position.pinion.bore_radius * THICKNESS
-    return PlaneDeck(pinion, wheel, position.centre_distance, flanks, force, penalty, load_steps)
+    return PlaneDeck(pinion, wheel, position.centre_distance, flanks, force, penalty, load_steps, stress)
 
 
 def sections(
@@ -112,13 +119,25 @@ def sections(
 ) -> tuple[Section, Section]:
     """Plane meshes of pinion and wheel, fine where their teeth touch."""
     widths = expected_half_widths(position, touches, line_load)
-    layers = graded(1.0, 0.0, 0.0, meshing.rim, 0.6 * meshing.growth, 6.0 * meshing.rim)
     pinion = _fineness(position.pinion, {k: touch.pinion_radius for k, touch in touches.items()}, widths, meshing)
     wheel = _fineness(position.wheel, {k: touch.wheel_radius for k, touch in touches.items()}, widths, meshing)
     return (
-        gear_section(position.pinion, pinion, layers, position.pinion_tooth(), 0.0, -1),
-        gear_section(position.wheel, wheel, layers, position.wheel_tooth(), position.centre_distance, 1),
+        gear_section(position.pinion, pinion, rim_layers(position.pinion, meshing), position.pinion_tooth(), 0.0, -1),
+        gear_section(
+            position.wheel,
+            wheel,
+            rim_layers(position.wheel, meshing),
+            position.wheel_tooth(),
+            position.centre_distance,
+            1,
+        ),
     )
+
+
+def rim_layers(form: ToothForm, meshing: Meshing) -> Array:
+    """Fractions of the way from tooth to bore, the first layer no thicker than the elements on the fillets."""
+    first = min(meshing.rim, meshing.fillet / (form.root_radius - form.bore_radius))
+    return graded(1.0, 0.0, 0.0, first, 0.6 * meshing.growth, 6.0 * meshing.rim)
 
 
 def expected_half_widths(position: Position, touches: dict[int, ToothPair], line_load: float) -> dict[int, float]:
@@ -167,12 +186,12 @@ def _fineness(
     table = {tooth: _even(form, meshing.far) for tooth in range(form.teeth)}
     for pair in radii:
         for beside in (pair - 1, pair + 1):
-            table[beside % form.teeth] = _even(form, meshing.beside)
+            table[beside % form.teeth] = replace(_even(form, meshing.beside), fillet=meshing.fillet)
     for pair, radius in radii.items():
         a = widths[pair]
         core = CORE_REACH * a + CORE_MARGIN
         finest = a / meshing.per_half_width
-        table[pair % form.teeth] = Fineness(radius, finest, core, a, meshing.growth, meshing.coarsest)
+        table[pair % form.teeth] = Fineness(radius, finest, core, a, meshing.growth, meshing.coarsest, meshing.fillet)
     return table
 
 

@@ -97,6 +97,28 @@ def run(text: str, stem: Path, pairs: list[int], steps: int) -> Run:
     RuntimeError
         If the program fails or does not reach the last step; its files are left for a look.
     """
+    log, seconds = execute(text, stem)
+    _check_corrections(log, stem)
+    hub, forces = _printed(stem.with_suffix(".dat").read_text(), pairs, steps)
+    points, pressures = _pressures(stem.with_suffix(".frd"), steps)
+    return Run(hub, forces, points, pressures, seconds, len(re.findall(r"^ iteration \d+", log, re.MULTILINE)))
+
+
+def execute(text: str, stem: Path) -> tuple[str, float]:
+    """Write the deck and run the program on one core: what it printed, and its processor time [s].
+
+    Parameters
+    ----------
+    text : str
+        The deck.
+    stem : Path
+        Of the files, without suffix.
+
+    Raises
+    ------
+    RuntimeError
+        If the program fails; its files are left for a look.
+    """
     stem.parent.mkdir(parents=True, exist_ok=True)
     stem.with_suffix(".inp").write_text(text)
     began = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -114,10 +136,7 @@ def run(text: str, stem: Path, pairs: list[int], steps: int) -> Run:
     stem.with_suffix(".log").write_text(done.stdout + done.stderr)
     if done.returncode != 0 or "Job finished" not in done.stdout:
         raise RuntimeError(f"{PROGRAM} did not finish: see {stem.with_suffix('.log')}")
-    _check_corrections(done.stdout, stem)
-    hub, forces = _printed(stem.with_suffix(".dat").read_text(), pairs, steps)
-    points, pressures = _pressures(stem.with_suffix(".frd"), steps)
-    return Run(hub, forces, points, pressures, seconds, len(re.findall(r"^ iteration \d+", done.stdout, re.MULTILINE)))
+    return done.stdout, seconds
 
 
 def _check_corrections(log: str, stem: Path) -> None:
@@ -150,6 +169,33 @@ def _force(block: str) -> ContactForce:
     if values[15] == 0.0:
         return ContactForce(0.0, 0.0, np.full(3, np.nan), 0.0)
     return ContactForce(-values[16], -values[5], np.array(values[6:9]), values[15])
+
+
+def nodal_stresses(path: Path) -> Array:
+    """Stresses (steps, n, 6) [MPa] of the nodes 1 to n: xx, yy, zz, xy, yz, zx; from the .frd file.
+
+    Raises
+    ------
+    RuntimeError
+        If they are not there for all nodes.
+    """
+    steps: list[list[list[float]]] = []
+    reading, count = False, 0
+    with path.open() as lines:
+        for line in lines:
+            if line.startswith(" -1") and reading:
+                steps[-1].append([int(line[3:13]), *(float(line[at : at + 12]) for at in range(13, 85, 12))])
+            elif line.startswith("    2C"):
+                count = int(line.split()[1])
+            elif line.startswith(" -4"):
+                reading = line.startswith(" -4  STRESS")
+                if reading:
+                    steps.append([])
+            elif line.startswith(" -3"):
+                reading = False
+    if not steps or any([row[0] for row in step] != list(range(1, count + 1)) for step in steps):
+        raise RuntimeError(f"{path}: no stress of all nodes")
+    return np.array(steps)[:, :, 1:]
 
 
 def _pressures(path: Path, steps: int) -> tuple[Array, Array]:

@@ -6,6 +6,7 @@ sectors share the radial layers, so that teeth of any fineness stand side by sid
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -38,6 +39,8 @@ class Fineness:
     growth : float
         Growth of the size per length beyond.
     coarsest : float [mm]
+    fillet : float [mm]
+        Largest element along both fillets and below them, if less.
     """
 
     radius: float
@@ -46,6 +49,7 @@ class Fineness:
     depth: float
     growth: float
     coarsest: float
+    fillet: float = math.inf
 
 
 @dataclass(frozen=True)
@@ -111,7 +115,7 @@ def side_radii(form: ToothForm, fine: Fineness) -> Array:
     steps = np.hypot(np.diff(radius), radius[1:] * np.diff(form.half_angle(radius)))
     arc = np.concatenate([[0.0], np.cumsum(steps)])
     place = np.interp(-fine.radius, -radius, arc)
-    along = graded(arc[-1], place, fine.core, fine.finest, fine.growth, fine.coarsest)
+    along = graded(arc[-1], place, fine.core, fine.finest, fine.growth, fine.coarsest, (math.inf, fine.fillet))
     return np.interp(along, arc, radius)
 
 
@@ -120,12 +124,13 @@ def _sector(form: ToothForm, fine: Fineness, layers: Array) -> dict[str, tuple[A
     radius = side_radii(form, fine)
     half = form.half_angle(radius)
     width = 2.0 * fine.radius * float(form.half_angle(fine.radius))
-    across = graded(width, 0.0, fine.depth, fine.finest, fine.growth, fine.coarsest) / width
+    across = graded(width, 0.0, fine.depth, fine.finest, fine.growth, fine.coarsest, (fine.fillet, fine.fillet))
+    across /= width
     x = np.multiply.outer(radius * np.cos(half), np.ones_like(across))
     y = np.multiply.outer(radius * np.sin(half), 1.0 - 2.0 * across)
     tooth = (np.hypot(x, y), np.arctan2(y, x))
     blocks = {"tooth": tooth, "under": _rim(form, tooth[0][-1], tooth[1][-1], layers)}
-    spaces = _space(form, radius[-1], fine.coarsest)
+    spaces = _space(form, radius[-1], min(fine.coarsest, fine.fillet))
     for name, sign in (("before", 1.0), ("behind", -1.0)):
         top, angle = spaces if sign < 0 else (spaces[0][::-1], spaces[1][::-1])
         blocks[name] = _rim(form, top, sign * angle, layers)

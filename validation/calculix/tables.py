@@ -14,6 +14,10 @@ DATA = Path(__file__).parent / "data"
 POSITIONS_FILE = DATA / "calculix_spur_25_37_positions.csv"
 CONTACTS_FILE = DATA / "calculix_spur_25_37_contacts.csv"
 MESH_FILE = DATA / "calculix_spur_25_37_mesh_study.csv"
+ROOTS_FILE = DATA / "calculix_spur_25_37_roots.csv"
+ROOT_MESH_FILE = DATA / "calculix_spur_25_37_roots_mesh_study.csv"
+RINGS_FILE = DATA / "calculix_rings.csv"
+RING_FILLETS_FILE = DATA / "calculix_ring_fillets.csv"
 CROWNED_FILE = DATA / "calculix_crowned_pair.json"
 FLAT_FILE = DATA / "calculix_flat_pair.json"
 
@@ -25,7 +29,7 @@ COMMON = (
 )
 
 
-def provenance(program: str, notes: Iterable[str]) -> list[str]:
+def provenance(program: str, notes: Iterable[str], common: Iterable[str] = COMMON) -> list[str]:
     """Comment lines above a table.
 
     Parameters
@@ -34,10 +38,12 @@ def provenance(program: str, notes: Iterable[str]) -> list[str]:
         Name and version.
     notes : iterable of str
         What this table holds.
+    common : iterable of str
+        What was computed; by default the pair.
     """
     machine = f"{platform.system()} {platform.machine()}, Python {platform.python_version()}"
     made = f"Computed by {program} on {date.today().isoformat()} ({machine}); repeated by: make reference-fem"
-    return [made, *COMMON, *notes]
+    return [made, *common, *notes]
 
 
 def write_table(path: Path, head: Iterable[str], rows: Iterable[Mapping[str, object]]) -> None:

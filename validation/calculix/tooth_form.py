@@ -1,4 +1,4 @@
-"""Transverse form of a spur tooth cut by a rack: involute, tip relief and trochoid, in polar coordinates."""
+"""Transverse form of a spur or helical tooth cut by a rack: involute, tip relief and trochoid, in polar coordinates."""
 
 from __future__ import annotations
 
@@ -17,13 +17,14 @@ FILLET_SAMPLES = 4001
 
 @dataclass(frozen=True)
 class ToothForm:
-    """Spur gear without profile shift, its fillet cut by the rounded tip of the rack.
+    """Spur or helical gear without profile shift, its fillet cut by the rounded tip of the rack.
 
     Attributes
     ----------
     teeth : int
     module : float [mm]
     pressure_angle : float [rad]
+        As the module in the normal section.
     dedendum, rounding : float
         h_fP and rho_fP of the rack, in modules.
     bore_ratio : float
@@ -34,6 +35,7 @@ class ToothForm:
         Diameter at which the relief begins; not used without relief.
     thinning : float [mm]
         Material off both sides, all over the tooth, along the normal of the involute: one level of a lead crowning.
+    helix_angle : float [rad]
 
     References
     ----------
@@ -50,16 +52,22 @@ class ToothForm:
     relief: float = 0.0
     relief_start: float = 0.0
     thinning: float = 0.0
+    helix_angle: float = 0.0
 
     @property
     def pitch_radius(self) -> float:
-        """r = z m/2 [mm]."""
-        return 0.5 * self.teeth * self.module
+        """r = z m_n/(2 cos(beta)) [mm]."""
+        return 0.5 * self.teeth * self.module / math.cos(self.helix_angle)
+
+    @property
+    def transverse_angle(self) -> float:
+        """tan(alpha_t) = tan(alpha_n)/cos(beta) [rad]."""
+        return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
 
     @property
     def base_radius(self) -> float:
-        """r_b = r cos(alpha) [mm]."""
-        return self.pitch_radius * math.cos(self.pressure_angle)
+        """r_b = r cos(alpha_t) [mm]."""
+        return self.pitch_radius * math.cos(self.transverse_angle)
 
     @property
     def tip_radius(self) -> float:
@@ -92,7 +100,7 @@ class ToothForm:
         """psi_b - inv(alpha_r) less the relief seen along the base circle."""
         roll = np.sqrt(np.maximum(radius**2 - self.base_radius**2, 0.0))
         tangent = roll / self.base_radius
-        half = math.pi / (2.0 * self.teeth) + math.tan(self.pressure_angle) - self.pressure_angle
+        half = math.pi / (2.0 * self.teeth) + math.tan(self.transverse_angle) - self.transverse_angle
         half -= self.thinning / self.base_radius
         return half - (tangent - np.arctan(tangent)) - self._relief_at(roll) / self.base_radius
 
@@ -107,8 +115,9 @@ class ToothForm:
     def fillet(self) -> tuple[Array, Array]:
         """Radii (falling) and half angles of the trochoid, from the end of the involute to the root circle.
 
-        ``slope`` is the angle of the normal of the rounding against the rack's reference line: alpha where the
-        straight flank ends, pi/2 at its lowest point.
+        ``slope`` is the angle of the normal of the rounding against the rack's reference line, in the normal section:
+        alpha where the straight flank ends, pi/2 at its lowest point. The transverse section stretches the rounding
+        along the reference line.
         """
         slope = np.linspace(self.pressure_angle, 0.5 * math.pi, FILLET_SAMPLES)
         rho, tip = self.rounding * self.module, self.dedendum * self.module
@@ -117,8 +126,8 @@ class ToothForm:
         centre = math.pi / 4 * self.module - straight_depth * math.tan(self.pressure_angle)
         centre -= rho * math.cos(self.pressure_angle)
         depth = centre_depth + rho * np.sin(slope)
-        beside = centre + rho * np.cos(slope)
-        lead = depth / np.tan(slope)
+        beside = (centre + rho * np.cos(slope)) / math.cos(self.helix_angle)
+        lead = depth * math.cos(self.helix_angle) / np.tan(slope)
         rolled = (lead - beside) / self.pitch_radius
         radius = np.hypot(self.pitch_radius - depth, lead)
         space = np.arctan2(lead, self.pitch_radius - depth) - rolled
