@@ -14,7 +14,9 @@ import argparse
 import math
 import multiprocessing
 import re
+import statistics
 import time
+import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
@@ -26,6 +28,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
+from loaded_tca import analyse, read_scene
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import FlankLine, MeshDensity, RootStress
 from loaded_tca.compliance.body import ToothFrame, factorised, gear_nodes
@@ -39,7 +42,7 @@ from loaded_tca.compliance.root_stress import (
     stress_density,
     tangent_angles,
 )
-from loaded_tca.errors import InputError
+from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.flanks.base import outward_normal
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.pairs.cylindrical import cylindrical_pair
@@ -49,7 +52,8 @@ from loaded_tca.tooth.profile import polar
 from validation.contact.speed_against_error import machine
 from validation.table import Row
 
-STUDIES = Path(__file__).parents[2] / "docs" / "studies"
+ROOT = Path(__file__).parents[2]
+STUDIES, SCENES = ROOT / "docs" / "studies", ROOT / "examples" / "scenes"
 CASE, SOURCE, FINER = "root stress", "plane finite elements, quadratic triangles", "finer mesh of the same elements"
 LINE_LOAD = 100.0
 """Of the reference [N/mm]."""
@@ -356,8 +360,8 @@ MESHES: dict[str, tuple[dict[str, Any], MeshDensity]] = {
     "default, b 60, 30 deg": ({"width": 60.0, "helix_deg": 30.0}, replace(SECTION, lengthwise=26)),
 }
 """Changes of the pinion of the reference, and meshes."""
-PLACES, POSITIONS, TORQUES, TEETH_OF_INTEREST = 32, 33, 3, 7
-"""Of each of the three loaded lines of a state; and a mesh cycle."""
+RUNS, CYCLES = 5, ("mesh_cycle_spur", "mesh_cycle_helical", "mesh_cycle_bevel")
+"""Of mesh cycles."""
 
 
 def told_memory(gear: Gear, density: MeshDensity) -> float:
@@ -397,22 +401,23 @@ def measured(name: str) -> list[str]:
     return [name, *shown, f"{seconds:.1f}", f"{told:.2f}", f"{memory:.2f}", f"{kept:.1f}"]
 
 
-def time_of_states(width: float) -> list[str]:
-    """Time of the stress of one state of one tooth, and of those of a cycle."""
-    gear, runs = spur_pair_gear(width=width), 20
-    model, generator = model_of(gear, stress_density(gear)), np.random.default_rng(0)
-    axial = np.linspace(-0.5 * width, 0.5 * width, PLACES)
-    lines = [
-        (FlankLine(tooth, np.full(PLACES, radius), axial), generator.random(PLACES))
-        for tooth, radius in zip((-1, 0, 1), loaded_radii()[[0, 2, 3]], strict=True)
+def time_of_cycle(name: str) -> list[str]:
+    """Processor time of a mesh cycle with and without root stress, medians of runs that take turns; models are kept."""
+    scenes = [
+        read_scene(SCENES / f"{name}.toml").with_changes({"analysis.root_stress": asked}) for asked in (False, True)
     ]
-    model.stress(0, lines)  # its splines are made on first use
-    start = time.process_time()
-    for _ in range(runs):
-        model.stress(0, lines)
-    seconds = (time.process_time() - start) / runs
-    states = POSITIONS * TORQUES * 2 * TEETH_OF_INTEREST
-    return [f"{width:g}", f"{1e3 * seconds:.2f}", f"{states}", f"{states * seconds:.1f}"]
+    times: list[list[float]] = [[], []]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        analyse(scenes[1])  # models are made
+        for _ in range(RUNS):
+            for scene, own in zip(scenes, times, strict=True):
+                start = time.process_time()
+                analyse(scene)
+                own.append(time.process_time() - start)
+    without, with_stress = map(statistics.median, times)
+    states = scenes[0].analysis.positions * len(scenes[0].torques)
+    return [name, f"{states}", f"{without:.2f}", f"{with_stress:.2f}", f"{with_stress - without:.2f}"]
 
 
 def markdown(head: str, lines: Iterable[Iterable[str]]) -> str:
@@ -522,12 +527,12 @@ layers of a quarter.
 
 {of_forms()}
 
-## Stress from the table
+## Mesh cycles
 
-`RootStress.stress` of one tooth under three loaded lines of {PLACES} places each, and for all states of a mesh cycle:
-{POSITIONS} positions, {TORQUES} torques, two gears, {TEETH_OF_INTEREST} teeth each.
+Scenes of `examples/scenes`, all their positions and torques, both gears, all teeth that are stressed; processor time of
+one thread with the models at hand, medians of {RUNS} runs that take turns.
 
-{markdown("| face width, mm | ms for a state | states | s for all |", map(time_of_states, (20.0, 60.0)))}
+{markdown("| scene | states | analysis, s | with root stress, s | difference, s |", map(time_of_cycle, CYCLES))}
 """
 
 
