@@ -473,7 +473,7 @@ def root_tension_norm(tension: Array) -> float:
     Examples
     --------
     >>> round(root_tension_norm(np.array([200.0, 300.0, 290.0])), 1)
-    301.1
+    301.0
     """
     largest = float(tension.max())
     return largest * float(((tension / largest) ** ROOT_EXPONENT).sum()) ** (1.0 / ROOT_EXPONENT)

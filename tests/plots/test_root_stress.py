@@ -28,7 +28,8 @@ def test_maps_of_both_gears_have_one_scale_of_colours_without_an_end_that_is_cut
     assert len(norms) == 1
     ((low, high),) = norms
     assert low == -high
-    assert high == max(-cycle.root_compression[1].min(), cycle.root_tension[1].max())
+    envelopes = [part[1] for one in cycle.root_stress for part in (one.largest, one.smallest)]
+    assert high == max(np.abs(part).max() for part in envelopes)
 
 
 def test_maps_are_those_of_the_asked_torque_with_the_back_on_the_left():

@@ -170,7 +170,7 @@ def test_root_tension_is_designed_and_limited():
         highest = 0.5 * (before + after)
         held = optimise(one, "mean", limits={name: highest})
     assert after < 0.97 * before
-    assert_allclose(least.optimum[SLOPE], 8.0, atol=2.0)  # um over the face, as the misalignment
+    assert 4.0 < least.optimum[SLOPE] < 12.0, "it makes up for the misalignment of 8 um over the face"
     assert held.dataset[name].sel(design="optimum").item() < 1.01 * highest
 
 
