@@ -604,8 +604,8 @@ Three things are worse than the transmission error, and no finer grid mends them
 
 ## Root tension
 
-On {GRIDS[0]} cells along each axis, asked {100.0 * ASKED[GRIDS[0]]:.0f} %: both gears, all positions at which the largest
-tension stays with one side of one tooth.
+On {GRIDS[0]} cells along each axis, asked {100.0 * ASKED[GRIDS[0]]:.0f} %: both gears, all positions at which the
+largest tension stays with one side of one tooth.
 
 {of_root_tension()}
 
