@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 
 from loaded_tca.compliance import (
@@ -12,7 +14,7 @@ from loaded_tca.compliance import (
     tooth_compliance,
     way_out_told,
 )
-from loaded_tca.errors import named, require
+from loaded_tca.errors import AccuracyWarning, named, require
 from loaded_tca.loaded.cycle import Progress, carried_by_all, carried_by_one, farthest_apart
 from loaded_tca.loaded.effort import expected_effort
 from loaded_tca.loaded.tooth_contact import GridChoice
@@ -22,6 +24,10 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.warnings import warn_of_accuracy
 from loaded_tca.scene import Scene
 from loaded_tca.unloaded import trace_contact, trace_teeth
+
+THICKEST_LAYER = 1.2
+"""Of elements across a face, over the module: from there on root stress under a short contact is 2 % too low and more
+(a load of 2.7 modules: 2.5 % on 1.3 modules, 9 % on 1.9, 16 % on 2.6)."""
 
 
 def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
@@ -93,4 +99,11 @@ def roots_of(scene: Scene, pair: GearPair) -> tuple[RootStress, ...]:
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         with way_out_told("analysis.root_stress = false"), named(name):
             found.append(root_stress_model(gear))
+        if (layer := found[-1].layer / pair.module) > THICKEST_LAYER:
+            warnings.warn(
+                f"root stress of the {name}: across its face elements are {layer:.2g} modules wide; where contacts "
+                "cover a part of the face alone, root stress is too low, by a tenth at 2 modules",
+                AccuracyWarning,
+                stacklevel=2,
+            )
     return tuple(found)

@@ -115,6 +115,11 @@ class RootStress:
         """Teeth on either side of a loaded one whose stress is known."""
         return len(self.table.stress_beside) // 2
 
+    @property
+    def layer(self) -> float:
+        """Mean width of the elements across the face [mm]."""
+        return float(np.ptp(self.frame.nodes.coordinate)) / self.frame.nodes.layout.density.lengthwise
+
     @cached_property
     def tangent_angle(self) -> Array:
         """Between fillet and middle of the tooth at all places (2, stations, p) [rad]; first the flank in contact."""

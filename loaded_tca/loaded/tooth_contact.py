@@ -159,6 +159,8 @@ class LoadedContact:
             minor, major = self.solution.semi_axes
             return 2.0 * minor, 2.0 * major
         pressure, cover = self.solution.pressure_on_material, self.separation.cover
+        if not pressure.any():
+            return 0.0, 0.0
         if self.solution.reaches_border:  # nothing lies beyond
             pressure, cover = np.pad(pressure, 1), np.pad(cover, 1)
         across, along = (

@@ -128,7 +128,7 @@ def positions_csv(result: MeshCycle) -> str:
     columns["transmission_error_um"] = result.transmission_error * result.wheel_base_radius * 1e3
     columns |= {f"load_share_pair_{number}": result.load_share[..., k] for k, number in enumerate(result.pair)}
     for name, (dimensions, unit, _) in ROOT_QUANTITIES.items():
-        if dimensions == OVER_CYCLE and result.scene.analysis.root_stress:
+        if dimensions == OVER_CYCLE and result.has_root_stress:
             column, factor = _column(name, unit)
             columns |= {f"{gear}_{column}": factor * getattr(result, name)[..., k] for k, gear in enumerate(GEARS)}
     return csv_table({name: np.broadcast_to(values, shape).ravel() for name, values in columns.items()})

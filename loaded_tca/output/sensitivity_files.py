@@ -22,8 +22,8 @@ HEADS = {
     "transmission_error_order_1_um": ("order 1", "[um]"),
     "face_load_factor": ("K_Hbeta", "[-]"),
     "peak_pressure_MPa": ("peak pressure", "[MPa]"),
-    "pinion_root_tension_MPa": ("pinion root", "[MPa]"),
-    "wheel_root_tension_MPa": ("wheel root", "[MPa]"),
+    "pinion_root_tension_MPa": ("pinion tension", "[MPa]"),
+    "wheel_root_tension_MPa": ("wheel tension", "[MPa]"),
 }
 """What the columns of the text say of a key figure."""
 WIDTH = 15

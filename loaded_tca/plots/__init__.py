@@ -183,7 +183,7 @@ def plot_all(
             figures["contact_patterns"] = plot_contact_patterns(result)
         if more and peak is not None:
             figures["full_mesh"] = plot_full_mesh(result, position, torque)
-    if result.scene.analysis.root_stress:
+    if result.has_root_stress:
         figures["root_stress"] = plot_root_stress(result, torque)
         if len(result.path) > 1:
             figures["root_stress_cycle"] = plot_root_stress_cycle(result)

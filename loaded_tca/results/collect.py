@@ -86,7 +86,7 @@ def mesh_cycle(scene: Scene, pair: GearPair, carried: Carried, roots: Sequence[R
         path=path,
         paths=tuple(carried.paths[k] for k in order),
         maps=stacked,
-        states=carried.states,
+        states=(scene, carried.states),
     )
 
 

@@ -166,7 +166,7 @@ def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
         "edge_positions": count(result.on_edge[torque]),
         "relief_start_positions": count(result.on_relief_start[torque]),
         "capped_positions": count(highest >= CAPPED * result.max_pressure),
-        **(root_figures(result, torque) if result.scene.analysis.root_stress else {}),
+        **(root_figures(result, torque) if result.has_root_stress else {}),
     }
 
 

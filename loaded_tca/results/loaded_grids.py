@@ -41,8 +41,8 @@ def states_of_maps(result: MeshCycle) -> LoadedStates:
     bending = None if wanted.compliance == "contact" else tooth_compliance(pair, neighbours=apart)
     places = np.argwhere(result.normal_force > 0.0).tolist()
     maps = [one for t, n, k in places if (one := result.maps[t][n][k]) is not None]
-    contacts = [unloaded[n][numbers[k]] for _, n, k in places]
-    if any(
+    contacts = [unloaded[n][numbers[k]] for _, n, k in places if numbers[k] in unloaded[n]]
+    if len(contacts) < len(maps) or any(
         not np.allclose(one.origin, contact.point, rtol=0.0, atol=SAME * pair.module)
         for one, contact in zip(maps, contacts, strict=True)
     ):

@@ -157,9 +157,9 @@ class MeshCycle:
         Unloaded contact of each pair, in the angles of the gears; NaN where it is out of reach.
     maps : tuple of tuple of tuple of PressureMap or None
         ``maps[torque][position][pair]`` by index; None where a pair carries nothing.
-    states : LoadedStates or None
-        The contact problems behind the maps, of all positions torque by torque, for sensitivities; None if the result
-        comes from a file, which does not keep them: they are made again when they are needed.
+    states : (Scene, LoadedStates) or None
+        The contact problems behind the maps, of all positions torque by torque, for sensitivities, and the scene they
+        belong to; None if the result comes from a file, which does not keep them: they are made again when needed.
     """
 
     scene: Scene
@@ -167,10 +167,10 @@ class MeshCycle:
     path: ContactPath
     paths: tuple[ContactPath, ...]
     maps: Maps
-    states: LoadedStates | None = field(default=None, repr=False, compare=False)
+    states: tuple[Scene, LoadedStates] | None = field(default=None, repr=False, compare=False)
 
     def __getattr__(self, name: str) -> Any:
-        if name in (*ROOT_PARTS, "root_stress") and not self.scene.analysis.root_stress:
+        if name in (*ROOT_PARTS, "root_stress") and not self.has_root_stress:
             raise not_asked(name)
         if name not in (*QUANTITIES, *ROOT_PARTS) or name not in self.dataset:
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
@@ -195,6 +195,11 @@ class MeshCycle:
         """The gears of the scene in space."""
         return self.scene.pair()
 
+    @property
+    def has_root_stress(self) -> bool:
+        """Whether the analysis found root stress: its scene asked for it."""
+        return "root_tension" in self.dataset
+
     @cached_property
     def root_stress(self) -> tuple[RootStressMap, RootStressMap]:
         """Root stress of pinion and wheel over fillet and face: at the largest tension, and envelopes over the mesh.
@@ -204,7 +209,7 @@ class MeshCycle:
         NotAskedError
             If the scene does not ask for root stress.
         """
-        if not self.scene.analysis.root_stress:
+        if not self.has_root_stress:
             raise not_asked("root_stress")
         return root_stress_maps(self)
 
@@ -252,10 +257,10 @@ class MeshCycle:
         InputError
             For any other name.
         """
-        values = getattr(self, name, None) if isinstance(name, str) else None
-        if not isinstance(values, np.ndarray) or values.ndim != len(PAIRS):
-            known = f"; result.{name} has its numbers as they are" if name in QUANTITIES else ""
+        if not isinstance(name, str) or name not in self.dataset or self.dataset[name].dims != PAIRS:
+            known = f"; result.{name} has its numbers as they are" if name in (*QUANTITIES, *ROOT_PARTS) else ""
             raise InputError(f"name: {name!r} is no array (torque, position, pair) of the result{known}")
+        values = self.dataset[name].values
         if name in OF_THE_PEAK:
             columns = self.peak_column
         elif name in OF_THE_EDGE:
@@ -374,7 +379,8 @@ class MeshCycle:
         Raises
         ------
         InputError
-            If the file cannot be written, or NetCDF-3 has no type for what was added to the dataset.
+            If the file cannot be written, NetCDF-3 has no type for what was added to the dataset, or the scene asks for
+            root stress that the result does not have.
         """
         content = self.to_netcdf()
         with replacing(path) as temporary:
@@ -382,6 +388,8 @@ class MeshCycle:
 
     def to_netcdf(self) -> Buffer:
         """Return the content of the file that ``save`` writes; InputError as it has."""
+        if self.scene.analysis.root_stress and not self.has_root_stress:
+            raise not_asked("scene")
         paths = (self.path, *self.paths)
         arrays = {f"path_{name}": np.stack([getattr(one, name) for one in paths]) for name in PATH_PARTS}
         arrays |= {f"map_{name}": stack for name, stack in stacked_maps(self.maps).items()}
@@ -404,7 +412,7 @@ class MeshCycle:
             )
         try:
             scene = parse_scene(str(file.attrs.get("scene_toml", "")), source="scene_toml")
-            in_dataset = QUANTITIES | (ROOT_PARTS if scene.analysis.root_stress else {})
+            in_dataset = QUANTITIES | (ROOT_PARTS if scene.analysis.root_stress or "root_tension" in file else {})
             arrays = arrays_of(file, in_dataset | IN_FILES)
             expected = {**SIZES, "end": 2, "edge": 8, "path": 1 + file.sizes["pair"]}
             checks = [(name, file.sizes[name] == size, f"{size}") for name, size in expected.items()]

@@ -103,7 +103,7 @@ def root_stress_maps(result: MeshCycle) -> tuple[RootStressMap, RootStressMap]:
 
 def not_asked(name: str) -> NotAskedError:
     """Error of a result without root stress."""
-    return NotAskedError(f"{name}: the scene of the result does not ask for it; set analysis.root_stress = true")
+    return NotAskedError(f"{name}: the result has no root stress; set analysis.root_stress = true")
 
 
 def root_stress_arrays(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -27,7 +27,7 @@ from loaded_tca.results.key_figures import harmonic_coefficients
 from loaded_tca.results.loaded_grids import states_of_maps
 from loaded_tca.results.root_stress import stress_at_extreme
 from loaded_tca.separation import Separation
-from loaded_tca.separation.gap_change import contact_changes, pair_changes
+from loaded_tca.separation.gap_change import PairChange, contact_changes, pair_changes
 
 if TYPE_CHECKING:
     import xarray
@@ -69,6 +69,8 @@ class Sensitivities:
         move.
     shifts : (keys, grids) array [mm per unit]
         By which they move across their contacts, and with them the lines along which contacts load the teeth.
+    changes : tuple of PairChange or None
+        Pairs of gears that differ in each key; none of the torque.
     """
 
     keys: tuple[str, ...]
@@ -79,6 +81,11 @@ class Sensitivities:
     gaps: Array
     lever_torques: Array
     shifts: Array
+    changes: tuple[PairChange | None, ...]
+
+    def __reduce__(self) -> tuple[Callable[..., Sensitivities], tuple[MeshCycle, tuple[str, ...]]]:
+        """Found anew by pickle and copy: the linear systems are large, and quickly made."""
+        return sensitivities, (self.result, self.keys)
 
     def __repr__(self) -> str:
         return f"Sensitivities({len(self.keys)} keys, {self.places.shape[1]} states)"
@@ -162,6 +169,9 @@ class Sensitivities:
 
         Smooth where the place of the peak jumps: (integral of p^m dA over 1 mm^2)^(1/m), m the exponent.
         """
+        require(
+            (1.0 <= real(exponent) < math.inf, f"exponent: found {exponent!r:.60}; allowed a finite number from 1 on")
+        )
         grids = self.tangents.grids
         norms, slopes = zip(
             *(pressure_norm(one.pressure, one.separation.cover, one.problem.spacing, exponent) for one in grids),
@@ -221,10 +231,21 @@ class Sensitivities:
                         beyond, step = _shifted(grids[i].separation)
                         further = per_force(flank_lines(pair, grids[i].number, beyond)[gear])
                         moved[:, state] += self.shifts[:, i] * ((further - stress) / step @ forces)
+                    for key, other in self._of_the_wheel if gear == 1 else ():  # it moves below the line
+                        low, high = (
+                            per_force(flank_lines(side, grids[i].number, grids[i].separation)[gear]) @ forces
+                            for side in (other.below, other.above)
+                        )
+                        moved[key, state] += (high - low) / other.difference
             slopes = self.tangents.gathered(by_force)
             change = self.tangents.functional_change(slopes, self.gaps, self.torques) + moved
             found[(*self.places, gear)] = change.T
         return found
+
+    @property
+    def _of_the_wheel(self) -> list[tuple[int, PairChange]]:
+        """Numbers of the keys that move the wheel, and their changes."""
+        return [(k, one) for k, one in enumerate(self.changes) if one is not None and one.key.startswith("mounting.")]
 
     @cached_property
     def weight_maps(self) -> tuple[tuple[tuple[Array | None, ...], ...], ...]:
@@ -287,7 +308,7 @@ class Sensitivities:
             ("torque", "position", "pair"): ("load_share", "line_load", "peak_pressure"),
             ("torque",): ("peak_to_peak", "face_load_factor"),
         }
-        if self.result.scene.analysis.root_stress:
+        if self.result.has_root_stress:
             dimensions["torque", "position", "gear"] = "root_tension", "root_compression"
         arrays = {name: ((*own, "key"), getattr(self, name)) for own, names in dimensions.items() for name in names}
         return xarray.Dataset(arrays, {**coordinates, "key": list(self.keys)})
@@ -326,11 +347,12 @@ def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
     require(
         (bool(keys), "keys: none given"),
         *((isinstance(key, str), f"keys: {key!r:.60} is no text; allowed are keys of the scene") for key in keys),
-        *((keys.count(key) == 1, f"keys: {key} is given twice") for key in {str(key): None for key in keys}),
+        *((keys.count(key) < 2, f"keys: {key} is given twice") for key in dict.fromkeys(map(str, keys))),
     )
     pair, named = result.gear_pair, [key for key in keys if key != TORQUE]
     changes, at = pair_changes(result.scene, named), [keys.index(key) for key in named]
-    loaded = result.states or states_of_maps(result)
+    solved, states = result.states or (None, None)
+    loaded = states if states is not None and solved == result.scene else states_of_maps(result)
     count = [len(state) for state in loaded.grids]
     require((any(count), "sensitivities: no tooth pair of the result carries load"))
     tangents = loaded.tangents(LINEAR)
@@ -353,7 +375,9 @@ def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
     shifts[at] = found.shifts
     if loaded.bending is not None:
         _add_shifted_bending(gaps, shifts, tangents, loaded.bending)
-    return Sensitivities(tuple(keys), result, tangents, places, columns, gaps, lever_torques, shifts)
+    by_key = dict(zip(named, changes, strict=True))
+    every = tuple(by_key.get(key) for key in keys)
+    return Sensitivities(tuple(keys), result, tangents, places, columns, gaps, lever_torques, shifts, every)
 
 
 def _shifted(separation: Separation) -> tuple[Separation, float]:

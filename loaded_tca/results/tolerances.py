@@ -104,7 +104,7 @@ def key_figure_slopes(found: Sensitivities) -> dict[str, Array]:
             [unknown if at is None else found.peak_pressure[torque][at] for torque, at in enumerate(peaks)]
         ),
     }
-    for gear, name in enumerate(GEARS if result.scene.analysis.root_stress else ()):
+    for gear, name in enumerate(GEARS if result.has_root_stress else ()):
         at = np.nan_to_num(result.root_tension[..., gear]).argmax(axis=1)
         slopes[f"{name}_root_tension_MPa"] = found.root_tension[np.arange(len(at)), at, gear]
     return slopes

@@ -133,7 +133,8 @@ class DesignResult:
     dataset : xarray.Dataset
         Over ``design`` ("start", "optimum"), sample, torque, position and key: ``value`` of the keys, analysed
         ``transmission_error`` [rad], ``peak_pressure`` [MPa], load factors and ``FIGURES``; those on held contacts as
-        ``held_...``; ``history_x``, ``history_objective`` and ``history_excess`` over the evaluations.
+        ``held_...``; ``history_x``, ``history_objective`` and ``history_excess`` over the evaluations; ``attrs`` has
+        the ``limits`` in words.
     """
 
     dataset: xarray.Dataset
@@ -272,7 +273,7 @@ def optimise(
     )
     if best.excess > KEPT:
         raise InputError(_told_unmet(model, given, best.x))
-    result = _analysed_result(model, wanted, history, best.x, executor)
+    result = _analysed_result(model, wanted, given, history, best.x, executor)
     _require_confirmed(result, given)
     return result
 
@@ -487,7 +488,12 @@ def _analysed(scene: Scene) -> dict[str, Any]:
 
 
 def _analysed_result(
-    model: DesignModel, objective: Objective, history: Sequence[Trial], x: Array, executor: Executor | None
+    model: DesignModel,
+    objective: Objective,
+    limits: Sequence[Limit],
+    history: Sequence[Trial],
+    x: Array,
+    executor: Executor | None,
 ) -> DesignResult:
     """The result of a search, with the full analyses of start and optimum."""
     import xarray
@@ -513,6 +519,10 @@ def _analysed_result(
     }
     attributes = {"kind": KIND, "scene_toml": model.scene.to_toml(), "warnings": "\n".join(lines)}
     attributes |= {"objective": objective.told, "figure": objective.figure}
+    attributes["limits"] = "\n".join(
+        f"{one.figure} <= {one.highest:g} at {', '.join(f'{1e-3 * model.torques[t]:g}' for t in one.torques)} N m"
+        for one in limits
+    )
     parts = {name: part for name, part in PARTS.items() if name in arrays}  # root tension, where the scene asks for it
     return DesignResult(xarray.Dataset(variables_of(parts, arrays), coordinates, attributes))
 

@@ -1,10 +1,15 @@
 """Derivatives of root stress to the keys of a scene: beside slopes through analyses, and in tables."""
 
+import copy
+import pickle
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.errors import NotAskedError
+from loaded_tca.analysis import roots_of
+from loaded_tca.errors import AccuracyWarning, InputError, NotAskedError
 from loaded_tca.output.sensitivity_files import sensitivities_csv, sensitivities_text
 from loaded_tca.results import default_tolerances, key_figure_slopes
 from tests.samples.results import result as without_root_stress
@@ -49,6 +54,65 @@ def test_root_stress_follows_the_torque_as_analyses_do():
         assert_allclose(found[4, ..., 0], slopes, rtol=0, atol=REAL_PAIRS * np.abs(slopes).max())
 
 
+@pytest.mark.parametrize(
+    ("key", "step"), [("mounting.axial_offset_mm", 0.5), ("mounting.centre_distance_error_mm", 0.1)]
+)
+def test_root_stress_follows_a_wheel_that_moves_below_the_contact(key, step):
+    """The wheel is wider, and loaded off its middle: its roots move against the contact, those of the pinion do not."""
+    one = scene(
+        **{
+            "analysis.load_sharing": False,
+            "analysis.positions": 1,
+            "analysis.torques_Nm": (130.0,),
+            "pinion.face_width_mm": 10.0,
+            "mounting.axial_offset_mm": 2.0,
+            "pinion.modifications.lead_crowning_um": 20.0,
+        }
+    )
+    middle = one.mounting.axial_offset_mm if key.endswith("offset_mm") else 0.0
+    cycles = [analysed(one.with_changes({key: middle + by})) for by in (-step, step)]
+    for name, found in zip(("root_tension", "root_compression"), sensitivities(analysed(one), [key])[1:], strict=True):
+        slopes = np.subtract(*(getattr(cycle, name)[0, 0] for cycle in reversed(cycles))) / (2.0 * step)
+        assert_allclose(found[0, 0, :, 0], slopes, rtol=REAL_PAIRS, atol=0.01)
+        assert abs(slopes[1]) > 1.0
+
+
+def test_sensitivities_are_found_anew_by_pickle_and_copy():
+    found = result(**{"analysis.torques_Nm": (150.0,)}).sensitivities([CROWNING])
+    for again in (pickle.loads(pickle.dumps(found)), copy.deepcopy(found)):
+        assert_allclose(again.transmission_error, found.transmission_error, rtol=1e-12)
+
+
+def test_contacts_of_another_scene_are_not_taken_for_those_of_this_one():
+    cycle = result(**{"analysis.torques_Nm": (150.0,)})
+    crowned = replace(cycle, scene=cycle.scene.with_changes({CROWNING: 30.0, "mounting.out_of_plane_deg": 0.1}))
+    with pytest.raises(InputError, match="the pressure maps of the result do not belong to its scene"):
+        crowned.sensitivities([CROWNING])
+    asks = replace(
+        without_root_stress(), scene=without_root_stress().scene.with_changes({"analysis.root_stress": True})
+    )
+    with pytest.raises(NotAskedError, match="the result has no root stress"):
+        _ = asks.root_tension
+
+
+def test_numbers_of_gears_are_none_of_tooth_pairs():
+    with pytest.raises(InputError, match=r"'root_tension' is no array \(torque, position, pair\).*as they are"):
+        result().at_position("root_tension")
+
+
+def test_exponent_of_the_norm_is_a_number():
+    with pytest.raises(InputError, match=r"exponent: found .a.; allowed a finite number"):
+        result().sensitivities([CROWNING]).pressure_norm("a")
+
+
+def test_thick_layers_across_a_wide_face_are_told(monkeypatch):
+    one = scene(**{"wheel.face_width_mm": 36.0})
+    with coarsely():
+        monkeypatch.setattr("loaded_tca.analysis.THICKEST_LAYER", 1.2)
+        with pytest.warns(AccuracyWarning, match=r"root stress of the wheel: .* elements are 2 modules wide"):
+            roots_of(one, one.pair())
+
+
 def test_tables_have_root_tension_where_the_scene_asks_for_it():
     cycle = result(**{"analysis.torques_Nm": (150.0,)})
     keys = [CROWNING, TORQUE]
@@ -59,7 +123,7 @@ def test_tables_have_root_tension_where_the_scene_asks_for_it():
         for gear, name in enumerate(("pinion_root_tension_MPa", "wheel_root_tension_MPa")):
             assert_allclose(slopes[name][0], found.root_tension[0, at[gear], gear])
             assert f"{name}_per_tolerance" in sensitivities_csv(found, default_tolerances(cycle.scene, keys))
-        assert "wheel root" in sensitivities_text(found, default_tolerances(cycle.scene, keys), 0)
+        assert "wheel tension" in sensitivities_text(found, default_tolerances(cycle.scene, keys), 0)
         assert found.dataset["root_tension"].dims == ("torque", "position", "gear", "key")
         assert found.spread({CROWNING: 1.0})["root_compression"].dims == ("torque", "position", "gear")
 

@@ -1,6 +1,8 @@
 """Analyses with root stress on coarse meshes, that tests of results, tables and pictures share."""
 
+import math
 import warnings
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import cache
 from unittest.mock import patch
@@ -31,9 +33,12 @@ def scene(name="mesh_cycle_spur", **changes):
     return read_scene(SCENES / f"{name}.toml").with_changes(FEW | widths | changes)
 
 
+@contextmanager
 def coarsely():
-    """A context in which models of root stress are coarse."""
-    return patch("loaded_tca.compliance.root_stress.stress_density", lambda _: COARSE)
+    """A context in which models of root stress are coarse, and nobody minds."""
+    density = patch("loaded_tca.compliance.root_stress.stress_density", lambda _: COARSE)
+    with density, patch("loaded_tca.analysis.THICKEST_LAYER", math.inf):
+        yield
 
 
 def analysed(scene, progress=None):
