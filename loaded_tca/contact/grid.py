@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from loaded_tca.arrays import Array, Mask
-from loaded_tca.contact.convolution import ALL, Convolution, Rows, Window
+from loaded_tca.contact.convolution import ALL, Convolution, Preconditioner, Rows, Window
 from loaded_tca.contact.cuts import CutCells, limits
 from loaded_tca.contact.edges import FreeEdge, MirroredConvolution, amplification, mirrors
 from loaded_tca.contact.levels import coarsen, merged, window_around
@@ -157,6 +158,11 @@ class Grids:
         """Largest pressure of the cells, (count, 1, 1) or (count, nx, ny)."""
         return self.cap if self.cover is None else limits(self.cap, self.cover)
 
+    @property
+    def own(self) -> Any:
+        """Largest displacement of a cell of half-spaces by unit pressure on it."""
+        return own_coefficient(each(self.aspects))
+
     @cached_property
     def reach(self) -> Array:
         """Gap beyond which no cell can come into contact [mm], (count, 1, 1).
@@ -167,7 +173,7 @@ class Grids:
         """
         if not self.loaded:
             return self.approach
-        own = amplification(self.free_edges) * own_coefficient(each(self.aspects))
+        own = amplification(self.free_edges) * self.own
         if self.slices is not None:
             own = own + np.abs(self.slices).max(axis=CELLS, keepdims=True)
         most = self.total * own
@@ -252,6 +258,10 @@ class Grids:
             return out
 
         return displaced
+
+    def preconditioner(self, threads: int = 2) -> Operator:
+        """Approximate inverse of K in single precision, as a function like that of ``operator``."""
+        return Preconditioner(self.shape, self.aspects, threads)
 
     def guess(self) -> Array:
         """Return pressures to start from without others: where the gap is below a level, as the root of what it lacks.
