@@ -72,9 +72,7 @@ def column_coefficients(rows: int, spacing: float, borders: Array) -> Array:
         D_{mn}(i) = \frac{1}{\pi w_n} \left[F(x_+, y_+) - F(x_-, y_+) - F(x_+, y_-) + F(x_-, y_-)\right]
 
     times p w_n/E*, with F of :func:`influence_coefficients`, x_+- = (i +- 1/2) dx, and y_+- the borders of the column n
-    seen from the middle of m. The mean of D_mn and D_nm takes the place of both, so that the contact stays a minimum
-    problem: under a flat punch with rounded ends, columns growing by 1.3, the peaks with and without that differ by
-    less than 1e-4. Even columns have the coefficients of a uniform grid.
+    seen from the middle of m. Even columns have the coefficients of a uniform grid; only they are symmetric.
 
     Parameters
     ----------
@@ -88,7 +86,7 @@ def column_coefficients(rows: int, spacing: float, borders: Array) -> Array:
     Returns
     -------
     (rows, ny, ny) array
-        Symmetric in the columns.
+        D(i), displaced columns before pressed ones.
 
     References
     ----------
@@ -110,8 +108,7 @@ def column_coefficients(rows: int, spacing: float, borders: Array) -> Array:
             x2, y2 = (row * spacing / r) ** 2, (y / r) ** 2
             quadrupole = spacing**2 * (3.0 * x2 - 1.0) + w**2 * (3.0 * y2 - 1.0)
             love[away] = spacing * w / r * (1.0 + quadrupole / (24.0 * r * r))
-        love /= np.pi * widths
-        coefficients[row] = 0.5 * (love + love.T)
+        coefficients[row] = love / (np.pi * widths)
         last = corner
     return coefficients
 
