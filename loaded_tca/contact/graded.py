@@ -17,7 +17,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,7 +26,7 @@ from loaded_tca.arrays import Array, numbers, real
 from loaded_tca.contact import checks
 from loaded_tca.contact.convolution import ALL, Rows, Window, fast_length
 from loaded_tca.contact.descent import Descent, judge
-from loaded_tca.contact.grid import AT_BOUND, CELLS, Grids, Operator, each
+from loaded_tca.contact.grid import AT_BOUND, OUT_OF_REACH, TINY, Grids, Operator, each
 from loaded_tca.contact.levels import coarsen, coarsening, merged, prolong
 from loaded_tca.contact.love import column_coefficients
 from loaded_tca.contact.solution import ContactStatus
@@ -45,6 +44,9 @@ from loaded_tca.threads import one_blas_thread
 BYTES_PER_PAIR = 48
 """Bytes at the peak of a solve for every pair of columns and cell along them: coefficients, their transform in both
 precisions and its inverses, and the same of the coarser grids. Measured: 36 to 41."""
+
+REACH_RESERVE = 1.1
+"""Of the largest gap that may close, for the part of the coefficients that is not symmetric."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -257,14 +259,14 @@ def _solved(problem: GradedProblem, tolerance: float, start: Array | None) -> Gr
         pressure = grids.fitted((start * line)[None])
     iterations = convolutions = repeats = 0
     while True:
-        displacement, unlike = grids.displaced(pressure)
+        displacement, rest = grids.displaced(pressure)
         convolutions += 1
         state = judge(grids, pressure, displacement + grids.gap)
         approach, residual = float(state.approach[0, 0, 0]), float(state.residual[0, 0, 0])
         if residual <= tolerance or iterations >= MOST_ITERATIONS or repeats == MOST_CHECKS:
             break
-        bent = replace(grids, gap=grids.gap + unlike)
-        descent = Descent(bent, pressure, displacement - unlike, 1)
+        bent = replace(grids, gap=grids.gap + rest)
+        descent = Descent(bent, pressure, displacement - rest, 1)
         descent.run(np.array([RESERVE * tolerance]), np.array([MOST_ITERATIONS - iterations]))
         pressure = bent.settled(descent.pressure)
         iterations += int(descent.iterations[0])
@@ -299,21 +301,54 @@ def _start_from_coarser(grids: GradedGrids, tolerance: float) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
+class Kernel:
+    """Displacements between columns, transformed along x.
+
+    Parameters
+    ----------
+    rows : int
+        Cells along the columns.
+    spacing : float [mm]
+        Their length.
+    borders : (ny + 1,) array [mm]
+        Of the columns.
+    """
+
+    rows: int
+    spacing: float
+    borders: Array
+
+    @cached_property
+    def whole(self) -> Array:
+        """Transform of the coefficients D, (wave numbers, ny, ny), displaced columns before pressed ones."""
+        reach = fast_length(2 * self.rows) // 2
+        coefficients = column_coefficients(reach + 1, self.spacing, self.borders)
+        return np.asarray(dct(coefficients, type=1, axis=0, overwrite_x=True))
+
+    @cached_property
+    def symmetric(self) -> Array:
+        """That of their symmetric part."""
+        return np.asarray(0.5 * (self.whole + self.whole.transpose(0, 2, 1)))
+
+    @cached_property
+    def single(self) -> Array:
+        """The same in single precision."""
+        return self.symmetric.astype(np.float32)
+
+
+@dataclass(frozen=True, eq=False)
 class GradedGrids(Grids):
     """One contact problem on columns, as the iteration sees it: the unknowns are p w/E* [mm], w the width of a column.
 
     Parameters
     ----------
-    borders : (ny + 1,) array [mm]
-    symbol : (wave numbers, ny, ny) array
-        Transform of the coefficients D along x.
+    kernel : Kernel
     slice_axis : {1, 0}
         Axis along which slices follow each other.
     """
 
-    borders: Array = field(default_factory=lambda: np.empty(0))
-    symbol: Array = field(default_factory=lambda: np.empty(0))
-    slice_axis: int = 1
+    kernel: Kernel = field(kw_only=True)
+    slice_axis: int = field(kw_only=True)
 
     @classmethod
     def of_problem(cls, problem: GradedProblem) -> GradedGrids:
@@ -328,98 +363,105 @@ class GradedGrids(Grids):
             approach=each([np.nan]),
             cap=(cap * widths / modulus if near else np.full(widths.size, np.inf))[None, None],
             slices=None if slices is None else slices[None] * (modulus * problem.spacing),
-            borders=problem.borders,
-            symbol=_symbol(problem.cells[0], problem.spacing, problem.borders),
+            kernel=Kernel(problem.cells[0], problem.spacing, problem.borders),
             slice_axis=problem.slice_axis,
         )
-        return replace(grids, gap=np.minimum(grids.gap, 2.0 * grids.reach))
+        return replace(grids, gap=np.minimum(grids.gap, OUT_OF_REACH * grids.reach))
 
     @property
     def widths(self) -> Array:
         """Widths of the columns, (ny,) [mm]."""
-        return np.diff(self.borders)
+        return np.diff(self.kernel.borders)
 
     @property
-    def own(self) -> Any:
-        """Largest displacement of a cell by unit force on any: that of the narrowest column on itself."""
-        dx, w = float(self.spacing[0, 0]), float(self.widths.min())
-        return (2.0 / np.pi) * (dx / w * np.arcsinh(w / dx) + np.arcsinh(dx / w))
+    def farthest(self) -> Array:
+        """Displacement that no cell exceeds, with a cap: that of a circle on which it carries the load."""
+        cap, load = float((self.cap / self.widths).max()), self.total * self.kernel.spacing  # both over E*
+        bent = 0.0 if self.slices is None else self.total * np.abs(self.slices).max()
+        return np.asarray(2.0 * np.sqrt(cap * load / np.pi) + bent)
 
     @cached_property
-    def even(self) -> Array:
-        """Transform of the symmetric part of the coefficients."""
-        return np.asarray(0.5 * (self.symbol + self.symbol.transpose(0, 2, 1)))
+    def reach(self) -> Array:
+        r"""Gap beyond which no cell can come into contact [mm], (1, 1, 1).
 
-    @cached_property
-    def single(self) -> Array:
-        """The same in single precision."""
-        return self.even.astype(np.float32)
-
-    def displaced(self, forces: Array) -> tuple[Array, Array]:
-        """Displacement by forces, and the part of it that the symmetric coefficients do not tell."""
-        even = self.operator()(forces, np.empty(forces.shape))
-        unlike = _filtered(forces[0], self.symbol - self.even)[None]
-        return even + unlike, unlike
+        Without a cap the approach times the load, p.Kp + h.p, is at most twice the energy p.Kp/2 + h.p, and that is
+        the least of all pressures of this load.
+        """
+        if self.capped:
+            return super().reach
+        guess = self._sphere()
+        displaced = self.operator()(guess, np.empty(guess.shape))
+        energy = float((guess * (0.5 * displaced + np.where(guess > 0.0, self.gap, 0.0))).sum())
+        return REACH_RESERVE * 2.0 * energy / self.total
 
     def coarser(self, merge: tuple[int, int]) -> GradedGrids:
         """Return the same problem with so many cells merged along each axis."""
         starts = np.arange(0, self.shape[1], merge[1])
-        borders, dx = np.append(self.borders[starts], self.borders[-1]), float(self.spacing[0, 0]) * merge[0]
-        both = (merge[self.slice_axis],) * 2
-        gap = coarsen(np.where(self.reachable, self.gap, np.inf), merge)
+        borders = np.append(self.kernel.borders[starts], self.kernel.borders[-1])
+        dx, both = self.kernel.spacing * merge[0], (merge[self.slice_axis],) * 2
+        gap = np.minimum(coarsen(np.where(self.reachable, self.gap, np.inf), merge), self.gap.max())
         return replace(
             self,
-            gap=np.minimum(gap, self.gap.max()),
+            gap=gap,
             spacing=np.array([[dx, float(np.diff(borders).min())]]),
             total=self.total / merge[0],
             cap=np.add.reduceat(self.cap, starts, axis=2),
             slices=None if self.slices is None else merged(self.slices, both) * merge[0],
-            borders=borders,
-            symbol=_symbol(gap.shape[1], dx, borders),
+            kernel=Kernel(gap.shape[1], dx, borders),
         )
 
-    def operator(self, window: Window | None = None, dtype: str = "float64", threads: int = 1) -> Operator:
-        """K, of the symmetric coefficients, as a function (forces, out, rows) that returns ``out``, for all columns."""
-        symbol = self.even if dtype == "float64" else self.single
+    def operator(self, _: Window | None = None, dtype: str = "float64", threads: int = 1) -> Operator:  # noqa: ARG002
+        """K, of the symmetric coefficients, as a function (forces, out, rows) that returns ``out``."""
+        symbol = self.kernel.symmetric if dtype == "float64" else self.kernel.single
 
-        def displaced(forces: Array, out: Array, rows: Rows = ALL) -> Array:
+        def displaced(forces: Array, out: Array, _: Rows = ALL) -> Array:
             forces = forces.astype(dtype, copy=False)
             out[0] = _filtered(forces[0], symbol)
             if self.slices is not None:
-                other = 2 - self.slice_axis
-                moved = self.slices[0].astype(dtype, copy=False) @ forces[0].sum(axis=other - 1, dtype=dtype)
+                moved = self.slices[0].astype(dtype, copy=False) @ forces[0].sum(axis=1 - self.slice_axis, dtype=dtype)
                 out[0] += moved if self.slice_axis == 1 else moved[:, None]
             return out
 
         return displaced
 
-    def preconditioner(self, threads: int = 1) -> Operator:
-        """Inverse of K with the cells periodic along x, bending of the columns included."""
-        # Of twice the cells every second wave number is one of the cells themselves.
-        periodic = self.even[::2].copy()
-        if self.slices is not None and self.slice_axis == 1:
-            periodic[0] += (len(self.symbol) - 1) * self.slices[0]
-        inverse = np.linalg.inv(periodic).astype(np.float32)
-        length = len(self.symbol) - 1
+    def displaced(self, forces: Array) -> tuple[Array, Array]:
+        """Displacement by forces, and the part of it that the symmetric coefficients do not tell."""
+        symmetric = self.operator()(forces, np.empty(forces.shape))
+        rest = _filtered(forces[0], self.kernel.whole - self.kernel.symmetric)[None]
+        return symmetric + rest, rest
 
-        def apply(forces: Array, out: Array, rows: Rows = ALL) -> Array:
+    def preconditioner(self, threads: int = 1) -> Operator:  # noqa: ARG002
+        """Inverse of K with the cells periodic along x, bending of the columns included."""
+        # Of the wave numbers of twice the length every second one is one of the length itself.
+        periodic, length = self.kernel.symmetric[::2].copy(), len(self.kernel.symmetric) - 1
+        if self.slices is not None and self.slice_axis == 1:
+            periodic[0] += length * self.slices[0]
+        inverse = np.linalg.inv(periodic).astype(np.float32)
+
+        def apply(forces: Array, out: Array, _: Rows = ALL) -> Array:
             out[0] = _filtered(forces[0], inverse, length)
             return out
 
         return apply
 
     def guess(self) -> Array:
-        """Forces to start from: where the gap is below a level, the pressure as the root of what it lacks.
+        """Forces to start from without others: those of a sphere, within the bounds."""
+        return self.fitted(self._sphere())
+
+    def _sphere(self) -> Array:
+        """Forces of the right sum: where the gap is below a level, pressures as the root of what it lacks.
 
         The level is that of a sphere under this load whose contact has as large an area.
         """
-        product = 0.375 * float(self.total[0, 0, 0]) * float(self.spacing[0, 0])  # of level and radius
-        order = np.argsort(self.gap, axis=None)
-        areas = np.cumsum(np.broadcast_to(self.widths * self.spacing[0, 0], self.gap.shape).ravel()[order])
+        product = 0.375 * float(self.total[0, 0, 0]) * self.kernel.spacing  # of level and radius
+        gap, order = self.gap[0], np.argsort(self.gap, axis=None)
+        areas = np.cumsum(np.broadcast_to(self.widths * self.kernel.spacing, gap.shape).ravel()[order])
         radii = np.sqrt(areas / np.pi)
-        closed = max(1, int(np.count_nonzero(self.gap.ravel()[order] * radii < product)))
-        root = np.sqrt(np.maximum(product / radii[closed - 1] - self.gap, 0.0))
-        return self.fitted(root * self.widths)
+        closed = max(1, int(np.count_nonzero(gap.ravel()[order] < product / radii)))
+        level = max(product / float(radii[closed - 1]), float(gap.ravel()[order[0]]))
+        root = np.sqrt(np.maximum(level - gap, 0.0)) * self.widths
+        root.ravel()[order[0]] += TINY
+        return np.asarray(root * (self.total[0] / root.sum()))[None]
 
 
 def _filtered(values: Array, symbol: Array, length: int | None = None) -> Array:
@@ -429,12 +471,6 @@ def _filtered(values: Array, symbol: Array, length: int | None = None) -> Array:
     product = np.matmul(symbol, spectrum.view(symbol.dtype).reshape(*spectrum.shape, 2))
     moved = irfft(product.view(spectrum.dtype)[..., 0], length, axis=0, overwrite_x=True)
     return np.asarray(moved[: len(values)])
-
-
-def _symbol(rows: int, spacing: float, borders: Array) -> Array:
-    """Transform along x of the coefficients between columns, for so many cells along them."""
-    reach = fast_length(2 * rows) // 2
-    return np.asarray(dct(column_coefficients(reach + 1, spacing, borders), type=1, axis=0, overwrite_x=True))
 
 
 def memory_problem(rows: int, columns: int, available: float | None = None) -> str | None:

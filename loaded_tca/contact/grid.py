@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -159,24 +158,24 @@ class Grids:
         return self.cap if self.cover is None else limits(self.cap, self.cover)
 
     @property
-    def own(self) -> Any:
-        """Largest displacement of a cell of half-spaces by unit pressure on it."""
-        return own_coefficient(each(self.aspects))
+    def farthest(self) -> Array:
+        """Displacement that no cell exceeds, (count, 1, 1): that of the whole load on one."""
+        own = amplification(self.free_edges) * own_coefficient(each(self.aspects))
+        if self.slices is not None:
+            own = own + np.abs(self.slices).max(axis=CELLS, keepdims=True)
+        return np.asarray(self.total * own)
 
     @cached_property
     def reach(self) -> Array:
         """Gap beyond which no cell can come into contact [mm], (count, 1, 1).
 
-        No displacement of a cell exceeds that of the whole load on it. The approach is at most the sum of its gap and
-        that displacement for some cell below the cap: one of the lowest sums, as many as the load fills to the cap and
+        The approach is at most the sum of its gap and
+        its displacement for some cell below the cap: one of the lowest sums, as many as the load fills to the cap and
         one more.
         """
         if not self.loaded:
             return self.approach
-        own = amplification(self.free_edges) * self.own
-        if self.slices is not None:
-            own = own + np.abs(self.slices).max(axis=CELLS, keepdims=True)
-        most = self.total * own
+        most = self.farthest
         level = self.gap + (most if self.cover is None else most / np.maximum(self.cover, LEAST_COVER))
         reach = level.min(axis=CELLS, keepdims=True)
         for k in range(len(self)) if self.capped else ():

@@ -22,7 +22,7 @@ CELLS_ON_ARC = 5.0
 """Cells across the pressed part of a rounding."""
 COARSER = 0.6
 """Of these in the solution that tells the pressed width, and with which the peak is compared."""
-ALIGNED_ERROR, ASKEW_ERROR = 0.12, 0.3
+ALIGNED_ERROR, ASKEW_ERROR = 0.12, 0.8
 """Relative error of the peak times the square of the cells across the pressed part, at the most: for columns of which
 one begins where the rounding does, and for others (``docs/studies/rounded_edge.md``)."""
 ALIGNED = 1e-3
@@ -32,6 +32,8 @@ FEWEST_ON_ARC = 0.7
 MOST_ROUNDS = 6
 LEAST_CHANGE = 0.25
 """Of the pressed width from one solution to the next: a single cell tells little."""
+FIRST_WIDTH = 1.0 / 16.0
+"""Of the pressed part across the columns, over the box, to begin with."""
 MOST_ROWS = 384
 """Cells along the columns."""
 MOST_FINE = 80
@@ -109,11 +111,11 @@ def edge_pressures(
 ) -> list[EdgePressure]:
     r"""Peak pressures at rounded edges that a contact reaches, its force kept.
 
-    Columns are graded along y: for an edge along y hand in everything with x and y exchanged and ``slice_axis`` 0. Of a
-    rounding that is pressed on the width d, with the normal n, cells are d/m over n_x and n_y; d is told by a solution on
-    coarser cells, repeated until these are as many as they should be. An oblique edge has fine columns along its loaded
-    part as long as they are no more than 80, and no more than 384 cells along them: the estimated error tells where that
-    is not enough.
+    Columns are graded along y: for an edge along y hand in everything with x and y exchanged and ``slice_axis`` 0. Of
+    a rounding that is pressed on the width d, with the normal n, cells are d/m over n_x and n_y; d is told by a
+    solution on coarser cells, repeated until these are as many as they should be. An oblique edge has fine columns
+    along its loaded part as long as they are no more than 80, and no more than 384 cells along them: the estimated
+    error tells where that is not enough.
 
     Parameters
     ----------
@@ -132,8 +134,8 @@ def edge_pressures(
     max_pressure : float, optional [MPa]
         Cap on the pressure.
     slice_compliance : callable, optional
-        ``slice_compliance(middles, widths)``: displacement [mm/N] of slices of these places and widths, both (n,), under
-        a unit force on each, (n, n).
+        ``slice_compliance(middles, widths)``: displacement [mm/N] of slices of these places and widths, both (n,),
+        under a unit force on each, (n, n).
     slice_axis : {1, 0}
         Axis along which slices follow each other: columns if 1, rows if 0.
     cells_on_arc : float
@@ -205,12 +207,16 @@ class _Arc:
 
     @classmethod
     def first(cls, edge: RoundedEdge, low: Array, high: Array, load: float, modulus: float) -> _Arc:
-        """From a contact that fills the box."""
+        """From a contact that fills the box; across the columns no narrower than a sixteenth of the box.
+
+        What is pressed less is told in steps, which are cheaper than fine cells all along the columns.
+        """
         normal, extent = np.array(edge.normal, dtype=float) / math.hypot(*edge.normal), high - low
         half, along = 0.5 * float(np.abs(normal) @ extent), float(np.abs(normal[::-1]) @ extent)
         arc = cls(np.array(edge.place, dtype=float), normal, 0.0, 0.0, 0.5 * float(extent[0]))
         middle = arc.y_at(0.5 * float(low[0] + high[0])) if abs(normal[1]) > ALIGNED else edge.place[1]
-        return replace(arc, width=pressed_width(load / along, edge.radius, half, modulus), middle=middle)
+        width = pressed_width(load / along, edge.radius, half, modulus)
+        return replace(arc, width=max(width, FIRST_WIDTH * abs(normal[0]) * float(extent[0])), middle=middle)
 
     def y_at(self, x: float) -> float:
         """Where the edge crosses a row."""
