@@ -245,7 +245,8 @@ class _Arc:
         across = np.abs(self.normal) > ALIGNED
         on_arc = float((width / (np.abs(self.normal) * sizes)[across]).min())
         largest = float(pressure[row, column])
-        x_top, in_x = _top(x, pressure[:, column], row)
+        beside = pressure[max(0, row - 1) : row + 2, column]
+        x_top, in_x = _top(x, pressure[:, column], row) if beside.all() else (float(x[row]), 1.0)
         y_top, in_y = _top(y, pressure[row], column)
         top = largest * in_x * in_y if problem.max_pressure is None else largest
         error = (ASKEW_ERROR if across.all() else ALIGNED_ERROR) / on_arc**2
