@@ -52,6 +52,7 @@ CASES = (
     "contact.free_edge",
     "contact.free_block",
     "contact.wedge",
+    "contact.rounded_edge",
 )
 
 
