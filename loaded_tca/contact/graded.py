@@ -43,7 +43,7 @@ from loaded_tca.threads import one_blas_thread
 
 BYTES_PER_PAIR = 48
 """Bytes at the peak of a solve for every pair of columns and cell along them: coefficients, their transform in both
-precisions and its inverses, and the same of the coarser grids. Measured: 36 to 41."""
+precisions and its inverses, and the same of the coarser grids. Measured: 32 to 39."""
 
 REACH_RESERVE = 1.1
 """Of the largest gap that may close, for the part of the coefficients that is not symmetric."""

@@ -137,6 +137,16 @@ def test_oblique_edge_has_an_estimate_that_covers_its_error(sine):
     assert 0.0 < across < found.pressed_width
 
 
+def test_edge_along_the_columns_is_met_by_fine_rows():
+    """Without exchanging x and y: dearer, and with a larger estimate."""
+    turned = peak(
+        lambda x, y: face_end(y, x).T, BOX[::-1], RoundedEdge((2.0, 0.0), (1.0, 0.0), RADIUS), cells_on_arc=3.0
+    )
+    exact = peak(cells_on_arc=FINE).pressure
+    assert abs(turned.pressure / exact - 1.0) <= turned.error
+    assert len(turned.solution.pressure) > 300
+
+
 def test_few_cells_on_an_oblique_edge_are_told(monkeypatch):
     monkeypatch.setattr("loaded_tca.contact.rounded_edge.MOST_ROWS", 32)
 
