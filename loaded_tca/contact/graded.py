@@ -26,7 +26,7 @@ from loaded_tca.arrays import Array, numbers, real
 from loaded_tca.contact import checks
 from loaded_tca.contact.convolution import ALL, Rows, Window, fast_length
 from loaded_tca.contact.descent import Descent, judge
-from loaded_tca.contact.grid import AT_BOUND, OUT_OF_REACH, TINY, Grids, Operator, each
+from loaded_tca.contact.grid import AT_BOUND, OUT_OF_REACH, Grids, Operator, each
 from loaded_tca.contact.levels import coarsen, coarsening, merged, prolong
 from loaded_tca.contact.love import column_coefficients
 from loaded_tca.contact.solution import ContactStatus
@@ -460,7 +460,8 @@ class GradedGrids(Grids):
         closed = max(1, int(np.count_nonzero(gap.ravel()[order] < product / radii)))
         level = max(product / float(radii[closed - 1]), float(gap.ravel()[order[0]]))
         root = np.sqrt(np.maximum(level - gap, 0.0)) * self.widths
-        root.ravel()[order[0]] += TINY
+        if not root.any():
+            root.ravel()[order[0]] = 1.0
         return np.asarray(root * (self.total[0] / root.sum()))[None]
 
 

@@ -173,6 +173,19 @@ def test_start_from_a_solution_needs_no_iteration():
     assert_allclose(again.pressure, found.pressure, rtol=1e-9)
 
 
+def test_single_lowest_cell_is_a_start():
+    """One cell far below the others, which take over at the cap."""
+    gap = np.full((16, 16), 0.5)
+    gap[5, 5] = 0.0
+    problem = GradedProblem(gap, 1.0, np.arange(17.0) ** 1.2, E_STAR, 1e3, max_pressure=100.0)
+    found = solve_graded(problem)
+    assert_allclose(found.load, 1e3, rtol=1e-9)
+    assert found.pressure[5, 5] == 100.0
+    lone = solve_graded(GradedProblem(gap, 1.0, np.arange(17.0) ** 1.2, E_STAR, 1.0))
+    assert_allclose(lone.load, 1.0, rtol=1e-12)
+    assert np.count_nonzero(lone.pressure) == 1
+
+
 def test_no_load_is_no_pressure():
     found = graded(lambda x, y: ellipsoid(x, y) + 0.5, load=0.0)
     assert found.status is ContactStatus.NO_LOAD
