@@ -53,6 +53,7 @@ CASES = (
     "contact.free_block",
     "contact.wedge",
     "contact.rounded_edge",
+    "calculix.rounded_tip",
 )
 
 
