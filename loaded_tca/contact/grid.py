@@ -169,9 +169,8 @@ class Grids:
     def reach(self) -> Array:
         """Gap beyond which no cell can come into contact [mm], (count, 1, 1).
 
-        The approach is at most the sum of its gap and
-        its displacement for some cell below the cap: one of the lowest sums, as many as the load fills to the cap and
-        one more.
+        The approach is at most the sum of gap and displacement of some cell below the cap: one of the lowest sums, as
+        many as the load fills to the cap and one more.
         """
         if not self.loaded:
             return self.approach

@@ -185,7 +185,8 @@ def head(program: str) -> list[str]:
         f"Computed by {program}; repeated by: python -m validation.calculix.rounded_tip",
         f"Plane strain, CPE8R, elements of {1e3 * FINEST:g} um at the rounding of {RADIUS:g} mm, which begins at",
         f"x = 0; on a flank of {FLANK_RADIUS:g} mm radius, nearest {OFFSET:g} mm before the rounding;",
-        f"E {YOUNGS_MODULUS:g} MPa, nu {POISSON_RATIO:g}, no friction; face-to-face penalty contact, {PENALTY:g} MPa/mm.",
+        f"E {YOUNGS_MODULUS:g} MPa, nu {POISSON_RATIO:g}, no friction; "
+        f"face-to-face penalty contact, {PENALTY:g} MPa/mm.",
         "load_centre: of the pressures.",
     ]
 
