@@ -55,6 +55,8 @@ CASES = (
     "contact.free_edge",
     "contact.free_block",
     "contact.wedge",
+    "contact.rounded_edge",
+    "calculix.rounded_tip",
 )
 
 

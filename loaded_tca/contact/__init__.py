@@ -7,7 +7,9 @@ from loaded_tca.lazy import lazy_names
 if TYPE_CHECKING:
     from loaded_tca.contact.adaptive import solve_to_accuracy
     from loaded_tca.contact.edges import FreeEdge, quarter_space_factor, wedge_factor
+    from loaded_tca.contact.graded import GradedProblem, GradedSolution, solve_graded
     from loaded_tca.contact.problem import ContactProblem
+    from loaded_tca.contact.rounded_edge import EdgePressure, RoundedEdge, edge_pressures
     from loaded_tca.contact.solution import ContactSolution, ContactStatus, ErrorEstimate
     from loaded_tca.contact.solver import contact_stiffness, solve_contact, solve_problem, solve_problems
     from loaded_tca.contact.subsurface import SubsurfaceStress, depths_below, subsurface_stress
@@ -18,13 +20,19 @@ __all__ = [
     "ContactProblem",
     "ContactSolution",
     "ContactStatus",
+    "EdgePressure",
     "ErrorEstimate",
     "FreeEdge",
+    "GradedProblem",
+    "GradedSolution",
+    "RoundedEdge",
     "SubsurfaceStress",
     "contact_stiffness",
     "depths_below",
+    "edge_pressures",
     "quarter_space_factor",
     "solve_contact",
+    "solve_graded",
     "solve_problem",
     "solve_problems",
     "solve_to_accuracy",

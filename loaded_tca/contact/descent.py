@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array, Indices, Mask
-from loaded_tca.contact.convolution import ALL, Preconditioner, Rows
+from loaded_tca.contact.convolution import ALL, Rows
 from loaded_tca.contact.grid import CELLS, Grids, total_of
 
 Single = NDArray[np.float32]
@@ -136,7 +136,7 @@ class Descent:
         self._grids, self._rows, self._threads = grids, np.arange(len(grids)), threads
         self._used = self.convolutions.copy()
         self._fast = grids.operator(dtype="float32", threads=threads)
-        self._precondition = Preconditioner(grids.shape, grids.aspects, threads)
+        self._precondition = grids.preconditioner(threads)
         # Cut cells are about so much stiffer, the part being its square.
         self._root = None if grids.cover is None else np.sqrt(grids.cover).astype(np.float32)
         self._now, self._next, self._excess = pressure, np.empty(pressure.shape), np.empty(pressure.shape)

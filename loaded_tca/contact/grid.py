@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from loaded_tca.arrays import Array, Mask
-from loaded_tca.contact.convolution import ALL, Convolution, Rows, Window
+from loaded_tca.contact.convolution import ALL, Convolution, Preconditioner, Rows, Window
 from loaded_tca.contact.cuts import CutCells, limits
 from loaded_tca.contact.edges import FreeEdge, MirroredConvolution, amplification, mirrors
 from loaded_tca.contact.levels import coarsen, merged, window_around
@@ -157,20 +157,24 @@ class Grids:
         """Largest pressure of the cells, (count, 1, 1) or (count, nx, ny)."""
         return self.cap if self.cover is None else limits(self.cap, self.cover)
 
+    @property
+    def farthest(self) -> Array:
+        """Displacement that no cell exceeds, (count, 1, 1): that of the whole load on one."""
+        own = amplification(self.free_edges) * own_coefficient(each(self.aspects))
+        if self.slices is not None:
+            own = own + np.abs(self.slices).max(axis=CELLS, keepdims=True)
+        return np.asarray(self.total * own)
+
     @cached_property
     def reach(self) -> Array:
         """Gap beyond which no cell can come into contact [mm], (count, 1, 1).
 
-        No displacement of a cell exceeds that of the whole load on it. The approach is at most the sum of its gap and
-        that displacement for some cell below the cap: one of the lowest sums, as many as the load fills to the cap and
-        one more.
+        The approach is at most the sum of gap and displacement of some cell below the cap: one of the lowest sums, as
+        many as the load fills to the cap and one more.
         """
         if not self.loaded:
             return self.approach
-        own = amplification(self.free_edges) * own_coefficient(each(self.aspects))
-        if self.slices is not None:
-            own = own + np.abs(self.slices).max(axis=CELLS, keepdims=True)
-        most = self.total * own
+        most = self.farthest
         level = self.gap + (most if self.cover is None else most / np.maximum(self.cover, LEAST_COVER))
         reach = level.min(axis=CELLS, keepdims=True)
         for k in range(len(self)) if self.capped else ():
@@ -252,6 +256,10 @@ class Grids:
             return out
 
         return displaced
+
+    def preconditioner(self, threads: int = 2) -> Operator:
+        """Approximate inverse of K in single precision, as a function like that of ``operator``."""
+        return Preconditioner(self.shape, self.aspects, threads)
 
     def guess(self) -> Array:
         """Return pressures to start from without others: where the gap is below a level, as the root of what it lacks.

@@ -62,6 +62,63 @@ def influence_coefficients(shape: tuple[int, int], aspect: float | Array) -> Arr
     return coefficients
 
 
+def column_coefficients(rows: int, spacing: float, borders: Array) -> Array:
+    r"""Displacement between cells of columns of unlike widths, by unit forces on them.
+
+    Pressure on a cell of the column n, of the width w_n, displaces the centre of one of the column m, i cells of the
+    width dx away along the columns, by
+
+    .. math::
+        D_{mn}(i) = \frac{1}{\pi w_n} \left[F(x_+, y_+) - F(x_-, y_+) - F(x_+, y_-) + F(x_-, y_-)\right]
+
+    times p w_n/E*, with F of :func:`influence_coefficients`, x_+- = (i +- 1/2) dx, and y_+- the borders of the column n
+    seen from the middle of m. Even columns have the coefficients of a uniform grid; only they are symmetric.
+
+    Parameters
+    ----------
+    rows : int
+        Cells along the columns, at least 1.
+    spacing : float [mm]
+        dx.
+    borders : (ny + 1,) array [mm]
+        Of the columns, increasing.
+
+    Returns
+    -------
+    (rows, ny, ny) array
+        D(i), displaced columns before pressed ones.
+
+    References
+    ----------
+    Love 1929, Phil. Trans. R. Soc. A 228, 377-420.
+    """
+    widths, middles = np.diff(borders), 0.5 * (borders[1:] + borders[:-1])
+    offsets = borders - middles[:, None]
+    side, size = np.sign(offsets), np.abs(offsets)
+    apart, reach = np.abs(middles - middles[:, None]), FAR_FIELD * np.maximum(spacing, widths)
+    coefficients = np.empty((rows, widths.size, widths.size))
+    last = -_corner(0.5 * spacing, size)
+    for row in range(rows):
+        corner = _corner((row + 0.5) * spacing, size)
+        love = np.diff(side * (corner - last), axis=1)
+        distance = np.hypot(apart, row * spacing)
+        away = distance > reach
+        if away.any():
+            r, w, y = distance[away], np.broadcast_to(widths, away.shape)[away], apart[away]
+            x2, y2 = (row * spacing / r) ** 2, (y / r) ** 2
+            quadrupole = spacing**2 * (3.0 * x2 - 1.0) + w**2 * (3.0 * y2 - 1.0)
+            love[away] = spacing * w / r * (1.0 + quadrupole / (24.0 * r * r))
+        coefficients[row] = love / (np.pi * widths)
+        last = corner
+    return coefficients
+
+
+def _corner(x: float, y: Array) -> Array:
+    """F for x > 0 and y > 0: with logarithms, which take a quarter of the time of inverse hyperbolic sines."""
+    r = np.hypot(x, y)
+    return np.asarray(x * np.log((y + r) / x) + y * np.log((x + r) / y))
+
+
 def own_coefficient(aspect: float | Array) -> Any:
     """Displacement [dx/E*] at the centre of a cell by unit pressure on itself; of one aspect dy/dx or of several."""
     return (2.0 / np.pi) * (np.arcsinh(aspect) + aspect * np.arcsinh(1.0 / aspect))

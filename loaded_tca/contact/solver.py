@@ -22,7 +22,7 @@ import math
 import warnings
 from collections.abc import Hashable, Sequence
 from dataclasses import replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -36,6 +36,9 @@ from loaded_tca.contact.levels import coarsening, prolong, window_around
 from loaded_tca.contact.problem import ContactProblem, Spacing
 from loaded_tca.contact.solution import CoarserGrid, ContactSolution, ContactStatus
 from loaded_tca.errors import AccuracyWarning, ConvergenceError, InputError
+
+if TYPE_CHECKING:
+    from loaded_tca.contact.graded import GradedSolution
 
 # Iterations on one grid. Rough surfaces need about a hundred, smooth ones less than ten.
 MOST_ITERATIONS = 500
@@ -242,7 +245,9 @@ def solve_problems(
     return [found[k] for k in range(len(problems))]
 
 
-def not_converged(solution: ContactSolution, tolerance: float, name: str = "contact") -> ConvergenceError:
+def not_converged(
+    solution: ContactSolution | GradedSolution, tolerance: float, name: str = "contact"
+) -> ConvergenceError:
     """Error that tells of a contact that is not solved to its tolerance."""
     return ConvergenceError(
         f"{name} not converged: residual {solution.residual:.1e} > tolerance {tolerance:.1e} after "

@@ -1,9 +1,12 @@
-"""Rigid punches on an elastic half-space: profiles C r^n, and flat ends."""
+"""Rigid punches on an elastic half-space: profiles C r^n, flat ends, flat strips with rounded ends."""
 
 import math
 from dataclasses import dataclass
 
-from loaded_tca.errors import require_positive
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from loaded_tca.errors import require, require_positive
 
 # F/(E* L delta) of a flat square punch of side L: pi times the electrostatic capacity of the unit square, 0.36679,
 # since a charged plate and a flat punch obey the same equations. Grids of Love's cells, extrapolated, agree to 1e-5.
@@ -103,3 +106,97 @@ def flat_circular(load: float, radius: float, contact_modulus: float) -> PunchCo
     """
     require_positive(load=load, radius=radius, contact_modulus=contact_modulus)
     return PunchContact(load, radius, load / (2.0 * radius * contact_modulus))
+
+
+@dataclass(frozen=True)
+class RoundedPunch:
+    r"""Flat punch with rounded ends on an elastic half-plane.
+
+    .. math::
+        P = \frac{E^* b^2}{4 R} (\pi - 2 \varphi_0 - \sin 2 \varphi_0), \qquad \sin\varphi_0 = \frac{a}{b}
+
+    Parameters
+    ----------
+    half_width : float [mm]
+        a, of the flat part; 0 is Hertz's cylinder.
+    radius : float [mm]
+        R, of the rounded ends.
+    contact_half_width : float [mm]
+        b, of the contact, above a.
+    contact_modulus : float [MPa]
+        E*.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range.
+
+    References
+    ----------
+    Ciavarella, Hills & Monno 1998, Proc. Inst. Mech. Eng. C 212, 319-328.
+
+    Examples
+    --------
+    >>> punch = RoundedPunch(0.1, 0.2, 0.11, 113187.0)
+    >>> round(punch.line_load, 2), round(float(punch.pressure(0.0)), 1)
+    (174.53, 524.2)
+    """
+
+    half_width: float
+    radius: float
+    contact_half_width: float
+    contact_modulus: float
+
+    def __post_init__(self) -> None:
+        require(
+            (0.0 <= self.half_width < math.inf, f"half_width: {self.half_width} mm is negative or not finite"),
+            (
+                self.half_width < self.contact_half_width < math.inf,
+                f"contact_half_width: {self.contact_half_width} mm is not finite and above half_width",
+            ),
+        )
+        require_positive(radius=self.radius, contact_modulus=self.contact_modulus)
+
+    @property
+    def line_load(self) -> float:
+        """P, force per length [N/mm]."""
+        return self.contact_modulus * self.contact_half_width**2 * self._opening / (4.0 * self.radius)
+
+    @property
+    def _angle(self) -> float:
+        return math.asin(self.half_width / self.contact_half_width)
+
+    @property
+    def _opening(self) -> float:
+        return math.pi - 2.0 * self._angle - math.sin(2.0 * self._angle)
+
+    def gap(self, x: ArrayLike) -> NDArray[np.float64]:
+        """Gap before loading at places from the middle [mm], the ends rounded as parabolas."""
+        beyond = np.maximum(np.abs(np.asarray(x, dtype=float)) - self.half_width, 0.0)
+        return np.asarray(beyond**2 / (2.0 * self.radius))
+
+    def pressure(self, x: ArrayLike) -> NDArray[np.float64]:
+        """Pressure at places from the middle [MPa]; zero outside the contact."""
+        place = np.asarray(x, dtype=float) / self.contact_half_width
+        inside, start = np.abs(place) < 1.0, self._angle
+        angle = np.arcsin(np.where(inside, np.abs(place), 0.0))
+        # Where the rounding begins two logarithms are infinite, and their sum is not.
+        apart = np.maximum(np.abs(angle - start), 1e-12)
+        angle = np.where(angle < start, start - apart, start + apart)
+        far, near = np.sin(angle + start), np.sin(apart)
+        logarithms = np.sin(angle) * np.log(far / near)
+        logarithms += math.sin(start) * np.log(np.tan(0.5 * (angle + start)) * np.tan(0.5 * apart))
+        shape = ((math.pi - 2.0 * start) * np.cos(angle) + logarithms) / self._opening
+        return np.asarray(np.where(inside, 2.0 * self.line_load / (math.pi * self.contact_half_width) * shape, 0.0))
+
+    def peak(self) -> tuple[float, float]:
+        """Place of the largest pressure from the middle [mm], and its value [MPa]."""
+        from scipy.optimize import minimize_scalar
+
+        ends = (self.half_width, self.contact_half_width) if self.half_width > 0.0 else (0.0, 0.0)
+        if ends[1] == 0.0:
+            return 0.0, float(self.pressure(0.0))
+        found = minimize_scalar(
+            lambda x: -float(self.pressure(x)), bounds=ends, method="bounded", options={"xatol": 1e-9}
+        )
+        return float(found.x), -float(found.fun)

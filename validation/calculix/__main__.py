@@ -6,6 +6,7 @@ from pathlib import Path
 
 from validation.calculix.campaign import run_all
 from validation.calculix.keep import keep_cycles, keep_in_space, keep_rings, keep_roots, keep_study
+from validation.calculix.rounded_tip import keep as keep_rounded_tip
 from validation.calculix.run import program_version
 
 
@@ -19,6 +20,7 @@ def main() -> int:
     program = program_version()
     keep_study(program, work)
     keep_in_space(program, work)
+    keep_rounded_tip(work)
     keep_cycles(program, run_all(work, asked.every))
     keep_roots(program, work)
     keep_rings(program, work)

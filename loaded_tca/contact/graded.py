@@ -1,0 +1,483 @@
+r"""The contact of two elastic half-spaces on columns of unlike widths: fine where a flank ends, wide elsewhere.
+
+Cells are of one length dx along x and as wide along y as their columns are. Forces on cells, not pressures, are the
+unknowns, so that the problem is that of ``contact.solver`` and the same iteration solves it. Displacements are a
+convolution along x, done by transforms, and a sum over all pairs of columns for each wave number.
+
+Displacements at the middles of cells of unlike widths have coefficients D that are not quite symmetric. The iteration
+minimises the energy of their symmetric part S under the gap h + (D - S) p of the last pressures, and is repeated until
+the contact conditions hold for D itself; each time takes the difference down to about a hundredth. (S alone leaves 1 %
+in the pressure where the growth of the columns changes, however fine they are.)
+
+The graded axis is y, always: for an edge along y, whose rounding is crossed along x, the caller hands in the transposed
+gap, and slices by ``slice_axis`` 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.fft import dct, irfft, rfft
+
+from loaded_tca.arrays import Array, numbers, real
+from loaded_tca.contact import checks
+from loaded_tca.contact.convolution import ALL, Rows, Window, fast_length
+from loaded_tca.contact.descent import Descent, judge
+from loaded_tca.contact.grid import AT_BOUND, OUT_OF_REACH, Grids, Operator, each
+from loaded_tca.contact.levels import coarsen, coarsening, merged, prolong
+from loaded_tca.contact.love import column_coefficients
+from loaded_tca.contact.solution import ContactStatus
+from loaded_tca.contact.solver import (
+    COARSE_FACTOR,
+    COARSE_TOLERANCE,
+    MOST_CHECKS,
+    MOST_ITERATIONS,
+    RESERVE,
+    OnFailure,
+    not_converged,
+)
+from loaded_tca.threads import one_blas_thread
+
+BYTES_PER_PAIR = 48
+"""Bytes at the peak of a solve for every pair of columns and cell along them: coefficients, their transform in both
+precisions and its inverses, and the same of the coarser grids. Measured: 32 to 39."""
+
+REACH_RESERVE = 1.1
+"""Of the largest gap that may close, for the part of the coefficients that is not symmetric."""
+
+
+@dataclass(frozen=True, eq=False)
+class GradedProblem:
+    """Two elastic half-spaces that a load brings together over a gap on columns of unlike widths.
+
+    Everything is checked when it is made. Its arrays are copies that cannot be written to.
+
+    Parameters
+    ----------
+    gap : (nx, ny) array_like [mm]
+        Gap between the surfaces at the middles of the cells before loading; +inf where there is no material.
+    spacing : float [mm]
+        Length of a cell along the first axis.
+    borders : (ny + 1,) array_like [mm]
+        Of the columns along the second axis, increasing.
+    contact_modulus : float [MPa]
+        E*, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
+    load : float [N]
+        Normal load, not negative.
+    max_pressure : float, optional [MPa]
+        Cap on the pressure: elastic, perfectly plastic surface.
+    slice_compliance : (n, n) array_like [mm/N], optional
+        Displacement of every slice under a unit force on each of them, on top of that of the half-spaces.
+    slice_axis : {1, 0}
+        Axis along which slices follow each other: 1 if each column is a slice, n = ny.
+
+    Raises
+    ------
+    InputError
+        With every problem of the arguments.
+
+    Examples
+    --------
+    >>> problem = GradedProblem([[0.0, 0.1], [0.2, 0.3]], 1.0, [0.0, 1.0, 3.0], 115e3, load=10.0)
+    >>> problem.widths.tolist(), problem.middles.tolist()
+    ([1.0, 2.0], [0.5, 2.0])
+    """
+
+    gap: Array
+    spacing: float
+    borders: Array
+    contact_modulus: float
+    load: float
+    max_pressure: float | None = None
+    slice_compliance: Array | None = None
+    slice_axis: int = 1
+
+    def __post_init__(self) -> None:
+        gap, borders, slices = numbers("gap", self.gap), numbers("borders", self.borders), self.slice_compliance
+        slices = None if slices is None else numbers("slice_compliance", slices).copy()
+        rising = borders.ndim == 1 and borders.size > 1 and bool(np.isfinite(borders).all())
+        rising = rising and bool((np.diff(borders) > 0.0).all())
+        problems = [] if rising else ["borders: at least two finite numbers, each above the one before, are asked for"]
+        if gap.ndim == 2 and borders.ndim == 1 and borders.size != gap.shape[1] + 1:
+            problems.append(f"borders: {gap.shape[1]} columns have {gap.shape[1] + 1}, not {borders.size}")
+        if self.slice_axis not in (0, 1):
+            problems.append(f"slice_axis: {self.slice_axis} is neither 0 nor 1")
+        if not problems and gap.ndim == 2 and (told := memory_problem(*gap.shape)) is not None:
+            problems.append(f"gap: {told}")
+        checks.raise_if(problems)
+        cell = self.spacing, float(np.diff(borders).min())
+        checks.raise_if(
+            checks.check_grid(gap, cell, self.contact_modulus)
+            + checks.check_slices(slices, (gap.shape[self.slice_axis] if gap.ndim == 2 else 0,))
+        )
+        own = {"gap": gap.copy(), "borders": borders.copy(), "slice_compliance": slices}
+        for name, value in own.items():
+            if value is not None:
+                value.flags.writeable = False
+            object.__setattr__(self, name, value)
+        area = float(np.isfinite(gap).sum(axis=0) @ self.widths) * self.spacing
+        demand = real(self.load), None, self.max_pressure
+        checks.raise_if(checks.check_demand(*demand, gap, area, cell, self.contact_modulus))
+
+    @property
+    def widths(self) -> Array:
+        """Widths of the columns, (ny,) [mm]."""
+        return np.diff(self.borders)
+
+    @property
+    def middles(self) -> Array:
+        """Places of the middles of the columns, (ny,) [mm]."""
+        return np.asarray(0.5 * (self.borders[1:] + self.borders[:-1]))
+
+    @property
+    def cells(self) -> tuple[int, int]:
+        """Cells along the two axes."""
+        return self.gap.shape[0], self.gap.shape[1]
+
+    @property
+    def cell_areas(self) -> Array:
+        """Areas of the cells of each column, (ny,) [mm^2]."""
+        return self.spacing * self.widths
+
+    @property
+    def first_contact(self) -> float:
+        """Smallest gap [mm]: the approach at which the load begins."""
+        return float(self.gap.min())
+
+
+@dataclass(frozen=True, eq=False)
+class GradedSolution:
+    """Pressure and gap of two elastic half-spaces in contact on columns of unlike widths.
+
+    Parameters
+    ----------
+    pressure : (nx, ny) array [MPa]
+        Zero where the surfaces part.
+    gap : (nx, ny) array [mm]
+        After loading: as given + displacement - approach; infinite where there is no material.
+    approach : float [mm]
+        Approach of the bodies, counted as the gap that was given.
+    iterations, convolutions : int
+        On the columns given; the coarser grids before them are not counted.
+    residual : float
+        Largest violation of the contact conditions, over the approach from first contact.
+    status : ContactStatus
+        How it ended.
+    problem : GradedProblem
+        What was solved.
+    """
+
+    pressure: Array
+    gap: Array
+    approach: float
+    iterations: int
+    convolutions: int
+    residual: float
+    status: ContactStatus
+    problem: GradedProblem
+
+    def __repr__(self) -> str:
+        cells = "x".join(str(n) for n in self.pressure.shape)
+        return (
+            f"GradedSolution({cells} cells, load {self.load:.6g} N, approach {self.approach:.6g} mm, "
+            f"peak {self.pressure.max():.6g} MPa, {self.status.name.lower()}, residual {self.residual:.1e})"
+        )
+
+    @property
+    def load(self) -> float:
+        """Sum of the pressures [N]."""
+        return float(self.pressure.sum(axis=0) @ self.problem.cell_areas)
+
+    @property
+    def approach_under_load(self) -> float:
+        """Approach [mm] from first contact on."""
+        return self.approach - self.problem.first_contact
+
+
+def solve_graded(
+    problem: GradedProblem,
+    *,
+    tolerance: float = 1e-6,
+    on_failure: OnFailure = "raise",
+    initial_pressure: ArrayLike | None = None,
+) -> GradedSolution:
+    """Solve a contact problem on columns of unlike widths.
+
+    Parameters
+    ----------
+    problem : GradedProblem
+    tolerance, on_failure
+        As in :func:`solve_contact`.
+    initial_pressure : (nx, ny) array_like, optional [MPa]
+        Where to start from; coarser and coarser columns if absent.
+
+    Returns
+    -------
+    GradedSolution
+
+    Raises
+    ------
+    InputError
+        Before work starts, with every problem of the arguments.
+    ConvergenceError
+        If the tolerance is not reached within a bounded number of iterations; ``last`` holds the last iterate.
+
+    Examples
+    --------
+    A sphere of 10 mm radius on a plane; Hertz: 1420.7 MPa.
+
+    >>> import numpy as np
+    >>> x, borders = np.linspace(-0.3, 0.3, 64), np.linspace(-0.67, 0.67, 80)
+    >>> borders = borders * np.abs(borders)
+    >>> y = 0.5 * (borders[1:] + borders[:-1])
+    >>> problem = GradedProblem((x[:, None] ** 2 + y**2) / 20.0, x[1] - x[0], borders, 115e3, load=112.0)
+    >>> bool(abs(solve_graded(problem).pressure.max() / 1420.7 - 1.0) < 2e-3)
+    True
+    """
+    start = None if initial_pressure is None else numbers("initial_pressure", initial_pressure)
+    checks.raise_if(checks.check_run(tolerance, on_failure, start, problem.cells, 1))
+    if problem.load == 0.0:
+        approach = problem.first_contact
+        pressure, status = np.zeros(problem.cells), ContactStatus.NO_LOAD
+        return GradedSolution(pressure, problem.gap - approach, approach, 0, 0, 0.0, status, problem)
+    with one_blas_thread():
+        solution = _solved(problem, tolerance, start)
+    if solution.status is ContactStatus.NOT_CONVERGED and on_failure == "raise":
+        raise not_converged(solution, tolerance, "contact on graded columns")
+    return solution
+
+
+def _solved(problem: GradedProblem, tolerance: float, start: Array | None) -> GradedSolution:
+    """Solve from a start or from coarser columns, and check in double precision."""
+    grids, line = GradedGrids.of_problem(problem), problem.widths / problem.contact_modulus
+    if start is None or not start.any():
+        pressure = _start_from_coarser(grids, tolerance)
+    else:
+        pressure = grids.fitted((start * line)[None])
+    iterations = convolutions = repeats = 0
+    while True:
+        displacement, rest = grids.displaced(pressure)
+        convolutions += 1
+        state = judge(grids, pressure, displacement + grids.gap)
+        approach, residual = float(state.approach[0, 0, 0]), float(state.residual[0, 0, 0])
+        if residual <= tolerance or iterations >= MOST_ITERATIONS or repeats == MOST_CHECKS:
+            break
+        bent = replace(grids, gap=grids.gap + rest)
+        descent = Descent(bent, pressure, displacement - rest, 1)
+        descent.run(np.array([RESERVE * tolerance]), np.array([MOST_ITERATIONS - iterations]))
+        pressure = bent.settled(descent.pressure)
+        iterations += int(descent.iterations[0])
+        convolutions += int(descent.convolutions[0])
+        repeats += 1
+    found = pressure[0] / line
+    if problem.max_pressure is not None:  # what is at the cap but for rounding is exactly at it from here on
+        cap = problem.max_pressure
+        found = np.where((found > 0.0) & (found >= (1.0 - AT_BOUND) * cap), cap, found)
+    return GradedSolution(
+        pressure=found,
+        gap=displacement[0] + (problem.gap - problem.first_contact) - approach,
+        approach=problem.first_contact + approach,
+        iterations=iterations,
+        convolutions=convolutions,
+        residual=residual,
+        status=ContactStatus.CONVERGED if residual <= tolerance else ContactStatus.NOT_CONVERGED,
+        problem=problem,
+    )
+
+
+def _start_from_coarser(grids: GradedGrids, tolerance: float) -> Array:
+    """Start from the solution on columns of twice the widths, solved in the same way."""
+    merge = coarsening(grids.shape)
+    if merge == (1, 1):
+        return grids.guess()
+    coarse = grids.coarser(merge)
+    tolerance = max(tolerance, min(COARSE_TOLERANCE, COARSE_FACTOR * tolerance))
+    descent = Descent(coarse, _start_from_coarser(coarse, tolerance), threads=1, exact=False)
+    descent.run(np.array([tolerance]), np.array([MOST_ITERATIONS]))
+    return grids.fitted(prolong(descent.pressure / coarse.widths, grids.shape, merge) * grids.widths)
+
+
+@dataclass(frozen=True, eq=False)
+class Kernel:
+    """Displacements between columns, transformed along x.
+
+    Parameters
+    ----------
+    rows : int
+        Cells along the columns.
+    spacing : float [mm]
+        Their length.
+    borders : (ny + 1,) array [mm]
+        Of the columns.
+    """
+
+    rows: int
+    spacing: float
+    borders: Array
+
+    @cached_property
+    def whole(self) -> Array:
+        """Transform of the coefficients D, (wave numbers, ny, ny), displaced columns before pressed ones."""
+        reach = fast_length(2 * self.rows) // 2
+        coefficients = column_coefficients(reach + 1, self.spacing, self.borders)
+        return np.asarray(dct(coefficients, type=1, axis=0, overwrite_x=True))
+
+    @cached_property
+    def symmetric(self) -> Array:
+        """That of their symmetric part."""
+        return np.asarray(0.5 * (self.whole + self.whole.transpose(0, 2, 1)))
+
+    @cached_property
+    def single(self) -> Array:
+        """The same in single precision."""
+        return self.symmetric.astype(np.float32)
+
+
+@dataclass(frozen=True, eq=False)
+class GradedGrids(Grids):
+    """One contact problem on columns, as the iteration sees it: the unknowns are p w/E* [mm], w the width of a column.
+
+    Parameters
+    ----------
+    kernel : Kernel
+    slice_axis : {1, 0}
+        Axis along which slices follow each other.
+    """
+
+    kernel: Kernel = field(kw_only=True)
+    slice_axis: int = field(kw_only=True)
+
+    @classmethod
+    def of_problem(cls, problem: GradedProblem) -> GradedGrids:
+        """Return the columns given, gaps counted from first contact and cut where they cannot close."""
+        modulus, widths, slices = problem.contact_modulus, problem.widths, problem.slice_compliance
+        cap = np.inf if problem.max_pressure is None else problem.max_pressure
+        near = cap * problem.cell_areas.min() < problem.load
+        grids = cls(
+            gap=(problem.gap - problem.first_contact)[None],
+            spacing=np.array([[problem.spacing, float(widths.min())]]),
+            total=each([problem.load / (problem.spacing * modulus)]),
+            approach=each([np.nan]),
+            cap=(cap * widths / modulus if near else np.full(widths.size, np.inf))[None, None],
+            slices=None if slices is None else slices[None] * (modulus * problem.spacing),
+            kernel=Kernel(problem.cells[0], problem.spacing, problem.borders),
+            slice_axis=problem.slice_axis,
+        )
+        return replace(grids, gap=np.minimum(grids.gap, OUT_OF_REACH * grids.reach))
+
+    @property
+    def widths(self) -> Array:
+        """Widths of the columns, (ny,) [mm]."""
+        return np.diff(self.kernel.borders)
+
+    @property
+    def farthest(self) -> Array:
+        """Displacement that no cell exceeds, with a cap: that of a circle on which it carries the load."""
+        cap, load = float((self.cap / self.widths).max()), self.total * self.kernel.spacing  # both over E*
+        bent = 0.0 if self.slices is None else self.total * np.abs(self.slices).max()
+        return np.asarray(2.0 * np.sqrt(cap * load / np.pi) + bent)
+
+    @cached_property
+    def reach(self) -> Array:
+        r"""Gap beyond which no cell can come into contact [mm], (1, 1, 1).
+
+        Without a cap the approach times the load, p.Kp + h.p, is at most twice the energy p.Kp/2 + h.p, and that is
+        the least of all pressures of this load.
+        """
+        if self.capped:
+            return super().reach
+        guess = self._sphere()
+        displaced = self.operator()(guess, np.empty(guess.shape))
+        energy = float((guess * (0.5 * displaced + np.where(guess > 0.0, self.gap, 0.0))).sum())
+        return REACH_RESERVE * 2.0 * energy / self.total
+
+    def coarser(self, merge: tuple[int, int]) -> GradedGrids:
+        """Return the same problem with so many cells merged along each axis."""
+        starts = np.arange(0, self.shape[1], merge[1])
+        borders = np.append(self.kernel.borders[starts], self.kernel.borders[-1])
+        dx, both = self.kernel.spacing * merge[0], (merge[self.slice_axis],) * 2
+        gap = np.minimum(coarsen(np.where(self.reachable, self.gap, np.inf), merge), self.gap.max())
+        return replace(
+            self,
+            gap=gap,
+            spacing=np.array([[dx, float(np.diff(borders).min())]]),
+            total=self.total / merge[0],
+            cap=np.add.reduceat(self.cap, starts, axis=2),
+            slices=None if self.slices is None else merged(self.slices, both) * merge[0],
+            kernel=Kernel(gap.shape[1], dx, borders),
+        )
+
+    def operator(self, _: Window | None = None, dtype: str = "float64", threads: int = 1) -> Operator:  # noqa: ARG002
+        """K, of the symmetric coefficients, as a function (forces, out, rows) that returns ``out``."""
+        symbol = self.kernel.symmetric if dtype == "float64" else self.kernel.single
+
+        def displaced(forces: Array, out: Array, _: Rows = ALL) -> Array:
+            forces = forces.astype(dtype, copy=False)
+            out[0] = _filtered(forces[0], symbol)
+            if self.slices is not None:
+                moved = self.slices[0].astype(dtype, copy=False) @ forces[0].sum(axis=1 - self.slice_axis, dtype=dtype)
+                out[0] += moved if self.slice_axis == 1 else moved[:, None]
+            return out
+
+        return displaced
+
+    def displaced(self, forces: Array) -> tuple[Array, Array]:
+        """Displacement by forces, and the part of it that the symmetric coefficients do not tell."""
+        symmetric = self.operator()(forces, np.empty(forces.shape))
+        rest = _filtered(forces[0], self.kernel.whole - self.kernel.symmetric)[None]
+        return symmetric + rest, rest
+
+    def preconditioner(self, threads: int = 1) -> Operator:  # noqa: ARG002
+        """Inverse of K with the cells periodic along x, bending of the columns included."""
+        # Of the wave numbers of twice the length every second one is one of the length itself.
+        periodic, length = self.kernel.symmetric[::2].copy(), len(self.kernel.symmetric) - 1
+        if self.slices is not None and self.slice_axis == 1:
+            periodic[0] += length * self.slices[0]
+        inverse = np.linalg.inv(periodic).astype(np.float32)
+
+        def apply(forces: Array, out: Array, _: Rows = ALL) -> Array:
+            out[0] = _filtered(forces[0], inverse, length)
+            return out
+
+        return apply
+
+    def guess(self) -> Array:
+        """Forces to start from without others: those of a sphere, within the bounds."""
+        return self.fitted(self._sphere())
+
+    def _sphere(self) -> Array:
+        """Forces of the right sum: where the gap is below a level, pressures as the root of what it lacks.
+
+        The level is that of a sphere under this load whose contact has as large an area.
+        """
+        product = 0.375 * float(self.total[0, 0, 0]) * self.kernel.spacing  # of level and radius
+        gap, order = self.gap[0], np.argsort(self.gap, axis=None)
+        areas = np.cumsum(np.broadcast_to(self.widths * self.kernel.spacing, gap.shape).ravel()[order])
+        radii = np.sqrt(areas / np.pi)
+        closed = max(1, int(np.count_nonzero(gap.ravel()[order] < product / radii)))
+        level = max(product / float(radii[closed - 1]), float(gap.ravel()[order[0]]))
+        root = np.sqrt(np.maximum(level - gap, 0.0)) * self.widths
+        if not root.any():
+            root.ravel()[order[0]] = 1.0
+        return np.asarray(root * (self.total[0] / root.sum()))[None]
+
+
+def _filtered(values: Array, symbol: Array, length: int | None = None) -> Array:
+    """Product (nx, ny) of values with a symbol (wave numbers, ny, ny) of transforms of a length along x."""
+    length = 2 * (len(symbol) - 1) if length is None else length
+    spectrum = np.ascontiguousarray(rfft(values, length, axis=0))
+    product = np.matmul(symbol, spectrum.view(symbol.dtype).reshape(*spectrum.shape, 2))
+    moved = irfft(product.view(spectrum.dtype)[..., 0], length, axis=0, overwrite_x=True)
+    return np.asarray(moved[: len(values)])
+
+
+def memory_problem(rows: int, columns: int, available: float | None = None) -> str | None:
+    """Return what to say if columns need more memory than the machine has."""
+    needed = float(BYTES_PER_PAIR) * (rows + 1.0) * float(columns) ** 2
+    limit = checks.machine_memory() if available is None else available
+    if needed <= limit:
+        return None
+    return f"{columns} columns of {rows} cells need {needed / 2**30:.3g} GiB, the machine has {limit / 2**30:.3g} GiB"

@@ -1,0 +1,328 @@
+"""Peak pressure at the rounded edges of a contact: the contact solved once more, as finely as its roundings ask for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from loaded_tca.arrays import Array, count_problems, numbers, real
+from loaded_tca.contact.columns import EVEN, FineZone, column_borders, pressed_width
+from loaded_tca.contact.graded import GradedProblem, GradedSolution, solve_graded
+from loaded_tca.errors import require
+
+Gap = Callable[[Array, Array], Array]
+SliceCompliance = Callable[[Array, Array], Array]
+Box = tuple[tuple[float, float], tuple[float, float]]
+
+CELLS_ON_ARC = 5.0
+"""Cells across the pressed part of a rounding."""
+COARSER = 0.6
+"""Of these in the solution that tells the pressed width, and with which the peak is compared."""
+ALIGNED_ERROR, ASKEW_ERROR = 0.12, 0.8
+"""Relative error of the peak times the square of the cells across the pressed part, at the most: for columns of which
+one begins where the rounding does, and for others (``docs/studies/rounded_edge.md``)."""
+ASKEW_CELLS = 1.25
+"""How many times as many cells the others have: 6 of them, for 2 %."""
+ALIGNED = 1e-3
+"""Sine of the angle between an edge and the columns up to which their borders follow it."""
+FEWEST_ON_ARC = 0.7
+"""Part of the cells asked for below which columns are made anew."""
+MOST_ROUNDS = 6
+LEAST_CHANGE = 0.25
+"""Of the pressed width from one solution to the next: a single cell tells little."""
+FIRST_WIDTH = 1.0 / 16.0
+"""Of the pressed part across the columns, over the box, to begin with."""
+MOST_ROWS = 384
+"""Cells along the columns."""
+MOST_FINE = 80
+"""Finest columns beside an oblique edge, which lies across them."""
+TOLERANCE = 1e-5
+
+
+@dataclass(frozen=True)
+class RoundedEdge:
+    """A straight line in the plane of a grid, from which on a surface is rounded.
+
+    Parameters
+    ----------
+    place : (float, float) [mm]
+        A point of the line where the rounding begins.
+    normal : (float, float)
+        Across the line, towards the end of the surface; of any length.
+    radius : float [mm]
+        Of the rounding.
+    """
+
+    place: tuple[float, float]
+    normal: tuple[float, float]
+    radius: float
+
+
+@dataclass(frozen=True, eq=False)
+class EdgePressure:
+    """Peak pressure at a rounded edge.
+
+    Attributes
+    ----------
+    pressure : float [MPa]
+        Largest pressure on the rounding and within its pressed width beside it; NaN where the contact does not reach
+        the rounding.
+    place : (float, float) [mm]
+        Of the peak.
+    error : float
+        Estimated relative error of the discretisation: the change from coarser cells, and at least what the number of
+        cells is known to leave; infinite where the end of the box is what bounds the contact.
+    pressed_width : float [mm]
+        How far the contact reaches onto the rounding, across the edge.
+    cells_on_arc : float
+        Cells on that width, along the axis that has fewer.
+    solution : GradedSolution
+        Of the contact.
+    """
+
+    pressure: float
+    place: tuple[float, float]
+    error: float
+    pressed_width: float
+    cells_on_arc: float
+    solution: GradedSolution
+
+    def compared_with(self, other: EdgePressure) -> EdgePressure:
+        """The same, its error at least the change from another solution."""
+        change = abs(self.pressure - other.pressure) / self.pressure  # NaN if one of them is not reached
+        return self if math.isnan(self.pressure) else replace(self, error=max(self.error, change))
+
+
+def edge_pressures(
+    gap: Gap,
+    box: Box,
+    edges: Sequence[RoundedEdge],
+    load: float,
+    contact_modulus: float,
+    *,
+    cells: tuple[int, int] = (32, 32),
+    max_pressure: float | None = None,
+    slice_compliance: SliceCompliance | None = None,
+    slice_axis: int = 1,
+    cells_on_arc: float = CELLS_ON_ARC,
+    tolerance: float = TOLERANCE,
+) -> list[EdgePressure]:
+    r"""Peak pressures at rounded edges that a contact reaches, its force kept.
+
+    Columns are graded along y: for an edge along y hand in everything with x and y exchanged and ``slice_axis`` 0. Of
+    a rounding that is pressed on the width d, with the normal n, cells are d/m over n_x and n_y; d is told by a
+    solution on coarser cells, repeated until these are as many as they should be. An oblique edge has fine columns
+    along its loaded part as long as they are no more than 80, and no more than 384 cells along them: the estimated
+    error tells where that is not enough.
+
+    Parameters
+    ----------
+    gap : callable
+        ``gap(x, y)``: gap [mm] before loading at all pairs of places x (nx,) and y (ny,), (nx, ny); +inf where there is
+        no material.
+    box : ((float, float), (float, float)) [mm]
+        Ends of the grid along x and along y; it must hold the contact.
+    edges : sequence of RoundedEdge
+    load : float [N]
+        Normal load, positive.
+    contact_modulus : float [MPa]
+        E*.
+    cells : (int, int)
+        Along x, at least; and of the widest column, so many of which would fill the box.
+    max_pressure : float, optional [MPa]
+        Cap on the pressure.
+    slice_compliance : callable, optional
+        ``slice_compliance(middles, widths)``: displacement [mm/N] of slices of these places and widths, both (n,),
+        under a unit force on each, (n, n).
+    slice_axis : {1, 0}
+        Axis along which slices follow each other: columns if 1, rows if 0.
+    cells_on_arc : float
+        m, for edges along x; a quarter more for others.
+    tolerance : float
+        Of the contact conditions.
+
+    Returns
+    -------
+    list of EdgePressure
+        In the order of the edges.
+
+    Raises
+    ------
+    InputError
+        With every problem of the arguments, and of what the callables give.
+    ConvergenceError
+        If the solver does not reach its tolerance.
+
+    Examples
+    --------
+    A cylinder of radius 10 mm whose face ends at y = 2 with a rounding of 0.2 mm.
+
+    >>> def gap(x, y):
+    ...     return x[:, None] ** 2 / 20.0 + np.maximum(y - 2.0, 0.0) ** 2 / 0.4
+    >>> edge = RoundedEdge((0.0, 2.0), (0.0, 1.0), 0.2)
+    >>> found = edge_pressures(gap, ((-0.15, 0.15), (-2.2, 2.2)), [edge], 500.0, 113187.0)[0]
+    >>> bool(abs(found.place[1] - 2.0) < found.pressed_width), found.error < 0.01
+    (True, True)
+    """
+    low, high = _checked(gap, box, edges, load, contact_modulus, cells, cells_on_arc)
+    arcs = [_Arc.first(edge, low, high, load, contact_modulus) for edge in edges]
+
+    def solved(on_arc: float, before: GradedSolution | None) -> GradedSolution:
+        zones = [arc.zone(on_arc) for arc in arcs if abs(arc.normal[1]) > ALIGNED]
+        borders = column_borders(low[1], high[1], zones, float(high[1] - low[1]) / cells[1])
+        rows = max(arc.cells(on_arc) * abs(arc.normal[0]) / arc.width for arc in arcs) * float(high[0] - low[0])
+        rows = max(cells[0], min(math.ceil(rows), MOST_ROWS))
+        dx, y = float(high[0] - low[0]) / rows, 0.5 * (borders[1:] + borders[:-1])
+        x = low[0] + dx * (np.arange(rows) + 0.5)
+        slices, place = None, (y, np.diff(borders)) if slice_axis == 1 else (x, np.full(rows, dx))
+        if slice_compliance is not None:
+            slices = slice_compliance(*place)
+        problem = GradedProblem(gap(x, y), dx, borders, contact_modulus, load, max_pressure, slices, slice_axis)
+        start = None if before is None else _carried(before, low[0], x, y)
+        return solve_graded(problem, tolerance=tolerance, initial_pressure=start)
+
+    solution, found, coarse = None, list[EdgePressure](), list[EdgePressure]()
+    for on_arc in (COARSER * cells_on_arc, cells_on_arc):
+        coarse = found
+        for _ in range(MOST_ROUNDS):
+            solution = solved(on_arc, solution)
+            found = [arc.found(solution, float(low[0])) for arc in arcs]
+            arcs = [arc.after(one) for arc, one in zip(arcs, found, strict=True)]
+            if all(math.isnan(one.pressure) or one.cells_on_arc >= FEWEST_ON_ARC * on_arc for one in found):
+                break
+    return [one.compared_with(other) for one, other in zip(found, coarse, strict=True)]
+
+
+@dataclass(frozen=True, eq=False)
+class _Arc:
+    """What is known of a rounded edge: where it is, how far it is pressed, and where columns have to be fine."""
+
+    edge: Array
+    normal: Array
+    width: float
+    middle: float
+    half_length: float
+
+    @classmethod
+    def first(cls, edge: RoundedEdge, low: Array, high: Array, load: float, modulus: float) -> _Arc:
+        """From a contact that fills the box; across the columns no narrower than a sixteenth of the box.
+
+        What is pressed less is told in steps, which are cheaper than fine cells all along the columns.
+        """
+        normal, extent = np.array(edge.normal, dtype=float) / math.hypot(*edge.normal), high - low
+        half, along = 0.5 * float(np.abs(normal) @ extent), float(np.abs(normal[::-1]) @ extent)
+        arc = cls(np.array(edge.place, dtype=float), normal, 0.0, 0.0, 0.5 * float(extent[0]))
+        middle = arc.y_at(0.5 * float(low[0] + high[0])) if abs(normal[1]) > ALIGNED else edge.place[1]
+        width = pressed_width(load / along, edge.radius, half, modulus)
+        return replace(arc, width=max(width, FIRST_WIDTH * abs(normal[0]) * float(extent[0])), middle=middle)
+
+    def y_at(self, x: float) -> float:
+        """Where the edge crosses a row."""
+        return float(self.edge[1] - (x - self.edge[0]) * self.normal[0] / self.normal[1])
+
+    def cells(self, on_arc: float) -> float:
+        """Cells on the pressed width: more where none of their borders can follow the edge."""
+        return on_arc * (ASKEW_CELLS if abs(self.normal[0]) > ALIGNED else 1.0)
+
+    def zone(self, on_arc: float) -> FineZone:
+        """Where columns are fine, for so many cells on the pressed width."""
+        along = abs(float(self.normal[1]))
+        finest = self.width / (self.cells(on_arc) * along)
+        oblique = self.half_length * abs(float(self.normal[0])) / along
+        return FineZone(self.middle, finest, EVEN * self.width / along + min(oblique, 0.5 * MOST_FINE * finest))
+
+    def found(self, solution: GradedSolution, low: float) -> EdgePressure:
+        """The peak at this edge."""
+        problem, pressure = solution.problem, solution.pressure
+        x, y = low + problem.spacing * (np.arange(len(pressure)) + 0.5), problem.middles
+        beyond = (x - self.edge[0])[:, None] * self.normal[0] + (y - self.edge[1]) * self.normal[1]
+        along = 0.5 * np.abs(self.normal[0]) * problem.spacing + 0.5 * np.abs(self.normal[1]) * problem.widths
+        reached = (beyond + along)[pressure > 0.0]
+        width = float(reached.max()) if reached.size else 0.0
+        near = np.where(beyond > -width, pressure, 0.0) if width > 0.0 else np.zeros(pressure.shape)
+        if not near.any():
+            return EdgePressure(math.nan, (math.nan, math.nan), 0.0, 0.0, 0.0, solution)
+        row, column = (int(k) for k in np.unravel_index(int(near.argmax()), near.shape))
+        sizes = np.array([problem.spacing, problem.widths[column]])
+        across = np.abs(self.normal) > ALIGNED
+        on_arc = float((width / (np.abs(self.normal) * sizes)[across]).min())
+        largest = float(pressure[row, column])
+        beside = pressure[max(0, row - 1) : row + 2, column]
+        x_top, in_x = _top(x, pressure[:, column], row) if beside.all() else (float(x[row]), 1.0)
+        y_top, in_y = _top(y, pressure[row], column)
+        top = largest * in_x * in_y if problem.max_pressure is None else largest
+        error = (ASKEW_ERROR if across[0] else ALIGNED_ERROR) / on_arc**2
+        if row in (0, x.size - 1) or column in (0, y.size - 1):
+            error = math.inf
+        return EdgePressure(top, (x_top, y_top), error, width, on_arc, solution)
+
+    def after(self, found: EdgePressure) -> _Arc:
+        """What is known once a solution is."""
+        if math.isnan(found.pressure):
+            return self
+        problem = found.solution.problem
+        pressed = (found.solution.pressure > 0.0).any(axis=1)
+        half_length = 0.5 * problem.spacing * float(np.count_nonzero(pressed))
+        width = max(found.pressed_width, LEAST_CHANGE * self.width)
+        middle = self.y_at(found.place[0]) if abs(self.normal[1]) > ALIGNED else self.middle
+        return replace(self, width=width, middle=middle, half_length=half_length)
+
+
+def _top(places: Array, values: Array, k: int) -> tuple[float, float]:
+    """Top of the parabola through the squares of three pressures: its place, and its root over the middle one."""
+    if not 0 < k < values.size - 1:
+        return float(places[k]), 1.0
+    s, square = places[k - 1 : k + 2] - places[k], (values[k - 1 : k + 2] / values[k]) ** 2
+    before, after = (square[0] - 1.0) / s[0], (square[2] - 1.0) / s[2]
+    bend = (after - before) / (s[2] - s[0])
+    slope = before - bend * s[0]
+    if bend >= 0.0:
+        return float(places[k]), 1.0
+    return float(places[k] - 0.5 * slope / bend), math.sqrt(1.0 - 0.25 * slope**2 / bend)
+
+
+def _carried(solution: GradedSolution, low: float, x: Array, y: Array) -> Array:
+    """Pressure at other places (nx, ny): the root of its square, interpolated along both axes."""
+    problem = solution.problem
+    rows = low + problem.spacing * (np.arange(problem.cells[0]) + 0.5)
+    square = solution.pressure**2
+    square = np.stack([np.interp(y, problem.middles, row) for row in square])
+    return np.sqrt(np.stack([np.interp(x, rows, column) for column in square.T], axis=1))
+
+
+def _checked(
+    gap: Any, box: Any, edges: Any, load: Any, modulus: Any, cells: Any, cells_on_arc: Any
+) -> tuple[Array, Array]:
+    """Ends of the box, low and high (2,), after every argument has been looked at."""
+    ends = numbers("box", box)
+    sound = ends.shape == (2, 2) and bool(np.isfinite(ends).all()) and bool((ends[:, 1] > ends[:, 0]).all())
+    two = isinstance(cells, Sequence) and len(cells) == 2
+    listed = isinstance(edges, Sequence) and len(edges) > 0 and all(isinstance(edge, RoundedEdge) for edge in edges)
+    require(
+        (callable(gap), f"gap: {gap!r:.60} is not a function of x and y"),
+        (sound, f"box: {box!r:.60} is not ((low, high), (low, high)) in mm"),
+        (listed, f"edges: {edges!r:.60} is not a sequence of RoundedEdge"),
+        (0.0 < real(load) < math.inf, f"load: {load} N is not positive and finite"),
+        (0.0 < real(modulus) < math.inf, f"contact_modulus: {modulus} MPa is not positive and finite"),
+        (
+            two and not count_problems(dict(enumerate(cells)), 4),
+            f"cells: {cells!r:.60} are not two whole numbers from 4 on",
+        ),
+        (2.0 <= real(cells_on_arc) <= 100.0, f"cells_on_arc: {cells_on_arc} is not between 2 and 100"),
+    )
+    require(
+        *(
+            (
+                all(math.isfinite(real(value)) for value in (*edge.place, *edge.normal))
+                and math.hypot(*edge.normal) > 0.0
+                and 0.0 < real(edge.radius) < math.inf,
+                f"edges[{k}]: {edge} has no finite place, no normal or no positive radius",
+            )
+            for k, edge in enumerate(edges)
+        )
+    )
+    return ends[:, 0], ends[:, 1]

@@ -1,0 +1,209 @@
+"""Peak pressure at rounded edges: closed form, fine uniform grids, several and oblique edges, estimate, failures."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca.contact import RoundedEdge, edge_pressures, solve_contact
+from loaded_tca.errors import ConvergenceError, InputError
+from loaded_tca.reference.punch import RoundedPunch
+
+E_STAR = 113187.0
+RADIUS = 0.2
+BOX = ((-0.15, 0.15), (-2.0, 2.1))
+FACE = RoundedEdge((0.0, 2.0), (0.0, 1.0), RADIUS)
+BOTH = [RoundedEdge((0.0, side * 2.0), (0.0, side), RADIUS) for side in (-1.0, 1.0)]
+# The same on columns three times as fine.
+FINE = 15.0
+
+
+def face_end(x, y, radius=RADIUS):
+    """A cylinder of radius 10 mm that ends at y = 2 with a rounding."""
+    return x[:, None] ** 2 / 20.0 + np.maximum(y - 2.0, 0.0) ** 2 / (2.0 * radius)
+
+
+def cylinder(x, y):
+    """The same with two ends."""
+    return face_end(x, np.abs(y))
+
+
+def peak(gap=face_end, box=BOX, edge=FACE, load=500.0, **options):
+    (found,) = edge_pressures(gap, box, [edge], load, E_STAR, **options)
+    return found
+
+
+def test_flat_punch_with_rounded_ends():
+    """Rows of a great length make the problem plane: closed form."""
+    punch = RoundedPunch(0.1, RADIUS, 0.11, E_STAR)
+    length = 1000.0
+    edges = [RoundedEdge((0.0, side * 0.1), (0.0, side), RADIUS) for side in (-1.0, 1.0)]
+    box = ((-0.5 * length, 0.5 * length), (-0.15, 0.15))
+
+    def gap(x, y):
+        return punch.gap(y) + np.where(np.abs(x) < 0.25 * length, 0.0, np.inf)[:, None]
+
+    found = edge_pressures(gap, box, edges, punch.line_load * 0.5 * length, E_STAR, cells=(4, 32))
+    place, largest = punch.peak()
+    for one, edge in zip(found, edges, strict=True):
+        # Two rows of a fourth of the length each: what the ends of the rows change falls with their slenderness.
+        assert_allclose(one.pressure, largest, rtol=one.error)
+        assert_allclose(one.place[1], edge.normal[1] * place, atol=3e-4)
+        assert_allclose(one.pressed_width, 0.01, rtol=0.2)
+        assert one.error < 0.01
+        assert one.cells_on_arc > 3.5
+
+
+def test_estimate_covers_the_error_at_a_face_end():
+    exact = peak(cells_on_arc=FINE).pressure
+    for cells_on_arc in (3.0, 5.0, 7.0):
+        found = peak(cells_on_arc=cells_on_arc)
+        assert abs(found.pressure / exact - 1.0) <= found.error
+    assert peak().error < 0.01
+
+
+def test_two_ends_are_alike():
+    first, second = edge_pressures(cylinder, ((-0.15, 0.15), (-2.1, 2.1)), BOTH, 500.0, E_STAR)
+    assert_allclose(first.pressure, second.pressure, rtol=1e-3)
+    assert_allclose(first.place[1], -second.place[1], rtol=1e-3)
+    assert first.solution is second.solution
+
+
+def test_fine_uniform_grid_agrees():
+    x, y = ((np.arange(n) + 0.5) / n * 0.6 for n in (96, 2048))
+    x, y, load = x - 0.3, y + 1.5, 60.0
+
+    def gap(x, y):
+        return face_end(x, y) + (y - 2.0) ** 2 / 20.0
+
+    fine = solve_contact(gap(x, y), (0.6 / 96, 0.6 / 2048), E_STAR, load=load, warn=False)
+    found = peak(gap, ((-0.3, 0.3), (1.5, 2.1)), load=load)
+    assert not fine.reaches_border
+    assert_allclose(found.pressure, fine.pressure.max(), rtol=5e-3)
+    assert_allclose(found.solution.approach, fine.approach, rtol=2e-3)
+
+
+def test_peak_falls_with_the_third_root_of_the_radius():
+    """Under narrow roundings: a rounding of a part of the contact's width shifts its load too."""
+    small, large = (
+        peak(lambda x, y, r=r: face_end(x, y, r), edge=RoundedEdge((0.0, 2.0), (0.0, 1.0), r), cells_on_arc=8.0)
+        for r in (0.002, 0.016)
+    )
+    assert_allclose(np.log(large.pressure / small.pressure) / np.log(8.0), -1.0 / 3.0, rtol=0.05)
+
+
+def test_cap_is_kept():
+    found = peak(max_pressure=2000.0)
+    assert found.pressure == 2000.0
+    assert found.solution.pressure.max() == 2000.0
+    assert_allclose(found.solution.load, 500.0, rtol=1e-9)
+
+
+def test_bending_takes_load_from_the_end():
+    def slices(y, widths):
+        assert_allclose(widths.sum(), BOX[1][1] - BOX[1][0])
+        return 2e-5 * np.exp(-np.abs(y[:, None] - y) / 1.0) * np.exp(0.3 * (y[:, None] + y))
+
+    assert peak(slice_compliance=slices).pressure < 0.95 * peak().pressure
+
+
+def test_slices_along_the_edge_have_the_rows():
+    seen = []
+
+    def slices(x, widths):
+        seen.append((x, widths))
+        return 1e-6 * np.exp(-np.abs(x[:, None] - x))
+
+    peak(slice_compliance=slices, slice_axis=0)
+    x, widths = seen[-1]
+    assert_allclose(widths, np.full(x.size, 0.3 / x.size))
+    assert_allclose(x.mean(), 0.0, atol=1e-15)
+
+
+@pytest.mark.parametrize("sine", [0.1, 0.5])
+def test_oblique_edge_has_an_estimate_that_covers_its_error(sine):
+    normal = np.array([sine, math.sqrt(1.0 - sine**2)])
+
+    def gap(x, y):
+        beyond = np.maximum(x[:, None] * normal[0] + (y - 1.0) * normal[1], 0.0)
+        return x[:, None] ** 2 / 20.0 + y**2 / 2000.0 + beyond**2 / (2.0 * RADIUS)
+
+    edge, box = RoundedEdge((0.0, 1.0), tuple(3.0 * normal), RADIUS), ((-0.3, 0.3), (-3.0, 1.8))
+    found, fine = (peak(gap, box, edge, 300.0, cells_on_arc=m) for m in (4.0, 9.0))
+    assert abs(found.pressure / fine.pressure - 1.0) <= found.error
+    assert fine.error < 0.03
+    across = (np.array(found.place) - (0.0, 1.0)) @ normal
+    assert 0.0 < across < found.pressed_width
+
+
+def test_edge_along_the_columns_is_met_by_fine_rows():
+    """Without exchanging x and y: dearer, and with a larger estimate."""
+    turned = peak(
+        lambda x, y: face_end(y, x).T, BOX[::-1], RoundedEdge((2.0, 0.0), (1.0, 0.0), RADIUS), cells_on_arc=3.0
+    )
+    exact = peak(cells_on_arc=FINE).pressure
+    assert abs(turned.pressure / exact - 1.0) <= turned.error
+    assert len(turned.solution.pressure) > 300
+
+
+def test_few_cells_on_an_oblique_edge_are_told(monkeypatch):
+    monkeypatch.setattr("loaded_tca.contact.rounded_edge.MOST_ROWS", 32)
+
+    def gap(x, y):
+        return x[:, None] ** 2 / 20.0 + y**2 / 2000.0 + np.maximum(x[:, None] + y - 1.0, 0.0) ** 2 / (4.0 * RADIUS)
+
+    found = peak(gap, ((-0.3, 0.3), (-3.0, 1.8)), RoundedEdge((0.0, 1.0), (1.0, 1.0), RADIUS), 300.0)
+    assert found.error > 0.03
+    assert found.cells_on_arc < 3.0
+
+
+def test_edge_that_is_not_reached_has_no_pressure():
+    far = RoundedEdge((0.0, -30.0), (0.0, -1.0), RADIUS)
+    near, none = edge_pressures(face_end, BOX, [FACE, far], 500.0, E_STAR)
+    assert math.isnan(none.pressure)
+    assert none.pressed_width == none.cells_on_arc == 0.0
+    assert near.pressure > 2000.0
+
+
+def test_end_of_the_box_is_told():
+    assert peak(box=((-0.02, 0.02), (-2.0, 2.1))).error == math.inf
+
+
+@pytest.mark.parametrize(
+    ("changed", "told"),
+    [
+        ({"gap": 1.0}, "^gap: 1.0 is not a function of x and y$"),
+        ({"gap": lambda x, y: np.full((x.size, y.size), np.nan)}, "^gap: [0-9]+ cells are NaN"),
+        ({"gap": lambda *_: np.zeros((2, 2))}, "^borders: 2 columns have 3, not"),
+        ({"box": ((0.0, 1.0), (1.0, 0.0))}, "^box: "),
+        ({"box": ((0.0, np.nan), (0.0, 1.0))}, "^box: "),
+        ({"box": (0.0, 1.0)}, "^box: "),
+        ({"edges": []}, r"^edges: \[\] is not a sequence of RoundedEdge$"),
+        ({"edges": [1.0]}, "^edges: "),
+        ({"edges": [RoundedEdge((0.0, 1.0), (0.0, 0.0), 0.2)]}, r"^edges\[0\]: "),
+        ({"edges": [RoundedEdge((0.0, np.nan), (0.0, 1.0), 0.2)]}, r"^edges\[0\]: "),
+        ({"edges": [FACE, RoundedEdge((0.0, 1.0), (0.0, 1.0), 0.0)]}, r"^edges\[1\]: "),
+        ({"load": 0.0}, "^load: 0.0 N is not positive and finite$"),
+        ({"load": np.nan}, "^load: nan N is not"),
+        ({"contact_modulus": -1.0}, "^contact_modulus: -1.0 MPa"),
+        ({"cells": (32, 3)}, r"^cells: \(32, 3\) are not two whole numbers from 4 on$"),
+        ({"cells": 32}, "^cells: 32 are not"),
+        ({"cells_on_arc": 1.0}, "^cells_on_arc: 1.0 is not between 2 and 100$"),
+        ({"slice_compliance": lambda y, _: np.zeros((y.size, 2))}, "^slice_compliance: shape"),
+        ({"slice_axis": 2}, "^slice_axis: 2 is neither 0 nor 1$"),
+        ({"tolerance": 0.0}, "^tolerance: 0.0 is not between 0 and 1$"),
+        ({"max_pressure": 1.0}, "^load: 500.0 N is more than max_pressure"),
+    ],
+)
+def test_arguments_that_cannot_be_are_refused(changed, told):
+    given = {"gap": face_end, "box": BOX, "edges": [FACE], "load": 500.0, "contact_modulus": E_STAR} | changed
+    with pytest.raises(InputError, match=told):
+        edge_pressures(**given)
+
+
+def test_failure_of_the_solver_is_told(monkeypatch):
+    monkeypatch.setattr("loaded_tca.contact.graded.MOST_ITERATIONS", 1)
+    with pytest.raises(ConvergenceError, match=r"^contact on graded columns not converged") as caught:
+        peak()
+    assert caught.value.last.pressure.max() > 0.0
