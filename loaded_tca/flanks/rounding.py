@@ -221,6 +221,31 @@ class RoundedFlank(DerivedFlank):
             found[arc.edge][...] = arc.past_tangent(self, rho, z, jets[arc.edge])[0].value
         return found
 
+    def ways_onto_arcs(self, rho: Array, z: Array, slopes: Array) -> Array:
+        """Ways (n, 4) [mm] away from the edges to where the arcs, seen along the edge's surface, have given slopes.
+
+        Parameters
+        ----------
+        rho, z : (n,) array [mm]
+        slopes : (n, 4) array
+            Removal per distance from each edge.
+
+        Returns
+        -------
+        (n, 4) array
+            Zero where a point lies on no arc.
+        """
+        jets, found = self.edges(rho, z), np.zeros(slopes.shape)
+        for arc in self.arcs:
+            along, tangent = arc.past_tangent(self, rho, z, jets[arc.edge])
+            t = np.asarray(tangent.value)
+            sine = 1.0 / np.sqrt(1.0 + t**2)
+            slope = slopes[:, arc.edge] * sine
+            turn = np.minimum(np.arctan2(slope, 1.0 + t * slope), arc.turn)
+            wanted = arc.radius * (np.sin(turn) - t * (1.0 - np.cos(turn)))
+            found[:, arc.edge] = np.where(along.value > 0.0, (along.value - wanted) * sine, 0.0)
+        return found
+
     def off_arcs(self, rho: Array, z: Array) -> tuple[Array, Array]:
         """(rho, z) of points, those nearer to an edge moved away from it to where its arc begins [mm]."""
         for arc in self.arcs:
