@@ -9,8 +9,11 @@ from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.flanks.rounding import RoundedFlank
 from loaded_tca.unloaded.ease_off import EaseOff, Station
 
-ALIKE = 1e-3
-"""Sine of the angle between two edges below which a point that both hold is moved across one of them only."""
+ALIKE = 0.7
+"""Cosine of the angle between two edges above which a point on both arcs is moved across one of them only."""
+
+FLATTEST = 0.1
+"""Ratio of singular values below which two edges that are left count as one."""
 
 
 def past_tangents(station: Station) -> Array:
@@ -39,14 +42,18 @@ def moved_along_arcs(field: EaseOff, phi1: Array, rho: Array, z: Array, multipli
     """
     station = field.station(phi1, rho, z)
     edge = ~field.edge_is_relief_start()
-    slopes, held = field.edges(station)[1][:, edge], multipliers[:, edge]
-    inwards = np.zeros(held.shape)
+    slopes = field.edges(station)[1][:, edge]
+    units = slopes / np.linalg.norm(slopes, axis=-1, keepdims=True)
+    alike = units @ units.mT > ALIKE
+    held, inwards = (alike @ multipliers[:, edge, None])[..., 0], np.zeros(slopes.shape[:2])
     for first, flank, own_rho, own_z in _both(station):
         if isinstance(flank, RoundedFlank):
             columns = slice(first, first + len(EDGE_NAMES))
             inwards[:, columns] = flank.ways_onto_arcs(own_rho, own_z, held[:, columns])
+    # of arcs that follow each other the one that asks for the longest way decides: there the others have not begun
+    inwards[inwards < np.where(alike, inwards[:, None], 0.0).max(axis=-1)] = 0.0
     slopes = np.where(inwards[..., None] > 0.0, slopes, 0.0)
-    step = (np.linalg.pinv(slopes, rcond=ALIKE) @ inwards[..., None])[..., 0]
+    step = (np.linalg.pinv(slopes, rcond=FLATTEST) @ inwards[..., None])[..., 0]
     return rho + step[:, 0], z + step[:, 1]
 
 
