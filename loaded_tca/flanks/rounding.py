@@ -39,6 +39,8 @@ ALONG_EDGE = 33
 """Points along an edge at which the angle of the material is taken."""
 SAME_ANGLE = 1e-6
 """Change of the cotangent of the material angle along an edge that is none: at a base cone Theta is known no closer."""
+FAR_OUT, FINER = 1.5, 32
+"""Part of a flank beside an edge that is drawn finely, over the radius there, and how finely."""
 MARGIN = 1e-9
 """Part of its radius by which an arc may begin farther from the edge than seen at the points along it."""
 
@@ -167,7 +169,8 @@ class Arc:
             beyond * slope * (slope + 1.5 * steeper) + depth * (slope + steeper),
             bend,
             twist,
-            2.0 * slope**2 * (slope * beyond + depth) + bend * (6.0 * slope * beyond * (slope * beyond + depth) + depth**2),
+            2.0 * slope**2 * (slope * beyond + depth)
+            + bend * (6.0 * slope * beyond * (slope * beyond + depth) + depth**2),
         )
         return derivatives.compose(along, tangent)
 
@@ -249,11 +252,24 @@ class RoundedFlank(DerivedFlank):
     def off_arcs(self, rho: Array, z: Array) -> tuple[Array, Array]:
         """(rho, z) of points, those nearer to an edge moved away from it to where its arc begins [mm]."""
         for arc in self.arcs:
-            distance = self.edges(rho, z)[arc.edge]
-            along, tangent = arc.past_tangent(self, rho, z, distance)
-            step = np.maximum(along.value, 0.0) / np.sqrt(1.0 + np.asarray(tangent.value) ** 2)
-            rho, z = rho + step * distance.rho, z + step * distance.z
+            rho, z = self.off_arc(arc, rho, z)
         return rho, z
+
+    def off_arc(self, arc: Arc, rho: Array, z: Array) -> tuple[Array, Array]:
+        """The same with one arc."""
+        distance = self.edges(rho, z)[arc.edge]
+        along, tangent = arc.past_tangent(self, rho, z, distance)
+        step = np.maximum(along.value, 0.0) / np.sqrt(1.0 + np.asarray(tangent.value) ** 2)
+        return rho + step * distance.rho, z + step * distance.z
+
+    def drawn_grid(self, profile: int, lengthwise: int) -> tuple[Array, Array]:
+        """(rho, z) over the region as of ``grid``, with a third of the points on arcs, each (profile, lengthwise)."""
+        height, width = (float(length) for length in self.extent)
+        up = _shares(profile, 0.0, FAR_OUT * self.rounding.tip / height)
+        along = _shares(lengthwise, *np.full(2, FAR_OUT * self.rounding.side / width))
+        rho, z = self.grid(FINER * (profile - 1) + 1, FINER * (lengthwise - 1) + 1)
+        picked = np.ix_(*(np.rint(share * FINER * (share.size - 1)).astype(int) for share in (up, along)))
+        return rho[picked], z[picked]
 
     def _removed(self, rho: Array, z: Array) -> list[Jet]:
         """Removal of every arc that some of the points lie on, over all points."""
@@ -270,6 +286,15 @@ class RoundedFlank(DerivedFlank):
 
     def __repr__(self) -> str:
         return f"RoundedFlank({self.nominal!r}, tip {self.rounding.tip:g} mm, sides {self.rounding.side:g} mm)"
+
+
+def _shares(count: int, low: float, high: float) -> Array:
+    """Places (count,) from 0 to 1: a third of the steps in a part ``low`` and ``high`` at either end, if any is."""
+    steps = count - 1
+    first, last = (min(round(steps / 3), round(0.5 * steps)) if part > 0.0 else 0 for part in (low, high))
+    low, high = min(low, first / steps), min(high, last / steps)
+    ends = [0.0, first, steps - last, steps], [0.0, low, 1.0 - high, 1.0]
+    return np.interp(np.arange(count), *ends) if steps > 2 else np.linspace(0.0, 1.0, count)
 
 
 def sharp(flank: Flank) -> Flank:

@@ -19,6 +19,7 @@ from matplotlib.patches import Patch, Polygon
 from loaded_tca.arrays import Array
 from loaded_tca.flank_maps.conjugate import GearName
 from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.rounding import RoundedFlank, edge_places
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.plots.style import (
     ACCENT,
@@ -245,6 +246,7 @@ def _draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:
         regions.append(Polygon(corners, facecolor=colour, edgecolor="black"))
         axes.add_patch(regions[-1])
     lower, upper = regions[0].get_xy().min(axis=0), regions[0].get_xy().max(axis=0)
+    _draw_arcs(axes, flank)
     margin = 0.08 * (upper - lower)
     axes.set_xlim(lower[0] - margin[0], upper[0] + margin[0])
     axes.set_ylim(lower[1] - margin[1], upper[1] + margin[1])
@@ -254,3 +256,11 @@ def _draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:
     axes.set_xlabel(flank.frame.labels[0])
     axes.set_ylabel(flank.frame.labels[1])
     return regions[0]
+
+
+def _draw_arcs(axes: Axes, flank: Flank) -> None:
+    """Dashed lines where the arcs of rounded edges begin."""
+    if isinstance(flank, RoundedFlank):
+        for arc in flank.arcs:
+            places = flank.off_arc(arc, *edge_places(flank, arc.edge, max(FINENESS)))
+            axes.plot(*flank.frame.to_picture(*places), color="black", linestyle="--", linewidth=0.6)

@@ -66,13 +66,17 @@ def rounding_problems(geometry: ToothGeometry, flank: Flank, rounding: EdgeRound
         root = flank.grid(2, 33)
         height = float(np.min(flank.edges(*(part[0] for part in root))[TIP].value))
         reach = 1.0 + float(material_cosines(flank, TIP, *edge_places(flank, TIP)).max())
-        limits["tip"].append((height / reach, f"with which no flank is left above its root edge, {height:.4g} mm below"))
+        limits["tip"].append(
+            (height / reach, f"with which no flank is left above its root edge, {height:.4g} mm below")
+        )
         limits["tip"] += _limit_of_land(geometry, flank)
     if rounding.side > 0.0:
         rho, z = edge_places(flank, LOWER)
         width = float(np.min(flank.edges(rho, z)[UPPER].value))
         reach = sum(1.0 + float(material_cosines(flank, end, *edge_places(flank, end)).max()) for end in (LOWER, UPPER))
-        limits["side"].append((width / reach, f"with which no flank is left between the ends of the face, {width:.4g} mm apart"))
+        limits["side"].append(
+            (width / reach, f"with which no flank is left between the ends of the face, {width:.4g} mm apart")
+        )
     problems = []
     for name, radius in (("tip", rounding.tip), ("side", rounding.side)):
         most, why = min(limits[name])

@@ -7,6 +7,7 @@ import numpy as np
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.flanks.rounding import RoundedFlank
+from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.ease_off import EaseOff, Station
 
 ALIKE = 0.7
@@ -18,11 +19,29 @@ FLATTEST = 0.1
 
 def past_tangents(station: Station) -> Array:
     """Lengths (n, 8) [mm] from where the arcs of all edges begin, the pinion's first; -inf at sharp edges."""
-    lengths = np.full((*station.rho.shape, 2 * len(EDGE_NAMES)), -np.inf)
-    for first, flank, rho, z in _both(station):
-        if isinstance(flank, RoundedFlank):
-            lengths[..., first : first + len(EDGE_NAMES)] = np.stack(flank.past_tangents(rho, z), axis=-1)
-    return lengths
+    return _past_tangents(station.pair, (station.rho, station.z), (station.wheel_rho, station.wheel_z))
+
+
+def arcs_at(pair: GearPair, points: Array) -> Mask:
+    """Edges (..., 8) on whose arcs points (..., 3) of the fixed frame [mm] lie, seen along the edge's surface."""
+    radius, _, axial = pair.to_wheel(points)
+    pinion = np.hypot(points[..., 0], points[..., 1]), points[..., 2]
+    return np.asarray(_past_tangents(pair, pinion, (radius, axial)) > 0.0)
+
+
+def rounded_edges(pair: GearPair) -> Mask:
+    """Which edges (8,) of both flanks are rounded."""
+    places = (tuple(part[:1, 0] for part in gear.flank.grid(2, 2)) for gear in (pair.pinion, pair.wheel))
+    return np.asarray(np.isfinite(_past_tangents(pair, *places)[0]))
+
+
+def _past_tangents(pair: GearPair, *places: tuple[Array, ...]) -> Array:
+    """Lengths (..., 8) of places (rho, z) on both flanks from where the arcs begin."""
+    found = []
+    for gear, (rho, z) in zip((pair.pinion, pair.wheel), places, strict=True):
+        flank, none = gear.flank, [np.full(rho.shape, -np.inf)] * len(EDGE_NAMES)
+        found += flank.past_tangents(rho, z) if isinstance(flank, RoundedFlank) else none
+    return np.stack(found, axis=-1)
 
 
 def on_arcs(field: EaseOff, phi1: Array, rho: Array, z: Array) -> Mask:
@@ -46,21 +65,13 @@ def moved_along_arcs(field: EaseOff, phi1: Array, rho: Array, z: Array, multipli
     units = slopes / np.linalg.norm(slopes, axis=-1, keepdims=True)
     alike = units @ units.mT > ALIKE
     held, inwards = (alike @ multipliers[:, edge, None])[..., 0], np.zeros(slopes.shape[:2])
-    for first, flank, own_rho, own_z in _both(station):
-        if isinstance(flank, RoundedFlank):
-            columns = slice(first, first + len(EDGE_NAMES))
-            inwards[:, columns] = flank.ways_onto_arcs(own_rho, own_z, held[:, columns])
+    places = (station.rho, station.z), (station.wheel_rho, station.wheel_z)
+    for number, (gear, place) in enumerate(zip((field.pair.pinion, field.pair.wheel), places, strict=True)):
+        if isinstance(gear.flank, RoundedFlank):
+            columns = slice(number * len(EDGE_NAMES), (number + 1) * len(EDGE_NAMES))
+            inwards[:, columns] = gear.flank.ways_onto_arcs(*place, held[:, columns])
     # of arcs that follow each other the one that asks for the longest way decides: there the others have not begun
     inwards[inwards < np.where(alike, inwards[:, None], 0.0).max(axis=-1)] = 0.0
     slopes = np.where(inwards[..., None] > 0.0, slopes, 0.0)
     step = (np.linalg.pinv(slopes, rcond=FLATTEST) @ inwards[..., None])[..., 0]
     return rho + step[:, 0], z + step[:, 1]
-
-
-def _both(station: Station) -> tuple[tuple[int, object, Array, Array], ...]:
-    """First column of the edges, flank and place on it, of both gears."""
-    pair = station.pair
-    return (
-        (0, pair.pinion.flank, station.rho, station.z),
-        (len(EDGE_NAMES), pair.wheel.flank, station.wheel_rho, station.wheel_z),
-    )

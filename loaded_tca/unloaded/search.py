@@ -132,9 +132,7 @@ def _onto_arcs(pair: GearPair, phi1: Array, found: list[_Ascents], rows: Indices
     return on_flank + _ascend(pair, phi1[rows], *(np.concatenate(part) for part in zip(*starts, strict=True)))
 
 
-def _certified(
-    pair: GearPair, phi1: Array, scan: Scan, found: list[_Ascents]
-) -> tuple[FirstTouch, list[_Ascents]]:
+def _certified(pair: GearPair, phi1: Array, scan: Scan, found: list[_Ascents]) -> tuple[FirstTouch, list[_Ascents]]:
     """The highest of the ascents and of more, from whatever the scan and the wheel's flank see above it."""
     result, rows = _best(phi1, found), np.arange(len(phi1))
     close = _beside_corners(pair, phi1, result)
