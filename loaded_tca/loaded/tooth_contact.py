@@ -399,7 +399,7 @@ def _reaches_arc(pair: GearPair, separation: Separation, pressure: Array) -> boo
     """Whether cells on the arc of a rounded edge are under pressure, or the contact goes on to where one begins."""
     if pair.sharp is pair:
         return False
-    on_arc = arcs_at(pair, separation.points).any(axis=-1)
+    on_arc = np.asarray(arcs_at(pair, separation.points).any(axis=-1))
     return bool(pressure[on_arc].any()) or ends_at_material(np.where(on_arc, 0.0, pressure), on_arc)
 
 

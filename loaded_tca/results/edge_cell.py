@@ -24,7 +24,7 @@ def edge_cell(pair: GearPair, one: PressureMap) -> tuple[tuple[int, int], bool]:
     """
     if pair.sharp is pair:
         return one.edge_cell, False
-    rounded = arc_cells(pair, one).any(axis=-1)
+    rounded: Mask = np.asarray(arc_cells(pair, one).any(axis=-1))
     beside: Array = np.where(rounded | one.beside_end, one.pressure, -1.0)
     across, along = np.unravel_index(int(beside.argmax()), beside.shape)
     return (int(across), int(along)), bool(rounded[across, along])

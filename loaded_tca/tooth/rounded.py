@@ -13,6 +13,7 @@ from loaded_tca.flanks.rounding import LOWER, TIP, UPPER, EdgeRounding, RoundedF
 from loaded_tca.tooth.form import ToothForm
 from loaded_tca.tooth.geometry import ToothGeometry
 
+ROUNDING = 1e-12
 LARGEST = 0.3
 """Largest radius of a rounded edge, over the normal module."""
 
@@ -80,7 +81,7 @@ def rounding_problems(geometry: ToothGeometry, flank: Flank, rounding: EdgeRound
     problems = []
     for name, radius in (("tip", rounding.tip), ("side", rounding.side)):
         most, why = min(limits[name])
-        if radius > most:
+        if radius > most * (1.0 + ROUNDING):
             problems.append(f"{name}_rounding_mm: found {radius:g}; allowed up to {most:.4g} mm, {why}")
     return problems
 

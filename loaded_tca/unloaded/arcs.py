@@ -37,7 +37,7 @@ def rounded_edges(pair: GearPair) -> Mask:
 
 def _past_tangents(pair: GearPair, *places: tuple[Array, ...]) -> Array:
     """Lengths (..., 8) of places (rho, z) on both flanks from where the arcs begin."""
-    found = []
+    found: list[Array] = []
     for gear, (rho, z) in zip((pair.pinion, pair.wheel), places, strict=True):
         flank, none = gear.flank, [np.full(rho.shape, -np.inf)] * len(EDGE_NAMES)
         found += flank.past_tangents(rho, z) if isinstance(flank, RoundedFlank) else none

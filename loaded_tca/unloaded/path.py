@@ -204,7 +204,7 @@ def _path(pair: GearPair, phi1: Array, touch: FirstTouch) -> ContactPath:
     field = EaseOff(pair, touch.beyond[rows])
     multipliers = np.where(touch.multipliers[rows] > EDGE_SLOPE, touch.multipliers[rows], 0.0)
     rounded = past_tangents(field.station(angle, rho, z)) > ON_ARC * pair.module
-    lines = _lines(field, angle, rho, z, multipliers, rounded.any(axis=-1))
+    lines = _lines(field, angle, rho, z, multipliers, np.asarray(rounded.any(axis=-1)))
     rho[lines.flat], z[lines.flat] = lines.rho, lines.z
     line_ends = np.full((len(rows), 2, 3), np.nan)
     line_ends[lines.rows] = lines.ends

@@ -114,7 +114,8 @@ def _onto_arcs(pair: GearPair, phi1: Array, found: list[_Ascents], rows: Indices
         peaks = ascents.peaks
         at = np.flatnonzero(peaks.converged & (number[ascents.owner] >= 0))
         owner, beyond, ended = number[ascents.owner[at]], ascents.beyond[at], peaks.only(at)
-        on = on_arcs(EaseOff(pair, beyond), phi1[rows[owner]], ended.rho, ended.z).any(axis=-1)
+        on = on_arcs(EaseOff(pair, beyond), phi1[rows[owner]], ended.rho, ended.z)
+        on = np.asarray(on.any(axis=-1))
         on_flank.append(_Ascents(owner[~on], beyond[~on], ended.only(~on)))
         ends.append((owner[on], beyond[on], ended.only(on)))
     level = np.full(rows.size, -np.inf)

@@ -440,7 +440,9 @@ def of_other_figures() -> str:
                 for one in (of["face_load_factor"], of["root_tension"]):
                     cells.append(percent(one.over_largest(one.steady)))
                 found.append([PAIRS[name], f"`{short(key)}`", setting, *cells])
-    figures = "load share | line load | line load, at edges | peak pressure | peak pressure, at edges | K_Hbeta | root tension"
+    figures = (
+        "load share | line load | line load, at edges | peak pressure | peak pressure, at edges | K_Hbeta | root tension"
+    )
     return lines(f"pair | key | setting | {figures}", found)
 
 
