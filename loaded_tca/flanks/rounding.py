@@ -39,8 +39,8 @@ ALONG_EDGE = 33
 """Points along an edge at which the angle of the material is taken."""
 SAME_ANGLE = 1e-6
 """Change of the cotangent of the material angle along an edge that is none: at a base cone Theta is known no closer."""
-FAR_OUT, FINER = 1.5, 32
-"""Part of a flank beside an edge that is drawn finely, over the radius there, and how finely."""
+FAR_OUT, FINER = 1.2, 64
+"""Part of a flank beside an edge that is drawn finely, over the reach of the arc there, and how finely."""
 MARGIN = 1e-9
 """Part of its radius by which an arc may begin farther from the edge than seen at the points along it."""
 
@@ -265,8 +265,9 @@ class RoundedFlank(DerivedFlank):
     def drawn_grid(self, profile: int, lengthwise: int) -> tuple[Array, Array]:
         """(rho, z) over the region as of ``grid``, with a third of the points on arcs, each (profile, lengthwise)."""
         height, width = (float(length) for length in self.extent)
-        up = _shares(profile, 0.0, FAR_OUT * self.rounding.tip / height)
-        along = _shares(lengthwise, *np.full(2, FAR_OUT * self.rounding.side / width))
+        reach = max((arc.reach for arc in self.arcs if arc.edge == TIP), default=0.0)
+        up, side = _shares(profile, 0.0, FAR_OUT * reach / height), FAR_OUT * self.rounding.side / width
+        along = _shares(lengthwise, side, side)  # the same for both flanks of a tooth
         rho, z = self.grid(FINER * (profile - 1) + 1, FINER * (lengthwise - 1) + 1)
         picked = np.ix_(*(np.rint(share * FINER * (share.size - 1)).astype(int) for share in (up, along)))
         return rho[picked], z[picked]
