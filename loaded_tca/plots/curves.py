@@ -15,7 +15,7 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 SMALLEST_SPAN_ARCSEC = 0.02
 """Height of a transmission error axis below which a curve would be rounding."""
 EDGE_HEADROOM = 1.15
-"""How far above the curves the pressure at an edge, which depends on the mesh, may draw the axis."""
+"""How far above the curves the pressure at an edge may draw the axis: at a sharp one it depends on the mesh."""
 
 
 def plot_transmission_error(result: MeshCycle) -> Figure:
@@ -56,7 +56,7 @@ def plot_peak_pressure(result: MeshCycle) -> Figure:
     """Peak pressure over the positions for each torque, with that after Hertz and the pressure at sharp edges.
 
     Where tooth pairs share the load, the peak and that after Hertz are those of the pair with the highest peak, the
-    pressure at an edge is the highest of all pairs. That is mesh-dependent: single crosses, which the
+    pressure at an edge is the highest of all pairs. That of sharp edges is mesh-dependent: single crosses, which the
     axis does not follow far. Hertz is drawn where it holds over a stretch of positions.
 
     Parameters
@@ -97,7 +97,7 @@ def _draw_edge_peaks(axes: Axes, result: MeshCycle, angle: Array, peak: Array) -
     for torque, _, colour, _ in torque_styles(result):
         axes.plot(angle[within[torque]], peak[torque][within[torque]], "x", color=colour)
         axes.plot(angle[beyond[torque]], np.full(beyond[torque].sum(), edge), "^", color=colour)
-    label = "at an edge (mesh-dependent)"
+    label = "at an edge (mesh-dependent if sharp)"
     if within.any():
         axes.plot([], [], "x", color="black", label=label)
     if beyond.any():

@@ -45,9 +45,10 @@ def closed_cosine(flank, edge):
         along = nominal.side * math.sin(nominal.base_helix_angle)
     else:
         base, tip = nominal.base_angle, nominal.cone_angles[1]
-        spiral = nominal.theta(np.array(30.0), np.array(40.0)).rho * 30.0 + nominal.theta(
-            np.array(30.0), np.array(40.0)
-        ).z * 40.0  # R dTheta/dR, the same everywhere on a logarithmic spiral
+        spiral = (
+            nominal.theta(np.array(30.0), np.array(40.0)).rho * 30.0
+            + nominal.theta(np.array(30.0), np.array(40.0)).z * 40.0
+        )  # R dTheta/dR, the same everywhere on a logarithmic spiral
         size = math.hypot(1.0 / math.sin(base), spiral)
         across = -math.sqrt(1.0 - (math.sin(base) / math.sin(tip)) ** 2) / math.sin(base) / size
         along = nominal.side * spiral / size
@@ -72,7 +73,7 @@ def depths(flank, rho, z):
 
 
 def section(depth, distance, cosine):
-    """Place along the flank [mm], the edge at 0, of points at a depth below it and a distance from the edge's surface."""
+    """Place along the flank [mm], from the edge, of points at a depth and a distance from the edge's surface."""
     return -(distance + depth * cosine) / np.sqrt(1.0 - cosine**2)
 
 
@@ -149,7 +150,9 @@ def test_derivatives_are_those_of_differences(make, edge):
     assert_allclose(slopes(lambda one: one.value), (jet.rho, jet.z + 0.0 * rho), atol=2e-8)
     bends = [part + 0.0 * rho for part in jet.bends]
     # of the few points within a step of where the arc begins, or ends, differences say nothing
-    for found, wanted in zip((*slopes(lambda one: one.rho), slopes(lambda one: one.z + 0.0 * rho)[1]), bends, strict=True):
+    for found, wanted in zip(
+        (*slopes(lambda one: one.rho), slopes(lambda one: one.z + 0.0 * rho)[1]), bends, strict=True
+    ):
         assert_allclose(np.sort(np.abs(found - wanted))[:-4], 0.0, atol=1e-6)
 
 

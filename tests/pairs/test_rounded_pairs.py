@@ -65,7 +65,9 @@ def test_radius_above_a_third_of_a_module_is_refused_for_every_gear_at_once():
     scene = parse_scene(SMALL).with_changes(dict.fromkeys(KEYS, 0.91))
     with pytest.raises(InputError) as refused:
         scene.pair()
-    assert refused.value.problems == tuple(f"{key}: found 0.91; allowed up to 0.9 mm, 0.3 normal modules" for key in KEYS)
+    assert refused.value.problems == tuple(
+        f"{key}: found 0.91; allowed up to 0.9 mm, 0.3 normal modules" for key in KEYS
+    )
 
 
 def test_module_of_the_limit_is_the_normal_one():
@@ -86,8 +88,8 @@ def test_arcs_that_meet_on_the_land_are_refused():
         pair.rounded(pinion=EdgeRounding(tip=1.001 * most))
     (problem,) = refused.value.problems
     assert problem == (
-        f"pinion.tip_rounding_mm: found {1.001 * most:g}; allowed up to {most:.4g} mm, with which the arcs of both flanks "
-        f"meet on the tip land, {land:.4g} mm wide"
+        f"pinion.tip_rounding_mm: found {1.001 * most:g}; allowed up to {most:.4g} mm, with which the arcs of both "
+        f"flanks meet on the tip land, {land:.4g} mm wide"
     )
 
 

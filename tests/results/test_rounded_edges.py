@@ -4,7 +4,6 @@ import warnings
 from functools import cache
 
 import numpy as np
-import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.analysis import analyse

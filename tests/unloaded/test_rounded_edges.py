@@ -30,7 +30,9 @@ def dense_points(flank):
     found = [(rho.ravel(), z.ravel())]
     edges = [np.concatenate([grid[k].ravel() for grid in (flank.grid(2, 301), flank.grid(301, 2))]) for k in (0, 1)]
     begin = flank.off_arcs(*edges)
-    found += [tuple(e + share * (b - e) for e, b in zip(edges, begin, strict=True)) for share in np.linspace(0.0, 1.0, 11)]
+    found += [
+        tuple(e + share * (b - e) for e, b in zip(edges, begin, strict=True)) for share in np.linspace(0.0, 1.0, 11)
+    ]
     return (np.concatenate(part) for part in zip(*found, strict=True))
 
 
@@ -47,9 +49,15 @@ def assert_certified(pair, angles):
 
 
 def random_pair(rng):
-    helix, driving, sense = rng.choice([0.0, 12.0, 25.0]), rng.choice(["pinion", "wheel"]), rng.choice(["positive", "negative"])
+    helix, driving, sense = (
+        rng.choice([0.0, 12.0, 25.0]),
+        rng.choice(["pinion", "wheel"]),
+        rng.choice(["positive", "negative"]),
+    )
     errors = Mounting(*np.radians(rng.uniform(-0.5, 0.5, 2)), rng.uniform(-0.1, 0.1), rng.uniform(-2.0, 2.0))
-    crowned = (FlankModifications(lead_crowning=rng.uniform(0.0, 0.02), profile_crowning=rng.uniform(0.0, 0.02)) for _ in "12")
+    crowned = (
+        FlankModifications(lead_crowning=rng.uniform(0.0, 0.02), profile_crowning=rng.uniform(0.0, 0.02)) for _ in "12"
+    )
     pair = gear_pair(*crowned, mounting=errors, helix_deg=helix, driving=driving, sense=sense)
     radii = np.exp(rng.uniform(math.log(0.01), math.log(0.9), (2, 2))).tolist()
     return pair.rounded(*(EdgeRounding(*both) for both in radii))

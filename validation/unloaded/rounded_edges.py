@@ -49,7 +49,9 @@ def random_pair(rng: np.random.Generator) -> GearPair:
     driving, sense = rng.choice(["pinion", "wheel"]), rng.choice(["positive", "negative"])
     tilt = np.radians(rng.uniform(-0.5, 0.5, 2))
     if rng.random() < 0.2:
-        mesh = bevel_mesh((20, 40), outer_module=4.0, face_width=20.0, spiral_angle=math.radians(rng.uniform(0.0, 35.0)))
+        mesh = bevel_mesh(
+            (20, 40), outer_module=4.0, face_width=20.0, spiral_angle=math.radians(rng.uniform(0.0, 35.0))
+        )
         bevel = BevelMounting(offset=rng.uniform(-0.1, 0.1), shaft_angle_error=tilt[0])
         return bevel_pair(mesh, modifications=changes, mounting=bevel, driving=driving, sense=sense)
     helix = math.radians(rng.choice([0.0, 12.0, 25.0]))
