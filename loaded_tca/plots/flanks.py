@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from itertools import pairwise
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -38,6 +38,7 @@ from loaded_tca.results.summary import signed
 ToPicture = Callable[[Array], Array]
 """Takes points (..., 3) of the fixed frame to their places (..., 2) in the picture of a flank."""
 CONTACT_POINTS = "unloaded contact points of all positions and pairs"
+BEGIN_OF_ARC: dict[str, Any] = {"color": "black", "linestyle": "--", "linewidth": 0.6}
 MOST_AREAS = 7
 CELLS_OF_SPIKES = 0.05
 """Part of the cells of a map under pressure that may lie beyond its scale of colours."""
@@ -85,6 +86,8 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     if any(part > LEAST_SEEN * float(np.ptp(height)) for part, height in zip(below, heights, strict=True)):
         not_reached = "flank that the mating gear does not reach"
         handles.append(Patch(facecolor=NOT_REACHED, edgecolor="black", label=not_reached))
+    if pair.sharp is not pair:
+        handles.append(Line2D([], [], **BEGIN_OF_ARC, label="where the arc of a rounded edge begins"))
     pressure = f"pressure drawn at {len(drawn)} of {len(result.path)} positions"
     figure.legend(
         handles=handles, title=pressure, loc="outside lower center", ncols=2, fontsize="small", title_fontsize="small"
@@ -263,4 +266,4 @@ def _draw_arcs(axes: Axes, flank: Flank) -> None:
     if isinstance(flank, RoundedFlank):
         for arc in flank.arcs:
             places = flank.off_arc(arc, *edge_places(flank, arc.edge, max(FINENESS)))
-            axes.plot(*flank.frame.to_picture(*places), color="black", linestyle="--", linewidth=0.6)
+            axes.plot(*flank.frame.to_picture(*places), **BEGIN_OF_ARC)
