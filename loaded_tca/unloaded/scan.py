@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -61,6 +61,10 @@ class Scan:
     height: Array
     score: Array
     reach: Mask
+
+    def only(self, rows: Indices) -> Scan:
+        """The scan at some of the positions."""
+        return replace(self, height=self.height[rows], score=self.score[rows], reach=self.reach[rows])
 
     def hills(self) -> Starts:
         """Starts, one or more for each basin: the summits of the ridges along the face and along the profile."""
