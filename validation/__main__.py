@@ -60,7 +60,7 @@ CASES = (
 )
 
 
-LONG = ("loaded.root_stress_families", "loaded.sensitivities", "studies.robust_design")
+LONG = ("loaded.root_stress_families", "loaded.sensitivities", "studies.robust_design", "unloaded.rounded_edges")
 """Cases of minutes, which the tests leave out."""
 
 

@@ -18,6 +18,7 @@ from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_comp
 from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.compliance.torsion import body_torsion
 from loaded_tca.errors import AccuracyWarning, GeometryError, InputError, named, require
+from loaded_tca.flanks.rounding import sharp
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING, Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
@@ -186,9 +187,9 @@ def require_teeth(pair: GearPair, way_out: str = TEETH_DO_NOT_BEND) -> None:
                 _require_tooth(gear.geometry.unmodified)
         _ = pair.rigid_bores
     for name, gear in gears:
-        if gear.flank is not gear.nominal_flank:
+        if gear.sharp.flank is not gear.nominal_flank:
             try:
-                build_tooth(gear.flanks, gear.form, CHECKED)
+                build_tooth((sharp(gear.flanks[0]), sharp(gear.flanks[1])), gear.form, CHECKED)
             except GeometryError as error:
                 sentence = f"{name}, with its modifications: {error}; it bends like the tooth without them"
                 warnings.warn(sentence, AccuracyWarning, stacklevel=3)

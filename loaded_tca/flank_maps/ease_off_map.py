@@ -133,6 +133,7 @@ def ease_off_map(pair: GearPair, gear: GearName = "pinion", grid: tuple[int, int
     problems = problems_of_map(gear, grid, FEWEST)
     if problems:
         raise InputError(problems)
+    pair = pair.sharp  # the arcs of rounded edges are ten times as deep as what a map shows
     seen = pair if gear == "pinion" else exchanged(pair)
     flank, (rho, z) = seen.pinion.flank, mated_grid(seen, *grid)
     contact = conjugate_contact(seen, rho, z)

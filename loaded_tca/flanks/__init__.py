@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from loaded_tca.flanks.face_milled import FlankAngles, GeneratedFlank
     from loaded_tca.flanks.frame import ConeFrame, CylinderFrame, FlankFrame
     from loaded_tca.flanks.modification import FlankModifications, ModifiedFlank
+    from loaded_tca.flanks.rounding import EdgeRounding, RoundedFlank
     from loaded_tca.flanks.spline import SplineFlank, fitted, measured
     from loaded_tca.flanks.topography import MeasuredDeviations, MeasuredPoints, Topography
     from loaded_tca.flanks.topography_file import read_topography
@@ -20,6 +21,7 @@ else:
 __all__ = [
     "ConeFrame",
     "CylinderFrame",
+    "EdgeRounding",
     "Flank",
     "FlankAngles",
     "FlankFrame",
@@ -29,6 +31,7 @@ __all__ = [
     "MeasuredDeviations",
     "MeasuredPoints",
     "ModifiedFlank",
+    "RoundedFlank",
     "SphericalInvoluteFlank",
     "SplineFlank",
     "Topography",

@@ -31,6 +31,7 @@ from loaded_tca.compliance.half_space import depth_displacement
 from loaded_tca.contact.edges import quarter_space_factor, wedge_factor
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import outward_normal
+from loaded_tca.flanks.rounding import sharp
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
@@ -106,7 +107,7 @@ def edge_compliances(pair: GearPair, separations: Sequence[Separation]) -> list[
                 continue
             numbers, first, count = np.unique(slices.grid[near], return_index=True, return_counts=True)
             end = near[np.lexsort((np.abs(distance[near]), slices.grid[near]))][first]  # of each grid, the nearest one
-            normal, slope = outward_normal(gear.flank, rho[end], z[end]), np.hypot(in_rho[end], in_z[end])
+            normal, slope = outward_normal(sharp(gear.flank), rho[end], z[end]), np.hypot(in_rho[end], in_z[end])
             cosine = (normal[:, 0] * in_rho[end] + normal[:, 2] * in_z[end]) / slope
             factor = np.zeros(count.size)
             for run, angle in enumerate(np.arccos(np.clip(cosine, -1.0, 1.0)).tolist()):

@@ -13,7 +13,7 @@ from loaded_tca.contact import ContactProblem, ContactSolution, solve_problem
 from loaded_tca.contact.adaptive import TOLERANCE_SHARE, refinement
 from loaded_tca.contact.checks import memory_problem
 from loaded_tca.contact.levels import under_other_load
-from loaded_tca.contact.patch import values_at_ends
+from loaded_tca.contact.patch import ends_at_material, values_at_ends
 from loaded_tca.contact.solution import CoarserGrid
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.pair_coupling import BendingModel, Coupling
@@ -22,6 +22,7 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import PointContact, point_contact
 from loaded_tca.separation import Separation
 from loaded_tca.unloaded import ContactPoint
+from loaded_tca.unloaded.arcs import arcs_at
 
 FIRST_CELLS = (16, 16)
 """Grid from which an accuracy is approached, doubled as often as needed."""
@@ -69,6 +70,8 @@ class LoadedContact:
     solution : ContactSolution
     at_relief_start : bool
         Whether the start of a linear relief lies in the contact.
+    at_arc : bool
+        Whether the contact reaches the arc of a rounded edge.
     tolerance : float
         To which the solver kept the contact conditions.
     coupling_deflection : (ny,) array or None [mm]
@@ -81,14 +84,15 @@ class LoadedContact:
     separation: Separation
     solution: ContactSolution
     at_relief_start: bool
+    at_arc: bool = False
     tolerance: float = 1e-6
     coupling_deflection: Array | None = None
     bending: Array | None = None
 
     @property
     def at_edge(self) -> bool:
-        """Whether the contact reaches an edge of a flank."""
-        return bool(self.contact.on_edge) or self.solution.reaches_material_edge
+        """Whether the contact reaches an edge of a flank, or the arc of a rounded one."""
+        return bool(self.contact.on_edge) or self.at_arc or self.solution.reaches_material_edge
 
     @property
     def peak_pressure(self) -> float:
@@ -346,7 +350,8 @@ def _solve_in_box(
         smooth = not _crosses_relief_start(pair, contact, first, expected)
         solution, _ = yield from refinement(solved, grid.accuracy, grid.tolerance, smooth, FIRST_CELLS, expected)
     at_relief_start = _crosses_relief_start(pair, contact, separation, solution.pressure_on_material)
-    return LoadedContact(contact, separation, solution, at_relief_start, tolerance, displaced, bent)
+    at_arc = _reaches_arc(pair, separation, solution.pressure)
+    return LoadedContact(contact, separation, solution, at_relief_start, at_arc, tolerance, displaced, bent)
 
 
 def contact_problem(
@@ -390,6 +395,14 @@ def _crosses_relief_start(pair: GearPair, contact: ContactPoint, separation: Sep
         if values.min() < 0.0 < values.max():
             return True
     return False
+
+
+def _reaches_arc(pair: GearPair, separation: Separation, pressure: Array) -> bool:
+    """Whether cells on the arc of a rounded edge are under pressure, or the contact goes on to where one begins."""
+    if pair.sharp is pair:
+        return False
+    on_arc = np.asarray(arcs_at(pair, separation.points).any(axis=-1))
+    return bool(pressure[on_arc].any()) or ends_at_material(np.where(on_arc, 0.0, pressure), on_arc)
 
 
 def expected_pressure(separation: Separation) -> Array:

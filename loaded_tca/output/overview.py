@@ -80,15 +80,19 @@ def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
 
 
 def _departures(scene: Scene) -> Iterator[Row]:
-    """Mounting errors and modifications that a scene asks for, by their keys."""
+    """Mounting errors, rounded edges and modifications that a scene asks for, by their keys."""
     yield from _changed(scene.mounting, "mounting.") or [("mounting errors", "none")]
     for name, gear in (("pinion", scene.pinion), ("wheel", scene.wheel)):
+        for edge, radius in (("tip", gear.tip_rounding_mm), ("side", gear.side_rounding_mm)):
+            yield f"{name}.{edge}_rounding_mm", f"{radius:g}" if radius else "sharp"
         yield from _changed(gear.modifications, f"{name}.modifications.") or [(f"{name}.modifications", "none")]
 
 
 def _spline_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     """Forms of flanks that are not analytic, and how closely their B-splines follow their points."""
-    for name, gear, flank in (("pinion", scene.pinion, pair.pinion.flank), ("wheel", scene.wheel, pair.wheel.flank)):
+    gears = ("pinion", scene.pinion, pair.pinion.sharp), ("wheel", scene.wheel, pair.wheel.sharp)
+    for name, gear, made in gears:
+        flank = made.flank
         if not isinstance(flank, SplineFlank):
             continue
         yield f"{name}.flank.form", gear.flank.form

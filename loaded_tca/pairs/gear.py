@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -10,9 +10,11 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.rounding import EdgeRounding, RoundedFlank, sharp
 from loaded_tca.material import Material
 from loaded_tca.tooth.form import ToothForm
 from loaded_tca.tooth.geometry import ToothGeometry
+from loaded_tca.tooth.rounded import RoundedTooth, rounding_problems
 
 DEFAULT_BORE = 0.55
 """Bore of a gear that has none given, or journals of a solid gear, over the root diameter."""
@@ -58,6 +60,33 @@ class Gear:
         """Gear in contact with its flank of the side s = +1 or -1."""
         nominal = geometry.nominal(side)
         return cls(geometry.modified(nominal), nominal, geometry, material, bore_diameter)
+
+    def rounded(self, rounding: EdgeRounding, module: float) -> Gear:
+        """The gear with rounded tip edges and face ends; itself if both are sharp.
+
+        Parameters
+        ----------
+        rounding : EdgeRounding
+        module : float [mm]
+            Normal module of the pair.
+
+        Raises
+        ------
+        InputError
+            If a radius is larger than 0.3 normal modules, or leaves no flank or no tip land.
+        """
+        if not rounding:
+            return self
+        if problems := rounding_problems(self.geometry, self.nominal_flank, rounding, module):
+            raise InputError(problems)
+        flank, geometry = RoundedFlank(sharp(self.flank), rounding), RoundedTooth(self.geometry, rounding)
+        return replace(self, flank=flank, geometry=geometry)
+
+    @cached_property
+    def sharp(self) -> Gear:
+        """The gear whose flank in contact has sharp edges; itself if they are."""
+        flank = sharp(self.flank)
+        return self if flank is self.flank else replace(self, flank=flank)
 
     @cached_property
     def nominal_back(self) -> Flank:

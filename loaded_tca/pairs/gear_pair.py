@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -26,6 +27,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.rounding import EdgeRounding
 from loaded_tca.material import contact_modulus
 from loaded_tca.pairs.gear import Gear
 
@@ -109,6 +111,40 @@ class GearPair:
             pinion=replace(self.pinion, flank=pinion or self.pinion.flank),
             wheel=replace(self.wheel, flank=wheel or self.wheel.flank),
         )
+
+    def rounded(self, pinion: EdgeRounding = EdgeRounding(), wheel: EdgeRounding = EdgeRounding()) -> GearPair:
+        """The pair with rounded tip edges and face ends; itself if all are sharp.
+
+        Raises
+        ------
+        InputError
+            If a radius is larger than 0.3 normal modules, or leaves no flank or no tip land; of both gears at once.
+
+        Examples
+        --------
+        >>> from loaded_tca.gears import CylindricalGear, CylindricalMesh
+        >>> from loaded_tca.pairs.cylindrical import cylindrical_pair
+        >>> gears = [CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)]
+        >>> pair = cylindrical_pair(CylindricalMesh(*gears)).rounded(pinion=EdgeRounding(tip=0.2))
+        >>> pair.pinion.flank.rounding
+        EdgeRounding(tip=0.2, side=0.0)
+        """
+        gears, problems = [], []
+        for name, gear, rounding in (("pinion", self.pinion, pinion), ("wheel", self.wheel, wheel)):
+            try:
+                gears.append(gear.rounded(rounding, self.module))
+            except InputError as error:
+                problems += [f"{name}.{problem}" for problem in error.problems]
+        if problems:
+            raise InputError(problems)
+        return replace(self, pinion=gears[0], wheel=gears[1]) if pinion or wheel else self
+
+    @cached_property
+    def sharp(self) -> GearPair:
+        """The pair whose flanks in contact have sharp edges; itself if they have."""
+        pinion, wheel = self.pinion.sharp, self.wheel.sharp
+        same = pinion is self.pinion and wheel is self.wheel
+        return self if same else replace(self, pinion=pinion, wheel=wheel)
 
     @property
     def rigid_bores(self) -> tuple[float, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from itertools import pairwise
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -19,6 +19,7 @@ from matplotlib.patches import Patch, Polygon
 from loaded_tca.arrays import Array
 from loaded_tca.flank_maps.conjugate import GearName
 from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.rounding import RoundedFlank, edge_places
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.plots.style import (
     ACCENT,
@@ -37,6 +38,7 @@ from loaded_tca.results.summary import signed
 ToPicture = Callable[[Array], Array]
 """Takes points (..., 3) of the fixed frame to their places (..., 2) in the picture of a flank."""
 CONTACT_POINTS = "unloaded contact points of all positions and pairs"
+BEGIN_OF_ARC: dict[str, Any] = {"color": "black", "linestyle": "--", "linewidth": 0.6}
 MOST_AREAS = 7
 CELLS_OF_SPIKES = 0.05
 """Part of the cells of a map under pressure that may lie beyond its scale of colours."""
@@ -84,6 +86,8 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     if any(part > LEAST_SEEN * float(np.ptp(height)) for part, height in zip(below, heights, strict=True)):
         not_reached = "flank that the mating gear does not reach"
         handles.append(Patch(facecolor=NOT_REACHED, edgecolor="black", label=not_reached))
+    if pair.sharp is not pair:
+        handles.append(Line2D([], [], **BEGIN_OF_ARC, label="where the arc of a rounded edge begins"))
     pressure = f"pressure drawn at {len(drawn)} of {len(result.path)} positions"
     figure.legend(
         handles=handles, title=pressure, loc="outside lower center", ncols=2, fontsize="small", title_fontsize="small"
@@ -245,6 +249,7 @@ def _draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:
         regions.append(Polygon(corners, facecolor=colour, edgecolor="black"))
         axes.add_patch(regions[-1])
     lower, upper = regions[0].get_xy().min(axis=0), regions[0].get_xy().max(axis=0)
+    _draw_arcs(axes, flank)
     margin = 0.08 * (upper - lower)
     axes.set_xlim(lower[0] - margin[0], upper[0] + margin[0])
     axes.set_ylim(lower[1] - margin[1], upper[1] + margin[1])
@@ -254,3 +259,11 @@ def _draw_flank(axes: Axes, name: str, flank: Flank, start: float) -> Polygon:
     axes.set_xlabel(flank.frame.labels[0])
     axes.set_ylabel(flank.frame.labels[1])
     return regions[0]
+
+
+def _draw_arcs(axes: Axes, flank: Flank) -> None:
+    """Dashed lines where the arcs of rounded edges begin."""
+    if isinstance(flank, RoundedFlank):
+        for arc in flank.arcs:
+            places = flank.off_arc(arc, *edge_places(flank, arc.edge, max(FINENESS)))
+            axes.plot(*flank.frame.to_picture(*places), **BEGIN_OF_ARC)

@@ -15,6 +15,7 @@ from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.tooth_contact import LoadedContact
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import line_contact
+from loaded_tca.results.edge_cell import edge_cell
 from loaded_tca.results.load_factors import load_factors
 from loaded_tca.results.mesh_cycle import MeshCycle, dataset_of
 from loaded_tca.results.pressure_map import PressureMap
@@ -116,11 +117,12 @@ def _numbers(
     length = min(length, longest)
     smooth = of_slices is None and solution.load > 0.0
     hertz, of_material = _hertz(pair, loaded, length), replace(one, pressure=solution.pressure_on_material)
+    at_edge, rounded = edge_cell(pair, of_material) if loaded.at_edge else ((0, 0), False)
     return {
         "normal_force": solution.load,
         "peak_pressure": peak,
-        "edge_pressure": float(of_material.pressure[of_material.edge_cell]) if loaded.at_edge else math.nan,
-        "edge_is_rounded": False,
+        "edge_pressure": float(of_material.pressure[at_edge]) if loaded.at_edge else math.nan,
+        "edge_is_rounded": rounded,
         "central_pressure": loaded.central_pressure,
         "peak_radius": radius,
         "peak_axial": axial,

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
+from loaded_tca.results.edge_cell import edge_cell
 from loaded_tca.results.root_figures import root_figures
 
 if TYPE_CHECKING:
@@ -175,7 +176,7 @@ def _edge_place(result: MeshCycle, torque: int, edge: tuple[int, int] | None) ->
     one = None if edge is None else result.maps[torque][edge[0]][edge[1]]
     if one is None:
         return math.nan, math.nan
-    across, along = one.edge_cell
+    (across, along), _ = edge_cell(result.gear_pair, one)
     return one.place(one.x[across], one.y[along])
 
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
 
 from loaded_tca.flanks.base import EDGE_NAMES
+from loaded_tca.results.edge_cell import arc_cells
 from loaded_tca.results.mesh_cycle import MeshCycle
 
 NAMES = tuple(f"{gear} {edge}" for gear in ("pinion", "wheel") for edge in EDGE_NAMES)
@@ -24,7 +25,7 @@ def reached_edges(result: MeshCycle) -> NDArray[np.bool_]:
     -------
     (m, n, pairs, 8) array of bool
         Over torques, positions, pairs, and ``NAMES``: those that hold the unloaded contact point of a pair under load,
-        and those beyond which the cells beside its pressure lie.
+        and those beyond which, or on whose arcs, the cells beside its pressure lie.
     """
     pair = result.gear_pair
     held = np.stack([path.edges for path in result.paths], axis=1)
@@ -41,4 +42,6 @@ def reached_edges(result: MeshCycle) -> NDArray[np.bool_]:
             *pair.wheel.flank.edges(radius, axial),
         ]
         reached[t, n, k] |= [bool((np.broadcast_to(edge.value, row.shape) < 0.0).any()) for edge in edges]
+        if pair.sharp is not pair:
+            reached[t, n, k] |= arc_cells(pair, one)[one.pressure > 0.0].any(axis=0)
     return reached

@@ -149,7 +149,9 @@ def largest_slice_pressures(pair: GearPair, contacts: Sequence[UnderPressure]) -
         for name in ("x", "y", "line_load")
     )
     axes = np.array([separation.axes for _, separation, _ in contacts])
-    curvature = np.maximum(NormalGap(pair, [contact for contact, *_ in contacts], axes).curvature_across(x, y), 0.0)
+    curvature = np.maximum(
+        NormalGap(pair.sharp, [contact for contact, *_ in contacts], axes).curvature_across(x, y), 0.0
+    )
     pressure = np.sqrt(line_load * pair.contact_modulus * curvature / math.pi)
     cap = math.inf if pair.max_pressure is None else pair.max_pressure
     found = []

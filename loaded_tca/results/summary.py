@@ -97,8 +97,12 @@ def summary_text(title: str, scope: str, figures: Sequence[Figures]) -> str:
     figures : sequence of mapping
         Of each torque, as ``MeshCycle.key_figures`` gives them.
     """
+    rounded = any(entry.get("edge_is_rounded", False) for entry in figures)
     rows = [
-        (label, [" | ".join(shown(entry.get(name, math.nan), name) for name in names) for entry in figures])
+        (
+            label.replace("a sharp edge", "an edge") if rounded else label,
+            [" | ".join(shown(entry.get(name, math.nan), name) for name in names) for entry in figures],
+        )
         for label, names in ROWS
         if not any(part in name for name in names for part in ONLY_IF_KNOWN)
         or any(math.isfinite(entry.get(name, math.nan)) for entry in figures for name in names)

@@ -77,7 +77,12 @@ def warn_of_accuracy(
 def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[str]:
     solution = loaded.solution
     found = []
-    if loaded.at_edge:
+    if loaded.at_arc:
+        found.append(
+            "the contact reaches the arc of a rounded edge, which the grid does not resolve: the edge pressure is "
+            "mesh-dependent"
+        )
+    elif loaded.at_edge:
         edge = "the contact reaches an edge of a flank, where the pressure of the map is mesh-dependent"
         found.append(edge + ("" if grid.free_edges else "; the free edge is left out (analysis.free_edges)"))
     if loaded.at_relief_start:

@@ -11,6 +11,7 @@ import numpy as np
 from loaded_tca.errors import named
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.modification import FlankModifications
+from loaded_tca.flanks.rounding import EdgeRounding
 from loaded_tca.flanks.spline import DEFAULT_POINTS, fitted, measured
 from loaded_tca.flanks.topography import MeasuredDeviations, MeasuredPoints, Topography
 from loaded_tca.material import Material
@@ -58,6 +59,11 @@ def build_modifications(pinion: GearSection, wheel: GearSection) -> tuple[FlankM
         FlankModifications(**in_base_units(pinion.modifications)),
         FlankModifications(**in_base_units(wheel.modifications)),
     )
+
+
+def build_rounding(gear: GearSection) -> EdgeRounding:
+    """Return the radii of the edges of a gear's teeth."""
+    return EdgeRounding(gear.tip_rounding_mm, gear.side_rounding_mm)
 
 
 def build_materials(materials: tuple[ElasticMaterial, ElasticMaterial]) -> tuple[Material, Material]:

@@ -59,6 +59,27 @@ class Number:
 
 
 @dataclass(frozen=True)
+class ZeroOr:
+    """Zero, or a number between two limits above it."""
+
+    number: Number
+
+    @property
+    def allowed(self) -> str:
+        """The choice in words."""
+        return f"0, or {self.number.allowed}"
+
+    def read(self, value: Any) -> float:
+        """Take zero, and what the number takes."""
+        if _is_a(value, Real) and value == 0.0:
+            return 0.0
+        try:
+            return self.number.read(value)
+        except ValueError:
+            raise _refusal(self, value) from None
+
+
+@dataclass(frozen=True)
 class Whole:
     """A whole number between two limits, both allowed."""
 

@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Literal, TypeVar
 from loaded_tca.errors import InputError, require
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING
 from loaded_tca.pairs.gear_pair import GearPair, Sense
-from loaded_tca.scene.build import described_gear, in_base_units
+from loaded_tca.scene.build import build_rounding, described_gear, in_base_units
 from loaded_tca.scene.keys import Choice, Line, key
 from loaded_tca.scene.section import (
     Rule,
@@ -152,11 +152,12 @@ class Scene(Section, ABC):
         require((known, f"sense: {sense!r:.60} is not 'positive' or 'negative'"))
         pair = self.analytic_pair(sense or self.sense)
         side = pair.pinion.flank.side if sense in (None, self.sense) else -pair.pinion.flank.side
-        return replace(
+        described = replace(
             pair,
             pinion=described_gear(pair.pinion, self.pinion.flank, "pinion", side),
             wheel=described_gear(pair.wheel, self.wheel.flank, "wheel", side),
         )
+        return described.rounded(build_rounding(self.pinion), build_rounding(self.wheel))
 
     @property
     def rigid_bores(self) -> tuple[float, float] | None:

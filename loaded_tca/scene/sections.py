@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from loaded_tca.flanks.modification import NO_POLYNOMIAL
+from loaded_tca.flanks.rounding import LEAST_RADIUS
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING, SOFTEST
 from loaded_tca.scene.flank_form import FlankForm
-from loaded_tca.scene.keys import Choice, Line, List, Number, Whole, above_zero, key
+from loaded_tca.scene.keys import Choice, Line, List, Number, Whole, ZeroOr, above_zero, key
 from loaded_tca.scene.section import Rule, Section, subsection
 
 AMOUNT_um = Number(0.0, 10000.0)
@@ -23,6 +24,7 @@ END_mm = above_zero(10000.0)
 ERROR_deg = Number(-10.0, 10.0)
 ERROR_mm = Number(-1000.0, 1000.0)
 TORQUE_Nm = Number(0.0, 1e9)
+ROUNDING_mm = ZeroOr(Number(LEAST_RADIUS, 1000.0))
 DRIVING = Choice(("pinion", "wheel"))
 SENSE = Choice(("positive", "negative"))
 
@@ -177,6 +179,12 @@ class GearSection(Section):
         "bore diameter, held rigid; 0: a solid gear, held by journals of 0.55 of the root diameter at both faces",
         None,
         "0.55 of the root diameter where teeth bend",
+    )
+    tip_rounding_mm: float = key(
+        ROUNDING_mm, "radius of both tip edges of the teeth, up to 0.3 normal modules; 0: sharp", 0.0
+    )
+    side_rounding_mm: float = key(
+        ROUNDING_mm, "radius of the edges at both ends of the face, up to 0.3 normal modules; 0: sharp", 0.0
     )
     modifications: Modifications = subsection(Modifications, "material removed from the flanks")
     flank: FlankForm = subsection(FlankForm, "how the flanks are described")

@@ -275,13 +275,14 @@ def _grown(pair: GearPair, changes: Sequence[PairChange], pinion: FlankPoints, w
         per_turn = 1.0 / points.steepness
         per_length = -own.flank.side * own.flank.gradient_norm(points.rho, points.z).value * per_turn
         for key, change in enumerate(changes):
-            below, above = (getattr(side, name).flank for side in (change.below, change.above))
             if not change.key.startswith(name):
                 continue
-            if change.of_modifications and not isinstance(above, SplineFlank):
-                grown[gear, key] = removal_change(below, above, points.rho, points.z) * per_length
+            below, above = (getattr(side, name) for side in (change.below, change.above))
+            edges = below.sharp.flank, above.sharp.flank  # the arcs of rounded edges are those of unmodified flanks
+            if change.of_modifications and not isinstance(edges[1], SplineFlank):
+                grown[gear, key] = removal_change(*edges, points.rho, points.z) * per_length
             else:
-                low, high = (flank.theta(points.rho, points.z).value for flank in (below, above))
+                low, high = (one.flank.theta(points.rho, points.z).value for one in (below, above))
                 grown[gear, key] = (high - low) * per_turn
             grown[gear, key] /= change.difference
     for key, change in enumerate(changes):

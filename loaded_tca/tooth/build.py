@@ -11,6 +11,7 @@ import numpy as np
 from loaded_tca.arrays import Array, count_problems
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.rounding import RoundedFlank, sharp
 from loaded_tca.tooth.fillet import ArcFillet, Fillet, FilletCurve
 from loaded_tca.tooth.form import ToothForm
 from loaded_tca.tooth.profile import Profile, profile_of
@@ -86,7 +87,13 @@ def build_tooth(flanks: tuple[Flank, Flank], form: ToothForm, resolution: Resolu
     coordinate, land = sides[0].coordinate, resolution.land
     space = _Space(sides, form.root_radius(coordinate), 2.0 * math.pi / form.teeth, resolution.fillet)
     (plus_radius, plus), (minus_radius, minus) = space.halves(_fitting(space, form))
-    _check_thickness(plus + minus, coordinate, resolution)
+    if any(isinstance(flank, RoundedFlank) for flank in flanks):
+        build_tooth((sharp(flanks[0]), sharp(flanks[1])), form, resolution)  # what cannot exist with sharp edges
+        lacking = np.maximum(-0.5 * (plus + minus)[: resolution.flank], 0.0)
+        plus[: resolution.flank] += lacking  # in its corners a tooth is thinner than the arcs of all edges need
+        minus[: resolution.flank] += lacking
+    else:
+        _check_thickness(plus + minus, coordinate, resolution)
     right = 0.5 * (space.pitch + plus[-1] - minus[-1])
     left = right - space.pitch
     root, tip = (np.broadcast_to(radius, (land, len(coordinate))) for radius in (space.root, plus_radius[0]))

@@ -9,6 +9,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.rounding import RoundedFlank
 from loaded_tca.tooth.sections import Sections
 
 SAME_SECTION = 1e-9
@@ -70,7 +71,7 @@ def profile_of(flank: Flank, sections: Sections, half_thickness_angle: float, co
     GeometryError
         If a column of the flank's grid does not lie on one section.
     """
-    rho, z = flank.grid(*counts)
+    rho, z = flank.drawn_grid(*counts) if isinstance(flank, RoundedFlank) else flank.grid(*counts)
     coordinate = sections.coordinate(rho, z)
     if np.ptp(coordinate, axis=0).max() > SAME_SECTION * float(np.hypot(rho, z).max()):
         raise GeometryError("the columns of the flank's grid do not lie on the sections of the tooth")

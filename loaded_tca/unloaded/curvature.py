@@ -5,7 +5,8 @@ wheel's axis over r_b2. In coordinates xi of the tangent plane, with J = d xi/d(
 
 .. math:: B = -\frac{l_2}{r_{b2}} J^{-T} \Bigl( \nabla^2 e - \sum_k e_{,\xi_k} \nabla^2 \xi_k \Bigr) J^{-1}
 
-is the difference of the curvature tensors of the two flanks (Johnson 1985, eq. 4.3: gap = x.B.x/2).
+is the difference of the curvature tensors of the two flanks (Johnson 1985, eq. 4.3: gap = x.B.x/2). Flanks with rounded
+edges count as sharp ones here: on the arc of a face end, across and along would change places.
 """
 
 from __future__ import annotations
@@ -62,6 +63,7 @@ def relative_curvatures(pair: GearPair, contacts: Sequence[ContactPoint]) -> lis
 
 def _curvatures(pair: GearPair, contacts: list[ContactPoint]) -> Iterator[RelativeCurvature]:
     """Curvatures of n contact points, each in a row of its own, so that none depends on the others."""
+    pair = pair.sharp
     point, normal = np.array([c.point for c in contacts]), np.array([c.normal for c in contacts])
     places = [(c.pinion_angle, c.pinion_radius, c.pinion_axial, c.wheel_lever) for c in contacts]
     angle, rho, z, lever = np.array(places).T[..., None]  # (n, 1) each

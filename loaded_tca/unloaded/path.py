@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, Generic, TypeVar, overload
 
 import numpy as np
@@ -14,8 +14,9 @@ from loaded_tca.arrays import Array, Indices, Mask, finite_row
 from loaded_tca.errors import AccuracyWarning, GeometryError, InputError
 from loaded_tca.flanks.base import EDGE_NAMES, outward_normal
 from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
+from loaded_tca.unloaded.arcs import past_tangents
 from loaded_tca.unloaded.ease_off import EaseOff, Station
-from loaded_tca.unloaded.line import find_lines
+from loaded_tca.unloaded.line import Lines, find_lines
 from loaded_tca.unloaded.reduced import FEASIBLE
 from loaded_tca.unloaded.search import FirstTouch, first_touch, spread
 
@@ -24,6 +25,8 @@ POSITIONS = 21
 EDGE_SLOPE = 1e-9
 """Slope of the ease-off against an edge above which the contact is held by it: far above rounding (1e-13), far
 below any slope that an engineer's modification or mounting error gives."""
+ON_ARC = 1e-7
+"""Length past the beginning of an arc, over the module, from which a contact lies on it: a place is known closer."""
 
 Number = TypeVar("Number")
 Whole = TypeVar("Whole")
@@ -81,12 +84,12 @@ class ContactPath(_Contact[Array, Indices, Mask]):
     pinion_lever, wheel_lever : (n,) array [mm]
         Torque of a unit normal force about each axis.
     in_contact, on_edge, on_relief_start, on_line : (n,) bool array
-        Whether the pair is in contact; whether the point lies on a tip, root or side edge; on the start of a linear
-        relief; whether the contact is a line.
+        Whether the pair is in contact; whether the point lies on a tip, root or side edge, or on the arc of a rounded
+        one; on the start of a linear relief; whether the contact is a line.
     line_ends : (n, 2, 3) array [mm]
-        Ends of the line; NaN for a point contact.
+        Ends of the line, on the edges as if they were sharp; NaN for a point contact.
     edges : (n, 8) bool array
-        The edges that hold the point: ``EDGE_NAMES`` of the pinion, then of the wheel.
+        The edges that hold the point, or on whose arcs it lies: ``EDGE_NAMES`` of the pinion, then of the wheel.
     iterations : (n,) int array
         Newton steps of the ascent that found it.
     residual : (n,) array
@@ -200,14 +203,15 @@ def _path(pair: GearPair, phi1: Array, touch: FirstTouch) -> ContactPath:
     angle, rho, z = phi1[rows], touch.rho[rows].copy(), touch.z[rows].copy()
     field = EaseOff(pair, touch.beyond[rows])
     multipliers = np.where(touch.multipliers[rows] > EDGE_SLOPE, touch.multipliers[rows], 0.0)
-    lines = find_lines(field, angle, rho, z, multipliers)
+    rounded = past_tangents(field.station(angle, rho, z)) > ON_ARC * pair.module
+    lines = _lines(field, angle, rho, z, multipliers, np.asarray(rounded.any(axis=-1)))
     rho[lines.flat], z[lines.flat] = lines.rho, lines.z
     line_ends = np.full((len(rows), 2, 3), np.nan)
     line_ends[lines.rows] = lines.ends
     station = field.station(angle, rho, z)
     relief_start = field.edge_is_relief_start()
     error = pair.driving * field.value(station, angle) / pair.base_radii[1]
-    known = _contact(pair, field, station, multipliers > 0.0)
+    known = _contact(pair, field, station, multipliers > 0.0, rounded)
     known |= {
         "wheel_angle": error + pair.ratio * angle,
         "transmission_error": error,
@@ -222,8 +226,22 @@ def _path(pair: GearPair, phi1: Array, touch: FirstTouch) -> ContactPath:
     return ContactPath(pinion_angle=phi1, **{name: spread(part, rows, len(phi1)) for name, part in known.items()})
 
 
-def _contact(pair: GearPair, field: EaseOff, station: Station, held: Mask) -> dict[str, Any]:
-    """Normals, levers, edges and residual of the points; ``held`` tells the edges and relief starts they rest on."""
+def _lines(field: EaseOff, phi1: Array, rho: Array, z: Array, multipliers: Array, rounded: Mask) -> Lines:
+    """Lines among the first touches (n,); those that lie on no arc are as long as with sharp edges."""
+    parts = []
+    for edges, there in ((EaseOff(field.pair.sharp, field.beyond), ~rounded), (field, rounded)):
+        rows = np.flatnonzero(there)
+        if rows.size:
+            found = find_lines(edges.restricted(rows), phi1[rows], rho[rows], z[rows], multipliers[rows])
+            parts.append(replace(found, rows=rows[found.rows], flat=rows[found.flat]))
+    return Lines(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(Lines)))
+
+
+def _contact(pair: GearPair, field: EaseOff, station: Station, held: Mask, rounded: Mask) -> dict[str, Any]:
+    """Normals, levers, edges and residual of the points.
+
+    ``held`` tells the edges and relief starts they rest on, ``rounded`` the edges on whose arcs they lie.
+    """
     pinion_basis = cylindrical_basis(np.arctan2(station.point[:, 1], station.point[:, 0]))
     out_of_pinion, out_of_wheel = (
         np.einsum("nk,nkj->nj", outward_normal(flank, rho, z), basis)
@@ -232,8 +250,9 @@ def _contact(pair: GearPair, field: EaseOff, station: Station, held: Mask) -> di
             (pair.wheel.flank, station.wheel_rho, station.wheel_z, station.wheel_basis),
         )
     )
-    edges = held[:, ~field.edge_is_relief_start()]
-    use_wheel = _ends(field, station, held, 0) & ~_ends(field, station, held, 1)
+    edges = held[:, ~field.edge_is_relief_start()] | rounded
+    ends = (_ends(field, station, held, gear) | on.any(axis=-1) for gear, on in enumerate(np.split(rounded, 2, axis=1)))
+    use_wheel = next(ends) & ~next(ends)
     normal = np.where(use_wheel[:, None], -out_of_wheel, out_of_pinion)
     arm = station.point - pair.wheel_origin
     return {

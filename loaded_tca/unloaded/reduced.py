@@ -11,7 +11,7 @@ ascent that creeps outside the region (below a base cone the field has no meanin
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from itertools import combinations
 
 import numpy as np
@@ -211,6 +211,10 @@ class Maxima:
     multipliers: Array
     iterations: Array
     converged: Array
+
+    def only(self, rows: Array) -> Maxima:
+        """Some of the ascents."""
+        return Maxima(*(getattr(self, one.name)[rows] for one in fields(Maxima)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.flanks.base import Flank
+from loaded_tca.flanks.rounding import RoundedFlank
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import ROOM
@@ -60,6 +61,10 @@ class Scan:
     height: Array
     score: Array
     reach: Mask
+
+    def only(self, rows: Indices) -> Scan:
+        """The scan at some of the positions."""
+        return replace(self, height=self.height[rows], score=self.score[rows], reach=self.reach[rows])
 
     def hills(self) -> Starts:
         """Starts, one or more for each basin: the summits of the ridges along the face and along the profile."""
@@ -187,7 +192,7 @@ def _summits(score: Array, inside: Mask) -> Mask:
 
 
 def _points(flank: Flank, shape: tuple[int, int], edge: int) -> tuple[Array, Array]:
-    """(rho, z) of a grid over the flank and of dense points on its four edges [mm]."""
+    """(rho, z) of a grid over the flank and of dense points on its four edges, or where their arcs begin [mm]."""
     grids = (flank.grid(*shape), flank.grid(edge, 2), flank.grid(2, edge))
     rho, z = (np.concatenate([grid[k].ravel() for grid in grids]) for k in (0, 1))
-    return rho, z
+    return flank.off_arcs(rho, z) if isinstance(flank, RoundedFlank) else (rho, z)

@@ -12,9 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Indices
+from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.unloaded.arcs import moved_along_arcs, on_arcs
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import Maxima, climb
 from loaded_tca.unloaded.scan import Scan, Starts, inside_pinion, region_corners, scan_pinion
@@ -31,6 +32,8 @@ NUDGE = 0.05
 """Step away from a saddle, as a fraction of the flank."""
 CLOSE = (1e-4, 1e-3, 1e-2)
 """Steps away from a corner along its edges, as a fraction of the flank."""
+SAME = 1e-3
+"""Distance of the ends of two ascents, over the module, within which one start on an arc is enough."""
 OFF_EDGE = 0.01
 """Distance by which such a step may leave the region, relative to it, since edges are bent."""
 
@@ -78,8 +81,80 @@ def first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
 
 
 def _first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
-    scan = scan_pinion(pair, phi1)
-    found = _ascend(pair, phi1, *scan.hills())
+    """First touch of sharp edges; where that lies on the arc of a rounded one, of flanks with their arcs.
+
+    Rounding only takes material off: what touches first with sharp edges, and lies on no arc, still does.
+    """
+    scan = scan_pinion(pair.sharp, phi1)
+    found = _ascend(pair.sharp, phi1, *scan.hills())
+    if pair.sharp is pair:
+        return _certified(pair, phi1, scan, found)[0]
+    touch = _best(phi1, found)
+    rest = np.flatnonzero(~_touches_arc(pair, phi1, touch))
+    if rest.size:  # where an arc is reached it is certified with the arcs, below
+        part, more = _certified(pair.sharp, phi1[rest], scan.only(rest), _renumbered(found, rest, len(phi1)))
+        touch, found = _merged(touch, rest, part), found + [one._replace(owner=rest[one.owner]) for one in more]
+    rows = np.flatnonzero(_touches_arc(pair, phi1, touch))
+    if not rows.size:
+        return touch
+    starts = _onto_arcs(pair, phi1[rows], _renumbered(found, rows, len(phi1)))
+    return _merged(touch, rows, _certified(pair, phi1[rows], scan_pinion(pair, phi1[rows]), starts)[0])
+
+
+def _touches_arc(pair: GearPair, phi1: Array, touch: FirstTouch) -> Mask:
+    """Positions (n,) at which the first touch of sharp edges lies where arcs have taken material off."""
+    result, rows = np.zeros(len(phi1), dtype=bool), np.flatnonzero(touch.in_contact)
+    field = EaseOff(pair, touch.beyond[rows])
+    result[rows] = on_arcs(field, phi1[rows], touch.rho[rows], touch.z[rows]).any(axis=-1)
+    return result
+
+
+def _renumbered(found: list[_Ascents], rows: Indices, count: int) -> list[_Ascents]:
+    """The ascents of some of ``count`` positions, which are numbered anew."""
+    number = np.full(count, -1)
+    number[rows] = np.arange(rows.size)
+    kept = [(ascents, np.flatnonzero(number[ascents.owner] >= 0)) for ascents in found]
+    return [_Ascents(number[one.owner[at]], one.beyond[at], one.peaks.only(at)) for one, at in kept]
+
+
+def _merged(touch: FirstTouch, rows: Indices, part: FirstTouch) -> FirstTouch:
+    """First touches of which those at some positions are others."""
+    merged = {one.name: getattr(touch, one.name).copy() for one in fields(FirstTouch)}
+    for name, values in merged.items():
+        values[rows] = getattr(part, name)
+    return FirstTouch(**merged)
+
+
+def _onto_arcs(pair: GearPair, phi1: Array, found: list[_Ascents]) -> list[_Ascents]:
+    """Ascents over flanks with rounded edges from those over sharp ones.
+
+    Ends on no arc stay what they are. From those on arcs that are higher the arcs are climbed.
+    """
+    on_flank, ends = [], []
+    for ascents in found:
+        at = np.flatnonzero(ascents.peaks.converged)
+        owner, beyond, ended = ascents.owner[at], ascents.beyond[at], ascents.peaks.only(at)
+        on = on_arcs(EaseOff(pair, beyond), phi1[owner], ended.rho, ended.z)
+        on = np.asarray(on.any(axis=-1))
+        on_flank.append(_Ascents(owner[~on], beyond[~on], ended.only(~on)))
+        ends.append((owner[on], beyond[on], ended.only(on)))
+    level = np.full(len(phi1), -np.inf)
+    for ascents in on_flank:
+        np.maximum.at(level, ascents.owner, ascents.peaks.value)
+    starts = []
+    for owner, beyond, ended in ends:
+        place = np.column_stack([owner, np.stack([ended.rho, ended.z], axis=-1) / (SAME * pair.module), beyond])
+        _, first = np.unique(place.round(), axis=0, return_index=True)
+        first = first[ended.value[first] > level[owner[first]]]
+        own, sides, ended = owner[first], beyond[first], ended.only(first)
+        angle = phi1[own]
+        rho, z = moved_along_arcs(EaseOff(pair, sides), angle, ended.rho, ended.z, ended.multipliers)
+        starts.append((own, rho, z))
+    return on_flank + _ascend(pair, phi1, *(np.concatenate(part) for part in zip(*starts, strict=True)))
+
+
+def _certified(pair: GearPair, phi1: Array, scan: Scan, found: list[_Ascents]) -> tuple[FirstTouch, list[_Ascents]]:
+    """The highest of the ascents and of more, from whatever the scan and the wheel's flank see above it."""
     result, rows = _best(phi1, found), np.arange(len(phi1))
     close = _beside_corners(pair, phi1, result)
     if close[0].size:
@@ -97,7 +172,7 @@ def _first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
         )
         owner, rho, z = (np.concatenate(part) for part in zip(*parts, strict=True))
         if not owner.size:
-            return result
+            return result, found
         found += _ascend(pair, phi1, owner, rho, z)
         result, rows = _best(phi1, found), np.unique(owner)
     missed = np.concatenate([owner for owner, *_ in _missed(pair, phi1, scan, result, rows)])
@@ -105,7 +180,7 @@ def _first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
         angle = phi1[missed.min()]
         message = f"unloaded contact: no ascent reached the height of the scan at pinion angle {angle:.6g} rad"
         raise ConvergenceError(message, result)
-    return result
+    return result, found
 
 
 def _missed(pair: GearPair, phi1: Array, scan: Scan, touch: FirstTouch, rows: Indices) -> tuple[Starts, Starts]:

@@ -210,6 +210,7 @@ def _scan(pair: GearPair, pitches: Sequence[int]) -> tuple[Array, Array]:
 
     Both are (pitches, SCANS); nearly means within two spacings of the grid.
     """
+    pair = pair.sharp  # the arcs of rounded edges are far smaller than the reach
     flank, own = pair.pinion.flank, pair.pitch * np.add.outer(pitches, np.arange(SCANS) / SCANS)
     value, edges = EaseOff(pair).heights(*np.broadcast_arrays(own[..., None, None], *flank.grid(*SCAN)))
     inside = edges.min(axis=-1)

@@ -7,6 +7,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flank_maps.ease_off_map import ease_off_map
 from loaded_tca.flanks import FlankModifications, fitted
+from loaded_tca.flanks.rounding import EdgeRounding
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, bevel_mesh
 from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
@@ -207,3 +208,10 @@ def test_mounting_errors_that_leave_a_hole_in_the_map_are_refused():
     pair = bevel_pair(mesh, modifications=crowned, mounting=BevelMounting(offset=0.05, pinion_axial=-0.5))
     with pytest.raises(GeometryError, match=r"no ease-off: at \d+ of 1271 points, first at .* pitch cone"):
         ease_off_map(pair, "wheel")
+
+
+def test_rounded_edges_are_no_part_of_the_ease_off():
+    """They are tenths of a millimetre deep, modifications hundredths."""
+    pair = gear_pair(FlankModifications(lead_crowning=0.01))
+    sharp, rounded = (ease_off_map(one) for one in (pair, pair.rounded(EdgeRounding(0.2, 0.2), EdgeRounding(0.2, 0.2))))
+    np.testing.assert_array_equal(rounded.corners, sharp.corners)

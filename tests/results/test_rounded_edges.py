@@ -1,0 +1,122 @@
+"""Loaded contacts on rounded edges: the limit of sharp ones, which edges count as rounded, what is told of them."""
+
+import warnings
+from functools import cache
+
+import numpy as np
+from numpy.testing import assert_allclose, assert_array_equal
+
+from loaded_tca.analysis import analyse
+from loaded_tca.errors import AccuracyWarning
+from loaded_tca.output.overview import describe_scene
+from loaded_tca.plots import plot_contact_path
+from loaded_tca.results.reached_edges import NAMES, reached_edges
+from loaded_tca.scene import read_scene
+from tests.samples.results import FLANKS_ALONE, SCENES
+
+EDGES = [f"{gear}.{edge}_rounding_mm" for gear in ("pinion", "wheel") for edge in ("tip", "side")]
+TOLD = "the arc of a rounded edge, which the grid does not resolve: the edge pressure is mesh-dependent"
+
+
+@cache
+def analysed(name, radii=(), **changes):
+    scene = read_scene(SCENES / f"{name}.toml").with_changes(
+        {**FLANKS_ALONE, "analysis.positions": 5, "analysis.accuracy": None, "analysis.cells": (24, 24)}
+        | {f"analysis.{key}": value for key, value in changes.items()}
+        | dict(radii)
+    )
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", AccuracyWarning)
+        cycle = analyse(scene)
+    return cycle, tuple(str(one.message) for one in caught)
+
+
+def rounded(radius, keys=EDGES):
+    return tuple(dict.fromkeys(keys, radius).items())
+
+
+def test_transmission_error_under_load_tends_to_that_of_sharp_edges():
+    """The difference is proportional to the radius: to 15 % on this grid, whose cells are 0.02 mm wide."""
+    changes = {"load_sharing": True, "cells": (48, 96)}
+    sharp, radii = analysed("misaligned", **changes)[0].transmission_error[0], np.array([0.1, 0.05, 0.02, 0.01])
+    blunt = [analysed("misaligned", rounded(radius), **changes)[0].transmission_error[0] for radius in radii]
+    errors = np.abs(np.array(blunt) - sharp).max(axis=1)
+    assert_allclose(errors / radii, errors[0] / radii[0], rtol=0.15)
+    assert errors[0] < 0.05 * np.ptp(sharp)
+
+
+def test_load_shares_on_rounded_edges_are_those_of_sharp_ones_where_none_is_reached():
+    sharp, _ = analysed("straight_bevel", positions=3)
+    blunt, told = analysed("straight_bevel", rounded(0.1), positions=3)
+    assert not sharp.on_edge.any()
+    assert not any("rounded edge" in one for one in told)
+    for name in ("transmission_error", "peak_pressure", "hertz_pressure", "normal_force", "contact_length"):
+        assert_array_equal(getattr(blunt, name), getattr(sharp, name))
+
+
+def test_edge_is_rounded_where_the_reached_edge_has_a_radius():
+    """The contact of the misaligned pair ends on the upper side of the teeth."""
+    sides = [key for key in EDGES if "side" in key]
+    cycle, told = analysed("misaligned", rounded(0.2, sides))
+    assert_array_equal(cycle.edge_is_rounded, cycle.on_edge)
+    assert cycle.on_edge.any()
+    assert sum(TOLD in one for one in told) == 1
+    names = {name for name, one in zip(NAMES, reached_edges(cycle).any(axis=(0, 1, 2)), strict=True) if one}
+    assert names <= {"pinion upper side", "wheel upper side"}
+    assert names
+    assert "at a sharp edge" not in cycle.summary()
+    assert "at an edge, mesh-dependent [MPa]" in cycle.summary()
+
+
+def test_edge_is_sharp_where_only_other_edges_have_a_radius():
+    tips = [key for key in EDGES if "tip" in key]
+    cycle, told = analysed("misaligned", rounded(0.1, tips), positions=1)
+    assert cycle.on_edge.all()
+    assert not cycle.edge_is_rounded.any()
+    assert not any(TOLD in one for one in told)
+
+
+def test_edge_pressure_is_that_of_a_cell_at_the_arc():
+    cycle, _ = analysed("misaligned", rounded(0.2))
+    for t, n, k in np.argwhere(cycle.edge_is_rounded):
+        one = cycle.maps[t][n][k]
+        # on cells that lie whole on material the edge pressure is a value of the map
+        assert (np.abs(one.pressure / cycle.edge_pressure[t, n, k] - 1.0) < 1e-9).any()
+    (figures,) = cycle.key_figures()
+    assert figures["edge_is_rounded"] is True
+    assert 12.5 - 2.0 < figures["pinion_axial_at_edge_mm"] <= 12.5
+
+
+def test_slice_pressure_sees_the_curvature_of_the_sharp_flank():
+    """With that of an arc, 1/0.2 mm, it would be tenfold."""
+    sharp, blunt = (analysed("misaligned", radii)[0] for radii in ((), rounded(0.2)))
+    assert_allclose(np.nanmax(blunt.peak_pressure), np.nanmax(sharp.peak_pressure), rtol=0.15)
+
+
+def test_spur_line_keeps_its_hertz_pressure():
+    sharp, blunt = (analysed("fzg_c14", radii, positions=1)[0] for radii in ((), rounded(0.2)))
+    assert_array_equal(blunt.path.on_line, sharp.path.on_line)
+    assert_allclose(blunt.path.line_ends, sharp.path.line_ends, atol=1e-9)
+    assert_allclose(blunt.hertz_pressure, sharp.hertz_pressure, rtol=0.05, err_msg="by the shorter loaded length")
+
+
+def test_teeth_that_bend_bend_as_those_with_sharp_edges():
+    """Of the same compliance, not of another model, with which the transmission error was off by 2 um."""
+    changes = {"compliance": "contact+tooth", "free_edges": True, "positions": 3}
+    sharp, blunt = (analysed("mesh_cycle_helical", radii, **changes)[0] for radii in ((), rounded(0.05)))
+    off = np.abs(blunt.transmission_error - sharp.transmission_error).max() * sharp.wheel_base_radius
+    assert off < 1e-4, "a tenth of a micrometre"
+
+
+def test_check_tells_the_radii():
+    text = describe_scene(read_scene(SCENES / "helical.toml").with_changes({"wheel.side_rounding_mm": 0.25}))
+    rows = {line.split()[0]: line.split()[-1] for line in text.splitlines() if "rounding_mm" in line}
+    assert rows == dict.fromkeys(EDGES, "sharp") | {"wheel.side_rounding_mm": "0.25"}
+
+
+def test_arcs_are_drawn_on_both_flanks():
+    panels = [
+        [sum(line.get_linestyle() == "--" for line in axes.lines) for axes in plot_contact_path(cycle).axes[:2]]
+        for cycle in (analysed("misaligned")[0], analysed("misaligned", rounded(0.2))[0])
+    ]
+    assert panels == [[0, 0], [3, 3]]

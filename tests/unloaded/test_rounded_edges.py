@@ -1,0 +1,148 @@
+"""First touch of flanks with rounded edges: certified wherever they stand, and that of sharp edges in the limit.
+
+Random pairs here; a thousand positions in validation/unloaded/rounded_edges.py.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from loaded_tca.flanks import FlankModifications
+from loaded_tca.flanks.base import EDGE_NAMES
+from loaded_tca.flanks.rounding import EdgeRounding
+from loaded_tca.gears import bevel_mesh
+from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
+from loaded_tca.pairs.cylindrical import Mounting
+from loaded_tca.unloaded import relative_curvature, trace_contact, trace_teeth
+from loaded_tca.unloaded.contact_span import contact_span
+from tests.samples.gear_pairs import gear_pair, transmission_error_at
+
+ROUNDED = EdgeRounding(0.2, 0.2)
+ROUNDING = 1e-12
+"""Height above the contact, over r_b2, that is rounding."""
+
+
+def dense_points(flank):
+    """Points (k,) of a flank: a grid, and rows beside every edge, as dense as an arc of 0.01 mm needs."""
+    rho, z = flank.grid(48, 48)
+    found = [(rho.ravel(), z.ravel())]
+    edges = [np.concatenate([grid[k].ravel() for grid in (flank.grid(2, 301), flank.grid(301, 2))]) for k in (0, 1)]
+    begin = flank.off_arcs(*edges)
+    found += [
+        tuple(e + share * (b - e) for e, b in zip(edges, begin, strict=True)) for share in np.linspace(0.0, 1.0, 11)
+    ]
+    return (np.concatenate(part) for part in zip(*found, strict=True))
+
+
+def assert_certified(pair, angles):
+    path = trace_contact(pair, angles, warn=False)
+    rho, z = dense_points(pair.pinion.flank)
+    for angle, found, there in zip(angles, path.transmission_error, path.in_contact, strict=True):
+        error, covered = transmission_error_at(pair, angle, rho, z)
+        highest = np.where(covered & pair.pinion.flank.inside(rho, z, 1e-12), pair.driving * error, -np.inf).max()
+        assert there or not np.isfinite(highest)
+        if there:
+            assert highest - pair.driving * found <= ROUNDING, "no point of the flanks penetrates"
+    return path
+
+
+def random_pair(rng):
+    helix, driving, sense = (
+        rng.choice([0.0, 12.0, 25.0]),
+        rng.choice(["pinion", "wheel"]),
+        rng.choice(["positive", "negative"]),
+    )
+    errors = Mounting(*np.radians(rng.uniform(-0.5, 0.5, 2)), rng.uniform(-0.1, 0.1), rng.uniform(-2.0, 2.0))
+    crowned = (
+        FlankModifications(lead_crowning=rng.uniform(0.0, 0.02), profile_crowning=rng.uniform(0.0, 0.02)) for _ in "12"
+    )
+    pair = gear_pair(*crowned, mounting=errors, helix_deg=helix, driving=driving, sense=sense)
+    radii = np.exp(rng.uniform(math.log(0.01), math.log(0.9), (2, 2))).tolist()
+    return pair.rounded(*(EdgeRounding(*both) for both in radii))
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_positions_of_random_misaligned_pairs_are_certified(seed):
+    rng = np.random.default_rng(seed)
+    pair = random_pair(rng)
+    assert_certified(pair, rng.uniform(-1.0, 1.0, 4) * pair.pitch)
+
+
+def test_bevel_pair_is_certified_on_its_arcs():
+    mesh = bevel_mesh((20, 40), outer_module=4.0, face_width=20.0, spiral_angle=math.radians(30.0))
+    pair = bevel_pair(mesh, mounting=BevelMounting(offset=0.1, shaft_angle_error=0.002)).rounded(ROUNDED, ROUNDED)
+    path = assert_certified(pair, np.linspace(-0.7, 0.7, 7) * pair.pitch)
+    assert path.on_edge.any()
+
+
+def misaligned(rounding, **changes):
+    crowned = FlankModifications(profile_crowning=0.005)
+    pair = gear_pair(crowned, mounting=Mounting(out_of_plane=0.003), **changes)
+    return pair.rounded(rounding, rounding)
+
+
+def test_contact_off_the_arcs_is_that_of_sharp_edges_to_the_bit():
+    pair = gear_pair(FlankModifications(lead_crowning=0.01, profile_crowning=0.01), helix_deg=15.0)
+    angles = np.linspace(-0.3, 0.3, 9) * pair.pitch
+    sharp, rounded = (trace_contact(one, angles) for one in (pair, pair.rounded(ROUNDED, ROUNDED)))
+    assert not sharp.on_edge.any()
+    for name in ("transmission_error", "point", "normal", "pinion_lever", "wheel_lever", "edges"):
+        assert_array_equal(getattr(rounded, name), getattr(sharp, name))
+
+
+def test_line_of_aligned_teeth_is_as_long_as_with_sharp_edges():
+    pair = gear_pair()
+    sharp, rounded = (trace_contact(one, [0.0]) for one in (pair, pair.rounded(ROUNDED, ROUNDED)))
+    assert rounded.on_line.all()
+    assert not rounded.on_edge.any()
+    assert_allclose(rounded.line_ends, sharp.line_ends, atol=1e-9)
+
+
+def test_contact_on_an_arc_lies_where_it_has_turned_by_the_misalignment():
+    """A side of spur teeth, w = 90 deg: the arc begins r before the end and turns by the angle between the flanks."""
+    out_of_plane, radius = 0.003, 0.4
+    pair = misaligned(EdgeRounding(side=radius))
+    path = trace_contact(pair, [0.0])
+    sides = [EDGE_NAMES.index("lower side"), EDGE_NAMES.index("upper side")]
+    assert path.edges.reshape(2, 4)[:, sides].any()
+    assert path.on_edge.all()
+    # the flanks lie askew by gamma cos(alpha); both arcs, of one end of equal faces, share the turn
+    turn = out_of_plane * math.cos(math.radians(20.0))
+    inwards = 12.5 - abs(float(path.pinion_axial[0]))
+    assert inwards == pytest.approx(radius * (1.0 - 0.5 * math.sin(turn)), abs=0.1 * radius * turn)
+    assert path.residual[0] < 1e-9, "the two normals are one"
+    assert_allclose(np.linalg.norm(path.normal[0]), 1.0, rtol=1e-14)
+
+
+@pytest.mark.parametrize("edge", ["tip", "side"])
+def test_transmission_error_tends_to_that_of_sharp_edges(edge):
+    """The arc stays behind the sharp edge by no more than r turn (1 + cos w)."""
+    angles = np.linspace(-0.9, 0.9, 13) * misaligned(EdgeRounding()).pitch
+    sharp = trace_contact(misaligned(EdgeRounding()), angles, warn=False).transmission_error
+    errors = []
+    for radius in (0.2, 0.1, 0.05, 0.02):
+        pair = misaligned(EdgeRounding(**{edge: radius}))
+        off = pair.driving * (sharp - trace_contact(pair, angles, warn=False).transmission_error)
+        assert off.min() >= -1e-15, "rounding takes material off"
+        errors.append(off.max())
+    ratio = np.array(errors[:-1]) / errors[1:]
+    assert_allclose(ratio, [2.0, 2.0, 2.5], rtol=0.1, err_msg="the difference is proportional to the radius")
+
+
+def test_curvature_on_an_arc_is_that_of_the_sharp_flanks():
+    sharp, rounded = misaligned(EdgeRounding()), misaligned(EdgeRounding(side=0.2))
+    of_sharp, of_rounded = (relative_curvature(one, trace_contact(one, [0.0])[0]) for one in (sharp, rounded))
+    assert of_rounded.across == pytest.approx(of_sharp.across, rel=0.02)
+    assert abs(of_rounded.axes[1] @ of_sharp.axes[1]) > 0.9999, "across and along do not change places"
+
+
+def test_mesh_and_its_span_are_traced_over_rounded_edges():
+    """Of a pair that transfers over its tips, whose arcs shorten the flank and smooth the envelope."""
+    pair = gear_pair(helix_deg=15.0)
+    rounded = pair.rounded(ROUNDED, ROUNDED)
+    mesh = trace_teeth(rounded, np.linspace(-0.5, 0.5, 11) * pair.pitch)
+    assert_allclose(mesh.transmission_error, 0.0, atol=1e-12)
+    ends = [contact_span(one) for one in (misaligned(EdgeRounding()), misaligned(EdgeRounding(tip=0.2)))]
+    assert (ends[0][0] is None) == (ends[1][0] is None)
