@@ -29,12 +29,6 @@ def arcs_at(pair: GearPair, points: Array) -> Mask:
     return np.asarray(_past_tangents(pair, pinion, (radius, axial)) > 0.0)
 
 
-def rounded_edges(pair: GearPair) -> Mask:
-    """Which edges (8,) of both flanks are rounded."""
-    places = (tuple(part[:1, 0] for part in gear.flank.grid(2, 2)) for gear in (pair.pinion, pair.wheel))
-    return np.asarray(np.isfinite(_past_tangents(pair, *places)[0]))
-
-
 def _past_tangents(pair: GearPair, *places: tuple[Array, ...]) -> Array:
     """Lengths (..., 8) of places (rho, z) on both flanks from where the arcs begin."""
     found: list[Array] = []
