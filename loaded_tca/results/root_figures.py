@@ -9,6 +9,7 @@ import numpy as np
 
 from loaded_tca.reference.iso6336_3 import face_load_factor
 from loaded_tca.results.root_stress import GEARS, PLACE
+from loaded_tca.results.summary import FACTORS
 
 if TYPE_CHECKING:
     from loaded_tca.results.mesh_cycle import MeshCycle
@@ -32,6 +33,8 @@ def root_figures(result: MeshCycle, torque: int) -> dict[str, float]:
         found |= _extreme(result, torque, gear, "root_tension") | _extreme(result, torque, gear, "root_compression")
         found[f"{name}_root_stress_ratio"] = float(result.root_stress_ratio[torque, gear])
         found[f"{name}_nominal_root_stress_iso_6336_MPa"] = nominal[gear]
+        factors = zip(FACTORS, result.scene.root_factors[gear], strict=True)
+        found |= {f"{name}_{what}_factor_iso_6336": value for what, value in factors}
         found[f"{name}_root_stress_iso_6336_MPa"] = nominal[gear] * of_roots
     return found | {"root_face_load_factor_iso_6336": of_roots}
 

@@ -202,7 +202,7 @@ class Sensitivities:
 
     @cached_property
     def root_tension(self) -> Array:
-        """Of the largest tension at the roots, (torque, position, gear, key) [MPa per unit]; its place is held.
+        """Of the largest tension at the roots, (torque, position, gear, key) [MPa per unit]; tooth and side are held.
 
         NotAskedError without root stress.
         """

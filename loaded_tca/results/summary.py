@@ -15,6 +15,8 @@ FOUR_DIGITS = 9999.5
 MOST_TORQUES = 6
 """Torques that a note names one by one."""
 
+FACTORS = "form", "stress_correction", "helix_angle"
+"""Of ISO 6336-3, as their key figures are named."""
 ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("pinion torque [N m]", ("pinion_torque_Nm",)),
     ("peak pressure [MPa] | pinion angle [deg]", ("peak_pressure_MPa", "pinion_angle_at_peak_deg")),
@@ -56,6 +58,18 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
     (
         "  ISO 6336-3, sigma_F0 K_Fbeta [MPa]",
         ("pinion_root_stress_iso_6336_MPa", "wheel_root_stress_iso_6336_MPa"),
+    ),
+    (
+        "    its sigma_F0 of pinion | wheel [MPa], K_Fbeta",
+        (
+            "pinion_nominal_root_stress_iso_6336_MPa",
+            "wheel_nominal_root_stress_iso_6336_MPa",
+            "root_face_load_factor_iso_6336",
+        ),
+    ),
+    *(
+        (f"    its Y_F | Y_S | Y_beta of the {gear}", tuple(f"{gear}_{name}_factor_iso_6336" for name in FACTORS))
+        for gear in ("pinion", "wheel")
     ),
     ("root compression of pinion | wheel [MPa]", ("pinion_root_compression_MPa", "wheel_root_compression_MPa")),
     ("most cells across | along, worst residual", ("most_cells_across", "most_cells_along", "worst_solver_residual")),

@@ -183,9 +183,15 @@ class CylindricalScene(BlankScene):
         NaN where the standard has no critical section of the tooth.
         """
         mesh = self.mesh()
-        width = common_face_width(mesh, self.mounting.axial_offset_mm)
-        pinion, wheel = (_root_stress_per_force(mesh, gear, width) for gear in (mesh.pinion, mesh.wheel))
-        return pinion / mesh.pinion.reference_radius, wheel / mesh.pinion.reference_radius
+        area = common_face_width(mesh, self.mounting.axial_offset_mm) * mesh.pinion.normal_module
+        pinion, wheel = (math.prod(factors) / (area * mesh.pinion.reference_radius) for factors in self.root_factors)
+        return pinion, wheel
+
+    @property
+    def root_factors(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+        """Form, stress correction and helix angle factor Y_F, Y_S, Y_beta of both gears; NaN as above."""
+        mesh = self.mesh()
+        return _root_factors(mesh, mesh.pinion), _root_factors(mesh, mesh.wheel)
 
     @property
     def tooth_height_over_width(self) -> float:
@@ -235,8 +241,8 @@ class CylindricalScene(BlankScene):
             return [*notes, f"at the mounted centre distance of {distance:.4f} mm: {problem}"]
 
 
-def _root_stress_per_force(mesh: CylindricalMesh, gear: CylindricalGear, width: float) -> float:
-    """sigma_F0 over the tangential force at the reference cylinders [MPa/N]; NaN without a critical section."""
+def _root_factors(mesh: CylindricalMesh, gear: CylindricalGear) -> tuple[float, float, float]:
+    """Y_F, Y_S, Y_beta of a gear after ISO 6336-3; NaN without a critical section."""
     try:
         section = iso6336_3.root_section(
             gear.teeth,
@@ -249,10 +255,9 @@ def _root_stress_per_force(mesh: CylindricalMesh, gear: CylindricalGear, width: 
             root_radius_coefficient=gear.rack_tip_radius / gear.normal_module,
         )
         helix = iso6336_3.helix_angle_factor(gear.helix_angle, mesh.overlap_ratio)
-        factors = section.form_factor * section.stress_correction_factor * helix
-        return iso6336_3.nominal_root_stress(1.0, width, gear.normal_module, factors)
     except (InputError, GeometryError):
-        return math.nan
+        return math.nan, math.nan, math.nan
+    return section.form_factor, section.stress_correction_factor, helix
 
 
 def _backlash(mesh: CylindricalMesh) -> float:

@@ -194,6 +194,12 @@ class Scene(Section, ABC):
         return math.nan, math.nan
 
     @property
+    def root_factors(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+        """Y_F, Y_S, Y_beta of pinion and wheel after ISO 6336-3; NaN likewise."""
+        unknown = (math.nan, math.nan, math.nan)
+        return unknown, unknown
+
+    @property
     def tooth_height_over_width(self) -> float:
         """Height of the teeth over the common face width, h/b of ISO 6336-1; NaN where it does not speak of them."""
         return math.nan

@@ -42,6 +42,7 @@ def test_nominal_stress_of_fzg_c14_is_that_of_gearpie():
     at_reference = 73.2 / (16 * 4.5)
     found = 200e3 * np.array(fzg.nominal_root_stress)
     assert_allclose(found, at_reference * np.array([271.19, 263.17]), rtol=1e-4)
+    assert_allclose(fzg.root_factors, [[1.689, 1.851, 1.0], [1.583, 1.917, 1.0]], atol=5e-4)
 
 
 def test_face_load_factor_is_that_of_the_result_to_the_power_of_the_tooth_height_over_the_width():
@@ -96,6 +97,9 @@ def test_summary_tells_root_stress_only_where_it_is_asked_for():
         "root compression of pinion | wheel [MPa]",
         "  stress ratio R there",
         "  ISO 6336-3, sigma_F0 K_Fbeta [MPa]",
+        "    its sigma_F0 of pinion | wheel [MPa], K_Fbeta",
+        "    its Y_F | Y_S | Y_beta of the pinion",
+        "    its Y_F | Y_S | Y_beta of the wheel",
         "note: no safety, K_A, K_V, life or material factors are in root stress",
     ):
         assert sum(line.startswith(label) for line in lines) == 1
