@@ -86,6 +86,7 @@ ONLY_IF_KNOWN = (
     "_where_hertz_holds_",
     "_there_",
     "_root_",
+    "_factor_iso_6336",
 )
 """Figures whose line is left out where no torque has them."""
 
