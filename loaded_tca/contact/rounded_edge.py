@@ -173,9 +173,10 @@ def edge_pressures(
 
     def solved(on_arc: float, before: GradedSolution | None) -> GradedSolution:
         zones = [arc.zone(on_arc) for arc in arcs if abs(arc.normal[1]) > ALIGNED]
-        borders = column_borders(low[1], high[1], zones, float(high[1] - low[1]) / cells[1])
+        fewest = [max(4, round(count * on_arc / cells_on_arc)) for count in cells]
+        borders = column_borders(low[1], high[1], zones, float(high[1] - low[1]) / fewest[1])
         rows = max(arc.cells(on_arc) * abs(arc.normal[0]) / arc.width for arc in arcs) * float(high[0] - low[0])
-        rows = max(cells[0], min(math.ceil(rows), MOST_ROWS))
+        rows = max(fewest[0], min(math.ceil(rows), MOST_ROWS))
         dx, y = float(high[0] - low[0]) / rows, 0.5 * (borders[1:] + borders[:-1])
         x = low[0] + dx * (np.arange(rows) + 0.5)
         slices, place = None, (y, np.diff(borders)) if slice_axis == 1 else (x, np.full(rows, dx))

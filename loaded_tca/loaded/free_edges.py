@@ -22,11 +22,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple, Self
+from typing import NamedTuple, Protocol, Self
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Indices
+from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.compliance.half_space import depth_displacement
 from loaded_tca.contact.edges import quarter_space_factor, wedge_factor
 from loaded_tca.errors import InputError
@@ -89,14 +89,38 @@ def edge_compliance(pair: GearPair, separation: Separation) -> Array | None:
     return found
 
 
-def edge_compliances(pair: GearPair, separations: Sequence[Separation]) -> list[Array | InputError | None]:
+class Slices(Protocol):
+    """Slices of a contact one after the other along y; those of a separation are all of one width."""
+
+    @property
+    def y(self) -> Array:
+        """Middles (ny,) [mm], from the contact point."""
+
+    @property
+    def widths(self) -> Array:
+        """Their widths along y (ny,) [mm]."""
+
+    @property
+    def with_material(self) -> Mask:
+        """Which of them have material (ny,)."""
+
+    @property
+    def origin(self) -> Array:
+        """The contact point (3,) in the fixed frame [mm]."""
+
+    @property
+    def axes(self) -> Array:
+        """Directions across, along and normal to the contact (3, 3), in rows, in the fixed frame."""
+
+
+def edge_compliances(pair: GearPair, grids: Sequence[Slices]) -> list[Array | InputError | None]:
     """Return :func:`edge_compliance` of many grids, found together; an error stands in the place of what raises it."""
-    points = np.concatenate([one.origin + one.y[:, None] * one.axes[1] for one in separations])
-    there = np.concatenate([one.cover.any(axis=0) for one in separations])
-    slices, problems = _Slices.of(separations), dict[int, InputError]()
+    points = np.concatenate([one.origin + one.y[:, None] * one.axes[1] for one in grids])
+    there = np.concatenate([one.with_material for one in grids])
+    slices, problems = _Slices.of(grids), dict[int, InputError]()
     radius, _, axial = pair.to_wheel(points)
     places = (np.hypot(points[:, 0], points[:, 1]), points[:, 2]), (radius, axial)
-    found = np.zeros(sum(one.y.size**2 for one in separations))
+    found = np.zeros(sum(one.y.size**2 for one in grids))
     for name, gear, (rho, z) in zip(("pinion", "wheel"), (pair.pinion, pair.wheel), places, strict=True):
         jets = gear.flank.edges(rho, z)
         for edge, part in REACHES.items():
@@ -119,7 +143,7 @@ def edge_compliances(pair: GearPair, separations: Sequence[Separation]) -> list[
                     problems.setdefault(int(numbers[run]), told)
             runs = _Runs(near, first, count, factor)
             _add(found, slices, runs, distance, reach, pair.module, gear.material)
-    ends = np.cumsum([one.y.size**2 for one in separations])[:-1]
+    ends = np.cumsum([one.y.size**2 for one in grids])[:-1]
     matrices = [one.reshape(math.isqrt(one.size), -1) for one in np.split(found, ends)]
     return [problems.get(number, 0.5 * (one + one.T) if one.any() else None) for number, one in enumerate(matrices)]
 
@@ -133,23 +157,23 @@ class _Slices(NamedTuple):
         Number of the grid, and of the slice in it.
     row : (n,) int array
         Where its row begins if the matrices of all grids stand in one row.
-    y, length : (n,) array [mm]
-        Place along the contact, and length of the slices there.
+    y, width : (n,) array [mm]
+        Place along the contact, and width of the slice there.
     """
 
     grid: Indices
     column: Indices
     row: Indices
     y: Array
-    length: Array
+    width: Array
 
     @classmethod
-    def of(cls, separations: Sequence[Separation]) -> Self:
-        size = np.array([one.y.size for one in separations])
+    def of(cls, grids: Sequence[Slices]) -> Self:
+        size = np.array([one.y.size for one in grids])
         grid = np.repeat(np.arange(size.size), size)
         row = np.cumsum(size[grid]) - size[grid]
-        y, length = np.concatenate([one.y for one in separations]), np.array([one.spacing[1] for one in separations])
-        return cls(grid, np.arange(grid.size) - (np.cumsum(size) - size)[grid], row, y, length[grid])
+        y, width = (np.concatenate([getattr(one, name) for one in grids]) for name in ("y", "widths"))
+        return cls(grid, np.arange(grid.size) - (np.cumsum(size) - size)[grid], row, y, width)
 
 
 class _Runs(NamedTuple):
@@ -172,18 +196,20 @@ def _add(
     near, run = runs.near, np.repeat(np.arange(runs.size.size), runs.size)
     begin, end = near[runs.first][run], near[runs.first + runs.size - 1][run]
     before, after = np.maximum(near - 1, begin), np.minimum(near + 1, end)
-    y, length, distance_there = slices.y[near], slices.length[near], distance[near]
-    rise = (distance[after] - distance[before]) / (np.maximum(after - before, 1) * length)
+    y, width, distance_there = slices.y[near], slices.width[near], distance[near]
+    apart = slices.y[after] - slices.y[before]
+    rise = np.divide(distance[after] - distance[before], apart, out=np.zeros(apart.shape), where=apart > 0.0)
     rise = np.minimum(np.maximum(rise, -1.0), 1.0)
     inside = np.maximum(distance_there, 0.0)  # a contact on an edge is beside it by rounding, or curves beyond it
     part = inside / reach
     faded = 1.0 - part**2 * (3.0 - 2.0 * part)  # from 1 at an edge to 0 at the end of its reach, without a kink
-    own = np.maximum(distance_there + 0.5 * length * rise * NODES[:, None], 0.0)  # (3, n), in the slice displaced
+    own = np.maximum(distance_there + 0.5 * width * rise * NODES[:, None], 0.0)  # (3, n), in the slice displaced
     scale = VARIATION / quarter_space_factor(material.poisson_ratio)
     surface = depth_displacement(np.asarray(0.0), np.asarray(1.0), material)
     for at, under in _pairs(runs.first[run], runs.size[run]):
-        half, image, slope = 0.5 * length[at], inside[under], rise[under]
-        apart, both, flat = (y[at] - y[under]) + half * NODES[:, None], own[:, at] + image, 1.0 - slope**2
+        half, image, slope = 0.5 * width[under], inside[under], rise[under]
+        apart = (y[at] - y[under]) + 0.5 * width[at] * NODES[:, None]
+        both, flat = own[:, at] + image, 1.0 - slope**2
         along = apart * flat - both * slope  # of the place, from the middle of the image along it
         square = both**2 + apart**2 * flat + (WIDTH * module) ** 2
         off = np.sqrt(np.maximum(square - along**2, (WIDTH * module) ** 2))

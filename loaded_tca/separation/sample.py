@@ -26,7 +26,7 @@ from functools import reduce
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.checks import memory_problem
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.pairs.gear_pair import GearPair
@@ -83,6 +83,16 @@ class Separation:
     def points(self) -> Array:
         """Cell centres in the tangent plane, in the fixed frame: (nx, ny, 3) [mm]."""
         return self.origin + self.x[:, None, None] * self.axes[0] + self.y[None, :, None] * self.axes[1]
+
+    @property
+    def widths(self) -> Array:
+        """Widths of the slices along y (ny,) [mm]."""
+        return np.full(self.y.size, self.spacing[1])
+
+    @property
+    def with_material(self) -> Mask:
+        """Which slices have material (ny,)."""
+        return np.asarray(self.cover.any(axis=0))
 
     @property
     def material_area(self) -> float:

@@ -22,11 +22,16 @@ def past_tangents(station: Station) -> Array:
     return _past_tangents(station.pair, (station.rho, station.z), (station.wheel_rho, station.wheel_z))
 
 
-def arcs_at(pair: GearPair, points: Array) -> Mask:
-    """Edges (..., 8) on whose arcs points (..., 3) of the fixed frame [mm] lie, seen along the edge's surface."""
+def lengths_past_tangents(pair: GearPair, points: Array) -> Array:
+    """The same (..., 8) [mm] of points (..., 3) of the fixed frame [mm], seen along the edges' surfaces."""
     radius, _, axial = pair.to_wheel(points)
     pinion = np.hypot(points[..., 0], points[..., 1]), points[..., 2]
-    return np.asarray(_past_tangents(pair, pinion, (radius, axial)) > 0.0)
+    return _past_tangents(pair, pinion, (radius, axial))
+
+
+def arcs_at(pair: GearPair, points: Array) -> Mask:
+    """Edges (..., 8) on whose arcs points (..., 3) of the fixed frame [mm] lie, seen along the edges' surfaces."""
+    return np.asarray(lengths_past_tangents(pair, points) > 0.0)
 
 
 def _past_tangents(pair: GearPair, *places: tuple[Array, ...]) -> Array:

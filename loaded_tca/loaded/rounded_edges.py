@@ -1,0 +1,355 @@
+r"""Pressure at rounded edges of teeth: contacts that reach one, solved once more as finely as the rounding asks for.
+
+The grid on which tooth pairs share the load resolves the contact, not the few micrometres of a rounding that are
+pressed. So the gap of the rounded flanks is sampled anew on columns of graded width that follow the edge, and the same
+force is spread over them, with teeth that bend, free edges and other tooth pairs as before.
+
+What a contact will come to is told beforehand by its cell beside the edge. Beside a sharp edge pressure rises as
+:math:`K/\sqrt{s}`, so that a cell of the width h has the mean :math:`2 K/\sqrt{h}`, and a rounding of the radius R
+turns that into
+
+.. math:: p_{max} = 1.80\, K/\sqrt{d}, \qquad d = \frac{1}{2} \left(\frac{3 \sqrt{2} \pi K R}{E^*}\right)^{2/3},
+
+the limit of small d of a flat punch with rounded ends (Ciavarella, Hills & Monno 1998). It tells which contacts can
+hold the largest pressure of a mesh cycle.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+from scipy.interpolate import make_interp_spline
+from scipy.ndimage import binary_dilation
+
+from loaded_tca.arrays import Array, Mask
+from loaded_tca.contact.rounded_edge import EdgePressure, RoundedEdge, edge_pressures
+from loaded_tca.errors import InputError
+from loaded_tca.flanks.base import EDGE_NAMES
+from loaded_tca.flanks.rounding import RoundedFlank
+from loaded_tca.loaded.cycle import Carried
+from loaded_tca.loaded.free_edges import edge_compliances
+from loaded_tca.loaded.pair_coupling import BendingModel
+from loaded_tca.loaded.tooth_contact import LoadedContact
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.separation.normal_gap import NormalGap
+from loaded_tca.unloaded.arcs import lengths_past_tangents
+
+PEAK_OF_ROUNDING = 1.80
+"""Of the pressure at a rounded edge, over K/sqrt(d)."""
+MOST_ABOVE = 1.4
+"""Largest pressure that was found at a rounded edge over that told beforehand, with some reserve
+(``validation/loaded/rounded_edges.py``)."""
+STEP = 0.1
+"""Of the lengths of a cell: that over which the direction of an edge is told."""
+CELLS_ACROSS, CELLS_ALONG = 8, 12
+"""Of the columns, on the width and the length of the contact: the rest of it, away from the edge."""
+MARGIN = 2.5
+"""Cells of the contact's grid between its pressure and the borders of the columns."""
+MOST_BOXES = 4
+PARALLEL = 0.1
+"""Sine of the angle between two edges below which they are those of both gears at one end."""
+
+
+@dataclass(frozen=True)
+class PeakAtEdge:
+    """Peak pressure of a contact at a rounded edge.
+
+    Attributes
+    ----------
+    pressure : float [MPa]
+        NaN where the contact ends before every rounding.
+    place : (float, float) [mm]
+        Across and along the contact, from the contact point.
+    error : float
+        Estimated relative error of the discretisation.
+    """
+
+    pressure: float
+    place: tuple[float, float]
+    error: float
+
+
+NOT_REACHED = PeakAtEdge(math.nan, (math.nan, math.nan), math.nan)
+
+
+class ReachedEdge(NamedTuple):
+    """A rounded edge within a cell of a contact's pressure, in the plane of its grid, and the pressure told there."""
+
+    line: RoundedEdge
+    expected: float
+
+
+@dataclass(frozen=True, eq=False)
+class Columns:
+    """Columns of graded width, or rows across them, as slices of a contact.
+
+    Attributes
+    ----------
+    y, widths : (ny,) array [mm]
+        Where they cross the line along the contact, and how wide they are there.
+    origin : (3,) array [mm]
+        The contact point in the fixed frame.
+    axes : (3, 3) array
+        Rows: across, along and normal to the contact.
+    """
+
+    y: Array
+    widths: Array
+    origin: Array
+    axes: Array
+
+    @property
+    def with_material(self) -> Mask:
+        """All of them: those beyond the end of a flank carry nothing."""
+        return np.ones(self.y.size, dtype=bool)
+
+
+def pressures_at_rounded_edges(
+    pair: GearPair, carried: Carried, bending: BendingModel | None, *, free_edges: bool, every: bool
+) -> dict[tuple[int, int, int], PeakAtEdge]:
+    """Peak pressures at rounded edges of the contacts of a mesh cycle.
+
+    Parameters
+    ----------
+    pair : GearPair
+    carried : Carried
+    bending : BendingModel or None
+        Of the teeth, as they carried.
+    free_edges : bool
+        Whether the ends of the teeth are softer than a half-space.
+    every : bool
+        Whether all contacts that reach a rounding are solved once more; else those alone that can hold the largest
+        pressure at a rounding under their torque.
+
+    Returns
+    -------
+    dict
+        By the indices of torque, position and tooth pair: of those that were solved once more.
+
+    Raises
+    ------
+    ConvergenceError
+        If the solver does not reach its tolerance.
+    """
+    found: dict[tuple[int, int, int], PeakAtEdge] = {}
+    for t, positions in enumerate(carried.contacts):
+        reached = {
+            (t, n, k): (loaded, edges)
+            for n, row in enumerate(positions)
+            for k, loaded in enumerate(row)
+            if loaded is not None and loaded.at_arc and (edges := reached_edges(pair, loaded))
+        }
+        largest = 0.0
+        for place in sorted(reached, key=lambda at: -reached[at][1][0].expected):
+            loaded, edges = reached[place]
+            if not every and MOST_ABOVE * edges[0].expected < largest:
+                break
+            number = int(carried.pairs[place[2]])
+            found[place] = pressure_at_rounded_edge(pair, loaded, edges, bending, number, free_edges=free_edges)
+            largest = max(largest, found[place].pressure)  # which stays where the other one is NaN
+    return found
+
+
+def reached_edges(pair: GearPair, loaded: LoadedContact) -> list[ReachedEdge]:
+    """Rounded edges within a cell of the pressure of a contact, the one with the highest expected pressure first.
+
+    An edge is a straight line beside the cell there with the largest pressure.
+    """
+    grid, radii = loaded.separation, _radii(pair)
+    lengths, (dx, dy) = lengths_past_tangents(pair, grid.points), grid.spacing
+    found = []
+    for edge, radius in radii.items():
+        pressure = np.where(lengths[..., edge] > -math.hypot(dx, dy), loaded.solution.pressure_on_material, 0.0)
+        if not pressure.any():
+            continue
+        row, column = np.unravel_index(int(pressure.argmax()), pressure.shape)
+        steps = STEP * np.array([[dx], [dy]]) * grid.axes[:2]
+        around = grid.points[row, column] + np.concatenate([steps, -steps])
+        ahead = lengths_past_tangents(pair, around)[:, edge]
+        slope = (ahead[:2] - ahead[2:]) / (2.0 * STEP * np.array([dx, dy]))
+        to_line = -lengths[row, column, edge] / (slope @ slope) * slope
+        line = RoundedEdge(
+            (float(grid.x[row] + to_line[0]), float(grid.y[column] + to_line[1])),
+            (float(slope[0]), float(slope[1])),
+            radius,
+        )
+        cell = float(np.abs(slope) @ (dx, dy)) / math.hypot(*slope)
+        found.append(ReachedEdge(line, expected_pressure(float(pressure.max()), cell, radius, pair.contact_modulus)))
+    return sorted(found, key=lambda one: -one.expected)
+
+
+def expected_pressure(mean: float, width: float, radius: float, contact_modulus: float) -> float:
+    """Pressure at a rounded edge [MPa] that the mean pressure [MPa] of a cell beside it, so wide [mm], tells.
+
+    Not below that mean, which a cell has that is narrower than the pressed part of the rounding.
+    """
+    intensity = 0.5 * mean * math.sqrt(width)
+    pressed = 0.5 * (3.0 * math.sqrt(2.0) * math.pi * intensity * radius / contact_modulus) ** (2.0 / 3.0)
+    return max(mean, PEAK_OF_ROUNDING * intensity / math.sqrt(pressed)) if pressed > 0.0 else mean
+
+
+def pressure_at_rounded_edge(
+    pair: GearPair,
+    loaded: LoadedContact,
+    edges: list[ReachedEdge],
+    bending: BendingModel | None,
+    number: int,
+    *,
+    free_edges: bool,
+) -> PeakAtEdge:
+    """Peak pressure of a contact at its rounded edges.
+
+    Columns are made for one edge after the other, and for those together that cross each other in the contact.
+
+    Parameters
+    ----------
+    pair : GearPair
+    loaded : LoadedContact
+    edges : list of ReachedEdge
+        The one with the highest expected pressure first.
+    bending : BendingModel or None
+    number : int
+        Of the tooth pair, as the bending model counts.
+    free_edges : bool
+    """
+
+    def highest(lines: list[RoundedEdge]) -> PeakAtEdge:
+        contact = _ContactAlongEdge(pair, loaded, lines[0], bending, number, free_edges)
+        return max((contact.turned_back(one) for one in contact.solved(lines)), key=_by_pressure)
+
+    alone: dict[RoundedEdge, PeakAtEdge] = {}
+    for line, expected in edges:
+        if MOST_ABOVE * expected < max((one.pressure for one in alone.values()), default=0.0):
+            break
+        if not math.isnan((found := highest([line])).pressure):
+            alone[line] = found
+    crossing = sorted(_crossing_within(loaded, [line for line, _ in edges]), key=lambda line: -abs(line.normal[1]))
+    found = [peak for line, peak in alone.items() if line not in crossing]
+    if crossing:  # the first one is crossed by the fewest rows
+        found.append(highest(crossing))
+    return max(found, key=_by_pressure, default=NOT_REACHED)
+
+
+def _by_pressure(one: PeakAtEdge) -> float:
+    """Pressure, zero where no edge is reached."""
+    return 0.0 if math.isnan(one.pressure) else one.pressure
+
+
+def _crossing_within(loaded: LoadedContact, lines: list[RoundedEdge]) -> set[RoundedEdge]:
+    """Those of some edges that cross another one within a cell of the pressure of a contact."""
+    grid, found = loaded.separation, set[RoundedEdge]()
+    pressed = binary_dilation(loaded.solution.pressure > 0.0, np.ones((3, 3), dtype=bool))
+    for pair in combinations(lines, 2):
+        normals = np.array([np.array(line.normal) / math.hypot(*line.normal) for line in pair])
+        if abs(np.linalg.det(normals)) < PARALLEL:
+            continue
+        place = np.linalg.solve(normals, [normal @ line.place for normal, line in zip(normals, pair, strict=True)])
+        row, column = np.rint((place - (grid.x[0], grid.y[0])) / grid.spacing).astype(int)
+        if 0 <= row < grid.x.size and 0 <= column < grid.y.size and pressed[row, column]:
+            found.update(pair)
+    return found
+
+
+def _radii(pair: GearPair) -> dict[int, float]:
+    """Radii [mm] of the rounded edges by their numbers: of the pinion 0 to 3, then those of the wheel."""
+    return {
+        first + arc.edge: arc.radius
+        for first, gear in ((0, pair.pinion), (len(EDGE_NAMES), pair.wheel))
+        if isinstance(gear.flank, RoundedFlank)
+        for arc in gear.flank.arcs
+    }
+
+
+class _ContactAlongEdge:
+    """A loaded contact in axes turned about its normal, so that columns along the first of them follow an edge."""
+
+    def __init__(
+        self,
+        pair: GearPair,
+        loaded: LoadedContact,
+        edge: RoundedEdge,
+        bending: BendingModel | None,
+        number: int,
+        free_edges: bool,
+    ) -> None:
+        self.pair, self.loaded, self.bending, self.number, self.free_edges = pair, loaded, bending, number, free_edges
+        across, along = np.array(edge.normal) / math.hypot(*edge.normal)
+        self.turn = np.array([[along, -across], [across, along]])
+        grid = loaded.separation
+        self.normal_gap = NormalGap(
+            pair, loaded.contact, np.concatenate([self.turn @ grid.axes[:2], grid.axes[2:]])
+        )
+        self.slice_axis = int(abs(along) > abs(across))
+        self.along = float(self.turn[self.slice_axis, 1])
+        """Way along the slices' axis per way along the contact."""
+        coupling = loaded.coupling_deflection
+        self.coupling = None if coupling is None else make_interp_spline(grid.y, coupling, k=min(3, grid.y.size - 1))
+
+    def turned_back(self, found: EdgePressure) -> PeakAtEdge:
+        """A peak, its place across and along the contact."""
+        across, along = (np.array(found.place) @ self.turn).tolist()
+        return PeakAtEdge(found.pressure, (across, along), found.error)
+
+    def solved(self, edges: list[RoundedEdge]) -> list[EdgePressure]:
+        """Pressures at edges, in a box that holds the contact."""
+        turned = [
+            RoundedEdge(
+                tuple((self.turn @ edge.place).tolist()), tuple((self.turn @ edge.normal).tolist()), edge.radius
+            )
+            for edge in edges
+        ]
+        for margin in MARGIN * 2.0 ** np.arange(MOST_BOXES):
+            box, cells = self._box(margin)
+            found = edge_pressures(
+                self.gap,
+                box,
+                turned,
+                self.loaded.solution.load,
+                self.pair.contact_modulus,
+                cells=cells,
+                max_pressure=self.pair.max_pressure,
+                slice_compliance=self.slice_compliance,
+                slice_axis=self.slice_axis,
+            )
+            pressed = found[0].solution.pressure > 0.0
+            if not (pressed[[0, -1]].any() or pressed[:, [0, -1]].any()):
+                break
+        return found
+
+    def _box(self, margin: float) -> tuple[tuple[tuple[float, float], tuple[float, float]], tuple[int, int]]:
+        """A box about the pressure of the grid, so many of its cells larger, and the cells on both its axes."""
+        grid, pressed = self.loaded.separation, self.loaded.solution.pressure > 0.0
+        rows, columns = np.nonzero(pressed)
+        places = np.stack([grid.x[rows], grid.y[columns]], axis=-1) @ self.turn.T
+        room = margin * np.abs(self.turn) @ grid.spacing
+        low, high = places.min(axis=0) - room, places.max(axis=0) + room
+        width, length = np.ptp(rows) * grid.spacing[0], np.ptp(columns) * grid.spacing[1]
+        ways = np.abs(self.turn) / ((width + grid.spacing[0]) / CELLS_ACROSS, (length + grid.spacing[1]) / CELLS_ALONG)
+        x, y = zip(low.tolist(), high.tolist(), strict=True)
+        cells = np.maximum(np.ceil((high - low) * ways.max(axis=1)), 4.0).astype(int).tolist()
+        return (x, y), (cells[0], cells[1])
+
+    def gap(self, x: Array, y: Array) -> Array:
+        """Gap [mm] at all pairs of places, with what other tooth pairs displace; +inf beyond the flanks."""
+        heights, room = (part[0] for part in self.normal_gap.at(x[None, :, None], y[None, None, :]))
+        heights = np.where(room >= 0.0, heights, math.inf)
+        if self.coupling is None:
+            return heights
+        displaced = self.coupling((y if self.slice_axis else x) / self.along)
+        return np.asarray(heights + (displaced if self.slice_axis else displaced[:, None]))
+
+    def slice_compliance(self, middles: Array, widths: Array) -> Array:
+        """Deflection of slices under a unit force on each [mm/N], teeth and free edges together."""
+        grid = self.loaded.separation
+        slices = Columns(middles / self.along, widths / abs(self.along), grid.origin, grid.axes)
+        found = np.zeros((middles.size, middles.size))
+        if self.bending is not None:
+            found += self.bending.within(self.number, slices)
+        ends = edge_compliances(self.pair, [slices])[0] if self.free_edges else None
+        if isinstance(ends, InputError):
+            raise ends
+        return found if ends is None else found + ends
