@@ -30,7 +30,6 @@ from loaded_tca.plots.study_panels import told_of_variants
 from loaded_tca.plots.style import ACCENT, COLOURS, NOT_REACHED, highest_torque, load, write_title
 from loaded_tca.results import MeshCycle, load_result
 from loaded_tca.results.files import FilePath
-from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.studies.ranking import varied_keys
 
 if TYPE_CHECKING:
@@ -194,13 +193,8 @@ def _draw_loaded_cell(axes: Axes, result: MeshCycle, torque: int, gear: GearName
     borders, seen = pressure_seen(result, torque, to_picture, *np.transpose([(x.min(), x.max()), (y.min(), y.max())]))
     axes.pcolormesh(*borders, seen, cmap=COLOURS, norm=scale, rasterized=True).set_clip_path(outline)
     forces = np.concatenate([(one.pressure * np.prod(one.spacing)).ravel() for one in maps])
-    places = np.concatenate([to_picture(_middles(one)).reshape(-1, 2) for one in maps])
+    places = np.concatenate([to_picture(one.points).reshape(-1, 2) for one in maps])
     axes.plot(*(forces @ places / forces.sum()), **DOT)
-
-
-def _middles(one: PressureMap) -> Array:
-    """Middles (nx, ny, 3) of the cells of a map in the fixed frame [mm]."""
-    return one.origin + one.x[:, None, None] * one.axes[0] + one.y[:, None] * one.axes[1]
 
 
 def _around(x: Array, y: Array) -> list[Array]:
