@@ -97,8 +97,8 @@ class RootStressMap:
 
 
 def root_stress_maps(result: MeshCycle) -> tuple[RootStressMap, RootStressMap]:
-    """Root stress of pinion and wheel over fillet and face, of a result that has it."""
-    pinion, wheel = (RootStressMap(*(result.dataset[f"{gear}_{name}"].values for name in ON_FILLETS)) for gear in GEARS)
+    """Root stress of pinion and wheel over fillet and face; NotAskedError of a result that has none."""
+    pinion, wheel = (RootStressMap(*(getattr(result, f"{gear}_{name}") for name in ON_FILLETS)) for gear in GEARS)
     return pinion, wheel
 
 
