@@ -27,7 +27,7 @@ from loaded_tca.plots.envelope import pressure_seen
 from loaded_tca.plots.flanks import FINENESS, loaded_maps, picture_of
 from loaded_tca.plots.labels import label_of
 from loaded_tca.plots.study_panels import told_of_variants
-from loaded_tca.plots.style import ACCENT, COLOURS, NOT_REACHED, highest_torque, load, write_title
+from loaded_tca.plots.style import ACCENT, COLOURS, NOT_REACHED, chosen_torque, load, write_title
 from loaded_tca.results import MeshCycle, load_result
 from loaded_tca.results.files import FilePath
 from loaded_tca.studies.ranking import varied_keys
@@ -108,7 +108,8 @@ def plot_loaded_vh_check(
     Raises
     ------
     InputError
-        If the study does not vary two keys with numbers, no variant is ok, or the result of one that is ok is missing.
+        If the study does not vary two keys with numbers, no variant is ok, the result of one that is ok is missing, or
+        there is no such torque.
     """
     keys = varied_keys(study)
     if len(keys) != 2 or any(study[key].dtype.kind not in "if" for key in keys):
@@ -122,7 +123,7 @@ def plot_loaded_vh_check(
         if status[k] == "ok"
     }
     first = next(iter(kept.values()))
-    torque = highest_torque(first) if torque is None else torque
+    torque = chosen_torque(first, torque)
     scale = Normalize(
         0.0, max(float(np.nanmax(one.peak_pressure[torque], initial=0.0)) for one in kept.values()) or 1.0
     )
