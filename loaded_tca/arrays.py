@@ -47,6 +47,17 @@ def count_problems(counts: Mapping[Any, object], least: int) -> list[str]:
     ]
 
 
+def index_checks(**indices: tuple[object, int]) -> list[tuple[bool, str]]:
+    """Checks for ``require`` of indices, by name each with its count: None, or a whole number from 0 to count - 1."""
+    return [
+        (
+            index is None or (isinstance(index, int | np.integer) and bool(0 <= index < count)),
+            f"{name}: {index!r:.60} is no index from 0 to {count - 1}",
+        )
+        for name, (index, count) in indices.items()
+    ]
+
+
 def finite_row(name: str, values: ArrayLike) -> Array:
     """An argument as a row (n,) of finite numbers, at least one; InputError if it is none."""
     row = numbers(name, values)

@@ -151,8 +151,18 @@ class GearCompliance:
     def interpolation(self) -> tuple[Array, Array]:
         """Chebyshev coefficients (a, a) and (b, b) of the Lagrange polynomials of the heights and the lengths."""
         nodes = self.table.heights, self.table.lengths
-        across, along = (np.linalg.inv(chebvander(2.0 * part - 1.0, len(part) - 1)) for part in nodes)
+        across, along = (lagrange_coefficients(2.0 * part - 1.0) for part in nodes)
         return across, along
+
+
+def lagrange_coefficients(nodes: Array) -> Array:
+    """Chebyshev coefficients (n, n) of the Lagrange polynomials of nodes (n,) from -1 to 1."""
+    return np.asarray(np.linalg.inv(chebvander(nodes, len(nodes) - 1)))
+
+
+def shares_of_grid(across: Array, along: Array) -> Array:
+    """Shares (m, a b) of the places of a grid in m others, from those of its heights (m, a) and lengths (m, b)."""
+    return np.asarray((across[:, :, None] * along[:, None, :]).reshape(len(across), -1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,7 +187,7 @@ class _Places:
     @cached_property
     def shares(self) -> Array:
         """Shares (m, a b) of the places of the table in every place."""
-        return (self.across[:, :, None] * self.along[:, None, :]).reshape(len(self.across), -1)
+        return shares_of_grid(self.across, self.along)
 
 
 def gear_compliance(gear: Gear, density: MeshDensity = MeshDensity()) -> GearCompliance:

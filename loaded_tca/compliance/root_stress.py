@@ -21,7 +21,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, cached_property, lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebpts2, chebvander
@@ -35,7 +35,7 @@ from loaded_tca.compliance.compliance import default_density, require_bending
 from loaded_tca.compliance.finite_elements import Discretisation
 from loaded_tca.compliance.flexibility import LEAST_LENGTHS, LENGTHS_PER_LAYER, MOST_IN_MEMORY, kept, key_of
 from loaded_tca.compliance.geometry import BodyNodes
-from loaded_tca.compliance.influence import FlankLine
+from loaded_tca.compliance.influence import FlankLine, lagrange_coefficients, shares_of_grid
 from loaded_tca.compliance.layout import LARGEST_GRADING, MeshDensity
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
@@ -216,10 +216,15 @@ class RootStress:
         """Shares (places of a line, q) of the places of the table, those of neighbours if ``beside``."""
         height, length = self.frame.parts(line.rho, line.z)
         across, along = (
-            chebvander(2.0 * part - 1.0, count - 1) @ _lagrange(count)
-            for part, count in zip((_part_of_range(height), length), self.table.counts[beside], strict=True)
+            chebvander(2.0 * part - 1.0, len(coefficients) - 1) @ coefficients
+            for part, coefficients in zip((_part_of_range(height), length), self._interpolation[beside], strict=True)
         )
-        return np.asarray((across[:, :, None] * along[:, None, :]).reshape(len(height), -1))
+        return shares_of_grid(across, along)
+
+    @cached_property
+    def _interpolation(self) -> list[list[Array]]:
+        """Chebyshev coefficients of the Lagrange polynomials of heights and lengths; of the places on neighbours."""
+        return [[lagrange_coefficients(chebpts2(count)) for count in counts] for counts in self.table.counts]
 
     def _at_places(self, values: Array) -> Array:
         """Values (states, 2, stations, p) at all places, by splines between those of the table (2, n, m, states)."""
@@ -336,12 +341,6 @@ def _loaded_places(frame: ToothFrame, beside: bool) -> tuple[int, int, FlankPlac
     parts = np.minimum(np.exp(low + (0.5 + 0.5 * chebpts2(heights)) * (high - low)) - OFFSET, 1.0)
     grid = np.meshgrid(parts, 0.5 + 0.5 * chebpts2(lengths), indexing="ij")
     return heights, lengths, frame.places(*(part.ravel() for part in grid))
-
-
-@cache
-def _lagrange(count: int) -> Array:
-    """Chebyshev coefficients (count, count) of the Lagrange polynomials of so many places."""
-    return np.asarray(np.linalg.inv(chebvander(chebpts2(count), count - 1)))
 
 
 def _part_of_range(height: Array) -> Array:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loaded_tca.arrays import Array
-from loaded_tca.errors import GeometryError
+from loaded_tca.arrays import Array, index_checks
+from loaded_tca.errors import GeometryError, require
 from loaded_tca.pairs import MatingTeeth
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.mesh_cycle import MeshCycle
@@ -74,9 +74,12 @@ def teeth_in_space(
 
     Raises
     ------
+    InputError
+        If the result has no such torque or position.
     GeometryError
         If nothing is in contact at that position.
     """
+    require(*index_checks(torque=(torque, len(result.torque)), position=(position, len(result.path))))
     torque = int(np.argmax(result.torque)) if torque is None else torque
     place = result.peak_contact(torque) if position is None else (position, int(result.peak_column[torque, position]))
     one = None if place is None else result.maps[torque][place[0]][place[1]]

@@ -30,7 +30,7 @@ from loaded_tca.plots.study import (
 )
 from loaded_tca.plots.study_ranking import plot_study_ranking
 from loaded_tca.plots.study_scatter import plot_study_histogram, plot_study_over_torque, plot_study_scatter_matrix
-from loaded_tca.plots.style import highest_torque, png_of, save_figure
+from loaded_tca.plots.style import chosen_torque, png_of, save_figure
 from loaded_tca.plots.subsurface import plot_stress_below, plot_subsurface
 from loaded_tca.plots.three_d import draw_teeth, plot_teeth, show_teeth
 from loaded_tca.plots.vh_check import plot_loaded_vh_check, plot_vh_check
@@ -148,9 +148,9 @@ def plot_all(
     Raises
     ------
     InputError
-        If a file cannot be written.
+        If the result has no such torque or position, or a file cannot be written.
     """
-    asked, torque = torque, highest_torque(result) if torque is None else torque
+    asked, torque = torque, chosen_torque(result, torque, position)
     figures = {
         "contact_path": plot_contact_path(result, torque),
         "transmission_error": plot_transmission_error(result),

@@ -13,6 +13,8 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from loaded_tca.arrays import index_checks
+from loaded_tca.errors import require
 from loaded_tca.plots import style
 from loaded_tca.plots.flanks import highest_of_map
 from loaded_tca.plots.pressure_map import PRESSURE, draw_map, scale_factor
@@ -131,7 +133,8 @@ def plot_compared_maps(results: Results, torque: float | None = None, position: 
     Raises
     ------
     InputError
-        If there are fewer than two results, or they do not share the torque.
+        If there are fewer than two results, they do not share the torque, or the first has no such
+        position.
     """
     comparison = results if isinstance(results, Comparison) else compare_results(results)
     shared = comparison.index_of(torque)
@@ -177,6 +180,7 @@ def _places(comparison: Comparison, shared: int, position: int | None) -> list[t
     if position is None:
         peaks = [(k, result.peak_contact(k)) for result, k in named]
         return [(k, *(peak or (0, 0))) for k, peak in peaks]
+    require(*index_checks(position=(position, len(next(iter(comparison.results.values())).path))))
     parts = [result.pinion_angle / result.gear_pair.pitch for result in comparison.results.values()]
     nearest = [int(np.abs(part - parts[0][position]).argmin()) for part in parts]
     return [(k, n, int(result.peak_column[k, n])) for (result, k), n in zip(named, nearest, strict=True)]

@@ -24,7 +24,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, index_checks
 from loaded_tca.errors import require
 from loaded_tca.plots import style
 from loaded_tca.plots.style import DISTINCT_COLOURS, MARKERS
@@ -63,12 +63,13 @@ def plot_before_and_after(design: xarray.Dataset | DesignResult, torque: int | N
     Raises
     ------
     InputError
-        If a variable is missing.
+        If a variable is missing, or there is no such torque.
     """
     design = _with(design, "transmission_error", "peak_pressure", "span_um", "face_load_factor")
     scene = _scene(design)
     pair = scene.pair()
     torques = 1e-3 * design["torque"].values
+    require(*index_checks(torque=(torque, len(torques))))
     torque = int(torques.argmax()) if torque is None else torque
     figure = Figure(figsize=(11.0, 8.0), layout="constrained")
     (error, pressure), (factor, span) = figure.subplots(2, 2)

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.plots import style
 from loaded_tca.plots.flanks import ToPicture, both_flanks, colour_scale, loaded_maps
-from loaded_tca.plots.style import COLOURS, highest_torque, load, range_of_positions
+from loaded_tca.plots.style import COLOURS, chosen_torque, load, range_of_positions
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap, slice_middles
 
@@ -38,8 +38,13 @@ def plot_pressure_envelope(result: MeshCycle, torque: int | None = None) -> Figu
     Returns
     -------
     matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If the result has no such torque.
     """
-    torque = highest_torque(result) if torque is None else torque
+    torque = chosen_torque(result, torque)
     figure, _ = _envelopes(result, [torque])
     style.set_title(figure, result, f"pressure envelope, {load(result, torque)}", range_of_positions(result))
     return figure

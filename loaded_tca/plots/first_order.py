@@ -15,7 +15,7 @@ from loaded_tca.errors import require
 from loaded_tca.plots import style
 from loaded_tca.plots.labels import label_of
 from loaded_tca.plots.study_panels import SAME, panels_of, told_of_variants
-from loaded_tca.plots.style import ACCENT, COLOURS, highest_torque, load
+from loaded_tca.plots.style import ACCENT, COLOURS, chosen_torque, load
 from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.tolerances import key_figure_slopes
 from loaded_tca.studies.ranking import figure_values, varied_keys
@@ -51,10 +51,10 @@ def plot_first_order_scatter(found: Sensitivities, study: xarray.Dataset, torque
     Raises
     ------
     InputError
-        If the study varies another key, or has other torques, or none of the figures.
+        If the result has no such torque, or the study varies another key, or has other torques, or none of the figures.
     """
     result, keys = found.result, varied_keys(study)
-    torque = highest_torque(result) if torque is None else torque
+    torque = chosen_torque(result, torque)
     torques = figure_values(study, TORQUE)
     others = [key for key in keys if key not in found.keys]
     same = torques.shape[1] == len(result.torque) and bool(

@@ -25,7 +25,7 @@ from loaded_tca.plots.style import (
     ACCENT,
     COLOURS,
     NOT_REACHED,
-    highest_torque,
+    chosen_torque,
     load,
     position_label,
     range_of_positions,
@@ -62,8 +62,13 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If the result has no such torque.
     """
-    torque = highest_torque(result) if torque is None else torque
+    torque = chosen_torque(result, torque)
     scene, pair = result.scene, result.gear_pair
     last = len(result.path) - 1
     positions = sorted({round(last * part / (MOST_AREAS - 1)) for part in range(MOST_AREAS)})
@@ -116,10 +121,12 @@ def plot_full_mesh(result: MeshCycle, position: int | None = None, torque: int |
 
     Raises
     ------
+    InputError
+        If the result has no such torque or position.
     IndexError
         If nothing is in contact at that position.
     """
-    torque = highest_torque(result) if torque is None else torque
+    torque = chosen_torque(result, torque, position)
     peak = result.peak_contact(torque)
     if position is None and peak is not None:
         position = peak[0]

@@ -15,7 +15,7 @@ from matplotlib.patches import Ellipse, Patch, Rectangle
 
 from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.plots.flanks import highest_of_map
-from loaded_tca.plots.style import ACCENT, COLOURS, NO_LOAD, NO_MATERIAL, highest_torque, load, place, set_title, tell
+from loaded_tca.plots.style import ACCENT, COLOURS, NO_LOAD, NO_MATERIAL, chosen_torque, load, place, set_title, tell
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
 
@@ -46,10 +46,12 @@ def plot_pressure_map(
 
     Raises
     ------
+    InputError
+        If the result has no such torque, position or tooth pair.
     IndexError
         If nothing is in contact at that position.
     """
-    torque = highest_torque(result) if torque is None else torque
+    torque = chosen_torque(result, torque, position, column)
     at = result.peak_contact(torque) if position is None else (position, int(result.peak_column[torque, position]))
     if at is not None and column is not None:
         at = at[0], column

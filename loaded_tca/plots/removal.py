@@ -18,7 +18,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.plots import style
 from loaded_tca.plots.envelope import POINTS_OF_A_FIELD, points_of_cells
 from loaded_tca.plots.flanks import ToPicture, both_flanks
-from loaded_tca.plots.style import COLOURS, highest_torque, load, range_of_positions
+from loaded_tca.plots.style import COLOURS, chosen_torque, load, range_of_positions
 from loaded_tca.results.sensitivities import Sensitivities
 
 FIELDS = 160
@@ -48,9 +48,14 @@ def plot_removal_weights(found: Sensitivities, torque: int | None = None) -> Fig
     Returns
     -------
     matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If the result has no such torque.
     """
     result = found.result
-    torque = highest_torque(result) if torque is None else torque
+    torque = chosen_torque(result, torque)
     meshes: list[QuadMesh] = []
 
     def draw(axes: Axes, to_picture: ToPicture) -> list[Artist]:

@@ -14,7 +14,15 @@ from matplotlib.patheffects import withStroke
 
 from loaded_tca.arrays import Array
 from loaded_tca.plots import style
-from loaded_tca.plots.style import DISTINCT_COLOURS, HEADROOM, highest_torque, load, loads, range_of_positions
+from loaded_tca.plots.style import (
+    DISTINCT_COLOURS,
+    HEADROOM,
+    chosen_torque,
+    highest_torque,
+    load,
+    loads,
+    range_of_positions,
+)
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.root_stress import GEARS, RootStressMap
 
@@ -46,8 +54,10 @@ def plot_root_stress(result: MeshCycle, torque: int | None = None) -> Figure:
     ------
     NotAskedError
         If the scene of the result does not ask for root stress.
+    InputError
+        If the result has no such torque.
     """
-    torque = highest_torque(result) if torque is None else torque
+    torque = chosen_torque(result, torque)
     maps = result.root_stress
     figure = Figure(figsize=(10.0, 9.0), layout="constrained")
     panels = figure.subplots(3, 2, sharex=True, sharey="col")

@@ -18,7 +18,7 @@ from loaded_tca.plots import style
 from loaded_tca.plots.labels import label_of
 from loaded_tca.plots.removal import plot_removal_weights
 from loaded_tca.plots.study_panels import panels_of, without_unit
-from loaded_tca.plots.style import DISTINCT_COLOURS, MARKERS, highest_torque, load, loads, range_of_positions
+from loaded_tca.plots.style import DISTINCT_COLOURS, MARKERS, chosen_torque, load, loads, range_of_positions
 from loaded_tca.results.key_figures import mean_over_a_pitch
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.sensitivities import Sensitivities
@@ -75,10 +75,10 @@ def plot_tornado(
     Raises
     ------
     InputError
-        If a figure is not one of these, or a key has no tolerance.
+        If the result has no such torque, a figure is not one of these, or a key has no tolerance.
     """
     result = found.result
-    torque = highest_torque(result) if torque is None else torque
+    torque = chosen_torque(result, torque)
     spread = _spread(found, tolerances)
     changes = {name: values[torque] * spread for name, values in key_figure_slopes(found).items()}
     unknown = [name for name in figures or () if name not in changes]
@@ -146,10 +146,10 @@ def plot_sensitivity_curves(
     Raises
     ------
     InputError
-        If a key has no tolerance.
+        If the result has no such torque, or a key no tolerance.
     """
     result = found.result
-    torque = highest_torque(result) if torque is None else torque
+    torque = chosen_torque(result, torque)
     spread = _spread(found, tolerances)
     curves = 1e3 * result.wheel_base_radius * found.transmission_error[torque] * spread
     figure = Figure(figsize=(8.0, 7.0), layout="constrained")
@@ -199,11 +199,11 @@ def plot_transmission_error_band(
     Raises
     ------
     InputError
-        If a key has no tolerance.
+        If the result has no such torque, or a key no tolerance.
     """
     result = found.result
     given = dict(zip(found.keys, _spread(found, tolerances).tolist(), strict=True))
-    shown_torques = style.torques_with_panels(result) if torque is None else [torque]
+    shown_torques = style.torques_with_panels(result) if torque is None else [chosen_torque(result, torque)]
     length = 1e3 * result.wheel_base_radius
     sigma = length * found.spread(given)["transmission_error"].values
     figure = Figure(figsize=(10.0, 2.2 + 2.3 * len(shown_torques)), layout="constrained")

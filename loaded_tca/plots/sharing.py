@@ -22,7 +22,7 @@ from loaded_tca.plots.style import (
     HERTZ,
     MARKERS,
     NO_LOAD,
-    highest_torque,
+    chosen_torque,
     load,
     loads,
     range_of_positions,
@@ -58,8 +58,13 @@ def plot_load_share(result: MeshCycle, torque: int | None = None) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If the result has no such torque.
     """
-    shown = torques_with_panels(result) if torque is None else [torque]
+    shown = torques_with_panels(result) if torque is None else [chosen_torque(result, torque)]
     figure = Figure(figsize=(8.0, 2.8 + (3.0 if len(shown) == 1 else 1.8 * len(shown))), layout="constrained")
     *panels, below = figure.subplots(len(shown) + 1, 1, sharex=True, height_ratios=(*(3.0,) * len(shown), 1.5))
     angle = np.degrees(result.pinion_angle)
@@ -201,8 +206,13 @@ def plot_line_load_distribution(result: MeshCycle, torque: int | None = None) ->
     Returns
     -------
     matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If the result has no such torque.
     """
-    torque = highest_torque(result) if torque is None else torque
+    torque = chosen_torque(result, torque)
     segments, values, highest = [np.zeros((0, 2, 3))], [np.zeros(0)], 0.0
     for one in loaded_maps(result, torque):
         loaded, across = slice_middles(one.x, one.pressure)

@@ -15,8 +15,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, PercentFormatter
 
-from loaded_tca.arrays import Array
-from loaded_tca.errors import InputError
+from loaded_tca.arrays import Array, index_checks
+from loaded_tca.errors import InputError, require
 from loaded_tca.plots.labels import label_of, wrapped_label_of
 from loaded_tca.plots.study_panels import (
     MISSING,
@@ -156,11 +156,12 @@ def plot_study_scatter_matrix(
     Raises
     ------
     InputError
-        If the study has no such figure, or none at all.
+        If the study has no such figure or torque, or no figure at all.
     """
     figures = main_figures(study)[:2] if figures is None else list(figures)
     if not figures:
         raise InputError("figures: none to show")
+    require(*index_checks(torque=(torque, study.sizes["torque"])))
     torque = study.sizes["torque"] - 1 if torque is None else torque
     shades = figure_values(study, colour or figures[0])[:, torque]
     keys = _strongest(study, shades)

@@ -17,7 +17,8 @@ from matplotlib.figure import Figure
 from matplotlib.image import imsave
 from scipy.ndimage import label
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, index_checks
+from loaded_tca.errors import require
 from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.results.files import FilePath, replacing
 from loaded_tca.results.mesh_cycle import MeshCycle
@@ -122,6 +123,13 @@ def tell(axes: Axes, why: str) -> None:
 def highest_torque(result: MeshCycle) -> int:
     """Return the index of the largest torque."""
     return int(np.argmax(result.torque))
+
+
+def chosen_torque(result: MeshCycle, torque: int | None, position: int | None = None, column: int | None = None) -> int:
+    """Return the index of a torque, by default of the largest; InputError with every index that the result has not."""
+    counts = {"position": (position, len(result.path)), "column": (column, len(result.pair))}
+    require(*index_checks(torque=(torque, len(result.torque)), **counts))
+    return highest_torque(result) if torque is None else torque
 
 
 def torques_with_panels(result: MeshCycle) -> list[int]:

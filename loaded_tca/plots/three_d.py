@@ -60,7 +60,7 @@ def plot_teeth(result: MeshCycle, position: int | None = None, torque: int | Non
     Raises
     ------
     InputError, GeometryError
-        If nothing is in contact at that position, or there are no complete teeth, see
+        If there is no such torque or position, nothing is in contact there, or there are no complete teeth, see
         :func:`loaded_tca.pairs.mating_teeth`.
     """
     return draw_teeth(result, _shown(result, position, torque))
@@ -157,7 +157,7 @@ def show_teeth(
     Raises
     ------
     InputError
-        If pyvista is not installed.
+        If pyvista is not installed, or the result has no such torque or position.
     GeometryError
         If nothing is in contact at that position.
     """

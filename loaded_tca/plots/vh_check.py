@@ -27,10 +27,9 @@ from loaded_tca.plots.envelope import pressure_seen
 from loaded_tca.plots.flanks import FINENESS, loaded_maps, picture_of
 from loaded_tca.plots.labels import label_of
 from loaded_tca.plots.study_panels import told_of_variants
-from loaded_tca.plots.style import ACCENT, COLOURS, NOT_REACHED, highest_torque, load, write_title
+from loaded_tca.plots.style import ACCENT, COLOURS, NOT_REACHED, chosen_torque, load, write_title
 from loaded_tca.results import MeshCycle, load_result
 from loaded_tca.results.files import FilePath
-from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.studies.ranking import varied_keys
 
 if TYPE_CHECKING:
@@ -109,7 +108,8 @@ def plot_loaded_vh_check(
     Raises
     ------
     InputError
-        If the study does not vary two keys with numbers, no variant is ok, or the result of one that is ok is missing.
+        If the study does not vary two keys with numbers, no variant is ok, the result of one that is ok is missing, or
+        there is no such torque.
     """
     keys = varied_keys(study)
     if len(keys) != 2 or any(study[key].dtype.kind not in "if" for key in keys):
@@ -123,7 +123,7 @@ def plot_loaded_vh_check(
         if status[k] == "ok"
     }
     first = next(iter(kept.values()))
-    torque = highest_torque(first) if torque is None else torque
+    torque = chosen_torque(first, torque)
     scale = Normalize(
         0.0, max(float(np.nanmax(one.peak_pressure[torque], initial=0.0)) for one in kept.values()) or 1.0
     )
@@ -194,13 +194,8 @@ def _draw_loaded_cell(axes: Axes, result: MeshCycle, torque: int, gear: GearName
     borders, seen = pressure_seen(result, torque, to_picture, *np.transpose([(x.min(), x.max()), (y.min(), y.max())]))
     axes.pcolormesh(*borders, seen, cmap=COLOURS, norm=scale, rasterized=True).set_clip_path(outline)
     forces = np.concatenate([(one.pressure * np.prod(one.spacing)).ravel() for one in maps])
-    places = np.concatenate([to_picture(_middles(one)).reshape(-1, 2) for one in maps])
+    places = np.concatenate([to_picture(one.points).reshape(-1, 2) for one in maps])
     axes.plot(*(forces @ places / forces.sum()), **DOT)
-
-
-def _middles(one: PressureMap) -> Array:
-    """Middles (nx, ny, 3) of the cells of a map in the fixed frame [mm]."""
-    return one.origin + one.x[:, None, None] * one.axes[0] + one.y[:, None] * one.axes[1]
 
 
 def _around(x: Array, y: Array) -> list[Array]:

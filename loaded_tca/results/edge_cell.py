@@ -13,8 +13,7 @@ from loaded_tca.unloaded.arcs import arcs_at
 
 def arc_cells(pair: GearPair, one: PressureMap) -> Mask:
     """Cells (nx, ny, 8) of a map on the arc of each edge of both flanks, the cells beside them with them."""
-    points = one.origin + one.x[:, None, None] * one.axes[0] + one.y[None, :, None] * one.axes[1]
-    return np.asarray(binary_dilation(arcs_at(pair, points), np.ones((3, 3, 1), dtype=bool)))
+    return np.asarray(binary_dilation(arcs_at(pair, one.points), np.ones((3, 3, 1), dtype=bool)))
 
 
 def edge_cell(pair: GearPair, one: PressureMap) -> tuple[tuple[int, int], bool]:

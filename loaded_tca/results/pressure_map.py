@@ -73,6 +73,11 @@ class PressureMap:
         return np.asarray(self.pressure.sum(axis=0) * math.prod(self.spacing))
 
     @property
+    def points(self) -> Array:
+        """Cell centres (nx, ny, 3) in the tangent plane, in the fixed frame [mm]."""
+        return self.origin + self.x[:, None, None] * self.axes[0] + self.y[:, None] * self.axes[1]
+
+    @property
     def corners(self) -> Array:
         """Corners (nx + 1, ny + 1, 3) of the cells in the tangent plane, in the fixed frame [mm]."""
         x, y = self.borders

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance import FlankLine, RootStress, flank_lines
 from loaded_tca.errors import NotAskedError
+from loaded_tca.loaded.sensitivity import LoadedGrid
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.files import Part
 from loaded_tca.results.pressure_map import Maps, PressureMap
@@ -96,8 +97,8 @@ class RootStressMap:
 
 
 def root_stress_maps(result: MeshCycle) -> tuple[RootStressMap, RootStressMap]:
-    """Root stress of pinion and wheel over fillet and face, of a result that has it."""
-    pinion, wheel = (RootStressMap(*(result.dataset[f"{gear}_{name}"].values for name in ON_FILLETS)) for gear in GEARS)
+    """Root stress of pinion and wheel over fillet and face; NotAskedError of a result that has none."""
+    pinion, wheel = (RootStressMap(*(getattr(result, f"{gear}_{name}") for name in ON_FILLETS)) for gear in GEARS)
     return pinion, wheel
 
 
@@ -196,26 +197,38 @@ def _loads(
 
 
 def stress_at_extreme(
-    model: RootStress, loads: Sequence[tuple[FlankLine, Array]], place: Sequence[int]
-) -> Callable[[FlankLine], Array]:
-    """Stress about an extreme as it follows from forces: a function of a line, per force on it (m,) [MPa/N].
+    pair: GearPair, gear: int, model: RootStress, grids: Sequence[LoadedGrid], place: Sequence[int]
+) -> tuple[list[tuple[FlankLine, Array]], Callable[[FlankLine], Array]]:
+    """Loads of a gear at one position, and how the stress about an extreme follows from forces.
 
     Through the stress about the place go parabolas along the fillet and along the face; by what their tops exceed it
     counts, so that the stress is smooth as the extreme moves.
 
     Parameters
     ----------
+    pair : GearPair
+    gear : int
+        0 the pinion, 1 the wheel.
     model : RootStress
-    loads : sequence of (FlankLine, (m,) array [N])
-        Under which the extreme lies there.
+        Of that gear.
+    grids : sequence of LoadedGrid
+        Of the tooth pairs under which the extreme lies there.
     place : sequence of int
         As of ``root_tension_place``: tooth, side, station, along the face.
+
+    Returns
+    -------
+    list of (FlankLine, (m,) array [N])
+        Line of each grid on its flank, and the forces there.
+    callable
+        Of any line: the stress per force on it (m,) [MPa/N].
     """
+    loads = [(flank_lines(pair, grid.number, grid.separation)[gear], grid.slice_force) for grid in grids]
     tooth, side, *middle = place
     near = _next_to(middle, model.tangent_angle.shape[1:])
     stress = sum(model.per_force(tooth, line, side, *near) @ forces for line, forces in loads)
     weights = _weights_of_top(np.abs(stress))
-    return lambda line: np.tensordot(weights, model.per_force(tooth, line, side, *near), 2)
+    return loads, lambda line: np.tensordot(weights, model.per_force(tooth, line, side, *near), 2)
 
 
 def _next_to(place: Sequence[int], shape: tuple[int, ...]) -> list[Indices]:

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from loaded_tca.arrays import Array, Indices, real
-from loaded_tca.compliance import flank_lines, root_stress_model
+from loaded_tca.compliance import FlankLine, flank_lines, root_stress_model
 from loaded_tca.errors import require
 from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.sensitivity import Tangents
@@ -214,33 +214,46 @@ class Sensitivities:
         return self._of_root_stress("root_compression")
 
     def _of_root_stress(self, name: str) -> Array:
-        """The stress about an extreme follows the forces, and the lines along which they load the teeth."""
-        places, pair, grids = getattr(self.result, f"{name}_place"), self.result.gear_pair, self.tangents.grids
+        """Of an extreme of the root stress, (torque, position, gear, key)."""
+        places = getattr(self.result, f"{name}_place")
         found = np.full((*places.shape[:-1], len(self.keys)), np.nan)
-        in_states = np.split(np.arange(len(grids)), np.flatnonzero(np.diff(self.tangents.state)) + 1)
-        for gear, own in enumerate((pair.pinion, pair.wheel)):
-            model, by_force, moved = root_stress_model(own), [], np.zeros((len(self.keys), len(in_states)))
-            for state, ((t, n), numbers) in enumerate(zip(self.places.T.tolist(), in_states, strict=True)):
-                lines = [flank_lines(pair, grids[i].number, grids[i].separation)[gear] for i in numbers]
-                loads = [(line, grids[i].slice_force) for line, i in zip(lines, numbers, strict=True)]
-                per_force = stress_at_extreme(model, loads, places[t, n, gear].tolist())
-                for (line, forces), i in zip(loads, numbers, strict=True):
-                    stress = per_force(line)
-                    by_force.append(np.broadcast_to(stress, grids[i].active.shape))
-                    if self.shifts[:, i].any():
-                        beyond, step = _shifted(grids[i].separation)
-                        further = per_force(flank_lines(pair, grids[i].number, beyond)[gear])
-                        moved[:, state] += self.shifts[:, i] * ((further - stress) / step @ forces)
-                    for key, other in self._of_the_wheel if gear == 1 else ():  # it moves below the line
-                        low, high = (
-                            per_force(flank_lines(side, grids[i].number, grids[i].separation)[gear]) @ forces
-                            for side in (other.below, other.above)
-                        )
-                        moved[key, state] += (high - low) / other.difference
-            slopes = self.tangents.gathered(by_force)
-            change = self.tangents.functional_change(slopes, self.gaps, self.torques) + moved
-            found[(*self.places, gear)] = change.T
+        for gear in range(places.shape[-2]):
+            found[(*self.places, gear)] = self._at_extremes(gear, places[(*self.places, gear)].tolist()).T
         return found
+
+    def _at_extremes(self, gear: int, places: Sequence[Sequence[int]]) -> Array:
+        """Changes (keys, states) of the stress about the extremes of a gear, which lie at a place in each state.
+
+        It follows the forces, and the lines along which they load the teeth.
+        """
+        pair, grids = self.result.gear_pair, self.tangents.grids
+        model = root_stress_model((pair.pinion, pair.wheel)[gear])
+        by_force, moved = [], np.zeros((len(self.keys), len(places)))
+        in_states = np.split(np.arange(len(grids)), np.flatnonzero(np.diff(self.tangents.state)) + 1)
+        for state, (numbers, place) in enumerate(zip(in_states, places, strict=True)):
+            loads, per_force = stress_at_extreme(pair, gear, model, [grids[i] for i in numbers], place)
+            for i, (line, forces) in zip(numbers, loads, strict=True):
+                stress = per_force(line)
+                by_force.append(np.broadcast_to(stress, grids[i].active.shape))
+                for keys, change in self._by_moved_line(gear, i, per_force, stress, forces):
+                    moved[keys, state] += change
+        return self.tangents.functional_change(self.tangents.gathered(by_force), self.gaps, self.torques) + moved
+
+    def _by_moved_line(
+        self, gear: int, i: int, per_force: Callable[[FlankLine], Array], stress: Array, forces: Array
+    ) -> Iterator[tuple[slice | int, Any]]:
+        """Keys that move the line of a grid on its flank, and the changes of the stress by that [MPa per unit]."""
+        pair, grid = self.result.gear_pair, self.tangents.grids[i]
+        if self.shifts[:, i].any():
+            beyond, step = _shifted(grid.separation)
+            further = per_force(flank_lines(pair, grid.number, beyond)[gear])
+            yield slice(None), self.shifts[:, i] * ((further - stress) / step @ forces)
+        for key, other in self._of_the_wheel if gear == 1 else ():  # it moves below the line
+            low, high = (
+                per_force(flank_lines(side, grid.number, grid.separation)[gear]) @ forces
+                for side in (other.below, other.above)
+            )
+            yield key, (high - low) / other.difference
 
     @property
     def _of_the_wheel(self) -> list[tuple[int, PairChange]]:

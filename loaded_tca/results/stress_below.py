@@ -8,10 +8,10 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, index_checks
 from loaded_tca.contact import SubsurfaceStress, subsurface_stress
 from loaded_tca.contact.subsurface import graded_depths
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, require
 from loaded_tca.reference.hertz import LineContact, PointContact
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
@@ -323,15 +323,11 @@ def depth_of_largest(depths: Array, values: Array) -> float:
 def _place(result: MeshCycle, torque: int | None, position: int | None, pair: int | None) -> tuple[int, int, int]:
     """Indices of torque, position and pair, those not given at the highest pressure; InputError with every problem."""
     pairs = result.pair.tolist()
-    problems = [
-        f"{name}: {index!r} is no index from 0 to {count - 1}"
-        for name, index, count in (("torque", torque, len(result.torque)), ("position", position, len(result.path)))
-        if index is not None and not 0 <= index < count
-    ]
-    if pair is not None and pair not in pairs:
-        problems.append(f"pair: {pair!r} carries no load anywhere; the result has {', '.join(map(str, pairs))}")
-    if problems:
-        raise InputError(problems)
+    known = f"the result has {', '.join(map(str, pairs))}"
+    require(
+        *index_checks(torque=(torque, len(result.torque)), position=(position, len(result.path))),
+        (pair is None or pair in pairs, f"pair: {pair!r} carries no load anywhere; {known}"),
+    )
     torque = int(np.argmax(result.torque)) if torque is None else torque
     if pair is None:
         place = result.peak_contact(torque) if position is None else (position, result.peak_column[torque, position])

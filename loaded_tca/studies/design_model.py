@@ -23,7 +23,6 @@ from numpy.typing import ArrayLike
 
 from loaded_tca.analysis import bending_of, roots_of
 from loaded_tca.arrays import Array, numbers, real
-from loaded_tca.compliance import flank_lines
 from loaded_tca.errors import InputError, named, require
 from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.held_contacts import HeldContacts, ShapedContacts
@@ -456,10 +455,9 @@ def root_tension(gear: int, model: DesignModel, held: HeldContacts, positions: P
     found = root_stress_of_gear(held.pair, gear, root, numbers, np.ones((1, len(rows)), dtype=bool), maps)
     tension, slopes = np.zeros(len(positions)), []
     for n, position in enumerate(positions):
-        lines = [flank_lines(held.pair, grid.number, grid.separation)[gear] for grid in position]
-        loads = [(line, grid.slice_force) for line, grid in zip(lines, position, strict=True)]
-        at_top = stress_at_extreme(root, loads, found["root_tension_place"][0, n].tolist())
-        by_slice = [at_top(line) for line in lines]
+        place = found["root_tension_place"][0, n].tolist()
+        loads, per_force = stress_at_extreme(held.pair, gear, root, position, place)
+        by_slice = [per_force(line) for line, _ in loads]
         tension[n] = sum(own @ forces for own, (_, forces) in zip(by_slice, loads, strict=True))
         slopes.append([np.broadcast_to(own, grid.active.shape) for own, grid in zip(by_slice, position, strict=True)])
     norm = root_tension_norm(tension)

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loaded_tca.arrays import Array
-from loaded_tca.errors import InputError
+from loaded_tca.arrays import Array, index_checks
+from loaded_tca.errors import InputError, require
 from loaded_tca.scene.keys import did_you_mean, nearest
 from loaded_tca.scene.parse import parse_scene
 from loaded_tca.scene.section import as_table
@@ -102,9 +102,7 @@ def rank_variants(
     import pandas
 
     ranked_by = [by] if by else main_figures(study)[:1]
-    torques = study.sizes.get("torque", 0)
-    if torque is not None and not 0 <= torque < torques:
-        raise InputError(f"torque: {torque}; the study has the torques 0 to {torques - 1}")
+    require(*index_checks(torque=(torque, study.sizes.get("torque", 0))))
     worst = np.fmin.reduce if largest_is_best else np.fmax.reduce
     columns = {}
     for name in dict.fromkeys([*ranked_by, *main_figures(study)]):

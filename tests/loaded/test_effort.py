@@ -1,8 +1,11 @@
+import re
 from pathlib import Path
 
 import pytest
 
 from loaded_tca import InputError, analyse, read_scene
+from loaded_tca.compliance.body import ToothFrame, gear_nodes
+from loaded_tca.compliance.root_stress import OUTLINE, root_influence, stress_density
 from loaded_tca.loaded import effort
 from loaded_tca.loaded.effort import expected_effort
 from tests.samples.results import ONE_PAIR, result
@@ -53,6 +56,41 @@ def test_memory_holds_at_least_the_maps_of_the_result():
 )
 def test_more_work_is_a_larger_estimate(more):
     assert effort_of(**more).seconds > 1.2 * effort_of().seconds
+
+
+@pytest.mark.parametrize(
+    ("name", "face_width"),
+    [
+        ("mesh_cycle_helical", 6.0),
+        ("mesh_cycle_helical", 25.0),
+        ("mesh_cycle_helical", 60.0),
+        ("face_milled_19x62", None),
+    ],
+)
+def test_memory_of_root_stress_is_about_what_its_models_tell(name, face_width, monkeypatch):
+    """Without any memory a model says how much its factor needs, before it takes any of it."""
+    changes = {} if face_width is None else dict.fromkeys(("pinion.face_width_mm", "wheel.face_width_mm"), face_width)
+    asked = scene(name, root_stress=True).with_changes(changes)
+    estimated = (
+        expected_effort(asked).memory - expected_effort(asked.with_changes({"analysis.root_stress": False})).memory
+    )
+    monkeypatch.setattr("loaded_tca.compliance.dissection.machine_memory", lambda: 0.0)
+    told, pair = [], asked.pair()
+    for gear in (pair.pinion, pair.wheel):
+        frame = ToothFrame(gear, gear_nodes(gear, stress_density(gear), OUTLINE))
+        with pytest.raises(InputError) as error:
+            root_influence(frame)
+        told.append(2.0**30 * float(re.search(r"need ([\d.]+) GiB", str(error.value))[1]))
+    assert estimated == pytest.approx(max(told), rel=0.25)
+
+
+def test_root_stress_takes_longer_the_wider_the_face():
+    def seconds(width, **more):
+        faces = dict.fromkeys(("pinion.face_width_mm", "wheel.face_width_mm"), width)
+        return expected_effort(scene("mesh_cycle_helical", **more).with_changes(faces)).seconds
+
+    assert seconds(6.0) == seconds(60.0)
+    assert seconds(60.0, root_stress=True) - seconds(60.0) > 2.0 * (seconds(6.0, root_stress=True) - seconds(6.0))
 
 
 def test_accuracy_asks_for_no_more_cells_than_the_finest_grid():

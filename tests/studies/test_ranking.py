@@ -35,7 +35,7 @@ def test_the_worst_torque_counts_unless_one_is_asked_for():
 def test_unknown_figure_or_torque_is_told():
     with pytest.raises(InputError, match=r'peak_presure_MPa: no figure of the study; did you mean "peak_pressure_MPa"'):
         rank_variants(grid(), "peak_presure_MPa")
-    with pytest.raises(InputError, match=r"torque: 1; the study has the torques 0 to 0"):
+    with pytest.raises(InputError, match=r"torque: 1 is no index from 0 to 0"):
         rank_variants(grid(), torque=1)
 
 
