@@ -17,6 +17,7 @@ from loaded_tca.compliance import (
 from loaded_tca.errors import AccuracyWarning, named, require
 from loaded_tca.loaded.cycle import Progress, carried_by_all, carried_by_one, farthest_apart
 from loaded_tca.loaded.effort import expected_effort
+from loaded_tca.loaded.rounded_edges import pressures_at_rounded_edges
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.collect import mesh_cycle
@@ -77,8 +78,11 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
         bending = bending_of(scene, pair, 1)
         carried = carried_by_one(pair, path, torques, grid, bending, progress)
     torsion = 0.0 if bending is None else sum(bending.body_torsion)
-    warn_of_accuracy(pair, grid, carried, load_sharing=wanted.load_sharing, body_torsion=torsion)
-    return mesh_cycle(scene, pair, carried, roots)
+    at_edges = pressures_at_rounded_edges(
+        pair, carried, bending, free_edges=wanted.free_edges, every=wanted.edge_pressures == "all"
+    )
+    warn_of_accuracy(pair, grid, carried, at_edges, load_sharing=wanted.load_sharing, body_torsion=torsion)
+    return mesh_cycle(scene, pair, carried, at_edges, roots)
 
 
 def bending_of(scene: Scene, pair: GearPair, neighbours: int) -> ToothCompliance | None:

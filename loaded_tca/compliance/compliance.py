@@ -33,7 +33,23 @@ CHECKED = Resolution(flank=9, fillet=5, land=3, lengthwise=5)
 """Points of a tooth that is built to see whether it exists."""
 
 
-_LINES: WeakKeyDictionary[Separation, dict[int, tuple[FlankLine, FlankLine]]] = WeakKeyDictionary()
+class ContactGrid(Protocol):
+    """Where the slices of a contact lie; a separation and a pressure map are such grids."""
+
+    @property
+    def y(self) -> Array:
+        """Middles of the slices along the contact (ny,) [mm], from the contact point."""
+
+    @property
+    def origin(self) -> Array:
+        """The contact point (3,) in the fixed frame [mm]."""
+
+    @property
+    def axes(self) -> Array:
+        """Directions across, along and normal to the contact (3, 3), in rows, in the fixed frame."""
+
+
+_LINES: WeakKeyDictionary[ContactGrid, dict[int, tuple[FlankLine, FlankLine]]] = WeakKeyDictionary()
 """Lines of the grids, by the numbers of the tooth pairs, on pinion and wheel."""
 
 
@@ -60,7 +76,7 @@ class ToothCompliance:
         """
         return body_torsion(self.pair)
 
-    def within(self, number: int, separation: Separation) -> Array:
+    def within(self, number: int, grid: ContactGrid) -> Array:
         """Deflection of every slice of a contact's grid per force on each, both gears together.
 
         It comes on top of the displacement of the two half-spaces that carry the same pressures.
@@ -69,16 +85,16 @@ class ToothCompliance:
         ----------
         number : int
             Of the tooth pair: 0 is in contact at the pitch point at phi1 = 0, +1 comes into mesh after it.
-        separation : Separation
-            Grid of its contact, in the angles of its own tooth: as if it were pair 0.
+        grid : Separation or other ContactGrid
+            Of its contact, in the angles of its own tooth: as if it were pair 0.
 
         Returns
         -------
         (ny, ny) array [mm/N]
             Symmetric.
         """
-        distance = np.abs(separation.y[:, None] - separation.y)
-        on_pinion, on_wheel = self.lines(number, separation)
+        distance = np.abs(grid.y[:, None] - grid.y)
+        on_pinion, on_wheel = self.lines(number, grid)
         return self.pinion.within(on_pinion, distance) + self.wheel.within(on_wheel, distance)
 
     def between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
@@ -102,31 +118,15 @@ class ToothCompliance:
         there, here = self.lines(*at), self.lines(*under)
         return self.pinion.between(there[0], here[0]) + self.wheel.between(there[1], here[1])
 
-    def lines(self, number: int, separation: Separation) -> tuple[FlankLine, FlankLine]:
+    def lines(self, number: int, grid: ContactGrid) -> tuple[FlankLine, FlankLine]:
         """Middles of the slices of a grid on the flanks of pinion and wheel; kept as long as the grid is.
 
         Parameters are those of :meth:`within`. Normal forces of the slices at these lines load the roots of the teeth.
         """
-        known = _LINES.setdefault(separation, {})
+        known = _LINES.setdefault(grid, {})
         if number not in known:
-            known[number] = flank_lines(self.pair, number, separation)
+            known[number] = flank_lines(self.pair, number, grid)
         return known[number]
-
-
-class ContactGrid(Protocol):
-    """Where the slices of a contact lie; a separation and a pressure map are such grids."""
-
-    @property
-    def y(self) -> Array:
-        """Middles of the slices along the contact (ny,) [mm], from the contact point."""
-
-    @property
-    def origin(self) -> Array:
-        """The contact point (3,) in the fixed frame [mm]."""
-
-    @property
-    def axes(self) -> Array:
-        """Directions across, along and normal to the contact (3, 3), in rows, in the fixed frame."""
 
 
 def flank_lines(pair: GearPair, number: int, grid: ContactGrid) -> tuple[FlankLine, FlankLine]:

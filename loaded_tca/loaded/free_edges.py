@@ -27,6 +27,7 @@ from typing import NamedTuple, Protocol, Self
 import numpy as np
 
 from loaded_tca.arrays import Array, Indices, Mask
+from loaded_tca.compliance.compliance import ContactGrid
 from loaded_tca.compliance.half_space import depth_displacement
 from loaded_tca.contact.edges import quarter_space_factor, wedge_factor
 from loaded_tca.errors import InputError
@@ -89,12 +90,8 @@ def edge_compliance(pair: GearPair, separation: Separation) -> Array | None:
     return found
 
 
-class Slices(Protocol):
-    """Slices of a contact one after the other along y; those of a separation are all of one width."""
-
-    @property
-    def y(self) -> Array:
-        """Middles (ny,) [mm], from the contact point."""
+class Slices(ContactGrid, Protocol):
+    """Slices of a contact, side by side along y; those of a separation are all of one width."""
 
     @property
     def widths(self) -> Array:
@@ -103,14 +100,6 @@ class Slices(Protocol):
     @property
     def with_material(self) -> Mask:
         """Which of them have material (ny,)."""
-
-    @property
-    def origin(self) -> Array:
-        """The contact point (3,) in the fixed frame [mm]."""
-
-    @property
-    def axes(self) -> Array:
-        """Directions across, along and normal to the contact (3, 3), in rows, in the fixed frame."""
 
 
 def edge_compliances(pair: GearPair, grids: Sequence[Slices]) -> list[Array | InputError | None]:

@@ -27,6 +27,7 @@ from typing import Any
 import numpy as np
 
 from loaded_tca.arrays import Array, Mask
+from loaded_tca.compliance.compliance import ContactGrid
 from loaded_tca.errors import AccuracyWarning, InputError, LoadedTCAError
 from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.loaded.load_sharing import SharedLoad, ToothPair, tooth_pairs_at, torque_shared
@@ -146,10 +147,10 @@ class _HeldBending:
         self._model = model
         self._known: dict[tuple[int, ...], tuple[tuple[Array, ...], Array]] = {}
 
-    def within(self, number: int, separation: Separation) -> Array:
-        key = number, id(separation.y)
+    def within(self, number: int, grid: ContactGrid) -> Array:
+        key = number, id(grid.y)
         if key not in self._known:
-            self._known[key] = (separation.y,), self._model.within(number, separation)
+            self._known[key] = (grid.y,), self._model.within(number, grid)
         return self._known[key][1]
 
     def between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from loaded_tca.arrays import Array
+from loaded_tca.compliance.compliance import ContactGrid
 from loaded_tca.separation import Separation
 
 
@@ -17,7 +18,7 @@ class BendingModel(Protocol):
     are cells of one place along the contact.
     """
 
-    def within(self, number: int, separation: Separation) -> Array:
+    def within(self, number: int, grid: ContactGrid) -> Array:
         """Deflection of every slice under a unit force on each, (ny, ny) [mm/N], symmetric.
 
         On top of two half-spaces under the same pressures.

@@ -225,8 +225,8 @@ def pressure_at_rounded_edge(
     for line, expected in edges:
         if MOST_ABOVE * expected < max((one.pressure for one in alone.values()), default=0.0):
             break
-        if not math.isnan((found := highest([line])).pressure):
-            alone[line] = found
+        if not math.isnan((peak := highest([line])).pressure):
+            alone[line] = peak
     crossing = sorted(_crossing_within(loaded, [line for line, _ in edges]), key=lambda line: -abs(line.normal[1]))
     found = [peak for line, peak in alone.items() if line not in crossing]
     if crossing:  # the first one is crossed by the fewest rows
@@ -240,9 +240,9 @@ def _by_pressure(one: PeakAtEdge) -> float:
 
 
 def _crossing_within(loaded: LoadedContact, lines: list[RoundedEdge]) -> set[RoundedEdge]:
-    """Those of some edges that cross another one within a cell of the pressure of a contact."""
+    """Those of some edges that cross another one within two cells of the pressure of a contact."""
     grid, found = loaded.separation, set[RoundedEdge]()
-    pressed = binary_dilation(loaded.solution.pressure > 0.0, np.ones((3, 3), dtype=bool))
+    pressed = binary_dilation(loaded.solution.pressure > 0.0, np.ones((5, 5), dtype=bool))
     for pair in combinations(lines, 2):
         normals = np.array([np.array(line.normal) / math.hypot(*line.normal) for line in pair])
         if abs(np.linalg.det(normals)) < PARALLEL:
@@ -280,9 +280,7 @@ class _ContactAlongEdge:
         across, along = np.array(edge.normal) / math.hypot(*edge.normal)
         self.turn = np.array([[along, -across], [across, along]])
         grid = loaded.separation
-        self.normal_gap = NormalGap(
-            pair, loaded.contact, np.concatenate([self.turn @ grid.axes[:2], grid.axes[2:]])
-        )
+        self.normal_gap = NormalGap(pair, loaded.contact, np.concatenate([self.turn @ grid.axes[:2], grid.axes[2:]]))
         self.slice_axis = int(abs(along) > abs(across))
         self.along = float(self.turn[self.slice_axis, 1])
         """Way along the slices' axis per way along the contact."""

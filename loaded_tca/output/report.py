@@ -39,6 +39,8 @@ COLUMNS = {
     "tooth_deflection": ("tooth_deflection_um", 1e3),
     "peak_radius": ("peak_pinion_diameter_mm", 2.0),
     "peak_axial": ("peak_pinion_axial_mm", 1.0),
+    "edge_radius": ("edge_pinion_diameter_mm", 2.0),
+    "edge_axial": ("edge_pinion_axial_mm", 1.0),
     "root_tension_angle": ("root_tension_angle_deg", math.degrees(1.0)),
     "root_compression_angle": ("root_compression_angle_deg", math.degrees(1.0)),
     "pinion_angle": ("pinion_angle_deg", math.degrees(1.0)),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import version
 
@@ -12,10 +12,11 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress
 from loaded_tca.loaded.cycle import Carried
+from loaded_tca.loaded.rounded_edges import PeakAtEdge
 from loaded_tca.loaded.tooth_contact import LoadedContact
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import line_contact
-from loaded_tca.results.edge_cell import edge_cell
+from loaded_tca.results.edge_cell import sharp_edge_cell
 from loaded_tca.results.load_factors import load_factors
 from loaded_tca.results.mesh_cycle import MeshCycle, dataset_of
 from loaded_tca.results.pressure_map import PressureMap
@@ -25,7 +26,13 @@ from loaded_tca.scene import Scene
 from loaded_tca.unloaded import heelwards
 
 
-def mesh_cycle(scene: Scene, pair: GearPair, carried: Carried, roots: Sequence[RootStress] = ()) -> MeshCycle:
+def mesh_cycle(
+    scene: Scene,
+    pair: GearPair,
+    carried: Carried,
+    at_rounded_edges: Mapping[tuple[int, int, int], PeakAtEdge],
+    roots: Sequence[RootStress] = (),
+) -> MeshCycle:
     """Collect the result of an analysis, its tooth pairs in the order of the mesh.
 
     Parameters
@@ -34,6 +41,8 @@ def mesh_cycle(scene: Scene, pair: GearPair, carried: Carried, roots: Sequence[R
     pair : GearPair
         Of the scene.
     carried : Carried
+    at_rounded_edges : mapping
+        Peaks there by the indices of torque, position and tooth pair, as ``carried`` has them.
     roots : sequence of RootStress
         Of pinion and wheel, where the scene asks for root stress.
     """
@@ -49,7 +58,10 @@ def mesh_cycle(scene: Scene, pair: GearPair, carried: Carried, roots: Sequence[R
         if loaded is None:
             continue
         one = maps[place] = _pressure_map(loaded)
-        for name, number in _numbers(pair, loaded, one, peaks.get(place)).items():
+        at_edge = at_rounded_edges.get((*place[:2], int(order[place[2]])))
+        for name, number in (
+            _numbers(pair, loaded, one, peaks.get(place)) | _at_edge(pair, loaded, one, at_edge)
+        ).items():
             missing = math.nan if isinstance(number, float) else type(number)()
             numbers.setdefault(name, np.full(share.shape, missing))[place] = number
     apart = np.isnan(numbers["contact_deformation"])
@@ -116,13 +128,10 @@ def _numbers(
     longest = pair.face_width / slope if slope > 0.0 else math.inf  # what of the contact's direction the face holds
     length = min(length, longest)
     smooth = of_slices is None and solution.load > 0.0
-    hertz, of_material = _hertz(pair, loaded, length), replace(one, pressure=solution.pressure_on_material)
-    at_edge, rounded = edge_cell(pair, of_material) if loaded.at_edge else ((0, 0), False)
+    hertz = _hertz(pair, loaded, length)
     return {
         "normal_force": solution.load,
         "peak_pressure": peak,
-        "edge_pressure": float(of_material.pressure[at_edge]) if loaded.at_edge else math.nan,
-        "edge_is_rounded": rounded,
         "central_pressure": loaded.central_pressure,
         "peak_radius": radius,
         "peak_axial": axial,
@@ -141,6 +150,29 @@ def _numbers(
         "discretisation_error": solution.error_estimate.peak_pressure if smooth else math.nan,
         "iterations": solution.iterations,
         "residual": solution.residual,
+    }
+
+
+def _at_edge(
+    pair: GearPair, loaded: LoadedContact, one: PressureMap, rounded: PeakAtEdge | None
+) -> dict[str, float | bool]:
+    """Pressure of a loaded contact at an edge: the larger one of a sharp edge and of the rounded ones, if found."""
+    pressure, place, error = math.nan, (math.nan, math.nan), math.nan
+    if rounded is not None:
+        pressure, place, error = rounded.pressure, rounded.place, rounded.error
+    of_material, at_arc = replace(one, pressure=loaded.solution.pressure_on_material), loaded.at_arc
+    if loaded.at_edge:
+        across, along = sharp_edge_cell(pair, of_material)
+        cell = float(of_material.pressure[across, along])
+        if not at_arc or cell > np.nan_to_num(pressure):
+            pressure, place, error, at_arc = cell, (float(one.x[across]), float(one.y[along])), math.nan, False
+    radius, axial = one.place(*place)
+    return {
+        "edge_pressure": pressure,
+        "edge_is_rounded": at_arc,
+        "edge_pressure_error": error,
+        "edge_radius": radius,
+        "edge_axial": axial,
     }
 
 

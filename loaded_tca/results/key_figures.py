@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
-from loaded_tca.results.edge_cell import edge_cell
 from loaded_tca.results.root_figures import root_figures
 
 if TYPE_CHECKING:
@@ -107,7 +106,6 @@ def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
 
     on_line = np.stack([path.on_line for path in result.paths], axis=-1)
     pairs = result.loaded_pairs[torque] if result.scene.analysis.load_sharing else np.full(1, math.nan)
-    radius, axial = _edge_place(result, torque, edge)
     highest = np.fmax(result.peak_pressure, result.edge_pressure)[torque]
     return {
         "pinion_torque_Nm": 1e-3 * float(result.torque[torque]),
@@ -126,8 +124,8 @@ def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
         "edge_is_rounded": edge is not None and bool(result.edge_is_rounded[torque][edge]),
         "normal_force_at_edge_N": at(edge, "normal_force"),
         "pinion_angle_at_edge_deg": math.degrees(contact_point(edge, "pinion_angle")),
-        "pinion_diameter_at_edge_mm": 2.0 * radius,
-        "pinion_axial_at_edge_mm": axial,
+        "pinion_diameter_at_edge_mm": 2.0 * at(edge, "edge_radius"),
+        "pinion_axial_at_edge_mm": at(edge, "edge_axial"),
         "peak_pressure_where_hertz_holds_MPa": at(smooth, "peak_pressure"),
         "hertz_pressure_there_MPa": at(smooth, "hertz_pressure"),
         "hertz_length_there_mm": 2.0 * at(smooth, "hertz_semi_major"),
@@ -169,15 +167,6 @@ def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
         "capped_positions": count(highest >= CAPPED * result.max_pressure),
         **(root_figures(result, torque) if result.has_root_stress else {}),
     }
-
-
-def _edge_place(result: MeshCycle, torque: int, edge: tuple[int, int] | None) -> tuple[float, float]:
-    """Radius and axial coordinate on the pinion [mm] of the cell with the edge pressure of a contact."""
-    one = None if edge is None else result.maps[torque][edge[0]][edge[1]]
-    if one is None:
-        return math.nan, math.nan
-    (across, along), _ = edge_cell(result.gear_pair, one)
-    return one.place(one.x[across], one.y[along])
 
 
 def _error_figures(name: str, error: Array, length: float) -> dict[str, float]:

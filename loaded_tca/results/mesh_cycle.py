@@ -52,8 +52,16 @@ QUANTITIES: dict[str, Part] = {
         "MPa",
         "peak contact pressure; where the contact reaches a sharp edge or a relief start, the largest of its slices",
     ),
-    "edge_pressure": (PAIRS, "MPa", "largest pressure of a cell at an edge; NaN where none is reached"),
+    "edge_pressure": (
+        PAIRS,
+        "MPa",
+        "largest pressure at an edge; NaN where none is reached, and at rounded ones that cannot hold the largest of "
+        "their torque unless all are asked for",
+    ),
     "edge_is_rounded": (PAIRS, "1", "whether that edge is rounded; the pressure at a sharp one is mesh-dependent"),
+    "edge_pressure_error": (PAIRS, "1", "estimated relative error of the pressure at a rounded edge by its columns"),
+    "edge_radius": (PAIRS, "mm", "radius on the pinion of the edge pressure"),
+    "edge_axial": (PAIRS, "mm", "axial coordinate on the pinion of the edge pressure"),
     "central_pressure": (PAIRS, "MPa", "contact pressure beside the unloaded contact point"),
     "peak_radius": (PAIRS, "mm", "radius on the pinion of the peak pressure"),
     "peak_axial": (PAIRS, "mm", "axial coordinate on the pinion of the peak pressure"),
@@ -91,7 +99,7 @@ OF_THE_PEAK = frozenset(
     | {"cells_across", "cells_along", "discretisation_error", "iterations", "residual"}
 )
 """Numbers whose value at a position is that of the pair with the highest peak pressure."""
-OF_THE_EDGE = frozenset({"edge_pressure", "edge_is_rounded"})
+OF_THE_EDGE = frozenset({"edge_pressure", "edge_is_rounded", "edge_pressure_error", "edge_radius", "edge_axial"})
 
 PATH_PARTS: dict[str, Part] = {
     "pinion_angle": ((), "rad", "angle of the pinion phi1"),

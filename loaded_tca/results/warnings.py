@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Mapping
 
 import numpy as np
 
 from loaded_tca.errors import AccuracyWarning
 from loaded_tca.loaded.cycle import Carried
+from loaded_tca.loaded.rounded_edges import PeakAtEdge
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.tooth_cycle import REACH
 
 THICKEST_CONTACT = 0.25
 """Half width of a contact, over the module, above which a tooth is no half-space: it is 1.6 modules thick."""
+
+MOST_EDGE_ERROR = 0.03
+"""Estimated relative error of the pressure at a rounded edge above which it is told."""
 
 MOST_TORSION = 0.5
 """Part of the deflection from which the twist of the bodies about their bores is told."""
@@ -24,6 +29,7 @@ def warn_of_accuracy(
     pair: GearPair,
     grid: GridChoice,
     carried: Carried,
+    at_rounded_edges: Mapping[tuple[int, int, int], PeakAtEdge],
     *,
     load_sharing: bool,
     body_torsion: float = 0.0,
@@ -35,6 +41,8 @@ def warn_of_accuracy(
     pair : GearPair
     grid : GridChoice
     carried : Carried
+    at_rounded_edges : mapping
+        Peaks there by the indices of torque, position and tooth pair.
     load_sharing : bool
         Whether the pairs that were looked for depend on how far the load turns the wheel.
     body_torsion : float [mm/N]
@@ -42,18 +50,18 @@ def warn_of_accuracy(
     """
     places: dict[str, list[str]] = {}
     solved, told = 0, []
-    for torque, rows in zip(carried.torque.tolist(), carried.contacts, strict=True):
+    for t, (torque, rows) in enumerate(zip(carried.torque.tolist(), carried.contacts, strict=True)):
         loads = [loaded.solution.load for row in rows for loaded in row if loaded is not None]
         if torque > 0.0 and not any(loads):
             told.append(
                 f"{1e-3 * torque:g} N m is next to no torque, the gaps it closes are rounding: taken for no load"
             )
-        for angle, row in zip(carried.path.pinion_angle.tolist(), rows, strict=True):
-            for number, loaded in zip(carried.pairs.tolist(), row, strict=True):
+        for n, (angle, row) in enumerate(zip(carried.path.pinion_angle.tolist(), rows, strict=True)):
+            for k, (number, loaded) in enumerate(zip(carried.pairs.tolist(), row, strict=True)):
                 if loaded is not None:
                     solved += 1
                     place = f"{1e-3 * torque:g} N m, pinion angle {math.degrees(angle):.4g} deg, tooth pair {number:+d}"
-                    for reason in _reasons(pair, grid, loaded):
+                    for reason in _reasons(pair, grid, loaded, at_rounded_edges.get((t, n, k))):
                         places.setdefault(reason, []).append(place)
     told += [f"{reason} (at {len(at)} of {solved} pressure maps; the first: {at[0]})" for reason, at in places.items()]
     turned = np.where(carried.rotation > 0.0, carried.rotation, math.inf)
@@ -74,15 +82,12 @@ def warn_of_accuracy(
         warnings.warn(sentence, AccuracyWarning, stacklevel=3)
 
 
-def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[str]:
+def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact, at_rounded_edge: PeakAtEdge | None) -> list[str]:
     solution = loaded.solution
     found = []
-    if loaded.at_arc:
-        found.append(
-            "the contact reaches the arc of a rounded edge, which the grid does not resolve: the edge pressure is "
-            "mesh-dependent"
-        )
-    elif loaded.at_edge:
+    if at_rounded_edge is not None and at_rounded_edge.error > MOST_EDGE_ERROR:
+        found.append(f"the pressure at a rounded edge has an estimated error above {MOST_EDGE_ERROR:.0%}")
+    if loaded.at_edge and not loaded.at_arc:
         edge = "the contact reaches an edge of a flank, where the pressure of the map is mesh-dependent"
         found.append(edge + ("" if grid.free_edges else "; the free edge is left out (analysis.free_edges)"))
     if loaded.at_relief_start:

@@ -232,6 +232,12 @@ class Analysis(Section):
         "what deforms under load: the flanks, or the teeth and bodies, too",
         "contact+tooth",
     )
+    edge_pressures: str = key(
+        Choice(("largest", "all")),
+        "which contacts at rounded edges have their pressure there found: those that can hold the largest one of their "
+        "torque, or all",
+        "largest",
+    )
     root_stress: bool = key(
         Choice((False, True)),
         "whether the stress at the roots of the teeth is found, by finite elements of both gears",
