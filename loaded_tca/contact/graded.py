@@ -9,12 +9,17 @@ minimises the energy of their symmetric part S under the gap h + (D - S) p of th
 the contact conditions hold for D itself; each time takes the difference down to about a hundredth. (S alone leaves 1 %
 in the pressure where the growth of the columns changes, however fine they are.)
 
+A free edge along the columns adds an image of the forces, as on even grids: coefficients at mirrored places. With a
+reference only the differences of what it adds are kept: there a force adds nothing to the displacement beneath it. So
+the surface tilts and curves beside the edge, and how far it gives way on the whole is left to the slices.
+
 The graded axis is y, always: for an edge along y, whose rounding is crossed along x, the caller hands in the transposed
 gap, and slices by ``slice_axis`` 0.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -22,10 +27,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.fft import dct, irfft, rfft
 
-from loaded_tca.arrays import Array, numbers, real
+from loaded_tca.arrays import Array, Mask, numbers, real
 from loaded_tca.contact import checks
 from loaded_tca.contact.convolution import ALL, Rows, Window, fast_length
 from loaded_tca.contact.descent import Descent, judge
+from loaded_tca.contact.edges import FreeEdge, check_edges
 from loaded_tca.contact.grid import AT_BOUND, OUT_OF_REACH, Grids, Operator, each
 from loaded_tca.contact.levels import coarsen, coarsening, merged, prolong
 from loaded_tca.contact.love import column_coefficients
@@ -73,6 +79,11 @@ class GradedProblem:
         Displacement of every slice under a unit force on each of them, on top of that of the half-spaces.
     slice_axis : {1, 0}
         Axis along which slices follow each other: 1 if each column is a slice, n = ny.
+    free_edges : sequence of FreeEdge
+        Across the second axis, ``axis`` 1.
+    reference : float, optional [mm]
+        Place along the second axis, counted as the borders, where a force adds nothing to the displacement beneath it by
+        the images of its row; they count in full if absent.
 
     Raises
     ------
@@ -94,6 +105,8 @@ class GradedProblem:
     max_pressure: float | None = None
     slice_compliance: Array | None = None
     slice_axis: int = 1
+    free_edges: Sequence[FreeEdge] = ()
+    reference: float | None = None
 
     def __post_init__(self) -> None:
         gap, borders, slices = numbers("gap", self.gap), numbers("borders", self.borders), self.slice_compliance
@@ -107,12 +120,21 @@ class GradedProblem:
             problems.append(f"slice_axis: {self.slice_axis} is neither 0 nor 1")
         if not problems and gap.ndim == 2 and (told := memory_problem(*gap.shape)) is not None:
             problems.append(f"gap: {told}")
+        problems += check_edges(self.free_edges) or [
+            f"free_edges[{k}].axis: 0 is not 1, across the columns"
+            for k, edge in enumerate(self.free_edges)
+            if edge.axis == 0
+        ]
+        if self.reference is not None and not np.isfinite(real(self.reference)):
+            problems.append(f"reference: {self.reference} mm is not finite")
         checks.raise_if(problems)
         cell = self.spacing, float(np.diff(borders).min())
         checks.raise_if(
             checks.check_grid(gap, cell, self.contact_modulus)
             + checks.check_slices(slices, (gap.shape[self.slice_axis] if gap.ndim == 2 else 0,))
         )
+        for edge in self.free_edges:
+            gap = np.where(material(edge, borders), gap, np.inf)
         own = {"gap": gap.copy(), "borders": borders.copy(), "slice_compliance": slices}
         for name, value in own.items():
             if value is not None:
@@ -312,17 +334,30 @@ class Kernel:
         Their length.
     borders : (ny + 1,) array [mm]
         Of the columns.
+    edges, reference
+        As of the problem.
     """
 
     rows: int
     spacing: float
     borders: Array
+    edges: Sequence[FreeEdge] = ()
+    reference: float | None = None
 
     @cached_property
     def whole(self) -> Array:
         """Transform of the coefficients D, (wave numbers, ny, ny), displaced columns before pressed ones."""
         reach = fast_length(2 * self.rows) // 2
         coefficients = column_coefficients(reach + 1, self.spacing, self.borders)
+        middles = 0.5 * (self.borders[1:] + self.borders[:-1])
+        for edge in self.edges:
+            mirrored, inside = 2.0 * (self.borders[0] + edge.position) - middles, material(edge, self.borders)
+            image = column_coefficients(reach + 1, self.spacing, self.borders, mirrored)
+            if self.reference is not None:
+                there = int(np.where(inside, np.abs(middles - self.reference), np.inf).argmin())
+                image -= image[:, there, there].copy()[:, None, None]
+            image *= np.where(inside[:, None] & inside, edge.factor, 0.0)
+            coefficients += image
         return np.asarray(dct(coefficients, type=1, axis=0, overwrite_x=True))
 
     @cached_property
@@ -363,7 +398,9 @@ class GradedGrids(Grids):
             approach=each([np.nan]),
             cap=(cap * widths / modulus if near else np.full(widths.size, np.inf))[None, None],
             slices=None if slices is None else slices[None] * (modulus * problem.spacing),
-            kernel=Kernel(problem.cells[0], problem.spacing, problem.borders),
+            kernel=Kernel(
+                problem.cells[0], problem.spacing, problem.borders, problem.free_edges, problem.reference
+            ),
             slice_axis=problem.slice_axis,
         )
         return replace(grids, gap=np.minimum(grids.gap, OUT_OF_REACH * grids.reach))
@@ -407,7 +444,7 @@ class GradedGrids(Grids):
             total=self.total / merge[0],
             cap=np.add.reduceat(self.cap, starts, axis=2),
             slices=None if self.slices is None else merged(self.slices, both) * merge[0],
-            kernel=Kernel(gap.shape[1], dx, borders),
+            kernel=replace(self.kernel, rows=gap.shape[1], spacing=dx, borders=borders),
         )
 
     def operator(self, _: Window | None = None, dtype: str = "float64", threads: int = 1) -> Operator:  # noqa: ARG002
@@ -463,6 +500,12 @@ class GradedGrids(Grids):
         if not root.any():
             root.ravel()[order[0]] = 1.0
         return np.asarray(root * (self.total[0] / root.sum()))[None]
+
+
+def material(edge: FreeEdge, borders: Array) -> Mask:
+    """Columns whose middles lie on the side of an edge where the bodies are, (ny,)."""
+    middles, place = 0.5 * (borders[1:] + borders[:-1]), borders[0] + edge.position
+    return np.asarray(middles < place if edge.material == "below" else middles > place)
 
 
 def _filtered(values: Array, symbol: Array, length: int | None = None) -> Array:
