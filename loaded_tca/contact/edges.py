@@ -162,17 +162,10 @@ def wedge_factor(angle: float, poisson_ratio: float, share: float = 1.0) -> floa
 def extra_displacement(angle: float) -> float:
     r"""Displacement of a wedge beyond that of a half-space, over the latter, under a line load at the edge.
 
-    It is also the factor of the image with which the surface of a wedge tilts as it should in plane strain. A line load
-    P on one face, s from the apex, displaces that face at x by what it does on a half-space and
-
-    .. math:: \frac{2 P}{\pi E^*} \left[\int_0^\infty \frac{h(\tau)}{\tau} \cos(\tau \ln(x/s))\,d\tau
-              - \frac{m}{2} \ln(x s)\right], \qquad
-              h = \frac{\sinh 2\omega\tau + \tau \sin 2\omega}{2 (\sinh^2 \omega\tau - \tau^2 \sin^2 \omega)}
-              - \coth \pi\tau
-
-    (finite part; Mellin's transform of Airy's stress function). The integral is even in ln(x/s): at the load the face
-    tilts by m P/(pi E* s). The image m ln(x + s) has this tilt and the same displacements far to either side; from
-    105 deg on it is within 5 % of the whole at x = 2 s and beyond (``docs/contact_solver.md``).
+    It is m of :func:`wedge_factor`, and the factor of an image that tilts the surface as in plane strain: a line load P,
+    s from the edge, adds the tilt m P/(pi E* s) where it is, and -2 m/(pi E*) P ln(x) far away, as the image
+    -2 m/(pi E*) P ln(x + s) does. Between s/4 and 4 s the image is within 3 % of what is exact there
+    (:func:`loaded_tca.reference.wedge.extra_displacement`) from 105 deg on, at 90 deg within 5 %.
 
     Parameters
     ----------
@@ -182,11 +175,10 @@ def extra_displacement(angle: float) -> float:
     Returns
     -------
     float
-        m of :func:`wedge_factor`.
 
     References
     ----------
-    Michell 1902; Tranter 1948, Q. J. Mech. Appl. Math. 1, 125-130 (Mellin's transform for the wedge).
+    Michell 1902, Proc. London Math. Soc. 34, 134-146.
 
     Examples
     --------

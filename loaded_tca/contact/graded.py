@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.fft import dct, irfft, rfft
 
-from loaded_tca.arrays import Array, Mask, numbers, real
+from loaded_tca.arrays import Array, numbers, real
 from loaded_tca.contact import checks
 from loaded_tca.contact.convolution import ALL, Rows, Window, fast_length
 from loaded_tca.contact.descent import Descent, judge
@@ -80,7 +80,8 @@ class GradedProblem:
     slice_axis : {1, 0}
         Axis along which slices follow each other: 1 if each column is a slice, n = ny.
     free_edges : sequence of FreeEdge
-        Across the second axis, ``axis`` 1.
+        Across the second axis, ``axis`` 1. The gap beyond them is as it is given; what is pressed there, at the end of
+        a rounding, has an image too if the factor is below 1.
     reference : float, optional [mm]
         Place along the second axis, counted as the borders, where a force adds nothing to the displacement beneath it by
         the images of its row; they count in full if absent.
@@ -133,8 +134,6 @@ class GradedProblem:
             checks.check_grid(gap, cell, self.contact_modulus)
             + checks.check_slices(slices, (gap.shape[self.slice_axis] if gap.ndim == 2 else 0,))
         )
-        for edge in self.free_edges:
-            gap = np.where(material(edge, borders), gap, np.inf)
         own = {"gap": gap.copy(), "borders": borders.copy(), "slice_compliance": slices}
         for name, value in own.items():
             if value is not None:
@@ -351,13 +350,15 @@ class Kernel:
         coefficients = column_coefficients(reach + 1, self.spacing, self.borders)
         middles = 0.5 * (self.borders[1:] + self.borders[:-1])
         for edge in self.edges:
-            mirrored, inside = 2.0 * (self.borders[0] + edge.position) - middles, material(edge, self.borders)
-            image = column_coefficients(reach + 1, self.spacing, self.borders, mirrored)
+            place = self.borders[0] + edge.position
+            inside = (middles < place) == (edge.material == "below")
+            image = column_coefficients(reach + 1, self.spacing, self.borders, 2.0 * place - middles)
             if self.reference is not None:
                 there = int(np.where(inside, np.abs(middles - self.reference), np.inf).argmin())
                 image -= image[:, there, there].copy()[:, None, None]
-            image *= np.where(inside[:, None] & inside, edge.factor, 0.0)
-            coefficients += image
+            if edge.factor >= 1.0:  # with images of what lies beyond the edge K would not be positive definite
+                image *= inside[:, None] & inside
+            coefficients += edge.factor * image
         return np.asarray(dct(coefficients, type=1, axis=0, overwrite_x=True))
 
     @cached_property
@@ -500,12 +501,6 @@ class GradedGrids(Grids):
         if not root.any():
             root.ravel()[order[0]] = 1.0
         return np.asarray(root * (self.total[0] / root.sum()))[None]
-
-
-def material(edge: FreeEdge, borders: Array) -> Mask:
-    """Columns whose middles lie on the side of an edge where the bodies are, (ny,)."""
-    middles, place = 0.5 * (borders[1:] + borders[:-1]), borders[0] + edge.position
-    return np.asarray(middles < place if edge.material == "below" else middles > place)
 
 
 def _filtered(values: Array, symbol: Array, length: int | None = None) -> Array:

@@ -6,7 +6,8 @@ is held, that of the other moves straight towards it. ``python -m validation.cal
 minute each; it needs ``ccx``) and writes the table of pressures that is kept, with which the rows compare. Half-spaces
 do not tilt as the tip does: without an angle of the edge they show what that is worth.
 
-Elements half as large at the rounding change the peak under 200 N/mm at 115 deg by @@ %.
+Elements half as large at the rounding change the peaks by 0.0, 0.4 and 0.7 % (115 deg under 100 and 200 N/mm, 150 deg),
+at 200 N/mm with corrections of some 2 nm left; all elements half as large, but for the smallest, 0.05 %.
 """
 
 from __future__ import annotations
