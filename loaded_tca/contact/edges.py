@@ -162,9 +162,9 @@ def wedge_factor(angle: float, poisson_ratio: float, share: float = 1.0) -> floa
 def extra_displacement(angle: float) -> float:
     r"""Displacement of a wedge beyond that of a half-space, over the latter, under a line load at the edge.
 
-    It is m of :func:`wedge_factor`, and the factor of an image that tilts the surface as in plane strain: a line load P,
-    s from the edge, adds the tilt m P/(pi E* s) where it is, and -2 m/(pi E*) P ln(x) far away, as the image
-    -2 m/(pi E*) P ln(x + s) does. Between s/4 and 4 s the image is within 3 % of what is exact there
+    It is m of :func:`wedge_factor`, and the factor of an image that tilts the surface as in plane strain: a line load
+    P, s from the edge, adds the tilt m P/(pi E* s) where it is, and -2 m/(pi E*) P ln(x) far away, as the image
+    -2 m/(pi E*) P ln(x + s) does. Between s/4 and 4 s the image is within 3 % of the range of the exact displacement
     (:func:`loaded_tca.reference.wedge.extra_displacement`) from 105 deg on, at 90 deg within 5 %.
 
     Parameters

@@ -83,8 +83,8 @@ class GradedProblem:
         Across the second axis, ``axis`` 1. The gap beyond them is as it is given; what is pressed there, at the end of
         a rounding, has an image too if the factor is below 1.
     reference : float, optional [mm]
-        Place along the second axis, counted as the borders, where a force adds nothing to the displacement beneath it by
-        the images of its row; they count in full if absent.
+        Place along the second axis, counted as the borders, where a force adds nothing to the displacement beneath it
+        by its image; images count in full if absent.
 
     Raises
     ------
@@ -399,9 +399,7 @@ class GradedGrids(Grids):
             approach=each([np.nan]),
             cap=(cap * widths / modulus if near else np.full(widths.size, np.inf))[None, None],
             slices=None if slices is None else slices[None] * (modulus * problem.spacing),
-            kernel=Kernel(
-                problem.cells[0], problem.spacing, problem.borders, problem.free_edges, problem.reference
-            ),
+            kernel=Kernel(problem.cells[0], problem.spacing, problem.borders, problem.free_edges, problem.reference),
             slice_axis=problem.slice_axis,
         )
         return replace(grids, gap=np.minimum(grids.gap, OUT_OF_REACH * grids.reach))

@@ -47,8 +47,8 @@ def extra_displacement(place: ArrayLike, load_place: ArrayLike, angle: float) ->
 
     References
     ----------
-    Tranter 1948, Q. J. Mech. Appl. Math. 1, 125-130 (the transform for the wedge); Michell 1902, Proc. London Math. Soc.
-    34, 134-146 (m).
+    Tranter 1948, Q. J. Mech. Appl. Math. 1, 125-130 (the transform for the wedge); Michell 1902, Proc. London Math.
+    Soc. 34, 134-146 (m).
 
     Examples
     --------

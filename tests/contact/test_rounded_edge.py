@@ -189,6 +189,14 @@ def test_a_wedge_of_two_right_angles_is_a_half_space():
     assert_allclose(tip_peak(115.0, share=0.0).pressure, plain.pressure, rtol=1e-6)
 
 
+def test_faces_of_a_wedge_meet_where_they_would_without_the_rounding():
+    ends = [RoundedEdge((0.0, 2.0), (0.0, side), 0.2, 0.5 * math.pi).free_edge(-2.0) for side in (3.0, -3.0)]
+    assert_allclose([end.position for end in ends], [4.2, 3.8], rtol=1e-12)
+    assert [end.material for end in ends] == ["below", "above"]
+    # Two bodies of 90 deg: Hetenyi in plane strain, the side returns 2/pi of a load, and twice that falls on the top.
+    assert_allclose(2.0 * ends[0].factor, 2.0 / (1.0 - (2.0 / math.pi) ** 2) - 1.0, rtol=1e-12)
+
+
 def test_the_sharper_the_wedge_the_more_it_tilts_off_its_edge():
     found = [tip_peak(degrees) for degrees in (None, 150.0, 115.0, 90.0)]
     assert (np.diff([one.pressure for one in found]) < 0.0).all()
@@ -231,7 +239,10 @@ def test_angle_counts_along_the_columns_and_not_beside_slices_that_tell_the_tilt
         ({"edges": [RoundedEdge((0.0, 1.0), (0.0, 0.0), 0.2)]}, r"^edges\[0\]: "),
         ({"edges": [RoundedEdge((0.0, np.nan), (0.0, 1.0), 0.2)]}, r"^edges\[0\]: "),
         ({"edges": [FACE, RoundedEdge((0.0, 1.0), (0.0, 1.0), 0.0)]}, r"^edges\[1\]: "),
-        ({"edges": [FACE, RoundedEdge((0.0, 1.0), (0.0, 1.0), 0.2, 0.1)]}, r"^edges\[1\].angle: 0.1 rad is not between"),
+        (
+            {"edges": [FACE, RoundedEdge((0.0, 1.0), (0.0, 1.0), 0.2, 0.1)]},
+            r"^edges\[1\].angle: 0.1 rad is not between",
+        ),
         ({"edges": [RoundedEdge((0.0, 1.0), (0.0, 1.0), 0.2, math.nan)]}, r"^edges\[0\].angle: nan rad"),
         ({"edges": [RoundedEdge((0.0, 1.0), (0.0, 1.0), 0.2, 2.0, 1.1)]}, r"^edges\[0\].share: 1.1 is not between"),
         ({"load": 0.0}, "^load: 0.0 N is not positive and finite$"),

@@ -26,9 +26,9 @@ def michell(angle):
 def hetenyi(places, load_place):
     """Slopes E* u'/P of a quarter-plane beyond those of a half-plane: two half-planes that free each other's faces.
 
-    A pair of forces p at y and -y on one face leaves the middle plane the pressure 4 p y^2 z/(pi (y^2 + z^2)^2) (Flamant)
-    and no shear. Pairs r on top and q on the side that add up to the load alone: q + T (P + r) = 0, r + T q = 0; those on
-    the side do not move the top, which is their middle plane.
+    A pair of forces p at y and -y on one face leaves the plane between them the pressure 4 p y^2 z/(pi (y^2 + z^2)^2)
+    (Flamant) and no shear. Pairs r on top and q on the side that add up to the load alone: q + T (P + r) = 0,
+    r + T q = 0; those on the side do not move the top, the plane between them.
     """
     step = 0.02
     y = load_place * np.exp(np.arange(-14.0, 14.0, step) + 0.5 * step)  # no place is on it
@@ -71,7 +71,7 @@ def test_displacement_is_reciprocal_and_scales():
 
 
 def test_a_wedge_is_softer_than_a_half_plane():
-    """Material taken off: the energy of every load is larger; but for what moves the whole, loads that sum up to zero."""
+    """Material taken off: every load has more energy; loads that sum up to zero, so that no level counts."""
     energy = np.linalg.eigvalsh(np.diff(np.diff(extra_displacement(PLACES[:, None], PLACES, 2.0), axis=0), axis=1))
     assert energy.min() > 0.0
 

@@ -226,9 +226,7 @@ def rows() -> list[Row]:
         plain, wedge = (peak_of_columns(load, angle) for angle in (None, math.radians(degrees)))
         note = f"centre of the load at {{:.4f}} mm, of the elements at {place:.4f} mm"
         table += [
-            Row(
-                case, SOURCE, "peak, half-spaces [MPa]", peak, plain.pressure, None, note=note.format(centre(plain))
-            ),
+            Row(case, SOURCE, "peak, half-spaces [MPa]", peak, plain.pressure, None, note=note.format(centre(plain))),
             Row(case, SOURCE, "peak, wedge [MPa]", peak, wedge.pressure, ASKED, note=note.format(centre(wedge))),
         ]
     return table
