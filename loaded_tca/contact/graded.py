@@ -11,7 +11,8 @@ in the pressure where the growth of the columns changes, however fine they are.)
 
 A free edge along the columns adds an image of the forces, as on even grids: coefficients at mirrored places. With a
 reference only the differences of what it adds are kept: there a force adds nothing to the displacement beneath it. So
-the surface tilts and curves beside the edge, and how far it gives way on the whole is left to the slices.
+the surface tilts and curves beside the edge, and how far it gives way on the whole is left to the slices. What is left
+out would make K indefinite for forces far from the edge: like what is not symmetric it is put in by repeating.
 
 The graded axis is y, always: for an edge along y, whose rounding is crossed along x, the caller hands in the transposed
 gap, and slices by ``slice_axis`` 0.
@@ -80,8 +81,7 @@ class GradedProblem:
     slice_axis : {1, 0}
         Axis along which slices follow each other: 1 if each column is a slice, n = ny.
     free_edges : sequence of FreeEdge
-        Across the second axis, ``axis`` 1. The gap beyond them is as it is given; what is pressed there, at the end of
-        a rounding, has an image too if the factor is below 1.
+        Across the second axis, ``axis`` 1. The gap beyond them is as it is given; what is pressed there has no image.
     reference : float, optional [mm]
         Place along the second axis, counted as the borders, where a force adds nothing to the displacement beneath it
         by its image; images count in full if absent.
@@ -348,18 +348,31 @@ class Kernel:
         """Transform of the coefficients D, (wave numbers, ny, ny), displaced columns before pressed ones."""
         reach = fast_length(2 * self.rows) // 2
         coefficients = column_coefficients(reach + 1, self.spacing, self.borders)
+        for edge in self.edges:
+            mirrored, inside = self._mirrored(edge)
+            image = column_coefficients(reach + 1, self.spacing, self.borders, mirrored)
+            # Images of what lies beyond, on columns of other widths, could make K indefinite.
+            coefficients += image * (edge.factor * (inside[:, None] & inside))
+        return np.asarray(dct(coefficients, type=1, axis=0, overwrite_x=True))
+
+    @cached_property
+    def levels(self) -> list[tuple[Array, Array]]:
+        """Columns (ny,) beside each edge, and the transform (wave numbers, 1, 1) of what is left out there."""
+        levels, reach, reference = [], fast_length(2 * self.rows) // 2, self.reference
+        if reference is None:
+            return []
         middles = 0.5 * (self.borders[1:] + self.borders[:-1])
         for edge in self.edges:
-            place = self.borders[0] + edge.position
-            inside = (middles < place) == (edge.material == "below")
-            image = column_coefficients(reach + 1, self.spacing, self.borders, 2.0 * place - middles)
-            if self.reference is not None:
-                there = int(np.where(inside, np.abs(middles - self.reference), np.inf).argmin())
-                image -= image[:, there, there].copy()[:, None, None]
-            if edge.factor >= 1.0:  # with images of what lies beyond the edge K would not be positive definite
-                image *= inside[:, None] & inside
-            coefficients += edge.factor * image
-        return np.asarray(dct(coefficients, type=1, axis=0, overwrite_x=True))
+            mirrored, inside = self._mirrored(edge)
+            k = int(np.where(inside, np.abs(middles - reference), np.inf).argmin())
+            own = column_coefficients(reach + 1, self.spacing, self.borders[k : k + 2], mirrored[k : k + 1])
+            levels.append((inside, edge.factor * dct(own, type=1, axis=0)))
+        return levels
+
+    def _mirrored(self, edge: FreeEdge) -> tuple[Array, Array]:
+        """Middles of the columns mirrored in an edge, and which of them lie where the bodies are."""
+        place, middles = self.borders[0] + edge.position, 0.5 * (self.borders[1:] + self.borders[:-1])
+        return 2.0 * place - middles, (middles < place) == (edge.material == "below")
 
     @cached_property
     def symmetric(self) -> Array:
@@ -464,6 +477,8 @@ class GradedGrids(Grids):
         """Displacement by forces, and the part of it that the symmetric coefficients do not tell."""
         symmetric = self.operator()(forces, np.empty(forces.shape))
         rest = _filtered(forces[0], self.kernel.whole - self.kernel.symmetric)[None]
+        for inside, level in self.kernel.levels:
+            rest -= _filtered(forces[0][:, inside].sum(axis=1, keepdims=True), level) * inside
         return symmetric + rest, rest
 
     def preconditioner(self, threads: int = 1) -> Operator:  # noqa: ARG002

@@ -331,9 +331,7 @@ def test_image_with_a_reference_tilts_the_surface_as_a_wedge(degrees):
     half_space, both = displacements(borders, [], None), displacements(borders, [edge], middles(borders)[load])
     added, apart = both - half_space, -middles(borders)
     assert_allclose(added, added.T, atol=1e-12)
-    assert (
-        np.abs(np.diff(added[apart < 0.1, load])).max() < 0.011 * edge.factor
-    )  # goes on beyond the apex, 0.01/(s + x)
+    assert_allclose(added[apart < 0.0], 0.0, atol=1e-12)
     assert_allclose(added[load, load], 0.0, atol=1e-12)
     tilt = np.diff(added[[load + 1, load - 1], load])[0] / (apart[load - 1] - apart[load + 1])
     assert_allclose(tilt, -edge.factor / (np.pi * apart[load]), rtol=1e-4)  # of the wedge, exactly
@@ -343,12 +341,16 @@ def test_image_with_a_reference_tilts_the_surface_as_a_wedge(degrees):
     assert_allclose(added[places, load], exact, atol=0.055 * np.ptp(exact))  # 105 deg: 5 %
 
 
-@pytest.mark.parametrize("factor", [0.6, 1.5])
+@pytest.mark.parametrize("factor", [0.3, 0.6])
 def test_contact_beside_a_free_edge_with_a_reference(factor):
     """Graded columns against even ones; the load moves off the edge, and all it gives way is little."""
     edge = FreeEdge(1, HALF + 0.22, "below", factor)
-    plain, found = graded(), graded(free_edges=[edge], reference=0.0)
-    even = graded(borders=np.linspace(-HALF, HALF, 121), free_edges=[edge], reference=0.0)
+
+    def ends(x, y):
+        return np.where(y > 0.22, np.inf, ellipsoid(x, y))
+
+    plain, found = graded(ends), graded(ends, free_edges=[edge], reference=0.0)
+    even = graded(ends, np.linspace(-HALF, HALF, 121), free_edges=[edge], reference=0.0)
     assert found.status is ContactStatus.CONVERGED
     assert_allclose(found.load, LOAD, rtol=1e-9)
     assert_allclose(found.approach, even.approach, rtol=5e-3)

@@ -7,7 +7,8 @@ minute each; it needs ``ccx``) and writes the table of pressures that is kept, w
 do not tilt as the tip does: without an angle of the edge they show what that is worth.
 
 Elements half as large at the rounding change the peaks by 0.0, 0.4 and 0.7 % (115 deg under 100 and 200 N/mm, 150 deg),
-at 200 N/mm with corrections of some 2 nm left; all elements half as large, but for the smallest, 0.05 %.
+at 200 N/mm with corrections of some 2 nm left; all elements half as large, but for the smallest, 0.05 %. The
+penalty lowers the peak under 100 N/mm by about 0.9 %, told from one of 3e8 MPa/mm.
 """
 
 from __future__ import annotations
