@@ -43,6 +43,8 @@ MOST_ROWS = 384
 """Cells along the columns."""
 MOST_FINE = 80
 """Finest columns beside an oblique edge, which lies across them."""
+SURELY_LESS = 0.92
+"""Part of a pressure below which coarser cells tell that finer ones will not reach it."""
 TOLERANCE = 1e-5
 
 
@@ -128,6 +130,7 @@ def edge_pressures(
     slice_compliance: SliceCompliance | None = None,
     slice_axis: int = 1,
     cells_on_arc: float = CELLS_ON_ARC,
+    at_least: float = 0.0,
     tolerance: float = TOLERANCE,
 ) -> list[EdgePressure]:
     r"""Peak pressures at rounded edges that a contact reaches, its force kept.
@@ -168,6 +171,8 @@ def edge_pressures(
         Axis along which slices follow each other: columns if 1, rows if 0.
     cells_on_arc : float
         m, for edges along x; a quarter more for others.
+    at_least : float [MPa]
+        Where no edge reaches 0.92 of this on the coarser cells, these are the answer.
     tolerance : float
         Of the contact conditions.
 
@@ -228,6 +233,8 @@ def edge_pressures(
             arcs = [arc.after(one) for arc, one in zip(arcs, found, strict=True)]
             if all(math.isnan(one.pressure) or one.cells_on_arc >= FEWEST_ON_ARC * on_arc for one in found):
                 break
+        if not any(one.pressure >= SURELY_LESS * at_least for one in found):
+            return found
     return [one.compared_with(other) for one, other in zip(found, coarse, strict=True)]
 
 

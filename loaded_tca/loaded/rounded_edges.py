@@ -17,7 +17,7 @@ hold the largest pressure of a mesh cycle.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import NamedTuple
 
@@ -26,7 +26,7 @@ from scipy.interpolate import make_interp_spline
 from scipy.ndimage import binary_dilation
 
 from loaded_tca.arrays import Array, Mask
-from loaded_tca.contact.rounded_edge import EdgePressure, RoundedEdge, edge_pressures
+from loaded_tca.contact.rounded_edge import SURELY_LESS, EdgePressure, RoundedEdge, edge_pressures
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.flanks.rounding import RoundedFlank
@@ -149,8 +149,11 @@ def pressures_at_rounded_edges(
             if not every and MOST_ABOVE * edges[0].expected < largest:
                 break
             number = int(carried.pairs[place[2]])
-            found[place] = pressure_at_rounded_edge(pair, loaded, edges, bending, number, free_edges=free_edges)
-            largest = max(largest, found[place].pressure)  # which stays where the other one is NaN
+            peak = pressure_at_rounded_edge(
+                pair, loaded, edges, bending, number, free_edges=free_edges, at_least=0.0 if every else largest
+            )
+            if every or peak.pressure >= SURELY_LESS * largest:
+                found[place], largest = peak, max(largest, peak.pressure)  # which stays where the other one is NaN
     return found
 
 
@@ -200,6 +203,7 @@ def pressure_at_rounded_edge(
     number: int,
     *,
     free_edges: bool,
+    at_least: float = 0.0,
 ) -> PeakAtEdge:
     """Peak pressure of a contact at its rounded edges.
 
@@ -215,18 +219,20 @@ def pressure_at_rounded_edge(
     number : int
         Of the tooth pair, as the bending model counts.
     free_edges : bool
+    at_least : float [MPa]
+        Pressures that are surely less need not be found closely.
     """
 
     def highest(lines: list[RoundedEdge]) -> PeakAtEdge:
         contact = _ContactAlongEdge(pair, loaded, lines[0], bending, number, free_edges)
-        return max((contact.turned_back(one) for one in contact.solved(lines)), key=_by_pressure)
+        return max((contact.turned_back(one) for one in contact.solved(lines, at_least)), key=_by_pressure)
 
     alone: dict[RoundedEdge, PeakAtEdge] = {}
     for line, expected in edges:
-        if MOST_ABOVE * expected < max((one.pressure for one in alone.values()), default=0.0):
+        if MOST_ABOVE * expected < at_least:
             break
         if not math.isnan((peak := highest([line])).pressure):
-            alone[line] = peak
+            alone[line], at_least = peak, max(at_least, peak.pressure)
     crossing = sorted(_crossing_within(loaded, [line for line, _ in edges]), key=lambda line: -abs(line.normal[1]))
     found = [peak for line, peak in alone.items() if line not in crossing]
     if crossing:  # the first one is crossed by the fewest rows
@@ -287,19 +293,19 @@ class _ContactAlongEdge:
         coupling = loaded.coupling_deflection
         self.coupling = None if coupling is None else make_interp_spline(grid.y, coupling, k=min(3, grid.y.size - 1))
 
+    def _turned(self, place: tuple[float, float]) -> tuple[float, float]:
+        """A place or a direction, of the contact's axes, in those along the edge."""
+        along, across = (self.turn @ place).tolist()
+        return along, across
+
     def turned_back(self, found: EdgePressure) -> PeakAtEdge:
         """A peak, its place across and along the contact."""
         across, along = (np.array(found.place) @ self.turn).tolist()
         return PeakAtEdge(found.pressure, (across, along), found.error)
 
-    def solved(self, edges: list[RoundedEdge]) -> list[EdgePressure]:
+    def solved(self, edges: list[RoundedEdge], at_least: float) -> list[EdgePressure]:
         """Pressures at edges, in a box that holds the contact."""
-        turned = [
-            RoundedEdge(
-                tuple((self.turn @ edge.place).tolist()), tuple((self.turn @ edge.normal).tolist()), edge.radius
-            )
-            for edge in edges
-        ]
+        turned = [replace(edge, place=self._turned(edge.place), normal=self._turned(edge.normal)) for edge in edges]
         for margin in MARGIN * 2.0 ** np.arange(MOST_BOXES):
             box, cells = self._box(margin)
             found = edge_pressures(
@@ -312,6 +318,7 @@ class _ContactAlongEdge:
                 max_pressure=self.pair.max_pressure,
                 slice_compliance=self.slice_compliance,
                 slice_axis=self.slice_axis,
+                at_least=at_least,
             )
             pressed = found[0].solution.pressure > 0.0
             if not (pressed[[0, -1]].any() or pressed[:, [0, -1]].any()):
