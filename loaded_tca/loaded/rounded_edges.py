@@ -29,11 +29,12 @@ from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.rounded_edge import SURELY_LESS, EdgePressure, RoundedEdge, edge_pressures
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import EDGE_NAMES
-from loaded_tca.flanks.rounding import RoundedFlank
+from loaded_tca.flanks.rounding import Arc, RoundedFlank, material_cosines
 from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.tooth_contact import LoadedContact
+from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded.arcs import lengths_past_tangents
@@ -162,10 +163,10 @@ def reached_edges(pair: GearPair, loaded: LoadedContact) -> list[ReachedEdge]:
 
     An edge is a straight line beside the cell there with the largest pressure.
     """
-    grid, radii = loaded.separation, _radii(pair)
+    grid = loaded.separation
     lengths, (dx, dy) = lengths_past_tangents(pair, grid.points), grid.spacing
     found = []
-    for edge, radius in radii.items():
+    for edge, (gear, arc) in _arcs(pair).items():
         pressure = np.where(lengths[..., edge] > -math.hypot(dx, dy), loaded.solution.pressure_on_material, 0.0)
         if not pressure.any():
             continue
@@ -178,10 +179,14 @@ def reached_edges(pair: GearPair, loaded: LoadedContact) -> list[ReachedEdge]:
         line = RoundedEdge(
             (float(grid.x[row] + to_line[0]), float(grid.y[column] + to_line[1])),
             (float(slope[0]), float(slope[1])),
-            radius,
+            arc.radius,
+            _material_angle(pair, gear, arc, grid.points[row, column]),
+            pair.contact_modulus / gear.material.plane_strain_modulus,
         )
         cell = float(np.abs(slope) @ (dx, dy)) / math.hypot(*slope)
-        found.append(ReachedEdge(line, expected_pressure(float(pressure.max()), cell, radius, pair.contact_modulus)))
+        found.append(
+            ReachedEdge(line, expected_pressure(float(pressure.max()), cell, arc.radius, pair.contact_modulus))
+        )
     return sorted(found, key=lambda one: -one.expected)
 
 
@@ -260,14 +265,23 @@ def _crossing_within(loaded: LoadedContact, lines: list[RoundedEdge]) -> set[Rou
     return found
 
 
-def _radii(pair: GearPair) -> dict[int, float]:
-    """Radii [mm] of the rounded edges by their numbers: of the pinion 0 to 3, then those of the wheel."""
+def _arcs(pair: GearPair) -> dict[int, tuple[Gear, Arc]]:
+    """Arcs and their gears by the numbers of the edges: of the pinion 0 to 3, then those of the wheel."""
     return {
-        first + arc.edge: arc.radius
+        first + arc.edge: (gear, arc)
         for first, gear in ((0, pair.pinion), (len(EDGE_NAMES), pair.wheel))
         if isinstance(gear.flank, RoundedFlank)
         for arc in gear.flank.arcs
     }
+
+
+def _material_angle(pair: GearPair, gear: Gear, arc: Arc, point: Array) -> float:
+    """Angle [rad] of the material between the flank and the surface beyond an arc, beside a point of the contact."""
+    rho, z = math.hypot(point[0], point[1]), float(point[2])
+    if gear is pair.wheel:
+        radius, _, axial = pair.to_wheel(point)
+        rho, z = float(radius), float(axial)
+    return math.acos(float(material_cosines(gear.flank, arc.edge, np.array(rho), np.array(z))))
 
 
 class _ContactAlongEdge:
@@ -293,6 +307,16 @@ class _ContactAlongEdge:
         coupling = loaded.coupling_deflection
         self.coupling = None if coupling is None else make_interp_spline(grid.y, coupling, k=min(3, grid.y.size - 1))
 
+    @property
+    def _lies_along(self) -> bool:
+        """Whether the contact lies along the edge: over its length it leaves that by less than its width.
+
+        One that crosses the edge has its load's centre far from it: what a tip gives way there, free edges tell.
+        """
+        pressed, (dx, dy) = self.loaded.solution.pressure > 0.0, self.loaded.separation.spacing
+        width, length = dx * np.count_nonzero(pressed.any(axis=1)), dy * np.count_nonzero(pressed.any(axis=0))
+        return bool(abs(self.turn[1, 1]) * length < width)
+
     def _turned(self, place: tuple[float, float]) -> tuple[float, float]:
         """A place or a direction, of the contact's axes, in those along the edge."""
         along, across = (self.turn @ place).tolist()
@@ -306,6 +330,8 @@ class _ContactAlongEdge:
     def solved(self, edges: list[RoundedEdge], at_least: float) -> list[EdgePressure]:
         """Pressures at edges, in a box that holds the contact."""
         turned = [replace(edge, place=self._turned(edge.place), normal=self._turned(edge.normal)) for edge in edges]
+        if not self._lies_along:
+            turned = [replace(edge, angle=None) for edge in turned]
         for margin in MARGIN * 2.0 ** np.arange(MOST_BOXES):
             box, cells = self._box(margin)
             found = edge_pressures(
