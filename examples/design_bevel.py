@@ -1,4 +1,7 @@
-"""Design the crownings of a spiral bevel pair whose mounting scatters.
+"""Design of a spiral bevel pair
+=============================
+
+Design the crownings of a spiral bevel pair whose mounting scatters.
 
 Lead crowning, helix slope and profile crowning of the pinion are found by exact gradients; the offset and the axial
 place of the pinion scatter. At the end the whole analysis confirms the design. Writes design_bevel.nc. Flanks alone

@@ -1,4 +1,7 @@
-"""Design the micro-geometry of a helical pair that stays quiet where the misalignment scatters.
+"""Design of a helical pair
+========================
+
+Design the micro-geometry of a helical pair that stays quiet where the misalignment scatters.
 
 Lead crowning, helix slope and the tip relief of both gears are found by exact gradients, with the pressure kept below
 a limit; at the end the whole analysis confirms the design. Writes design_helical.nc. Flanks alone, few positions and

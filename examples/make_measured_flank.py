@@ -1,4 +1,7 @@
-"""Make ``scenes/measured_flank.csv``: a wheel flank as a gear measuring centre gives it, but made up.
+"""A made-up measured flank
+========================
+
+Make ``scenes/measured_flank.csv``: a wheel flank as a gear measuring centre gives it, but made up.
 
 Deviations of a ground flank: crowned by design, with small errors of profile and helix slope, some twist, the smooth
 waviness that grinding leaves, and the noise of measurement. Every part is known, so that results can be judged.

@@ -1,4 +1,7 @@
-"""A study on a cluster: peak pressure of a crowned helical pair over crowning and torque.
+"""A study on a cluster
+====================
+
+A study on a cluster: peak pressure of a crowned helical pair over crowning and torque.
 
 Starts a scheduler and two workers on this machine; on a cluster that is there already, ``Client("tcp://host:8786")``
 takes their place. Writes study_on_dask.nc; run again, it goes on where it stopped. Needs the package distributed.

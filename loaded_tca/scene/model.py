@@ -37,7 +37,7 @@ Row = tuple[str, ...]
 class Scene(Section, ABC):
     """All that an analysis needs to know, in the engineer's units, as read from a scene file.
 
-    Values are checked however a scene is made, ``dataclasses.replace`` included; docs/scene.md has the keys. Each
+    Values are checked however a scene is made, ``dataclasses.replace`` included; docs/guide/scene_files.md has the keys. Each
     family of gear pairs (``CylindricalScene``, ``BevelScene``) has its own sections for the pair, the gears and their
     mounting errors.
 

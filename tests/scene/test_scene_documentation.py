@@ -1,4 +1,4 @@
-"""docs/scene.md says what the parser does."""
+"""docs/guide/scene_files.md says what the parser does."""
 
 import re
 from pathlib import Path

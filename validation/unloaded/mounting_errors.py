@@ -171,7 +171,7 @@ TEXT = """# Spur and helical pairs under mounting errors
 
 Written by `python -m validation.unloaded.mounting_errors`. Unloaded contact of all teeth over one pitch; pressures
 after Hertz, one tooth pair carrying the whole load. Figures 10 to 30 of the
-[reduced-TCA dissertation](../sources.md) show pictures, most of them without numbers: each statement of its text is
+[reduced-TCA dissertation](../reference/sources.md) show pictures, most of them without numbers: each statement of its text is
 judged here by a number. Its bevel pairs have [a page of their own](bevel_studies.md), and so has
 [the convergence from random starts](unloaded_convergence.md).
 

@@ -1,6 +1,6 @@
 """Draw the frames of a bevel pair and its mounting errors E, P, G and shaft angle: bevel_mounting_errors.png.
 
-Run from the root of the repository: ``python docs/bevel_mounting_errors.py``.
+Run from the root of the repository: ``python docs/reference/bevel_mounting_errors.py``.
 """
 
 from math import cos, degrees, sin

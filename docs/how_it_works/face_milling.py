@@ -1,6 +1,6 @@
 """Draw the machine of a face-milled gear and the blade of its cutter: face_milling.png.
 
-Run from the root of the repository: ``python docs/face_milling.py``.
+Run from the root of the repository: ``python docs/how_it_works/face_milling.py``.
 """
 
 from math import cos, degrees, pi, radians, sin

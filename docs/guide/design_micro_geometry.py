@@ -1,6 +1,6 @@
-"""The design of the guide docs/design_micro_geometry.md, and its pictures.
+"""The design of the guide docs/guide/design_micro_geometry.md, and its pictures.
 
-Run from the root of the repository: ``python -m docs.design_micro_geometry``.
+Run from the root of the repository: ``python -m docs.guide.design_micro_geometry``.
 """
 
 from pathlib import Path
