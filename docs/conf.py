@@ -23,7 +23,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "generated_pages",
 ]
-exclude_patterns = ["_build", "**/generated/*"]
+exclude_patterns = ["_build", "reference/generated"]
 
 myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 4
@@ -46,7 +46,7 @@ sphinx_gallery_conf = {
     "download_all_examples": False,
     "show_signature": False,
     "abort_on_example_error": False,
-    "copyfile_regex": "",
+    "write_computation_times": False,
 }
 gallery.prepare()
 
