@@ -8,12 +8,13 @@ import re
 import shutil
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from sphinx.application import Sphinx
 
 import loaded_tca
-from loaded_tca.cli.arguments import command_line
-from loaded_tca.output.report import describe_results
+from loaded_tca.cli import command_line
+from loaded_tca.output import describe_results
 from loaded_tca.scene import describe_keys
 
 ABSOLUTE_VALUE = re.compile(r"\|([A-Za-z ]+)\|")
@@ -23,7 +24,7 @@ EXAMPLE = re.compile(r"\]\((?:\.\./)+examples/(\w+)\.py\)")
 def setup(app: Sphinx) -> dict[str, bool]:
     """Write the pages as soon as the folders are known, before autosummary looks for them."""
     app.connect("config-inited", lambda app, _: write_pages(Path(app.srcdir) / "reference"))
-    app.connect("autodoc-process-docstring", _escape_absolute_values)
+    app.connect("autodoc-process-docstring", _escape_docstring)
     app.connect("source-read", _link_examples_to_the_gallery)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
@@ -92,7 +93,7 @@ def _page(module: ModuleType, names: list[str]) -> str:
             shown = f"``{value!r}``" if isinstance(value, tuple) else f"a ``{type(value).__name__}``"
             shown = f"``{value}``" if "Literal" in str(value) else shown
             kinds["Constants"].append(f"* ``{public}``: {shown}")
-    lines = [name, "=" * len(name), "", ABSOLUTE_VALUE.sub(r"\|\1\|", inspect.getdoc(module) or ""), "", f".. currentmodule:: {name}", ""]
+    lines = [name, "=" * len(name), "", *map(_escaped, (inspect.getdoc(module) or "").splitlines()), "", f".. currentmodule:: {name}", ""]
     for title, entries in kinds.items():
         if entries:
             lines += [title, "-" * len(title), ""]
@@ -108,7 +109,7 @@ def _documented_as(module: ModuleType, public: str) -> str:
     folder = getattr(value, "__module__", "").split(".")[1:2]
     below = importlib.import_module(f"loaded_tca.{folder[0]}") if folder else module
     inside = module is loaded_tca and public in getattr(below, "__all__", ())
-    return f"~{below.__name__}.{public}" if inside else public
+    return f"~{folder[0]}.{public}" if inside else public
 
 
 def _own_names(module: ModuleType) -> list[str]:
@@ -124,9 +125,14 @@ def _first_line(module: ModuleType) -> str:
     return (inspect.getdoc(module) or "").partition("\n")[0]
 
 
-def _escape_absolute_values(_app: Sphinx, _what: str, _name: str, _value: object, _options: object, lines: list[str]) -> None:
-    """Bars around a word are an absolute value in a docstring, and a substitution in reStructuredText."""
-    lines[:] = [ABSOLUTE_VALUE.sub(r"\|\1\|", line) for line in lines]
+def _escape_docstring(*event: Any) -> None:
+    lines: list[str] = event[-1]
+    lines[:] = [_escaped(line) for line in lines]
+
+
+def _escaped(line: str) -> str:
+    """Bars around a word are an absolute value in a docstring, and a substitution in reStructuredText; not in LaTeX."""
+    return line if "\\" in line else ABSOLUTE_VALUE.sub(r"\|\1\|", line)
 
 
 def _link_examples_to_the_gallery(app: Sphinx, document: str, source: list[str]) -> None:
