@@ -8,11 +8,11 @@ from pathlib import Path
 HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE.parent), str(HERE / "_extensions")]
 
-import gallery  # noqa: E402  (found by the lines above)
+import gallery
 
 project = "loaded_tca"
 version = release = version_of("loaded_tca")
-copyright = "the authors of loaded_tca"  # noqa: A001
+copyright = "the authors of loaded_tca"
 extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
@@ -49,6 +49,8 @@ sphinx_gallery_conf = {
     "write_computation_times": False,
 }
 gallery.prepare()
+
+templates_path = ["_templates"]
 
 html_theme = "pydata_sphinx_theme"
 html_title = "loaded_tca"

@@ -6,6 +6,7 @@ their scenes by ``__file__``, which sphinx-gallery leaves undefined and which is
 
 import builtins
 import shutil
+import warnings
 from pathlib import Path
 
 from sphinx_gallery.scrapers import figure_rst
@@ -24,8 +25,9 @@ def prepare() -> None:
 
 
 def define_file(_: object, script: str) -> None:
-    """Let ``__file__`` be the original of a script that is about to be run."""
+    """Let ``__file__`` be the original of a script that is about to be run; its warnings show no path."""
     builtins.__file__ = str(EXAMPLES / Path(script).name)
+    warnings.formatwarning = lambda message, category, *_: f"{category.__name__}: {message}\n"
 
 
 def arguments(_: object, script: dict[str, object]) -> list[str]:

@@ -5,7 +5,6 @@ import importlib
 import inspect
 import pkgutil
 import re
-import shutil
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -71,9 +70,13 @@ def api_pages() -> dict[str, str]:
                 if inspect.ismodule(inner):
                     pages[f"{package}.{name}.rst"] = _page(inner, _own_names(inner))
             lines.append(f"| [`{package}`]({package}.rst) | {_first_line(module)} |")
-    head = "# Python API\n\nPublic names by package, made from their docstrings.\n\n| package | what it has |\n|---|---|\n"
+    head = (
+        "# Python API\n\nPublic names by package, made from their docstrings.\n\n| package | what it has |\n|---|---|\n"
+    )
     order = [name.removesuffix(".rst") for name in pages]
-    pages["index.md"] = head + "\n".join([*lines, "", "```{toctree}", ":hidden:", "", *order, "```", ""])
+    head = ["# Python API", "", "Public names by package, made from their docstrings.", ""]
+    head += ["| package | what it has |", "|---|---|"]
+    pages["index.md"] = "\n".join([*head, *lines, "", "```{toctree}", ":hidden:", "", *order, "```", ""])
     return pages
 
 
@@ -93,7 +96,15 @@ def _page(module: ModuleType, names: list[str]) -> str:
             shown = f"``{value!r}``" if isinstance(value, tuple) else f"a ``{type(value).__name__}``"
             shown = f"``{value}``" if "Literal" in str(value) else shown
             kinds["Constants"].append(f"* ``{public}``: {shown}")
-    lines = [name, "=" * len(name), "", *map(_escaped, (inspect.getdoc(module) or "").splitlines()), "", f".. currentmodule:: {name}", ""]
+    lines = [
+        name,
+        "=" * len(name),
+        "",
+        *map(_escaped, (inspect.getdoc(module) or "").splitlines()),
+        "",
+        f".. currentmodule:: {name}",
+        "",
+    ]
     for title, entries in kinds.items():
         if entries:
             lines += [title, "-" * len(title), ""]
@@ -135,7 +146,7 @@ def _escaped(line: str) -> str:
     return line if "\\" in line else ABSOLUTE_VALUE.sub(r"\|\1\|", line)
 
 
-def _link_examples_to_the_gallery(app: Sphinx, document: str, source: list[str]) -> None:
+def _link_examples_to_the_gallery(_: Sphinx, document: str, source: list[str]) -> None:
     """Links to a script of the repository lead to its page in the gallery."""
     up = "../" * document.count("/")
     source[0] = EXAMPLE.sub(rf"]({up}gallery/\1.rst)", source[0])

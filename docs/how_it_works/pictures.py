@@ -37,7 +37,7 @@ def minimum_problem() -> Figure:
     pressures.fill_between(x, solution.pressure[:, middle], color=ORANGE, alpha=0.3)
     pressures.plot(x, solution.pressure[:, middle], color=ORANGE)
     pressures.set(xlabel="across the contact [mm]", ylabel="pressure p [MPa]", ylim=(0.0, None))
-    figure.suptitle("Where there is pressure there is no gap: a crowned roller with a groove on a plate", fontsize="medium")
+    figure.suptitle("No gap where there is pressure: a crowned roller with a groove on a plate", fontsize="medium")
     return figure
 
 
@@ -126,7 +126,7 @@ def _line_loads(variants: dict[str, dict[str, object]], common: dict[str, object
 
 
 def _line_load(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Places along the face, from the unloaded contact point [mm] and line loads [N/mm] at the position in the middle, the pitch point."""
+    """Places along the face [mm], line loads [N/mm], at the position in the middle: the pitch point."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)  # the contact ends at the face ends
         result = analyse(scene)
