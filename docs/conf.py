@@ -30,8 +30,7 @@ myst_heading_anchors = 4
 
 autodoc_typehints = "none"  # the docstrings name types and units
 autodoc_member_order = "bysource"
-numpydoc_class_members_toctree = False
-numpydoc_show_inherited_class_members = False
+numpydoc_show_class_members = False  # they are documented in full
 
 sphinx_gallery_conf = {
     "examples_dirs": str(gallery.WORKING_DIRECTORY),
