@@ -14,12 +14,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 from scipy.interpolate import griddata
 
 from loaded_tca import AccuracyWarning, Scene, analyse, read_scene
-from loaded_tca.arrays import Array
 from loaded_tca.contact import EdgePressure, edge_pressures
 
+Array = NDArray[np.float64]
 FOLDER = Path(__file__).parent
 SCENES = FOLDER.parent / "examples" / "scenes"
 HELICAL = read_scene(SCENES / "mesh_cycle_helical.toml").with_changes(
