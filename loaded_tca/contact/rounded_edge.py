@@ -22,8 +22,8 @@ Box = tuple[tuple[float, float], tuple[float, float]]
 CELLS_ON_ARC = 5.0
 """Cells across the pressed part of a rounding."""
 STEPS = (0.6, 1.0, 1.7, 2.9)
-"""Of these in one solution after the other: the first tells the pressed width, each peak is compared with the one before,
-and the last two are made where that asks for them."""
+"""Of these in one solution after the other: the first tells the pressed width, and the peak of each is compared with
+that of the one before. The last two are made where the difference asks for them."""
 ACCURACY = 0.02
 ALIGNED_ERROR, ASKEW_ERROR = 0.12, 0.8
 """Relative error of the peak times the square of the cells across the pressed part, at the most: for columns of which
