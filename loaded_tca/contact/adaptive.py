@@ -99,7 +99,7 @@ def solve_to_accuracy(
     start = None if initial_pressure is None else numbers("initial_pressure", initial_pressure)
     solve = partial(_solved, problem, threads)
     try:
-        next(refinement(solve, accuracy, tolerance, smooth, first_cells, start))
+        next(refinement(solve, accuracy, tolerance, lambda _: smooth, first_cells, start))
     except StopIteration as end:
         solution, error = end.value
     if warn:
@@ -122,14 +122,14 @@ def refinement(
     solved: Callable[[Cells, float, Array | None], Generator[Request, Any, ContactSolution]],
     accuracy: float,
     tolerance: float,
-    smooth: bool,
+    smooth: Callable[[ContactSolution], bool],
     first_cells: Cells,
     initial_pressure: Array | None,
 ) -> Generator[Request, Any, tuple[ContactSolution, float]]:
     """Solve on finer and finer grids; return the last solution and its estimated error.
 
     ``solved(cells, tolerance, start)`` is a generator that returns the solution on a grid, and may ask for what it
-    needs. For the other parameters see :func:`solve_to_accuracy`.
+    needs; ``smooth`` is told of each solution. For the other parameters see :func:`solve_to_accuracy`.
     """
     closely, refined = TOLERANCE_SHARE * accuracy, max(first_cells) < MOST_CELLS_AT_A_BORDER
     tolerance, first = min(closely, tolerance), closely if refined else min(closely, tolerance)
@@ -137,7 +137,7 @@ def refinement(
     solution = yield from solved(cells, first, initial_pressure)
     while True:
         # What ends a contact inside the box makes the peak grow with the grid without end.
-        peaked, estimate = smooth and not solution.bounded, solution.error_estimate
+        peaked, estimate = not solution.bounded and smooth(solution), solution.error_estimate
         error = estimate.peak_pressure if peaked else estimate.approach
         if error <= accuracy or max(cells) >= (MOST_CELLS if peaked else MOST_CELLS_AT_A_BORDER):
             return solution, error
