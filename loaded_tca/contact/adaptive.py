@@ -129,7 +129,8 @@ def refinement(
     """Solve on finer and finer grids; return the last solution and its estimated error.
 
     ``solved(cells, tolerance, start)`` is a generator that returns the solution on a grid, and may ask for what it
-    needs; ``smooth`` is told of each solution. For the other parameters see :func:`solve_to_accuracy`.
+    needs; ``smooth(solution)`` tells whether its peak is one of the surfaces, not of the grid. For the other parameters
+    see :func:`solve_to_accuracy`.
     """
     closely, refined = TOLERANCE_SHARE * accuracy, max(first_cells) < MOST_CELLS_AT_A_BORDER
     tolerance, first = min(closely, tolerance), closely if refined else min(closely, tolerance)

@@ -156,11 +156,35 @@ def wedge_factor(angle: float, poisson_ratio: float, share: float = 1.0) -> floa
     if problems:
         raise InputError(problems)
     square = float(np.polynomial.polynomial.polyval(poisson_ratio, FACTOR))
-    return share * square * (_extra_displacement(angle) / _extra_displacement(0.5 * math.pi)) ** POWER
+    return share * square * (extra_displacement(angle) / extra_displacement(0.5 * math.pi)) ** POWER
 
 
-def _extra_displacement(angle: float) -> float:
-    """Displacement of a wedge beyond that of a half-space, over the latter, under a line load at the edge."""
+def extra_displacement(angle: float) -> float:
+    r"""Displacement of a wedge beyond that of a half-space, over the latter, under a line load at the edge.
+
+    It is m of :func:`wedge_factor`, and the factor of an image that tilts the surface as in plane strain: a line load
+    P, s from the edge, adds the tilt m P/(pi E* s) where it is, and -2 m/(pi E*) P ln(x) far away, as the image
+    -2 m/(pi E*) P ln(x + s) does. Between s/4 and 4 s the image is within 3 % of the range of the exact displacement
+    (:func:`loaded_tca.reference.wedge.extra_displacement`) from 105 deg on, at 90 deg within 5 %.
+
+    Parameters
+    ----------
+    angle : float [rad]
+        omega, of the material.
+
+    Returns
+    -------
+    float
+
+    References
+    ----------
+    Michell 1902, Proc. London Math. Soc. 34, 134-146.
+
+    Examples
+    --------
+    >>> round(extra_displacement(math.radians(115.0)), 3)
+    0.591
+    """
     sine, cosine = math.sin(angle), math.cos(angle)
     return max(0.0, math.pi * (angle + sine * cosine) / (angle * angle - sine * sine) - 1.0)
 

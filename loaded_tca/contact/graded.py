@@ -9,12 +9,18 @@ minimises the energy of their symmetric part S under the gap h + (D - S) p of th
 the contact conditions hold for D itself; each time takes the difference down to about a hundredth. (S alone leaves 1 %
 in the pressure where the growth of the columns changes, however fine they are.)
 
+A free edge along the columns adds an image of the forces, as on even grids: coefficients at mirrored places. With a
+reference only the differences of what it adds are kept: there a force adds nothing to the displacement beneath it. So
+the surface tilts and curves beside the edge, and how far it gives way on the whole is left to the slices. What is left
+out would make K indefinite for forces far from the edge: like what is not symmetric it is put in by repeating.
+
 The graded axis is y, always: for an edge along y, whose rounding is crossed along x, the caller hands in the transposed
 gap, and slices by ``slice_axis`` 0.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -26,6 +32,7 @@ from loaded_tca.arrays import Array, numbers, real
 from loaded_tca.contact import checks
 from loaded_tca.contact.convolution import ALL, Rows, Window, fast_length
 from loaded_tca.contact.descent import Descent, judge
+from loaded_tca.contact.edges import FreeEdge, check_edges
 from loaded_tca.contact.grid import AT_BOUND, OUT_OF_REACH, Grids, Operator, each
 from loaded_tca.contact.levels import coarsen, coarsening, merged, prolong
 from loaded_tca.contact.love import column_coefficients
@@ -73,6 +80,11 @@ class GradedProblem:
         Displacement of every slice under a unit force on each of them, on top of that of the half-spaces.
     slice_axis : {1, 0}
         Axis along which slices follow each other: 1 if each column is a slice, n = ny.
+    free_edges : sequence of FreeEdge
+        Across the second axis, ``axis`` 1. The gap beyond them is as it is given; what is pressed there has no image.
+    reference : float, optional [mm]
+        Place along the second axis, counted as the borders, where a force adds nothing to the displacement beneath it
+        by its image; images count in full if absent.
 
     Raises
     ------
@@ -94,6 +106,8 @@ class GradedProblem:
     max_pressure: float | None = None
     slice_compliance: Array | None = None
     slice_axis: int = 1
+    free_edges: Sequence[FreeEdge] = ()
+    reference: float | None = None
 
     def __post_init__(self) -> None:
         gap, borders, slices = numbers("gap", self.gap), numbers("borders", self.borders), self.slice_compliance
@@ -107,6 +121,13 @@ class GradedProblem:
             problems.append(f"slice_axis: {self.slice_axis} is neither 0 nor 1")
         if not problems and gap.ndim == 2 and (told := memory_problem(*gap.shape)) is not None:
             problems.append(f"gap: {told}")
+        problems += check_edges(self.free_edges) or [
+            f"free_edges[{k}].axis: 0 is not 1, across the columns"
+            for k, edge in enumerate(self.free_edges)
+            if edge.axis == 0
+        ]
+        if self.reference is not None and not np.isfinite(real(self.reference)):
+            problems.append(f"reference: {self.reference} mm is not finite")
         checks.raise_if(problems)
         cell = self.spacing, float(np.diff(borders).min())
         checks.raise_if(
@@ -312,18 +333,46 @@ class Kernel:
         Their length.
     borders : (ny + 1,) array [mm]
         Of the columns.
+    edges, reference
+        As of the problem.
     """
 
     rows: int
     spacing: float
     borders: Array
+    edges: Sequence[FreeEdge] = ()
+    reference: float | None = None
 
     @cached_property
     def whole(self) -> Array:
         """Transform of the coefficients D, (wave numbers, ny, ny), displaced columns before pressed ones."""
         reach = fast_length(2 * self.rows) // 2
         coefficients = column_coefficients(reach + 1, self.spacing, self.borders)
+        for edge in self.edges:
+            mirrored, inside = self._mirrored(edge)
+            image = column_coefficients(reach + 1, self.spacing, self.borders, mirrored)
+            # Images of what lies beyond, on columns of other widths, could make K indefinite.
+            coefficients += image * (edge.factor * (inside[:, None] & inside))
         return np.asarray(dct(coefficients, type=1, axis=0, overwrite_x=True))
+
+    @cached_property
+    def levels(self) -> list[tuple[Array, Array]]:
+        """Columns (ny,) beside each edge, and the transform (wave numbers, 1, 1) of what is left out there."""
+        levels, reach, reference = [], fast_length(2 * self.rows) // 2, self.reference
+        if reference is None:
+            return []
+        middles = 0.5 * (self.borders[1:] + self.borders[:-1])
+        for edge in self.edges:
+            mirrored, inside = self._mirrored(edge)
+            k = int(np.where(inside, np.abs(middles - reference), np.inf).argmin())
+            own = column_coefficients(reach + 1, self.spacing, self.borders[k : k + 2], mirrored[k : k + 1])
+            levels.append((inside, edge.factor * dct(own, type=1, axis=0)))
+        return levels
+
+    def _mirrored(self, edge: FreeEdge) -> tuple[Array, Array]:
+        """Middles of the columns mirrored in an edge, and which of them lie where the bodies are."""
+        place, middles = self.borders[0] + edge.position, 0.5 * (self.borders[1:] + self.borders[:-1])
+        return 2.0 * place - middles, (middles < place) == (edge.material == "below")
 
     @cached_property
     def symmetric(self) -> Array:
@@ -363,7 +412,7 @@ class GradedGrids(Grids):
             approach=each([np.nan]),
             cap=(cap * widths / modulus if near else np.full(widths.size, np.inf))[None, None],
             slices=None if slices is None else slices[None] * (modulus * problem.spacing),
-            kernel=Kernel(problem.cells[0], problem.spacing, problem.borders),
+            kernel=Kernel(problem.cells[0], problem.spacing, problem.borders, problem.free_edges, problem.reference),
             slice_axis=problem.slice_axis,
         )
         return replace(grids, gap=np.minimum(grids.gap, OUT_OF_REACH * grids.reach))
@@ -407,7 +456,7 @@ class GradedGrids(Grids):
             total=self.total / merge[0],
             cap=np.add.reduceat(self.cap, starts, axis=2),
             slices=None if self.slices is None else merged(self.slices, both) * merge[0],
-            kernel=Kernel(gap.shape[1], dx, borders),
+            kernel=replace(self.kernel, rows=gap.shape[1], spacing=dx, borders=borders),
         )
 
     def operator(self, _: Window | None = None, dtype: str = "float64", threads: int = 1) -> Operator:  # noqa: ARG002
@@ -428,6 +477,8 @@ class GradedGrids(Grids):
         """Displacement by forces, and the part of it that the symmetric coefficients do not tell."""
         symmetric = self.operator()(forces, np.empty(forces.shape))
         rest = _filtered(forces[0], self.kernel.whole - self.kernel.symmetric)[None]
+        for inside, level in self.kernel.levels:
+            rest -= _filtered(forces[0][:, inside].sum(axis=1, keepdims=True), level) * inside
         return symmetric + rest, rest
 
     def preconditioner(self, threads: int = 1) -> Operator:  # noqa: ARG002

@@ -9,6 +9,8 @@ from loaded_tca.arrays import Array
 # Beyond this many cell widths the series replaces the four-term formula: its error, of the order of
 # (cell/distance)^4/100, and the cancellation of the formula, eps (distance/cell)^2, are both below 1e-9 there.
 FAR_FIELD = 60.0
+# Of a place from a border it may lie on: y log(1/y) there is zero.
+TINY = 1e-150
 # The series takes several arrays of its size: so many rows at a time, to keep them small.
 ROWS = 64
 
@@ -62,7 +64,7 @@ def influence_coefficients(shape: tuple[int, int], aspect: float | Array) -> Arr
     return coefficients
 
 
-def column_coefficients(rows: int, spacing: float, borders: Array) -> Array:
+def column_coefficients(rows: int, spacing: float, borders: Array, places: Array | None = None) -> Array:
     r"""Displacement between cells of columns of unlike widths, by unit forces on them.
 
     Pressure on a cell of the column n, of the width w_n, displaces the centre of one of the column m, i cells of the
@@ -82,6 +84,8 @@ def column_coefficients(rows: int, spacing: float, borders: Array) -> Array:
         dx.
     borders : (ny + 1,) array [mm]
         Of the columns, increasing.
+    places : (ny,) array, optional [mm]
+        Of what is displaced, across the columns; their middles if absent.
 
     Returns
     -------
@@ -93,9 +97,10 @@ def column_coefficients(rows: int, spacing: float, borders: Array) -> Array:
     Love 1929, Phil. Trans. R. Soc. A 228, 377-420.
     """
     widths, middles = np.diff(borders), 0.5 * (borders[1:] + borders[:-1])
-    offsets = borders - middles[:, None]
-    side, size = np.sign(offsets), np.abs(offsets)
-    apart, reach = np.abs(middles - middles[:, None]), FAR_FIELD * np.maximum(spacing, widths)
+    places = middles if places is None else places
+    offsets = borders - places[:, None]
+    side, size = np.sign(offsets), np.maximum(np.abs(offsets), TINY)
+    apart, reach = np.abs(middles - places[:, None]), FAR_FIELD * np.maximum(spacing, widths)
     coefficients = np.empty((rows, widths.size, widths.size))
     last = -_corner(0.5 * spacing, size)
     for row in range(rows):

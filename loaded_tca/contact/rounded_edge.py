@@ -11,6 +11,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array, count_problems, numbers, real
 from loaded_tca.contact.columns import EVEN, FineZone, column_borders, pressed_width
+from loaded_tca.contact.edges import SHARPEST, FreeEdge, extra_displacement
 from loaded_tca.contact.graded import GradedProblem, GradedSolution, solve_graded
 from loaded_tca.errors import require
 
@@ -31,6 +32,8 @@ ALIGNED = 1e-3
 """Sine of the angle between an edge and the columns up to which their borders follow it."""
 FEWEST_ON_ARC = 0.7
 """Part of the cells asked for below which columns are made anew."""
+MOST_FACTOR = 0.6
+"""Of the image at the edge of a wedge, up to which the iteration converges: 103 deg of like materials."""
 MOST_ROUNDS = 6
 LEAST_CHANGE = 0.25
 """Of the pressed width from one solution to the next: a single cell tells little."""
@@ -40,6 +43,8 @@ MOST_ROWS = 384
 """Cells along the columns."""
 MOST_FINE = 80
 """Finest columns beside an oblique edge, which lies across them."""
+SURELY_LESS = 0.92
+"""Part of a pressure below which coarser cells tell that finer ones will not reach it."""
 TOLERANCE = 1e-5
 
 
@@ -55,11 +60,27 @@ class RoundedEdge:
         Across the line, towards the end of the surface; of any length.
     radius : float [mm]
         Of the rounding.
+    angle : float, optional [rad]
+        Of the material between the surface and the land beyond the rounding, from pi/6 to pi: the surface is softer
+        towards the edge and tilts. Of a half-space if absent.
+    share : float
+        Of the body that ends in the compliance, E* (1 - nu1^2)/E1: a half of like materials.
     """
 
     place: tuple[float, float]
     normal: tuple[float, float]
     radius: float
+    angle: float | None = None
+    share: float = 0.5
+
+    def free_edge(self, low: float) -> FreeEdge | None:
+        """The apex of its wedge, from the first border of the columns on; None without one or across them."""
+        if self.angle is None or abs(self.normal[0]) > ALIGNED * math.hypot(*self.normal):
+            return None
+        side = math.copysign(1.0, self.normal[1])
+        apex = self.place[1] + side * self.radius * math.tan(0.5 * (math.pi - self.angle))
+        factor = min(self.share * extra_displacement(self.angle), MOST_FACTOR)
+        return FreeEdge(1, apex - low, "below" if side > 0.0 else "above", factor)
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,6 +130,7 @@ def edge_pressures(
     slice_compliance: SliceCompliance | None = None,
     slice_axis: int = 1,
     cells_on_arc: float = CELLS_ON_ARC,
+    at_least: float = 0.0,
     tolerance: float = TOLERANCE,
 ) -> list[EdgePressure]:
     r"""Peak pressures at rounded edges that a contact reaches, its force kept.
@@ -118,6 +140,13 @@ def edge_pressures(
     solution on coarser cells, repeated until these are as many as they should be. An oblique edge has fine columns
     along its loaded part as long as they are no more than 80, and no more than 384 cells along them: the estimated
     error tells where that is not enough.
+
+    An edge with an angle is that of a wedge whose faces meet where they would without the rounding. The wedge is softer
+    than a half-space by an image of the pressure, with the factor that gives a long contact beside its edge the tilt of
+    plane strain (``docs/contact_solver.md``). What the image adds where the load is, is left out: how far the edge
+    gives way on the whole is for ``slice_compliance`` to tell. Edges across the columns or oblique to them have no
+    image, and none has one where columns are slices, which then hold the tilt. The factor is 0.6 at the most, that of
+    103 deg of like materials: of sharper edges the tilt counts so far.
 
     Parameters
     ----------
@@ -142,6 +171,8 @@ def edge_pressures(
         Axis along which slices follow each other: columns if 1, rows if 0.
     cells_on_arc : float
         m, for edges along x; a quarter more for others.
+    at_least : float [MPa]
+        Where no edge reaches 0.92 of this on the coarser cells, these are the answer.
     tolerance : float
         Of the contact conditions.
 
@@ -170,6 +201,11 @@ def edge_pressures(
     """
     low, high = _checked(gap, box, edges, load, contact_modulus, cells, cells_on_arc)
     arcs = [_Arc.first(edge, low, high, load, contact_modulus) for edge in edges]
+    told = slice_compliance is not None and slice_axis == 1
+    wedges = [(edge.place[1], end) for edge in edges if not told and (end := edge.free_edge(float(low[1]))) is not None]
+    free = [end for _, end in wedges]
+    first = max((place for place, end in wedges if end.material == "above"), default=-math.inf)
+    last = min((place for place, end in wedges if end.material == "below"), default=math.inf)
 
     def solved(on_arc: float, before: GradedSolution | None) -> GradedSolution:
         zones = [arc.zone(on_arc) for arc in arcs if abs(arc.normal[1]) > ALIGNED]
@@ -182,7 +218,9 @@ def edge_pressures(
         slices, place = None, (y, np.diff(borders)) if slice_axis == 1 else (x, np.full(rows, dx))
         if slice_compliance is not None:
             slices = slice_compliance(*place)
-        problem = GradedProblem(gap(x, y), dx, borders, contact_modulus, load, max_pressure, slices, slice_axis)
+        problem = GradedProblem(gap(x, y), dx, borders, contact_modulus, load, max_pressure, slices, slice_axis, free)
+        centre = float(y[problem.gap.min(axis=0).argmin()]) if before is None else _load_centre(before)
+        problem = replace(problem, reference=min(max(centre, first), last))
         start = None if before is None else _carried(before, low[0], x, y)
         return solve_graded(problem, tolerance=tolerance, initial_pressure=start)
 
@@ -195,6 +233,8 @@ def edge_pressures(
             arcs = [arc.after(one) for arc, one in zip(arcs, found, strict=True)]
             if all(math.isnan(one.pressure) or one.cells_on_arc >= FEWEST_ON_ARC * on_arc for one in found):
                 break
+        if not any(one.pressure >= SURELY_LESS * at_least for one in found):
+            return found
     return [one.compared_with(other) for one, other in zip(found, coarse, strict=True)]
 
 
@@ -286,6 +326,12 @@ def _top(places: Array, values: Array, k: int) -> tuple[float, float]:
     return float(places[k] - 0.5 * slope / bend), math.sqrt(1.0 - 0.25 * slope**2 / bend)
 
 
+def _load_centre(solution: GradedSolution) -> float:
+    """Centre of the load along y [mm]."""
+    forces = solution.pressure.sum(axis=0) * solution.problem.widths
+    return float(forces @ solution.problem.middles / forces.sum())
+
+
 def _carried(solution: GradedSolution, low: float, x: Array, y: Array) -> Array:
     """Pressure at other places (nx, ny): the root of its square, interpolated along both axes."""
     problem = solution.problem
@@ -324,6 +370,17 @@ def _checked(
                 f"edges[{k}]: {edge} has no finite place, no normal or no positive radius",
             )
             for k, edge in enumerate(edges)
-        )
+        ),
+        *(
+            (
+                edge.angle is None or SHARPEST <= real(edge.angle) <= math.pi,
+                f"edges[{k}].angle: {edge.angle} rad is not between pi/6 and pi",
+            )
+            for k, edge in enumerate(edges)
+        ),
+        *(
+            (0.0 <= real(edge.share) <= 1.0, f"edges[{k}].share: {edge.share} is not between 0 and 1")
+            for k, edge in enumerate(edges)
+        ),
     )
     return ends[:, 0], ends[:, 1]

@@ -159,9 +159,11 @@ class Arc:
         slope = (s + depth * t) / root
         bend = (1.0 + 2.0 * t * slope + (1.0 + t**2) * slope**2) / root
         bend = np.where(along.value > 0.0, bend, 0.0)
-        # Taylor's parabola from the last point of the exact arc on; that point moves with T by -depth there
         steeper = bend * beyond
         value = depth + beyond * (slope + 0.5 * steeper)
+        if isinstance(self.tangent, float):
+            return along.compose(value, slope + steeper, bend)
+        # Taylor's parabola from the last point of the exact arc on; that point moves with T by -depth there
         twist = slope**2 + 3.0 * slope * steeper + bend * depth
         derivatives = SplineDerivatives(
             value,
@@ -203,10 +205,7 @@ class RoundedFlank(DerivedFlank):
 
     def theta(self, rho: Array, z: Array, beyond: Any = None) -> Jet:
         """Theta of the flank with its edges rounded."""
-        sharp, removed = self.nominal.theta(rho, z, beyond), self._removed(rho, z)
-        if not removed:
-            return sharp
-        return reduce(Jet.__add__, removed).times(self.gradient_norm(rho, z) * -float(self.side)) + sharp
+        return reduce(Jet.__add__, self._removed(rho, z, as_angle=True), self.nominal.theta(rho, z, beyond))
 
     def removal(self, rho: Array, z: Array) -> Jet:
         """Material removed [mm] by the arcs of all edges together."""
@@ -272,8 +271,8 @@ class RoundedFlank(DerivedFlank):
         picked = np.ix_(*(np.rint(share * FINER * (share.size - 1)).astype(int) for share in (up, along)))
         return rho[picked], z[picked]
 
-    def _removed(self, rho: Array, z: Array) -> list[Jet]:
-        """Removal of every arc that some of the points lie on, over all points."""
+    def _removed(self, rho: Array, z: Array, *, as_angle: bool = False) -> list[Jet]:
+        """Removal [mm], or change of Theta [rad], by every arc that some of the points lie on, over all points."""
         shape, found = np.broadcast(rho, z).shape, []
         jets = self.edges(rho, z)
         for arc in self.arcs:
@@ -282,7 +281,10 @@ class RoundedFlank(DerivedFlank):
             if on.size:
                 rows, columns = (np.broadcast_to(part, shape).ravel()[on] for part in (rho, z))
                 own = _part(distance, shape, on)
-                found.append(_spread(arc.depth(*arc.past_tangent(self, rows, columns, own)), shape, on))
+                depth = arc.depth(*arc.past_tangent(self, rows, columns, own))
+                if as_angle:
+                    depth = depth.times(self.gradient_norm(rows, columns) * -float(self.side))
+                found.append(_spread(depth, shape, on))
         return found
 
     def __repr__(self) -> str:

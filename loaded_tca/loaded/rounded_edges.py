@@ -17,7 +17,7 @@ hold the largest pressure of a mesh cycle.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import NamedTuple
 
@@ -26,14 +26,15 @@ from scipy.interpolate import make_interp_spline
 from scipy.ndimage import binary_dilation
 
 from loaded_tca.arrays import Array, Mask
-from loaded_tca.contact.rounded_edge import EdgePressure, RoundedEdge, edge_pressures
+from loaded_tca.contact.rounded_edge import SURELY_LESS, EdgePressure, RoundedEdge, edge_pressures
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import EDGE_NAMES
-from loaded_tca.flanks.rounding import RoundedFlank
+from loaded_tca.flanks.rounding import Arc, RoundedFlank, material_cosines
 from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.tooth_contact import LoadedContact
+from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded.arcs import lengths_past_tangents
@@ -149,8 +150,11 @@ def pressures_at_rounded_edges(
             if not every and MOST_ABOVE * edges[0].expected < largest:
                 break
             number = int(carried.pairs[place[2]])
-            found[place] = pressure_at_rounded_edge(pair, loaded, edges, bending, number, free_edges=free_edges)
-            largest = max(largest, found[place].pressure)  # which stays where the other one is NaN
+            peak = pressure_at_rounded_edge(
+                pair, loaded, edges, bending, number, free_edges=free_edges, at_least=0.0 if every else largest
+            )
+            if every or peak.pressure >= SURELY_LESS * largest:
+                found[place], largest = peak, max(largest, peak.pressure)  # which stays where the other one is NaN
     return found
 
 
@@ -159,10 +163,10 @@ def reached_edges(pair: GearPair, loaded: LoadedContact) -> list[ReachedEdge]:
 
     An edge is a straight line beside the cell there with the largest pressure.
     """
-    grid, radii = loaded.separation, _radii(pair)
+    grid = loaded.separation
     lengths, (dx, dy) = lengths_past_tangents(pair, grid.points), grid.spacing
     found = []
-    for edge, radius in radii.items():
+    for edge, (gear, arc) in _arcs(pair).items():
         pressure = np.where(lengths[..., edge] > -math.hypot(dx, dy), loaded.solution.pressure_on_material, 0.0)
         if not pressure.any():
             continue
@@ -175,10 +179,14 @@ def reached_edges(pair: GearPair, loaded: LoadedContact) -> list[ReachedEdge]:
         line = RoundedEdge(
             (float(grid.x[row] + to_line[0]), float(grid.y[column] + to_line[1])),
             (float(slope[0]), float(slope[1])),
-            radius,
+            arc.radius,
+            _material_angle(pair, gear, arc, grid.points[row, column]),
+            pair.contact_modulus / gear.material.plane_strain_modulus,
         )
         cell = float(np.abs(slope) @ (dx, dy)) / math.hypot(*slope)
-        found.append(ReachedEdge(line, expected_pressure(float(pressure.max()), cell, radius, pair.contact_modulus)))
+        found.append(
+            ReachedEdge(line, expected_pressure(float(pressure.max()), cell, arc.radius, pair.contact_modulus))
+        )
     return sorted(found, key=lambda one: -one.expected)
 
 
@@ -200,6 +208,7 @@ def pressure_at_rounded_edge(
     number: int,
     *,
     free_edges: bool,
+    at_least: float = 0.0,
 ) -> PeakAtEdge:
     """Peak pressure of a contact at its rounded edges.
 
@@ -215,18 +224,20 @@ def pressure_at_rounded_edge(
     number : int
         Of the tooth pair, as the bending model counts.
     free_edges : bool
+    at_least : float [MPa]
+        Pressures that are surely less need not be found closely.
     """
 
     def highest(lines: list[RoundedEdge]) -> PeakAtEdge:
         contact = _ContactAlongEdge(pair, loaded, lines[0], bending, number, free_edges)
-        return max((contact.turned_back(one) for one in contact.solved(lines)), key=_by_pressure)
+        return max((contact.turned_back(one) for one in contact.solved(lines, at_least)), key=_by_pressure)
 
     alone: dict[RoundedEdge, PeakAtEdge] = {}
     for line, expected in edges:
-        if MOST_ABOVE * expected < max((one.pressure for one in alone.values()), default=0.0):
+        if MOST_ABOVE * expected < at_least:
             break
         if not math.isnan((peak := highest([line])).pressure):
-            alone[line] = peak
+            alone[line], at_least = peak, max(at_least, peak.pressure)
     crossing = sorted(_crossing_within(loaded, [line for line, _ in edges]), key=lambda line: -abs(line.normal[1]))
     found = [peak for line, peak in alone.items() if line not in crossing]
     if crossing:  # the first one is crossed by the fewest rows
@@ -254,14 +265,23 @@ def _crossing_within(loaded: LoadedContact, lines: list[RoundedEdge]) -> set[Rou
     return found
 
 
-def _radii(pair: GearPair) -> dict[int, float]:
-    """Radii [mm] of the rounded edges by their numbers: of the pinion 0 to 3, then those of the wheel."""
+def _arcs(pair: GearPair) -> dict[int, tuple[Gear, Arc]]:
+    """Arcs and their gears by the numbers of the edges: of the pinion 0 to 3, then those of the wheel."""
     return {
-        first + arc.edge: arc.radius
+        first + arc.edge: (gear, arc)
         for first, gear in ((0, pair.pinion), (len(EDGE_NAMES), pair.wheel))
         if isinstance(gear.flank, RoundedFlank)
         for arc in gear.flank.arcs
     }
+
+
+def _material_angle(pair: GearPair, gear: Gear, arc: Arc, point: Array) -> float:
+    """Angle [rad] of the material between the flank and the surface beyond an arc, beside a point of the contact."""
+    rho, z = math.hypot(point[0], point[1]), float(point[2])
+    if gear is pair.wheel:
+        radius, _, axial = pair.to_wheel(point)
+        rho, z = float(radius), float(axial)
+    return math.acos(float(material_cosines(gear.flank, arc.edge, np.array(rho), np.array(z))))
 
 
 class _ContactAlongEdge:
@@ -287,19 +307,31 @@ class _ContactAlongEdge:
         coupling = loaded.coupling_deflection
         self.coupling = None if coupling is None else make_interp_spline(grid.y, coupling, k=min(3, grid.y.size - 1))
 
+    @property
+    def _lies_along(self) -> bool:
+        """Whether the contact lies along the edge: over its length it leaves that by less than its width.
+
+        One that crosses the edge has its load's centre far from it: what a tip gives way there, free edges tell.
+        """
+        pressed, (dx, dy) = self.loaded.solution.pressure > 0.0, self.loaded.separation.spacing
+        width, length = dx * np.count_nonzero(pressed.any(axis=1)), dy * np.count_nonzero(pressed.any(axis=0))
+        return bool(abs(self.turn[1, 1]) * length < width)
+
+    def _turned(self, place: tuple[float, float]) -> tuple[float, float]:
+        """A place or a direction, of the contact's axes, in those along the edge."""
+        along, across = (self.turn @ place).tolist()
+        return along, across
+
     def turned_back(self, found: EdgePressure) -> PeakAtEdge:
         """A peak, its place across and along the contact."""
         across, along = (np.array(found.place) @ self.turn).tolist()
         return PeakAtEdge(found.pressure, (across, along), found.error)
 
-    def solved(self, edges: list[RoundedEdge]) -> list[EdgePressure]:
+    def solved(self, edges: list[RoundedEdge], at_least: float) -> list[EdgePressure]:
         """Pressures at edges, in a box that holds the contact."""
-        turned = [
-            RoundedEdge(
-                tuple((self.turn @ edge.place).tolist()), tuple((self.turn @ edge.normal).tolist()), edge.radius
-            )
-            for edge in edges
-        ]
+        turned = [replace(edge, place=self._turned(edge.place), normal=self._turned(edge.normal)) for edge in edges]
+        if not self._lies_along:
+            turned = [replace(edge, angle=None) for edge in turned]
         for margin in MARGIN * 2.0 ** np.arange(MOST_BOXES):
             box, cells = self._box(margin)
             found = edge_pressures(
@@ -312,6 +344,7 @@ class _ContactAlongEdge:
                 max_pressure=self.pair.max_pressure,
                 slice_compliance=self.slice_compliance,
                 slice_axis=self.slice_axis,
+                at_least=at_least,
             )
             pressed = found[0].solution.pressure > 0.0
             if not (pressed[[0, -1]].any() or pressed[:, [0, -1]].any()):

@@ -347,10 +347,10 @@ def _solve_in_box(
         solution = yield from solved(grid.cells, tolerance)
     else:
         tolerance, expected = min(grid.tolerance, TOLERANCE_SHARE * grid.accuracy), expected_pressure(first)
-        relieved = _crosses_relief_start(pair, contact, first, expected)
+        across_relief_start = _crosses_relief_start(pair, contact, first, expected)
 
-        def smooth(solution: ContactSolution) -> bool:  # nor does this grid resolve the pressed part of an arc
-            return not (relieved or _reaches_arc(pair, separation, solution.pressure))
+        def smooth(solution: ContactSolution) -> bool:
+            return not (across_relief_start or _reaches_arc(pair, separation, solution.pressure))
 
         solution, _ = yield from refinement(solved, grid.accuracy, grid.tolerance, smooth, FIRST_CELLS, expected)
     at_relief_start = _crosses_relief_start(pair, contact, separation, solution.pressure_on_material)

@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.contact import ContactStatus, GradedProblem, solve_contact, solve_graded
+from loaded_tca.contact import ContactStatus, FreeEdge, GradedProblem, solve_contact, solve_graded
 from loaded_tca.contact.columns import FineZone, column_borders
-from loaded_tca.contact.graded import BYTES_PER_PAIR, memory_problem
+from loaded_tca.contact.edges import extra_displacement
+from loaded_tca.contact.graded import BYTES_PER_PAIR, GradedGrids, memory_problem
 from loaded_tca.contact.love import column_coefficients, influence_coefficients
 from loaded_tca.errors import ConvergenceError, InputError
-from loaded_tca.reference import hertz
+from loaded_tca.reference import hertz, wedge
 from loaded_tca.reference.punch import RoundedPunch
 
 E_STAR = 113187.0
@@ -294,6 +295,83 @@ def test_arrays_of_a_problem_are_copies_that_stay():
 def test_options_that_cannot_be_are_refused(options, told):
     with pytest.raises(InputError, match=told):
         solve_graded(GradedProblem(**GOOD, contact_modulus=E_STAR), **options)
+
+
+@pytest.mark.parametrize(("material", "position"), [("below", 0.35), ("above", 0.25)])
+def test_free_edge_is_that_of_a_uniform_grid(material, position):
+    borders = np.linspace(-HALF, HALF, CELLS + 1)
+    edge = FreeEdge(1, position, material, 0.6)
+    beyond = (middles(borders) + HALF > position) == (material == "below")
+
+    def ends(x, y):
+        return np.where(beyond, np.inf, ellipsoid(x, y))
+
+    found = graded(ends, borders, free_edges=[edge])
+    gap = ends(X, middles(borders))
+    whole = solve_contact(gap, (DX, DX), E_STAR, load=LOAD, tolerance=TOLERANCE, free_edges=[edge], warn=False)
+    assert_allclose(found.pressure, whole.pressure, atol=1e-4 * whole.pressure.max())  # the root of the residual
+    assert_allclose(found.approach, whole.approach, rtol=1e-6)
+    assert found.approach > graded(ends, borders).approach
+
+
+def displacements(borders, edges, reference, length=1e5):
+    """Displacements times E* by unit forces per length on each of the columns, which are long: plane strain."""
+    problem = GradedProblem(
+        np.zeros((1, borders.size - 1)), length, borders, E_STAR, 1.0, free_edges=edges, reference=reference
+    )
+    grids = GradedGrids.of_problem(problem)
+    return np.array([grids.displaced(unit[None, None])[0][0, 0] for unit in np.eye(borders.size - 1)]).T
+
+
+@pytest.mark.parametrize("degrees", [105.0, 115.0, 135.0, 150.0])
+def test_image_with_a_reference_tilts_the_surface_as_a_wedge(degrees):
+    """One of two like bodies: what a force adds, to what it adds where it is."""
+    angle, borders, load = np.radians(degrees), np.linspace(-2.0, 0.2, 221), 99  # the load stands at 1.0, the apex at 0
+    edge = FreeEdge(1, 2.0, "below", 0.5 * extra_displacement(angle))
+    half_space, both = displacements(borders, [], None), displacements(borders, [edge], middles(borders)[load])
+    added, apart = both - half_space, -middles(borders)
+    assert_allclose(added, added.T, atol=1e-12)
+    assert_allclose(added[apart < 0.0], 0.0, atol=1e-12)
+    assert_allclose(added[load, load], 0.0, atol=1e-12)
+    tilt = np.diff(added[[load + 1, load - 1], load])[0] / (apart[load - 1] - apart[load + 1])
+    assert_allclose(tilt, -edge.factor / (np.pi * apart[load]), rtol=1e-4)  # of the wedge, exactly
+    places = apart > 0.25
+    exact = 0.5 * wedge.extra_displacement(apart[places], apart[load], angle)
+    exact -= 0.5 * wedge.extra_displacement(apart[load], apart[load], angle)
+    assert_allclose(added[places, load], exact, atol=0.055 * np.ptp(exact))  # 105 deg: 5 %
+
+
+@pytest.mark.parametrize("factor", [0.3, 0.6])
+def test_contact_beside_a_free_edge_with_a_reference(factor):
+    """Graded columns against even ones; the load moves off the edge, and all it gives way is little."""
+    edge = FreeEdge(1, HALF + 0.22, "below", factor)
+
+    def ends(x, y):
+        return np.where(y > 0.22, np.inf, ellipsoid(x, y))
+
+    plain, found = graded(ends), graded(ends, free_edges=[edge], reference=0.0)
+    even = graded(ends, np.linspace(-HALF, HALF, 121), free_edges=[edge], reference=0.0)
+    assert found.status is ContactStatus.CONVERGED
+    assert_allclose(found.load, LOAD, rtol=1e-9)
+    assert_allclose(found.approach, even.approach, rtol=5e-3)
+    assert_allclose(found.pressure.max(), even.pressure.max(), rtol=1e-2)
+    centre = found.pressure.sum(axis=0) * found.problem.widths @ found.problem.middles * DX / LOAD
+    assert -0.05 < centre < -0.005
+    assert_allclose(found.approach, plain.approach, rtol=0.03 * factor)
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ({"free_edges": [1.0]}, "^free_edges: .* is not a sequence of FreeEdge$"),
+        ({"free_edges": [FreeEdge(0, 1.0, "below", 1.0)]}, r"^free_edges\[0\].axis: 0 is not 1, across the columns$"),
+        ({"free_edges": [FreeEdge(1, 1.0, "below", -1.0)]}, r"^free_edges\[0\].factor: "),
+        ({"reference": np.nan}, "^reference: nan mm is not finite$"),
+    ],
+)
+def test_free_edges_that_cannot_be_are_refused(options, told):
+    with pytest.raises(InputError, match=told):
+        GradedProblem(**GOOD, contact_modulus=E_STAR, **options)
 
 
 def test_too_large_a_problem_is_refused_before_it_is_made():

@@ -170,6 +170,62 @@ def test_end_of_the_box_is_told():
     assert peak(box=((-0.02, 0.02), (-2.0, 2.1))).error == math.inf
 
 
+def tip(x, y, scale=1.0):
+    """A flank of 10 mm radius, crowned along an edge at y = 0 with a rounding, nearest 0.05 mm before it."""
+    across = (y + 0.05 * scale) ** 2 / 20.0 + np.maximum(y, 0.0) ** 2 / (2.0 * RADIUS)
+    return (x[:, None] ** 2 / 2000.0 + across) / scale
+
+
+def tip_peak(degrees=115.0, scale=1.0, side=1.0, options=None, **edge):
+    angle = None if degrees is None else math.radians(degrees)
+    end = RoundedEdge((0.0, 0.0), (0.0, side), RADIUS * scale, angle, **edge)
+    box = ((-2.5 * scale, 2.5 * scale), tuple(sorted((-0.5 * side * scale, 0.12 * side * scale))))
+    return peak(lambda x, y: tip(x, side * y, scale), box, end, 400.0 * scale**2, **(options or {}))
+
+
+def test_a_wedge_of_two_right_angles_is_a_half_space():
+    plain = tip_peak(None)
+    assert_allclose(tip_peak(180.0).pressure, plain.pressure, rtol=1e-6)
+    assert_allclose(tip_peak(115.0, share=0.0).pressure, plain.pressure, rtol=1e-6)
+
+
+def test_faces_of_a_wedge_meet_where_they_would_without_the_rounding():
+    ends = [RoundedEdge((0.0, 2.0), (0.0, side), 0.2, 0.5 * math.pi, 0.2).free_edge(-2.0) for side in (3.0, -3.0)]
+    assert_allclose([end.position for end in ends], [4.2, 3.8], rtol=1e-12)
+    assert [end.material for end in ends] == ["below", "above"]
+    # Hetenyi in plane strain: the side returns 2/pi of a load, and twice that falls on the top again.
+    assert_allclose(5.0 * ends[0].factor, 2.0 / (1.0 - (2.0 / math.pi) ** 2) - 1.0, rtol=1e-12)
+    assert RoundedEdge((0.0, 2.0), (0.0, 1.0), 0.2, 1.4).free_edge(0.0).factor == 0.6  # as far as it converges
+
+
+def test_the_sharper_the_wedge_the_more_it_tilts_off_its_edge():
+    found = [tip_peak(degrees) for degrees in (None, 150.0, 125.0, 105.0)]
+    assert (np.diff([one.pressure for one in found]) < 0.0).all()
+    assert_allclose([one.solution.load for one in found], 400.0, rtol=1e-9)
+    assert tip_peak(share=1.0).pressure < tip_peak().pressure
+
+
+def test_wedges_of_all_sizes_and_on_either_side_are_alike():
+    found = tip_peak()
+    assert_allclose(tip_peak(scale=8.0).pressure, found.pressure, rtol=1e-6)
+    other = tip_peak(side=-1.0)
+    assert_allclose(other.pressure, found.pressure, rtol=1e-6)
+    assert_allclose(other.place[1], -found.place[1], rtol=1e-4)
+
+
+def test_angle_counts_along_the_columns_and_not_beside_slices_that_tell_the_tilt():
+    def slices(places, _):
+        return 1e-6 * np.exp(-np.abs(places[:, None] - places))
+
+    for axis, kept in ((1, True), (0, False)):
+        options = {"slice_compliance": slices, "slice_axis": axis}
+        plain, wedge = tip_peak(None, options=options).pressure, tip_peak(options=options).pressure
+        assert (plain == wedge) is kept
+    askew = [RoundedEdge((0.0, 1.0), (0.1, 1.0), RADIUS, angle) for angle in (None, 2.0)]
+    assert askew[1].free_edge(0.0) is None
+    assert peak(edge=askew[0], cells_on_arc=3.0).pressure == peak(edge=askew[1], cells_on_arc=3.0).pressure
+
+
 @pytest.mark.parametrize(
     ("changed", "told"),
     [
@@ -184,6 +240,12 @@ def test_end_of_the_box_is_told():
         ({"edges": [RoundedEdge((0.0, 1.0), (0.0, 0.0), 0.2)]}, r"^edges\[0\]: "),
         ({"edges": [RoundedEdge((0.0, np.nan), (0.0, 1.0), 0.2)]}, r"^edges\[0\]: "),
         ({"edges": [FACE, RoundedEdge((0.0, 1.0), (0.0, 1.0), 0.0)]}, r"^edges\[1\]: "),
+        (
+            {"edges": [FACE, RoundedEdge((0.0, 1.0), (0.0, 1.0), 0.2, 0.1)]},
+            r"^edges\[1\].angle: 0.1 rad is not between",
+        ),
+        ({"edges": [RoundedEdge((0.0, 1.0), (0.0, 1.0), 0.2, math.nan)]}, r"^edges\[0\].angle: nan rad"),
+        ({"edges": [RoundedEdge((0.0, 1.0), (0.0, 1.0), 0.2, 2.0, 1.1)]}, r"^edges\[0\].share: 1.1 is not between"),
         ({"load": 0.0}, "^load: 0.0 N is not positive and finite$"),
         ({"load": np.nan}, "^load: nan N is not"),
         ({"contact_modulus": -1.0}, "^contact_modulus: -1.0 MPa"),

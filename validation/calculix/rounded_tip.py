@@ -4,7 +4,11 @@ A flank that ends in a rounding of 0.2 mm, 115 or 150 deg to the land beyond it,
 nearest point lies 0.05 mm before the rounding. Both bodies are rings about a core, some 3.5 mm large: the tip's core
 is held, that of the other moves straight towards it. ``python -m validation.calculix.rounded_tip`` repeats the runs (a
 minute each; it needs ``ccx``) and writes the table of pressures that is kept, with which the rows compare. Half-spaces
-do not tilt as the tip does: they are compared as they are, which shows that, and tilted until their loads stand alike.
+do not tilt as the tip does: without an angle of the edge they show what that is worth.
+
+Elements half as large at the rounding change the peaks by 0.0, 0.4 and 0.7 % (115 deg under 100 and 200 N/mm, 150 deg),
+at 200 N/mm with corrections of some 2 nm left; all elements half as large, but for the smallest, 0.05 %. The
+penalty lowers the peak under 100 N/mm by about 0.9 %, told from one of 3e8 MPa/mm.
 """
 
 from __future__ import annotations
@@ -16,10 +20,8 @@ from io import StringIO
 from pathlib import Path
 
 import numpy as np
-from scipy.optimize import brentq
 
-from loaded_tca.contact import GradedProblem, GradedSolution, solve_graded
-from loaded_tca.contact.columns import EVEN, FineZone, column_borders, pressed_width
+from loaded_tca.contact import EdgePressure, RoundedEdge, edge_pressures
 from validation.calculix.deck import (
     THICKNESS,
     write_contact_pairs,
@@ -191,45 +193,42 @@ def head(program: str) -> list[str]:
     ]
 
 
-def half_space(line_load: float, tilt: float = 0.0) -> GradedSolution:
-    """The same contact of half-spaces on graded columns, one cell of a great length along it."""
-    width = pressed_width(line_load, RADIUS, 0.1, CONTACT_MODULUS)
-    borders = column_borders(-0.5, 0.12, [FineZone(0.0, width / CELLS_ON_ARC, EVEN * width)], 0.01)
-    x, length = 0.5 * (borders[1:] + borders[:-1]), 1000.0
-    beyond = np.clip(x, 0.0, 0.9 * RADIUS)
-    gap = (x + OFFSET) ** 2 / (2.0 * FLANK_RADIUS) + RADIUS - np.sqrt(RADIUS**2 - beyond**2) + tilt * x
-    problem = GradedProblem(gap[None], length, borders, CONTACT_MODULUS, line_load * length)
-    return solve_graded(problem, tolerance=1e-9)
+def peak_of_columns(line_load: float, tip_angle: float | None) -> EdgePressure:
+    """The same contact on graded columns, two rows of a great length along it; half-spaces without an angle."""
+    length = 1000.0
+
+    def gap(rows: Array, x: Array) -> Array:
+        beyond = np.clip(x, 0.0, 0.9 * RADIUS)
+        across = (x + OFFSET) ** 2 / (2.0 * FLANK_RADIUS) + RADIUS - np.sqrt(RADIUS**2 - beyond**2)
+        return np.where(np.abs(rows) < 0.5 * length, 0.0, np.inf)[:, None] + across
+
+    edge = RoundedEdge((0.0, 0.0), (0.0, 1.0), RADIUS, tip_angle)
+    box = ((-length, length), (-0.5, 0.12))
+    load = line_load * length
+    (found,) = edge_pressures(
+        gap, box, [edge], load, CONTACT_MODULUS, cells=(4, 64), cells_on_arc=CELLS_ON_ARC, tolerance=1e-9
+    )
+    return found
 
 
-def centre(solution: GradedSolution) -> float:
-    """Centre of the pressures [mm]."""
-    force = solution.pressure[0] * solution.problem.widths
-    return float(force @ solution.problem.middles / force.sum())
+def centre(found: EdgePressure) -> float:
+    """Centre of the pressures across the edge [mm]."""
+    force = found.solution.pressure.sum(axis=0) * found.solution.problem.widths
+    return float(force @ found.solution.problem.middles / force.sum())
 
 
 def rows() -> list[Row]:
-    """Peak at the rounding: of half-spaces as they are, and tilted until their load stands where that of the tip is."""
+    """Peak at the rounding: of half-spaces, and of a wedge of the tip's angle."""
     kept, table = read_table(FILE), []
     for degrees, load in RUNS:
         mine = [row for row in kept if (row["tip_angle_deg"], row["line_load_N_per_mm"]) == (degrees, load)]
         peak, place = max(float(row["pressure_MPa"]) for row in mine), float(mine[0]["load_centre_mm"])
-        tilt = brentq(
-            lambda angle, load=load, place=place: centre(half_space(load, angle)) - place, -0.01, 0.01, xtol=1e-6
-        )
         case = f"rounded tip of {degrees:g} deg on a flank, {load:g} N/mm"
-        plain, tilted = (float(half_space(load, angle).pressure.max()) for angle in (0.0, tilt))
+        plain, wedge = (peak_of_columns(load, angle) for angle in (None, math.radians(degrees)))
+        note = f"centre of the load at {{:.4f}} mm, of the elements at {place:.4f} mm"
         table += [
-            Row(
-                case,
-                SOURCE,
-                "peak at the rounding [MPa]",
-                peak,
-                plain,
-                None,
-                note=f"the tip tilts by {1e3 * tilt:.2f} mrad",
-            ),
-            Row(case, SOURCE, "peak, flanks tilted as the tip is [MPa]", peak, tilted, ASKED),
+            Row(case, SOURCE, "peak, half-spaces [MPa]", peak, plain.pressure, None, note=note.format(centre(plain))),
+            Row(case, SOURCE, "peak, wedge [MPa]", peak, wedge.pressure, ASKED, note=note.format(centre(wedge))),
         ]
     return table
 

@@ -17,6 +17,7 @@ from skfem import Basis, BilinearForm, ElementQuad2, ElementVector, FacetBasis, 
 from skfem.models.elasticity import lame_parameters
 
 from loaded_tca.contact import wedge_factor
+from loaded_tca.contact.edges import extra_displacement
 from loaded_tca.material import Material
 from validation.table import Row
 
@@ -37,6 +38,9 @@ SHARED = 0.4
 ALONG = (0.03, 0.1, 0.3)
 # Lengths of strips across the edge times the wave number, and their length over their width.
 ACROSS, SLENDERNESS = np.geomspace(0.02, 8.0, 12), 5.0
+# Angle of a tip [deg]; distances of narrow loads from its edge times the wave number, and how well their tilt is to be
+# met: the first is as good as plane strain; standard deviation of the logarithm of their places.
+TIP, NARROW, BREADTH = 115.0, {1e-3: 1e-2, 2e-2: 1e-1}, 0.15
 
 
 def touching(half_width: float) -> Load:
@@ -49,9 +53,9 @@ def even(length: float) -> Load:
     return lambda y: (y < length).astype(float)
 
 
-def radii_and_angles(angle: float) -> tuple[Array, Array]:
+def radii_and_angles(angle: float, nearest: float = NEAREST) -> tuple[Array, Array]:
     """Logarithms of the radii, and angles of the lines of the mesh."""
-    radii = np.linspace(np.log(NEAREST), np.log(FARTHEST), round(np.log(FARTHEST / NEAREST) / GROWTH))
+    radii = np.linspace(np.log(nearest), np.log(FARTHEST), round(np.log(FARTHEST / nearest) / GROWTH))
     lines = [0.0, FLATTEST]
     while lines[-1] < SHARED:
         lines.append(lines[-1] + min(ANGLE_GROWTH * (lines[-1] - lines[-2]), EVEN))
@@ -65,10 +69,11 @@ class Wedge:
 
     angle: float
     poisson_ratio: float
+    nearest: float = NEAREST
 
     def energies(self, loads: list[Load]) -> Array:
         """Displacement weighted with the pressure, for each load."""
-        logarithms, lines = radii_and_angles(self.angle)
+        logarithms, lines = radii_and_angles(self.angle, self.nearest)
         flat = MeshQuad.init_tensor(logarithms, lines)
         radius = np.exp(flat.p[0])
         mesh = MeshQuad(np.array([radius * np.cos(flat.p[1]), radius * np.sin(flat.p[1])]), flat.t)
@@ -188,7 +193,33 @@ def rows() -> list[Row]:
                 Row(case, SOURCE, f"displacement, factor {factor:.3f}", exact, 1.0 + factor * strip.image, tolerance),
                 Row(case, SOURCE, "displacement, half-space", exact, 1.0, None),
             ]
+    return table + tilts()
+
+
+def tilts() -> list[Row]:
+    """Turn of the face about a narrow load, from half to twice its distance, beyond that of a half-space."""
+    angle, table = float(np.radians(TIP)), []
+    factor, added = extra_displacement(angle), turned(angle) - turned(np.pi)
+    for distance, turn in zip(NARROW, added / (1.0 - POISSON_RATIO**2), strict=True):
+        image = 2.0 / np.pi * factor * float(k0(1.5 * distance) - k0(3.0 * distance))
+        case = f"free edge of {TIP:.0f} deg, a narrow strip along it at k s = {distance:g}"
+        what = "displacement from half to twice its distance, image of plane strain"
+        table.append(Row(case, SOURCE, what, float(turn), image, NARROW[distance]))
     return table
+
+
+def turned(angle: float) -> Array:
+    """Displacement at half the distance less that at twice, times E, by unit narrow loads at each distance."""
+
+    def narrow(place: float) -> Load:  # of the total 1; smooth, since the elements sample it
+        return lambda y: np.exp(-0.5 * (np.log(y / place) / BREADTH) ** 2) / (np.sqrt(2.0 * np.pi) * BREADTH * y)
+
+    loads: list[Load] = []
+    for distance in NARROW:
+        own, near, far = (narrow(part * distance) for part in (1.0, 0.5, 2.0))
+        loads += [near, far, lambda y, a=own, b=near: a(y) + b(y), lambda y, a=own, b=far: a(y) + b(y)]
+    near, far, both_near, both_far = Wedge(angle, POISSON_RATIO, 2e-2 * min(NARROW)).energies(loads).reshape(-1, 4).T
+    return np.asarray(0.5 * ((both_near - near) - (both_far - far)))
 
 
 def main() -> None:
