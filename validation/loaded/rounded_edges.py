@@ -17,7 +17,7 @@ import statistics
 import time
 import warnings
 from collections.abc import Iterable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, nullcontext
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from pathlib import Path
@@ -158,22 +158,24 @@ class Solved:
         forces = [0.0 if one is None else one.solution.load for one in self.carried.contacts[place[0]][place[1]]]
         return forces[place[2]] / sum(forces)
 
-    def peak(self, place: Place, fineness: float = 1.0) -> PeakAtEdge:
-        """Peak of a contact, on columns so many times as fine as those of an analysis."""
+    def peak(self, place: Place, fineness: float | None = None) -> PeakAtEdge:
+        """Peak of a contact as an analysis finds it, or on columns so many times as fine as its first ones."""
         loaded, edges = self.reached[place]
         number = int(self.carried.pairs[place[2]])
-        with finer_columns(fineness):
+        with nullcontext() if fineness is None else finer_columns(fineness):
             return pressure_at_rounded_edge(self.pair, loaded, edges, self.bending, number, free_edges=self.free_edges)
 
 
 @contextmanager
 def finer_columns(fineness: float) -> Iterator[None]:
-    """Columns so many times as fine, beside edges and away from them, and as many more at the most."""
+    """Columns so many times as fine beside edges and away from them, as many more at the most, and none finer."""
     finer: dict[Any, dict[str, Any]] = {
         edges_of_gears: {
             "CELLS_ACROSS": fineness * edges_of_gears.CELLS_ACROSS,
             "CELLS_ALONG": fineness * edges_of_gears.CELLS_ALONG,
-            "edge_pressures": partial(edge_pressures, cells_on_arc=fineness * rounded_edge.CELLS_ON_ARC),
+            "edge_pressures": partial(
+                edge_pressures, cells_on_arc=fineness * rounded_edge.CELLS_ON_ARC, accuracy=math.inf
+            ),
         },
         rounded_edge: {
             "MOST_ROWS": math.ceil(fineness * rounded_edge.MOST_ROWS),
@@ -193,7 +195,8 @@ class Refined:
     case: str
     share: float
     bound: float
-    estimate: float
+    found: PeakAtEdge
+    """By an analysis."""
     peaks: tuple[float, ...]
     """[MPa] of ``FINENESSES``, and on the finest columns."""
 
@@ -204,8 +207,8 @@ class Refined:
 
     @property
     def error(self) -> float:
-        """Of the columns of an analysis."""
-        return float(self.errors[FINENESSES.index(1.0)])
+        """Of an analysis."""
+        return self.found.pressure / self.peaks[-1] - 1.0
 
 
 @cache
@@ -214,14 +217,13 @@ def refined(case: Case) -> tuple[Refined, ...]:
     solved, found = Solved.of(case.scene), []
     loaded = [place for place in solved.reached if solved.share(place) > LEAST_SHARE]
     for place in loaded[:MOST_CONTACTS]:
-        peaks = [solved.peak(place, fineness) for fineness in (*FINENESSES, case.finest)]
         found.append(
             Refined(
                 case.name,
                 solved.share(place),
                 solved.reached[place][1][0].bound,
-                peaks[FINENESSES.index(1.0)].error,
-                tuple(one.pressure for one in peaks),
+                solved.peak(place),
+                tuple(solved.peak(place, fineness).pressure for fineness in (*FINENESSES, case.finest)),
             )
         )
     return tuple(found)
@@ -238,8 +240,8 @@ def rows_of_columns() -> list[Row]:
     table = []
     for case in CASES:
         worst = max(refined(case), key=lambda one: abs(one.error))
-        beyond = max(abs(one.error) - one.estimate for one in refined(case))
-        told = f"{worst.peaks[FINENESSES.index(1.0)]:.0f} MPa, finest {worst.peaks[-1]:.0f} MPa"
+        beyond = max(abs(one.error) - one.found.error for one in refined(case))
+        told = f"{worst.found.pressure:.0f} MPa, finest {worst.peaks[-1]:.0f} MPa"
         # Where tips alone are rounded, lines that reach the end of the face meet a sharp edge: without a limit.
         asked = None if "sharp ends" in case.name else ASKED
         table += [
@@ -404,12 +406,19 @@ def rows() -> list[Row]:
 def table_of_columns() -> str:
     """Markdown: peaks on finer and finer columns."""
     several = [f"x {one:g}" for one in FINENESSES]
-    head = ["contact", "share of the force", "bound MPa", *(f"{one}, MPa" for one in several), "finest, MPa"]
+    head = [
+        "contact",
+        "share of the force",
+        "bound MPa",
+        *(f"{one}, MPa" for one in several),
+        "finest, MPa",
+        "analysis, MPa",
+    ]
     lines = [_line([*head, "error %", "estimate %"]), "|---" * (len(head) + 2) + "|"]
     for case in CASES:
         for one in refined(case):
-            cells = [f"{one.share:.2f}", *(f"{value:.0f}" for value in (one.bound, *one.peaks))]
-            lines.append(_line([one.case, *cells, f"{100.0 * one.error:+.2f}", f"{100.0 * one.estimate:.1f}"]))
+            cells = [f"{one.share:.2f}", *(f"{value:.0f}" for value in (one.bound, *one.peaks, one.found.pressure))]
+            lines.append(_line([one.case, *cells, f"{100.0 * one.error:+.2f}", f"{100.0 * one.found.error:.1f}"]))
     return "\n".join(lines)
 
 
@@ -457,8 +466,8 @@ contacts without gears and the closed form.
 ## Finer and finer columns
 
 Contacts of mesh cycles that carry more than a twentieth of their position's force, up to four of each scene, those with
-the highest bound first. Columns are so many times as fine as those of an analysis, beside the edge and away
-from it; the finest ones two to four times. The error is that of an analysis against the finest columns, beside it what
+the highest bound first. Columns are so many times as fine as the first ones of an analysis, beside the edge and
+away from it; the finest ones two to four times. The error is that of an analysis against the finest columns, beside it what
 it estimates.
 
 {columns}
