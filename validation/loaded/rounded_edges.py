@@ -467,8 +467,8 @@ contacts without gears and the closed form.
 
 Contacts of mesh cycles that carry more than a twentieth of their position's force, up to four of each scene, those with
 the highest bound first. Columns are so many times as fine as the first ones of an analysis, beside the edge and
-away from it; the finest ones two to four times. The error is that of an analysis against the finest columns, beside it what
-it estimates.
+away from it; the finest ones two to four times. The error is that of an analysis against the finest columns, beside
+it what it estimates; share is that of the position's force.
 
 {columns}
 
