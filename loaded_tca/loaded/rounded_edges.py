@@ -31,7 +31,7 @@ from loaded_tca.contact.rounded_edge import SURELY_LESS, EdgePressure, RoundedEd
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.flanks.rounding import Arc, RoundedFlank, material_cosines
-from loaded_tca.loaded.cycle import Carried
+from loaded_tca.loaded.cycle import Carried, told_where
 from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.tooth_contact import LoadedContact
@@ -158,9 +158,10 @@ def pressures_at_rounded_edges(
             if not every and edges[0].bound < largest:
                 break
             number = int(carried.pairs[place[2]])
-            peak = pressure_at_rounded_edge(
-                pair, loaded, edges, bending, number, free_edges=free_edges, at_least=0.0 if every else largest
-            )
+            with told_where(float(carried.torque[t]), float(carried.path.pinion_angle[place[1]])):
+                peak = pressure_at_rounded_edge(
+                    pair, loaded, edges, bending, number, free_edges=free_edges, at_least=0.0 if every else largest
+                )
             if every or peak.pressure >= SURELY_LESS * largest:
                 found[place], largest = peak, max(largest, peak.pressure)  # which stays where the other one is NaN
     return found
@@ -252,8 +253,9 @@ def pressure_at_rounded_edge(
 
     def highest(lines: list[RoundedEdge]) -> PeakAtEdge:
         contact = _ContactAlongEdge(pair, loaded, lines[0], bending, number, free_edges)
-        asked = max(at_least, _by_pressure(best))
-        return max((contact.turned_back(one) for one in contact.solved(lines, asked)), key=_by_pressure)
+        peaks = [contact.turned_back(one) for one in contact.solved(lines, max(at_least, _by_pressure(best)))]
+        top = max(peaks, key=_by_pressure)  # beside a crossing the columns of both edges tell it
+        return replace(top, error=max((one.error for one in peaks if one.place == top.place), default=top.error))
 
     crossing, best = _crossing_within(loaded, [line for lines, _ in edges for line in lines]), NOT_REACHED
     for lines, bound in edges:
