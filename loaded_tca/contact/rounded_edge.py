@@ -26,7 +26,7 @@ STEPS = (0.6, 1.0, 1.7, 2.9)
 that of the one before. The last two are made where the difference asks for them."""
 ACCURACY = 0.02
 MOST_PAIRS = 2_500_000
-"""Rows times pairs of columns, from which on cells are not made finer: the next ones take five times as long, seconds."""
+"""Rows times pairs of columns from which on cells are not made finer: the next ones take five times as long."""
 ALIGNED_ERROR, ASKEW_ERROR = 0.12, 0.8
 """Relative error of the peak times the square of the cells across the pressed part, at the most: for columns of which
 one begins where the rounding does, and for others (``docs/studies/rounded_edge.md``)."""

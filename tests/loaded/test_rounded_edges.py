@@ -143,7 +143,7 @@ def test_contact_that_ends_before_the_arc_has_no_peak():
     pair, one = loaded(load=100.0, pinion=FlankModifications(lead_crowning=0.02))
     assert reached_edges(pair, one) == []
     assert not one.at_arc
-    beyond = ReachedEdge(RoundedEdge((0.0, 9.8), (0.0, 1.0), 0.2), 1000.0)
+    beyond = ReachedEdge((RoundedEdge((0.0, 9.8), (0.0, 1.0), 0.2),), 1000.0)
     assert math.isnan(found(pair, one, [beyond]).pressure)
     assert math.isnan(found(pair, one, [beyond]).error)
 
