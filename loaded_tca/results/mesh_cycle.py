@@ -368,8 +368,8 @@ class MeshCycle:
         Examples
         --------
         >>> from loaded_tca import analyse, read_scene
-        >>> changes = {"analysis.positions": 5, "analysis.torques_Nm": None, "analysis.compliance": "contact"}
-        >>> scene = read_scene("examples/scenes/mesh_cycle_helical.toml").with_changes(changes)
+        >>> changes = {"analysis.positions": 5, "analysis.torques_Nm": [20.0], "analysis.compliance": "contact"}
+        >>> scene = read_scene("examples/scenes/mesh_cycle_spur.toml").with_changes(changes)
         >>> dynamics = analyse(scene).to_dynamics()
         >>> dynamics.mesh_phase.values, dynamics.order.values
         (array([0.  , 0.25, 0.5 , 0.75]), array([0, 1], dtype=int32))
