@@ -450,7 +450,7 @@ class MeshCycle:
                 f"{path}: a study, not the result of a mesh cycle; read it with loaded_tca.studies.load_study"
             )
         try:
-            scene = parse_scene(str(file.attrs.get("scene_toml", "")), source="scene_toml")
+            scene = parse_scene(str(file.attrs.get("scene_toml", "")), source="scene_toml", folder=None)
             in_dataset = QUANTITIES | (ROOT_PARTS if scene.analysis.root_stress or "root_tension" in file else {})
             arrays = arrays_of(file, in_dataset | IN_FILES)
             expected = {**SIZES, "end": 2, "edge": 8, "path": 1 + file.sizes["pair"]}
