@@ -71,7 +71,6 @@ def dynamics_of(result: MeshCycle) -> xarray.Dataset:
     first, second = (1e-3 * radius for radius in pair.base_radii)
     begin = float(result.pinion_angle[0]) / pair.pitch
     phase = np.remainder(begin + np.arange(count - 1) / (count - 1), 1.0)
-    phase[phase > 1.0 - 1e-9] = 0.0  # a rounding below zero
     ascending = np.argsort(phase)
 
     def over_pitch(values: Array) -> Array:

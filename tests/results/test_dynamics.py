@@ -110,9 +110,10 @@ def test_radii_turn_forces_into_torques_and_lengths_into_angles():
     assert_allclose(force, along_normal, rtol=2e-3)  # lengthwise crowning tilts the normals a little
 
 
-def test_stiffness_is_the_slope_of_the_transmission_error():
-    """Between 128 and 132 N m the wheel falls back by the change of T1/r_b1 over the stiffness."""
-    dynamics = result("mesh_cycle_helical", positions=5, torques=(128.0, 130.0, 132.0)).to_dynamics()
+@pytest.mark.parametrize("name", ["helical", "bevel"])
+def test_stiffness_is_the_slope_of_the_transmission_error(name):
+    """Between two torques the wheel falls back by the change of T1/r_b1 over the stiffness."""
+    dynamics = result(f"mesh_cycle_{name}", positions=5, torques=(98.0, 100.0, 102.0)).to_dynamics()
     fallen = dynamics.transmission_error_m[0] - dynamics.transmission_error_m[2]
     force = 4.0 / dynamics.pinion_base_radius_m.item()
     assert_allclose(force / fallen, dynamics.mesh_stiffness_N_per_m[1], rtol=0.03)  # cells come into contact in steps
