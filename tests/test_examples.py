@@ -34,6 +34,7 @@ EXPECTED = {
     "plot_sensitivities": (1.0, 2e-3),  # the line of action turns the centre distance into sin(alpha_wt) of it
     "plot_monte_carlo": (1.0, 0.03),  # either sign of misalignment gathers the load; positions at 1 % of accuracy
     "plot_micro_geometry": (1.0, 1e-12),  # every step of crowning
+    "plot_tip_relief_and_rounding": (-1.0 / 3.0, 0.01),  # the power of the radius: a pressed part much smaller than it
     "plot_tooth_3d": (1.0, 5e-3),  # the pressure laid on the flank carries the load
     "plot_bidirectional_start": (1.0, 1e-7),  # five equations and ease-off find the same contact
 }

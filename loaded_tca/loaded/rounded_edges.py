@@ -4,14 +4,15 @@ The grid on which tooth pairs share the load resolves the contact, not the few m
 pressed. So the gap of the rounded flanks is sampled anew on columns of graded width that follow the edge, and the same
 force is spread over them, with teeth that bend, free edges and other tooth pairs as before.
 
-What a contact will come to is told beforehand by its cell beside the edge. Beside a sharp edge pressure rises as
-:math:`K/\sqrt{s}`, so that a cell of the width h has the mean :math:`2 K/\sqrt{h}`, and a rounding of the radius R
+What a contact can come to is told beforehand by its cell beside the edge. Beside a sharp edge pressure rises as
+:math:`K/\sqrt{s}`, so that a cell of the width h has the mean :math:`p = 2 K/\sqrt{h}`, and a rounding of the radius R
 turns that into
 
 .. math:: p_{max} = 1.80\, K/\sqrt{d}, \qquad d = \frac{1}{2} \left(\frac{3 \sqrt{2} \pi K R}{E^*}\right)^{2/3},
 
-the limit of small d of a flat punch with rounded ends (Ciavarella, Hills & Monno 1998). It tells which contacts can
-hold the largest pressure of a mesh cycle.
+the limit of small d of a flat punch with rounded ends (Ciavarella, Hills & Monno 1998). That is :math:`0.90\, p
+\sqrt{h/d}`; :math:`0.90\, p \sqrt{h/d + 1.5}` is a bound that holds on fine cells, too
+(``validation/loaded/rounded_edges.py``). It tells which contacts can hold the largest pressure of a mesh cycle.
 """
 
 from __future__ import annotations
@@ -41,9 +42,8 @@ from loaded_tca.unloaded.arcs import lengths_past_tangents
 
 PEAK_OF_ROUNDING = 1.80
 """Of the pressure at a rounded edge, over K/sqrt(d)."""
-MOST_ABOVE = 1.4
-"""Largest pressure that was found at a rounded edge over that told beforehand, with some reserve
-(``validation/loaded/rounded_edges.py``)."""
+ON_FINE_CELLS = 1.5
+"""Added to h/d in the bound: cells narrower than the pressed part of a rounding have nearly its peak."""
 STEP = 0.1
 """Of the lengths of a cell: that over which the direction of an edge is told."""
 CELLS_ACROSS, CELLS_ALONG = 8, 12
@@ -78,10 +78,10 @@ NOT_REACHED = PeakAtEdge(math.nan, (math.nan, math.nan), math.nan)
 
 
 class ReachedEdge(NamedTuple):
-    """A rounded edge within a cell of a contact's pressure, in the plane of its grid, and the pressure told there."""
+    """A rounded edge within a cell of a contact's pressure, in the plane of its grid, and a bound of its pressure."""
 
     line: RoundedEdge
-    expected: float
+    bound: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,9 +145,9 @@ def pressures_at_rounded_edges(
             if loaded is not None and loaded.at_arc and (edges := reached_edges(pair, loaded))
         }
         largest = 0.0
-        for place in sorted(reached, key=lambda at: -reached[at][1][0].expected):
+        for place in sorted(reached, key=lambda at: -reached[at][1][0].bound):
             loaded, edges = reached[place]
-            if not every and MOST_ABOVE * edges[0].expected < largest:
+            if not every and edges[0].bound < largest:
                 break
             number = int(carried.pairs[place[2]])
             peak = pressure_at_rounded_edge(
@@ -159,7 +159,7 @@ def pressures_at_rounded_edges(
 
 
 def reached_edges(pair: GearPair, loaded: LoadedContact) -> list[ReachedEdge]:
-    """Rounded edges within a cell of the pressure of a contact, the one with the highest expected pressure first.
+    """Rounded edges within a cell of the pressure of a contact, the one with the highest bound first.
 
     An edge is a straight line beside the cell there with the largest pressure.
     """
@@ -184,20 +184,15 @@ def reached_edges(pair: GearPair, loaded: LoadedContact) -> list[ReachedEdge]:
             pair.contact_modulus / gear.material.plane_strain_modulus,
         )
         cell = float(np.abs(slope) @ (dx, dy)) / math.hypot(*slope)
-        found.append(
-            ReachedEdge(line, expected_pressure(float(pressure.max()), cell, arc.radius, pair.contact_modulus))
-        )
-    return sorted(found, key=lambda one: -one.expected)
+        found.append(ReachedEdge(line, largest_pressure(float(pressure.max()), cell, arc.radius, pair.contact_modulus)))
+    return sorted(found, key=lambda one: -one.bound)
 
 
-def expected_pressure(mean: float, width: float, radius: float, contact_modulus: float) -> float:
-    """Pressure at a rounded edge [MPa] that the mean pressure [MPa] of a cell beside it, so wide [mm], tells.
-
-    Not below that mean, which a cell has that is narrower than the pressed part of the rounding.
-    """
+def largest_pressure(mean: float, width: float, radius: float, contact_modulus: float) -> float:
+    """Pressure [MPa] that a rounded edge can have if a cell beside it, so wide [mm], has this mean pressure [MPa]."""
     intensity = 0.5 * mean * math.sqrt(width)
     pressed = 0.5 * (3.0 * math.sqrt(2.0) * math.pi * intensity * radius / contact_modulus) ** (2.0 / 3.0)
-    return max(mean, PEAK_OF_ROUNDING * intensity / math.sqrt(pressed)) if pressed > 0.0 else mean
+    return 0.5 * PEAK_OF_ROUNDING * mean * math.sqrt(width / pressed + ON_FINE_CELLS)
 
 
 def pressure_at_rounded_edge(
@@ -219,7 +214,7 @@ def pressure_at_rounded_edge(
     pair : GearPair
     loaded : LoadedContact
     edges : list of ReachedEdge
-        The one with the highest expected pressure first.
+        The one with the highest bound first.
     bending : BendingModel or None
     number : int
         Of the tooth pair, as the bending model counts.
@@ -233,8 +228,8 @@ def pressure_at_rounded_edge(
         return max((contact.turned_back(one) for one in contact.solved(lines, at_least)), key=_by_pressure)
 
     alone: dict[RoundedEdge, PeakAtEdge] = {}
-    for line, expected in edges:
-        if MOST_ABOVE * expected < at_least:
+    for line, bound in edges:
+        if bound < at_least:
             break
         if not math.isnan((peak := highest([line])).pressure):
             alone[line], at_least = peak, max(at_least, peak.pressure)
