@@ -25,6 +25,8 @@ STEPS = (0.6, 1.0, 1.7, 2.9)
 """Of these in one solution after the other: the first tells the pressed width, and the peak of each is compared with
 that of the one before. The last two are made where the difference asks for them."""
 ACCURACY = 0.02
+MOST_PAIRS = 2_500_000
+"""Rows times pairs of columns, from which on cells are not made finer: the next ones take five times as long, seconds."""
 ALIGNED_ERROR, ASKEW_ERROR = 0.12, 0.8
 """Relative error of the peak times the square of the cells across the pressed part, at the most: for columns of which
 one begins where the rounding does, and for others (``docs/studies/rounded_edge.md``)."""
@@ -250,7 +252,9 @@ def edge_pressures(
             break
         if coarse:
             found = [one.compared_with(other) for one, other in zip(found, coarse, strict=True)]
-            if max(found, key=lambda one: np.nan_to_num(one.pressure)).error <= accuracy:
+            rows, columns = found[0].solution.problem.cells
+            within = max(found, key=lambda one: np.nan_to_num(one.pressure)).error <= accuracy
+            if within or rows * columns**2 > MOST_PAIRS:
                 break
     return found
 
