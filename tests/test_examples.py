@@ -56,6 +56,15 @@ def test_example_gives_its_number_and_its_picture(name, tmp_path, monkeypatch):
     assert [path.name for path in tmp_path.iterdir()] == [f"{name.removeprefix('plot_')}.png"]
 
 
+@pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # contacts that reach an edge
+def test_second_order_of_the_tooth_mesh_has_its_resonance_at_half_the_speed(tmp_path, monkeypatch):
+    """Its frequency is twice that of the mesh; a thirtieth aside: the stiffness varies, and the speeds have steps."""
+    monkeypatch.chdir(tmp_path)
+    assert loaded(EXAMPLES / "export_to_dynamics.py").main() == pytest.approx(0.5, abs=0.03)
+    names = ["dynamics.csv", "dynamics_orders.csv", "export_to_dynamics.png"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == names
+
+
 def test_study_on_a_cluster_follows_hertz(tmp_path, monkeypatch):
     """Eight times the load: twice the pressure."""
     monkeypatch.chdir(tmp_path)
