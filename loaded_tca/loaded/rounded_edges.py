@@ -257,9 +257,10 @@ def pressure_at_rounded_edge(
         top = max(peaks, key=_by_pressure)  # beside a crossing the columns of both edges tell it
         return replace(top, error=max((one.error for one in peaks if one.place == top.place), default=top.error))
 
-    crossing, best = _crossing_within(loaded, [line for lines, _ in edges for line in lines]), NOT_REACHED
-    for lines, bound in edges:
-        if bound >= max(at_least, _by_pressure(best)) and not crossing.issuperset(lines):
+    able, best = [one for one in edges if one.bound >= at_least], NOT_REACHED
+    crossing = _crossing_within(loaded, [line for lines, _ in able for line in lines])
+    for lines, bound in able:
+        if bound >= _by_pressure(best) and not crossing.issuperset(lines):
             best = max(best, highest(list(lines)), key=_by_pressure)
     if crossing:  # the first one is crossed by the fewest rows
         best = max(best, highest(sorted(crossing, key=lambda line: -abs(line.normal[1]))), key=_by_pressure)
@@ -369,8 +370,8 @@ class _ContactAlongEdge:
             )
             pressed = found[0].solution.pressure > 0.0
             if not (pressed[[0, -1]].any() or pressed[:, [0, -1]].any()):
-                break
-        return found
+                return found
+        return [replace(one, error=math.inf) for one in found]
 
     def _box(self, margin: float) -> tuple[tuple[tuple[float, float], tuple[float, float]], tuple[int, int]]:
         """A box about the pressure of the grid, so many of its cells larger, and the cells on both its axes."""
