@@ -382,6 +382,11 @@ class MeshCycle:
 
     def summary(self) -> str:
         """Return the key figures in the engineer's units: about 20 lines, one column per torque."""
+        return summary_text(self.scene.title, self.scope, self.key_figures())
+
+    @property
+    def scope(self) -> str:
+        """Positions, who carries the load, and whether teeth bend, in words."""
         first, last = (math.degrees(self.pinion_angle[end]) for end in (0, -1))
         count = len(self.path)
         where = f"{count} positions, pinion angle {first:.4g} to {last:.4g} deg" if count > 1 else "1 position"
@@ -392,7 +397,7 @@ class MeshCycle:
                 carrying = f"tooth pair {numbers[0]} alone carries the load (load sharing on)"
         else:
             carrying = "one tooth pair carries the whole load (load sharing off)"
-        return summary_text(self.scene.title, f"{where}; {carrying}; {self.bending}", self.key_figures())
+        return f"{where}; {carrying}; {self.bending}"
 
     def save(self, path: FilePath) -> None:
         """Write everything to a NetCDF-3 file, whole or not at all; ``load`` reads it back unchanged.
