@@ -83,8 +83,8 @@ __all__ = [
     "plot_transmission_error",
     "plot_transmission_error_band",
     "plot_vh_check",
-    "result_figures",
     "png_of",
+    "result_figures",
     "save_figure",
     "show_teeth",
 ]

@@ -117,14 +117,14 @@ def _draw_pressure(axes: Axes, one: PressureMap, highest: float) -> None:
     x, y = one.borders
     void = np.isinf(one.gap)
     ground = colormaps["Greys"].with_extremes(bad=NO_MATERIAL)
-    axes.pcolormesh(y, x, np.where(void, np.nan, 0.0), cmap=ground, vmin=0.0, vmax=1.0)
+    axes.pcolormesh(y, x, np.where(void, np.nan, 0.0), cmap=ground, vmin=0.0, vmax=1.0, rasterized=True)
     if void.any():
         axes.plot([], [], "s", color=NO_MATERIAL, label="no material")
     if not one.pressure.any():
         tell(axes, NO_LOAD)
         return
     loaded = np.where(one.pressure > 0.0, one.pressure, np.nan)
-    axes.pcolormesh(y, x, loaded, cmap=COLOURS, norm=Normalize(0.0, highest))
+    axes.pcolormesh(y, x, loaded, cmap=COLOURS, norm=Normalize(0.0, highest), rasterized=True)
 
 
 def scale_factor(length: float, width: float) -> tuple[float, float]:

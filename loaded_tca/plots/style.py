@@ -210,16 +210,14 @@ def write_title(figure: Figure, scene: str, shown: str, *rest: str) -> None:
 
 
 def note_of(figure: Figure) -> str:
-    """Return what stands below a picture."""
-    return next((text.get_text() for text in figure.texts if text.get_gid() == NOTE), "")
+    """Return what stands below a picture, in one line."""
+    return next((" ".join(text.get_text().split()) for text in figure.texts if text.get_gid() == NOTE), "")
 
 
 def _write_note(figure: Figure, sentences: Iterable[str]) -> None:
     """Lines below a picture, for which it grows; legends and whatever else is placed below the panels move up."""
     longest = int(1.2 * CHARACTERS_PER_INCH * figure.get_figwidth())
-    told = [sentence for sentence in sentences if sentence]
-    joined = "; ".join(told)
-    lines = [part for line in ([joined] if len(joined) <= longest else told) for part in parts_of(line, longest)]
+    lines = parts_of("; ".join(filter(None, sentences)), longest)
     width, height = figure.get_size_inches()
     note = LINE_OF_NOTE * len(lines)
     below, rest = note / (height + note), height / (height + note)
@@ -240,7 +238,8 @@ def _write_note(figure: Figure, sentences: Iterable[str]) -> None:
 
 def _height_of_legend(figure: Figure) -> float:
     """Inches that the highest legend of a figure takes; the layout leaves none for one that is anchored."""
-    renderer: Any = FigureCanvasAgg(figure).get_renderer()
+    canvas: Any = FigureCanvasAgg(figure)
+    renderer = canvas.get_renderer()
     heights = [legend.get_window_extent(renderer).height / figure.get_dpi() for legend in figure.legends]
     return max(heights) + 2.0 * PAD_OF_LEGEND if heights else 0.0
 
