@@ -80,7 +80,7 @@ STUDY = """files in DIR:
   study_*.png               pictures that fit what varies
   study.rows.jsonl          the variants that are done; the same command goes on from there
   study_maps/N.nc           whole results of the variants asked for by --keep-maps, as of 'loaded-tca run'"""
-REPORT = """One HTML file that needs nothing else: what was asked, geometry, load cases, key figures with their accuracy,
+REPORT = """One HTML file that needs nothing else: what was asked, geometry, load cases, key figures, their accuracy,
 pictures, accuracy warnings with what to do, and the scene file; of a study what varies, the ranking, best and worst
 variant; of a design start and optimum. It prints on A4. Needs the package jinja2."""
 EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."

@@ -197,8 +197,8 @@ def set_title(figure: Figure, result: MeshCycle, *about: str) -> None:
 def write_title(figure: Figure, scene: str, shown: str, *rest: str) -> None:
     """Write what is shown as a title of one line, and below the picture the title of the scene and the rest.
 
-    Of what is longer than a line the last parts, from a comma on, stand below, too. All is taken literally, signs of TeX
-    too. To be called once all else is in the figure, which grows by the lines below.
+    Of what is longer than a line the last parts, from a comma on, stand below, too. All is taken literally, TeX
+    included. To be called once all else is in the figure, which grows by the lines below.
     """
     longest, parts = int(CHARACTERS_PER_INCH * figure.get_figwidth()), shown.split(", ")
     lengths = np.cumsum([len(part) + 2 for part in parts]) - 2

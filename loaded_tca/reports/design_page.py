@@ -48,7 +48,7 @@ def design_content(design: DesignResult) -> dict[str, Any]:
         ),
         "values": Table(
             tuple(
-                (label_of(key), key, f"{before:.4g}", f"{design.optimum[key]:.4g}")
+                (label_of(key), key, shown(before, key), shown(design.optimum[key], key))
                 for key, before in design.start.items()
             ),
             ("what was designed", "key", "start", "optimum"),

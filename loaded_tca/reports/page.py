@@ -20,7 +20,8 @@ REFERENCE = re.compile(r'(\bid="|url\(#|href="#)')
 """Where an SVG names a part of itself."""
 LEFT_OUT = re.compile(r"<metadata>.*?</metadata>|<style[^>]*>.*?</style>|<!--.*?-->", re.DOTALL)
 """Of an SVG: its metadata; its style, which would hold for the whole page, and which the page has itself."""
-SIZE = re.compile(r'<svg [^>]*?width="([\d.]+)pt"[^>]*?viewBox="([^"]*)"[^>]*>')
+SIZE = re.compile(r'<svg [^>]*?viewBox="0 0 ([\d.]+) ([\d.]+)"[^>]*>')
+UNIT = re.compile(r"\[[^\]]*\]")
 MISSING = (
     "report: needs the package jinja2; 'pip install jinja2' gets it, as does installing loaded_tca with its extra "
     "'report'"
@@ -116,7 +117,11 @@ def svg_of(figure: Figure, prefix: str, title: str) -> str:
     words = title.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
     about = f'role="img" aria-label="{words}" xmlns="http://www.w3.org/2000/svg"'
     links = 'xmlns:xlink="http://www.w3.org/1999/xlink"'
-    return SIZE.sub(rf'<svg {about} {links} viewBox="\2" style="max-width:\1pt">', drawing, count=1).strip()
+    found = SIZE.search(drawing)
+    assert found
+    width, height = float(found[1]), float(found[2])
+    shape = f'viewBox="0 0 {width:g} {height:g}" style="max-width:{width:g}pt"' + ' class="tall"' * (height > width)
+    return f"<svg {about} {links} {shape}>{drawing[found.end() :].strip()}"
 
 
 def render(template: str, **content: Any) -> str:
@@ -135,7 +140,7 @@ def render(template: str, **content: Any) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["code"] = _code
+    environment.filters |= {"code": _code, "whole_units": _whole_units}
     page: str = environment.get_template(template).render(**content)
     return page
 
@@ -147,6 +152,11 @@ def require_jinja2() -> Any:
     except ModuleNotFoundError:
         raise InputError(MISSING) from None
     return jinja2
+
+
+def _whole_units(label: str) -> str:
+    """A label whose unit in brackets stays in one line."""
+    return UNIT.sub(lambda unit: unit[0].replace(" ", "\N{NO-BREAK SPACE}"), label)
 
 
 def _code(text: str) -> Any:

@@ -101,9 +101,12 @@ def scene_content(scene: Scene) -> dict[str, Any]:
     }
 
 
-def explained(sentences: Sequence[str]) -> list[tuple[str, Explanation | None]]:
-    """Return accuracy warnings with what is to be known of each."""
-    return [(sentence, explanation_of(sentence)) for sentence in sentences]
+def explained(sentences: Sequence[str]) -> list[tuple[list[str], Explanation | None]]:
+    """Return accuracy warnings, those for one reason together, with what is to be known of them."""
+    found: dict[Explanation | None, list[str]] = {}
+    for sentence in sentences:
+        found.setdefault(explanation_of(sentence), []).append(sentence)
+    return [(told, known) for known, told in found.items()]
 
 
 def _materials(scene: Scene) -> tuple[str, ...]:
@@ -139,7 +142,7 @@ def _key_figures(figures: Sequence[Figures]) -> Table:
 
 def _under(figures: Sequence[Figures]) -> Iterator[str]:
     """Names of the columns of some torques."""
-    return (f"{one['pinion_torque_Nm']:.4g} N m" for one in figures)
+    return (f"{one['pinion_torque_Nm']:.4g}\N{NO-BREAK SPACE}N\N{NO-BREAK SPACE}m" for one in figures)
 
 
 def _note(name: str, figures: Sequence[Figures]) -> str:

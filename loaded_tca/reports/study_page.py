@@ -29,7 +29,6 @@ CAPTIONS = {
     "study_histogram": "How the figure scatters over the variants.",
     "study_over_torque": "Median and scatter over the torque.",
     "study_scatter_matrix": "Figures over the keys, a dot for each variant.",
-    "study_ranking": "The best variants.",
 }
 """How the pictures are read whose names begin so."""
 
@@ -52,6 +51,8 @@ def study_content(study: xarray.Dataset) -> dict[str, Any]:
         for reason, found in by_reason.items()
     }
     variants = study.sizes["sample"]
+    figures = plot_study(study)
+    figures.pop("study_ranking")  # a table of the page
     return {
         "title": scene.title or "Study",
         "analysed_by": str(study.attrs.get("version", "")),
@@ -69,7 +70,7 @@ def study_content(study: xarray.Dataset) -> dict[str, Any]:
             if status != "ok"
         ).most_common(),
         "warnings": explained([f"{reason} ({count} of {variants} variants)" for reason, count in concerned.items()]),
-        "pictures": pictures_of(plot_study(study), CAPTIONS, scene.title),
+        "pictures": pictures_of(figures, CAPTIONS, scene.title),
     }
 
 
