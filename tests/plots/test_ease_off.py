@@ -9,13 +9,14 @@ from loaded_tca.plots import save_figure
 from loaded_tca.plots.ease_off import plot_ease_off
 from loaded_tca.plots.vh_check import plot_vh_check
 from tests.samples.gear_pairs import gear_pair
+from tests.samples.pictures import told
 
 TWISTED = FlankModifications(twist=0.020, lead_crowning=0.004)
 
 
 def written(figure):
     figure.draw_without_rendering()
-    found = [figure.get_suptitle(), figure.get_supxlabel(), figure.get_supylabel()]
+    found = [told(figure), figure.get_supxlabel(), figure.get_supylabel()]
     for axes in figure.axes:
         found += [axes.get_title(), axes.get_xlabel(), axes.get_ylabel()]
         found += [text.get_text() for text in axes.texts]

@@ -21,6 +21,7 @@ from loaded_tca.plots import (
 from loaded_tca.plots.style import over_a_stretch
 from loaded_tca.results.key_figures import ARCSEC
 from loaded_tca.results.stress_below import stress_below
+from tests.samples.pictures import told
 from tests.samples.results import PER_PAIR, PER_POSITION, changed, changed_scene, result, with_a_gap
 
 PLOTS = [plot_contact_path, plot_peak_pressure, plot_pressure_map, plot_transmission_error]
@@ -51,7 +52,7 @@ CASES = {
 
 def texts(figure):
     figure.draw_without_rendering()
-    found = [figure.get_suptitle()]
+    found = [told(figure)]
     for axes in figure.axes:
         found += [axes.get_title(), axes.get_xlabel(), axes.get_ylabel()]
         found += [child.get_ylabel() for child in axes.child_axes]
@@ -283,7 +284,7 @@ def test_pictures_without_load_say_so():
 def test_lines_of_a_title_are_no_wider_than_the_picture_and_none_is_a_mere_end():
     figure = plot_stress_below(stress_below(result("fzg_c14", positions=3)))
     figure.draw_without_rendering()
-    (title,) = [text for text in figure.texts if text.get_text() == figure.get_suptitle()]
+    (title,) = [text for text in figure.texts if text.get_text() == told(figure)]
     assert title.get_window_extent().width < figure.bbox.width
     assert min(len(line) for line in title.get_text().splitlines()) > 10
 

@@ -21,6 +21,7 @@ from loaded_tca.plots import (
     sharing,
 )
 from loaded_tca.unloaded import contact_span
+from tests.samples.pictures import told
 from tests.samples.results import changed, changed_scene, result, with_a_gap
 
 
@@ -273,19 +274,19 @@ def test_full_mesh_has_every_loaded_pair_where_it_lies_with_its_share(name, torq
             assert text.get_text().startswith(f"pair {cycle.pair[column]:+d}:".replace("+0", "0"))
             radius, axial = (getattr(cycle.paths[column], f"{gear}_{part}")[1] for part in ("radius", "axial"))
             assert_allclose(text.xy, frame.to_picture(radius, axial), atol=1e-6)
-    assert "position 2 of 5: pinion angle" in figure.get_suptitle()
+    assert "position 2 of 5: pinion angle" in told(figure)
 
 
 def test_full_mesh_is_that_of_the_peak_pressure_unless_told():
     cycle = shared()
-    assert f"position {cycle.peak_contact(0)[0] + 1} of 5" in plot_full_mesh(cycle).get_suptitle()
+    assert f"position {cycle.peak_contact(0)[0] + 1} of 5" in told(plot_full_mesh(cycle))
     with pytest.raises(IndexError, match="no tooth pair is in contact"):
         plot_full_mesh(with_a_gap(), 1)
 
 
 def test_full_mesh_without_load_says_so():
     figure = plot_full_mesh(result(torques=(0.0,), positions=2))
-    assert "no load, no pressure on the flanks" in figure.get_suptitle()
+    assert "no load, no pressure on the flanks" in told(figure)
     assert len(figure.axes) == 2  # no bar of colours
 
 

@@ -20,6 +20,7 @@ from loaded_tca.plots import (
     png_of,
 )
 from loaded_tca.plots.labels import label_of
+from tests.samples.pictures import told
 from tests.samples.study_datasets import LEAD, MISALIGNMENT, SCENE, TIP, dataset, grid, sampled
 
 SPAN, PRESSURE = "transmission_error_span_um", "peak_pressure_MPa"
@@ -27,7 +28,7 @@ TWO_FAIL = ["ok", "refused", "ok", "ok", "not converged", "ok"]
 
 
 def title(figure):
-    return " ".join(figure.get_suptitle().split())
+    return " ".join(told(figure).split())
 
 
 def crosses(axes):
