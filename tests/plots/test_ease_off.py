@@ -27,7 +27,7 @@ def written(figure):
 def test_ease_off_picture_has_corner_values_and_coefficients(tmp_path):
     figure = plot_ease_off(ease_off_map(gear_pair(TWISTED)), "Twisted $pair")
     texts = written(figure)
-    assert texts[0] == "Twisted $pair\nease-off of the pinion against the conjugate of its mating flank"
+    assert texts[0] == "ease-off of the pinion against the conjugate of its mating flank; Twisted $pair"
     corners = 1e3 * ease_off_map(gear_pair(TWISTED)).corners
     assert {f"{corner:.1f}" for corner in corners.ravel()} <= set(texts)
     assert texts[texts.index("twist [µm]") + 1] == "20"
@@ -78,7 +78,7 @@ def test_vh_picture_has_a_cell_for_each_pair_of_errors_in_their_order(check, tmp
     assert [axes.get_ylabel() for axes in cells[:, 0]] == ["0.001", "0"]  # upwards
     assert [axes.get_xlabel() for axes in cells[-1]] == ["-0.001", "0", "0.02"]
     texts = written(figure)
-    assert texts[0].startswith("A pair\ncontact pattern on the pinion, marking compound 6.35 µm")
+    assert texts[0] == "contact pattern on the pinion, marking compound 6.35 µm, no load; A pair"
     assert texts[1:3] == ["out-of-plane [rad]", "in-plane [rad]"]
     save_figure(figure, tmp_path / "vh_check.png")
     assert (tmp_path / "vh_check.png").stat().st_size > 10_000

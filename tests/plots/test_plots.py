@@ -284,7 +284,7 @@ def test_pictures_without_load_say_so():
 def test_lines_of_a_title_are_no_wider_than_the_picture_and_none_is_a_mere_end():
     figure = plot_stress_below(stress_below(result("fzg_c14", positions=3)))
     figure.draw_without_rendering()
-    (title,) = [text for text in figure.texts if text.get_text() == told(figure)]
+    (title,) = [text for text in figure.texts if text.get_text() == figure.get_suptitle()]
     assert title.get_window_extent().width < figure.bbox.width
     assert min(len(line) for line in title.get_text().splitlines()) > 10
 

@@ -161,9 +161,9 @@ def test_orders_of_the_tooth_mesh_are_whole_numbers():
 
 
 def test_positions_too_few_for_any_order_are_told():
-    for positions, told in ((3, True), (4, False)):
+    for positions, expected in ((3, True), (4, False)):
         axes = plot_harmonics(result("mesh_cycle_spur", positions=positions, torques=(40.0,))).axes[0]
-        assert any("the first needs 4 positions" in text.get_text() for text in axes.texts) is told
+        assert any("the first needs 4 positions" in text.get_text() for text in axes.texts) is expected
 
 
 def test_legend_of_the_load_shares_covers_no_curve():
