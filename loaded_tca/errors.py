@@ -70,7 +70,7 @@ def reason_of(error: Exception) -> str:
     return getattr(error, "strerror", None) or str(error)
 
 
-def read_text(path: str | os.PathLike[str], largest: int) -> str:
+def read_text(path: str | os.PathLike[str], largest: int, kind: str = "scene and no flank") -> str:
     """Text of a file in UTF-8 of no more than so many bytes.
 
     Raises
@@ -85,7 +85,7 @@ def read_text(path: str | os.PathLike[str], largest: int) -> str:
     except (OSError, ValueError) as error:
         raise InputError(f"{name}: cannot be read: {reason_of(error)}") from None
     if len(content) > largest:
-        raise InputError(f"{name}: more than {largest} bytes; no scene and no flank is so long")
+        raise InputError(f"{name}: more than {largest} bytes; no {kind} is so long")
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -60,7 +60,13 @@ CASES = (
 )
 
 
-LONG = ("loaded.root_stress_families", "loaded.sensitivities", "studies.robust_design", "unloaded.rounded_edges")
+LONG = (
+    "loaded.root_stress_families",
+    "loaded.sensitivities",
+    "loaded.rounded_edges",
+    "studies.robust_design",
+    "unloaded.rounded_edges",
+)
 """Cases of minutes, which the tests leave out."""
 
 

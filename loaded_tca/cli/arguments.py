@@ -73,6 +73,11 @@ files in DIR:
   transmission_error_band.png  transmission error with the standard deviation by all tolerances, all torques
   removal_weights.png       where on the flanks removed material changes the transmission error
 All to first order; docs/results.md says more."""
+DYNAMICS = """files:
+  FILE                      over the pitch: transmission error in m and rad, mesh stiffness in N/m and N m/rad, tooth
+                            pairs under load, normal force; a row for each torque and mesh phase
+  the same with _orders     Fourier coefficients of these curves, amplitudes and phases
+All in SI units; lines that begin with # say what the columns are. Only of results with load sharing."""
 STUDY = """files in DIR:
   study.nc                  all figures of all variants, to be read by loaded_tca.studies.load_study or xarray
   study.csv                 the same, one row per variant and torque
@@ -150,6 +155,9 @@ def command_line() -> argparse.ArgumentParser:
     slopes.add_argument("--keys", metavar="KEY[=TOLERANCE]", nargs="+", type=_tolerance, help=told)
     slopes.add_argument("--out", metavar="DIR", type=_path, help=f"directory for the files; default: {own}")
     slopes.add_argument("--torque", metavar="NM", type=float, help="pinion torque shown; default: largest, bands all")
+    dynamics = command("dynamics", run_by.dynamics, "write tables that programs of gear dynamics read", DYNAMICS)
+    dynamics.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
+    dynamics.add_argument("--out", metavar="FILE", type=_path, help="first table; default: dynamics.csv beside it")
     ease_off = command("ease-off", run_by.ease_off, "draw the ease-off of a scene, without load", EASE_OFF)
     _add_scene(ease_off)
     ease_off.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the picture")

@@ -152,6 +152,18 @@ def sensitivities(options: argparse.Namespace) -> None:
     print_files(written)
 
 
+def dynamics(options: argparse.Namespace) -> None:
+    """Write the tables of a result that programs of rotor and gear dynamics read."""
+    from loaded_tca.output.dynamics_files import TABLE, write_dynamics
+    from loaded_tca.results import load_result
+
+    file = result_file(options.result)
+    out = options.out or file.parent / TABLE
+    require((not out.is_dir(), f"--out {out}: a directory; give the name of a file, as {out / TABLE}"))
+    check_place(out.parent)
+    print_files(write_dynamics(load_result(file), out))
+
+
 def ease_off(options: argparse.Namespace) -> None:
     """Draw the ease-off of a scene."""
     from loaded_tca.flank_maps.ease_off_map import ease_off_map

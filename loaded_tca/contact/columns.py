@@ -105,7 +105,8 @@ def column_borders(low: float, high: float, zones: Sequence[FineZone], widest: f
     Returns
     -------
     (ny + 1,) array [mm]
-        From ``low`` to ``high``; the places of the zones within are among them, and no column is wider than asked for.
+        From ``low`` to ``high``; the places of the zones within are among them, but for those nearer to that of another
+        zone than half of their columns' width. No column is wider than asked for.
 
     Raises
     ------
@@ -124,7 +125,11 @@ def column_borders(low: float, high: float, zones: Sequence[FineZone], widest: f
         (0.0 < real(widest) < math.inf, f"widest: {widest} mm is not positive and finite"),
         (1.0 < real(growth) < math.inf, f"growth: {growth} is not above 1"),
     )
-    places = sorted({low, high, *(zone.place for zone in zones if low < zone.place < high)})
+    places = [low]
+    for zone in sorted(zones, key=lambda zone: zone.place):
+        if low < zone.place < high and (len(places) == 1 or zone.place - places[-1] >= 0.5 * zone.width):
+            places.append(zone.place)
+    places.append(high)
     borders = [np.array([low])]
     for start, stop in pairwise(places):
         # Where a zone ends the density of columns changes fast; samples are dense beside both ends.

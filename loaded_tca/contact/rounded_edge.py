@@ -21,8 +21,12 @@ Box = tuple[tuple[float, float], tuple[float, float]]
 
 CELLS_ON_ARC = 5.0
 """Cells across the pressed part of a rounding."""
-COARSER = 0.6
-"""Of these in the solution that tells the pressed width, and with which the peak is compared."""
+STEPS = (0.6, 1.0, 1.7, 2.9)
+"""Of these in one solution after the other: the first tells the pressed width, and the peak of each is compared with
+that of the one before. The last two are made where the difference asks for them."""
+ACCURACY = 0.02
+MOST_PAIRS = 2_500_000
+"""Rows times pairs of columns from which on cells are not made finer: the next ones take five times as long."""
 ALIGNED_ERROR, ASKEW_ERROR = 0.12, 0.8
 """Relative error of the peak times the square of the cells across the pressed part, at the most: for columns of which
 one begins where the rounding does, and for others (``docs/studies/rounded_edge.md``)."""
@@ -30,8 +34,13 @@ ASKEW_CELLS = 1.25
 """How many times as many cells the others have: 6 of them, for 2 %."""
 ALIGNED = 1e-3
 """Sine of the angle between an edge and the columns up to which their borders follow it."""
+ROWS_ON_ARC = 8.0
+"""Rows on the pressed part of a rounding, along it, for 5 cells across: where a contact crosses the edge and leaves it
+soon, not where it lies along the edge."""
+MOST_OF_ROWS = 0.7
+"""Part of the rows of a contact from which on it lies along an edge."""
 FEWEST_ON_ARC = 0.7
-"""Part of the cells asked for below which columns are made anew."""
+"""Part of the cells asked for below which columns and rows are made anew."""
 MOST_FACTOR = 0.6
 """Of the image at the edge of a wedge, up to which the iteration converges: 103 deg of like materials."""
 MOST_ROUNDS = 6
@@ -101,6 +110,8 @@ class EdgePressure:
         How far the contact reaches onto the rounding, across the edge.
     cells_on_arc : float
         Cells on that width, along the axis that has fewer.
+    rows_on_arc : int
+        Rows that are pressed on the rounding.
     solution : GradedSolution
         Of the contact.
     """
@@ -110,6 +121,7 @@ class EdgePressure:
     error: float
     pressed_width: float
     cells_on_arc: float
+    rows_on_arc: int
     solution: GradedSolution
 
     def compared_with(self, other: EdgePressure) -> EdgePressure:
@@ -130,6 +142,7 @@ def edge_pressures(
     slice_compliance: SliceCompliance | None = None,
     slice_axis: int = 1,
     cells_on_arc: float = CELLS_ON_ARC,
+    accuracy: float = ACCURACY,
     at_least: float = 0.0,
     tolerance: float = TOLERANCE,
 ) -> list[EdgePressure]:
@@ -171,6 +184,8 @@ def edge_pressures(
         Axis along which slices follow each other: columns if 1, rows if 0.
     cells_on_arc : float
         m, for edges along x; a quarter more for others.
+    accuracy : float
+        Relative error of the largest peak, as it is estimated, above which cells are made finer, twice at most.
     at_least : float [MPa]
         Where no edge reaches 0.92 of this on the coarser cells, these are the answer.
     tolerance : float
@@ -211,7 +226,7 @@ def edge_pressures(
         zones = [arc.zone(on_arc) for arc in arcs if abs(arc.normal[1]) > ALIGNED]
         fewest = [max(4, round(count * on_arc / cells_on_arc)) for count in cells]
         borders = column_borders(low[1], high[1], zones, float(high[1] - low[1]) / fewest[1])
-        rows = max(arc.cells(on_arc) * abs(arc.normal[0]) / arc.width for arc in arcs) * float(high[0] - low[0])
+        rows = max(arc.rows(on_arc) for arc in arcs) * float(high[0] - low[0])
         rows = max(fewest[0], min(math.ceil(rows), MOST_ROWS))
         dx, y = float(high[0] - low[0]) / rows, 0.5 * (borders[1:] + borders[:-1])
         x = low[0] + dx * (np.arange(rows) + 0.5)
@@ -225,28 +240,38 @@ def edge_pressures(
         return solve_graded(problem, tolerance=tolerance, initial_pressure=start)
 
     solution, found, coarse = None, list[EdgePressure](), list[EdgePressure]()
-    for on_arc in (COARSER * cells_on_arc, cells_on_arc):
+    for on_arc in (step * cells_on_arc for step in STEPS):
         coarse = found
         for _ in range(MOST_ROUNDS):
             solution = solved(on_arc, solution)
             found = [arc.found(solution, float(low[0])) for arc in arcs]
             arcs = [arc.after(one) for arc, one in zip(arcs, found, strict=True)]
-            if all(math.isnan(one.pressure) or one.cells_on_arc >= FEWEST_ON_ARC * on_arc for one in found):
+            if all(arc.fine_enough(one, on_arc) for arc, one in zip(arcs, found, strict=True)):
                 break
-        if not any(one.pressure >= SURELY_LESS * at_least for one in found):
-            return found
-    return [one.compared_with(other) for one, other in zip(found, coarse, strict=True)]
+        if at_least > 0.0 and not any(one.pressure >= SURELY_LESS * at_least for one in found):
+            break
+        if coarse:
+            found = [one.compared_with(other) for one, other in zip(found, coarse, strict=True)]
+            rows, columns = found[0].solution.problem.cells
+            within = max(found, key=lambda one: np.nan_to_num(one.pressure)).error <= accuracy
+            if within or rows * columns**2 > MOST_PAIRS:
+                break
+    return found
 
 
 @dataclass(frozen=True, eq=False)
 class _Arc:
-    """What is known of a rounded edge: where it is, how far it is pressed, and where columns have to be fine."""
+    """What is known of a rounded edge: where it is, how far it is pressed, and where columns have to be fine.
+
+    ``length`` is that of its pressed part; infinite where the contact lies along the edge, whatever the rows.
+    """
 
     edge: Array
     normal: Array
     width: float
     middle: float
     half_length: float
+    length: float
 
     @classmethod
     def first(cls, edge: RoundedEdge, low: Array, high: Array, load: float, modulus: float) -> _Arc:
@@ -256,7 +281,7 @@ class _Arc:
         """
         normal, extent = np.array(edge.normal, dtype=float) / math.hypot(*edge.normal), high - low
         half, along = 0.5 * float(np.abs(normal) @ extent), float(np.abs(normal[::-1]) @ extent)
-        arc = cls(np.array(edge.place, dtype=float), normal, 0.0, 0.0, 0.5 * float(extent[0]))
+        arc = cls(np.array(edge.place, dtype=float), normal, 0.0, 0.0, 0.5 * float(extent[0]), math.inf)
         middle = arc.y_at(0.5 * float(low[0] + high[0])) if abs(normal[1]) > ALIGNED else edge.place[1]
         width = pressed_width(load / along, edge.radius, half, modulus)
         return replace(arc, width=max(width, FIRST_WIDTH * abs(normal[0]) * float(extent[0])), middle=middle)
@@ -268,6 +293,19 @@ class _Arc:
     def cells(self, on_arc: float) -> float:
         """Cells on the pressed width: more where none of their borders can follow the edge."""
         return on_arc * (ASKEW_CELLS if abs(self.normal[0]) > ALIGNED else 1.0)
+
+    def rows(self, on_arc: float) -> float:
+        """Rows per length, for so many cells on the pressed width."""
+        along = ROWS_ON_ARC / CELLS_ON_ARC * on_arc / self.length
+        return max(self.cells(on_arc) * abs(float(self.normal[0])) / self.width, along)
+
+    def fine_enough(self, found: EdgePressure, on_arc: float) -> bool:
+        """Whether a solution has the cells that are asked for, nearly, or rows at their limit."""
+        if math.isnan(found.pressure):
+            return True
+        rows = FEWEST_ON_ARC * ROWS_ON_ARC / CELLS_ON_ARC * on_arc
+        enough = self.length == math.inf or found.rows_on_arc >= rows or found.solution.problem.cells[0] >= MOST_ROWS
+        return enough and found.cells_on_arc >= FEWEST_ON_ARC * on_arc
 
     def zone(self, on_arc: float) -> FineZone:
         """Where columns are fine, for so many cells on the pressed width."""
@@ -286,7 +324,7 @@ class _Arc:
         width = float(reached.max()) if reached.size else 0.0
         near = np.where(beyond > -width, pressure, 0.0) if width > 0.0 else np.zeros(pressure.shape)
         if not near.any():
-            return EdgePressure(math.nan, (math.nan, math.nan), 0.0, 0.0, 0.0, solution)
+            return EdgePressure(math.nan, (math.nan, math.nan), 0.0, 0.0, 0.0, 0, solution)
         row, column = (int(k) for k in np.unravel_index(int(near.argmax()), near.shape))
         sizes = np.array([problem.spacing, problem.widths[column]])
         across = np.abs(self.normal) > ALIGNED
@@ -299,7 +337,8 @@ class _Arc:
         error = (ASKEW_ERROR if across[0] else ALIGNED_ERROR) / on_arc**2
         if row in (0, x.size - 1) or column in (0, y.size - 1):
             error = math.inf
-        return EdgePressure(top, (x_top, y_top), error, width, on_arc, solution)
+        rows = np.count_nonzero(((beyond + along > 0.0) & (pressure > 0.0)).any(axis=1))
+        return EdgePressure(top, (x_top, y_top), error, width, on_arc, int(rows), solution)
 
     def after(self, found: EdgePressure) -> _Arc:
         """What is known once a solution is."""
@@ -310,7 +349,10 @@ class _Arc:
         half_length = 0.5 * problem.spacing * float(np.count_nonzero(pressed))
         width = max(found.pressed_width, LEAST_CHANGE * self.width)
         middle = self.y_at(found.place[0]) if abs(self.normal[1]) > ALIGNED else self.middle
-        return replace(self, width=width, middle=middle, half_length=half_length)
+        length = math.inf
+        if found.rows_on_arc < MOST_OF_ROWS * np.count_nonzero(pressed) and abs(self.normal[1]) > ALIGNED:
+            length = max(problem.spacing * found.rows_on_arc, LEAST_CHANGE * min(self.length, 2.0 * half_length))
+        return replace(self, width=width, middle=middle, half_length=half_length, length=length)
 
 
 def _top(places: Array, values: Array, k: int) -> tuple[float, float]:

@@ -98,7 +98,7 @@ def carried_by_one(
         contact = path[n]
         if not contact.in_contact:
             return None
-        with _told_where(torques[t], contact.pinion_angle):
+        with told_where(torques[t], contact.pinion_angle):
             return (yield from contact_under_load(pair, contact, torques[t] / contact.pinion_lever, grid, bending))
 
     for (t, n), loaded in _found(pair, shape, steps, progress):
@@ -134,7 +134,7 @@ def carried_by_all(
     relative_curvatures(pair, [one.contact for all_at in tooth_pairs for one in all_at])  # kept for all torques
 
     def steps(t: int, n: int) -> Steps[SharedLoad]:
-        with _told_where(torques[t], angles[n]):
+        with told_where(torques[t], angles[n]):
             return (yield from torque_shared(pair, tooth_pairs[n], float(torques[t]), grid, bending))
 
     shared = dict(_found(pair, shape, steps, progress))
@@ -190,7 +190,7 @@ def _loaded_states(pairs: NDArray[np.int_], contacts: Contacts, bending: Bending
 
 
 @contextmanager
-def _told_where(torque: float, angle: float) -> Iterator[None]:
+def told_where(torque: float, angle: float) -> Iterator[None]:
     """Say under which torque [N mm] and at which pinion angle [rad] something cannot be solved."""
     where = f"{1e-3 * torque:g} N m at pinion angle {math.degrees(angle):.6g} deg"
     try:

@@ -187,7 +187,7 @@ def _add(
     before, after = np.maximum(near - 1, begin), np.minimum(near + 1, end)
     y, width, distance_there = slices.y[near], slices.width[near], distance[near]
     apart = slices.y[after] - slices.y[before]
-    rise = np.divide(distance[after] - distance[before], apart, out=np.zeros(apart.shape), where=apart > 0.0)
+    rise = np.divide(distance[after] - distance[before], apart, out=np.zeros(apart.shape), where=apart != 0.0)
     rise = np.minimum(np.maximum(rise, -1.0), 1.0)
     inside = np.maximum(distance_there, 0.0)  # a contact on an edge is beside it by rounding, or curves beyond it
     part = inside / reach

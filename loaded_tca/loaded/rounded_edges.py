@@ -31,7 +31,7 @@ from loaded_tca.contact.rounded_edge import SURELY_LESS, EdgePressure, RoundedEd
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.flanks.rounding import Arc, RoundedFlank, material_cosines
-from loaded_tca.loaded.cycle import Carried
+from loaded_tca.loaded.cycle import Carried, told_where
 from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.tooth_contact import LoadedContact
@@ -78,9 +78,17 @@ NOT_REACHED = PeakAtEdge(math.nan, (math.nan, math.nan), math.nan)
 
 
 class ReachedEdge(NamedTuple):
-    """A rounded edge within a cell of a contact's pressure, in the plane of its grid, and a bound of its pressure."""
+    """A rounded edge within a cell of a contact's pressure, in the plane of its grid.
 
-    line: RoundedEdge
+    Attributes
+    ----------
+    lines : tuple of RoundedEdge
+        One, or those of both gears, whose arcs begin within a cell of each other.
+    bound : float [MPa]
+        Of the pressure there.
+    """
+
+    lines: tuple[RoundedEdge, ...]
     bound: float
 
 
@@ -150,9 +158,10 @@ def pressures_at_rounded_edges(
             if not every and edges[0].bound < largest:
                 break
             number = int(carried.pairs[place[2]])
-            peak = pressure_at_rounded_edge(
-                pair, loaded, edges, bending, number, free_edges=free_edges, at_least=0.0 if every else largest
-            )
+            with told_where(float(carried.torque[t]), float(carried.path.pinion_angle[place[1]])):
+                peak = pressure_at_rounded_edge(
+                    pair, loaded, edges, bending, number, free_edges=free_edges, at_least=0.0 if every else largest
+                )
             if every or peak.pressure >= SURELY_LESS * largest:
                 found[place], largest = peak, max(largest, peak.pressure)  # which stays where the other one is NaN
     return found
@@ -165,7 +174,7 @@ def reached_edges(pair: GearPair, loaded: LoadedContact) -> list[ReachedEdge]:
     """
     grid = loaded.separation
     lengths, (dx, dy) = lengths_past_tangents(pair, grid.points), grid.spacing
-    found = []
+    groups: list[list[tuple[RoundedEdge, float, float]]] = []  # line, pressure of the cell beside it, its width
     for edge, (gear, arc) in _arcs(pair).items():
         pressure = np.where(lengths[..., edge] > -math.hypot(dx, dy), loaded.solution.pressure_on_material, 0.0)
         if not pressure.any():
@@ -183,9 +192,28 @@ def reached_edges(pair: GearPair, loaded: LoadedContact) -> list[ReachedEdge]:
             _material_angle(pair, gear, arc, grid.points[row, column]),
             pair.contact_modulus / gear.material.plane_strain_modulus,
         )
-        cell = float(np.abs(slope) @ (dx, dy)) / math.hypot(*slope)
-        found.append(ReachedEdge(line, largest_pressure(float(pressure.max()), cell, arc.radius, pair.contact_modulus)))
-    return sorted(found, key=lambda one: -one.bound)
+        width = float(np.abs(slope) @ (dx, dy)) / math.hypot(*slope)
+        group = next((one for one in groups if _is_beside(one[0][0], line, width)), None)
+        if group is None:
+            groups.append(group := [])
+        group.append((line, float(pressure.max()), width))
+    return sorted((_joined(group, pair.contact_modulus) for group in groups), key=lambda one: -one.bound)
+
+
+def _is_beside(line: RoundedEdge, other: RoundedEdge, distance: float) -> bool:
+    """Whether two edges face the same way within a distance [mm]: those of both gears where the faces are flush."""
+    normal, direction = (np.array(one.normal) / math.hypot(*one.normal) for one in (line, other))
+    apart = abs(float(normal @ np.subtract(other.place, line.place)))
+    return bool(abs(normal[0] * direction[1] - normal[1] * direction[0]) < PARALLEL and normal @ direction > 0.0) and (
+        apart < distance
+    )
+
+
+def _joined(group: list[tuple[RoundedEdge, float, float]], contact_modulus: float) -> ReachedEdge:
+    """An edge of the lines that lie beside each other: the gap opens as fast as with one radius, 1/r = sum 1/r_k."""
+    lines, pressures, widths = zip(*group, strict=True)
+    radius = 1.0 / sum(1.0 / line.radius for line in lines)
+    return ReachedEdge(lines, largest_pressure(max(pressures), max(widths), radius, contact_modulus))
 
 
 def largest_pressure(mean: float, width: float, radius: float, contact_modulus: float) -> float:
@@ -225,19 +253,18 @@ def pressure_at_rounded_edge(
 
     def highest(lines: list[RoundedEdge]) -> PeakAtEdge:
         contact = _ContactAlongEdge(pair, loaded, lines[0], bending, number, free_edges)
-        return max((contact.turned_back(one) for one in contact.solved(lines, at_least)), key=_by_pressure)
+        peaks = [contact.turned_back(one) for one in contact.solved(lines, max(at_least, _by_pressure(best)))]
+        top = max(peaks, key=_by_pressure)  # beside a crossing the columns of both edges tell it
+        return replace(top, error=max((one.error for one in peaks if one.place == top.place), default=top.error))
 
-    alone: dict[RoundedEdge, PeakAtEdge] = {}
-    for line, bound in edges:
-        if bound < at_least:
-            break
-        if not math.isnan((peak := highest([line])).pressure):
-            alone[line], at_least = peak, max(at_least, peak.pressure)
-    crossing = sorted(_crossing_within(loaded, [line for line, _ in edges]), key=lambda line: -abs(line.normal[1]))
-    found = [peak for line, peak in alone.items() if line not in crossing]
+    able, best = [one for one in edges if one.bound >= at_least], NOT_REACHED
+    crossing = _crossing_within(loaded, [line for lines, _ in able for line in lines])
+    for lines, bound in able:
+        if bound >= _by_pressure(best) and not crossing.issuperset(lines):
+            best = max(best, highest(list(lines)), key=_by_pressure)
     if crossing:  # the first one is crossed by the fewest rows
-        found.append(highest(crossing))
-    return max(found, key=_by_pressure, default=NOT_REACHED)
+        best = max(best, highest(sorted(crossing, key=lambda line: -abs(line.normal[1]))), key=_by_pressure)
+    return best
 
 
 def _by_pressure(one: PeakAtEdge) -> float:
@@ -343,8 +370,8 @@ class _ContactAlongEdge:
             )
             pressed = found[0].solution.pressure > 0.0
             if not (pressed[[0, -1]].any() or pressed[:, [0, -1]].any()):
-                break
-        return found
+                return found
+        return [replace(one, error=math.inf) for one in found]
 
     def _box(self, margin: float) -> tuple[tuple[tuple[float, float], tuple[float, float]], tuple[int, int]]:
         """A box about the pressure of the grid, so many of its cells larger, and the cells on both its axes."""

@@ -1,6 +1,7 @@
-"""What is written to files and the terminal: reports, tables, comparisons, teeth, stresses, sensitivities, scenes."""
+"""What is written to files and the terminal: reports, tables, comparisons, teeth, stresses, sensitivities, dynamics."""
 
 from loaded_tca.output.comparison_files import write_comparison
+from loaded_tca.output.dynamics_files import write_dynamics
 from loaded_tca.output.overview import describe_scene
 from loaded_tca.output.report import write_report
 from loaded_tca.output.sensitivity_files import sensitivities_text, write_sensitivities
@@ -13,6 +14,7 @@ __all__ = [
     "sensitivities_text",
     "teeth_in_space",
     "write_comparison",
+    "write_dynamics",
     "write_report",
     "write_sensitivities",
     "write_stl",

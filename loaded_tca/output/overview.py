@@ -76,6 +76,8 @@ def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
         yield "cap on the pressure [MPa]", f"{pair.max_pressure:g}"
     switches = ("on" if switch else "off" for switch in (wanted.load_sharing, wanted.free_edges))
     yield "load sharing, free edges, compliance", *switches, wanted.compliance
+    if any(gear.tip_rounding_mm or gear.side_rounding_mm for gear in (scene.pinion, scene.wheel)):
+        yield "pressures at rounded edges", wanted.edge_pressures
     yield "positions, torques", f"{wanted.positions}", f"{len(scene.torques)}"
     if wanted.root_stress:
         yield "root stress", "on"

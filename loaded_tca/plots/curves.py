@@ -15,7 +15,9 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 SMALLEST_SPAN_ARCSEC = 0.02
 """Height of a transmission error axis below which a curve would be rounding."""
 EDGE_HEADROOM = 1.15
-"""How far above the curves the pressure at an edge may draw the axis: at a sharp one it depends on the mesh."""
+"""How far above the curves the pressure at a sharp edge, which depends on the mesh, may draw the axis."""
+ROUNDED_EDGE = "p"
+"""Marker of the pressure at a rounded edge."""
 
 
 def plot_transmission_error(result: MeshCycle) -> Figure:
@@ -53,11 +55,12 @@ def plot_transmission_error(result: MeshCycle) -> Figure:
 
 
 def plot_peak_pressure(result: MeshCycle) -> Figure:
-    """Peak pressure over the positions for each torque, with that after Hertz and the pressure at sharp edges.
+    """Peak pressure over the positions for each torque, with that after Hertz and the pressure at edges.
 
     Where tooth pairs share the load, the peak and that after Hertz are those of the pair with the highest peak, the
-    pressure at an edge is the highest of all pairs. That of sharp edges is mesh-dependent: single crosses, which the
-    axis does not follow far. Hertz is drawn where it holds over a stretch of positions.
+    pressure at an edge is the highest of all pairs: single filled markers at rounded edges, crosses at sharp ones,
+    where it is mesh-dependent and the axis does not follow it far. Hertz is drawn where it holds over a stretch of
+    positions.
 
     Parameters
     ----------
@@ -70,6 +73,7 @@ def plot_peak_pressure(result: MeshCycle) -> Figure:
     figure, axes = style.one_panel(5.5)
     angle = np.degrees(result.pinion_angle)
     peak, edge = result.at_position("peak_pressure"), result.at_position("edge_pressure")
+    rounded, sharp = (result.at_position("edge_is_rounded") == one for one in (True, False))
     hertz = np.take_along_axis(result.hertz_pressure, result.peak_column[..., None], axis=-1)[..., 0]
     stretches = np.stack([style.over_a_stretch(row) for row in hertz])
     for torque, label, colour, marker in torque_styles(result):
@@ -78,9 +82,13 @@ def plot_peak_pressure(result: MeshCycle) -> Figure:
             axes.plot(angle, stretches[torque], color=colour, **HERTZ)
     if np.isfinite(stretches).any():
         axes.plot([], [], color="black", label="after Hertz", **HERTZ)
+    if (rounded := rounded & (edge > 0.0)).any():
+        for torque, _, colour, _ in torque_styles(result):
+            axes.plot(angle[rounded[torque]], edge[torque][rounded[torque]], ROUNDED_EDGE, color=colour, markersize=8.0)
+        axes.plot([], [], ROUNDED_EDGE, color="black", markersize=8.0, label="at a rounded edge")
     style.from_zero(axes)
-    if (edge > 0.0).any():
-        _draw_edge_peaks(axes, result, angle, np.where(edge > 0.0, edge, np.nan))
+    if (sharp := sharp & (edge > 0.0)).any():
+        _draw_sharp_edges(axes, result, angle, np.where(sharp, edge, np.nan))
     if not (peak > 0.0).any():
         style.tell(axes, NO_LOAD)
     axes.set_ylabel("contact pressure [MPa]")
@@ -88,7 +96,7 @@ def plot_peak_pressure(result: MeshCycle) -> Figure:
     return style.finished(figure, axes, result, *about, columns=2)
 
 
-def _draw_edge_peaks(axes: Axes, result: MeshCycle, angle: Array, peak: Array) -> None:
+def _draw_sharp_edges(axes: Axes, result: MeshCycle, angle: Array, peak: Array) -> None:
     """Crosses, unconnected, for a peak (m, n) that is none elsewhere; arrows at the upper end where they lie beyond."""
     _, high = axes.get_ylim()
     within, beyond = peak <= EDGE_HEADROOM * high, peak > EDGE_HEADROOM * high
@@ -97,7 +105,7 @@ def _draw_edge_peaks(axes: Axes, result: MeshCycle, angle: Array, peak: Array) -
     for torque, _, colour, _ in torque_styles(result):
         axes.plot(angle[within[torque]], peak[torque][within[torque]], "x", color=colour)
         axes.plot(angle[beyond[torque]], np.full(beyond[torque].sum(), edge), "^", color=colour)
-    label = "at an edge (mesh-dependent if sharp)"
+    label = "at a sharp edge (mesh-dependent)"
     if within.any():
         axes.plot([], [], "x", color="black", label=label)
     if beyond.any():

@@ -204,7 +204,7 @@ def _styles() -> cycle[tuple[str, str]]:
 
 def _scene(design: xarray.Dataset) -> Scene:
     """The scene that was designed."""
-    return parse_scene(str(design.attrs.get("scene_toml", "")), source="scene_toml")
+    return parse_scene(str(design.attrs.get("scene_toml", "")), source="scene_toml", folder=None)
 
 
 def _less_mean(values: Array) -> Array:

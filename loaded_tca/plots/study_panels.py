@@ -147,7 +147,7 @@ def mark_missing(axes: Axes, places: Array, height: float = 0.03, colour: str = 
 
 def key_label(study: xarray.Dataset, key: str) -> str:
     """What an axis calls a key; V and H come before the two errors of a V-H check."""
-    errors = parse_scene(study.attrs["scene_toml"]).vh_keys
+    errors = parse_scene(study.attrs["scene_toml"], folder=None).vh_keys
     letter = f"{'VH'[errors.index(key)]}: " if {*varied_keys(study)} == {*errors} else ""
     return letter + label_of(key)
 

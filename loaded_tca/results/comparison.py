@@ -13,7 +13,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, require
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.results.summary import shown, without_rounding
+from loaded_tca.results.summary import kind_of_edge, shown, without_rounding
 from loaded_tca.scene.section import as_table
 from loaded_tca.scene.text import shown as shown_value
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 MAIN = {
     "peak_pressure_MPa": "peak pressure [MPa]",
     "contact_length_at_peak_mm": "  contact length there [mm]",
-    "edge_pressure_MPa": "at a sharp edge, mesh-dependent [MPa]",
+    "edge_pressure_MPa": "{edge} [MPa]",
     "transmission_error_mean_um": "transmission error, mean [um]",
     "transmission_error_span_um": "  peak to peak [um]",
     "unloaded_transmission_error_span_um": "  unloaded, peak to peak [um]",
@@ -38,7 +38,7 @@ MAIN = {
     "pinion_root_compression_MPa": "root compression of the pinion [MPa]",
     "wheel_root_compression_MPa": "root compression of the wheel [MPa]",
 }
-"""Key figures of the summary and their labels."""
+"""Key figures of the summary and their labels; {edge} stands for what ``kind_of_edge`` says."""
 PLACES = "pinion_angle_at", "_axial_"
 """Parts of the names of figures that count from a zero of no meaning: they have no relative difference."""
 NOT_COMPARED = "title", "load.pinion_torque_Nm", "analysis.torques_Nm"
@@ -135,12 +135,14 @@ class Comparison:
         for key, (first, *others) in keys[:MOST_KEYS]:
             table.append((key, _written(first), *(cell for other in others for cell in (_written(other), "", ""))))
         under = self.figures.isel(torque=at)
+        pressure, rounded = (under.value.sel(figure=name).values for name in ("edge_pressure_MPa", "edge_is_rounded"))
+        edge = kind_of_edge([{"edge_is_rounded": one} for one in rounded[np.isfinite(pressure)]])
         for name, label in MAIN.items():
             if name not in under.figure:
                 continue
             one = under.sel(figure=name)
             if not one.value.isnull().all():
-                table.append((label, *_cells(name, *(one[part].values for part in one))))
+                table.append((label.format(edge=edge), *_cells(name, *(one[part].values for part in one))))
         widths = [max(map(len, column)) for column in zip(*table, strict=True)]
         lines = [f"{row[0]:<{widths[0]}}" + _right(row[1:], widths[1:]) for row in table]
         more = len(keys) - MOST_KEYS

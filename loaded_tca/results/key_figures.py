@@ -122,6 +122,7 @@ def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
         "contact_deformation_at_peak_um": 1e3 * at(peak, "contact_deformation"),
         "edge_pressure_MPa": at(edge, "edge_pressure"),
         "edge_is_rounded": edge is not None and bool(result.edge_is_rounded[torque][edge]),
+        "edge_pressure_error": at(edge, "edge_pressure_error"),
         "normal_force_at_edge_N": at(edge, "normal_force"),
         "pinion_angle_at_edge_deg": math.degrees(contact_point(edge, "pinion_angle")),
         "pinion_diameter_at_edge_mm": 2.0 * at(edge, "edge_radius"),

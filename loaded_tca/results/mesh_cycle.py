@@ -16,6 +16,7 @@ from loaded_tca.compliance.torsion import body_torsion
 from loaded_tca.errors import InputError, require
 from loaded_tca.loaded.sensitivity import LoadedStates
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.dynamics import dynamics_of
 from loaded_tca.results.files import Buffer, FilePath, Part, arrays_of, netcdf_of, read_dataset, replacing, variables_of
 from loaded_tca.results.key_figures import harmonic_coefficients, key_figures
 from loaded_tca.results.pressure_map import MAP_PARTS, SIZES, Maps, maps_from, stacked_maps
@@ -358,6 +359,38 @@ class MeshCycle:
         """
         return sensitivities(self, keys)
 
+    def to_dynamics(self) -> xarray.Dataset:
+        """Return what models of gear dynamics take, in SI units: curves over the pitch and their Fourier coefficients.
+
+        Every name ends in its unit; ``dataset[name].attrs`` say what it is, and ``dataset.attrs["conventions"]`` how
+        angles, phases and signs count. A curve is x(phi1) = amplitude_0 + sum of amplitude_k cos(k z1 phi1 + phase_k),
+        with the orders and phases of ``harmonics`` and ``harmonic_phases``.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over ``pinion_torque_Nm`` and ``mesh_phase``, from 0 and without the repeated end of the pitch:
+            ``transmission_error_m`` and ``_rad``, ``mesh_stiffness_N_per_m``, ``torsional_stiffness_Nm_per_rad``,
+            ``loaded_pairs``, ``normal_force_per_torque_N_per_Nm``; over the torque and ``order``, from 0:
+            ``transmission_error_amplitude_m``, ``transmission_error_phase_rad``, and so on; base radii, numbers of
+            teeth.
+
+        Raises
+        ------
+        InputError
+            If there is one position alone, or no load sharing: the error of one tooth pair has no period.
+
+        Examples
+        --------
+        >>> from loaded_tca import analyse, read_scene
+        >>> changes = {"analysis.positions": 5, "analysis.torques_Nm": [20.0], "analysis.compliance": "contact"}
+        >>> scene = read_scene("examples/scenes/mesh_cycle_spur.toml").with_changes(changes)
+        >>> dynamics = analyse(scene).to_dynamics()
+        >>> dynamics.mesh_phase.values, dynamics.order.values
+        (array([0.  , 0.25, 0.5 , 0.75]), array([0, 1], dtype=int32))
+        """
+        return dynamics_of(self)
+
     def peak_contact(self, torque: int, *, where_hertz_holds: bool = False) -> tuple[int, int] | None:
         """Return indices of position and pair with the highest peak pressure of those asked for; None if none is."""
         known = np.isfinite(self.hertz_pressure) | (not where_hertz_holds)
@@ -437,7 +470,7 @@ class MeshCycle:
                 f"{path}: a study, not the result of a mesh cycle; read it with loaded_tca.studies.load_study"
             )
         try:
-            scene = parse_scene(str(file.attrs.get("scene_toml", "")), source="scene_toml")
+            scene = parse_scene(str(file.attrs.get("scene_toml", "")), source="scene_toml", folder=None)
             in_dataset = QUANTITIES | (ROOT_PARTS if scene.analysis.root_stress or "root_tension" in file else {})
             arrays = arrays_of(file, in_dataset | IN_FILES)
             expected = {**SIZES, "end": 2, "edge": 8, "path": 1 + file.sizes["pair"]}

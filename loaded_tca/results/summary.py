@@ -23,7 +23,8 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("  normal force of that tooth pair [N]", ("normal_force_at_peak_N",)),
     ("  pinion diameter | axial place [mm]", ("pinion_diameter_at_peak_mm", "pinion_axial_at_peak_mm")),
     ("  contact length | width [mm]", ("contact_length_at_peak_mm", "contact_width_at_peak_mm")),
-    ("at a sharp edge, mesh-dependent [MPa] | its force [N]", ("edge_pressure_MPa", "normal_force_at_edge_N")),
+    ("{edge} [MPa] | its force [N]", ("edge_pressure_MPa", "normal_force_at_edge_N")),
+    ("  estimated error [%]", ("edge_pressure_error",)),
     ("  pinion diameter | axial place [mm]", ("pinion_diameter_at_edge_mm", "pinion_axial_at_edge_mm")),
     ("highest where Hertz holds | Hertz [MPa]", ("peak_pressure_where_hertz_holds_MPa", "hertz_pressure_there_MPa")),
     ("  length | width after Hertz [mm]", ("hertz_length_there_mm", "hertz_width_there_mm")),
@@ -74,7 +75,7 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("root compression of pinion | wheel [MPa]", ("pinion_root_compression_MPa", "wheel_root_compression_MPa")),
     ("most cells across | along, worst residual", ("most_cells_across", "most_cells_along", "worst_solver_residual")),
 )
-"""Label and key figures of each line of the summary."""
+"""Label and key figures of each line of the summary; {edge} stands for what ``kind_of_edge`` says."""
 
 ONLY_IF_KNOWN = (
     "_without_body_torsion_",
@@ -112,10 +113,10 @@ def summary_text(title: str, scope: str, figures: Sequence[Figures]) -> str:
     figures : sequence of mapping
         Of each torque, as ``MeshCycle.key_figures`` gives them.
     """
-    rounded = any(entry.get("edge_is_rounded", False) for entry in figures)
+    edge = kind_of_edge([entry for entry in figures if not math.isnan(entry.get("edge_pressure_MPa", math.nan))])
     rows = [
         (
-            label.replace("a sharp edge", "an edge") if rounded else label,
+            label.format(edge=edge),
             [" | ".join(shown(entry.get(name, math.nan), name) for name in names) for entry in figures],
         )
         for label, names in known_rows(figures)
@@ -137,6 +138,14 @@ def known_rows(figures: Sequence[Figures]) -> list[tuple[str, tuple[str, ...]]]:
     ]
 
 
+def kind_of_edge(figures: Sequence[Figures]) -> str:
+    """At which kind of edge some figures have their edge pressure, and whether it depends on the mesh."""
+    rounded = {bool(entry.get("edge_is_rounded", False)) for entry in figures}
+    if rounded == {True}:
+        return "at a rounded edge"
+    return "at an edge, mesh-dependent if sharp" if True in rounded else "at a sharp edge, mesh-dependent"
+
+
 def signed(number: int) -> str:
     """Return the number of a tooth pair as summaries and pictures show it: 0, +1, -1."""
     return f"{number:+d}" if number else "0"
@@ -149,12 +158,17 @@ def without_rounding(value: float, name: str) -> float:
 
 
 def shown(value: float, name: str) -> str:
-    """Return a figure as summaries show it: four digits, all those before the point; a dash for what is not known."""
+    """Return a figure as summaries show it: four digits, all those before the point; a dash for what is not known.
+
+    The error of the edge pressure is shown in %.
+    """
     value = without_rounding(value, name)
     if math.isnan(value):
         return "-"
     if "residual" in name:
         return f"{value:.1e}"
+    if name == "edge_pressure_error":
+        return f"{100.0 * value:.2g}"
     return f"{value:.0f}" if abs(value) >= FOUR_DIGITS else f"{value:.4g}"
 
 

@@ -11,9 +11,13 @@ from typing import Any
 
 from loaded_tca.errors import InputError, read_text
 from loaded_tca.scene.model import Scene, scene_from_table
+from loaded_tca.scene.text import shown, shown_key
 
 LARGEST_FILE = 2**21
 """Bytes of a scene file; a full one has about 5000, one with two measured flanks of 100 x 100 points a million."""
+
+LEVELS_WITH_FILES = 3
+"""Parts of the longest key that names a file."""
 
 MOST_DOTS = 2000
 """Dots in one line: reading a key of tens of thousands of dotted parts takes minutes."""
@@ -28,7 +32,7 @@ def read_scene(path: str | os.PathLike[str]) -> Scene:
     Parameters
     ----------
     path : str or path
-        A TOML file in UTF-8. The files that it names are looked for from its folder.
+        A TOML file in UTF-8. The files that it names lie in its folder, or below.
 
     Returns
     -------
@@ -42,7 +46,7 @@ def read_scene(path: str | os.PathLike[str]) -> Scene:
     return parse_scene(read_text(path, LARGEST_FILE), source=os.fspath(path), folder=Path(path).parent)
 
 
-def parse_scene(text: str, source: str = "scene", folder: str | os.PathLike[str] = ".") -> Scene:
+def parse_scene(text: str, source: str = "scene", folder: str | os.PathLike[str] | None = ".") -> Scene:
     r"""Make a scene of the text of a scene file.
 
     Parameters
@@ -51,13 +55,13 @@ def parse_scene(text: str, source: str = "scene", folder: str | os.PathLike[str]
         TOML.
     source : str
         What messages call the text, for instance the name of the file.
-    folder : str or path
-        Where the files that it names are looked for.
+    folder : str or path, optional
+        Where the files that it names lie, or below; None: it may name none.
 
     Raises
     ------
     InputError
-        If the text is not TOML, or with every problem that it holds, one per line.
+        If the text is not TOML, names a file that lies elsewhere, or with every problem that it holds, one per line.
 
     Examples
     --------
@@ -71,7 +75,7 @@ def parse_scene(text: str, source: str = "scene", folder: str | os.PathLike[str]
     table = toml_table(text, source)
     if "pair" not in table and isinstance(table.get("scene"), str):
         raise InputError(f"{source}: a study of the scene {table['scene']}, no scene; 'loaded-tca study' runs it")
-    return scene_from_table(_with_files_from(Path(folder), table))
+    return scene_from_table(_with_files_from(None if folder is None else Path(folder), table))
 
 
 def literal_value(text: str) -> Any:
@@ -89,15 +93,38 @@ def literal_value(text: str) -> Any:
     return found["value"] if len(found) == 1 else text
 
 
-def _with_files_from(folder: Path, table: dict[str, Any], levels: int = 3) -> dict[str, Any]:
-    """The table, in which the keys of the upper levels that are called file name it from the current folder."""
+def _with_files_from(folder: Path | None, table: dict[str, Any], section: tuple[str, ...] = ()) -> dict[str, Any]:
+    """The table, in which the keys of the upper levels that are called file name it from the current folder.
+
+    Who opens the scene of somebody else lets it read nothing but what lies beside it.
+    """
     found: dict[str, Any] = {}
+    problems: list[str] = []
     for name, value in table.items():
-        if isinstance(value, dict) and levels > 1:
-            found[name] = _with_files_from(folder, value, levels - 1)
-        else:
-            found[name] = str(folder / value) if name == "file" and isinstance(value, str) else value
+        key = (*section, name)
+        found[name] = value
+        if isinstance(value, dict) and len(key) < LEVELS_WITH_FILES:
+            try:
+                found[name] = _with_files_from(folder, value, key)
+            except InputError as error:
+                problems += error.problems
+        elif name == "file" and isinstance(value, str):
+            if folder is not None and _lies_in(folder, value):
+                found[name] = str(folder / value)
+            else:
+                allowed = "no file here" if folder is None else "a file in the folder of the scene, or below it"
+                problems.append(f"{'.'.join(map(shown_key, key))}: found {shown(value)}; allowed {allowed}")
+    if problems:
+        raise InputError(problems)
     return found
+
+
+def _lies_in(folder: Path, file: str) -> bool:
+    """Whether a file, links followed, lies in a folder or below it."""
+    try:
+        return Path(os.path.realpath(folder / file)).is_relative_to(os.path.realpath(folder))
+    except ValueError:  # no name of a file, which is told where it is read
+        return True
 
 
 def toml_table(text: str, source: str) -> dict[str, Any]:

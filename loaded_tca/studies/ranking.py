@@ -51,7 +51,7 @@ def figure_values(study: xarray.Dataset, name: str) -> Array:
 
 def nominal_variant(study: xarray.Dataset) -> int | None:
     """Number of the first variant in which every varied key has the value of the scene; None without one."""
-    table = as_table(parse_scene(study.attrs["scene_toml"]))
+    table = as_table(parse_scene(study.attrs["scene_toml"], folder=None))
     agrees = np.ones(study.sizes["sample"], dtype=bool)
     for key in varied_keys(study):
         nominal = table

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import warnings
 from collections.abc import Callable, Iterator, Mapping
@@ -10,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from loaded_tca.errors import InputError, read_text, reason_of
+from loaded_tca.errors import InputError, named, read_text
 from loaded_tca.scene import Scene, read_scene
 from loaded_tca.scene.keys import did_you_mean, nearest
 from loaded_tca.scene.parse import LARGEST_FILE, toml_table
@@ -18,6 +19,8 @@ from loaded_tca.scene.text import shown, shown_key
 from loaded_tca.studies.study import MOST_VARIANTS, Distribution, Study, is_finite
 
 WORDS = ("scene", "changes", "factors", "distributions", "samples", "seed", "table")
+LARGEST_TABLE = 2**27
+"""Bytes of a table of variants: a hundred for each of a million."""
 SPAN = {"from", "to", "count"}
 """Words of evenly spaced values."""
 DISTRIBUTION = "distribution"
@@ -169,12 +172,14 @@ def _table(name: Any, folder: Path) -> dict[str, list[Any]]:
         raise InputError(f"table: found {shown(name)}; allowed the name of a CSV file")
     import pandas
 
+    with named("table"):
+        text = read_text(
+            folder / name, LARGEST_TABLE, "table of variants"
+        )  # pandas would unpack it, or open an address
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")  # rows longer than the header are cut with a warning
-            frame = pandas.read_csv(folder / name, index_col=False)
-    except FileNotFoundError as error:
-        raise InputError(f"table: {folder / name}: cannot be read: {reason_of(error)}") from None
-    except Exception as error:  # on what is no CSV, or packed in some way, the reader stumbles in any way
+            frame = pandas.read_csv(io.StringIO(text), index_col=False)
+    except Exception as error:  # on what is no CSV the reader stumbles in any way
         raise InputError(f"table: {folder / name}: no CSV: {error}") from None
     return {str(key): column.tolist() for key, column in frame.items()}

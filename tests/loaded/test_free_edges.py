@@ -14,6 +14,7 @@ from loaded_tca.errors import InputError
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, bevel_mesh
 from loaded_tca.loaded.free_edges import DEPTH, REACHES, edge_compliance, edge_compliances
+from loaded_tca.loaded.rounded_edges import Columns
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.material import Material
 from loaded_tca.pairs.bevel import bevel_pair
@@ -59,6 +60,16 @@ def test_ends_of_equal_faces_soften_both_ends_alike():
     assert_allclose(added, added[::-1, ::-1], rtol=1e-6, atol=1e-12)
     assert added[1, 1] > added[2, 2] > 0.0
     assert (np.linalg.eigvalsh(added) > -0.05 * np.linalg.eigvalsh(added)[-1]).all()
+
+
+def test_slices_may_be_listed_towards_either_end():
+    pair = pair_of()
+    grid = grid_of(pair, box=(0.3, 6.375))
+    turned = Columns(grid.y[::-1], grid.widths[::-1], grid.origin, grid.axes)
+    forth = Columns(grid.y, grid.widths, grid.origin, grid.axes)
+    added, back = (edge_compliances(pair, [one])[0] for one in (forth, turned))
+    assert added.any()
+    assert_allclose(back[::-1, ::-1], added, rtol=1e-9, atol=1e-12 * added.max())
 
 
 def test_both_gears_that_end_together_soften_twice_as_much_as_one():

@@ -163,7 +163,7 @@ def test_edge_contacts_are_marked_and_no_hertz_is_drawn():
     crosses = [*drawn(axes, "x"), *drawn(axes, "^")]
     assert sum(len(line.get_xdata()) for line in crosses) == 2
     assert {line.get_linestyle() for line in crosses} == {"None"}
-    assert any("at an edge (mesh-dependent if sharp)" in label for label in labels)
+    assert any("at a sharp edge (mesh-dependent)" in label for label in labels)
     assert_allclose(axes.get_lines()[0].get_ydata(), result("misaligned", positions=2).peak_pressure[0, :, 0])
 
 
@@ -174,6 +174,24 @@ def test_high_peaks_at_a_edge_do_not_rule_the_axis():
     assert "above" in axes.get_lines()[-1].get_label()
     (arrows,) = drawn(axes, "^")
     assert (arrows.get_ydata() < axes.get_ylim()[1]).all()
+
+
+def test_rounded_edges_have_filled_markers_that_the_axis_follows():
+    """A sharp one has a cross, or an arrow above the axis, as before."""
+    cycle = result("misaligned", positions=2)
+    rounded = np.array([True, False]).reshape(cycle.edge_is_rounded.shape)
+    peak = float(cycle.peak_pressure.max())
+    shown = np.where(rounded, 3.0 * peak, 2.0 * peak)
+    (axes,) = plot_peak_pressure(changed(cycle, edge_is_rounded=rounded, edge_pressure=shown)).axes
+    (filled,), (cross,) = drawn(axes, "p"), drawn(axes, "x")
+    assert_allclose(filled.get_xydata(), [[np.degrees(cycle.pinion_angle[0]), 3.0 * peak]])
+    assert_allclose(cross.get_xydata(), [[np.degrees(cycle.pinion_angle[1]), 2.0 * peak]])
+    assert axes.get_ylim()[1] > 3.0 * peak
+    assert filled.get_fillstyle() == "full"
+    labels = axes.get_legend_handles_labels()[1]
+    assert {"at a rounded edge", "at a sharp edge (mesh-dependent)"} <= set(labels)
+    (all_rounded,) = plot_peak_pressure(changed(cycle, edge_is_rounded=np.ones_like(rounded))).axes
+    assert "mesh-dependent" not in " ".join(all_rounded.get_legend_handles_labels()[1])
 
 
 def test_labels_of_many_torques_stay_few():

@@ -129,3 +129,17 @@ def test_summary_has_values_and_both_differences():
 def test_positions_without_contact_do_not_hinder():
     figures = compare_results([two_torques(), with_a_gap()]).figures
     assert_array_equal(figures.difference.sel(figure="positions_in_contact", result="result 2"), -1.0)
+
+
+def test_edge_pressure_is_named_by_the_edges_of_all_results():
+    sharp = result("misaligned", positions=2)
+    rounded = changed(sharp, edge_is_rounded=np.ones_like(sharp.edge_is_rounded))
+    for results, label in (
+        ([sharp, sharp], "at a sharp edge, mesh-dependent [MPa]"),
+        ([rounded, sharp], "at an edge, mesh-dependent if sharp [MPa]"),
+        ([rounded, rounded], "at a rounded edge [MPa]"),
+        ([rounded, result(positions=1)], "at a rounded edge [MPa]"),  # the other one reaches no edge
+    ):
+        text = compare_results(results).summary()
+        assert any(line.startswith(label) for line in text.splitlines()), text
+    assert "edge" not in compare_results([result(positions=1), result(positions=1)]).summary()

@@ -65,7 +65,11 @@ def test_edge_is_rounded_where_the_reached_edge_has_a_radius():
     assert names <= {"pinion upper side", "wheel upper side"}
     assert names
     assert "at a sharp edge" not in cycle.summary()
-    assert "at an edge, mesh-dependent [MPa]" in cycle.summary()
+    lines = [line.split("  ") for line in cycle.summary().splitlines()]
+    (at,) = (k for k, line in enumerate(lines) if line[0] == "at a rounded edge [MPa] | its force [N]")
+    assert "".join(lines[at + 1]).startswith("estimated error [%]")
+    error = cycle.edge_pressure_error[0][cycle.edge_contact(0)]
+    assert_allclose(float(lines[at + 1][-1]), 100.0 * error, rtol=0.05)  # two digits
 
 
 def test_edge_is_sharp_where_only_other_edges_have_a_radius():
@@ -127,6 +131,14 @@ def test_check_tells_the_radii():
     text = describe_scene(read_scene(SCENES / "helical.toml").with_changes({"wheel.side_rounding_mm": 0.25}))
     rows = {line.split()[0]: line.split()[-1] for line in text.splitlines() if "rounding_mm" in line}
     assert rows == dict.fromkeys(EDGES, "sharp") | {"wheel.side_rounding_mm": "0.25"}
+
+
+def test_check_tells_which_pressures_at_rounded_edges_are_found():
+    sharp = read_scene(SCENES / "helical.toml")
+    blunt = sharp.with_changes({"wheel.tip_rounding_mm": 0.25, "analysis.edge_pressures": "all"})
+    assert "rounded edges" not in describe_scene(sharp)
+    (row,) = (line for line in describe_scene(blunt).splitlines() if line.startswith("pressures at rounded edges"))
+    assert row.split()[-1] == "all"
 
 
 def test_arcs_are_drawn_on_both_flanks():

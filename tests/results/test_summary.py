@@ -35,6 +35,22 @@ def test_first_figure_is_the_peak_pressure_and_an_edge_stands_apart_with_its_for
     assert "at an edge" not in summary()
 
 
+def test_edges_are_told_apart_by_whether_they_are_rounded():
+    """Under two torques a tip is reached, at the larger one beyond its rounding."""
+    (figures,) = result(positions=1).key_figures()
+    known = {"edge_pressure_MPa": 2000.0, "normal_force_at_edge_N": 5.0}
+    rounded = figures | known | {"edge_is_rounded": True, "edge_pressure_error": 0.0123}
+    sharp = figures | known | {"edge_is_rounded": False}
+    for entries, label, errors in (
+        ([rounded, rounded, figures], "at a rounded edge", ["1.2", "1.2", "-"]),
+        ([rounded, sharp], "at an edge, mesh-dependent if sharp", ["1.2", "-"]),
+    ):
+        text = summary_text("title", "scope", entries)
+        assert cells(text, f"{label} [MPa] | its force [N]")[:3] == ["2000", "|", "5"]
+        assert cells(text, "  estimated error [%]") == errors
+    assert "estimated error" not in summary_text("title", "scope", [sharp, figures])
+
+
 def test_row_after_hertz_is_left_out_where_it_holds_nowhere():
     assert "Hertz" in summary()
     nothing = dict.fromkeys(

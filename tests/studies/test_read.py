@@ -1,11 +1,15 @@
 """Study files: the words of Study in TOML."""
 
+import bz2
+import gzip
+import lzma
+
 import numpy as np
 import pytest
 from scipy import stats
 
 from loaded_tca.errors import InputError
-from loaded_tca.studies import parse_study, read_study
+from loaded_tca.studies import parse_study, read, read_study
 from tests.samples.studies import HELICAL
 
 CROWNING, TILT = "pinion.modifications.lead_crowning_um", "mounting.misalignment_um"
@@ -79,13 +83,35 @@ def test_what_is_wrong_in_a_file_is_told(tmp_path, text, told):
         ("empty.csv", b""),
         ("commas.csv", b"mounting.misalignment_um\n0,5\n1,5\n"),
         ("longer.csv", b"mounting.misalignment_um,pinion.teeth\n1,33,3\n"),
-        ("packed.csv.xz", b"mounting.misalignment_um\n1\n"),
     ],
 )
 def test_table_that_is_no_table(tmp_path, name, content):
     (tmp_path / name).write_bytes(content)
     with pytest.raises(InputError, match=f"{name}: no CSV"):
         parse_study(f'scene = "{HELICAL}"\ntable = "{name}"', folder=tmp_path)
+
+
+@pytest.mark.parametrize("pack", [bz2.compress, gzip.compress, lzma.compress])
+def test_table_is_not_unpacked(tmp_path, pack):
+    """A small file may hold gigabytes."""
+    (tmp_path / "packed.csv.xz").write_bytes(pack(b"mounting.misalignment_um\n1\n"))
+    with pytest.raises(InputError, match=r"^table: .*packed\.csv\.xz: not a text file in UTF-8"):
+        parse_study(f'scene = "{HELICAL}"\ntable = "packed.csv.xz"', folder=tmp_path)
+
+
+def test_table_that_is_too_long_is_told(tmp_path, monkeypatch):
+    monkeypatch.setattr(read, "LARGEST_TABLE", 10)
+    (tmp_path / "long.csv").write_text("mounting.misalignment_um\n1\n")
+    with pytest.raises(InputError, match=r"long\.csv: more than 10 bytes; no table of variants is so long"):
+        parse_study(f'scene = "{HELICAL}"\ntable = "long.csv"', folder=tmp_path)
+
+
+def test_table_is_no_address(tmp_path, monkeypatch):
+    """The name of a local file as an address, which pandas would open."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "table.csv").write_text("mounting.misalignment_um\n1\n")
+    with pytest.raises(InputError, match=r"^table: file:.*: cannot be read: No such file"):
+        parse_study(f'scene = "{HELICAL}"\ntable = "file:{tmp_path}/table.csv"')
 
 
 def test_key_that_is_written_in_two_ways_is_told():

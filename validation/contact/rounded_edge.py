@@ -190,7 +190,9 @@ class Case:
 
     def solved(self, cells_on_arc: float) -> EdgePressure:
         """Peak pressure at its first edge."""
-        return edge_pressures(self.gap, self.box, self.edges, self.load, E_STAR, cells_on_arc=cells_on_arc)[0]
+        return edge_pressures(
+            self.gap, self.box, self.edges, self.load, E_STAR, cells_on_arc=cells_on_arc, accuracy=1.0
+        )[0]
 
 
 def oblique(sine: float) -> Case:

@@ -10,6 +10,7 @@
   program; ``root_face_load``: under uneven loads, beside ISO 6336-3; ``root_stress_fem``: a page of all three;
 - ``numbers_to_copy``: load factors, peak pressure and free edges over misalignment, box, grid and defaults; a page;
 - ``sensitivities``: against slopes through whole analyses, closed forms, Monte Carlo studies; their cost; a page;
+- ``rounded_edges``: pressure at rounded edges over columns, grids and radii; its time, in minutes; a page;
 - ``cycles``: time of whole mesh cycles before and after a change, and what it is spent on;
 - ``speed``: time against error of whole analyses.
 """

@@ -1,0 +1,122 @@
+"""What models of gear dynamics take from a mesh cycle: stiffness, transmission error, pairs in contact, in SI units."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import require
+from loaded_tca.results.files import Part, variables_of
+from loaded_tca.results.key_figures import harmonic_coefficients
+
+if TYPE_CHECKING:
+    import xarray
+
+    from loaded_tca.results.mesh_cycle import MeshCycle
+
+TORQUE, PHASE, ORDER = "pinion_torque_Nm", "mesh_phase", "order"
+OVER_PITCH, OVER_ORDERS = (TORQUE, PHASE), (TORQUE, ORDER)
+SERIES = {"transmission_error": "m", "mesh_stiffness": "N_per_m", "loaded_pairs": ""}
+"""Curves over the pitch that have Fourier coefficients, and the unit at the end of their names."""
+
+QUANTITIES: dict[str, Part] = {
+    "pinion_teeth": ((), "1", "number of teeth of the pinion z1"),
+    "wheel_teeth": ((), "1", "number of teeth of the wheel z2"),
+    "mesh_frequency_Hz_per_pinion_rev_per_s": ((), "1", "tooth-mesh frequency over the speed of the pinion in rev/s"),
+    "pinion_base_radius_m": ((), "m", "base radius of the pinion r_b1; of bevel gears at mid-face"),
+    "wheel_base_radius_m": ((), "m", "base radius of the wheel r_b2; of bevel gears at mid-face"),
+    "face_width_m": ((), "m", "common face width"),
+    TORQUE: ((TORQUE,), "N m", "pinion torque T1"),
+    PHASE: ((PHASE,), "1", "mesh phase, z1 phi1/(2 pi) modulo 1"),
+    "pinion_angle_rad": ((PHASE,), "rad", "angle of the pinion phi1 in its first pitch from 0"),
+    ORDER: ((ORDER,), "1", "order of the tooth mesh k; 0: the mean, with its sign"),
+    "loaded_contact_ratio": ((TORQUE,), "1", "tooth pairs under load, mean over the pitch"),
+    "unloaded_transmission_error_m": ((PHASE,), "m", "transmission error without load, times r_b2"),
+    "transmission_error_rad": (OVER_PITCH, "rad", "loaded transmission error TE = phi2 - (z1/z2) phi1, at the wheel"),
+    "transmission_error_m": (OVER_PITCH, "m", "r_b2 TE: along the line of action in the transverse plane"),
+    "mesh_stiffness_N_per_m": (OVER_PITCH, "N/m", "tangent of T1/r_b1 to r_b2 TE, of the whole face width"),
+    "torsional_stiffness_Nm_per_rad": (OVER_PITCH, "N m/rad", "the same about the axis of the wheel, times r_b2^2"),
+    "loaded_pairs": (OVER_PITCH, "1", "number of tooth pairs under load"),
+    "normal_force_per_torque_N_per_Nm": (OVER_PITCH, "1/m", "sum of the normal forces of all pairs over T1"),
+    "transmission_error_amplitude_m": (OVER_ORDERS, "m", "amplitude of r_b2 TE"),
+    "transmission_error_phase_rad": (OVER_ORDERS, "rad", "phase of the transmission error"),
+    "mesh_stiffness_amplitude_N_per_m": (OVER_ORDERS, "N/m", "amplitude of the mesh stiffness"),
+    "mesh_stiffness_phase_rad": (OVER_ORDERS, "rad", "phase of the mesh stiffness"),
+    "loaded_pairs_amplitude": (OVER_ORDERS, "1", "amplitude of the number of tooth pairs under load"),
+    "loaded_pairs_phase_rad": (OVER_ORDERS, "rad", "phase of the number of tooth pairs under load"),
+}
+"""Name in the dataset of ``dynamics_of`` and in its tables -> dimensions, unit, long name."""
+COORDINATES = (TORQUE, PHASE, "pinion_angle_rad", ORDER)
+
+CONVENTIONS = """\
+Fourier series: x(phi1) = amplitude_0 + sum over k of amplitude_k cos(k z1 phi1 + phase_k)
+The unmodified, aligned pair touches at the pitch point of mid-face at phi1 = phi2 = 0; both angles grow in the motion.
+The transmission error is absolute: 0 for that pair, negative where the wheel stays behind.
+The mesh stiffness is a tangent, positive: d(T1/r_b1) = k |d(r_b2 TE)|; about the pinion's axis it is k r_b1^2."""
+
+
+def dynamics_of(result: MeshCycle) -> xarray.Dataset:
+    """Return what models of gear dynamics take from a result; see ``MeshCycle.to_dynamics``."""
+    import xarray
+
+    count, sharing = len(result.path), result.scene.analysis.load_sharing
+    require(
+        (sharing, "analysis.load_sharing: found false; one tooth pair alone has no period, dynamics need true"),
+        (count > 1, f"analysis.positions: found {count}; dynamics need the curves over a pitch, from 2 positions on"),
+    )
+    pair, torque = result.gear_pair, 1e-3 * result.torque
+    first, second = (1e-3 * radius for radius in pair.base_radii)
+    begin = float(result.pinion_angle[0]) / pair.pitch
+    phase = np.remainder(begin + np.arange(count - 1) / (count - 1), 1.0)
+    ascending = np.argsort(phase)
+
+    def over_pitch(values: Array) -> Array:
+        """Numbers of the positions but the last, which is the first a pitch later, in the order of the mesh phase."""
+        return values[..., :-1][..., ascending]
+
+    stiffness = 1e6 * result.face_width * result.mesh_stiffness
+    per_torque = 1.0 / np.where(torque > 0.0, torque, math.nan)
+    curves = {
+        "transmission_error": second * result.transmission_error,
+        "mesh_stiffness": stiffness,
+        "loaded_pairs": result.loaded_pairs.astype(float),
+    }
+    order = np.arange((count - 2) // 2 + 1)
+    arrays: dict[str, Any] = {
+        "pinion_teeth": pair.teeth[0],
+        "wheel_teeth": pair.teeth[1],
+        "mesh_frequency_Hz_per_pinion_rev_per_s": pair.teeth[0],
+        "pinion_base_radius_m": first,
+        "wheel_base_radius_m": second,
+        "face_width_m": 1e-3 * result.face_width,
+        TORQUE: torque,
+        PHASE: phase[ascending],
+        "pinion_angle_rad": pair.pitch * phase[ascending],
+        ORDER: order.astype(np.int32),
+        "loaded_contact_ratio": curves["loaded_pairs"][:, :-1].mean(axis=-1),
+        "unloaded_transmission_error_m": over_pitch(second * result.unloaded_transmission_error),
+        "transmission_error_rad": over_pitch(result.transmission_error),
+        "torsional_stiffness_Nm_per_rad": over_pitch(second**2 * stiffness),
+        "normal_force_per_torque_N_per_Nm": over_pitch(result.normal_force.sum(axis=-1) * per_torque[:, None]),
+    }
+    for name, unit in SERIES.items():
+        coefficients = np.stack([harmonic_coefficients(curve, order[-1]) for curve in curves[name]])
+        coefficients *= np.exp(-2j * np.pi * begin * order[1:])
+        mean = curves[name][:, :-1].mean(axis=-1, keepdims=True)
+        ending = f"_{unit}" if unit else ""
+        arrays[f"{name}{ending}"] = over_pitch(curves[name])
+        arrays[f"{name}_amplitude{ending}"] = np.hstack([mean, np.abs(coefficients)])
+        arrays[f"{name}_phase_rad"] = np.hstack([np.zeros_like(mean), np.angle(coefficients)])
+    variables = variables_of(QUANTITIES, arrays)
+    coordinates = {name: variables.pop(name) for name in COORDINATES}
+    driving = "pinion" if pair.driving > 0 else "wheel"
+    held = "" if result.scene.analysis.compliance == "contact" else ", from bores that are held rigid"
+    attributes = {
+        "title": result.scene.title,
+        "version": result.version,
+        "conventions": f"{CONVENTIONS}\nThe {driving} drives; {result.bending}{held}.",
+    }
+    return xarray.Dataset(variables, coordinates, attributes)

@@ -1,0 +1,179 @@
+"""Contacts at rounded edges solved once more: the force, symmetry, order of the edges, cap, ends, what is left out."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca.analysis import analyse
+from loaded_tca.contact import RoundedEdge, edge_pressures
+from loaded_tca.errors import ConvergenceError
+from loaded_tca.flanks import FlankModifications
+from loaded_tca.flanks.rounding import EdgeRounding
+from loaded_tca.loaded import rounded_edges
+from loaded_tca.loaded.rounded_edges import (
+    ReachedEdge,
+    largest_pressure,
+    pressure_at_rounded_edge,
+    reached_edges,
+)
+from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
+from loaded_tca.material import Material
+from loaded_tca.pairs.cylindrical import Mounting
+from loaded_tca.reference.punch import RoundedPunch
+from loaded_tca.scene import read_scene
+from loaded_tca.unloaded import trace_contact
+from tests.samples.gear_pairs import NONE, gear_pair
+from tests.samples.results import FLANKS_ALONE, SCENES
+
+LOAD = 3000.0
+SIDE, BOTH = EdgeRounding(side=0.2), EdgeRounding(tip=0.2, side=0.2)
+SKEW = {"teeth": (34, 57), "width": 25.0, "helix_deg": 15.0, "mounting": Mounting(0.0, math.radians(0.03))}
+SKEW |= {"rounding": BOTH, "pitches": 0.5}
+"""A misaligned pair at a position where the contact reaches a tip and the end of a face, which cross in it."""
+# Peaks are known to the error of their columns, 0.5 % and less; those of mirrored contacts to their solver's tolerance.
+MIRRORED = 1e-3
+
+
+def loaded(rounding=SIDE, load=LOAD, pitches=0.0, cells=(24, 32), free_edges=False, **pair):
+    """A pair with rounded edges on both gears, and its contact under one force."""
+    both = gear_pair(**{"teeth": (25, 37), "width": 20.0} | pair).rounded(rounding, rounding)
+    contact = trace_contact(both, [pitches * both.pitch], warn=False)[0]
+    return both, solve_under_load(both, contact, load, GridChoice(cells, free_edges=free_edges))
+
+
+def found(pair, one, edges=None, free_edges=False):
+    edges = reached_edges(pair, one) if edges is None else edges
+    return pressure_at_rounded_edge(pair, one, edges, None, 0, free_edges=free_edges)
+
+
+@pytest.fixture
+def solutions(monkeypatch):
+    """What was solved on columns."""
+    kept = []
+
+    def solved(*arguments, **options):
+        answer = edge_pressures(*arguments, **options)
+        kept.extend(answer)
+        return answer
+
+    monkeypatch.setattr(rounded_edges, "edge_pressures", solved)
+    return kept
+
+
+def test_edges_are_where_the_arcs_begin():
+    """An arc over a right angle begins its radius before the end of the face, 20 mm wide."""
+    pair, one = loaded()
+    edges = reached_edges(pair, one)
+    assert [len(edge.lines) for edge in edges] == [2, 2], "both ends, of both gears"
+    for line in (line for edge in edges for line in edge.lines):
+        assert_allclose(np.abs(line.place[1]), 10.0 - 0.2, rtol=1e-6)
+        assert_allclose(np.abs(line.normal) / np.hypot(*line.normal), [0.0, 1.0], atol=1e-9)
+        assert line.place[1] * line.normal[1] > 0.0, "towards the end"
+        assert line.radius == 0.2
+
+
+@pytest.mark.parametrize("free_edges", [False, True])
+def test_force_is_kept(solutions, free_edges):
+    pair, one = loaded(free_edges=free_edges)
+    found(pair, one, free_edges=free_edges)
+    assert solutions
+    for each in solutions:
+        problem, pressure = each.solution.problem, each.solution.pressure
+        assert_allclose((pressure * problem.widths).sum() * problem.spacing, LOAD, rtol=1e-9)
+        assert pressure.min() >= 0.0
+        assert not pressure[np.isinf(problem.gap)].any(), "nothing beyond the flanks"
+    for border in (pressure[[0, -1]], pressure[:, [0, -1]]):
+        assert not border.any(), "the last box holds the contact"
+
+
+@pytest.mark.parametrize("free_edges", [False, True])
+def test_both_ends_of_a_symmetric_contact_have_the_same_peak(free_edges):
+    pair, one = loaded(free_edges=free_edges)
+    peaks = [found(pair, one, [edge], free_edges) for edge in reached_edges(pair, one)]
+    assert_allclose([peak.pressure for peak in peaks], peaks[0].pressure, rtol=MIRRORED)
+    assert_allclose([abs(peak.place[1]) for peak in peaks], abs(peaks[0].place[1]), rtol=MIRRORED)
+    assert {math.copysign(1.0, peak.place[1]) for peak in peaks} == {-1.0, 1.0}
+
+
+def test_peak_does_not_depend_on_the_order_of_the_edges():
+    """Of the tip and the end of a misaligned helical pair, too, which cross each other."""
+    for options in ({}, SKEW):
+        pair, one = loaded(**options)
+        edges = reached_edges(pair, one)
+        assert len(edges) > 1
+        first, last = found(pair, one, edges), found(pair, one, edges[::-1])
+        assert_allclose(last.pressure, first.pressure, rtol=first.error + last.error)
+
+
+def test_peak_beside_a_crossing_has_the_error_of_both_edges(solutions):
+    """An edge that lies across the fine columns of the other one has the larger estimate."""
+    peak = found(*loaded(**SKEW))
+    together = [each for each in solutions if each.solution is solutions[-1].solution]
+    assert len(together) > 1
+    assert peak.error == max(each.error for each in together)
+    assert peak.error > next(each.error for each in together if each.pressure == peak.pressure)
+
+
+def test_mirror_image_has_the_same_peak():
+    """The other hand of the helix, turned the other way."""
+    peaks = [
+        found(*loaded(EdgeRounding(tip=0.2), pitches=0.6, helix_deg=helix, sense=sense, pinion=NONE))
+        for helix, sense in ((15.0, "positive"), (-15.0, "negative"))
+    ]
+    assert_allclose(peaks[1].pressure, peaks[0].pressure, rtol=MIRRORED)
+
+
+def test_peak_does_not_depend_on_the_grid():
+    peaks = [found(*loaded(cells=cells)) for cells in ((16, 16), (32, 48), (64, 96))]
+    assert_allclose([one.pressure for one in peaks], peaks[-1].pressure, rtol=0.02)
+
+
+def test_cap_is_respected():
+    cap, steel = 1500.0, Material()
+    pair, one = loaded(materials=(replace(steel, max_pressure=cap), steel))
+    peak = found(pair, one)
+    assert_allclose(peak.pressure, cap, rtol=1e-12)
+    assert found(*loaded()).pressure > cap, "without it"
+
+
+def test_contact_that_ends_before_the_arc_has_no_peak():
+    pair, one = loaded(load=100.0, pinion=FlankModifications(lead_crowning=0.02))
+    assert reached_edges(pair, one) == []
+    assert not one.at_arc
+    beyond = ReachedEdge((RoundedEdge((0.0, 9.8), (0.0, 1.0), 0.2),), 1000.0)
+    assert math.isnan(found(pair, one, [beyond]).pressure)
+    assert math.isnan(found(pair, one, [beyond]).error)
+
+
+def test_bound_is_that_of_a_narrow_rounding_on_coarse_cells():
+    """Of a flat punch, whose pressure beside a sharp end is P/(pi sqrt(2 a s)); 1.80 is the limit of small radii."""
+    punch = RoundedPunch(0.1, 0.02, 0.1005, 113187.0)
+    intensity = punch.line_load / (math.pi * math.sqrt(2.0 * punch.half_width))
+    told = [largest_pressure(2.0 * intensity / math.sqrt(h), h, punch.radius, 113187.0) for h in (0.01, 0.1, 1.0)]
+    assert min(told) > punch.peak()[1]
+    assert_allclose(told[-1], punch.peak()[1], rtol=0.02)
+    assert largest_pressure(1e4, 1e-6, 0.2, 113187.0) > 1e4, "the cell is narrower than the pressed part"
+
+
+def test_contacts_left_out_do_not_change_the_largest_pressure():
+    """Ends of misaligned teeth, whose contacts were expected to differ by up to four times."""
+    scene = read_scene(SCENES / "misaligned.toml").with_changes(
+        {**FLANKS_ALONE, "analysis.load_sharing": True, "analysis.positions": 7, "analysis.accuracy": None}
+        | {"analysis.cells": (24, 24)}
+        | {f"{gear}.{edge}_rounding_mm": 0.2 for gear in ("pinion", "wheel") for edge in ("tip", "side")}
+    )
+    largest, every = (analyse(scene.with_changes({"analysis.edge_pressures": which})) for which in ("largest", "all"))
+    assert np.isnan(largest.edge_pressure_error).sum() > np.isnan(every.edge_pressure_error).sum()
+    assert_allclose(np.nanmax(largest.edge_pressure), np.nanmax(every.edge_pressure), rtol=1e-9)
+
+
+def test_solver_that_does_not_converge_stops_the_analysis_and_tells_where(monkeypatch):
+    monkeypatch.setattr("loaded_tca.contact.graded.MOST_ITERATIONS", 1)
+    scene = read_scene(SCENES / "misaligned.toml").with_changes(
+        {**FLANKS_ALONE, "analysis.load_sharing": False, "analysis.positions": 1, "pinion.side_rounding_mm": 0.2}
+    )
+    with pytest.raises(ConvergenceError, match=r"^[0-9.]+ N m at pinion angle 0 deg: contact on graded columns not"):
+        analyse(scene)

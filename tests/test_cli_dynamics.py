@@ -1,0 +1,118 @@
+"""The command and the tables that hand a result to programs of gear dynamics."""
+
+import csv
+import os
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from loaded_tca.errors import InputError
+from loaded_tca.output import write_dynamics
+from tests.samples.results import changed_scene, result
+
+
+def cycle():
+    return result("mesh_cycle_helical", positions=5, torques=(40.0, 260.0))
+
+
+@pytest.fixture
+def out(tmp_path, monkeypatch):
+    """The directory of a result."""
+    monkeypatch.chdir(tmp_path)
+    os.mkdir("out")
+    cycle().save("out/result.nc")
+    return "out"
+
+
+def table(path):
+    """Comments of a table, and its columns as numbers; NaN where a cell is empty."""
+    with open(path, encoding="utf-8", newline="") as file:
+        lines = file.read().splitlines()
+    comments = [line for line in lines if line.startswith("#")]
+    assert lines[: len(comments)] == comments
+    rows = list(csv.DictReader(lines[len(comments) :]))
+    return comments, {name: np.array([float(row[name] or "nan") for row in rows]) for name in rows[0]}
+
+
+def test_tables_have_the_curves_and_their_orders(run, out):
+    code, text, errors = run("dynamics", out)
+    assert (code, errors) == (0, [])
+    assert text.splitlines() == ["Written to out: dynamics.csv, dynamics_orders.csv"]
+    dynamics = cycle().to_dynamics()
+    for name, last in (("dynamics", "mesh_phase"), ("dynamics_orders", "order")):
+        comments, columns = table(f"out/{name}.csv")
+        assert list(columns)[:2] == ["pinion_torque_Nm", last]
+        for column, values in columns.items():
+            assert any(line.startswith(f"#   {column}: ") for line in comments)
+            expected = dynamics[column].broadcast_like(dynamics[list(columns)[-1]]).values.ravel()
+            assert_allclose(values, expected, rtol=1e-11)  # twelve digits
+        for told in (" phase_k)", "pinion_teeth = 34", "loaded_contact_ratio = ", "under 260 N m"):
+            assert any(told in line for line in comments)
+    in_both = {column for name in ("dynamics", "dynamics_orders") for column in table(f"out/{name}.csv")[1]}
+    assert in_both >= {str(name) for name, one in dynamics.variables.items() if one.ndim == 2}
+
+
+def test_usual_readers_skip_the_words(run, out):
+    run("dynamics", out)
+    assert np.loadtxt("out/dynamics.csv", delimiter=",", skiprows=len(table("out/dynamics.csv")[0]) + 1).shape[0] == 8
+    import pandas
+
+    assert pandas.read_csv("out/dynamics.csv", comment="#").shape[0] == 8
+
+
+def test_first_table_goes_where_it_is_wanted(run, out):
+    assert run("dynamics", "out/result.nc", "--out", "there/mesh.txt")[0] == 0
+    assert sorted(os.listdir("there")) == ["mesh.txt", "mesh_orders.txt"]
+    assert os.listdir(out) == ["result.nc"]
+
+
+def test_title_stands_in_the_words_of_any_script(tmp_path):
+    write_dynamics(changed_scene(cycle(), {"title": "Räder, 1:2"}), tmp_path / "mesh.csv")
+    assert table(tmp_path / "mesh.csv")[0][1].endswith(": Räder, 1:2")
+
+
+def test_what_is_not_known_is_an_empty_cell(tmp_path):
+    write_dynamics(result("mesh_cycle_helical", positions=4, torques=(0.0, 40.0)), tmp_path / "mesh.csv")
+    force = table(tmp_path / "mesh.csv")[1]["normal_force_per_torque_N_per_Nm"]
+    assert np.isnan(force[:3]).all()
+    assert (force[3:] > 0.0).all()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["nothing"], "nothing: cannot be read"),
+        (["out", "--out", "out"], "--out out: a directory; give the name of a file, as out/dynamics.csv"),
+        (["out", "--out", "out/result.nc/mesh.csv"], "result.nc is a file; give a directory"),
+        (["out", "--out", ""], "the name is empty"),
+    ],
+)
+def test_wrong_command_line_is_told(run, out, arguments, told):
+    code, _, errors = run("dynamics", *arguments)
+    assert code == 2
+    assert len(errors) == 1
+    assert told in errors[0]
+    assert os.listdir(out) == ["result.nc"]
+
+
+def test_result_without_a_period_writes_nothing(run, out):
+    result().save("out/result.nc")
+    code, _, errors = run("dynamics", out)
+    assert (code, os.listdir(out)) == (2, ["result.nc"])
+    assert errors[0].startswith("loaded-tca: analysis.load_sharing: found false")
+
+
+def test_tables_that_cannot_be_written_are_told(tmp_path):
+    (tmp_path / "mesh_orders.csv").mkdir()
+    with pytest.raises(InputError, match=r"mesh_orders\.csv: cannot be written"):
+        write_dynamics(cycle(), tmp_path / "mesh.csv")
+
+
+def test_help_says_what_the_files_hold(run, capsys):
+    with pytest.raises(SystemExit) as ended:
+        run("dynamics", "--help")
+    assert ended.value.code == 0
+    told = capsys.readouterr().out
+    assert "_orders" in told
+    assert "Fourier coefficients" in told
