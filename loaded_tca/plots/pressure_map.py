@@ -12,6 +12,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse, Patch, Rectangle
+from matplotlib.ticker import MaxNLocator
 
 from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.plots.flanks import highest_of_map
@@ -20,6 +21,8 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
 
 PRESSURE = "contact pressure [MPa]"
+TICKS = 5
+"""Steps across a map, at most."""
 
 
 def plot_pressure_map(
@@ -96,6 +99,7 @@ def draw_map(
         axes.add_patch(area)
     axes.plot(0.0, 0.0, "+", color=ACCENT, label="unloaded contact point")
     axes.set_aspect(scale)
+    axes.yaxis.set_major_locator(MaxNLocator(TICKS))  # as many before the layout shrinks the panel as after it
     _label_axes(axes, one, scale, result.gear_pair.pinion.flank.frame)
     return one
 
