@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import warnings
+from datetime import UTC, datetime
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from loaded_tca.compliance import (
     tooth_compliance,
     way_out_told,
 )
-from loaded_tca.errors import AccuracyWarning, named, require
+from loaded_tca.errors import give_accuracy_warning, named, noted_accuracy_warnings, require
 from loaded_tca.loaded.cycle import Progress, carried_by_all, carried_by_one, farthest_apart
 from loaded_tca.loaded.effort import expected_effort
 from loaded_tca.loaded.rounded_edges import pressures_at_rounded_edges
@@ -58,31 +58,33 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
         If the contact reaches an edge of a flank, modifications leave a pointed tooth, or the model is at another
         limit.
     """
-    pair, wanted, effort = scene.pair(), scene.analysis, expected_effort(scene)
-    require((not effort.is_refused, f"analysis.cells: {wanted.cells}: {effort}"))
-    count, torques = wanted.positions, np.asarray(scene.torques)
-    angles = np.linspace(-0.5 * pair.pitch, 0.5 * pair.pitch, count) if count > 1 else np.zeros(1)
-    grid = GridChoice(
-        cells=None if wanted.cells is None else (wanted.cells[0], wanted.cells[1]),
-        accuracy=wanted.accuracy,
-        tolerance=wanted.tolerance,
-        free_edges=wanted.free_edges,
-    )
-    roots = roots_of(scene, pair)
-    if wanted.load_sharing:
-        mesh = trace_teeth(pair, angles)
-        bending = bending_of(scene, pair, farthest_apart(mesh))
-        carried = carried_by_all(pair, mesh, torques, grid, bending, progress)
-    else:
-        path = trace_contact(pair, angles)
-        bending = bending_of(scene, pair, 1)
-        carried = carried_by_one(pair, path, torques, grid, bending, progress)
-    torsion = 0.0 if bending is None else sum(bending.body_torsion)
-    at_edges = pressures_at_rounded_edges(
-        pair, carried, bending, free_edges=wanted.free_edges, every=wanted.edge_pressures == "all"
-    )
-    warn_of_accuracy(pair, grid, carried, at_edges, load_sharing=wanted.load_sharing, body_torsion=torsion)
-    return mesh_cycle(scene, pair, carried, at_edges, roots)
+    with noted_accuracy_warnings() as told:
+        pair, wanted, effort = scene.pair(), scene.analysis, expected_effort(scene)
+        require((not effort.is_refused, f"analysis.cells: {wanted.cells}: {effort}"))
+        count, torques = wanted.positions, np.asarray(scene.torques)
+        angles = np.linspace(-0.5 * pair.pitch, 0.5 * pair.pitch, count) if count > 1 else np.zeros(1)
+        grid = GridChoice(
+            cells=None if wanted.cells is None else (wanted.cells[0], wanted.cells[1]),
+            accuracy=wanted.accuracy,
+            tolerance=wanted.tolerance,
+            free_edges=wanted.free_edges,
+        )
+        roots = roots_of(scene, pair)
+        if wanted.load_sharing:
+            mesh = trace_teeth(pair, angles)
+            bending = bending_of(scene, pair, farthest_apart(mesh))
+            carried = carried_by_all(pair, mesh, torques, grid, bending, progress)
+        else:
+            path = trace_contact(pair, angles)
+            bending = bending_of(scene, pair, 1)
+            carried = carried_by_one(pair, path, torques, grid, bending, progress)
+        torsion = 0.0 if bending is None else sum(bending.body_torsion)
+        at_edges = pressures_at_rounded_edges(
+            pair, carried, bending, free_edges=wanted.free_edges, every=wanted.edge_pressures == "all"
+        )
+        warn_of_accuracy(pair, grid, carried, at_edges, load_sharing=wanted.load_sharing, body_torsion=torsion)
+    date = datetime.now(UTC).isoformat(timespec="seconds")
+    return mesh_cycle(scene, pair, carried, at_edges, roots, warnings=told, date=date)
 
 
 def bending_of(scene: Scene, pair: GearPair, neighbours: int) -> ToothCompliance | None:
@@ -104,10 +106,8 @@ def roots_of(scene: Scene, pair: GearPair) -> tuple[RootStress, ...]:
         with way_out_told("analysis.root_stress = false"), named(name):
             found.append(root_stress_model(gear))
         if (layer := found[-1].layer / pair.module) > THICKEST_LAYER:
-            warnings.warn(
+            give_accuracy_warning(
                 f"root stress of the {name}: across its face elements are {layer:.2g} modules wide; where contacts "
-                "cover a part of the face alone, root stress is too low, by a tenth at 2 modules",
-                AccuracyWarning,
-                stacklevel=2,
+                "cover a part of the face alone, root stress is too low, by a tenth at 2 modules"
             )
     return tuple(found)

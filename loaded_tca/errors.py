@@ -1,8 +1,10 @@
 """Every error and warning of the package, in one place."""
 
 import os
+import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from math import inf
 from typing import Any
 
@@ -135,3 +137,33 @@ class ExecutorError(LoadedTCAError, RuntimeError):
 
 class AccuracyWarning(UserWarning):
     """A converged answer that is doubtful: the model, not the solver, is at its limit."""
+
+
+_noted: ContextVar[tuple[list[str], ...]] = ContextVar("_noted", default=())
+
+
+def give_accuracy_warning(sentence: str, stacklevel: int = 2) -> None:
+    """Give an AccuracyWarning, and tell it to whoever notes them; ``stacklevel`` counts from the caller."""
+    for sentences in _noted.get():
+        sentences.append(sentence)
+    warnings.warn(sentence, AccuracyWarning, stacklevel=stacklevel + 1)
+
+
+@contextmanager
+def noted_accuracy_warnings() -> Iterator[list[str]]:
+    """Note the sentences of accuracy warnings, whatever the filters of ``warnings`` do with them.
+
+    Examples
+    --------
+    >>> with warnings.catch_warnings(), noted_accuracy_warnings() as sentences:
+    ...     warnings.simplefilter("ignore")
+    ...     give_accuracy_warning("the fit is coarse")
+    >>> sentences
+    ['the fit is coarse']
+    """
+    sentences: list[str] = []
+    mark = _noted.set((*_noted.get(), sentences))
+    try:
+        yield sentences
+    finally:
+        _noted.reset(mark)

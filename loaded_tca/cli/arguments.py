@@ -85,6 +85,9 @@ STUDY = """files in DIR:
   study_*.png               pictures that fit what varies
   study.rows.jsonl          the variants that are done; the same command goes on from there
   study_maps/N.nc           whole results of the variants asked for by --keep-maps, as of 'loaded-tca run'"""
+REPORT = """One HTML file that needs nothing else: what was asked, geometry, load cases, key figures, their accuracy,
+pictures, accuracy warnings with what to do, and the scene file; of a study what varies, the ranking, best and worst
+variant; of a design start and optimum. It prints on A4. Needs the package jinja2."""
 EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
 
 
@@ -175,6 +178,10 @@ def command_line() -> argparse.ArgumentParser:
         default=(),
         help="variants, from 0, whose results are kept whole",
     )
+    report = command("report", run_by.report, "write a report of a result, a study or a design as HTML", REPORT)
+    told = "result.nc, study.nc, the file of a design, or the directory that holds one"
+    report.add_argument("result", metavar="DIR|FILE", type=_path, help=told)
+    report.add_argument("--out", metavar="FILE", type=_path, help="default: report.html beside the result")
     check = command("check", run_by.check, "read a scene and show its geometry, without computing a contact", None)
     _add_scene(check)
     return parser

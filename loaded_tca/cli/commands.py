@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import argparse
+from datetime import UTC, datetime
 from pathlib import Path
 
 from loaded_tca.cli.named import (
     check_place,
     ends_that_differ,
     executor_of,
+    file_of_report,
     index_of_position,
     result_file,
     result_of,
     scene_of,
+    subject_of_report,
     tolerances_of,
 )
 from loaded_tca.cli.terminal import BAR, STUDY_BAR, bar_of, print_files, progress_bar
@@ -198,6 +201,18 @@ def study(options: argparse.Namespace) -> None:
             for n in options.keep_maps
         ),
     )
+
+
+def report(options: argparse.Namespace) -> None:
+    """Write the report of a result, a study or a design."""
+    from loaded_tca.reports import write_html_report
+
+    path, out = file_of_report(options.result), options.out
+    out = path.parent / "report.html" if out is None else out
+    check_place(out.parent)
+    subject = subject_of_report(path)
+    date = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
+    print_files([write_html_report(subject, out, date=getattr(subject, "date", "") or date)])
 
 
 def check(options: argparse.Namespace) -> None:

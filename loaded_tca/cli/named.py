@@ -14,8 +14,11 @@ from loaded_tca.errors import InputError, reason_of
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
+    import xarray
+
     from loaded_tca.results.mesh_cycle import MeshCycle
     from loaded_tca.scene import Scene
+    from loaded_tca.studies import DesignResult
 
 REACHED_WITHIN = 10.0
 """Seconds for a scheduler to answer."""
@@ -78,6 +81,26 @@ def result_file(path: Path) -> Path:
     from loaded_tca.output.report import RESULT
 
     return path / RESULT if os.path.isdir(path) else path
+
+
+def file_of_report(path: Path) -> Path:
+    """The file of a result, a study or a design that is named by itself or by its directory."""
+    result, *others = (path / name for name in ("result.nc", "study.nc", "design.nc"))
+    if not os.path.isdir(path):
+        return path
+    return next((one for one in (result, *others) if one.is_file()), result)
+
+
+def subject_of_report(path: Path) -> MeshCycle | xarray.Dataset | DesignResult:
+    """The result, study or design in a file."""
+    from loaded_tca.results.files import read_dataset
+    from loaded_tca.results.mesh_cycle import MeshCycle
+    from loaded_tca.studies import load_design, load_study
+
+    kind = read_dataset(path).attrs.get("kind")
+    if kind == "study":
+        return load_study(path)
+    return load_design(path) if kind == "design" else MeshCycle.load(path)
 
 
 def index_of_position(position: int | None, result: MeshCycle) -> int | None:

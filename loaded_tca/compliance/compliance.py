@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -17,7 +16,7 @@ from loaded_tca.compliance.flexibility import MOST_IN_MEMORY
 from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_compliance
 from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.compliance.torsion import body_torsion
-from loaded_tca.errors import AccuracyWarning, GeometryError, InputError, named, require
+from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning, named, require
 from loaded_tca.flanks.rounding import sharp
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING, Material
 from loaded_tca.pairs.gear import Gear
@@ -192,7 +191,7 @@ def require_teeth(pair: GearPair, way_out: str = TEETH_DO_NOT_BEND) -> None:
                 build_tooth((sharp(gear.flanks[0]), sharp(gear.flanks[1])), gear.form, CHECKED)
             except GeometryError as error:
                 sentence = f"{name}, with its modifications: {error}; it bends like the tooth without them"
-                warnings.warn(sentence, AccuracyWarning, stacklevel=3)
+                give_accuracy_warning(sentence, stacklevel=3)
 
 
 @lru_cache(maxsize=MOST_IN_MEMORY)

@@ -9,7 +9,6 @@ off, and the flank becomes Theta - s delta |grad F| with |grad F| of the unmodif
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from typing import Any, Literal, get_args
@@ -17,7 +16,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from loaded_tca.arrays import Array, real
-from loaded_tca.errors import AccuracyWarning, InputError
+from loaded_tca.errors import InputError, give_accuracy_warning
 from loaded_tca.flanks.base import DerivedFlank, Flank, unmodified
 from loaded_tca.flanks.jet import Jet
 
@@ -456,7 +455,7 @@ def modified(
         amount = getattr(modifications, name) or 0.0  # None: as at both ends
         if abs(amount) > LARGEST_AMOUNT:
             message = f"{owner}.{name}: {amount:.6g} mm is more than {LARGEST_AMOUNT:g} mm; is its unit right?"
-            warnings.warn(message, AccuracyWarning, stacklevel=2)
+            give_accuracy_warning(message, stacklevel=2)
     return flank
 
 

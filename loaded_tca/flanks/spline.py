@@ -11,14 +11,13 @@ deviations keeps the exact macro geometry.
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import AccuracyWarning, GeometryError, InputError
+from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning
 from loaded_tca.flanks.base import DerivedFlank, Flank, Region, unmodified
 from loaded_tca.flanks.jet import Jet
 from loaded_tca.flanks.structured_grid import FEWEST_POINTS, StructuredGrid, flank_coordinates
@@ -147,7 +146,7 @@ def fitted(flank: Flank, points: tuple[int, int] = DEFAULT_POINTS, degree: int =
     if check.largest > FIT_TOLERANCE:
         advice = "take more points; the relief start where a linear relief starts is rounded off by any number"
         message = f"the B-spline through {points[0]} x {points[1]} points misses the flank by {check} between them"
-        warnings.warn(f"{message}: {advice}", AccuracyWarning, stacklevel=2)
+        give_accuracy_warning(f"{message}: {advice}", stacklevel=2)
     return SplineFlank(region, spline, FitError.of(bare.distance_to(flank, rho, z)), check)
 
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import AccuracyWarning
+from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.flanks.base import Flank
 
 FEWEST_POINTS = {3: 4, 5: 6}
@@ -77,7 +76,7 @@ class StructuredGrid:
                 message = (
                     f"{name}: the points leave {left} of the flank uncovered; there the deviation is a continuation"
                 )
-                warnings.warn(message, AccuracyWarning, stacklevel=3)
+                give_accuracy_warning(message, stacklevel=3)
 
     def _too_coarse(self, degrees: tuple[int, int], counts: tuple[int, int]) -> list[str]:
         problems = []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from itertools import chain
 
 from loaded_tca.compliance import require_teeth
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
@@ -27,18 +28,27 @@ def describe_scene(scene: Scene) -> str:
     InputError, GeometryError
         If the gears of the scene cannot exist or cannot mesh, or their teeth cannot be built though they bend.
     """
-    pair = scene.pair()
-    rows = [
-        *scene.geometry_rows(),
-        *_path_rows(scene, pair),
-        *_asked_rows(scene, pair),
-        *_departures(scene),
-        *_spline_rows(scene, pair),
-    ]
-    lines = [f"{label:<{LABEL}}" + "".join(f"{cell:>14}" for cell in cells) for label, *cells in rows]
     effort = expected_effort(scene)
+    spent = ("analysis, roughly: time [s], memory [GiB]", rounded(effort.seconds), rounded(effort.gibibytes))
+    rows = [*chain.from_iterable(scene_sections(scene).values()), spent]
+    lines = [f"{label:<{LABEL}}" + "".join(f"{cell:>14}" for cell in cells) for label, *cells in rows]
     notes = [*scene.notes(), *([] if effort.fits else [f"{effort}"])]
     return "\n".join([scene.title or "Scene", *lines, *(f"note: {note}" for note in notes)])
+
+
+def scene_sections(scene: Scene) -> dict[str, list[Row]]:
+    """Return the lines of an overview by their subjects, each a label and its cells; errors as ``describe_scene``.
+
+    A line without a label, and the first one of the path of contact, name the columns below them.
+    """
+    pair = scene.pair()
+    return {
+        "geometry": [*scene.geometry_rows()],
+        "path of contact": [*_path_rows(scene, pair)],
+        "load and analysis": [*_asked_rows(scene, pair)],
+        "mounting errors, edges and modifications": [*_departures(scene)],
+        "flanks described by points": [*_spline_rows(scene, pair)],
+    }
 
 
 def _path_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
@@ -69,8 +79,6 @@ def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     if any(gear.tip_rounding_mm or gear.side_rounding_mm for gear in (scene.pinion, scene.wheel)):
         yield "pressures at rounded edges", wanted.edge_pressures
     yield "positions, torques", f"{wanted.positions}", f"{len(scene.torques)}"
-    effort = expected_effort(scene)
-    yield "analysis, roughly: time [s], memory [GiB]", rounded(effort.seconds), rounded(effort.gibibytes)
     if wanted.root_stress:
         yield "root stress", "on"
         for name, nominal in zip(("pinion", "wheel"), scene.nominal_root_stress, strict=True):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from matplotlib.figure import Figure
+
 from loaded_tca.plots.comparison import plot_compared_maps, plot_comparison
 from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
 from loaded_tca.plots.design import plot_before_and_after, plot_peak_to_peak_over_torque, plot_robustness
@@ -82,6 +84,7 @@ __all__ = [
     "plot_transmission_error_band",
     "plot_vh_check",
     "png_of",
+    "result_figures",
     "save_figure",
     "show_teeth",
 ]
@@ -117,7 +120,7 @@ def plot_all(
     position: int | None = None,
     more: bool = False,
 ) -> tuple[Path, ...]:
-    """Save every picture as PNG into a directory, all of them or none.
+    """Save the pictures of :func:`result_figures` as PNG into a directory, all of them or none.
 
     Pictures of these names that are not drawn, as an earlier result may have left, are removed.
 
@@ -136,19 +139,43 @@ def plot_all(
     Returns
     -------
     tuple of Path
-        ``contact_path.png``, ``transmission_error.png``, ``peak_pressure.png``; if anything is in contact,
-        ``pressure_map.png`` of the peak pressure; if a higher one lies at an edge or a relief start in another
-        position, ``pressure_map_edge.png``; if Hertz holds in other positions only, ``pressure_map_hertz.png`` of the
-        highest pressure where it holds. Where tooth pairs share the load: ``load_share.png``, ``harmonics.png``,
-        ``mesh_stiffness.png``, ``line_load.png``, ``line_load_distribution.png``, ``pressure_envelope.png``,
-        ``path_pressure.png``. With root stress: ``root_stress.png``; of several positions ``root_stress_cycle.png``; of
-        several torques ``root_stress_over_torque.png``. With ``more``: under several torques
-        ``contact_patterns.png``, and ``full_mesh.png``.
 
     Raises
     ------
     InputError
         If the result has no such torque or position, or a file cannot be written.
+    """
+    figures = result_figures(result, torque=torque, position=position, more=more)
+    contents = {f"{name}.png": png_of(figure) for name, figure in figures.items()}
+    return replace_together(directory, contents, {f"{name}.png" for name in (*PICTURES, *MORE_PICTURES)} - {*contents})
+
+
+def result_figures(
+    result: MeshCycle, *, torque: int | None = None, position: int | None = None, more: bool = False
+) -> dict[str, Figure]:
+    """Draw every picture of a result.
+
+    Parameters
+    ----------
+    result, torque, position, more
+        As of :func:`plot_all`.
+
+    Returns
+    -------
+    dict of str to matplotlib.figure.Figure
+        ``contact_path``, ``transmission_error``, ``peak_pressure``; if anything is in contact,
+        ``pressure_map`` of the peak pressure; if a higher one lies at an edge or a relief start in another
+        position, ``pressure_map_edge``; if Hertz holds in other positions only, ``pressure_map_hertz`` of the
+        highest pressure where it holds. Where tooth pairs share the load: ``load_share``, ``harmonics``,
+        ``mesh_stiffness``, ``line_load``, ``line_load_distribution``, ``pressure_envelope``,
+        ``path_pressure``. With root stress: ``root_stress``; of several positions ``root_stress_cycle``; of
+        several torques ``root_stress_over_torque``. With ``more``: under several torques
+        ``contact_patterns``, and ``full_mesh``.
+
+    Raises
+    ------
+    InputError
+        If the result has no such torque or position.
     """
     asked, torque = torque, chosen_torque(result, torque, position)
     figures = {
@@ -189,5 +216,4 @@ def plot_all(
             figures["root_stress_cycle"] = plot_root_stress_cycle(result)
         if len(result.torque) > 1:
             figures["root_stress_over_torque"] = plot_root_stress_over_torque(result)
-    contents = {f"{name}.png": png_of(figure) for name, figure in figures.items()}
-    return replace_together(directory, contents, {f"{name}.png" for name in (*PICTURES, *MORE_PICTURES)} - {*contents})
+    return figures

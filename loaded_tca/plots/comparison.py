@@ -107,7 +107,9 @@ def plot_comparison(results: Results, torque: float | None = None) -> Figure:
     style.from_zero(pressure)
     share.set_ylim(-4.0, 106.0)
     figure.legend(*absolute.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize="small")
-    style.write_title(figure, _title(named), f"{_under(comparison, shared)}, lengths at the wheel's base circle")
+    style.write_title(
+        figure, _title(named), f"comparison, {_under(comparison, shared)}", "lengths at the wheel's base circle"
+    )
     return figure
 
 

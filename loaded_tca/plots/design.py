@@ -89,7 +89,7 @@ def plot_before_and_after(design: xarray.Dataset | DesignResult, torque: int | N
     for axes in (error, span):
         style.widen(axes, SMALLEST_SPAN_UM)
     span.set_ylim(bottom=0.0)
-    return _finished(figure, design, error, scene.title, _designs(design))
+    return _finished(figure, design, error, scene.title, f"before and after: {_designs(design)}")
 
 
 def plot_peak_to_peak_over_torque(design: xarray.Dataset | DesignResult) -> Figure:
@@ -147,7 +147,7 @@ def plot_robustness(design: xarray.Dataset) -> Figure:
     label = (words or "objective") + (f" [{unit.replace('um', 'µm')}]" if unit not in ("", "1") else "")
     axes.set_ylabel(textwrap.fill(label, LONGEST_LABEL))
     axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
-    return _finished(figure, design, axes, f"robustness, {_designs(design)}")
+    return _finished(figure, design, axes, "", f"robustness, {_designs(design)}")
 
 
 def _with(design: xarray.Dataset | DesignResult, *names: str) -> xarray.Dataset:
@@ -179,13 +179,13 @@ def _draw(
     axes.grid(alpha=0.3)
 
 
-def _finished(figure: Figure, design: xarray.Dataset, axes: Axes, *title: str) -> Figure:
+def _finished(figure: Figure, design: xarray.Dataset, axes: Axes, scene: str, shown: str) -> Figure:
     """The figure with the legend of a panel below, and its title."""
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize="small")
     samples = design.sizes.get("sample", 1)
     told = f"lines: mean, bands: range of {samples} samples of the scatter"
     with_bands = axes.collections and samples > 1
-    style.write_title(figure, *title, *([told] if with_bands else []))
+    style.write_title(figure, scene, shown, *([told] if with_bands else []))
     return figure
 
 

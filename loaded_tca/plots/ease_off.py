@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator
 from loaded_tca.arrays import Array
 from loaded_tca.flank_maps.ease_off_map import EaseOffMap
 from loaded_tca.flank_maps.second_order import SecondOrder
-from loaded_tca.plots.style import ACCENT, COLOURS
+from loaded_tca.plots.style import ACCENT, COLOURS, write_title
 
 LEVELS = 10
 SMALLEST_SPAN_um = 0.01
@@ -49,8 +49,7 @@ def plot_ease_off(ease_off: EaseOffMap, title: str = "") -> Figure:
     axes.set_xlabel(ease_off.frame.labels[0])
     axes.set_ylabel(ease_off.frame.labels[1])
     _write_numbers(numbers, ease_off.second_order)
-    what = f"ease-off of the {ease_off.gear} against the conjugate of its mating flank"
-    figure.suptitle("\n".join(filter(None, (title, what))), fontsize="medium", parse_math=False)
+    write_title(figure, title, f"ease-off of the {ease_off.gear} against the conjugate of its mating flank")
     return figure
 
 

@@ -31,7 +31,7 @@ NAMES = {
     "tip_relief_start_roll": "tip relief start (roll angle)",
     "root_relief_start_roll": "root relief start (roll angle)",
     "transmission_error_mean": "mean transmission error",
-    "transmission_error_order_1": "order 1 of the transmission error",
+    **{f"transmission_error_order_{order}": f"order {order} of the transmission error" for order in (1, 2, 3)},
     "transmission_error_span": "peak-to-peak transmission error",
     "unloaded_transmission_error_span": "peak-to-peak unloaded transmission error",
     "face_load_factor": "face load factor K_Hβ",

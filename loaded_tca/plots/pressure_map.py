@@ -12,6 +12,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse, Patch, Rectangle
+from matplotlib.ticker import MaxNLocator
 
 from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.plots.flanks import highest_of_map
@@ -20,6 +21,8 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
 
 PRESSURE = "contact pressure [MPa]"
+TICKS = 5
+"""Steps across a map, at most."""
 
 
 def plot_pressure_map(
@@ -96,6 +99,7 @@ def draw_map(
         axes.add_patch(area)
     axes.plot(0.0, 0.0, "+", color=ACCENT, label="unloaded contact point")
     axes.set_aspect(scale)
+    axes.yaxis.set_major_locator(MaxNLocator(TICKS))  # as many before the layout shrinks the panel as after it
     _label_axes(axes, one, scale, result.gear_pair.pinion.flank.frame)
     return one
 
@@ -117,14 +121,14 @@ def _draw_pressure(axes: Axes, one: PressureMap, highest: float) -> None:
     x, y = one.borders
     void = np.isinf(one.gap)
     ground = colormaps["Greys"].with_extremes(bad=NO_MATERIAL)
-    axes.pcolormesh(y, x, np.where(void, np.nan, 0.0), cmap=ground, vmin=0.0, vmax=1.0)
+    axes.pcolormesh(y, x, np.where(void, np.nan, 0.0), cmap=ground, vmin=0.0, vmax=1.0, rasterized=True)
     if void.any():
         axes.plot([], [], "s", color=NO_MATERIAL, label="no material")
     if not one.pressure.any():
         tell(axes, NO_LOAD)
         return
     loaded = np.where(one.pressure > 0.0, one.pressure, np.nan)
-    axes.pcolormesh(y, x, loaded, cmap=COLOURS, norm=Normalize(0.0, highest))
+    axes.pcolormesh(y, x, loaded, cmap=COLOURS, norm=Normalize(0.0, highest), rasterized=True)
 
 
 def scale_factor(length: float, width: float) -> tuple[float, float]:

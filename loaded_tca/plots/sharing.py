@@ -35,7 +35,15 @@ from loaded_tca.results.pressure_map import slice_middles
 from loaded_tca.results.summary import signed
 from loaded_tca.unloaded.contact_span import contact_span, path_letters, roll_lengths_of_flanks
 
-WHAT_LETTERS_ARE = "A, E: unloaded contact ends at the pinion's root, tip; B, D: a pitch from E, A; C: pitch point"
+WHAT_LETTERS_ARE = {
+    "A": "end at the pinion's root",
+    "E": "end at the pinion's tip",
+    "B": "a pitch from E",
+    "D": "a pitch from A",
+    "C": "pitch point",
+}
+LONGEST_LINE = 88
+"""Characters below an axis."""
 OVER_THE_PATH = "pinion angle from the pitch point of the tooth pair"
 NEAR_LETTERS = 0.03
 """Part of the axis below which two letters stand to either side of their lines."""
@@ -265,14 +273,17 @@ def plot_path_pressure(result: MeshCycle) -> Figure:
         drawn |= bool(np.isfinite(stretches).any())
     if drawn:
         axes.plot([], [], color="black", label="after Hertz", **HERTZ)
-    axes.set_xlabel(f"{OVER_THE_PATH} [deg]\n{WHAT_LETTERS_ARE}")
     axes.set_ylabel("peak pressure [MPa]")
     style.from_zero(axes)
     if not (pressure > 0.0).any():
         style.tell(axes, NO_LOAD)
     ends = contact_span(pair)
     at_root, at_tip = (math.nan if one is None else float(one.pinion_angle) for one in ends)
-    _mark_points(axes, {"C": 0.0, **path_letters(at_root, at_tip, pair.driving * pair.pitch)})
+    marked = {"C": 0.0, **path_letters(at_root, at_tip, pair.driving * pair.pitch)}
+    _mark_points(axes, marked)
+    letters = "; ".join(f"{letter}: {what}" for letter, what in WHAT_LETTERS_ARE.items() if letter in marked)
+    lines = style.parts_of(f"of the unloaded contact {letters}", LONGEST_LINE)
+    axes.set_xlabel("\n".join([f"{OVER_THE_PATH} [deg]", *lines]))
     if result.scene.path_points:
         points = {"C": result.scene.path_points["C"], **roll_lengths_of_flanks(pair, *ends)}
         _draw_table(figure, axes, points, result.scene.path_points, pair.base_radii[0])

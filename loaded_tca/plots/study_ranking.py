@@ -12,7 +12,7 @@ from matplotlib.transforms import Bbox
 from loaded_tca.plots import style
 from loaded_tca.plots.labels import label_of, wrapped_label_of
 from loaded_tca.plots.study_panels import NOTHING, set_study_title, without_unit
-from loaded_tca.plots.style import CHARACTERS_PER_INCH, NOT_REACHED
+from loaded_tca.plots.style import NOT_REACHED
 from loaded_tca.studies.ranking import figure_values, main_figures, rank_variants
 
 if TYPE_CHECKING:
@@ -47,9 +47,7 @@ def plot_study_ranking(
     heads = [wrapped_label_of(name) for name in columns]
     highest = max(head.count("\n") for head in heads) + 1
     width, height = 1.0 + 1.25 * len(columns), LINE * (highest + max(2, len(cells)))
-    why = [part for line in _why_unranked(ranking) for part in style.parts_of(line, int(CHARACTERS_PER_INCH * width))]
-    drawing = Figure(figsize=(width, height + 0.9 + 0.17 * len(why)), layout="constrained")
-    drawing.supxlabel("\n".join(why), x=0.02, ha="left", fontsize="small", parse_math=False)
+    drawing = Figure(figsize=(width, height + 0.6), layout="constrained")
     axes = drawing.add_subplot()
     axes.set_axis_off()
     if cells:
@@ -62,7 +60,7 @@ def plot_study_ranking(
     else:
         style.tell(axes, NOTHING if main_figures(study) else "no variant has any figure")
     if not main_figures(study):
-        set_study_title(drawing, study, None, "no figures")
+        set_study_title(drawing, study, None, "no figures", *_why_unranked(ranking))
         return drawing
     values = figure_values(study, by or main_figures(study)[0])
     what = f"{len(cells)} best of {len(ranked)} variants" if len(cells) < len(ranked) else "variants"
@@ -70,7 +68,7 @@ def plot_study_ranking(
     of = [f"of each figure the {worst} over the torques"] if torque is None and values.shape[1] > 1 else []
     order = "largest" if largest_is_best else "least"
     what = f"{what}, {order} {without_unit(label_of(by or main_figures(study)[0]))} first"
-    set_study_title(drawing, study, values, what, *of)
+    set_study_title(drawing, study, values, what, *of, *_why_unranked(ranking))
     return drawing
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import math
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
 from matplotlib.image import imsave
 from scipy.ndimage import label
 
@@ -42,6 +43,12 @@ HEADROOM = 0.08
 """Part of an axis above the highest curve."""
 CHARACTERS_PER_INCH = 11.5
 """Of a title, at most."""
+LINE_OF_NOTE = 0.16
+"""Height [inch] of a line below a picture."""
+PAD_OF_LEGEND = 0.06
+"""Above and below a legend [inch]."""
+TITLE, NOTE = "title", "note"
+"""Group ids by which the title and the lines below a picture are found in a figure."""
 DOTS_PER_INCH = 120
 
 
@@ -183,16 +190,58 @@ def range_of_positions(result: MeshCycle) -> str:
 
 
 def set_title(figure: Figure, result: MeshCycle, *about: str) -> None:
-    """Write the title of the scene and what is shown."""
+    """Write what is shown over a picture, and below it the scene and the rest."""
     write_title(figure, result.scene.title, *about)
 
 
-def write_title(figure: Figure, title: str, *about: str) -> None:
-    """Write a title and what is shown; taken literally, signs of TeX too."""
-    longest, joined = int(CHARACTERS_PER_INCH * figure.get_figwidth()), ", ".join(about)
-    lines = [title, *([joined] if len(joined) <= longest else about)]
-    wrapped = [part for line in lines for part in parts_of(line, longest)]
-    figure.suptitle("\n".join(wrapped), fontsize="medium", parse_math=False)
+def write_title(figure: Figure, scene: str, shown: str, *rest: str) -> None:
+    """Write what is shown as a title of one line, and below the picture the title of the scene and the rest.
+
+    Of what is longer than a line the last parts, from a comma on, stand below, too. All is taken literally, TeX
+    included. To be called once all else is in the figure, which grows by the lines below.
+    """
+    longest, parts = int(CHARACTERS_PER_INCH * figure.get_figwidth()), shown.split(", ")
+    lengths = np.cumsum([len(part) + 2 for part in parts]) - 2
+    fitting = max(1, int((lengths <= longest).sum()))
+    title = ", ".join(parts[:fitting])
+    size = FontProperties(size="medium").get_size_in_points() * min(1.0, longest / max(1, len(title)))
+    _write_note(figure, [scene, ", ".join(parts[fitting:]), *rest])
+    figure.suptitle(title, fontsize=size, parse_math=False).set_gid(TITLE)
+
+
+def note_of(figure: Figure) -> str:
+    """Return what stands below a picture, in one line."""
+    return next((" ".join(text.get_text().split()) for text in figure.texts if text.get_gid() == NOTE), "")
+
+
+def _write_note(figure: Figure, sentences: Iterable[str]) -> None:
+    """Lines below a picture, for which it grows; legends and whatever else is placed below the panels move up."""
+    longest = int(1.2 * CHARACTERS_PER_INCH * figure.get_figwidth())
+    lines = parts_of("; ".join(filter(None, sentences)), longest)
+    width, height = figure.get_size_inches()
+    note = LINE_OF_NOTE * len(lines)
+    below, rest = note / (height + note), height / (height + note)
+    figure.set_size_inches(width, height + note)
+    engine: Any = figure.get_layout_engine()
+    left, bottom, across, upwards = engine.get()["rect"]
+    if bottom == 0.0:  # else there is room for the legend already
+        bottom = _height_of_legend(figure) / height
+        upwards -= bottom
+    engine.set(rect=(left, below + rest * bottom, across, rest * upwards))
+    for legend in figure.legends:
+        legend.set_bbox_to_anchor((0.0, below, 1.0, rest), figure.transFigure)
+    for text in figure.texts:
+        text.set_y(below + rest * text.get_position()[1])
+    about: dict[str, Any] = {"ha": "center", "va": "bottom", "fontsize": "small", "color": "0.3", "gid": NOTE}
+    figure.text(0.5, 0.2 * below, "\n".join(lines), **about, parse_math=False)
+
+
+def _height_of_legend(figure: Figure) -> float:
+    """Inches that the highest legend of a figure takes; the layout leaves none for one that is anchored."""
+    canvas: Any = FigureCanvasAgg(figure)
+    renderer = canvas.get_renderer()
+    heights = [legend.get_window_extent(renderer).height / figure.get_dpi() for legend in figure.legends]
+    return max(heights) + 2.0 * PAD_OF_LEGEND if heights else 0.0
 
 
 def parts_of(line: str, longest: int) -> list[str]:

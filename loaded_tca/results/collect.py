@@ -32,6 +32,9 @@ def mesh_cycle(
     carried: Carried,
     at_rounded_edges: Mapping[tuple[int, int, int], PeakAtEdge],
     roots: Sequence[RootStress] = (),
+    *,
+    warnings: Sequence[str] = (),
+    date: str = "",
 ) -> MeshCycle:
     """Collect the result of an analysis, its tooth pairs in the order of the mesh.
 
@@ -45,6 +48,10 @@ def mesh_cycle(
         Peaks there by the indices of torque, position and tooth pair, as ``carried`` has them.
     roots : sequence of RootStress
         Of pinion and wheel, where the scene asks for root stress.
+    warnings : sequence of str
+        Sentences of the accuracy warnings of the analysis; each is kept once.
+    date : str
+        Of the analysis, after ISO 8601.
     """
     order = np.argsort(carried.pairs)
     share = carried.share[..., order]
@@ -95,7 +102,9 @@ def mesh_cycle(
         arrays |= root_stress_arrays(pair, roots, arrays["pair"].tolist(), in_contact, stacked)
     return MeshCycle(
         scene=scene,
-        dataset=dataset_of(arrays, version("loaded_tca")),
+        dataset=dataset_of(
+            arrays, version=version("loaded_tca"), date=date, warnings="\n".join(dict.fromkeys(warnings))
+        ),
         path=path,
         paths=tuple(carried.paths[k] for k in order),
         maps=stacked,

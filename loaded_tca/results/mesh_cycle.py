@@ -132,8 +132,12 @@ IN_FILES: dict[str, Part] = {
 """What a file has beside ``QUANTITIES``: the paths, that of the leading contact before those of the pairs; the maps."""
 
 
-def dataset_of(arrays: Mapping[str, Any], version: str) -> xarray.Dataset:
-    """Make the dataset of a mesh cycle of the arrays of all ``QUANTITIES`` and the version that made them.
+ABOUT = ("version", "date", "warnings")
+"""Attributes of the dataset: version of the package, date and accuracy warnings of the analysis, a line each."""
+
+
+def dataset_of(arrays: Mapping[str, Any], **about: str) -> xarray.Dataset:
+    """Make the dataset of a mesh cycle of the arrays of all ``QUANTITIES`` and the attributes of ``ABOUT``.
 
     Those of ``ROOT_PARTS`` are part of it where there are any.
     """
@@ -141,7 +145,7 @@ def dataset_of(arrays: Mapping[str, Any], version: str) -> xarray.Dataset:
 
     variables = variables_of(QUANTITIES | {name: part for name, part in ROOT_PARTS.items() if name in arrays}, arrays)
     coordinates = {name: variables.pop(name) for name in COORDINATES}
-    return xarray.Dataset(variables, coordinates, {"version": version})
+    return xarray.Dataset(variables, coordinates, about)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -198,6 +202,17 @@ class MeshCycle:
     def version(self) -> str:
         """Version of the package that made the result."""
         return str(self.dataset.attrs["version"])
+
+    @property
+    def date(self) -> str:
+        """Date of the analysis after ISO 8601, in UTC; empty if the file of the result does not tell it."""
+        return str(self.dataset.attrs.get("date", ""))
+
+    @property
+    def warnings(self) -> tuple[str, ...] | None:
+        """Sentences of the accuracy warnings of the analysis; None if the file of the result does not tell them."""
+        told = self.dataset.attrs.get("warnings")
+        return None if told is None else tuple(str(told).splitlines())
 
     @cached_property
     def gear_pair(self) -> GearPair:
@@ -400,6 +415,11 @@ class MeshCycle:
 
     def summary(self) -> str:
         """Return the key figures in the engineer's units: about 20 lines, one column per torque."""
+        return summary_text(self.scene.title, self.scope, self.key_figures())
+
+    @property
+    def scope(self) -> str:
+        """Positions, who carries the load, and whether teeth bend, in words."""
         first, last = (math.degrees(self.pinion_angle[end]) for end in (0, -1))
         count = len(self.path)
         where = f"{count} positions, pinion angle {first:.4g} to {last:.4g} deg" if count > 1 else "1 position"
@@ -410,7 +430,7 @@ class MeshCycle:
                 carrying = f"tooth pair {numbers[0]} alone carries the load (load sharing on)"
         else:
             carrying = "one tooth pair carries the whole load (load sharing off)"
-        return summary_text(self.scene.title, f"{where}; {carrying}; {self.bending}", self.key_figures())
+        return f"{where}; {carrying}; {self.bending}"
 
     def save(self, path: FilePath) -> None:
         """Write everything to a NetCDF-3 file, whole or not at all; ``load`` reads it back unchanged.
@@ -459,6 +479,7 @@ class MeshCycle:
             require(*((holds, f"{name}: {file.sizes[name]} long, expected {size}") for name, holds, size in checks))
         except InputError as error:
             raise InputError([f"{path}: not the result of a mesh cycle", *error.problems]) from None
+        about = {"version": "", **{name: str(file.attrs[name]) for name in ABOUT if name in file.attrs}}
         added = {name: file.variables[name] for name in file.data_vars if name not in in_dataset | IN_FILES}
         leading, *paths = (
             ContactPath(**{entry.name: arrays[f"path_{entry.name}"][k] for entry in fields(ContactPath)})
@@ -466,7 +487,7 @@ class MeshCycle:
         )
         return cls(
             scene=scene,
-            dataset=dataset_of(arrays, str(file.attrs.get("version", ""))).assign(added),
+            dataset=dataset_of(arrays, **about).assign(added),
             path=leading,
             paths=tuple(paths),
             maps=maps_from({name: arrays[f"map_{name}"] for name in MAP_PARTS}),

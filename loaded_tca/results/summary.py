@@ -119,15 +119,23 @@ def summary_text(title: str, scope: str, figures: Sequence[Figures]) -> str:
             label.format(edge=edge),
             [" | ".join(shown(entry.get(name, math.nan), name) for name in names) for entry in figures],
         )
-        for label, names in ROWS
-        if not any(part in name for name in names for part in ONLY_IF_KNOWN)
-        or any(math.isfinite(entry.get(name, math.nan)) for entry in figures for name in names)
+        for label, names in known_rows(figures)
     ]
     width = 2 + max(len(cell) for _, cells in rows for cell in cells)
     labels = max(len(label) for label, _ in rows)
     table = [f"{label:<{labels}}" + "".join(f"{cell:>{width}}" for cell in cells) for label, cells in rows]
-    notes = [f"note: {sentence}" for sentence in _notes(figures)]
+    notes = [f"note: {sentence}" for sentence in limits_of(figures)]
     return "\n".join([title or "Loaded tooth contact", scope, *table, *notes])
+
+
+def known_rows(figures: Sequence[Figures]) -> list[tuple[str, tuple[str, ...]]]:
+    """Return label and key figures of the lines that a summary has: those of ``ROWS`` that any torque knows."""
+    return [
+        (label, names)
+        for label, names in ROWS
+        if not any(part in name for name in names for part in ONLY_IF_KNOWN)
+        or any(math.isfinite(entry.get(name, math.nan)) for entry in figures for name in names)
+    ]
 
 
 def kind_of_edge(figures: Sequence[Figures]) -> str:
@@ -164,8 +172,8 @@ def shown(value: float, name: str) -> str:
     return f"{value:.0f}" if abs(value) >= FOUR_DIGITS else f"{value:.4g}"
 
 
-def _notes(figures: Sequence[Figures]) -> Iterator[str]:
-    """Sentences on what limits the figures; none for an ordinary point contact."""
+def limits_of(figures: Sequence[Figures]) -> Iterator[str]:
+    """Yield sentences on what limits the figures; none for an ordinary point contact."""
     apart = [entry["positions"] - entry["positions_in_contact"] for entry in figures]
     yield from _counted(figures, apart, "no tooth pair is in contact")
     for name, sentence in NOTES:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Mapping
 
 import numpy as np
 
-from loaded_tca.errors import AccuracyWarning
+from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.rounded_edges import PeakAtEdge
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact
@@ -79,7 +78,7 @@ def warn_of_accuracy(
             "larger initial separation are not looked for"
         )
     for sentence in told:
-        warnings.warn(sentence, AccuracyWarning, stacklevel=3)
+        give_accuracy_warning(sentence, stacklevel=3)
 
 
 def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact, at_rounded_edge: PeakAtEdge | None) -> list[str]:

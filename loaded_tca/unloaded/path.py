@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any, Generic, TypeVar, overload
@@ -11,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from loaded_tca.arrays import Array, Indices, Mask, finite_row
-from loaded_tca.errors import AccuracyWarning, GeometryError, InputError
+from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning
 from loaded_tca.flanks.base import EDGE_NAMES, outward_normal
 from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
 from loaded_tca.unloaded.arcs import past_tangents
@@ -189,7 +188,7 @@ def warn_of_fillets(pair: GearPair, path: ContactPath, what: str) -> None:
         count = int((held[0] | held[1]).sum())
         where = " or a ".join(dict.fromkeys(flank.frame.edges[root] for flank in flanks))
         message = f"fillet interference: at {count} of {len(path)} positions the {what} lies on a {where}"
-        warnings.warn(message + ", where the flank ends and the fillet begins", AccuracyWarning, stacklevel=3)
+        give_accuracy_warning(message + ", where the flank ends and the fillet begins", stacklevel=3)
 
 
 def default_angles(pair: GearPair) -> Array:

@@ -7,6 +7,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from loaded_tca.errors import InputError
 from loaded_tca.plots import plot_compared_maps, plot_comparison, png_of
 from loaded_tca.results import compare_results
+from tests.samples.pictures import told
 from tests.samples.results import changed, changed_scene, result, with_a_gap
 
 PANELS = ("error", "about_mean", "harmonics", "stiffness", "pressure", "share")
@@ -89,14 +90,14 @@ def test_names_are_taken_literally():
 
 def test_titles_that_differ_give_way_to_the_names():
     other = changed_scene(helical(), {"title": "another"})
-    assert plot_comparison([helical(), helical()]).get_suptitle().startswith(helical().scene.title)
-    assert plot_comparison({"a": helical(), "b": other}).get_suptitle().startswith("a | b\n")
+    assert f"; {helical().scene.title}; " in told(plot_comparison([helical(), helical()]))
+    assert "; a | b; " in told(plot_comparison({"a": helical(), "b": other}))
 
 
 @pytest.mark.parametrize("plot", [plot_comparison, plot_compared_maps])
 def test_torque_that_is_not_shared_is_told(plot):
     comparison = compare_results([spur(), helical()])
-    assert "pinion torque 130 N m" in plot(comparison, 130e3).get_suptitle()
+    assert "pinion torque 130 N m" in told(plot(comparison, 130e3))
     with pytest.raises(InputError, match="torque: 40 N m; the results share 130 N m"):
         plot(comparison, 40e3)
 

@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 from loaded_tca import read_scene
 from loaded_tca.errors import InputError
 from loaded_tca.plots import plot_before_and_after, plot_peak_to_peak_over_torque, plot_robustness, save_figure
+from tests.samples.pictures import told
 from tests.samples.results import SCENES
 
 TORQUES = np.array([100e3, 300e3])
@@ -62,7 +63,7 @@ def test_lines_are_means_and_bands_the_range_of_the_samples():
             border = band.get_paths()[0].vertices[:, 1]
             assert_allclose([border.min(), border.max()], [of_design.min(), of_design.max()], atol=1e-9 * values.max())
     assert_allclose(span.lines[0].get_xdata(), [100.0, 300.0])
-    assert "range of 3 samples" in figure.get_suptitle()
+    assert "range of 3 samples" in told(figure)
     assert_allclose(error.lines[0].get_xdata()[[0, -1]], [-180.0 / 34, 180.0 / 34])  # a pitch of the pinion
 
 
@@ -109,8 +110,8 @@ def test_every_picture_is_drawn(plot, one, tmp_path):
     figure = plot(one)
     save_figure(figure, tmp_path / "picture.png")
     assert (tmp_path / "picture.png").stat().st_size > 10_000
-    assert figure.get_suptitle().startswith(f"{SCENE.title}\n")
-    assert ("samples" in figure.get_suptitle()) == (one.sizes["sample"] > 1)
+    assert f"; {SCENE.title}" in told(figure)
+    assert ("samples" in told(figure)) == (one.sizes["sample"] > 1)
 
 
 @pytest.mark.parametrize(

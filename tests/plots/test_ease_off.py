@@ -9,13 +9,14 @@ from loaded_tca.plots import save_figure
 from loaded_tca.plots.ease_off import plot_ease_off
 from loaded_tca.plots.vh_check import plot_vh_check
 from tests.samples.gear_pairs import gear_pair
+from tests.samples.pictures import told
 
 TWISTED = FlankModifications(twist=0.020, lead_crowning=0.004)
 
 
 def written(figure):
     figure.draw_without_rendering()
-    found = [figure.get_suptitle(), figure.get_supxlabel(), figure.get_supylabel()]
+    found = [told(figure), figure.get_supxlabel(), figure.get_supylabel()]
     for axes in figure.axes:
         found += [axes.get_title(), axes.get_xlabel(), axes.get_ylabel()]
         found += [text.get_text() for text in axes.texts]
@@ -26,7 +27,7 @@ def written(figure):
 def test_ease_off_picture_has_corner_values_and_coefficients(tmp_path):
     figure = plot_ease_off(ease_off_map(gear_pair(TWISTED)), "Twisted $pair")
     texts = written(figure)
-    assert texts[0] == "Twisted $pair\nease-off of the pinion against the conjugate of its mating flank"
+    assert texts[0] == "ease-off of the pinion against the conjugate of its mating flank; Twisted $pair"
     corners = 1e3 * ease_off_map(gear_pair(TWISTED)).corners
     assert {f"{corner:.1f}" for corner in corners.ravel()} <= set(texts)
     assert texts[texts.index("twist [µm]") + 1] == "20"
@@ -77,7 +78,7 @@ def test_vh_picture_has_a_cell_for_each_pair_of_errors_in_their_order(check, tmp
     assert [axes.get_ylabel() for axes in cells[:, 0]] == ["0.001", "0"]  # upwards
     assert [axes.get_xlabel() for axes in cells[-1]] == ["-0.001", "0", "0.02"]
     texts = written(figure)
-    assert texts[0].startswith("A pair\ncontact pattern on the pinion, marking compound 6.35 µm")
+    assert texts[0] == "contact pattern on the pinion, marking compound 6.35 µm, no load; A pair"
     assert texts[1:3] == ["out-of-plane [rad]", "in-plane [rad]"]
     save_figure(figure, tmp_path / "vh_check.png")
     assert (tmp_path / "vh_check.png").stat().st_size > 10_000

@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.errors import InputError
 from loaded_tca.plots import plot_first_order_scatter
 from loaded_tca.results import key_figure_slopes
+from tests.samples.pictures import told
 from tests.samples.results import result
 from tests.samples.study_datasets import dataset
 
@@ -51,8 +52,8 @@ def test_linear_scatter_is_that_of_first_order(torque):
     area = sum(bar.get_width() * bar.get_height() for bar in axes.patches)
     assert_allclose(area, 1.0)
     assert axes.get_xlabel() == "peak pressure [MPa]"
-    assert "scatter by 2 keys" in figure.get_suptitle()
-    assert "500 variants: 500 ok" in figure.get_suptitle()
+    assert "scatter by 2 keys" in told(figure)
+    assert "500 variants: 500 ok" in told(figure)
 
 
 @pytest.mark.parametrize(

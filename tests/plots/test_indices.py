@@ -9,6 +9,7 @@ import pytest
 from loaded_tca import plots
 from loaded_tca.errors import InputError
 from tests.plots import test_design, test_first_order, test_loaded_vh_check
+from tests.samples.pictures import told
 from tests.samples.results import result
 
 CALLED_WITH = {
@@ -55,4 +56,4 @@ def test_every_index_that_the_result_does_not_have_is_told_at_once():
 
 
 def test_index_of_numpy_is_one():
-    assert drawn_with("plot_contact_path")(torque=np.int64(0)).get_suptitle()
+    assert told(drawn_with("plot_contact_path")(torque=np.int64(0)))

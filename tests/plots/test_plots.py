@@ -21,6 +21,7 @@ from loaded_tca.plots import (
 from loaded_tca.plots.style import over_a_stretch
 from loaded_tca.results.key_figures import ARCSEC
 from loaded_tca.results.stress_below import stress_below
+from tests.samples.pictures import told
 from tests.samples.results import PER_PAIR, PER_POSITION, changed, changed_scene, result, with_a_gap
 
 PLOTS = [plot_contact_path, plot_peak_pressure, plot_pressure_map, plot_transmission_error]
@@ -51,7 +52,7 @@ CASES = {
 
 def texts(figure):
     figure.draw_without_rendering()
-    found = [figure.get_suptitle()]
+    found = [told(figure)]
     for axes in figure.axes:
         found += [axes.get_title(), axes.get_xlabel(), axes.get_ylabel()]
         found += [child.get_ylabel() for child in axes.child_axes]

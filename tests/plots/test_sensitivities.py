@@ -20,6 +20,7 @@ from loaded_tca.plots.flanks import picture_of
 from loaded_tca.plots.removal import removal_weights
 from loaded_tca.results import key_figure_slopes
 from loaded_tca.results.key_figures import mean_over_a_pitch
+from tests.samples.pictures import told
 from tests.samples.results import result
 
 TOLERANCES = {
@@ -60,7 +61,7 @@ def test_bars_of_the_tornado_are_sensitivity_times_tolerance_the_longest_on_top(
         assert low > high  # the first on top
     units = [axes.get_xlabel().partition("[")[2] for axes in panels]
     assert units == ["µm]", "µm]", "µm]", "", "MPa]"]
-    assert "40 N m (number 1 of 2)" in figure.get_suptitle()
+    assert "40 N m (number 1 of 2)" in told(figure)
 
 
 def test_tornado_of_many_keys_shows_the_longest_bars(monkeypatch):
@@ -69,7 +70,7 @@ def test_tornado_of_many_keys_shows_the_longest_bars(monkeypatch):
     (axes,) = figure.axes
     longest = np.sort(np.abs(key_figure_slopes(found())["peak_pressure_MPa"][1] * SPREAD))[:-3:-1]
     assert_allclose(np.abs([bar.get_width() for bar in axes.containers[0]]), longest, rtol=1e-12)
-    assert "2 of 5 keys" in figure.get_suptitle()
+    assert "2 of 5 keys" in told(figure)
 
 
 def test_tornado_leaves_out_figures_that_are_not_known():
@@ -99,7 +100,7 @@ def test_of_many_curves_those_that_vary_most_are_drawn(monkeypatch):
     swings = np.ptp(found().transmission_error[1] * SPREAD, axis=0)
     (line,) = figure.axes[0].lines
     assert_allclose(np.ptp(line.get_ydata()), length(found()) * swings.max(), rtol=1e-9)
-    assert "1 of 5 keys" in figure.get_suptitle()
+    assert "1 of 5 keys" in told(figure)
 
 
 def test_band_is_the_root_of_the_sum_of_the_squares():
@@ -118,13 +119,13 @@ def test_band_is_the_root_of_the_sum_of_the_squares():
         error = length(found()) * found().result.transmission_error[torque]
         assert_allclose(absolute.lines[0].get_ydata(), error, rtol=1e-12)
         assert "[µm]" in absolute.get_ylabel()
-    assert "tolerances of 5 keys, to first order" in figure.get_suptitle()
+    assert "tolerances of 5 keys, to first order" in told(figure)
 
 
 def test_band_of_one_torque_is_that_one():
     figure = plot_transmission_error_band(found(), TOLERANCES, torque=0)
     assert len(figure.axes) == 2
-    assert "40 N m" in figure.get_suptitle()
+    assert "40 N m" in told(figure)
 
 
 @pytest.mark.parametrize("gear", ["pinion", "wheel"])
@@ -150,7 +151,7 @@ def test_picture_of_removal_has_both_flanks_and_its_unit():
     assert [len(one) for one in shown] == [1, 1]
     assert all(one[0].get_array().max() > 0.0 for one in shown)
     assert "[µm]" in figure.axes[2].get_ylabel()
-    assert "260 N m (the largest of 2)" in figure.get_suptitle()
+    assert "260 N m (the largest of 2)" in told(figure)
 
 
 CASES = {
@@ -170,7 +171,7 @@ def test_every_picture_of_every_case_is_drawn(case, plot, tmp_path):
     figure = plot(found(*CASES[case], keys))
     save_figure(figure, tmp_path / "picture.png")
     assert (tmp_path / "picture.png").stat().st_size > 10_000
-    assert figure.get_suptitle().startswith(found(*CASES[case], keys).result.scene.title)
+    assert f"; {found(*CASES[case], keys).result.scene.title}" in told(figure)
 
 
 def test_without_load_there_is_nothing_to_draw():

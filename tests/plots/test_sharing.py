@@ -21,6 +21,7 @@ from loaded_tca.plots import (
     sharing,
 )
 from loaded_tca.unloaded import contact_span
+from tests.samples.pictures import told
 from tests.samples.results import changed, changed_scene, result, with_a_gap
 
 
@@ -160,9 +161,9 @@ def test_orders_of_the_tooth_mesh_are_whole_numbers():
 
 
 def test_positions_too_few_for_any_order_are_told():
-    for positions, told in ((3, True), (4, False)):
+    for positions, expected in ((3, True), (4, False)):
         axes = plot_harmonics(result("mesh_cycle_spur", positions=positions, torques=(40.0,))).axes[0]
-        assert any("the first needs 4 positions" in text.get_text() for text in axes.texts) is told
+        assert any("the first needs 4 positions" in text.get_text() for text in axes.texts) is expected
 
 
 def test_legend_of_the_load_shares_covers_no_curve():
@@ -273,27 +274,37 @@ def test_full_mesh_has_every_loaded_pair_where_it_lies_with_its_share(name, torq
             assert text.get_text().startswith(f"pair {cycle.pair[column]:+d}:".replace("+0", "0"))
             radius, axial = (getattr(cycle.paths[column], f"{gear}_{part}")[1] for part in ("radius", "axial"))
             assert_allclose(text.xy, frame.to_picture(radius, axial), atol=1e-6)
-    assert "position 2 of 5: pinion angle" in figure.get_suptitle()
+    assert "position 2 of 5: pinion angle" in told(figure)
 
 
 def test_full_mesh_is_that_of_the_peak_pressure_unless_told():
     cycle = shared()
-    assert f"position {cycle.peak_contact(0)[0] + 1} of 5" in plot_full_mesh(cycle).get_suptitle()
+    assert f"position {cycle.peak_contact(0)[0] + 1} of 5" in told(plot_full_mesh(cycle))
     with pytest.raises(IndexError, match="no tooth pair is in contact"):
         plot_full_mesh(with_a_gap(), 1)
 
 
 def test_full_mesh_without_load_says_so():
     figure = plot_full_mesh(result(torques=(0.0,), positions=2))
-    assert "no load, no pressure on the flanks" in figure.get_suptitle()
+    assert "no load, no pressure on the flanks" in told(figure)
     assert len(figure.axes) == 2  # no bar of colours
+
+
+def test_letters_that_are_not_drawn_are_not_explained():
+    """Of the spiral bevel pair more than one pair is in contact all the time: no B, no D."""
+    axes = plot_path_pressure(result("mesh_cycle_bevel", positions=3)).axes[0]
+    drawn = {text.get_text() for text in axes.texts}
+    label = axes.get_xlabel().replace("\n", " ")
+    assert drawn == {"A", "C", "E"}
+    assert {letter for letter in "ABCDE" if f"{letter}: " in label} == drawn
 
 
 def test_letters_say_what_they_are_and_do_not_cover_each_other():
     figure = plot_path_pressure(shared())
     figure.draw_without_rendering()
     axes, _ = figure.axes
-    assert sharing.WHAT_LETTERS_ARE in axes.get_xlabel()
+    label = axes.get_xlabel().replace("\n", " ")
+    assert all(f"{letter}: {what}" in label for letter, what in sharing.WHAT_LETTERS_ARE.items())
     boxes = sorted((text.get_window_extent() for text in axes.texts), key=lambda box: box.x0)
     assert len(boxes) == 5
     assert all(one.x1 <= other.x0 for one, other in pairwise(boxes))

@@ -7,6 +7,7 @@ from loaded_tca.contact import subsurface_stress
 from loaded_tca.errors import InputError
 from loaded_tca.plots.style import save_figure
 from loaded_tca.plots.subsurface import plot_subsurface
+from tests.samples.pictures import told
 
 DEPTHS = np.linspace(0.0, 2.0, 21)
 
@@ -22,7 +23,7 @@ def test_picture_tells_what_and_where_in_its_units(quantity, name, tmp_path):
     stress = circle()
     figure = plot_subsurface(stress, quantity)
     axes = figure.axes[0]
-    assert name in figure.get_suptitle()
+    assert name in told(figure)
     assert axes.get_ylabel() == "depth [mm]"
     assert "[MPa]" in figure.axes[1].get_ylabel()
     label = axes.get_legend_handles_labels()[1][0]

@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.plots import save_figure
 from loaded_tca.plots.three_d import plot_teeth, show_teeth
+from tests.samples.pictures import told
 from tests.samples.results import changed_scene, result, with_a_gap
 
 
@@ -23,7 +24,7 @@ def test_picture_says_units_load_and_place_and_is_saved(name, tmp_path):
     axes = axes_of(figure)
     assert [axes.get_xlabel(), axes.get_ylabel(), axes.get_zlabel()] == ["x [mm]", "y [mm]", "z [mm]"]
     assert figure.axes[1].get_ylabel() == "contact pressure [MPa]"
-    title = figure.get_suptitle()
+    title = told(figure)
     assert "pinion torque" in title
     assert "pinion angle" in title
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
@@ -73,7 +74,7 @@ def test_colours_of_the_teeth_end_at_the_highest_pressure_of_their_position():
 def test_picture_without_load_has_no_pressure():
     figure = plot_teeth(result(torques=(0.0,), positions=2))
     assert len(figure.axes) == 1
-    assert "no load, no pressure" in figure.get_suptitle()
+    assert "no load, no pressure" in told(figure)
 
 
 def test_title_is_taken_literally():

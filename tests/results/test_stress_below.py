@@ -12,6 +12,7 @@ from loaded_tca.output.subsurface_files import STRESSES, subsurface_csv, write_s
 from loaded_tca.plots import plot_stress_below
 from loaded_tca.results.files import read_dataset
 from loaded_tca.results.stress_below import NAMES, depth_of_largest, stress_below
+from tests.samples.pictures import told
 from tests.samples.results import changed, changed_scene, result, with_a_gap
 
 COARSE = 0.02  # 20 cells across the box: pressure within 1 %, shear with it
@@ -205,7 +206,7 @@ def test_table_starts_at_the_pressure_and_holds_the_largest():
 @pytest.mark.parametrize("quantity", NAMES)
 def test_picture_names_scene_load_and_place(quantity):
     below = stress_below(shared(), pair=0)
-    title = plot_stress_below(below, quantity).get_suptitle()
+    title = told(plot_stress_below(below, quantity))
     for words in (
         below.result.scene.title,
         NAMES[quantity],

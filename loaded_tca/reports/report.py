@@ -1,0 +1,79 @@
+"""Reports of results, studies and designs as one HTML file that needs nothing else."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from loaded_tca.errors import InputError
+from loaded_tca.reports import page
+from loaded_tca.reports.design_page import design_content
+from loaded_tca.reports.result_page import result_content
+from loaded_tca.reports.study_page import study_content
+from loaded_tca.results.files import FilePath, make_directory, replacing
+from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.studies.design import DesignResult
+
+
+def write_html_report(subject: Any, path: FilePath, *, date: str | None = None) -> Path:
+    """Write the report of a result, a study or a design: one HTML file with pictures, which needs nothing else.
+
+    It tells what was asked, the geometry, the load cases, the key figures with their units and how accurate they are,
+    every accuracy warning with its meaning, and the scene file. It prints on A4. The same subject and date give the
+    same file.
+
+    Parameters
+    ----------
+    subject : MeshCycle, xarray.Dataset or DesignResult
+        A result; a study as :func:`loaded_tca.studies.run_study` returns it; a design.
+    path : str or path
+        Of the file; its directory is made if it does not exist.
+    date : str, optional
+        Of the analysis; default: of a result its own, of a study or design today's.
+
+    Returns
+    -------
+    pathlib.Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        If the subject is none of these, jinja2 is not installed, or the file cannot be written, which leaves what was
+        there before.
+
+    Examples
+    --------
+    >>> from loaded_tca import analyse, parse_scene
+    >>> write_html_report(analyse(scene), "report.html")  # doctest: +SKIP
+    PosixPath('report.html')
+    """
+    page.require_jinja2()
+    if isinstance(subject, MeshCycle):
+        template, content = "result.html.j2", result_content(subject)
+        date = date or subject.date
+    elif isinstance(subject, DesignResult):
+        template, content = "design.html.j2", design_content(subject)
+    elif getattr(subject, "attrs", {}).get("kind") == "study":
+        template, content = "study.html.j2", study_content(subject)
+    else:
+        raise InputError(f"report: of a {type(subject).__name__}; allowed a result, a study or a design")
+    content = {"version": version("loaded_tca"), **content}
+    content["date"] = _shown(date or datetime.now(UTC).isoformat(timespec="seconds"))
+    text = page.render(template, **content)
+    target = Path(path)
+    make_directory(target.parent)
+    with replacing(target) as temporary:
+        temporary.write_text(text, encoding="utf-8", newline="\n")
+    return target
+
+
+def _shown(date: str) -> str:
+    """A date as a reader takes it: to the minute; any other text as it is."""
+    try:
+        when = datetime.fromisoformat(date)
+    except ValueError:
+        return date
+    return f"{when:%Y-%m-%d %H:%M} {when.tzname() or ''}".strip()

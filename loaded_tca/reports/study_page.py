@@ -1,0 +1,138 @@
+"""What the report of a study tells."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from loaded_tca.plots import plot_study
+from loaded_tca.plots.labels import label_of
+from loaded_tca.reports.page import Table, pictures_of
+from loaded_tca.reports.result_page import explained, scene_content
+from loaded_tca.results.summary import shown
+from loaded_tca.scene import parse_scene
+from loaded_tca.studies.ranking import figure_values, main_figures, nominal_variant, rank_variants, varied_keys
+from loaded_tca.studies.summary import MAIN, PERCENTILES
+
+if TYPE_CHECKING:
+    import xarray
+
+MOST_ROWS = 30
+"""Variants of the ranking."""
+WAYS = {"table": "given one by one", "factor": "every combination", "distribution": "distributed"}
+CAPTIONS = {
+    "study_lines": "The figure over the values of the first key, a line for each value of the second.",
+    "study_heat_map": "The figure over two keys, the best cell framed. Crosses: no variant has the figure.",
+    "study_histogram": "How the figure scatters over the variants.",
+    "study_over_torque": "Median and scatter over the torque.",
+    "study_scatter_matrix": "Figures over the keys, a dot for each variant.",
+}
+"""How the pictures are read whose names begin so."""
+
+
+def study_content(study: xarray.Dataset) -> dict[str, Any]:
+    """Return what the template of a study takes.
+
+    Parameters
+    ----------
+    study : xarray.Dataset
+        What :func:`loaded_tca.studies.run_study` returns.
+    """
+    scene = parse_scene(study.attrs["scene_toml"], source="scene_toml")
+    lines = Counter(line for told in study["warnings"].values.tolist() for line in told.splitlines())
+    by_reason: dict[str, list[str]] = {}
+    for line in lines:  # at which position differs from variant to variant
+        by_reason.setdefault(line.split(" (at ")[0], []).append(line)
+    concerned = {
+        reason: sum(any(line in told.splitlines() for line in found) for told in study["warnings"].values.tolist())
+        for reason, found in by_reason.items()
+    }
+    variants = study.sizes["sample"]
+    figures = plot_study(study)
+    figures.pop("study_ranking")  # a table of the page
+    return {
+        "title": scene.title or "Study",
+        "analysed_by": str(study.attrs.get("version", "")),
+        "statuses": Counter(study["status"].values.tolist()).most_common(),
+        "variants": variants,
+        **scene_content(scene),
+        "varied": _varied(study),
+        "scatter": [*_scatter(study)],
+        "best_and_worst": _best_and_worst(study),
+        "ranking": _ranking(study),
+        "most_rows": MOST_ROWS,
+        "failures": Counter(
+            f"{status}: {' '.join(reason.split())}"
+            for status, reason in zip(study["status"].values.tolist(), study["reason"].values.tolist(), strict=True)
+            if status != "ok"
+        ).most_common(),
+        "warnings": explained([f"{reason} ({count} of {variants} variants)" for reason, count in concerned.items()]),
+        "pictures": pictures_of(figures, CAPTIONS, scene.title),
+    }
+
+
+def _varied(study: xarray.Dataset) -> Table:
+    """What varies, how, and over which values."""
+    rows = []
+    for key in varied_keys(study):
+        values = study[key].values
+        known = np.unique(values)
+        span = f"{_cell(known[0])} to {_cell(known[-1])}" if known.dtype.kind in "fiu" else ", ".join(map(str, known))
+        way = WAYS.get(study[key].attrs.get("sampling", "table"), "")
+        rows.append((label_of(key), key, way, f"{len(known)}", span))
+    return Table(tuple(rows), ("what varies", "key", "how", "values", "from, to"), of_words=True)
+
+
+def _scatter(study: xarray.Dataset) -> Iterator[Table]:
+    """Percentiles of the main figures over the variants, a table for each torque."""
+    if not main_figures(study):
+        return
+    names = dict.fromkeys([*main_figures(study), *(name for name in MAIN if name in study)])
+    torques = study["torque"].values if "torque" in study.coords else [None] * study.sizes["torque"]
+    for k, torque in enumerate(torques):
+        rows = []
+        for name in names:
+            values = figure_values(study, name)[:, k]
+            values = values[np.isfinite(values)]
+            if values.size:
+                at = np.percentile(values, [*PERCENTILES.values()]).tolist()
+                rows.append((label_of(name), *(shown(value, name) for value in at)))
+        under = "" if torque is None else f"under {1e-3 * torque:.4g} N m"
+        if rows:
+            yield Table(tuple(rows), (under, *PERCENTILES))
+
+
+def _best_and_worst(study: xarray.Dataset) -> Table | None:
+    """Keys and figures of the best and the worst variant, and of that with the values of the scene if there is one."""
+    ranking = rank_variants(study)
+    ranked = ranking[ranking["rank"].notna()]
+    if ranked.empty:
+        return None
+    variants = {"best": ranked.iloc[0], "worst": ranked.iloc[-1]}
+    nominal = nominal_variant(study)
+    if nominal is not None:
+        variants["as the scene"] = ranking[ranking["sample"] == nominal].iloc[0]
+    names = ["sample", *varied_keys(study), *main_figures(study)]
+    rows = [(label_of(name), *(_cell(one[name]) for one in variants.values())) for name in names]
+    return Table(tuple(rows), ("", *variants))
+
+
+def _ranking(study: xarray.Dataset) -> Table | None:
+    """The variants, the best first."""
+    ranking = rank_variants(study)
+    ranked = ranking[ranking["rank"].notna()].head(MOST_ROWS)
+    columns = ["rank", "sample", *varied_keys(study), *main_figures(study), "warnings"]
+    rows = [tuple(_cell(value) for value in row) for row in ranked[columns].to_numpy().tolist()]
+    return Table(tuple(rows), tuple(_heads(columns))) if rows else None
+
+
+def _heads(columns: Sequence[str]) -> Iterator[str]:
+    return (label_of(name) if name != "sample" else "variant" for name in columns)
+
+
+def _cell(value: Any) -> str:
+    """A number as tables have it, a word as it is."""
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,117 @@
+"""Accuracy warnings in plain words: what each means for the numbers, and what to do."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Explanation(NamedTuple):
+    """What is to be known of an accuracy warning; code in backticks.
+
+    Attributes
+    ----------
+    words : str
+        A part of its sentence that no other one has.
+    meaning, advice : str
+    """
+
+    words: str
+    meaning: str
+    advice: str
+
+
+EXPLANATIONS = (
+    Explanation(
+        "the contact reaches an edge of a flank",
+        "a tip or face end ends the contact; theory has an infinite pressure at a sharp edge",
+        "read `peak_pressure`, not `edge_pressure` or the cells of the map; `free_edges = true`; more crowning, end or "
+        "tip relief on the gears",
+    ),
+    Explanation(
+        "the pressure at a rounded edge has an estimated error",
+        "two edges that meet askew, or a rounding much smaller than the contact, ask for more columns than are made",
+        "read `edge_pressure` with its error; a larger radius",
+    ),
+    Explanation(
+        "the contact lies across the start of a linear relief",
+        "the flank has a relief start there",
+        '`tip_relief_form = "parabolic"`, or read `peak_pressure`, not the cells of the map',
+    ),
+    Explanation(
+        "the estimated error stays above the accuracy",
+        "the finest grid allowed is too coarse for the accuracy asked for",
+        "a larger `accuracy`, or `cells`",
+    ),
+    Explanation(
+        "the contact reaches the box of its grid",
+        "the grid ends before the contact does, after it was made larger eight times: the pressure at its border is "
+        "that of a body ending there",
+        "less torque, or a higher `max_pressure_MPa`: a contact that outgrows its estimate 25 times over is no small "
+        "area of the flank",
+    ),
+    Explanation(
+        "is next to no torque",
+        "forces below 1e-12 E* m_n² (1 µN at module 3) deform flanks by what rounding puts into their gaps",
+        "nothing, or a torque that is one",
+    ),
+    Explanation(
+        "the twist of the gear bodies about their bores",
+        "with teeth that bend: bores are held rigid, and small ones let the whole body turn",
+        "the `bore_diameter_mm` of the hub or shaft seat; of a pinion in one piece with its shaft none (0.55 of the "
+        "root diameter)",
+    ),
+    Explanation(
+        "fewer than 8 cells lie across the contact",
+        "the grid is wide for its contact: a pair that barely carries load, or few `cells`",
+        "nothing if its `load_share` is small; else more `cells`, or `accuracy`",
+    ),
+    Explanation(
+        "the contact is so wide that the tooth is no half-space",
+        "half its width is above a quarter of the module",
+        "an estimate, all of it: less torque, or finite elements",
+    ),
+    Explanation(
+        "the deflection under load is up to",
+        "only pairs with a smaller one share the load; another one may come to bear under so much load",
+        "less torque; else read the shares as those of too few pairs",
+    ),
+    Explanation(
+        "fillet interference",
+        "the mating gear's tip touches where the flank ends and the fillet begins",
+        "tip diameters, profile shifts, or the cutter; `check` tells the diameters",
+    ),
+    Explanation(
+        "of the flank uncovered",
+        "measured points do not reach the edges",
+        "results near these edges rest on no measurement",
+    ),
+    Explanation("misses the flank by", "the fit is coarse", "more points"),
+    Explanation(
+        "is its unit right?",
+        "modifications are some hundredths of a millimetre",
+        "the amount in the unit of its key: um in scenes, mm in Python",
+    ),
+    Explanation(
+        "it bends like the tooth without them",
+        "the modified tooth cannot be meshed, for instance where it is pointed; its contact has the modifications, its "
+        "bending has not",
+        "smaller amounts; the compliance is that of a tooth a few hundredths of a millimetre thicker",
+    ),
+    Explanation(
+        "across its face elements are",
+        "the face is so wide that few elements lie across it",
+        "read root stress under a contact of the whole face; a contact that covers a part of it has more",
+    ),
+)
+"""Of every accuracy warning of an analysis."""
+
+
+def explanation_of(sentence: str) -> Explanation | None:
+    """Return what is to be known of an accuracy warning; None of one that another package gave.
+
+    Examples
+    --------
+    >>> explanation_of("the contact reaches the box of its grid (at 1 of 9 pressure maps; the first: ...)").advice[:11]
+    'less torque'
+    """
+    return next((one for one in EXPLANATIONS if one.words in sentence), None)

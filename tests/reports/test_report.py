@@ -1,0 +1,519 @@
+"""Reports: all that a customer asks for is on one page, and the page needs nothing else."""
+
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray
+
+from loaded_tca import analyse, cli, load_result, read_scene
+from loaded_tca.errors import AccuracyWarning, InputError
+from loaded_tca.plots import plot_transmission_error
+from loaded_tca.plots.labels import label_of
+from loaded_tca.reports import result_page, write_html_report
+from loaded_tca.reports.page import Table, parts_of, tables_of
+from loaded_tca.results.explanations import EXPLANATIONS, explanation_of
+from loaded_tca.results.summary import known_rows, shown
+from loaded_tca.studies.design import DesignResult
+from tests.samples.results import SCENES, changed, changed_scene, result
+from tests.samples.study_datasets import grid, sampled
+
+ROOT = Path(__file__).parents[2]
+TORQUES = (20.0, 80.0, 130.0)
+WHEN = "2026-03-04T05:06:07+00:00"
+VOID = {"meta", "br", "link"}
+
+
+class Page(HTMLParser):
+    """Texts, tables, attributes of all elements of a page; fails where elements do not close in order."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.open, self.attributes, self.text, self.tables, self.headings = [], [], [], [], []
+        self.feed(Path(path).read_text(encoding="utf-8"))
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        self.attributes += [(tag, name, value) for name, value in attrs]
+        if tag not in VOID:
+            self.open.append(tag)
+        if tag == "table":
+            self.tables.append([])
+        elif tag == "tr":
+            self.tables[-1].append([])
+        elif tag in ("td", "th"):
+            self.tables[-1][-1].append("")
+
+    def handle_startendtag(self, tag, attrs):
+        self.attributes += [(tag, name, value) for name, value in attrs]
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        data = data.replace("\N{NO-BREAK SPACE}", " ")
+        if {"td", "th"} & set(self.open):
+            self.tables[-1][-1][-1] += data
+        if "style" not in self.open:
+            self.text.append(data)
+        if self.open and self.open[-1] in ("h1", "h2"):
+            self.headings.append(data)
+
+    @property
+    def words(self):
+        return " ".join("".join(self.text).split())
+
+    def rows(self, label):
+        return [row for table in self.tables for row in table if row and row[0] == label]
+
+
+def cycle():
+    return result("mesh_cycle_helical", 5, TORQUES)
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    """The report of a mesh cycle under three torques, with contacts at edges."""
+    return write_html_report(cycle(), tmp_path_factory.mktemp("report") / "cycle.html", date=WHEN)
+
+
+@pytest.fixture(scope="module")
+def page(path):
+    return Page(path)
+
+
+@pytest.fixture
+def with_one_picture(monkeypatch):
+    """Of a result: most of the time goes into pictures."""
+    monkeypatch.setattr(
+        result_page, "result_figures", lambda result, **_: {"transmission_error": plot_transmission_error(result)}
+    )
+
+
+@pytest.fixture
+def written(tmp_path, with_one_picture):  # noqa: ARG001
+    def written(subject, **options):
+        return Page(write_html_report(subject, tmp_path / "report.html", **options))
+
+    return written
+
+
+def test_report_has_its_sections_in_order(page):
+    sections = ["Load cases", "What was asked", "Geometry", "Key figures", "Accuracy", "Accuracy warnings", "Pictures"]
+    assert page.headings == [cycle().scene.title, *sections, "Appendix: scene file"]
+
+
+def test_every_figure_of_the_summary_is_there_with_its_unit(page):
+    figures = cycle().key_figures()
+    names = [name for _, names in known_rows(figures) for name in names if name != "pinion_torque_Nm"]
+    assert len(names) > 30
+    for name in names:
+        values = [shown(one[name], name) for one in figures]
+        assert values in [row[1 : 1 + len(TORQUES)] for row in page.rows(label_of(name))], name
+        unit = re.search(r"_(MPa|deg|mm|um|arcsec|N)$", name)
+        assert unit is None or label_of(name).endswith("]")
+
+
+def test_every_torque_has_its_load_case(page):
+    (table,) = [table for table in page.tables if table[0][0] == "pinion torque [N m]" and len(table[0]) > 4]
+    assert [row[0] for row in table[1:]] == ["20", "80", "130"]
+    force = table[0].index("normal force F_bn [N]")
+    mesh = cycle().scene.mesh()
+    assert [row[force] for row in table[1:]] == [f"{mesh.normal_force(1e3 * torque):.1f}" for torque in TORQUES]
+
+
+def test_geometry_is_that_of_the_standards(page, written):
+    """The reference diameter is m_n z/cos beta."""
+    (diameters,) = page.rows("reference diameter d [mm]")
+    assert [float(cell) for cell in diameters[1:]] == pytest.approx(
+        [3.0 * teeth / np.cos(np.radians(15.0)) for teeth in (34, 57)], abs=5e-5
+    )
+    assert "Geometry (ISO 21771)" in page.words
+    bevel = written(result("spiral_bevel", 1))
+    assert "Geometry (ISO 23509)" in bevel.words
+    assert bevel.rows("cone distances R_e, R_m, R_i [mm]")
+
+
+def test_scene_file_is_there_in_full(page):
+    assert " ".join(cycle().scene.to_toml().split()) in page.words
+
+
+def test_mesh_dependent_figures_are_marked(page):
+    (edge,) = page.rows("edge pressure [MPa]")
+    assert edge[-1] == "mesh-dependent at sharp edges: not for rating"
+    (load,) = page.rows("line load at largest force [N/mm]")
+    assert load[-1].startswith("mesh-dependent")
+    (peak,) = page.rows("peak pressure [MPa]")
+    assert peak[-1].startswith("mesh-independent")
+    marked = [value for tag, name, value in page.attributes if (tag, name) == ("tr", "class")]
+    assert marked == ["doubt"] * 2
+
+
+def test_pressure_at_a_rounded_edge_is_told_with_its_error(written):
+    figures = cycle()
+    known = np.isfinite(figures.edge_pressure)
+    one = changed(figures, edge_is_rounded=known, edge_pressure_error=np.where(known, 0.0123, np.nan))
+    page = written(one)
+    (edge,) = page.rows("edge pressure [MPa]")
+    assert edge[-1] == "rounded edge: with the error below"
+    (row,) = page.rows("estimated error of the pressure at rounded edges, largest")
+    held = known.any(axis=(1, 2))
+    assert row[1:] == ["1.23%" if one else "-" for one in held]
+
+
+def test_discretisation_error_is_that_of_the_result(written):
+    scene = read_scene(SCENES / "mesh_cycle_helical.toml").with_changes(
+        {"analysis.positions": 1, "analysis.compliance": "contact", "analysis.free_edges": False}
+        | {"analysis.torques_Nm": [40.0, 500.0]}
+    )
+    with pytest.warns(AccuracyWarning):
+        found = analyse(scene)
+    page = written(found)
+    (row,) = page.rows("estimated discretisation error of the peak pressure, largest")
+    errors = [float(np.nanmax(one, initial=-1.0)) for one in found.discretisation_error]
+    assert row[1:] == [f"{100.0 * error:.2f}%" if error >= 0.0 else "-" for error in errors]
+    assert errors[0] > 0.0
+
+
+def test_every_warning_is_told_with_what_it_means(page):
+    told = cycle().warnings
+    assert told
+    for sentence in told:
+        assert sentence in page.words
+        known = explanation_of(sentence)
+        assert known.meaning.replace("`", "") in page.words
+        assert known.advice.replace("`", "") in page.words
+
+
+def test_result_without_warnings_says_so_and_one_of_an_earlier_version_too(written):
+    clean = replace(cycle(), dataset=cycle().dataset.assign_attrs(warnings=""))
+    assert "None: the analysis met no limit" in written(clean).words
+    old = replace(cycle(), dataset=cycle().dataset.drop_attrs(deep=False).assign_attrs(version="0.0.1"))
+    page = written(old)
+    assert "does not tell the warnings" in page.words
+    assert "with loaded_tca 0.0.1" in page.words
+
+
+def test_warnings_and_date_of_an_analysis_are_kept_in_the_file(tmp_path):
+    with pytest.warns(AccuracyWarning) as caught:
+        found = analyse(result("spur", 1).scene.with_changes({"analysis.cells": (6, 24)}))
+    sentences = tuple(dict.fromkeys(str(one.message) for one in caught))
+    assert found.warnings == sentences
+    assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\+00:00", found.date)
+    found.save(tmp_path / "result.nc")
+    again = load_result(tmp_path / "result.nc")
+    assert (again.warnings, again.date) == (sentences, found.date)
+
+
+def test_result_without_warnings_is_kept_as_such(tmp_path):
+    clean = replace(cycle(), dataset=cycle().dataset.assign_attrs(warnings=""))
+    clean.save(tmp_path / "result.nc")
+    assert load_result(tmp_path / "result.nc").warnings == ()
+
+
+def test_explanations_are_those_of_the_documents():
+    """And every warning of an analysis has one."""
+    text = (ROOT / "docs" / "results.md").read_text(encoding="utf-8")
+    table = text.split("\n## Warnings\n")[1].split("\n## ")[0]
+    rows = [line.strip("| ").split(" | ") for line in table.splitlines() if line.startswith("| ")][1:]
+    assert len(rows) > 10
+    for sentence, meaning, advice, _ in rows:
+        known = explanation_of(sentence)
+        assert (known.meaning, known.advice) == (meaning, advice)
+    assert len({one.words for one in EXPLANATIONS}) == len(EXPLANATIONS)
+
+
+def test_every_warning_of_the_package_is_explained():
+    sources = [path.read_text(encoding="utf-8") for path in (ROOT / "loaded_tca").rglob("*.py")]
+    code = re.sub(r'"\s*\n?\s*f?"', "", "\n".join(one for one in sources if "EXPLANATIONS = (" not in one))
+    for known in EXPLANATIONS:
+        assert known.words in code, known.words
+
+
+def test_page_needs_nothing_else(page):
+    """No attribute leads out of it; the only addresses are names of the languages."""
+    links = [
+        (tag, name, value)
+        for tag, name, value in page.attributes
+        if name in ("src", "href", "xlink:href", "data", "action", "poster")
+    ]
+    assert links
+    assert all(value.startswith(("#", "data:image/png;base64,")) for _, _, value in links)
+    assert not [tag for tag, _, _ in page.attributes if tag in ("script", "link", "iframe", "object", "embed", "img")]
+    addresses = {value for _, _, value in page.attributes if re.search("https?://", str(value))}
+    assert addresses == {"http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"}
+
+
+def test_page_has_no_resources_in_its_style(path):
+    text = path.read_text(encoding="utf-8")
+    (style,) = re.findall("<style.*?</style>", text, re.DOTALL)
+    assert "url(" not in style
+    assert "@import" not in style
+
+
+def test_pictures_do_not_use_each_other_s_parts(page):
+    ids = [value for _, name, value in page.attributes if name == "id"]
+    assert len(ids) > 100
+    assert len(ids) == len(set(ids))
+    used = {value[1:] for _, name, value in page.attributes if name == "xlink:href" and value.startswith("#")}
+    used |= {one for _, _, value in page.attributes for one in re.findall(r"url\(#([^)]*)\)", str(value))}
+    assert used
+    assert used <= set(ids)
+
+
+def test_every_picture_has_a_caption_and_a_name(page):
+    pictures = [value for tag, name, value in page.attributes if (tag, name) == ("svg", "aria-label")]
+    assert len(pictures) == len(re.findall(r"Figure \d+: ", page.words)) == 14
+    assert all(title in page.words for title in pictures)
+
+
+def test_text_of_a_scene_stays_text(written):
+    title = "<script>alert(1)</script> & 'x' \"y\" $\\alpha$ {{ 7 * 7 }} --> </svg>"
+    page = written(changed_scene(cycle(), {"title": title}))
+    assert not [tag for tag, _, _ in page.attributes if tag == "script"]
+    assert "script" not in page.open
+    assert page.headings[0] == title
+    assert title in page.words
+
+
+def test_report_of_the_same_result_is_the_same_file_but_for_its_date(path, tmp_path):
+    again = write_html_report(cycle(), tmp_path / "again.html", date="2027-01-01")
+    first, second = (one.read_text(encoding="utf-8") for one in (path, again))
+    assert first != second
+    assert first.replace("2026-03-04 05:06 UTC", "X") == second.replace("2027-01-01 00:00", "X")
+
+
+def test_report_has_the_date_and_the_version_of_the_analysis(written):
+    dated = replace(cycle(), dataset=cycle().dataset.assign_attrs(date=WHEN, version="9.8.7"))
+    assert "analysed2026-03-04 05:06 UTC, with loaded_tca 9.8.7" in written(dated).words.replace(
+        "analysed ", "analysed"
+    )
+    assert "some day" in written(dated, date="some day").words
+
+
+def test_one_position_and_no_load_have_reports(written):
+    assert written(result("spur", 1)).rows("peak pressure [MPa]")
+    assert written(result("spur", 1, (0.0,))).rows("peak pressure [MPa]")
+
+
+def test_many_torques_are_in_tables_that_fit_a_page(written):
+    torques = tuple(float(torque) for torque in range(20, 180, 20))
+    page = written(result("spur", 1, torques))
+    heads = [table[0] for table in page.tables if table[0][0] == "key figure"]
+    assert [len(head) - 2 for head in heads] == [4, 4]
+    assert [cell for head in heads for cell in head[1:-1]] == [f"{torque:g} N m" for torque in torques]
+
+
+@pytest.mark.parametrize(("count", "sizes"), [(0, []), (1, [1]), (5, [5]), (6, [3, 3]), (11, [4, 4, 3])])
+def test_parts_are_even(count, sizes):
+    values = [*range(count)]
+    parts = [values[part] for part in parts_of(values, 5)]
+    assert [len(part) for part in parts] == sizes
+    assert sum(parts, []) == values  # noqa: RUF017
+
+
+def test_line_without_a_label_names_the_columns_of_the_next_table():
+    rows = [("a", "1"), ("", "pinion", "wheel"), ("z", "2", "3")]
+    tables = tables_of(rows, "Gears")
+    assert tables == (Table((("a", "1"),), (), "Gears"), Table((("z", "2", "3"),), ("", "pinion", "wheel")))
+    assert tables[1].columns == 3
+    assert tables_of([]) == ()
+
+
+def test_study_has_a_report(written):
+    study = grid()
+    page = written(study, date=WHEN)
+    assert "What varies" in page.headings
+    assert "Ranking" in page.headings
+    ranking = next(table for table in page.tables if table[0][0] == "rank")
+    spans = study["transmission_error_span_um"].values[:, 0]
+    assert ranking[1][1] == str(int(spans.argmin()))
+    best = next(table for table in page.tables if table[0][1:3] == ["best", "worst"])
+    assert best[1][1:3] == [str(int(spans.argmin())), str(int(spans.argsort(kind="stable")[-1]))]
+    assert len(ranking) - 1 == study.sizes["sample"]
+    assert page.rows("peak pressure [MPa]")
+    assert [value for tag, name, value in page.attributes if (tag, name) == ("svg", "role")]
+
+
+def test_study_tells_what_failed_and_its_warnings(written):
+    study = grid()
+    count = study.sizes["sample"]
+    status, reason, warned = (np.array([word] * count, dtype=object) for word in ("ok", "", ""))
+    status[1], reason[1] = "refused", "pinion: pointed <b>"
+    warned[0] = "the contact reaches the box of its grid (at 1 of 9 pressure maps; the first: a)"
+    warned[2] = "the contact reaches the box of its grid (at 3 of 9 pressure maps; the first: b)"
+    named = {"status": status, "reason": reason, "warnings": warned}
+    page = written(study.assign({name: ("sample", values) for name, values in named.items()}))
+    assert "refused: pinion: pointed <b> (1)" in page.words
+    assert f"the contact reaches the box of its grid (2 of {count} variants)" in page.words
+    assert "less torque, or a higher max_pressure_MPa" in page.words
+
+
+def test_study_of_which_nothing_was_analysed_has_a_report(written):
+    study = grid()
+    count = study.sizes["sample"]
+    refused = {name: ("sample", np.array([name] * count, dtype=object)) for name in ("reason",)}
+    refused["status"] = ("sample", np.array(["refused"] * count, dtype=object))
+    figures = [name for name, values in study.data_vars.items() if values.dims == ("sample", "torque")]
+    page = written(study.drop_vars(figures).assign(refused))
+    assert f"{count} refused" in page.words
+    assert "Ranking" not in page.headings
+
+
+def test_distributions_have_a_report(written):
+    assert "distributed" in written(sampled()).words
+
+
+def test_design_has_a_report(written):
+    page = written(DesignResult(design_dataset()))
+    assert page.rows("pinion lead crowning [µm]") == [
+        ["pinion lead crowning [µm]", "pinion.modifications.lead_crowning_um", "5", "7.5"]
+    ]
+    assert ["by the full analysis", "0.9", "0.4"] in page.tables[1]
+    assert "face_load_factor <= 1.9 at 100 N m" in page.words
+    assert "lead_crowning_um = 7.5" in page.words
+    assert "Appendix: scene file of the start" in page.headings
+
+
+def design_dataset():
+    scene = cycle().scene
+    phase = np.linspace(0.0, 2.0 * np.pi, 5)
+    axes = ("design", "sample", "torque", "position")
+    height = np.array([2e-6, 1e-6])[:, None, None] * np.ones((2, 2, 1))
+    arrays = {
+        "transmission_error": (axes, height[..., None] * np.cos(phase)),
+        "peak_pressure": (axes, 900.0 + 1e8 * height[..., None] * np.ones(5)),
+        "span_um": (axes[:3], 1e5 * height),
+        "face_load_factor": (axes[:3], 1.0 + 1e5 * height),
+        "value": (("design", "key"), [[5.0], [7.5]]),
+        "objective": (("design",), [0.9, 0.4]),
+        "held_objective": (("design",), [0.95, 0.38]),
+        "history_objective": (("evaluation",), [0.95, 0.5, 0.38]),
+    }
+    coordinates = {
+        "design": ["start", "optimum"],
+        "torque": [100e3],
+        "key": ["pinion.modifications.lead_crowning_um"],
+    }
+    attributes = {"kind": "design", "scene_toml": scene.to_toml(), "warnings": "", "objective": "mean"}
+    attributes |= {"figure": "span_um", "limits": "face_load_factor <= 1.9 at 100 N m"}
+    return xarray.Dataset(arrays, coordinates, attributes)
+
+
+@pytest.mark.parametrize("subject", [None, {"kind": "study"}, xarray.Dataset()])
+def test_other_subjects_are_refused(subject, tmp_path):
+    with pytest.raises(InputError, match=r"report: of a \w+; allowed a result, a study or a design"):
+        write_html_report(subject, tmp_path / "report.html")
+    assert not [*tmp_path.iterdir()]
+
+
+def test_missing_jinja2_is_one_clear_error(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "jinja2", None)
+    with pytest.raises(InputError, match=r"needs the package jinja2; .* extra 'report'"):
+        write_html_report(cycle(), tmp_path / "report.html")
+    assert not [*tmp_path.iterdir()]
+
+
+@pytest.mark.usefixtures("with_one_picture")
+def test_file_that_cannot_be_written_leaves_the_old_one(tmp_path, monkeypatch):
+    old = tmp_path / "report.html"
+    old.write_text("old")
+
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "replace", full)
+    with pytest.raises(InputError, match=r"report\.html: cannot be written: No space left"):
+        write_html_report(cycle(), old)
+    assert [path.name for path in tmp_path.iterdir()] == ["report.html"]
+    assert old.read_text() == "old"
+
+
+def test_templates_are_part_of_the_wheel(tmp_path):
+    if shutil.which("hatchling") is None and not _has_hatchling():
+        pytest.skip("hatchling is not installed")
+    subprocess.run(
+        [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)],
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+    )
+    (wheel,) = tmp_path.glob("*.whl")
+    listed = subprocess.run(
+        [sys.executable, "-m", "zipfile", "-l", str(wheel)], check=True, capture_output=True, text=True
+    ).stdout
+    templates = sorted(path.name for path in (ROOT / "loaded_tca" / "reports" / "templates").iterdir())
+    assert templates
+    assert all(f"loaded_tca/reports/templates/{name}" in listed for name in templates)
+
+
+def _has_hatchling():
+    import importlib.util
+
+    return importlib.util.find_spec("hatchling") is not None
+
+
+@pytest.fixture
+def kept(tmp_path, monkeypatch, with_one_picture):  # noqa: ARG001
+    """A directory with a result."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "out").mkdir()
+    cycle().save(tmp_path / "out" / "result.nc")
+    return tmp_path
+
+
+def test_command_writes_the_report_beside_the_result(kept, capsys):
+    assert cli.main(["report", "out"]) == 0
+    assert capsys.readouterr().out == "Written to out: report.html\n"
+    assert Page(kept / "out" / "report.html").headings[0] == cycle().scene.title
+
+
+def test_command_takes_a_file_and_a_place(kept, capsys):
+    assert cli.main(["report", "out/result.nc", "--out", "elsewhere/mine.html"]) == 0
+    assert capsys.readouterr().out == "Written to elsewhere: mine.html\n"
+    assert [path.name for path in (kept / "elsewhere").iterdir()] == ["mine.html"]
+
+
+def test_command_takes_studies_and_designs(tmp_path, monkeypatch):
+    from loaded_tca.results.files import write_dataset
+
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "study").mkdir()
+    write_dataset("study/study.nc", grid())
+    write_dataset("mine.nc", design_dataset())
+    assert cli.main(["report", "study"]) == 0
+    assert "What varies" in Page("study/report.html").headings
+    assert cli.main(["report", "mine.nc", "--out", "mine.html"]) == 0
+    assert "What was found" in Page("mine.html").headings
+
+
+def test_directory_without_a_result_is_the_error_of_plot(kept, capsys):
+    (kept / "empty").mkdir()
+    told = []
+    for command in ("plot", "report"):
+        assert cli.main([command, "empty"]) == 2
+        told.append(capsys.readouterr().err)
+    assert told[0] == told[1]
+    assert "empty/result.nc: cannot be read" in told[0]
+
+
+def test_command_tells_what_cannot_be_written(kept, capsys):
+    (kept / "file").write_text("")
+    assert cli.main(["report", "out", "--out", "file/report.html"]) == 2
+    assert "is a file; give a directory" in capsys.readouterr().err
+    assert cli.main(["report", "out", "--out", "out"]) == 2
+    assert "out: cannot be written" in capsys.readouterr().err
+    assert [path.name for path in (kept / "out").iterdir()] == ["result.nc"]
+
+
+@pytest.mark.usefixtures("kept")
+def test_command_without_jinja2_is_bad_input(capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "jinja2", None)
+    assert cli.main(["report", "out"]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
