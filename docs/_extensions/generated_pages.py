@@ -10,6 +10,7 @@ from types import ModuleType
 from typing import Any
 
 from sphinx.application import Sphinx
+from sphinx.config import Config
 
 import loaded_tca
 from loaded_tca.cli import command_line
@@ -22,10 +23,15 @@ EXAMPLE = re.compile(r"\]\((?:\.\./)+examples/(\w+)\.py\)")
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Write the pages as soon as the folders are known, before autosummary looks for them."""
-    app.connect("config-inited", lambda app, _: write_pages(Path(app.srcdir) / "reference"))
+    app.connect("config-inited", _write_pages)
     app.connect("autodoc-process-docstring", _escape_docstring)
     app.connect("source-read", _link_examples_to_the_gallery)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
+
+
+def _write_pages(app: Sphinx, config: Config) -> None:
+    write_pages(Path(app.srcdir) / "reference")
+    config.autosummary_generate = [f"reference/api/{name}" for name in api_pages()]  # new ones, too
 
 
 def write_pages(reference: Path) -> None:
