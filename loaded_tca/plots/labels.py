@@ -38,6 +38,8 @@ NAMES = {
     "transverse_load_factor": "transverse load factor K_Hα",
 }
 """Keys and figures whose words alone do not name them."""
+PROPER = {"hertz": "Hertz", "iso": "ISO"}
+"""Words that are written otherwise than in names."""
 SHORT_LINE = 18
 """Characters."""
 UNIT = re.compile(f"_({'|'.join(UNITS)})$")
@@ -65,6 +67,7 @@ def label_of(name: str) -> str:
     plain = key[: found.start()] if found else key
     words = [*(section for section in sections if section not in SILENT), plain]
     words = [NAMES.get(word) or word.replace("_", " ") for word in words]
+    words = [PROPER.get(word, word) for word in " ".join(words).split()]
     return " ".join(words) + (f" [{UNITS[found[1]]}]" if found else "")
 
 

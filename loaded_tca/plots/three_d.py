@@ -34,6 +34,8 @@ SEAMS = "0.35"
 LIFT, AMBIENT = 3e-3, 0.4
 """How far pressure and path are lifted off the facets of the flank, over the length of the tooth, so that these do not
 hide them; light from everywhere."""
+FILLED = 0.75
+"""Part of the frame that the box of the teeth fills: its ticks and labels take the rest."""
 MOST_TICKS, LABEL_PAD = 5, 10.0
 """Ticks of an axis, and the distance [points] of its name, at which neither covers the other."""
 DRAWN = Resolution(flank=25, fillet=9, land=3, lengthwise=25)
@@ -84,7 +86,7 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
     points = np.concatenate([shown.pinion.vertices, shown.wheel.vertices])
     low, high = points.min(axis=0), points.max(axis=0)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set_box_aspect(high - low, zoom=0.85)
+    axes.set_box_aspect(high - low, zoom=FILLED * _zoom(high - low, shown.eye))
     for axis, name in zip((axes.xaxis, axes.yaxis, axes.zaxis), "xyz", strict=True):
         axis.set_major_locator(MaxNLocator(MOST_TICKS))
         axis.set_rotate_label(False)  # matplotlib would turn them along the axes, that of z upside down
@@ -121,6 +123,14 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
 def _shown(result: MeshCycle, position: int | None, torque: int | None) -> TeethInSpace:
     """Teeth of the resolution of a picture, in place."""
     return teeth_in_space(result, mating_teeth(result.gear_pair, DRAWN), position, torque)
+
+
+def _zoom(size: Array, eye: Array) -> float:
+    """How much a box (3,) may grow, seen from a direction, beyond what its diagonal leaves, and still be seen whole."""
+    across = np.cross([0.0, 0.0, 1.0], eye)
+    across /= np.linalg.norm(across)
+    seen = np.abs([across, np.cross(eye, across)]) @ size
+    return float(np.linalg.norm(size) / seen.max())
 
 
 def _solid(mesh: TriangleMesh, colour: str, opacity: float, towards: Array) -> Poly3DCollection:

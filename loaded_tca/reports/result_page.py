@@ -118,7 +118,7 @@ def _materials(scene: Scene) -> tuple[str, ...]:
 def _load_cases(result: MeshCycle, figures: Sequence[Figures]) -> Table:
     """A line for each torque: forces, and the figures that matter most."""
     torques = result.torque.tolist()
-    forces = [row for row in result.scene.force_rows(torques) if len(row) == len(torques) + 1]
+    forces = result.scene.force_rows(torques)[:2]  # tangential and normal; all of them are in what was asked
     names = [name for name in IN_THE_TABLE if any(math.isfinite(one.get(name, math.nan)) for one in figures)]
     first, *others = names
     heads = [IN_THE_TABLE[first], *(label for label, *_ in forces), *(IN_THE_TABLE[name] for name in others)]

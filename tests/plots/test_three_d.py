@@ -1,10 +1,11 @@
 import sys
-from itertools import pairwise
+from itertools import pairwise, product
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d import proj3d
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError, InputError
@@ -143,3 +144,16 @@ def test_viewer_gets_both_teeth_the_path_and_the_pressure(monkeypatch, torques, 
         assert style["scalars"] in mesh.cell_data
         assert style["clim"] == (0.0, mesh.cell_data["pressure_MPa"].max())
         assert "[MPa]" in style["scalar_bar_args"]["title"]
+
+
+@pytest.mark.parametrize("name", ["helical", "spiral_bevel"])
+def test_teeth_fill_their_frame(name):
+    """Their box is seen whole, and reaches over most of the frame in one direction."""
+    figure = plot_teeth(result(name, positions=3))
+    figure.draw_without_rendering()
+    axes = figure.axes[0]
+    corners = np.array([*product(axes.get_xlim(), axes.get_ylim(), axes.get_zlim())]).T
+    places = axes.transData.transform(np.column_stack(proj3d.proj_transform(*corners, axes.get_proj())[:2]))
+    assert (places >= axes.bbox.p0).all()
+    assert (places <= axes.bbox.p1).all()
+    assert (np.ptp(places, axis=0) / axes.bbox.size).max() > 0.7
