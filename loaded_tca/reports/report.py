@@ -46,9 +46,14 @@ def write_html_report(subject: Any, path: FilePath, *, date: str | None = None) 
 
     Examples
     --------
-    >>> from loaded_tca import analyse, parse_scene
-    >>> write_html_report(analyse(scene), "report.html")  # doctest: +SKIP
-    PosixPath('report.html')
+    >>> from tempfile import TemporaryDirectory
+    >>> from loaded_tca import analyse, read_scene
+    >>> from loaded_tca.cli import DEMO_SCENE
+    >>> alone = {"load_sharing": False, "compliance": "contact", "positions": 1, "torques_Nm": None}
+    >>> scene = read_scene(DEMO_SCENE).with_changes({f"analysis.{key}": value for key, value in alone.items()})
+    >>> with TemporaryDirectory() as directory:
+    ...     write_html_report(analyse(scene), Path(directory, "report.html")).name
+    'report.html'
     """
     page.require_jinja2()
     if isinstance(subject, MeshCycle):
