@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: demo test validate reference-fem lint clean
+.PHONY: demo test validate docs reference-fem lint clean
 
 .venv/installed: pyproject.toml
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
@@ -24,10 +24,15 @@ test: lint
 validate: .venv/installed
 	$(BIN)/python -m validation
 
+# Runs every example for the gallery the first time; later only those that have changed.
+docs: .venv/installed
+	OMP_NUM_THREADS=1 $(BIN)/python -m sphinx -W --keep-going -b html docs docs/_build/html
+
 # Takes hours on one core; what is in reference-fem-runs/ already is not run again.
 reference-fem: .venv/installed
 	@command -v ccx > /dev/null || { echo "needs CalculiX (program ccx; Debian: apt install calculix-ccx)"; exit 1; }
 	$(BIN)/python -m validation.calculix --work reference-fem-runs
 
 clean:
+	rm -rf docs/_build docs/gallery docs/reference/api docs/reference/generated
 	rm -rf .venv loaded-tca-demo .pytest_cache .mypy_cache .ruff_cache .hypothesis

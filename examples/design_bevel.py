@@ -1,8 +1,11 @@
-"""Design the crownings of a spiral bevel pair whose mounting scatters.
+"""Design of a spiral bevel pair
+=============================
+
+Design the crownings of a spiral bevel pair whose mounting scatters.
 
 Lead crowning, helix slope and profile crowning of the pinion are found by exact gradients; the offset and the axial
-place of the pinion scatter. At the end the whole analysis confirms the design. Writes design_bevel.nc. Flanks alone
-and few positions keep it short: leave FEW out for a design to be made.
+place of the pinion scatter. At the end the whole analysis confirms the design. Writes design_bevel.nc and .png. Flanks
+alone and few positions keep it short: leave FEW out for a design to be made.
 """
 
 from pathlib import Path
@@ -10,6 +13,7 @@ from pathlib import Path
 from scipy.stats import norm
 
 from loaded_tca import read_scene
+from loaded_tca.plots import plot_before_and_after, save_figure
 from loaded_tca.studies import DesignModel, DesignResult, optimise
 
 FEW = {"analysis.positions": 5, "analysis.compliance": "contact", "analysis.free_edges": False}
@@ -27,6 +31,7 @@ def main() -> DesignResult:
     model = DesignModel(SCENE, VARIABLES, SCATTER, samples=4)
     result = optimise(model, "mean + k sigma")
     result.save("design_bevel.nc")
+    save_figure(plot_before_and_after(result), "design_bevel.png")
     before, after = result.objective
     print(f"mean + sigma of the peak-to-peak transmission error: {before:.3f} -> {after:.3f} um")
     for key, value in result.optimum.items():

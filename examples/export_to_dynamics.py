@@ -1,8 +1,9 @@
-"""Mesh stiffness and transmission error handed to a model of gear dynamics, which finds the forces over the speed.
+"""Hand-off to dynamics
+====================
 
-Writes dynamics.csv and dynamics_orders.csv, as 'loaded-tca dynamics', and export_to_dynamics.png. The model has one
-degree of freedom, x = r_b1 phi1 - r_b2 phi2: m x'' + c x' + F = F0, with F = F0 + k(t) (x - x_s(t)), but never below 0:
-the flanks part. x_s = -r_b2 TE is where the loaded gears stand at rest, m = 1/(r_b1^2/J1 + r_b2^2/J2) their mass.
+Forces over the speed by a model with one degree of freedom, x = r_b1 phi1 - r_b2 phi2: m x'' + c x' + F = F0, F = F0 +
+k(t) (x - x_s(t)), never below 0, with x_s = -r_b2 TE and m = 1/(r_b1^2/J1 + r_b2^2/J2). Writes dynamics.csv,
+dynamics_orders.csv and export_to_dynamics.png.
 """
 
 from pathlib import Path
@@ -47,8 +48,7 @@ def main() -> float:
     start = np.repeat([-error[0][0], 0.0], len(SPEEDS))
     found = solve_ivp(rates, (0.0, PHASES[-1]), start, t_eval=PHASES, rtol=1e-6, atol=1e-10).y[: len(SPEEDS)]
     factor = np.max([tooth_force(phase, x) for phase, x in zip(PHASES, found.T, strict=True)], axis=0) / force
-    figure = Figure(figsize=(6.4, 3.6), layout="constrained")
-    axes = figure.subplots()
+    axes = (figure := Figure(figsize=(6.4, 3.6), layout="constrained")).subplots()
     axes.plot(SPEEDS, factor)
     axes.set(xlabel="tooth-mesh frequency over natural frequency", ylabel="largest over static tooth force")
     save_figure(figure, "export_to_dynamics.png")

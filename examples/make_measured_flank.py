@@ -1,7 +1,9 @@
-"""Make ``scenes/measured_flank.csv``: a wheel flank as a gear measuring centre gives it, but made up.
+"""A made-up measured flank
+========================
 
-Deviations of a ground flank: crowned by design, with small errors of profile and helix slope, some twist, the smooth
-waviness that grinding leaves, and the noise of measurement. Every part is known, so that results can be judged.
+Make ``scenes/measured_flank.csv`` and measured_flank.png: a wheel flank as a gear measuring centre gives it, made up.
+It is crowned by design, with small errors of profile and helix slope, some twist, the smooth waviness that grinding
+leaves, and the noise of measurement. Every part is known, so that results can be judged.
 """
 
 import math
@@ -9,6 +11,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from loaded_tca.scene import read_scene
 
@@ -48,3 +51,8 @@ def main() -> str:
 if __name__ == "__main__":
     path = Path(sys.argv[1]) if len(sys.argv) > 1 else SCENES / "measured_flank.csv"
     path.write_text(main(), encoding="utf-8")
+    places = np.linspace(-1.0, 1.0, 61)
+    figure = Figure(layout="constrained")
+    drawn = figure.subplots().contourf(places, places, deviation(places[:, None], places), levels=15)
+    figure.colorbar(drawn, label="deviation over face (across) and profile (upwards) [µm]")
+    figure.savefig("measured_flank.png")

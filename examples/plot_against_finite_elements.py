@@ -1,4 +1,7 @@
-"""The loaded transmission error of a spur pair beside kept runs of finite elements in plane strain.
+"""Beside finite elements
+======================
+
+The loaded transmission error of a spur pair beside kept runs of finite elements in plane strain.
 
 Writes against_finite_elements.png. The free ends of a face 20 mm wide make the teeth 2 % softer than plane strain.
 """

@@ -1,4 +1,7 @@
-"""Crowned spiral bevel pair at the pitch point, from the Python API: the pressure map on the pinion, and Hertz.
+"""Pressure on a spiral bevel pair
+===============================
+
+Crowned spiral bevel pair at the pitch point, from the Python API: the pressure map on the pinion, and Hertz.
 
 Writes bevel_pressure.png as an engineer sees a bevel tooth: toe left, heel right, root at the bottom, tip on top.
 """

@@ -1,4 +1,7 @@
-"""Duplex spread blade pair from its blank: basic settings, bidirectional start, contact.
+"""A duplex pair from its blank
+============================
+
+Duplex spread blade pair from its blank: basic settings, bidirectional start, contact.
 
 Writes bidirectional_start.png. The settings are closed forms; forward (from the wheel), reverse (from the pinion) and
 their mean guess where the flanks touch. The five contact equations need such a guess, the ease-off does not.

@@ -1,4 +1,7 @@
-"""A spur pair out of line, to both sides and with more crowning, compared with the same pair in line.
+"""Several results compared
+========================
+
+A spur pair out of line, to both sides and with more crowning, compared with the same pair in line.
 
 Writes comparison.png, and prints the key figures with their differences.
 """

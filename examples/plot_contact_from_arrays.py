@@ -1,7 +1,8 @@
-"""Contacts from plain arrays, without any gear: a crowned roller and a rough patch, elastic and with a cap.
+"""Contacts without gears
+======================
 
-The roller (20 mm diameter and length, 40 kN on a plate) has the logarithmic profile of ISO/TS 16281, which keeps the
-pressure nearly uniform up to its ends. Writes contact_from_arrays.png.
+A crowned roller and a rough ball from plain arrays, elastic and with a cap. The roller, 20 mm in diameter and length
+under 40 kN, has the logarithmic profile of ISO/TS 16281 for an even pressure. Writes contact_from_arrays.png.
 """
 
 import numpy as np
@@ -41,9 +42,8 @@ def main() -> float:
         roller = solve_contact(roller_gap(x, y), spacing=(x[1] - x[0], y[1] - y[0]), load=40000.0, **options)
         rough = solve_contact(rough_gap(z), spacing=(z[1] - z[0],) * 2, load=250.0, **options)
         row[0].pcolormesh(y, x, roller.pressure, vmin=0.0, vmax=3000.0)
-        row[0].set(
-            title=f"roller, cap {cap:.0f} MPa" if cap else "roller, elastic", xlabel="along [mm]", ylabel="across [mm]"
-        )
+        title = f"roller, cap {cap:.0f} MPa" if cap else "roller, elastic"
+        row[0].set(title=title, xlabel="along [mm]", ylabel="across [mm]")
         row[1].plot(y, roller.pressure[48])
         row[1].set(title=f"approach {1e3 * roller.approach:.1f} um", xlabel="along [mm]", ylabel="pressure [MPa]")
         colours = row[2].pcolormesh(z, z, rough.pressure, vmin=0.0, vmax=3000.0)

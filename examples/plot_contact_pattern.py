@@ -1,4 +1,7 @@
-"""Contact pattern of a crowned helical pair: what a marking compound 6.35 um thick would show.
+"""Contact pattern
+===============
+
+Contact pattern of a crowned helical pair: what a marking compound 6.35 um thick would show.
 
 Writes contact_pattern.png: the contours of the contact area at some positions with the ellipse that the curvatures
 give, and the pattern accumulated over a whole passage.

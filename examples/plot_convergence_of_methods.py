@@ -1,4 +1,7 @@
-"""Share of random starts that find the contact: two equations beside five, over the first guess of the wheel angle.
+"""Random starts: two methods
+==========================
+
+Share of random starts that find the contact: two equations beside five, over the first guess of the wheel angle.
 
 Writes convergence_of_methods.png. The reduced solver climbs the ease-off on the pinion flank and needs no guess of the
 wheel angle; the five equations converge from a band about the answer only.

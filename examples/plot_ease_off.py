@@ -1,4 +1,7 @@
-"""Ease-off topography of a helical pair whose two gears are modified and whose axes are not parallel.
+"""Ease-off topography
+===================
+
+Ease-off topography of a helical pair whose two gears are modified and whose axes are not parallel.
 
 Writes ease_off.png: how much the pinion lacks of the conjugate of the wheel's flank, in um, with the values at the
 corners of the flank, and what the field is to second order: angles, crownings and twist. Both modifications and the

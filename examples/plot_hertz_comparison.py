@@ -1,4 +1,7 @@
-"""A crowned spur pair at the pitch point, step by step: its pressure beside that of Hertz.
+"""Pressure beside Hertz
+=====================
+
+A crowned spur pair at the pitch point, step by step: its pressure beside that of Hertz.
 
 Writes hertz_comparison.png: the pressure across and along the contact, which is 24 mm long and 0.29 mm wide.
 """

@@ -1,4 +1,7 @@
-"""How the tooth pairs of a spur gear share the torque, with a tip relief that brings them in without a step.
+"""Load sharing
+============
+
+How the tooth pairs of a spur gear share the torque, with a tip relief that brings them in without a step.
 
 Writes load_sharing.png.
 """

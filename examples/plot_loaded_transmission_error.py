@@ -1,4 +1,7 @@
-"""Transmission error of a helical pair whose tooth pairs share the load, under two torques.
+"""Loaded transmission error
+=========================
+
+Transmission error of a helical pair whose tooth pairs share the load, under two torques.
 
 Writes loaded_transmission_error.png. Without load the pair has the error of its profile crowning; under load the
 deflection adds to it, and levels it out or deepens it as more pairs come to carry.

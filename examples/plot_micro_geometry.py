@@ -1,4 +1,7 @@
-"""Sweep of lead crowning and tip relief of a helical pair: which one is quiet, and what it costs in pressure.
+"""Sweep of the micro-geometry
+===========================
+
+Sweep of lead crowning and tip relief of a helical pair: which one is quiet, and what it costs in pressure.
 
 Writes micro_geometry.png: the peak-to-peak transmission error over the grid of both, the best one framed. The same
 study as a file is examples/studies/micro_geometry.toml.

@@ -1,4 +1,7 @@
-"""Sensitivity of a crowned helical pair to an out-of-plane error of its axes.
+"""Sensitivity to misalignment
+===========================
+
+Sensitivity of a crowned helical pair to an out-of-plane error of its axes.
 
 Writes misalignment_sensitivity.png: the transmission error over a pitch, and where the contact goes. Profile crowning
 keeps the transmission error a smooth arc as long as the contact ends inside the flank.

@@ -1,4 +1,7 @@
-"""Monte Carlo of misalignment: how far the load gathers on one part of the face of a crowned spur pair.
+"""Monte Carlo of misalignment
+===========================
+
+Monte Carlo of misalignment: how far the load gathers on one part of the face of a crowned spur pair.
 
 Writes monte_carlo.png: histogram, cumulative curve and percentiles of the face load factor over 32 misalignments, each
 a whole analysis. The same study as a file is examples/studies/misalignment.toml.

@@ -1,4 +1,7 @@
-"""Pressure distribution of a crowned helical pair at the pitch point.
+"""Pressure distribution
+=====================
+
+Pressure distribution of a crowned helical pair at the pitch point.
 
 Writes pressure_distribution.png and prints the key figures.
 """

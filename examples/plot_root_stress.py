@@ -1,4 +1,7 @@
-"""Root stress of a spur pair over the mesh cycle: tension and compression of pinion and wheel.
+"""Root stress over the mesh cycle
+===============================
+
+Root stress of a spur pair over the mesh cycle: tension and compression of pinion and wheel.
 
 Writes root_stress.png and prints the summary, with the stress after ISO 6336-3 beside it.
 """

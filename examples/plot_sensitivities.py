@@ -1,4 +1,7 @@
-"""What a micrometre, a hundredth of a degree and a newton metre do to a helical pair: a tornado chart.
+"""Sensitivities as a tornado chart
+================================
+
+What a micrometre, a hundredth of a degree and a newton metre do to a helical pair: a tornado chart.
 
 Writes sensitivities.png: how the key figures change by the tolerance of each key, the most important ones on top. The
 command 'loaded-tca sensitivities DIR' draws it, and more, of any result.

@@ -1,4 +1,7 @@
-"""Greatest shear stress below the contact of a crowned spur pair at the pitch point, where pitting may start.
+"""Shear stress below the surface
+==============================
+
+Greatest shear stress below the contact of a crowned spur pair at the pitch point, where pitting may start.
 
 Writes subsurface_stress.png and prints depth and place beside what Hertz says.
 """

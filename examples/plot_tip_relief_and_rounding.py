@@ -1,8 +1,8 @@
-"""How much tip relief keeps the pressure at the tip edges of a helical pair below that of its flanks.
+"""Tip relief and tip rounding
+===========================
 
-The same relief and the same tip rounding on both gears. Writes tip_relief_and_rounding.png: the largest pressure at a
-tip edge over the largest one of the flanks, over the relief, for four radii. Prints a table, and the smallest relief
-for each radius: half a minute.
+How much relief keeps the pressure at the tip edges of a helical pair below that of its flanks, for four radii of tip
+rounding, both gears alike: half a minute. Writes tip_relief_and_rounding.png and prints a table.
 """
 
 from pathlib import Path

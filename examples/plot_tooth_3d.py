@@ -1,6 +1,9 @@
-"""Teeth of a spiral bevel pair in contact, in space, with the contact path and the pressure on the pinion's flank.
+"""Teeth in contact in space
+=========================
 
-Writes tooth_3d.png. For a viewer, `loaded-tca run` and then `loaded-tca tooth` write the same as VTK and STL files.
+Teeth of a spiral bevel pair in contact, in space, with the contact path and the pressure on the pinion's flank.
+
+Writes tooth_3d.png. For a viewer, ``loaded-tca run`` and then ``loaded-tca tooth`` write the same as VTK and STL files.
 """
 
 from pathlib import Path

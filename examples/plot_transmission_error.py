@@ -1,4 +1,7 @@
-"""Transmission error of a crowned spur pair under three torques.
+"""Transmission error of one tooth pair
+====================================
+
+Transmission error of a crowned spur pair under three torques.
 
 Writes transmission_error.png. The transmission error is the contact deformation of the flanks, which grows with the
 load to the power 2/3 as long as the contact reaches no edge.

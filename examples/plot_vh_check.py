@@ -1,4 +1,7 @@
-"""V-H check of a crowned spiral bevel pair: where the marking compound is squeezed out under mounting errors.
+"""V-H check without load
+======================
+
+V-H check of a crowned spiral bevel pair: where the marking compound is squeezed out under mounting errors.
 
 Writes vh_check.png: the contact pattern on the pinion for offsets V of the wheel and axial displacements H of the
 pinion, and prints how far its centre goes.

@@ -1,4 +1,7 @@
-"""V-H check of a spiral bevel pair under load: where the pressure goes under mounting errors.
+"""V-H check under load
+====================
+
+V-H check of a spiral bevel pair under load: where the pressure goes under mounting errors.
 
 Writes vh_under_load.png: on the pinion, the highest pressure that each place sees under offsets V of the wheel and
 axial displacements H of the pinion, and prints the peak pressures.

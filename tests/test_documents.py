@@ -8,16 +8,20 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")] + sorted(ROOT.glob("docs/**/*.md"))
+BUILT = {"_build", "gallery", "generated", "api"}  # folders of docs/ that building the site fills
+PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
+PAGES += sorted(path for path in ROOT.glob("docs/**/*.md") if not BUILT & {*path.relative_to(ROOT).parts})
 SOURCES = sorted(
     path
     for folder in ("loaded_tca", "validation", "examples", "tests", "docs")
     for ending in ("py", "toml")
     for path in (ROOT / folder).rglob(f"*.{ending}")
+    if not (folder == "docs" and BUILT & {*path.relative_to(ROOT).parts})
 )
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 NAMED_FILE = re.compile(r"\b((?:docs|examples|validation|tests|loaded_tca)/[\w/.-]*\w\.(?:md|py|toml|csv|json|png))\b")
 COMMAND = re.compile(r"python -m ((?:validation|loaded_tca)[\w.]*\w)")
+TOCTREE = re.compile(r"^```{toctree}$(.*?)^```", re.MULTILINE | re.DOTALL)
 FENCE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
 
 
@@ -48,12 +52,17 @@ def test_files_and_commands_that_are_named_exist(page):
         assert importlib.util.find_spec(module) is not None, module
 
 
+def links(page):
+    """Files that a page links or has in its table of contents."""
+    text = page.read_text(encoding="utf-8")
+    entries = [
+        f"{line}.md" for lines in TOCTREE.findall(text) for line in lines.split("\n") if line[:1] not in ("", ":")
+    ]
+    return {(page.parent / link.partition("#")[0]).resolve() for link in (*LINK.findall(text), *entries)}
+
+
 def test_every_page_and_picture_is_linked():
-    linked = {
-        (page.parent / link.partition("#")[0]).resolve()
-        for page in PAGES
-        for link in LINK.findall(page.read_text(encoding="utf-8"))
-    }
+    linked = {ROOT / "docs" / "index.md"}.union(*map(links, PAGES))
     listed = subprocess.run(["git", "ls-files", "docs"], cwd=ROOT, capture_output=True, text=True, check=False).stdout
     files = [ROOT / line for line in listed.splitlines() if line.endswith((".md", ".png"))]
     assert [str(path) for path in files if path.resolve() not in linked] == []

@@ -21,8 +21,10 @@ PACKAGES = [
     if hasattr(importlib.import_module(package), "__all__")  # else it is there for other folders only
 ]
 LAZY = [package for package in PACKAGES if hasattr(importlib.import_module(package), "__getattr__")]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
-SCRIPTS = [*sorted((ROOT / "examples").glob("*.py")), *sorted((ROOT / "docs").rglob("*.py"))]
+BUILT = {"_build", "gallery", "generated", "api"}  # folders of docs/ that building the site fills
+DOCS = [path for path in sorted((ROOT / "docs").rglob("*.*")) if not BUILT & {*path.relative_to(ROOT).parts}]
+PAGES = [ROOT / "README.md", *(path for path in DOCS if path.suffix == ".md")]
+SCRIPTS = [*sorted((ROOT / "examples").glob("*.py")), *(path for path in DOCS if path.suffix == ".py")]
 IMPORT = re.compile(r"^[ >]*from (loaded_tca[\w.]*) import (\([^)]*\)|[^\n(]*)", re.MULTILINE)
 MENTION = re.compile(r"\bloaded_tca\.(\w+)\.(\w+)")
 

@@ -18,7 +18,8 @@ is a first guess, and whether it is good is up to the settings. The solver of th
 
 References
 ----------
-The duplex paper (docs/sources.md); Litvin & Fuentes 2004, Gear Geometry and Applied Theory, sections 6.1 and 9.4.
+The duplex paper (docs/reference/sources.md); Litvin & Fuentes 2004, Gear Geometry and Applied Theory, sections 6.1 and
+9.4.
 """
 
 from __future__ import annotations
@@ -102,7 +103,7 @@ class BidirectionalStart:
 
     References
     ----------
-    The duplex paper (docs/sources.md).
+    The duplex paper (docs/reference/sources.md).
 
     Examples
     --------

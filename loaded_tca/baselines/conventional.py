@@ -119,7 +119,7 @@ def solve_conventional(
 
     References
     ----------
-    The reduced-TCA dissertation (docs/sources.md), eqs. 26-32.
+    The reduced-TCA dissertation (docs/reference/sources.md), eqs. 26-32.
 
     Examples
     --------

@@ -18,8 +18,8 @@ This is a reference to compare with: it shares the flanks with ``reduced`` and n
 
 References
 ----------
-The miter-gear paper (docs/sources.md), "Contact point determination via the golden ratio method"; Kiefer 1953, Proc.
-AMS 4, 502-506.
+The miter-gear paper (docs/reference/sources.md), "Contact point determination via the golden ratio method"; Kiefer
+1953, Proc. AMS 4, 502-506.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ from loaded_tca.cli.commands import DEMO_SCENE
 from loaded_tca.cli.terminal import flush, let_go, say, warnings_in_one_line_each
 from loaded_tca.errors import ConvergenceError, ExecutorError, InputError, LoadedTCAError, reason_of
 
-__all__ = ["DEMO_SCENE", "main"]
+__all__ = ["DEMO_SCENE", "command_line", "main"]
 
 OK, FAULT, BAD_INPUT, NO_CONVERGENCE, INTERRUPTED = 0, 1, 2, 3, 130
 

@@ -39,7 +39,7 @@ and with analysis.root_stress = true
 and, only with 'plot --all'
   contact_patterns.png      the highest pressure on the flanks under each of several torques, on one scale
   full_mesh.png             all tooth pairs at the position of pressure_map.png on the flanks
-Pictures of these names that the result does not have are removed; docs/results.md says more."""
+Pictures of these names that the result does not have are removed; docs/reference/files.md says more."""
 TEETH = """files in DIR:
   pinion.vtk, wheel.vtk     the teeth in contact, in the fixed frame; "patch" tells flanks, fillets and lands apart
   pressure.vtk              the cells under pressure on the pinion's flank, in MPa
@@ -51,7 +51,7 @@ COMPARE = """files in DIR:
   comparison.json           the same, and the keys in which the scenes differ
   comparison.png            transmission error, its harmonics, stiffness, pressure and load share, over each other
   compared_maps.png         pressure maps side by side on one scale
-Pictures are those of one torque; docs/results.md says more."""
+Pictures are those of one torque; docs/guide/comparing.md says more."""
 EASE_OFF = """files in DIR:
   ease_off.png              what the flank lacks of the conjugate of its mating flank, in um, with the values at its
                             corners, and its angles, crownings and twist"""
@@ -59,7 +59,7 @@ SUBSURFACE = """files in DIR:
   subsurface.nc             six stresses, von Mises and greatest shear, at every depth below every cell of the map
   subsurface.csv            the same over the depth, below the highest pressure
   subsurface_max_shear.png, subsurface_von_mises.png
-Stresses in MPa, tension positive, of a half-space without friction; docs/results.md says more."""
+Stresses in MPa, tension positive, of a half-space without friction; docs/guide/stresses_below.md says more."""
 SENSITIVITIES = """KEY is a key of the scene, TOLERANCE its standard deviation, in the unit that the key ends in.
 Default keys: the modifications that the gears have, with starts and lengths of reliefs, all mounting errors (but
 misalignment_um, which adds to out_of_plane_deg), and the torque. Default tolerances: 1 um, 0.01 mm, 0.01 deg;
@@ -72,7 +72,7 @@ files in DIR:
   sensitivity_curves.png    what each tolerance changes in the transmission error over the positions
   transmission_error_band.png  transmission error with the standard deviation by all tolerances, all torques
   removal_weights.png       where on the flanks removed material changes the transmission error
-All to first order; docs/results.md says more."""
+All to first order; docs/guide/tolerances.md says more."""
 DYNAMICS = """files:
   FILE                      over the pitch: transmission error in m and rad, mesh stiffness in N/m and N m/rad, tooth
                             pairs under load, normal force; a row for each torque and mesh phase

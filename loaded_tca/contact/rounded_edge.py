@@ -156,10 +156,10 @@ def edge_pressures(
 
     An edge with an angle is that of a wedge whose faces meet where they would without the rounding. The wedge is softer
     than a half-space by an image of the pressure, with the factor that gives a long contact beside its edge the tilt of
-    plane strain (``docs/contact_solver.md``). What the image adds where the load is, is left out: how far the edge
-    gives way on the whole is for ``slice_compliance`` to tell. Edges across the columns or oblique to them have no
-    image, and none has one where columns are slices, which then hold the tilt. The factor is 0.6 at the most, that of
-    103 deg of like materials: of sharper edges the tilt counts so far.
+    plane strain (``docs/how_it_works/contact_solver.md``). What the image adds where the load is, is left out: how far
+    the edge gives way on the whole is for ``slice_compliance`` to tell. Edges across the columns or oblique to them
+    have no image, and none has one where columns are slices, which then hold the tilt. The factor is 0.6 at the most,
+    that of 103 deg of like materials: of sharper edges the tilt counts so far.
 
     Parameters
     ----------

@@ -14,8 +14,8 @@ from loaded_tca.contact.problem import ContactProblem, Spacing
 # Fewer cells than this across a contact leave errors above 1 % in its pressure.
 FEWEST_CELLS = 8
 # Error of the peak times the square of the cells across the contact, at the most: 0.3 for ellipses
-# (docs/contact_solver.md), 0.6 on a bevel pair whose curvature changes along the contact. Two grids may agree by
-# chance: no estimate is below it.
+# (docs/how_it_works/contact_solver.md), 0.6 on a bevel pair whose curvature changes along the contact. Two grids may
+# agree by chance: no estimate is below it.
 LEAST_ERROR = 0.6
 
 

@@ -3,7 +3,8 @@ r"""Machine settings of a face-milled bevel gear, as a summary of settings lists
 Lengths are in mm, angles in rad. All signs are those of a **right-hand** member; a left-hand member is the mirror image
 of the right-hand one with the same numbers. The frame of the machine: z along the axis of the cradle, out of the cradle
 towards the blank; x to the right, along the root line of the blank at the centre of roll; y upwards; origin (machine
-centre) where the axis of the cradle meets the plane of the blade tips. ``docs/face_milling.md`` has the picture.
+centre) where the axis of the cradle meets the plane of the blade tips. ``docs/how_it_works/face_milling.md`` has the
+picture.
 """
 
 from __future__ import annotations

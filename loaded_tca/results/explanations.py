@@ -29,7 +29,7 @@ EXPLANATIONS = (
     ),
     Explanation(
         "the pressure at a rounded edge has an estimated error",
-        "two edges that meet askew, or a rounding much smaller than the contact, ask for more columns than are made",
+        "two edges that meet askew, or a rounding much smaller than the contact, need more columns than are made",
         "read `edge_pressure` with its error; a larger radius",
     ),
     Explanation(

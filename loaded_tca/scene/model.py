@@ -37,9 +37,9 @@ Row = tuple[str, ...]
 class Scene(Section, ABC):
     """All that an analysis needs to know, in the engineer's units, as read from a scene file.
 
-    Values are checked however a scene is made, ``dataclasses.replace`` included; docs/scene.md has the keys. Each
-    family of gear pairs (``CylindricalScene``, ``BevelScene``) has its own sections for the pair, the gears and their
-    mounting errors.
+    Values are checked however a scene is made, ``dataclasses.replace`` included; docs/reference/scene_keys.md lists the
+    keys. Each family of gear pairs (``CylindricalScene``, ``BevelScene``) has its own sections for the pair, the gears
+    and their mounting errors.
 
     Attributes
     ----------

@@ -84,8 +84,8 @@ class ArcFillet(Fillet):
 
     References
     ----------
-    The miter-gear paper (docs/sources.md), "Fillet surface model": an arc on the sphere, tangent to the root circle
-    and the spherical involute.
+    The miter-gear paper (docs/reference/sources.md), "Fillet surface model": an arc on the sphere, tangent to the root
+    circle and the spherical involute.
     """
 
     radius: float

@@ -185,7 +185,7 @@ def test_dataset_selects_tabulates_and_draws():
 
 def test_guide_to_the_dataset_shows_what_happens(monkeypatch):
     monkeypatch.chdir(SCENES.parents[1])
-    found = doctest.testfile(str(SCENES.parents[1] / "docs" / "results.md"), module_relative=False)
+    found = doctest.testfile(str(SCENES.parents[1] / "docs" / "guide" / "results.md"), module_relative=False)
     assert found.attempted >= 8
     assert found.failed == 0
 

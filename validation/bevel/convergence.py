@@ -99,7 +99,7 @@ crowning is. Among the components of the fixed frame (z along the pinion's axis,
 weakest, since the normals point mainly along it and it follows from the two others to first order: x and z are the best
 choice or close to it; y and z, which reproduce the source's percentage for spur gears, are the worst. The reduced
 method needs no choice, and converges from every start on the flank; weaker crowning costs it steps (a flatter ridge),
-not certainty ([what a search costs](../unloaded_contact.md)).
+not certainty ([what a search costs](../how_it_works/unloaded_contact.md)).
 
 ## What the source prints
 

@@ -283,8 +283,8 @@ def table_of_closed_form() -> str:
 
 PAGE = """# Peak pressure at rounded edges
 
-Written by `python -m validation.contact.rounded_edge`; [the contact solver](../contact_solver.md#rounded-edges)
-says how it is found.
+Written by `python -m validation.contact.rounded_edge`; [the contact
+solver](../how_it_works/contact_solver.md#rounded-edges) says how it is found.
 
 {machine}; one thread.
 

@@ -330,8 +330,8 @@ def main() -> None:
     whole = speed_of_mesh_cycle.table(speed_of_mesh_cycle.measure())
     page = [
         "# Time against error\n",
-        "Written by `python -m validation.contact.speed_against_error`; [the contact solver](../contact_solver.md)",
-        "says what is compared and how.\n",
+        "Written by `python -m validation.contact.speed_against_error`;",
+        "[the contact solver](../how_it_works/contact_solver.md) says what is compared and how.\n",
         *notes,
         "",
         table(found),

@@ -1,10 +1,11 @@
 """Flanks cut with machine settings that are not basic ones, against what a cutter leaves that is moved step by step.
 
 The reference solves no equation of meshing and takes no derivative. Homogeneous matrices place blank and cutter on the
-machine, one for each of its axes (Litvin & Fuentes 2004, section 21.2; senses as in ``docs/face_milling.md``). At a
-turn of the cradle the cutting edge meets the circle of the blank through (rho, z) at an azimuth, found by bisection;
-the flank is the extreme of these azimuths over all turns: what no turn has cut away. Rows tell by how much a setting
-moves the flank, counted from the pitch point, on that of four circles towards the corners where it moves most.
+machine, one for each of its axes (Litvin & Fuentes 2004, section 21.2; senses as in
+``docs/how_it_works/face_milling.md``). At a turn of the cradle the cutting edge meets the circle of the blank through
+(rho, z) at an azimuth, found by bisection; the flank is the extreme of these azimuths over all turns: what no turn has
+cut away. Rows tell by how much a setting moves the flank, counted from the pitch point, on that of four circles towards
+the corners where it moves most.
 
 The last row of each gear takes the same from the kinematic chain that SpyGO publishes for its machine (a product of
 exponentials of nine joints) in place of these matrices, computed apart from this package. For its systemHand "left",

@@ -274,7 +274,7 @@ def page() -> str:
 
 Written by `python -m validation.loaded.numbers_to_copy`. "Before" is revision 00c770a: free edges whose reach followed
 the box, the highest cell (or the cells beside the contact point) for the peak pressure, no K_Hbeta.
-[Results](../results.md) says what each number is.
+[Results](../guide/results.md) says what each number is.
 
 ## Load factors against misalignment
 

@@ -469,8 +469,9 @@ def page() -> str:
         )
     return f"""# Tooth root stress: error, time and memory
 
-Written by `python -m validation.loaded.root_stress`. What the model is: [tooth compliance](../tooth_compliance.md)
-tells of the elements that it shares, `loaded_tca/compliance/root_stress.py` of the rest.
+Written by `python -m validation.loaded.root_stress`. What the model is: [tooth
+compliance](../how_it_works/tooth_compliance.md) tells of the elements that it shares,
+`loaded_tca/compliance/root_stress.py` of the rest.
 
 ## Against a plane reference
 

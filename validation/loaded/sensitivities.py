@@ -557,7 +557,7 @@ def page(directory: Path) -> str:
     return f"""# Sensitivities against whole analyses and Monte Carlo studies
 
 Written by `python -m validation.loaded.sensitivities`. How the derivatives are found is in
-[sensitivities](../sensitivities.md).
+[sensitivities](../how_it_works/sensitivities.md).
 
 ## Against slopes through nine analyses
 

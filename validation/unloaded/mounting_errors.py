@@ -171,9 +171,9 @@ TEXT = """# Spur and helical pairs under mounting errors
 
 Written by `python -m validation.unloaded.mounting_errors`. Unloaded contact of all teeth over one pitch; pressures
 after Hertz, one tooth pair carrying the whole load. Figures 10 to 30 of the
-[reduced-TCA dissertation](../sources.md) show pictures, most of them without numbers: each statement of its text is
-judged here by a number. Its bevel pairs have [a page of their own](bevel_studies.md), and so has
-[the convergence from random starts](unloaded_convergence.md).
+[reduced-TCA dissertation](../reference/sources.md) show pictures, most of them without numbers: each statement of its
+text is judged here by a number. Its bevel pairs have [a page of their own](bevel_studies.md), and so has [the
+convergence from random starts](unloaded_convergence.md).
 
 Assumed, where the source says nothing: the pinion drives, and has all modifications; lead crowning of the spur pair
 {spur:g} um at the ends of the face (its a1 = 0.0025/mm), of the helical pair {helical:g} um (the smallest c1 of its

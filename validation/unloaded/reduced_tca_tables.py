@@ -18,8 +18,8 @@ What the printed constants mean: (1) Circular and parabolic constants of one lin
 1/R = 2 c1: they are what they say. (2) The same curvature from the logarithm asks for a2 = c1 v0^2/a1 with the natural
 logarithm and v0 = b/2; this is below 1, as it must be for a finite flank, in all lines but the last three of Table 4,
 where no a2 gives it: there the logarithmic crowning is another, flatter one. (With the decimal logarithm every line
-would ask for a2 > 1: it cannot be meant.) Taken here is k = 0.99 of docs/conventions.md; the slopes do not depend on
-it, the place of the contact does.
+would ask for a2 > 1: it cannot be meant.) Taken here is k = 0.99 of docs/reference/conventions.md; the slopes do not
+depend on it, the place of the contact does.
 
 None of the amounts can be meant as a modification in practice: 0.14 to 2.7 mm are removed at the ends of teeth of
 module 1 mm, whose transverse thickness is 1.6 mm; an engineer's crowning is a hundredth of it.
@@ -49,7 +49,7 @@ PRINTED = 0.03
 SAME_CURVATURE = 0.03
 """Largest difference between the circular and parabolic constants of a line (the second of Table 3)."""
 STEEPNESS = 0.99
-"""k of docs/conventions.md: a2 = k."""
+"""k of docs/reference/conventions.md: a2 = k."""
 FIRST_ORDER = 2e-3
 """What the second order of 0.05 deg may add."""
 NOTE = "48 rows, six slopes; sign ignored"

@@ -1,0 +1,44 @@
+"""What sphinx-gallery needs to run the scripts of ``examples/`` without writing into that folder.
+
+The scripts are copied into a working directory and run there, so that their pictures and results land there; they find
+their scenes by ``__file__``, which sphinx-gallery leaves undefined and which is that of the original here.
+"""
+
+import builtins
+import shutil
+import warnings
+from pathlib import Path
+
+from sphinx_gallery.scrapers import figure_rst
+
+DOCS = Path(__file__).parents[1]
+EXAMPLES = DOCS.parent / "examples"
+WORKING_DIRECTORY = DOCS / "_build" / "examples"
+
+
+def prepare() -> None:
+    """Copy the scripts and the heading of the gallery into a new working directory."""
+    shutil.rmtree(WORKING_DIRECTORY, ignore_errors=True)
+    WORKING_DIRECTORY.mkdir(parents=True)
+    for path in (*EXAMPLES.glob("*.py"), EXAMPLES / "GALLERY_HEADER.rst"):
+        shutil.copy2(path, WORKING_DIRECTORY)
+
+
+def define_file(_: object, script: str) -> None:
+    """Let ``__file__`` be the original of a script that is about to be run; its warnings show no path."""
+    builtins.__file__ = str(EXAMPLES / Path(script).name)
+    warnings.formatwarning = lambda message, category, *_: f"{category.__name__}: {message}\n"
+
+
+def arguments(_: object, script: dict[str, object]) -> list[str]:
+    """Command line of a script: none, but that of the one which writes a file of scenes has a place of its own."""
+    return ["measured_flank.csv"] if Path(str(script["src_file"])).stem == "make_measured_flank" else []
+
+
+def collect_pictures(_: object, script: dict[str, object], configuration: dict[str, str]) -> str:
+    """Move the pictures that a script has written into the gallery."""
+    targets = []
+    for picture, target in zip(sorted(WORKING_DIRECTORY.glob("*.png")), script["image_path_iterator"], strict=False):
+        shutil.move(picture, target)
+        targets.append(target)
+    return figure_rst(targets, configuration["src_dir"])
