@@ -16,7 +16,7 @@ from loaded_tca.plots.style import NOTE, TITLE, note_of
 
 DOTS_PER_INCH = 160
 """Of what is rasterised within a picture."""
-REFERENCE = re.compile(r'(\bid="|url\(#|href="#)([^")]+)')
+NAME = re.compile(r'(\bid="|url\(#|href="#)([^")]+)')
 """Where an SVG names a part of itself."""
 LEFT_OUT = re.compile(r"<metadata>.*?</metadata>|<style[^>]*>.*?</style>|<!--.*?-->", re.DOTALL)
 """Of an SVG: its metadata; its style, which would hold for the whole page, and which the page has itself."""
@@ -101,8 +101,9 @@ def pictures_of(figures: Mapping[str, Figure], captions: Mapping[str, str], scen
 def svg_of(figure: Figure, prefix: str, title: str) -> str:
     """A figure as SVG for a page, without its title and note, which the page has as text.
 
-    Letters are outlines, which look alike wherever they are shown and printed. All ids are the prefix and a number, so
-    that pictures of one page do not use each other's parts, and nothing in it depends on time or chance.
+    Letters are outlines, which look alike wherever they are shown and printed. All ids begin with the prefix, so that
+    pictures of one page do not use each other's parts, and are numbered: matplotlib's own are digests of places to the
+    last bit, which the layout does not find alike each time.
     """
     for text in figure.texts:
         if text.get_gid() in (TITLE, NOTE):
@@ -113,11 +114,9 @@ def svg_of(figure: Figure, prefix: str, title: str) -> str:
         nothing = dict.fromkeys(("Creator", "Date", "Format", "Type"))
         figure.savefig(content, format="svg", dpi=DOTS_PER_INCH, bbox_inches="tight", pad_inches=0.05, metadata=nothing)
     whole = content.getvalue()
-    numbers: dict[str, int] = {}  # Matplotlib names clips by addresses in memory
-    drawing = REFERENCE.sub(
-        lambda found: f"{found[1]}{prefix}-{numbers.setdefault(found[2], len(numbers))}",
-        LEFT_OUT.sub("", whole[whole.index("<svg") :]),
-    )
+    drawing = LEFT_OUT.sub("", whole[whole.index("<svg") :])
+    numbers = {name: k for k, name in enumerate(dict.fromkeys(one[2] for one in NAME.finditer(drawing)))}
+    drawing = NAME.sub(lambda one: f"{one[1]}{prefix}-{numbers[one[2]]}", drawing)
     words = title.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
     about = f'role="img" aria-label="{words}" xmlns="http://www.w3.org/2000/svg"'
     links = 'xmlns:xlink="http://www.w3.org/1999/xlink"'

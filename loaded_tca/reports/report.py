@@ -57,7 +57,7 @@ def write_html_report(subject: Any, path: FilePath, *, date: str | None = None) 
     'report.html'
     """
     page.require_jinja2()
-    with one_thread():  # sums of several threads differ in their last digits from one time to the next
+    with one_thread():  # sums of several threads differ in their last digits each time
         if isinstance(subject, MeshCycle):
             template, content = "result.html.j2", result_content(subject)
             date = date or subject.date
