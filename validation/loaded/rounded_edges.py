@@ -472,8 +472,8 @@ it what it estimates; share is that of the position's force.
 
 {columns}
 
-With sharp ends the line of contact at a rounded tip ends in a sharp corner, where the pressure has no limit: the
-estimate tells.
+With sharp ends the line of contact at a rounded tip ends in a sharp corner, where the pressure has no limit. There the
+estimate tells too little: give the face ends a radius, too.
 
 ## Grids
 
