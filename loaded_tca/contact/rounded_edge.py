@@ -82,6 +82,11 @@ class RoundedEdge:
     angle: float | None = None
     share: float = 0.5
 
+    @property
+    def direction(self) -> Array:
+        """The normal as a unit vector (2,)."""
+        return np.array(self.normal, dtype=float) / math.hypot(*self.normal)
+
     def free_edge(self, low: float) -> FreeEdge | None:
         """The apex of its wedge, from the first border of the columns on; None without one or across them."""
         if self.angle is None or abs(self.normal[0]) > ALIGNED * math.hypot(*self.normal):
@@ -233,9 +238,12 @@ def edge_pressures(
         slices, place = None, (y, np.diff(borders)) if slice_axis == 1 else (x, np.full(rows, dx))
         if slice_compliance is not None:
             slices = slice_compliance(*place)
-        problem = GradedProblem(gap(x, y), dx, borders, contact_modulus, load, max_pressure, slices, slice_axis, free)
-        centre = float(y[problem.gap.min(axis=0).argmin()]) if before is None else _load_centre(before)
-        problem = replace(problem, reference=min(max(centre, first), last))
+        heights, reference = numbers("gap", gap(x, y)), None
+        if free:
+            centre = float(y[heights.min(axis=0).argmin()]) if before is None else _load_centre(before)
+            reference = min(max(centre, first), last)
+        demand = contact_modulus, load, max_pressure
+        problem = GradedProblem(heights, dx, borders, *demand, slices, slice_axis, free, reference)
         start = None if before is None else _carried(before, low[0], x, y)
         return solve_graded(problem, tolerance=tolerance, initial_pressure=start)
 
@@ -279,7 +287,7 @@ class _Arc:
 
         What is pressed less is told in steps, which are cheaper than fine cells all along the columns.
         """
-        normal, extent = np.array(edge.normal, dtype=float) / math.hypot(*edge.normal), high - low
+        normal, extent = edge.direction, high - low
         half, along = 0.5 * float(np.abs(normal) @ extent), float(np.abs(normal[::-1]) @ extent)
         arc = cls(np.array(edge.place, dtype=float), normal, 0.0, 0.0, 0.5 * float(extent[0]), math.inf)
         middle = arc.y_at(0.5 * float(low[0] + high[0])) if abs(normal[1]) > ALIGNED else edge.place[1]

@@ -202,7 +202,7 @@ def reached_edges(pair: GearPair, loaded: LoadedContact) -> list[ReachedEdge]:
 
 def _is_beside(line: RoundedEdge, other: RoundedEdge, distance: float) -> bool:
     """Whether two edges face the same way within a distance [mm]: those of both gears where the faces are flush."""
-    normal, direction = (np.array(one.normal) / math.hypot(*one.normal) for one in (line, other))
+    normal, direction = line.direction, other.direction
     apart = abs(float(normal @ np.subtract(other.place, line.place)))
     return bool(abs(normal[0] * direction[1] - normal[1] * direction[0]) < PARALLEL and normal @ direction > 0.0) and (
         apart < distance
@@ -277,7 +277,7 @@ def _crossing_within(loaded: LoadedContact, lines: list[RoundedEdge]) -> set[Rou
     grid, found = loaded.separation, set[RoundedEdge]()
     pressed = binary_dilation(loaded.solution.pressure > 0.0, np.ones((5, 5), dtype=bool))
     for pair in combinations(lines, 2):
-        normals = np.array([np.array(line.normal) / math.hypot(*line.normal) for line in pair])
+        normals = np.array([line.direction for line in pair])
         if abs(np.linalg.det(normals)) < PARALLEL:
             continue
         place = np.linalg.solve(normals, [normal @ line.place for normal, line in zip(normals, pair, strict=True)])
@@ -319,7 +319,7 @@ class _ContactAlongEdge:
         free_edges: bool,
     ) -> None:
         self.pair, self.loaded, self.bending, self.number, self.free_edges = pair, loaded, bending, number, free_edges
-        across, along = np.array(edge.normal) / math.hypot(*edge.normal)
+        across, along = edge.direction
         self.turn = np.array([[along, -across], [across, along]])
         grid = loaded.separation
         self.normal_gap = NormalGap(pair, loaded.contact, np.concatenate([self.turn @ grid.axes[:2], grid.axes[2:]]))
