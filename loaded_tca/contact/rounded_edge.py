@@ -110,7 +110,8 @@ class EdgePressure:
         Of the peak.
     error : float
         Estimated relative error of the discretisation: the change from coarser cells, and at least what the number of
-        cells is known to leave; infinite where the end of the box is what bounds the contact.
+        cells is known to leave; infinite where the end of the box is what bounds the contact, and where the pressure
+        along the edge rises to a sharp end of the material: finer rows find more and more.
     pressed_width : float [mm]
         How far the contact reaches onto the rounding, across the edge.
     cells_on_arc : float
@@ -261,8 +262,8 @@ def edge_pressures(
         if coarse:
             found = [one.compared_with(other) for one, other in zip(found, coarse, strict=True)]
             rows, columns = found[0].solution.problem.cells
-            within = max(found, key=lambda one: np.nan_to_num(one.pressure)).error <= accuracy
-            if within or rows * columns**2 > MOST_PAIRS:
+            error = max(found, key=lambda one: np.nan_to_num(one.pressure)).error
+            if not accuracy < error < math.inf or rows * columns**2 > MOST_PAIRS:
                 break
     return found
 
@@ -343,7 +344,7 @@ class _Arc:
         y_top, in_y = _top(y, pressure[row], column)
         top = largest * in_x * in_y if problem.max_pressure is None else largest
         error = (ASKEW_ERROR if across[0] else ALIGNED_ERROR) / on_arc**2
-        if row in (0, x.size - 1) or column in (0, y.size - 1):
+        if row in (0, x.size - 1) or column in (0, y.size - 1) or _rises_to_sharp_end(solution, row, column, error):
             error = math.inf
         rows = np.count_nonzero(((beyond + along > 0.0) & (pressure > 0.0)).any(axis=1))
         return EdgePressure(top, (x_top, y_top), error, width, on_arc, int(rows), solution)
@@ -361,6 +362,13 @@ class _Arc:
         if found.rows_on_arc < MOST_OF_ROWS * np.count_nonzero(pressed) and abs(self.normal[1]) > ALIGNED:
             length = max(problem.spacing * found.rows_on_arc, LEAST_CHANGE * min(self.length, 2.0 * half_length))
         return replace(self, width=width, middle=middle, half_length=half_length, length=length)
+
+
+def _rises_to_sharp_end(solution: GradedSolution, row: int, column: int, error: float) -> bool:
+    """Whether the material ends within two rows of a peak, and pressures up to there differ by more than its error."""
+    near = np.s_[max(0, row - 2) : row + 3, column]
+    pressed = solution.pressure[near][solution.pressure[near] > 0.0]
+    return bool(np.isinf(solution.problem.gap[near]).any()) and bool(np.ptp(pressed) > error * pressed.max())
 
 
 def _top(places: Array, values: Array, k: int) -> tuple[float, float]:

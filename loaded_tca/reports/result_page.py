@@ -202,4 +202,6 @@ def _accuracy(result: MeshCycle, part: slice, figures: Sequence[Figures]) -> Tab
 
 def _percent(error: float) -> str:
     """A relative error as a percentage; a dash where it is not known."""
+    if error == math.inf:
+        return "no limit"
     return f"{error:.2%}" if math.isfinite(error) else "-"

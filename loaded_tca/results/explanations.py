@@ -29,8 +29,9 @@ EXPLANATIONS = (
     ),
     Explanation(
         "the pressure at a rounded edge has an estimated error",
-        "two edges that meet askew, or a rounding much smaller than the contact, need more columns than are made",
-        "read `edge_pressure` with its error; a larger radius",
+        "two edges that meet askew, or a rounding much smaller than the contact, need more columns than are made; "
+        "where a rounded edge meets a sharp one, the pressure has no limit",
+        "read `edge_pressure` with its error; a larger radius, or one for the sharp edge, too",
     ),
     Explanation(
         "the contact lies across the start of a linear relief",

@@ -134,7 +134,7 @@ def known_rows(figures: Sequence[Figures]) -> list[tuple[str, tuple[str, ...]]]:
         (label, names)
         for label, names in ROWS
         if not any(part in name for name in names for part in ONLY_IF_KNOWN)
-        or any(math.isfinite(entry.get(name, math.nan)) for entry in figures for name in names)
+        or any(not math.isnan(entry.get(name, math.nan)) for entry in figures for name in names)
     ]
 
 

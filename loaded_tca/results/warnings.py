@@ -49,6 +49,9 @@ def warn_of_accuracy(
     """
     places: dict[str, list[str]] = {}
     solved, told = 0, []
+    worst = max((peak.error for peak in at_rounded_edges.values()), default=0.0)
+    size = "no limit where the edge meets a sharp one" if worst == math.inf else f"{worst:.0%} at the most"
+    mesh_error = f"the pressure at a rounded edge has an estimated error above {MOST_EDGE_ERROR:.0%}, {size}"
     for t, (torque, rows) in enumerate(zip(carried.torque.tolist(), carried.contacts, strict=True)):
         loads = [loaded.solution.load for row in rows for loaded in row if loaded is not None]
         if torque > 0.0 and not any(loads):
@@ -60,7 +63,9 @@ def warn_of_accuracy(
                 if loaded is not None:
                     solved += 1
                     place = f"{1e-3 * torque:g} N m, pinion angle {math.degrees(angle):.4g} deg, tooth pair {number:+d}"
-                    for reason in _reasons(pair, grid, loaded, at_rounded_edges.get((t, n, k))):
+                    peak = at_rounded_edges.get((t, n, k))
+                    coarse = [] if peak is None or peak.error <= MOST_EDGE_ERROR else [mesh_error]
+                    for reason in [*coarse, *_reasons(pair, grid, loaded)]:
                         places.setdefault(reason, []).append(place)
     told += [f"{reason} (at {len(at)} of {solved} pressure maps; the first: {at[0]})" for reason, at in places.items()]
     turned = np.where(carried.rotation > 0.0, carried.rotation, math.inf)
@@ -81,11 +86,9 @@ def warn_of_accuracy(
         give_accuracy_warning(sentence, stacklevel=3)
 
 
-def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact, at_rounded_edge: PeakAtEdge | None) -> list[str]:
+def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[str]:
     solution = loaded.solution
     found = []
-    if at_rounded_edge is not None and at_rounded_edge.error > MOST_EDGE_ERROR:
-        found.append(f"the pressure at a rounded edge has an estimated error above {MOST_EDGE_ERROR:.0%}")
     if loaded.at_edge and not loaded.at_arc:
         edge = "the contact reaches an edge of a flank, where the pressure of the map is mesh-dependent"
         found.append(edge + ("" if grid.free_edges else "; the free edge is left out (analysis.free_edges)"))

@@ -55,6 +55,25 @@ def test_flat_punch_with_rounded_ends():
         assert one.cells_on_arc > 3.5
 
 
+def test_edge_that_meets_a_sharp_end_has_no_limit():
+    """A cylinder on a rounded edge along its axis, with sharp ends; with a crown the contact ends before them."""
+    edge, box = RoundedEdge((0.0, 0.02), (0.0, 1.0), RADIUS), ((-2.5, 2.5), (-0.2, 0.1))
+
+    def ending(crown):
+        def gap(x, y):
+            profile = y**2 / 20.0 + np.maximum(y - 0.02, 0.0) ** 2 / (2.0 * RADIUS) + crown * x[:, None] ** 2
+            return np.where(np.abs(x[:, None]) < 2.0, profile, np.inf)
+
+        return gap
+
+    cells = (20, 40, 80)
+    sharp, crowned = ([peak(ending(c), box, edge, cells=(n, 32)) for n in cells] for c in (0.0, 3e-3))
+    assert sharp[0].pressure < 0.95 * sharp[1].pressure < 0.9 * sharp[2].pressure
+    assert [one.error for one in sharp] == [math.inf] * 3
+    assert_allclose([one.pressure for one in crowned], crowned[-1].pressure, rtol=crowned[0].error)
+    assert crowned[0].error < 0.01
+
+
 def test_estimate_covers_the_error_at_a_face_end():
     exact = peak(cells_on_arc=FINE).pressure
     for cells_on_arc in (3.0, 5.0, 7.0):

@@ -165,6 +165,9 @@ def test_pressure_at_a_rounded_edge_is_told_with_its_error(written):
     (row,) = page.rows("estimated error of the pressure at rounded edges, largest")
     held = known.any(axis=(1, 2))
     assert row[1:] == ["1.23%" if one else "-" for one in held]
+    without_limit = changed(figures, edge_is_rounded=known, edge_pressure_error=np.where(known, np.inf, np.nan))
+    (row,) = written(without_limit).rows("estimated error of the pressure at rounded edges, largest")
+    assert row[1:] == ["no limit" if one else "-" for one in held]
 
 
 def test_discretisation_error_is_that_of_the_result(written):

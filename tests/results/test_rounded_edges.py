@@ -1,5 +1,6 @@
 """Loaded contacts on rounded edges: the limit of sharp ones, which edges count as rounded, what is told of them."""
 
+import re
 import warnings
 from functools import cache
 
@@ -90,6 +91,17 @@ def test_pressure_at_a_rounded_edge_is_a_number_of_the_gear():
     assert sharp[2] > sharp[1] > sharp[0], sharp
     assert all(one["edge_is_rounded"] for one in blunt)
     assert all(12.5 - 0.25 < one["pinion_axial_at_edge_mm"] < 12.5 for one in blunt), "on the arc or just before it"
+
+
+def test_rounded_tip_between_sharp_face_ends_is_told_to_have_no_limit():
+    tips = rounded(0.2, [key for key in EDGES if "tip" in key])
+    line, told = analysed("fzg_c14", tips, load_sharing=True)
+    assert line.edge_pressure_error[0][line.edge_contact(0)] == np.inf
+    assert any("above 3%, no limit where the edge meets a sharp one" in one for one in told)
+    assert re.search(r"^  estimated error \[%\] +inf$", line.summary(), re.MULTILINE)
+    crowned, told = analysed("fzg_c14", (*tips, ("pinion.modifications.lead_crowning_um", 8.0)), load_sharing=True)
+    assert crowned.edge_pressure_error[0][crowned.edge_contact(0)] < 0.03
+    assert not any("rounded edge" in one for one in told)
 
 
 def test_the_largest_edge_pressure_is_the_same_whether_all_are_asked_for():
