@@ -25,8 +25,11 @@ STEPS = (0.6, 1.0, 1.7, 2.9)
 """Of these in one solution after the other: the first tells the pressed width, and the peak of each is compared with
 that of the one before. The last two are made where the difference asks for them."""
 ACCURACY = 0.02
-MOST_PAIRS = 2_500_000
-"""Rows times pairs of columns from which on cells are not made finer: the next ones take five times as long."""
+LARGE_ERROR = 0.03
+"""Estimated relative error above which a pressure is told to depend on its cells."""
+MOST_PAIRS, MOST_PAIRS_IF_LARGE = 2_500_000, 10_000_000
+"""Rows times pairs of columns from which on cells are not made finer: the next ones take five times as long. The second
+holds while the error is large."""
 ALIGNED_ERROR, ASKEW_ERROR = 0.12, 0.8
 """Relative error of the peak times the square of the cells across the pressed part, at the most: for columns of which
 one begins where the rounding does, and for others (``docs/studies/rounded_edge.md``)."""
@@ -263,7 +266,8 @@ def edge_pressures(
             found = [one.compared_with(other) for one, other in zip(found, coarse, strict=True)]
             rows, columns = found[0].solution.problem.cells
             error = max(found, key=lambda one: np.nan_to_num(one.pressure)).error
-            if not accuracy < error < math.inf or rows * columns**2 > MOST_PAIRS:
+            most = MOST_PAIRS if error <= LARGE_ERROR else MOST_PAIRS_IF_LARGE
+            if not accuracy < error < math.inf or rows * columns**2 > most:
                 break
     return found
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from loaded_tca.contact.rounded_edge import LARGE_ERROR
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.rounded_edges import PeakAtEdge
@@ -16,9 +17,6 @@ from loaded_tca.unloaded.tooth_cycle import REACH
 
 THICKEST_CONTACT = 0.25
 """Half width of a contact, over the module, above which a tooth is no half-space: it is 1.6 modules thick."""
-
-MOST_EDGE_ERROR = 0.03
-"""Estimated relative error of the pressure at a rounded edge above which it is told."""
 
 MOST_TORSION = 0.5
 """Part of the deflection from which the twist of the bodies about their bores is told."""
@@ -51,7 +49,7 @@ def warn_of_accuracy(
     solved, told = 0, []
     worst = max((peak.error for peak in at_rounded_edges.values()), default=0.0)
     size = "no limit where the edge meets a sharp one" if worst == math.inf else f"{worst:.0%} at the most"
-    mesh_error = f"the pressure at a rounded edge has an estimated error above {MOST_EDGE_ERROR:.0%}, {size}"
+    mesh_error = f"the pressure at a rounded edge has an estimated error above {LARGE_ERROR:.0%}, {size}"
     for t, (torque, rows) in enumerate(zip(carried.torque.tolist(), carried.contacts, strict=True)):
         loads = [loaded.solution.load for row in rows for loaded in row if loaded is not None]
         if torque > 0.0 and not any(loads):
@@ -64,7 +62,7 @@ def warn_of_accuracy(
                     solved += 1
                     place = f"{1e-3 * torque:g} N m, pinion angle {math.degrees(angle):.4g} deg, tooth pair {number:+d}"
                     peak = at_rounded_edges.get((t, n, k))
-                    coarse = [] if peak is None or peak.error <= MOST_EDGE_ERROR else [mesh_error]
+                    coarse = [] if peak is None or peak.error <= LARGE_ERROR else [mesh_error]
                     for reason in [*coarse, *_reasons(pair, grid, loaded)]:
                         places.setdefault(reason, []).append(place)
     told += [f"{reason} (at {len(at)} of {solved} pressure maps; the first: {at[0]})" for reason, at in places.items()]

@@ -36,7 +36,6 @@ from loaded_tca.loaded.rounded_edges import PeakAtEdge, ReachedEdge, pressure_at
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, solve_under_load
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.results.warnings import MOST_EDGE_ERROR
 from loaded_tca.scene import Scene
 from loaded_tca.threads import one_thread
 from validation.contact.speed_against_error import machine
@@ -351,7 +350,7 @@ def rows_of_survey() -> list[Row]:
     table = []
     for name in SURVEY:
         numbers = np.array(survey(name)).reshape(-1, 3)
-        close = numbers[numbers[:, 1] <= MOST_EDGE_ERROR]
+        close = numbers[numbers[:, 1] <= rounded_edge.LARGE_ERROR]
         ratio, told = float(close[:, 0].max()), f"of {len(close)} contacts with an estimated error within 3 %"
         less = float(np.abs(numbers[:, 2]).max())
         table += [
@@ -446,7 +445,7 @@ def table_of_survey() -> str:
     lines = [_line(head), "|---" * len(head) + "|"]
     for name in SURVEY:
         numbers = np.array(survey(name)).reshape(-1, 3)
-        close = numbers[:, 1] <= MOST_EDGE_ERROR
+        close = numbers[:, 1] <= rounded_edge.LARGE_ERROR
         ratios, others = numbers[close, 0], numbers[~close, 0]
         cells = [len(numbers), *(f"{one:.2f}" for one in (ratios.min(), np.median(ratios), ratios.max()))]
         lines.append(_line([name, *map(str, cells), f"{others.max():.2f}" if others.size else "none"]))
