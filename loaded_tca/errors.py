@@ -139,30 +139,35 @@ class AccuracyWarning(UserWarning):
     """A converged answer that is doubtful: the model, not the solver, is at its limit."""
 
 
-_noted: ContextVar[tuple[list[str], ...]] = ContextVar("_noted", default=())
+_noted: ContextVar[tuple[tuple[list[str], bool], ...]] = ContextVar("_noted", default=())
 
 
 def give_accuracy_warning(sentence: str, stacklevel: int = 2) -> None:
     """Give an AccuracyWarning, and tell it to whoever notes them; ``stacklevel`` counts from the caller."""
-    for sentences in _noted.get():
+    for sentences, _ in _noted.get():
         sentences.append(sentence)
-    warnings.warn(sentence, AccuracyWarning, stacklevel=stacklevel + 1)
+    if all(given for _, given in _noted.get()):
+        warnings.warn(sentence, AccuracyWarning, stacklevel=stacklevel + 1)
 
 
 @contextmanager
-def noted_accuracy_warnings() -> Iterator[list[str]]:
-    """Note the sentences of accuracy warnings, whatever the filters of ``warnings`` do with them.
+def noted_accuracy_warnings(*, given: bool = True) -> Iterator[list[str]]:
+    """Note the sentences of accuracy warnings of this thread, whatever the filters of ``warnings`` do with them.
+
+    Parameters
+    ----------
+    given : bool
+        Whether the warnings are given, too.
 
     Examples
     --------
-    >>> with warnings.catch_warnings(), noted_accuracy_warnings() as sentences:
-    ...     warnings.simplefilter("ignore")
+    >>> with noted_accuracy_warnings(given=False) as sentences:
     ...     give_accuracy_warning("the fit is coarse")
     >>> sentences
     ['the fit is coarse']
     """
     sentences: list[str] = []
-    mark = _noted.set((*_noted.get(), sentences))
+    mark = _noted.set((*_noted.get(), (sentences, given)))
     try:
         yield sentences
     finally:

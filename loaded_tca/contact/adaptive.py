@@ -1,7 +1,6 @@
 """The coarsest grid that answers a contact problem as closely as asked."""
 
 import math
-import warnings
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import replace
 from functools import partial
@@ -14,7 +13,7 @@ from loaded_tca.contact.levels import prolong
 from loaded_tca.contact.problem import ContactProblem
 from loaded_tca.contact.solution import CoarserGrid, ContactSolution
 from loaded_tca.contact.solver import solve_problem
-from loaded_tca.errors import AccuracyWarning, require
+from loaded_tca.errors import give_accuracy_warning, require
 
 Cells = tuple[int, int]
 Request = TypeVar("Request")
@@ -106,7 +105,7 @@ def solve_to_accuracy(
         error = math.inf if math.isnan(error) else error
         late = () if error <= accuracy else (f"estimated error {error:.1e} is above the accuracy {accuracy:.1e}",)
         for sentence in late + solution.accuracy_warnings:
-            warnings.warn(sentence, AccuracyWarning, stacklevel=2)
+            give_accuracy_warning(sentence)
     return solution
 
 

@@ -19,7 +19,6 @@ Sahlin, Larsson & Glavatskih 2007, Tribol. Int. 40, 574-579 (cap on the pressure
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Hashable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
@@ -35,7 +34,7 @@ from loaded_tca.contact.grid import AT_BOUND, CELLS, LARGEST_WHOLE, OUT_OF_REACH
 from loaded_tca.contact.levels import coarsening, prolong, window_around
 from loaded_tca.contact.problem import ContactProblem, Spacing
 from loaded_tca.contact.solution import CoarserGrid, ContactSolution, ContactStatus
-from loaded_tca.errors import AccuracyWarning, ConvergenceError, InputError
+from loaded_tca.errors import ConvergenceError, InputError, give_accuracy_warning
 
 if TYPE_CHECKING:
     from loaded_tca.contact.graded import GradedSolution
@@ -158,7 +157,7 @@ def solve_contact(
     )
     if warn:
         for sentence in solution.accuracy_warnings:
-            warnings.warn(sentence, AccuracyWarning, stacklevel=2)
+            give_accuracy_warning(sentence)
     return solution
 
 

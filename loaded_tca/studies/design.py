@@ -23,7 +23,7 @@ import numpy as np
 
 from loaded_tca.analysis import analyse
 from loaded_tca.arrays import Array, real
-from loaded_tca.errors import ConvergenceError, InputError, require
+from loaded_tca.errors import ConvergenceError, InputError, noted_accuracy_warnings, require
 from loaded_tca.results.files import FilePath, Part, read_dataset, variables_of, write_dataset
 from loaded_tca.scene import Scene
 from loaded_tca.studies.design_model import (
@@ -36,7 +36,6 @@ from loaded_tca.studies.design_model import (
     mean_pressure_norm,
     root_tension_norm,
 )
-from loaded_tca.studies.run import accuracy_warnings
 from loaded_tca.studies.study import MOST_VARIANTS, is_finite, is_whole
 from loaded_tca.threads import one_thread
 
@@ -468,7 +467,7 @@ def robustness(
 
 def _analysed(scene: Scene) -> dict[str, Any]:
     """What is kept of the analysis of a scene, over its torques; in whatever process this is called."""
-    with one_thread(), accuracy_warnings() as told:
+    with one_thread(), noted_accuracy_warnings(given=False) as told:
         result = analyse(scene)
     errors = 1e3 * result.wheel_base_radius * result.transmission_error[:, :-1]
     found = {

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import time
-import warnings
 from collections.abc import Callable, Collection, Generator, Iterator, Mapping
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from contextlib import ExitStack, closing, contextmanager
@@ -13,13 +12,19 @@ from itertools import islice
 from pathlib import Path
 from queue import SimpleQueue
 from tempfile import TemporaryDirectory
-from threading import Lock, get_ident
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from loaded_tca.analysis import analyse
-from loaded_tca.errors import AccuracyWarning, ConvergenceError, ExecutorError, InputError, LoadedTCAError, require
+from loaded_tca.errors import (
+    ConvergenceError,
+    ExecutorError,
+    InputError,
+    LoadedTCAError,
+    noted_accuracy_warnings,
+    require,
+)
 from loaded_tca.results.files import FilePath, make_directory, read_dataset, remove, replacing, write_dataset
 from loaded_tca.scene import Scene
 from loaded_tca.studies.figures import figures as key_figures
@@ -194,7 +199,7 @@ def _analysed(scene: Scene, changes: dict[str, Any], digest: str, figures: Figur
     """Analyse one variant, in whatever process and thread this is called."""
     begin = time.perf_counter()
     status, reason, found, whole = "ok", "", {}, None
-    with one_thread(), accuracy_warnings() as told:
+    with one_thread(), noted_accuracy_warnings(given=False) as told:
         try:
             variant = scene.with_changes(changes)
             if keep:
@@ -270,39 +275,3 @@ def _told_how_to_go_on(rows: Rows, out: FilePath | None) -> Iterator[None]:
         if out is not None:
             error.add_note(f"{len(rows)} variants are kept in {rows.path}: the same study goes on from there")
         raise
-
-
-_listening: dict[int, list[str]] = {}
-_filters = ExitStack()
-_lock = Lock()
-
-
-@contextmanager
-def accuracy_warnings() -> Iterator[list[str]]:
-    """Collect the sentences of accuracy warnings of this thread; other threads collect their own, or show them.
-
-    ``warnings.catch_warnings`` alone changes what all threads of a process do.
-    """
-    told: list[str] = []
-    with _lock:
-        if not _listening:
-            _filters.enter_context(warnings.catch_warnings())
-            warnings.simplefilter("always", AccuracyWarning)
-            shown = warnings.showwarning
-
-            def show(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
-                sentences = _listening.get(get_ident())
-                if sentences is not None and issubclass(category, AccuracyWarning):
-                    sentences.append(str(message))
-                else:
-                    shown(message, category, *where, **more)
-
-            warnings.showwarning = show
-        _listening[get_ident()] = told
-    try:
-        yield told
-    finally:
-        with _lock:
-            del _listening[get_ident()]
-            if not _listening:
-                _filters.close()

@@ -9,9 +9,9 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from loaded_tca import analyse, load_result
-from loaded_tca.errors import AccuracyWarning, ConvergenceError, GeometryError, InputError
+from loaded_tca.contact import solve_contact
+from loaded_tca.errors import ConvergenceError, GeometryError, InputError
 from loaded_tca.studies import Study, load_study, run_study
-from loaded_tca.studies.run import accuracy_warnings
 from tests.samples.studies import crowning, helical
 
 CROWNING, TEETH = "pinion.modifications.lead_crowning_um", "pinion.teeth"
@@ -90,14 +90,15 @@ def test_accuracy_warnings_are_kept_with_their_variant():
 
 
 def test_other_warnings_are_shown_as_always():
-    def warn():
-        with accuracy_warnings() as told:
-            warnings.warn("old", DeprecationWarning, stacklevel=1)
-            warnings.warn("doubtful", AccuracyWarning, stacklevel=1)
-        return told
+    def old(_):
+        warnings.warn("old", DeprecationWarning, stacklevel=1)
+        x = np.linspace(-1.0, 1.0, 8)
+        solve_contact(np.add.outer(x**2, x**2), (0.3, 0.3), 1e5, load=1e6)  # pressed all over
+        return {"load": 1.0}
 
     with pytest.warns(DeprecationWarning, match="old"):
-        assert warn() == ["doubtful"]
+        found = run_study(study(1.0), figures=old)
+    assert "reaches the box" in found["warnings"].values[0]
 
 
 def test_result_can_be_reopened(tmp_path):
