@@ -18,7 +18,7 @@ from loaded_tca.unloaded import EaseOff
 FOLDER = Path(__file__).parent
 SCENES = FOLDER.parents[1] / "examples" / "scenes"
 STEEL = 113187.0  # E* of two steel bodies, MPa
-BLUE, ORANGE = "#0072b2", "#d55e00"
+BLUE, ORANGE, GREEN = "#0072b2", "#d55e00", "#009e73"
 
 
 def minimum_problem() -> Figure:
@@ -122,9 +122,9 @@ def load_sharing() -> Figure:
     angle = np.degrees(result.pinion_angle)
     figure = Figure(figsize=(7.5, 5.0), layout="constrained")
     shares, stiffness = figure.subplots(2, 1, sharex=True)
-    for torque, style in zip(range(2), ("--", "-"), strict=True):
+    for torque, style in enumerate(("--", "-")):
         newton_metres = f"{result.torque[torque] / 1e3:g} N m"
-        for share, colour, pair in zip(result.load_share[torque].T, ("#009e73", BLUE, ORANGE), result.pair, strict=True):
+        for pair, share, colour in zip(result.pair, result.load_share[torque].T, (GREEN, BLUE, ORANGE), strict=True):
             shares.plot(angle, 100.0 * share, style, color=colour, label=f"pair {pair}, {newton_metres}")
         stiffness.plot(angle, result.mesh_stiffness[torque], style, color="k", label=newton_metres)
     shares.set(ylabel="share of the torque [%]", ylim=(-2.0, 102.0))
@@ -138,8 +138,8 @@ def load_sharing() -> Figure:
 def bending() -> Figure:
     """Bending of a spur pair along its face under 1 N on one slice: of the same tooth pair, and of the next one."""
     pair = read_scene(SCENES / "mesh_cycle_finite_elements.toml").pair()
-    contacts = trace_contact(pair, [-0.5 * pair.pitch, 0.5 * pair.pitch])  # double contact: pair 0, and pair +1 in its own angles
-    own, following = (sample_separation(pair, contact, cells=(8, 80), box=(0.2, 10.0)) for contact in contacts)
+    contacts = trace_contact(pair, [-0.5 * pair.pitch, 0.5 * pair.pitch])  # of pairs +1 and 0, in their own angles
+    following, own = (sample_separation(pair, contact, cells=(8, 80), box=(0.2, 10.0)) for contact in contacts)
     compliance = tooth_compliance(pair)
     figure = Figure(figsize=(7.5, 4.0), layout="constrained")
     axes = figure.subplots()
