@@ -1,4 +1,4 @@
-"""The whole story in one function: from a scene to the loaded contact over the positions of a pitch."""
+"""The whole analysis in one function: from a scene to the loaded contact over the positions of a pitch."""
 
 from __future__ import annotations
 

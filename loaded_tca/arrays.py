@@ -62,5 +62,5 @@ def finite_row(name: str, values: ArrayLike) -> Array:
     """An argument as a row (n,) of finite numbers, at least one; InputError if it is none."""
     row = numbers(name, values)
     if row.ndim != 1 or not row.size or not np.isfinite(row).all():
-        raise InputError(f"{name}: shape {row.shape} with finite numbers only in one dimension is asked for")
+        raise InputError(f"{name}: found shape {row.shape}; allowed finite numbers in one dimension")
     return row

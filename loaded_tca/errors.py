@@ -10,11 +10,11 @@ from typing import Any
 
 
 class LoadedTCAError(Exception):
-    """What every error of this package has in common: one ``except`` catches them all."""
+    """Base class of all errors of this package."""
 
 
 class InputError(LoadedTCAError, ValueError):
-    """An input that cannot be used; tells every problem at once.
+    """An input that cannot be used; lists every problem at once.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ class ExecutorError(LoadedTCAError, RuntimeError):
 
 
 class AccuracyWarning(UserWarning):
-    """A converged answer that is doubtful: the model, not the solver, is at its limit."""
+    """A converged result that is less exact than asked for, or beyond the limits of the model."""
 
 
 _noted: ContextVar[tuple[tuple[list[str], bool], ...]] = ContextVar("_noted", default=())

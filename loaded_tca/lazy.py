@@ -1,4 +1,4 @@
-"""Imports that cost nothing before they are used: names of packages (PEP 562), and what libraries import in vain."""
+"""Imports on first use: names of packages (PEP 562), and imports of libraries that are not needed."""
 
 from __future__ import annotations
 

@@ -75,10 +75,10 @@ def test_compare_tells_torques_that_are_left_out(run):
     [
         (["a"], "results: 1 given; a comparison takes two or more"),
         (["a", "a/result.nc"], "a/result.nc: given twice; a comparison takes different results"),
-        (["a", "bevel"], "results: no torque that all have (a: 40, 130 N m; bevel: 0.2 N m)"),
+        (["a", "bevel"], "results: have no torque in common (a: 40, 130 N m; bevel: 0.2 N m)"),
         (["a", "absent"], "absent: cannot be read: No such file or directory"),
-        (["a", "b", "--names", "one"], "--names one: 2 results take as many names, each another"),
-        (["a", "b", "--names", "one", "one"], "--names one one: 2 results take as many names, each another"),
+        (["a", "b", "--names", "one"], "--names one: 2 results need 2 different names"),
+        (["a", "b", "--names", "one", "one"], "--names one one: 2 results need 2 different names"),
         (["a", "b", "--torque", "50"], "torque: 50 N m; the results share 40, 130 N m"),
         (["a", "b", "--position", "6"], "--position 6: the result has the positions 1 to 5"),
     ],

@@ -77,7 +77,7 @@ def test_wrong_options_are_bad_input(study, capsys, arguments, told):
 
 def test_unknown_figure_is_told_once_all_is_written(study, capsys):
     assert cli.main(["study", study([2.0, 6.0]), "--out", "out", "--rank-by", "peak_pressure"]) == 2
-    assert "--rank-by peak_pressure: no figure of study.csv; ranked as always" in capsys.readouterr().err
+    assert "--rank-by peak_pressure: not in study.csv; ranked by the default figure" in capsys.readouterr().err
     assert os.path.exists("out/ranking.csv")
 
 
@@ -97,8 +97,8 @@ def test_scene_and_study_are_told_apart(study, capsys):
     assert cli.main(["run", name, "--out", "out"]) == 2
     assert cli.main(["study", "scene.toml", "--out", "out"]) == 2
     assert capsys.readouterr().err.splitlines() == [
-        "loaded-tca: study.toml: a study of the scene scene.toml, no scene; 'loaded-tca study' runs it",
-        'loaded-tca: scene.toml: a scene, no study; a study names it as scene = "..."',
+        "loaded-tca: study.toml: not a scene but a study of scene.toml; run it with 'loaded-tca study'",
+        'loaded-tca: scene.toml: not a study but a scene; a study names it as scene = "..."',
     ]
 
 

@@ -1,4 +1,4 @@
-"""Draw the pictures of the pages on the method: one for each of its five ideas, all of them computed.
+"""Draw the pictures of the pages on the method: one for each page, all of them computed.
 
 Run from the root of the repository: ``python -m docs.how_it_works.pictures``.
 """
@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from loaded_tca import AccuracyWarning, analyse, read_scene, solve_contact, trace_contact
+from loaded_tca import AccuracyWarning, analyse, read_scene, sample_separation, solve_contact, trace_contact
+from loaded_tca.compliance import tooth_compliance
 from loaded_tca.reference import hertz
 from loaded_tca.scene import Scene
 from loaded_tca.unloaded import EaseOff
@@ -17,7 +18,7 @@ from loaded_tca.unloaded import EaseOff
 FOLDER = Path(__file__).parent
 SCENES = FOLDER.parents[1] / "examples" / "scenes"
 STEEL = 113187.0  # E* of two steel bodies, MPa
-BLUE, ORANGE = "#0072b2", "#d55e00"
+BLUE, ORANGE, GREEN = "#0072b2", "#d55e00", "#009e73"
 
 
 def minimum_problem() -> Figure:
@@ -112,6 +113,49 @@ def errors() -> Figure:
     return figure
 
 
+def load_sharing() -> Figure:
+    """Shares of the tooth pairs of a helical pair over one pitch, and its mesh stiffness, under two torques."""
+    scene = read_scene(SCENES / "mesh_cycle_helical.toml").with_changes({"analysis.torques_Nm": [40.0, 260.0]})
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # the contacts end at the face ends
+        result = analyse(scene)
+    angle = np.degrees(result.pinion_angle)
+    figure = Figure(figsize=(7.5, 5.0), layout="constrained")
+    shares, stiffness = figure.subplots(2, 1, sharex=True)
+    for torque, style in enumerate(("--", "-")):
+        newton_metres = f"{result.torque[torque] / 1e3:g} N m"
+        for pair, share, colour in zip(result.pair, result.load_share[torque].T, (GREEN, BLUE, ORANGE), strict=True):
+            shares.plot(angle, 100.0 * share, style, color=colour, label=f"pair {pair}, {newton_metres}")
+        stiffness.plot(angle, result.mesh_stiffness[torque], style, color="k", label=newton_metres)
+    shares.set(ylabel="share of the torque [%]", ylim=(-2.0, 102.0))
+    stiffness.set(xlabel="pinion angle [deg]", ylabel="mesh stiffness [N/(mm µm)]", ylim=(0.0, None))
+    for axes in (shares, stiffness):
+        axes.legend(fontsize="small", ncols=2)
+    figure.suptitle("Helical pair 34/57: tooth pairs that share the torque, over one pitch", fontsize="medium")
+    return figure
+
+
+def bending() -> Figure:
+    """Bending of a spur pair along its face under 1 N on one slice: of the same tooth pair, and of the next one."""
+    pair = read_scene(SCENES / "mesh_cycle_finite_elements.toml").pair()
+    contacts = trace_contact(pair, [-0.5 * pair.pitch, 0.5 * pair.pitch])  # of pairs +1 and 0, in their own angles
+    following, own = (sample_separation(pair, contact, cells=(8, 80), box=(0.2, 10.0)) for contact in contacts)
+    compliance = tooth_compliance(pair)
+    figure = Figure(figsize=(7.5, 4.0), layout="constrained")
+    axes = figure.subplots()
+    for place, colour in ((0.0, BLUE), (8.0, ORANGE)):
+        loaded = int(np.abs(own.y - place).argmin())
+        for matrix, grid, style, name in (
+            (compliance.within(0, own), own, "-", "same tooth pair"),
+            (compliance.between((1, following), (0, own)), following, "--", "next tooth pair"),
+        ):
+            axes.plot(grid.y, 1e6 * matrix[:, loaded], style, color=colour, label=f"force at {place:g} mm, {name}")
+    axes.set(xlabel="along the face [mm]", ylabel="displacement [nm/N]", ylim=(0.0, None))
+    axes.legend(fontsize="small")
+    figure.suptitle("Spur pair 25/37, 20 mm wide: what bending adds to half-spaces", fontsize="medium")
+    return figure
+
+
 def _line_loads(variants: dict[str, dict[str, object]], common: dict[str, object], subtitle: str) -> Figure:
     """Line load along the face of the spur pair 25/37 at the pitch point, a curve for each variant."""
     scene = read_scene(SCENES / "mesh_cycle_finite_elements.toml").with_changes({"analysis.positions": 3, **common})
@@ -139,7 +183,7 @@ def _line_load(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
 
 def main() -> None:
     """Draw all."""
-    for draw in (minimum_problem, ease_off_field, half_space_and_bending, edges, errors):
+    for draw in (minimum_problem, ease_off_field, half_space_and_bending, edges, errors, load_sharing, bending):
         draw().savefig(FOLDER / f"{draw.__name__}.png", dpi=100)
 
 

@@ -1,4 +1,4 @@
-"""The command ``loaded-tca``: a scene file in; results, pictures or one line that says what is wrong out.
+"""The command ``loaded-tca``: reads a scene file, writes results and pictures, or one line that says what is wrong.
 
 Exit codes: 0; 1 a fault of the program; 2 bad input; 3 no convergence; 130 interrupted.
 """

@@ -92,7 +92,7 @@ EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to
 
 
 def command_line() -> argparse.ArgumentParser:
-    """Return what reads the command line; the namespace it makes has the ``command`` to call with it."""
+    """Return the parser of the command line; its namespace has the ``command`` to call with it."""
     common = _Parser(add_help=False)
     common.add_argument("--traceback", action="store_true", default=argparse.SUPPRESS, help="show where an error arose")
     parser = _Parser("loaded-tca", description=DESCRIPTION, epilog=EXAMPLE, parents=[common])

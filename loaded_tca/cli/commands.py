@@ -113,7 +113,7 @@ def compare(options: argparse.Namespace) -> None:
     paths = [result_file(path) for path in options.results]
     names = options.names or ends_that_differ(paths)
     if len(names) != len(paths) or len(set(names)) != len(names):
-        raise InputError(f"--names {' '.join(names)}: {len(paths)} results take as many names, each another")
+        raise InputError(f"--names {' '.join(names)}: {len(paths)} results need {len(paths)} different names")
     comparison = compare_results(dict(zip(names, map(MeshCycle.load, paths), strict=True)))
     torque = None if options.torque is None else 1e3 * options.torque
     position = index_of_position(options.position, comparison.results[names[0]])
@@ -194,7 +194,7 @@ def study(options: argparse.Namespace) -> None:
     print_files([directory / "study.nc", *written])
     failed = (found["status"] != "ok").values
     require(
-        (rank_by == options.rank_by, f"--rank-by {options.rank_by}: no figure of study.csv; ranked as always"),
+        (rank_by == options.rank_by, f"--rank-by {options.rank_by}: not in study.csv; ranked by the default figure"),
         (not failed.all(), "no variant was analysed; the summary says why"),
         *(
             (not failed[n], f"--keep-maps {n}: no maps, the variant is {found['status'].values[n]}")

@@ -151,7 +151,7 @@ TEETH_DO_NOT_BEND = 'analysis.compliance = "contact"'
 
 @contextmanager
 def way_out_told(way_out: str = TEETH_DO_NOT_BEND) -> Iterator[None]:
-    """Say what to set so that an analysis does without gear bodies, after whatever these do not allow."""
+    """Add to errors about gear bodies the setting with which an analysis needs none."""
     try:
         yield
     except (InputError, GeometryError) as error:

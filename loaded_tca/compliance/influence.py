@@ -191,7 +191,7 @@ class _Places:
 
 
 def gear_compliance(gear: Gear, density: MeshDensity = MeshDensity()) -> GearCompliance:
-    """Load a gear body by unit forces all over one flank, or take what is known of it.
+    """Compliance of a gear body under unit forces all over one flank, computed or from the kept models.
 
     Gears whose flanks differ in their modifications alone share one model: the last few are kept in memory.
 

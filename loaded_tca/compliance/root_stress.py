@@ -254,7 +254,7 @@ class RootStress:
 
 
 def root_stress_model(gear: Gear, density: MeshDensity | None = None) -> RootStress:
-    """Load a gear body by unit forces all over its flanks, or take what is known of it.
+    """Root stress of a gear body under unit forces all over its flanks, computed or from the kept models.
 
     Gears whose flanks differ in their modifications alone share one model: the last few are kept in memory, more of
     them on disk, as those of the tooth compliance.

@@ -121,7 +121,7 @@ def column_borders(low: float, high: float, zones: Sequence[FineZone], widest: f
     wrong = [zone for zone in zones if not _sound(zone)]
     require(
         (-math.inf < real(low) < real(high) < math.inf, f"low, high: {low} and {high} mm are not in order and finite"),
-        (not wrong, f"zones: place, width and reach are not finite, positive and not negative in {wrong}"),
+        (not wrong, f"zones: a place is not finite, a width not positive or a reach negative in {wrong}"),
         (0.0 < real(widest) < math.inf, f"widest: {widest} mm is not positive and finite"),
         (1.0 < real(growth) < math.inf, f"growth: {growth} is not above 1"),
     )

@@ -81,7 +81,7 @@ def quarter_space_factor(poisson_ratio: float, share: float = 1.0) -> float:
     .. math:: \psi = s (1.28 + 0.44 \nu + 3.7 \nu^2)
 
     It gives the mean displacement of a quarter-space under contacts that reach the edge or are cut by it within 2 %,
-    and 6 % too much displacement at the edge itself, for nu = 0.3 (``docs/how_it_works/contact_solver.md``).
+    and 6 % too much displacement at the edge itself, for nu = 0.3 (``docs/studies/contact_solver.md``).
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def wedge_factor(angle: float, poisson_ratio: float, share: float = 1.0) -> floa
 
     1 + m is how much softer than a half-space a wedge is, seen from afar, under a line load normal to its face at
     its edge (Michell); the power is fitted. At 105 to 135 deg and nu = 0.3 it gives the mean displacement under
-    contacts that reach the edge within 4 % (``docs/how_it_works/contact_solver.md``).
+    contacts that reach the edge within 4 % (``docs/studies/contact_solver.md``).
 
     Parameters
     ----------

@@ -177,13 +177,13 @@ class ContactSolution:
 
     @property
     def accuracy_warnings(self) -> tuple[str, ...]:
-        """Sentences on why the model, not the solver, may be at its limit; empty if there is no reason."""
+        """Reasons why the result may be less exact, as sentences; empty if there are none."""
         found = []
         if self.reaches_border:
             found.append("contact reaches the box: the pressure at its border is that of a body ending there")
         if 0 < min(self.cells_across) < FEWEST_CELLS:
             across = min(self.cells_across)
-            found.append(f"contact is {across} cells across: fewer than {FEWEST_CELLS} are no sound answer")
+            found.append(f"contact is {across} cells across: fewer than {FEWEST_CELLS} leave errors above 1 %")
         return tuple(found)
 
     @cached_property

@@ -42,7 +42,7 @@ EDGE = 2.0 * ROUNDING
 
 @dataclass(frozen=True, eq=False)
 class EaseOffMap:
-    """Ease-off of a flank over the part of it that the mating gear works with.
+    """Ease-off of a flank over the part of it that the mating gear reaches.
 
     Attributes
     ----------

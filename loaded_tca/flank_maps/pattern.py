@@ -130,7 +130,7 @@ class ContactPattern:
 
     @property
     def touched(self) -> Mask:
-        """Where the compound is squeezed out."""
+        """Whether the gap of a point is at most the thickness of the marking compound (profile, lengthwise)."""
         return np.asarray(self.gap <= self.compound)
 
     def __repr__(self) -> str:

@@ -19,7 +19,7 @@ Point = tuple[float, float]
 
 
 class FlankFrame(ABC):
-    """What a flank is drawn and spoken of by; the root lies at the bottom, the tip on top.
+    """Coordinates of a flank in pictures and messages; in pictures the root lies at the bottom, the tip on top.
 
     Attributes
     ----------

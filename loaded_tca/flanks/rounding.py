@@ -255,7 +255,7 @@ class RoundedFlank(DerivedFlank):
         return rho, z
 
     def off_arc(self, arc: Arc, rho: Array, z: Array) -> tuple[Array, Array]:
-        """The same with one arc."""
+        """(rho, z) of points near the arc of one edge, moved away from it to where the arc begins [mm]."""
         distance = self.edges(rho, z)[arc.edge]
         along, tangent = arc.past_tangent(self, rho, z, distance)
         step = np.maximum(along.value, 0.0) / np.sqrt(1.0 + np.asarray(tangent.value) ** 2)

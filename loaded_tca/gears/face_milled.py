@@ -13,7 +13,7 @@ from loaded_tca.gears.machine_settings import FaceMilledBlank, MachineSettings
 
 @dataclass(frozen=True)
 class FaceMilledGear:
-    """Everything that one member of a face-milled pair is made from.
+    """One gear of a face-milled pair: blank, cutter and machine settings.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ TABLE = "dynamics.csv"
 
 
 def write_dynamics(result: MeshCycle, path: FilePath) -> tuple[Path, ...]:
-    """Write what models of gear dynamics take from a result: two tables in SI units, both or none.
+    """Write two tables of a result in SI units for models of gear dynamics, both or none.
 
     One has a row for each torque and mesh phase, the other, with ``_orders`` at the end of its name, a row for each
     torque and order of the tooth mesh. Lines that begin with ``#`` say what the columns are and give what is no table.

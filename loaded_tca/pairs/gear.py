@@ -100,7 +100,7 @@ class Gear:
 
     @cached_property
     def form(self) -> ToothForm:
-        """All of a tooth but its flanks."""
+        """Form of a tooth without its flanks: thickness, root surface and fillet."""
         return self.geometry.form()
 
     @property
@@ -110,7 +110,7 @@ class Gear:
 
     @property
     def nominal_flanks(self) -> tuple[Flank, Flank]:
-        """The same without modifications."""
+        """Flanks of the sides s = +1 and s = -1 without modifications."""
         flanks = self.nominal_flank, self.nominal_back
         return flanks if self.flank.side > 0 else flanks[::-1]
 

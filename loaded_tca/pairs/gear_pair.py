@@ -48,7 +48,7 @@ def require_finite(errors: Any, units: tuple[str, ...]) -> None:
 
 @dataclass(frozen=True, eq=False)
 class GearPair:
-    """Two gears whose flanks may touch, and where they stand.
+    """Two gears in space, with the flanks that may be in contact.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Reports for whoever gets the numbers: one HTML file of a result, a study or a design."""
+"""Reports of a result, a study or a design as one HTML file."""
 
 from loaded_tca.reports.report import write_html_report
 

@@ -19,7 +19,7 @@ from loaded_tca.threads import one_thread
 
 
 def write_html_report(subject: Any, path: FilePath, *, date: str | None = None) -> Path:
-    """Write the report of a result, a study or a design: one HTML file with pictures, which needs nothing else.
+    """Write the report of a result, a study or a design: one HTML file with pictures, which needs no other file.
 
     It tells what was asked, the geometry, the load cases, the key figures with their units and how accurate they are,
     every accuracy warning with its meaning, and the scene file. It prints on A4. The same subject and date give the
@@ -66,7 +66,7 @@ def write_html_report(subject: Any, path: FilePath, *, date: str | None = None) 
         elif getattr(subject, "attrs", {}).get("kind") == "study":
             template, content = "study.html.j2", study_content(subject)
         else:
-            raise InputError(f"report: of a {type(subject).__name__}; allowed a result, a study or a design")
+            raise InputError(f"report: found a {type(subject).__name__}; allowed a result, a study or a design")
     content = {"version": version("loaded_tca"), **content}
     content["date"] = _shown(date or datetime.now(UTC).isoformat(timespec="seconds"))
     text = page.render(template, **content)

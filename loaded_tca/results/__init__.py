@@ -1,4 +1,4 @@
-"""What an analysis found: the mesh cycle, its figures and file, the stresses below the flanks, and several compared."""
+"""Results of an analysis: the mesh cycle, its figures and file, stresses below the flanks, comparisons."""
 
 from loaded_tca.results.comparison import Comparison, compare_results
 from loaded_tca.results.mesh_cycle import MeshCycle

@@ -195,7 +195,7 @@ def compare_results(results: Mapping[str, MeshCycle] | Sequence[MeshCycle]) -> C
     shared = set.intersection(*torques)
     if not shared:
         owned = "; ".join(f"{name}: {', '.join(_torques(result))} N m" for name, result in named.items())
-        raise InputError(f"results: no torque that all have ({owned})")
+        raise InputError(f"results: have no torque in common ({owned})")
     first = next(iter(named.values()))
     return Comparison(named, np.sort([torque for torque in first.torque if _told(torque) in shared]))
 

@@ -205,12 +205,12 @@ class MeshCycle:
 
     @property
     def date(self) -> str:
-        """Date of the analysis after ISO 8601, in UTC; empty if the file of the result does not tell it."""
+        """Date of the analysis after ISO 8601, in UTC; empty if the file of the result does not have it."""
         return str(self.dataset.attrs.get("date", ""))
 
     @property
     def warnings(self) -> tuple[str, ...] | None:
-        """Sentences of the accuracy warnings of the analysis; None if the file of the result does not tell them."""
+        """Sentences of the accuracy warnings of the analysis; None if the file of the result does not have them."""
         told = self.dataset.attrs.get("warnings")
         return None if told is None else tuple(str(told).splitlines())
 
@@ -236,7 +236,7 @@ class MeshCycle:
         return root_stress_maps(self)  # without any, this ends as an AttributeError in __getattr__, which says why
 
     def without_body_torsion(self, stiffness: float) -> float:
-        """Mesh stiffness that is left without the twist of the gear bodies, as c_gamma of ISO 6336-1 has none.
+        """Mesh stiffness without the twist of the gear bodies, to be compared with c_gamma of ISO 6336-1.
 
         Parameters
         ----------
@@ -263,7 +263,7 @@ class MeshCycle:
         return _column_of_largest(self.peak_pressure)
 
     def at_position(self, name: str) -> Array:
-        """Return the number of every position, of one of its pairs: (torque, position).
+        """Return one number for each position, that of one of its tooth pairs: (torque, position).
 
         Numbers of ``OF_THE_PEAK`` belong to the pair with the highest peak pressure, those of the edge to the pair with
         the highest edge pressure, all others to the pair with the largest force: a tip corner may have the highest
@@ -335,7 +335,7 @@ class MeshCycle:
         return np.stack([harmonic_coefficients(e if periodic else e[:0], count) for e in self.transmission_error])
 
     def sensitivities(self, keys: Sequence[str]) -> Sensitivities:
-        """Return the derivatives to keys of the scene: one more linear problem for each state serves them all.
+        """Return the derivatives with respect to keys of the scene, all from one linear problem for each state.
 
         The loaded transmission error changes by the mean of the material removed over the contacts, weighted with the
         growth of the pressure with the torque. See :mod:`loaded_tca.loaded.sensitivity`.
@@ -360,7 +360,7 @@ class MeshCycle:
         return sensitivities(self, keys)
 
     def to_dynamics(self) -> xarray.Dataset:
-        """Return what models of gear dynamics take, in SI units: curves over the pitch and their Fourier coefficients.
+        """Return curves over the pitch and their Fourier coefficients in SI units, for models of gear dynamics.
 
         Every name ends in its unit; ``dataset[name].attrs`` say what it is, and ``dataset.attrs["conventions"]`` how
         angles, phases and signs count. A curve is x(phi1) = amplitude_0 + sum of amplitude_k cos(k z1 phi1 + phase_k),
@@ -392,7 +392,7 @@ class MeshCycle:
         return dynamics_of(self)
 
     def peak_contact(self, torque: int, *, where_hertz_holds: bool = False) -> tuple[int, int] | None:
-        """Return indices of position and pair with the highest peak pressure of those asked for; None if none is."""
+        """Return indices of position and pair with the highest peak pressure; None if no contact qualifies."""
         known = np.isfinite(self.hertz_pressure) | (not where_hertz_holds)
         return _place_of_largest(np.where(known, self.peak_pressure, math.nan)[torque])
 
@@ -419,7 +419,7 @@ class MeshCycle:
 
     @property
     def scope(self) -> str:
-        """Positions, who carries the load, and whether teeth bend, in words."""
+        """Positions, tooth pairs that carry the load, and whether teeth bend, in words."""
         first, last = (math.degrees(self.pinion_angle[end]) for end in (0, -1))
         count = len(self.path)
         where = f"{count} positions, pinion angle {first:.4g} to {last:.4g} deg" if count > 1 else "1 position"
@@ -446,7 +446,7 @@ class MeshCycle:
             temporary.write_bytes(content)
 
     def to_netcdf(self) -> Buffer:
-        """Return the content of the file that ``save`` writes; InputError as it has."""
+        """Return the bytes of the file that ``save`` writes, with the same errors."""
         if self.scene.analysis.root_stress and not self.has_root_stress:
             raise not_asked("scene")
         paths = (self.path, *self.paths)

@@ -124,7 +124,7 @@ class Sensitivities:
 
     @cached_property
     def transmission_error(self) -> Array:
-        """Of the loaded, absolute transmission error, (torque, position, key) [rad per unit of the key].
+        """Derivatives of the loaded, absolute transmission error, (torque, position, key) [rad per unit of the key].
 
         That by the torque is one over ``MeshCycle.mesh_stiffness``, as an angle.
         """
@@ -135,7 +135,7 @@ class Sensitivities:
 
     @cached_property
     def load_share(self) -> Array:
-        """Of the shares in the torque, (torque, position, pair, key) [1 per unit]; zero where nothing is carried."""
+        """Derivatives of the load shares, (torque, position, pair, key) [1 per unit]; zero where nothing is carried."""
         state = self.tangents.state
         torque, share = self.result.torque[self.places[0]][state], self.result.load_share[*self._grids]
         own = self._of_each_pair(self.tangents.pinion_levers) + self.lever_torques
@@ -146,7 +146,7 @@ class Sensitivities:
 
     @cached_property
     def line_load(self) -> Array:
-        """Of the largest force per length along each contact, (torque, position, pair, key) [N/mm per unit]."""
+        """Derivatives of the line load of each contact, (torque, position, pair, key) [N/mm per unit]."""
         slopes = self.tangents.gathered(
             line_load_slopes(grid.pressure, grid.problem.spacing) for grid in self.tangents.grids
         )
@@ -154,7 +154,7 @@ class Sensitivities:
 
     @cached_property
     def peak_pressure(self) -> Array:
-        """Of the peak pressure of each contact, (torque, position, pair, key) [MPa per unit].
+        """Derivatives of the peak pressure of each contact, (torque, position, pair, key) [MPa per unit].
 
         Of a contact at an edge or a relief start that of its largest slice pressure, with the curvature held.
         """
@@ -165,7 +165,7 @@ class Sensitivities:
         return self._by_pair(self._of_each_pair(self.tangents.gathered(slopes)))
 
     def pressure_norm(self, exponent: float = EXPONENT) -> Array:
-        r"""Of the norm of the pressure over all contacts of a position, (torque, position, key) [MPa per unit].
+        r"""Derivatives of the norm of the pressure over a position, (torque, position, key) [MPa per unit].
 
         Smooth where the place of the peak jumps: (integral of p^m dA over 1 mm^2)^(1/m), m the exponent.
         """
@@ -188,7 +188,7 @@ class Sensitivities:
 
     @cached_property
     def face_load_factor(self) -> Array:
-        """Of K_Hbeta, (torque, key) [1 per unit]; the strip with the largest force is held. NaN with one position."""
+        """Derivatives of K_Hbeta, (torque, key) [1 per unit], the largest strip held; NaN with one position."""
         result, found = self.result, np.full((len(self.result.torque), len(self.keys)), np.nan)
         of_maps = [face_load_factor_slopes(result.gear_pair, result.path, positions) for positions in result.maps]
         slopes = [
@@ -202,7 +202,7 @@ class Sensitivities:
 
     @cached_property
     def root_tension(self) -> Array:
-        """Of the largest tension at the roots, (torque, position, gear, key) [MPa per unit]; tooth and side are held.
+        """Derivatives of the largest root tension, (torque, position, gear, key) [MPa per unit]; tooth and side held.
 
         NotAskedError without root stress.
         """
@@ -210,7 +210,7 @@ class Sensitivities:
 
     @cached_property
     def root_compression(self) -> Array:
-        """Of the largest compression likewise: where it is negative, compression grows."""
+        """Derivatives of the largest root compression, likewise; where they are negative, compression grows."""
         return self._of_root_stress("root_compression")
 
     def _of_root_stress(self, name: str) -> Array:
@@ -262,7 +262,7 @@ class Sensitivities:
 
     @cached_property
     def weight_maps(self) -> tuple[tuple[tuple[Array | None, ...], ...], ...]:
-        """Where removal counts: by torque, position and pair (nx, ny) on the grids of ``result.maps``; None as there.
+        """Effect of removed material by torque, position and pair, (nx, ny) on the grids of ``result.maps`` or None.
 
         Rotation of the wheel [rad] by one millimetre removed at a cell alone; removed at all cells it is 1/l2, and the
         transmission error falls by as much. The weights are in the ratio of dp/dT.
@@ -278,7 +278,7 @@ class Sensitivities:
         return tuple(tuple(tuple(found.get((t, n, k)) for k in pairs) for n in positions) for t in torques)
 
     def spread(self, deviations: Mapping[str, float]) -> xarray.Dataset:
-        """Standard deviations of the figures, to first order, if keys scatter independently of each other.
+        """Standard deviations of the figures, to first order, for keys that scatter independently.
 
         Parameters
         ----------
@@ -312,7 +312,7 @@ class Sensitivities:
 
     @property
     def dataset(self) -> xarray.Dataset:
-        """All as a dataset with the dimensions torque, position, pair and key."""
+        """All derivatives as a dataset with the dimensions torque, position, pair and key."""
         import xarray
 
         coordinates = {name: self.result.dataset[name] for name in ("torque", "pinion_angle", "pair")}
@@ -328,7 +328,7 @@ class Sensitivities:
 
     @property
     def peak_to_peak(self) -> Array:
-        """Of the peak-to-peak transmission error, (torque, key) [rad per unit]; NaN with one position.
+        """Derivatives of the peak-to-peak transmission error, (torque, key) [rad per unit]; NaN with one position.
 
         That of the highest position less that of the lowest one.
         """
@@ -340,7 +340,7 @@ class Sensitivities:
         return found
 
     def harmonics(self, count: int) -> Array:
-        """Of the amplitudes of ``MeshCycle.harmonics``, (torque, order, key) [rad per unit]; NaN where they are."""
+        """Derivatives of the amplitudes of ``MeshCycle.harmonics``, (torque, order, key) [rad per unit], or NaN."""
         amplitudes = self.result.harmonics(count)
         found = np.full((*amplitudes.shape, len(self.keys)), np.nan)
         for t, error in enumerate(self.result.transmission_error):

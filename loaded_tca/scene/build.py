@@ -114,7 +114,7 @@ class DescribedTooth(ToothGeometry):
         return self.analytic.nominal(side)
 
     def form(self) -> ToothForm:
-        """All of a tooth but its flanks."""
+        """Form of a tooth without its flanks: thickness, root surface and fillet."""
         return self.analytic.form()
 
     def modified(self, nominal: Flank) -> Flank:

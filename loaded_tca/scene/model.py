@@ -35,7 +35,7 @@ Row = tuple[str, ...]
 
 @dataclass(frozen=True, kw_only=True)
 class Scene(Section, ABC):
-    """All that an analysis needs to know, in the engineer's units, as read from a scene file.
+    """Input of an analysis in the engineer's units, as read from a scene file.
 
     Values are checked however a scene is made, ``dataclasses.replace`` included; docs/reference/scene_keys.md lists the
     keys. Each family of gear pairs (``CylindricalScene``, ``BevelScene``) has its own sections for the pair, the gears
@@ -173,7 +173,7 @@ class Scene(Section, ABC):
 
     @abstractmethod
     def geometry_rows(self) -> Sequence[Row]:
-        """Return what there is to tell of the geometry: of the mesh, then of pinion and wheel."""
+        """Return the rows of the geometry table: of the mesh, then of pinion and wheel."""
 
     @property
     def path_points(self) -> Mapping[str, float]:
@@ -182,7 +182,7 @@ class Scene(Section, ABC):
 
     @property
     def mean_contact_length(self) -> float:
-        """Mean length of all contact lines over a pitch [mm]; NaN for gears of which ISO 6336-1 does not speak."""
+        """Mean length of all contact lines over a pitch [mm]; NaN for gears outside ISO 6336-1."""
         return math.nan
 
     @property
@@ -195,13 +195,13 @@ class Scene(Section, ABC):
 
     @property
     def root_factors(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-        """Y_F, Y_S, Y_beta of pinion and wheel after ISO 6336-3; NaN likewise."""
+        """Y_F, Y_S, Y_beta of pinion and wheel after ISO 6336-3; NaN for gears outside the standard."""
         unknown = (math.nan, math.nan, math.nan)
         return unknown, unknown
 
     @property
     def tooth_height_over_width(self) -> float:
-        """Height of the teeth over the common face width, h/b of ISO 6336-1; NaN where it does not speak of them."""
+        """Height of the teeth over the common face width, h/b of ISO 6336-1; NaN for gears outside the standard."""
         return math.nan
 
     @abstractmethod
@@ -214,7 +214,7 @@ class Scene(Section, ABC):
 
     @property
     def flank_names(self) -> tuple[str, str]:
-        """What pictures call the two flanks in contact."""
+        """Names of the two flanks in contact in pictures."""
         return "pinion", "wheel"
 
     @property

@@ -74,7 +74,7 @@ def parse_scene(text: str, source: str = "scene", folder: str | os.PathLike[str]
     """
     table = toml_table(text, source)
     if "pair" not in table and isinstance(table.get("scene"), str):
-        raise InputError(f"{source}: a study of the scene {table['scene']}, no scene; 'loaded-tca study' runs it")
+        raise InputError(f"{source}: not a scene but a study of {table['scene']}; run it with 'loaded-tca study'")
     return scene_from_table(_with_files_from(None if folder is None else Path(folder), table))
 
 

@@ -206,7 +206,7 @@ def key_at(section: type[Section], path: str, place: str = "") -> Key:
             raise InputError(f"{place}{name}: a section; allowed is one of its keys")
         return key_at(entry.section, rest, f"{place}{name}.")
     if rest:
-        raise InputError(f"{place}{name}.{shown_key(rest)}: unknown key; {place}{name} is a key, no section")
+        raise InputError(f"{place}{name}.{shown_key(rest)}: unknown key; {place}{name} is a key, not a section")
     return entry
 
 

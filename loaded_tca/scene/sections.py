@@ -195,14 +195,14 @@ class GearSection(Section):
 
 @dataclass(frozen=True, kw_only=True)
 class Load(Section):
-    """[load]: what the pair carries."""
+    """[load]: torque on the pinion."""
 
     pinion_torque_Nm: float = key(TORQUE_Nm, "magnitude of the torque on the pinion")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Analysis(Section):
-    """[analysis]: how finely it is computed."""
+    """[analysis]: positions, grids and models."""
 
     positions: int = key(
         Whole(1, 10000), "mesh positions over one pitch, both ends included; 1 = the pitch point alone", 21
@@ -249,6 +249,6 @@ class Analysis(Section):
 
     @property
     def without_bodies(self) -> str:
-        """What to set so that no gear body is meshed; empty where none is."""
+        """Settings with which no gear body is meshed; empty where none is."""
         ways = [] if self.compliance == "contact" else ['analysis.compliance = "contact"']
         return " and ".join([*ways, *(["analysis.root_stress = false"] if self.root_stress else [])])

@@ -1,4 +1,4 @@
-"""Many analyses as one: a study varies keys of a scene and collects the key figures of every variant.
+"""Studies of many variants of a scene, with the key figures of each, and designs of micro-geometry.
 
 The engine is any ``concurrent.futures.Executor``. An executor belongs to its caller; a study asks it for one task per
 variant, writes down each one that is done, and goes on where it stopped when it is run again.

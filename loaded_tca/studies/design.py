@@ -125,7 +125,7 @@ class Limit:
 
 @dataclass(frozen=True, eq=False)
 class DesignResult:
-    """A design that was found, and what the package's own analysis says of it and of the start.
+    """Result of a design: start and optimum, with the figures of both by the whole analysis.
 
     Attributes
     ----------
@@ -453,7 +453,7 @@ def robustness(
     import xarray
 
     wanted = Objective(objective, k, percentile, figure)
-    require((bool(model.scatter), "model: without scatter; allowed one with scatter, of which there are multiples"))
+    require((bool(model.scatter), "model: has no scatter to multiply; allowed a model with scatter"))
     values = [model.values(one) for one in designs.values()]
     found = np.empty((len(designs), len(multiples)))
     for column, multiple in enumerate(multiples):

@@ -219,7 +219,9 @@ class DesignModel:
             # once more those on grids that another state has outgrown meanwhile
             states = [state for state, (_, one) in found.items() if not self.held[state[0]].holds(one)]
         idle = {t for (_, t, _), (_, one) in found.items() if one.torque == 0.0}
-        require(*((False, f"torques: {self.torques[t]:g} N mm is next to none; allowed more") for t in sorted(idle)))
+        require(
+            *((False, f"torques: {self.torques[t]:g} N mm loads no tooth pair; allowed more") for t in sorted(idle))
+        )
         return Evaluation(self, values, [*found.values()])
 
     def _samples(self) -> list[dict[str, float]]:

@@ -71,7 +71,7 @@ def parse_study(text: str, source: str = "study", folder: str | os.PathLike[str]
     """
     found = toml_table(text, source)
     if "pair" in found:
-        raise InputError(f'{source}: a scene, no study; a study names it as scene = "..."')
+        raise InputError(f'{source}: not a study but a scene; a study names it as scene = "..."')
     problems = [
         f"{shown_key(word)}: unknown word{did_you_mean(nearest(word, WORDS)) or '; allowed ' + ', '.join(WORDS)}"
         for word in found

@@ -105,7 +105,7 @@ def run_study(
     require(
         (not with_maps or out is not None, "keep_maps: needs out"),
         (not unknown, f"keep_maps: {unknown[:3]} are not variants 0 to {len(study) - 1}"),
-        (named, f"figures: found {figures!r}; allowed a function, whose name tells its rows from those of others"),
+        (named, f"figures: found {figures!r}; allowed a function with a name, which identifies its rows"),
     )
     digests = [*map(study.digests(figures), range(len(study)))]
     with ExitStack() as stack:

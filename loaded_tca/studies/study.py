@@ -139,7 +139,7 @@ class Study:
         return {key: _as_key_takes(self._kinds[key], value) for key, value in found.items()}
 
     def digests(self, figures: Callable[..., Any]) -> Callable[[int], str]:
-        """Return what tells variants apart: a digest of scene and changes, asked figures and version of the package.
+        """Return a digest for each variant: of scene and changes, asked figures and version of the package.
 
         A variant of another study that changes the same keys to the same values has the same digest.
         """

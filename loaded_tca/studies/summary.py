@@ -24,7 +24,7 @@ MOST_REASONS = 5
 
 
 def study_summary(study: xarray.Dataset) -> str:
-    """Return what became of the variants of a study, and the scatter of the main figures.
+    """Return the status of the variants of a study, and the scatter of the main figures, as text.
 
     Parameters
     ----------

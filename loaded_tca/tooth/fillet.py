@@ -44,7 +44,7 @@ class FilletCurve:
 
 
 class Fillet(ABC):
-    """How a flank is led into the root."""
+    """Transition from a flank to the root."""
 
     @abstractmethod
     def curve(self, profile: Profile, root_radius: Array, count: int) -> FilletCurve:

@@ -15,7 +15,7 @@ from loaded_tca.tooth.sections import Sections
 
 @dataclass(frozen=True)
 class ToothForm:
-    """All of a tooth but its flanks.
+    """Form of a tooth without its flanks: thickness, root surface and fillet.
 
     Attributes
     ----------

@@ -14,7 +14,7 @@ class ToothGeometry(ABC):
     @property
     @abstractmethod
     def unmodified(self) -> ToothGeometry:
-        """The same teeth without modifications: whose are equal have equal nominal flanks and forms."""
+        """The same teeth without modifications; equal ones have equal nominal flanks and forms."""
 
     @abstractmethod
     def nominal(self, side: int) -> Flank:

@@ -45,7 +45,7 @@ class RoundedTooth(ToothGeometry):
         return RoundedFlank(self.sharp.modified(nominal), self.rounding)
 
     def form(self) -> ToothForm:
-        """All of a tooth but its flanks."""
+        """Form of a tooth without its flanks: thickness, root surface and fillet."""
         return self.sharp.form()
 
 

@@ -59,12 +59,12 @@ class _Contact(Generic[Number, Whole, Truth]):
 
 @dataclass(frozen=True, eq=False)
 class ContactPoint(_Contact[float, int, bool]):
-    """First touch of one tooth pair at one position; the fields of ``ContactPath`` without their first axis."""
+    """Unloaded contact of one tooth pair at one position; the fields of ``ContactPath`` without their first axis."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ContactPath(_Contact[Array, Indices, Mask]):
-    """First touches of one tooth pair over the pinion angles, n positions.
+    """Unloaded contact of one tooth pair over the pinion angles, n positions.
 
     Rows where no point of the tooth pair can touch are NaN, with ``in_contact`` False.
 

@@ -145,7 +145,8 @@ class MeshPath:
         """
         per_pitch = self._count_per_pitch()
         if not isinstance(count, int | np.integer) or not 1 <= count < 0.5 * per_pitch:
-            raise InputError(f"count: {count} orders of {per_pitch} positions per pitch; 1 to {(per_pitch - 1) // 2}")
+            most = (per_pitch - 1) // 2
+            raise InputError(f"count: found {count}; allowed 1 to {most} with {per_pitch} positions per pitch")
         order = np.arange(1, count + 1)
         spectrum = np.fft.rfft(self.transmission_error[:per_pitch])[order] * (2.0 / per_pitch)
         turned = spectrum * np.exp(-2j * math.pi * order * self.pinion_angle[0] / self.pair.pitch)
@@ -260,7 +261,7 @@ def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: I
     """
     phi1 = default_angles(pair) if pinion_angles is None else finite_row("pinion_angles", pinion_angles)
     if (np.diff(phi1) <= 0.0).any():
-        raise InputError("pinion_angles: increasing angles are asked for")
+        raise InputError("pinion_angles: not increasing; allowed increasing angles")
     chosen = None if teeth is None else _checked_teeth(teeth)  # before the reach is looked for
     low, high = reach(pair)
     pairs = teeth_between(phi1[0], phi1[-1], (low, high), pair.pitch) if chosen is None else chosen

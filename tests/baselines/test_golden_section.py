@@ -133,8 +133,8 @@ def test_every_gap_is_counted():
 @pytest.mark.parametrize(
     ("angles", "sections", "message"),
     [
-        ([], 30, r"pinion_angles: shape \(0,\) with finite numbers only"),
-        (0.0, 30, r"pinion_angles: shape \(\)"),
+        ([], 30, r"pinion_angles: found shape \(0,\); allowed finite numbers"),
+        (0.0, 30, r"pinion_angles: found shape \(\)"),
         ([math.nan], 30, "pinion_angles"),
         ("x", 30, "pinion_angles: an array of finite numbers is asked for, not 'x'"),
         ([0.0], 0, "sections: 0 is not a whole number >= 1"),

@@ -63,10 +63,13 @@ def test_columns_without_a_zone_are_even():
         ((0.0, math.nan, [], 0.1), "^low, high"),
         ((0.0, 1.0, [], 0.0), "^widest: 0.0 mm is not positive and finite$"),
         ((0.0, 1.0, [], 0.1, 1.0), "^growth: 1.0 is not above 1$"),
-        ((0.0, 1.0, [FineZone(0.5, 0.0, 0.1)], 0.1), "^zones: place, width and reach"),
-        ((0.0, 1.0, [FineZone(math.inf, 0.1, 0.1)], 0.1), "^zones: place"),
-        ((0.0, 1.0, [FineZone(0.5, 0.1, -0.1)], 0.1), "^zones: place"),
-        ((0.0, 1.0, [0.5], 0.1), "^zones: place"),
+        (
+            (0.0, 1.0, [FineZone(0.5, 0.0, 0.1)], 0.1),
+            "^zones: a place is not finite, a width not positive or a reach negative in",
+        ),
+        ((0.0, 1.0, [FineZone(math.inf, 0.1, 0.1)], 0.1), "^zones: a place"),
+        ((0.0, 1.0, [FineZone(0.5, 0.1, -0.1)], 0.1), "^zones: a place"),
+        ((0.0, 1.0, [0.5], 0.1), "^zones: a place"),
         ((0.0, 1.0, [FineZone(0.5, 1e-5, 0.5)], 0.1), "^zones: 50000 columns from 0 to 0.5 mm are above 2000$"),
     ],
 )

@@ -1,4 +1,4 @@
-"""Cases on which contact solvers go wrong, each with its answer; the table of docs/how_it_works/contact_solver.md."""
+"""Cases on which contact solvers go wrong, each with its answer; the table of docs/studies/contact_solver.md."""
 
 import math
 

@@ -67,7 +67,7 @@ def test_compared_are_the_torques_that_all_have():
 
 
 def test_results_without_a_common_torque_are_told_theirs():
-    with pytest.raises(InputError, match=r"no torque that all have \(a: 20, 80 N m; b: 130 N m\)"):
+    with pytest.raises(InputError, match=r"have no torque in common \(a: 20, 80 N m; b: 130 N m\)"):
         compare_results({"a": two_torques(), "b": result()})
 
 

@@ -210,7 +210,7 @@ def test_figures_that_do_not_fit_into_the_result_are_a_fault(tmp_path, figures, 
 
 
 def test_figures_without_a_name_are_refused():
-    with pytest.raises(InputError, match="allowed a function, whose name tells its rows"):
+    with pytest.raises(InputError, match="allowed a function with a name, which identifies its rows"):
         run_study(study(1.0), figures=lambda scene: {"teeth": scene.pinion.teeth})
 
 

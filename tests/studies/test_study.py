@@ -97,7 +97,7 @@ def test_number_out_of_its_range_is_no_fault_of_the_study():
         ({}, "factors: none given, no distributions and no table"),
         ({"factors": {"pinion.modifications.lead_crowning": [1.0]}}, 'mean "pinion.modifications.lead_crowning_um"'),
         ({"factors": {"pinion.modifications": [1.0]}}, "pinion.modifications: a section"),
-        ({"factors": {"pinion.teeth.more": [1]}}, "pinion.teeth.more: unknown key; pinion.teeth is a key, no section"),
+        ({"factors": {"pinion.teeth.more": [1]}}, "teeth.more: unknown key; pinion.teeth is a key, not a section"),
         ({"factors": {CROWNING: []}}, f"{CROWNING}: no values"),
         ({"factors": {CROWNING: 3.0}}, f"{CROWNING}: found 3.0; allowed a list of values"),
         ({"factors": {CROWNING: "12"}}, f"{CROWNING}: found \"12\"; allowed a list of values"),

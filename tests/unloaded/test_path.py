@@ -377,7 +377,7 @@ def test_pair_that_never_touches_is_refused():
 
 @pytest.mark.parametrize("angles", [[], [[0.0]], [math.nan], [0.0, math.inf], 0.0])
 def test_angles_that_are_no_finite_row_are_refused(angles):
-    with pytest.raises(InputError, match=r"pinion_angles: shape .* with finite numbers only in one dimension"):
+    with pytest.raises(InputError, match=r"pinion_angles: found shape .*; allowed finite numbers in one dimension"):
         trace_contact(sam_paper(), angles)
 
 

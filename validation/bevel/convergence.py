@@ -92,14 +92,13 @@ for all starts together, the shortest of {runs} runs (SciPy: one), and per start
 |---|---|---|---|---|---|---|---|
 """
 
-CONCLUSION = """
-The conventional equations hold for bevel pairs as they stand, but how many starts converge depends on three things that
-the source does not say: how phi2 was drawn, which two components of the normals are set equal, and how strong the
-crowning is. Among the components of the fixed frame (z along the pinion's axis, x towards the pitch line) y is the
-weakest, since the normals point mainly along it and it follows from the two others to first order: x and z are the best
-choice or close to it; y and z, which reproduce the source's percentage for spur gears, are the worst. The reduced
-method needs no choice, and converges from every start on the flank; weaker crowning costs it steps (a flatter ridge),
-not certainty ([what a search costs](../how_it_works/unloaded_contact.md)).
+CONCLUSION = """The conventional equations hold for bevel pairs as they stand, but how many starts converge depends on
+three things that the source does not say: how phi2 was drawn, which two components of the normals are set equal, and
+how strong the crowning is. Among the components of the fixed frame (z along the pinion's axis, x towards the pitch
+line) y is the weakest, since the normals point mainly along it and it follows from the two others to first order: x
+and z are the best choice or close to it; y and z, which reproduce the source's percentage for spur gears, are the
+worst. The reduced method needs no choice, and converges from every start on the flank; with weaker crowning it takes
+more steps (the ridge is flatter), and still converges ([what a search costs](../how_it_works/unloaded_contact.md)).
 
 ## What the source prints
 

@@ -148,9 +148,9 @@ load left the finite elements.
 
 ![Transmission error, load share and peak pressure over the pitch](mesh_cycle_fem.png)
 
-Crosses: a tip corner is in contact; its pressure has no limit in theory, and stiffness changes with every element that
-comes to bear, so that stiffness and pressure there (on either side) are not compared; its shares are in brackets.
-Stiffness is taken between 96 and 100 % of the torque on both sides; a pair with less than {parting:g} % of
+Crosses: a tip corner is in contact; its pressure has no limit in theory, and stiffness changes with every element
+that comes into contact, so that stiffness and pressure there (on either side) are not compared; its shares are in
+brackets. Stiffness is taken between 96 and 100 % of the torque on both sides; a pair with less than {parting:g} % of
 it comes apart somewhere in between: such positions are left out of the column.
 
 ## Plane strain against a face with ends
@@ -188,9 +188,8 @@ Processor time [s] of both on this machine, of one position and of all {count} k
 |---|---|---|---|
 {times}
 
-{factor}
-The SAM paper speaks of two orders of magnitude against finite elements; this is what was measured against elements in
-plane strain, which know one section of the face where the pair here has the whole of it.
+{factor} The SAM paper speaks of two orders of magnitude against finite elements; this is what was measured against
+elements in plane strain, which have one section of the face, while the pair here has the whole face.
 
 ## Rows
 

@@ -1,7 +1,7 @@
 """Contacts on which solvers go wrong, each beside its answer: iterations, convolutions, residual, error.
 
 Run from the root of the repository: ``python -m validation.contact.hard_cases``; prints the table of
-``docs/how_it_works/contact_solver.md``. The same cases are tests in ``tests/contact/test_hard_cases.py``.
+``docs/studies/contact_solver.md``. The same cases are tests in ``tests/contact/test_hard_cases.py``.
 """
 
 import math

@@ -331,7 +331,7 @@ def main() -> None:
     page = [
         "# Time against error\n",
         "Written by `python -m validation.contact.speed_against_error`;",
-        "[the contact solver](../how_it_works/contact_solver.md) says what is compared and how.\n",
+        "[the page on the contact solver](contact_solver.md#speed-against-error) says what is compared and how.\n",
         *notes,
         "",
         table(found),

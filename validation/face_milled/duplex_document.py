@@ -59,8 +59,8 @@ settings that follow from a blank.
 Steps 2 and 3 depend on machine root angles, ratios of roll and blade angles only (blade group 11: 18 deg 10' outside,
 21 deg 50' inside), so that they can be checked although the paper leaves out face width and cradle angle. Azimuths on
 each gear's own hand, turns right-handed about each axis from apex to heel; reverse from the printed theta_p, forward
-from the theta_g to which the printed theta_p belongs. **Every printed digit is met once two misprints are mended**
-(turns are cut off, not rounded):
+from the theta_g to which the printed theta_p belongs. **All printed digits are reproduced once two misprints are
+corrected** (turns are cut off, not rounded):
 
 {values}
 
@@ -86,7 +86,7 @@ the equations are solved where there is no tooth.
 
 {solvers}
 
-- The start does its work: wherever flanks touch inside their edges, the five equations converge from all three of its
+- The start is sufficient: wherever flanks touch inside their edges, the five equations converge from all three of its
   versions, in {five} steps. The mean is no better than its two parts.
 - It is a start for the normals, not for the points: they lie some millimetres apart, since nothing in the construction
   brings them together (each gear stands with a slot where its machine cut one), and the wheel angle is degrees off.

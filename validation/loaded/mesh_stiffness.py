@@ -9,7 +9,7 @@ The tangent is that of the cells in contact as they are. How far it scatters by 
 error over nine torques close together, of the three mesh cycles among the examples, with flanks alone and with teeth
 that bend; beside it the chord, of a power law through the torque and 0.8 of it.
 
-``docs/how_it_works/load_sharing.md`` has the tables that this prints as a script, and says what they show.
+``docs/studies/mesh_stiffness.md`` has the tables that this prints as a script, and says what they show.
 """
 
 import math

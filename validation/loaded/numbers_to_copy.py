@@ -284,12 +284,12 @@ Helical pair 23/81, m_n 2.5, alpha_n 17.5 deg, beta 28 deg, a 147.5 mm, faces 32
 {load_factors()}
 
 K_Hbeta rises on both sides of its least value, and changes by less than 3 % from 32 to 64 cells along each axis. With
-flanks alone it changes by up to 4 %, since more load lies at sharp ends, where a strip converges slowly, and its least
-value is near zero. Teeth and bodies that bend even out what misalignment adds, and move that value: the axial force
-of a helical gear tilts them.
+flanks alone it changes by up to 4 %, since more load lies at sharp ends, where a strip converges slowly, and its
+least value is near zero. Bending of teeth and bodies lowers the effect of misalignment, and moves the least value:
+the axial force of a helical gear tilts the bodies.
 
-Before, the line load of the pair with the largest force over that of an even load stood in its place
-(`line_load_ratio`, once called `face_load_factor`); without free edges it followed the grid:
+The earlier revision has, instead of K_Hbeta, the line load of the pair with the largest force over that of an even
+load (today `line_load_ratio`); without free edges it depends on the grid:
 
 {FACTORS_BEFORE}
 

@@ -469,17 +469,16 @@ def page() -> str:
         )
     return f"""# Tooth root stress: error, time and memory
 
-Written by `python -m validation.loaded.root_stress`. What the model is: [tooth
-compliance](../how_it_works/tooth_compliance.md) tells of the elements that it shares,
-`loaded_tca/compliance/root_stress.py` of the rest.
+Written by `python -m validation.loaded.root_stress`. The model is described in [tooth
+compliance](../how_it_works/tooth_compliance.md#root-stress) and in `loaded_tca/compliance/root_stress.py`.
 
 ## Against a plane reference
 
 Spur pinion 25 of 25/37, m 3, 100 N/mm, bore of 0.55 of the root diameter. The reference has finite elements of
 quadratic triangles, the whole ring, plane strain, refined until nothing moves by 0.02 %. Asked: unit loads 1 %, the
-neighbours 3 %, in space 1.5 % in the middle of the face and 3 % at its ends. In space the gear is 20 mm wide and evenly
-loaded at its highest point of single contact (HPSTC). The largest stress is flat along the fillet: 1.5 deg off its
-place it has fallen by 0.1 %.
+neighbours 3 %, in space 1.5 % in the middle of the face and 3 % at its ends. In space the gear is 20 mm wide and
+evenly loaded at its highest point of single contact (HPSTC). The maximum along the fillet is flat: at 1.5 deg from
+its place the stress is 0.1 % lower.
 
 {of_rows([row for row in (*plane, *space_rows()) if row.expected])}
 
@@ -497,8 +496,8 @@ elimination starts. {machine()}.
 
 {meshes}
 
-Layers through the tooth are what counts: those of the tooth compliance are too thick below the surface. 20 modules of
-width stay below 2 GiB since two layers are one beside the resolved tooth.
+The error depends on the layers through the tooth: those of the tooth compliance are too thick below the surface. A
+face of 20 modules takes less than 2 GiB, since beside the resolved tooth two layers are joined into one.
 
 ## Nine gears
 
@@ -509,22 +508,22 @@ reference to 0.05 %; asked 1 %.
 
 ## Helical, bevel and face-milled gears
 
-In space, against finer meshes: half as many elements more in each direction of a section with the outermost layers half
-as thick, or half as many layers more along the face. Largest error of eight loads: even ones over the face at three
-heights, on 0.3 of it in its middle and near its end, and lines that rise or fall along the face; asked 2 %. The helical
-and the first bevel gears are 12 mm wide; the face-milled ones are those of `examples/scenes`. Fillets of 19x62 are
-sharp: edge radii of 0.016 of the pitch. At the very ends of inclined teeth, where stress has fallen off, it is off by
-3 to 10 %; the maxima beside them are what is compared.
+In space, against finer meshes: half as many elements more in each direction of a section with the outermost layers
+half as thick, or half as many layers more along the face. Largest error of eight loads: even ones over the face at
+three heights, on 0.3 of it in its middle and near its end, and lines that rise or fall along the face; asked 2 %. The
+helical and the first bevel gears are 12 mm wide; the face-milled ones are those of `examples/scenes`. Fillets of
+19x62 are sharp: edge radii of 0.016 of the pitch. At the very ends of inclined teeth, where the stress is low, its
+error is 3 to 10 %; the table compares the maxima beside them.
 
 {of_convergence(family_rows())}
 
 ## Forms of the root
 
-Cylindrical gears have the trochoid of the basic rack with its tip radius rho_fP, up to all round. m 3, without profile
-shift, 1 N/mm at the HPSTC beside a wheel of 37 teeth. "ISO" is Y_F Y_S of ISO 6336-3, method B. From 0.2 on both agree
-to 5 %, and to 2 % in how stress falls with the radius; for sharper racks the closed form says less, and the more so the
-more teeth there are. Errors of the mesh are against sections of 2.25 times as many elements each way, with outermost
-layers of a quarter.
+Cylindrical gears have the trochoid of the basic rack with its tip radius rho_fP, up to all round. m 3, without
+profile shift, 1 N/mm at the HPSTC beside a wheel of 37 teeth. "ISO" is Y_F Y_S of ISO 6336-3, method B. From 0.2 on
+both agree to 5 %, and to 2 % in how stress falls with the radius; for sharper racks the closed form is lower, the
+more so the more teeth the gear has. Errors of the mesh are against sections of 2.25 times as many elements each way,
+with outermost layers of a quarter.
 
 {of_forms()}
 

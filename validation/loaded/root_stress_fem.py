@@ -81,16 +81,16 @@ K_Fbeta = K_Hbeta^N_F, N_F = 0.692 (h/b no more than 1/3):
 K_Fbeta is larger in every line, for three reasons:
 
 - A load on one place of the face bends the tooth beside it, too: the root sees a mean over about a tooth height of
-  the face, not the peak. N_F stands for this, but it comes from h/b alone and knows nothing of how the load falls: it
-  would fit a peak that is wide beside the height of the tooth. Here (h/b 0.34) the load of the crowned pair falls from
-  its peak to nothing within one and a half tooth heights.
+  the face, not the peak. N_F stands for this, but it depends on h/b alone, not on the shape of the load: it is right
+  for a peak that is wide against the height of the tooth. Here (h/b 0.34) the load of the crowned pair falls from its
+  peak to nothing within one and a half tooth heights.
 - An even load does not stress the root evenly: the middle of the face has 1.04 of the stress of plane strain, the ends
   have 0.73 of it, because nothing holds the material lengthwise there. A load that is largest at the end, as that of a
   misaligned pair, meets the sections with the least stress per load: the largest stress under the linear load lies
   {inside:.1f} mm away from the end, where the load is less. ISO multiplies the largest load by the stress of an even
   section, wherever both are.
 - K_Hbeta takes the very peak of the line load. At an end of the face that is free, a real contact raises it over a
-  length that the root does not notice: the pair at the pitch point has less tension than the linear load although its
+  length too short to affect the root: the pair at the pitch point has less tension than the linear load although its
   K_Hbeta is larger.
 
 So K_Fbeta is on the safe side here. A root stress by finite elements needs no such factor: the spread of the load and

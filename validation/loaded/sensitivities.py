@@ -564,9 +564,9 @@ Written by `python -m validation.loaded.sensitivities`. How the derivatives are 
 The mesh cycles of `examples/scenes`, {POSITIONS} positions, the middle torque, one grid size for all contacts; flanks
 alone (`compliance = "contact"`, no free edges), and with bending (the defaults). A slope is that of the cubic through
 nine analyses, equally spaced from -step to +step around the value of the scene. An error is the largest difference of
-any position (and tooth pair) over the largest slope of any; in brackets the largest standard error of a slope, by what
-the cubic leaves of the nine values, likewise. Analyses place their boxes and grids anew, so that this scatter is
-theirs.
+any position (and tooth pair) over the largest slope of any; in brackets the largest standard error of a slope, from
+the residuals of the cubic, over the same slope. It is the scatter of the analyses, each of which places its boxes and
+grids anew.
 
 {of_transmission_error()}
 
@@ -576,10 +576,11 @@ That is the grid:
 {of_twist()}
 
 Left out are positions at which a tooth pair comes into contact or leaves it among the nine analyses: its force starts
-at zero, but the slope bends there, and no cubic follows. It is the cubic that is wrong then: for the profile crowning
-of the spiral bevel pair with bending, where a pair with 1.6 % of the load leaves, the difference on 64 cells was
-16.9, 5.9 and 1.9 % with steps of 2, 1 and 0.5 um. Contacts that begin to reach an edge within the step do the same to
-a lesser degree; the twist of the helical pair, whose slopes are the smallest, has a step of 0.5 for that reason.
+at zero, but the curvature has a jump there, which a cubic cannot follow. The cubic is wrong then: for the profile
+crowning of the spiral bevel pair with bending, where a pair with 1.6 % of the load leaves, the difference on 64 cells
+was 16.9, 5.9 and 1.9 % with steps of 2, 1 and 0.5 um. Contacts that begin to reach an edge within the step do the
+same to a lesser degree; the twist of the helical pair, whose slopes are the smallest, has a step of 0.5 for that
+reason.
 
 A misalignment or helix slope of the spur pair is not in the table: by symmetry the slopes are zero.
 
@@ -590,7 +591,7 @@ of a linear relief in one of the nine analyses; errors of both kinds are over th
 
 {of_other_figures()}
 
-Three things are worse than the transmission error, and no finer grid mends them:
+Three figures have larger errors than the transmission error, and finer grids do not reduce them:
 
 - **Corners.** A tip corner carries a few percent of the load on a few cells at a sharp edge. Its line load and pressure
   depend on the grid, and their derivatives with them; so do those of the largest pressure where such a corner has it.
@@ -611,9 +612,10 @@ largest tension stays with one side of one tooth.
 
 ## Closed forms
 
-Helical pair 34/57. Removal all over the flanks turns the wheel by itself over the lever. Involutes stay conjugate when
-the gears are moved: the line of action shifts by sin(alpha_wt) per mm of centre distance and by tan(beta_b) per mm of
-axial offset, whatever the load. The positions differ from the former by what the crowning turns the normals.
+Helical pair 34/57. Removal all over the flanks turns the wheel by itself over the lever. Involutes stay conjugate
+when the gears are moved: the line of action shifts by sin(alpha_wt) per mm of centre distance and by tan(beta_b) per
+mm of axial offset, whatever the load. Single positions differ from the first formula, since the crowning turns the
+normals.
 
 {of_closed_forms()}
 
@@ -629,22 +631,22 @@ deviations {deviations}, times the scale; {SAMPLES} Sobol samples for each study
 ![Standard deviation of studies over that to first order, over the scale](sensitivities_scatter.png)
 
 The mean transmission error is linear throughout: the centre distance moves it, by a closed form. The others are not.
-Aligned, first order holds within a fifth at a quarter of the deviations. At their full size it has twice the scatter
-of the peak-to-peak, since other positions become the highest and the lowest and the slope turns round; and too little
-of K_Hbeta and the pressure, which rise with a misalignment to either side. Ten micrometres out of line contacts reach
-the ends of the face: pressure and K_Hbeta scatter three times as much as their slopes say. The shift of the mean is a
-second-order effect, and tells as much: where it is beyond a tenth of the deviation, first order is not to be trusted.
-Flanks that do not bend are the harder case, as teeth that bend even out the load.
+Aligned, first order holds within a fifth at a quarter of the deviations. At their full size it gives twice the
+scatter of the peak-to-peak, since other positions become the highest and the lowest and the slope changes its sign,
+and too little scatter of K_Hbeta and the pressure, which rise with a misalignment to either side. Ten micrometres out
+of line contacts reach the ends of the face: pressure and K_Hbeta scatter three times as much as their slopes say. The
+shift of the mean is a second-order effect and a measure of the error: where it is beyond a tenth of the deviation,
+first order is not accurate. Flanks that do not bend are the harder case, as teeth that bend even out the load.
 
 ## Held grids
 
 The grid of a contact is held while its gap changes. Moving it with the contact point was measured once with revision
 471cb4b, error of the transmission error over the largest slope on 64 cells, moved / held: helical misalignment 1.3 /
-2.0 % with flanks alone, 2.0 / 1.9 % with bending; helical lead crowning 0.7 / 0.7 %; spur tip relief 0.1 / 0.1 %, with
-bending 0.6 / 0.7 %, on 128 cells 0.3 / 1.0 %; bevel helix slope 0.2 / 0.1 %; bevel offset 0.2 / 0.2 %. So grids are
-held. What moving did for the tip relief was the bending, which counts on the line through the contact point: as that
-line moves, the teeth bend more or less under the same forces. This term is added on the held grid; without it the
-wheel's tip relief with bending was 1.6 % off on 64 cells, and 1.2 % on 128.
+2.0 % with flanks alone, 2.0 / 1.9 % with bending; helical lead crowning 0.7 / 0.7 %; spur tip relief 0.1 / 0.1 %,
+with bending 0.6 / 0.7 %, on 128 cells 0.3 / 1.0 %; bevel helix slope 0.2 / 0.1 %; bevel offset 0.2 / 0.2 %. So grids
+are held. The moved grid is better for the tip relief because of the bending, which is that under forces on the line
+through the contact point: as that line moves, the teeth bend more or less under the same forces. This term is added
+on the held grid; without it the wheel's tip relief with bending was 1.6 % off on 64 cells, and 1.2 % on 128.
 
 ## Cost
 

@@ -233,8 +233,8 @@ The analysis of the package, on grids that it makes anew for each design, finds 
 ## Designed for one torque, and for the scatter
 
 The design for one torque, as the literature has it, minimises the peak-to-peak transmission error at 250 N m without
-mounting errors: {alone[0]:.3f} um before, {alone[1]:.3f} um after. Four torques and the scatter take that away. Mean +
-sigma [um] over a multiple of the scatter:
+mounting errors: {alone[0]:.3f} um before, {alone[1]:.3f} um after. Under four torques and the scatter this advantage
+is lost. Mean + sigma [um] over a multiple of the scatter:
 
 {scattered}
 
