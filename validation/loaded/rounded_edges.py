@@ -116,7 +116,7 @@ CASES = (
         3.0,
     ),
     Case("helical, tip and end cross, r 0.2", "mesh_cycle_helical", SKEW | rounded(0.2, 0.2), 2.2),
-    Case("spiral bevel, r 0.1", "mesh_cycle_bevel", {"analysis.positions": 9} | rounded(0.1, 0.1), 2.2),
+    Case("spiral bevel, r 0.1", "mesh_cycle_bevel", {"analysis.positions": 9} | rounded(0.1, 0.1), 4.0),
     Case("face-milled, r 0.2", "face_milled_19x62", {"analysis.positions": 9} | rounded(0.2, 0.2), 2.2),
 )
 
@@ -323,7 +323,10 @@ SURVEY_RADII = (0.02, 0.1, 0.5)
 
 @cache
 def survey(name: str) -> tuple[tuple[float, float, float], ...]:
-    """Found pressure over its bound, estimated error, and what the default misses of the largest one, by contact."""
+    """By contact: found pressure over its bound, estimated error, and what the default misses of the largest one.
+
+    The last one is over the estimated error of that largest pressure.
+    """
     file, changes = SURVEY[name]
     found = []
     for radius in SURVEY_RADII:
@@ -333,15 +336,18 @@ def survey(name: str) -> tuple[tuple[float, float, float], ...]:
             solved = Solved.of(scene.with_changes(rounded(radius, radius)))
             every = {place: solved.peak(place) for place in solved.reached}
             for t in range(solved.cycle.torque.size):
-                peaks = [one.pressure for place, one in every.items() if place[0] == t]
-                largest = np.nanmax(peaks, initial=0.0)
+                peaks = [one for place, one in every.items() if place[0] == t and not math.isnan(one.pressure)]
+                if not peaks:
+                    continue
+                largest = max(peaks, key=lambda one: one.pressure)
                 told = np.nanmax(
                     np.where(solved.cycle.edge_is_rounded[t], solved.cycle.edge_pressure[t], 0.0), initial=0.0
                 )
+                missed = float(largest.pressure / told - 1.0) / largest.error
                 for place, one in every.items():
                     if place[0] == t and not math.isnan(one.pressure):
                         bound = solved.reached[place][1][0].bound
-                        found.append((one.pressure / bound, one.error, float(largest / told - 1.0)))
+                        found.append((one.pressure / bound, one.error, missed))
     return tuple(found)
 
 
@@ -363,9 +369,9 @@ def rows_of_survey() -> list[Row]:
                 0.0,
                 note=f"{ratio:.3f}, {told}",
             ),
-            # A twentieth of the accuracy asked of columns: an edge whose bound is lower has none of its own where it
-            # crosses another one.
-            Row(f"{name}, all contacts", "largest", "another largest pressure", 0.0, less, 1e-3),
+            # Where edges cross, the default makes columns for those alone that can hold the largest pressure: what that
+            # changes has to lie within what columns leave, by a factor of two.
+            Row(f"{name}, all contacts", "largest", "another largest pressure, over its error", 0.0, less, 0.5),
         ]
     return table
 
