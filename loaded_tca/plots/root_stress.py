@@ -34,7 +34,7 @@ NOMINAL = ":"
 
 
 def plot_root_stress(result: MeshCycle, torque: int | None = None) -> Figure:
-    """Root stress over fillet and face of both gears under one torque, on one scale of colours.
+    """Root stress over fillet and face of both gears under one torque, on one scale of colours for all torques.
 
     Above at the position of the largest tension, below the largest and the smallest stress that a tooth sees in a whole
     turn. Each panel has both sides of a tooth, from its root in the middle of the space on its back (left) to that on
@@ -61,7 +61,7 @@ def plot_root_stress(result: MeshCycle, torque: int | None = None) -> Figure:
     maps = result.root_stress
     figure = Figure(figsize=(10.0, 9.0), layout="constrained")
     panels = figure.subplots(3, 2, sharex=True, sharey="col")
-    largest = max(float(np.nanmax(np.abs(part[torque]), initial=0.0)) for one in maps for part in _shown(one))
+    largest = max(float(np.nanmax(np.abs(part), initial=0.0)) for one in maps for part in _shown(one))
     scale = Normalize(-largest or -1.0, largest or 1.0)
     for column, (gear, one) in enumerate(zip(GEARS, maps, strict=True)):
         titles = "at its largest tension", "largest stress in a turn", "smallest stress in a turn"

@@ -203,7 +203,7 @@ def draw_orders(axes: Axes, curves: Sequence[tuple[str, str, Array]]) -> Array:
 def plot_line_load_distribution(result: MeshCycle, torque: int | None = None) -> Figure:
     """Line load along the contacts of all pairs and positions, each where it lies on both flanks.
 
-    Every contact is drawn as the line through the middles of its pressure, coloured by the force per length along it.
+    Every contact is drawn as the line through the middles of its pressure, coloured by the force per length along it, on one scale for all torques.
 
     Parameters
     ----------
@@ -221,15 +221,14 @@ def plot_line_load_distribution(result: MeshCycle, torque: int | None = None) ->
         If the result has no such torque.
     """
     torque = chosen_torque(result, torque)
-    segments, values, highest = [np.zeros((0, 2, 3))], [np.zeros(0)], 0.0
+    segments, values = [np.zeros((0, 2, 3))], [np.zeros(0)]
     for one in loaded_maps(result, torque):
         loaded, across = slice_middles(one.x, one.pressure)
         points = one.origin + across[:, None] * one.axes[0] + one.y[loaded, None] * one.axes[1]
         line_load = one.pressure[:, loaded].sum(axis=0) * one.spacing[0]
         segments.append(np.stack([points[:-1], points[1:]], axis=1))
         values.append(0.5 * (line_load[:-1] + line_load[1:]))
-        highest = max(highest, float(line_load.max()))
-    scale = Normalize(0.0, highest or 1.0)
+    scale = Normalize(0.0, float(np.nanmax(result.line_load, initial=0.0)) or 1.0)
 
     def draw(axes: Axes, to_picture: ToPicture) -> list[Artist]:
         places = list(to_picture(np.concatenate(segments)))

@@ -19,7 +19,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.output.teeth_in_space import TeethInSpace, teeth_in_space
 from loaded_tca.pairs import mating_teeth
-from loaded_tca.plots.flanks import highest_of_map
+from loaded_tca.plots.flanks import highest_of_maps
 from loaded_tca.plots.style import ACCENT, COLOURS, load, place, set_title
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.tooth import PATCHES, Resolution, TriangleMesh
@@ -98,7 +98,7 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
     axes.add_collection3d(_solid(shown.pinion, PINION, 1.0, shown.eye))
     axes.add_collection3d(_lines(shown.pinion, side))
     if shown.highest_pressure > 0.0:
-        highest = highest_of_map(result, shown.torque, shown.position, shown.column)
+        highest = highest_of_maps(result, shown.position, shown.column)
         norm, extend = Normalize(0.0, highest), "max" if shown.highest_pressure > highest else "neither"
         faces = colormaps[COLOURS](norm(shown.pressure.cell_data["pressure_MPa"]))
         corners = shown.pressure.corners
@@ -181,7 +181,7 @@ def show_teeth(
     plotter.add_mesh(_poly_data(pyvista, shown.pinion), color=PINION, ambient=AMBIENT)
     plotter.add_mesh(_poly_data(pyvista, shown.wheel), color=WHEEL, ambient=AMBIENT, opacity=SEE_THROUGH)
     if shown.highest_pressure > 0.0:
-        limits = 0.0, highest_of_map(result, shown.torque, shown.position, shown.column)
+        limits = 0.0, highest_of_maps(result, shown.position, shown.column)
         bar = {"title": "contact pressure [MPa]", "fmt": "%.0f"}
         surface = _poly_data(pyvista, shown.pressure.moved(lift, np.eye(3)))
         colours = {"scalars": "pressure_MPa", "cmap": COLOURS, "clim": limits, "scalar_bar_args": bar}
