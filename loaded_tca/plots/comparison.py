@@ -95,7 +95,7 @@ def plot_comparison(results: Results, torque: float | None = None) -> Figure:
     harmonics.set_ylabel("amplitude [µm]")
     for axes, over, label in (
         (absolute, "pinion angle", "transmission error [µm]"),
-        (about_mean, "pinion angle", "the same, less its mean [µm]"),
+        (about_mean, "pinion angle", "transmission error less its mean [µm]"),
         (stiffness, "pinion angle", "mesh stiffness [N/(mm µm)]"),
         (pressure, OVER_THE_PATH, "peak pressure [MPa]"),
         (share, OVER_THE_PATH, "share of the torque [%]"),

@@ -70,7 +70,8 @@ def plot_root_stress(result: MeshCycle, torque: int | None = None) -> Figure:
             _draw_fillets(axes, one, part[torque], scale)
             _mark_extremes(axes, one, part[torque], signs)
             axes.set_title(f"{gear}, {title}", fontsize="medium")
-            axes.set_ylabel(f"axial place on the {gear} [mm]")
+            axes.set_ylabel(f"axial position on the {gear} [mm]")
+        panels[-1, column].set_xticks(range(-60, 61, 30))  # 30 deg: the critical section of ISO 6336-3
         panels[-1, column].set_xlabel("tangent angle [deg]: back of the tooth | side in contact")
     figure.colorbar(ScalarMappable(scale, DIVERGING), ax=panels, label="root stress [MPa], tension positive")
     style.set_title(figure, result, f"root stress, {load(result, torque)}", range_of_positions(result))

@@ -30,6 +30,7 @@ from loaded_tca.plots.style import (
     torque_styles,
     torques_with_panels,
 )
+from loaded_tca.results.load_factors import strip_borders, strip_forces
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import slice_middles
 from loaded_tca.results.summary import signed
@@ -144,6 +145,35 @@ def plot_line_load(result: MeshCycle) -> Figure:
     style.from_zero(axes)
     about = f"line load along the contact, {loads(result)}", range_of_positions(result)
     return style.finished(figure, axes, result, *about)
+
+
+def plot_face_load(result: MeshCycle) -> Figure:
+    """Load over the face width: normal force of all tooth pairs per width, the mean over a pitch, under each torque.
+
+    In the strips of the face whose highest load over the mean is the face load factor K_Hbeta; see
+    :mod:`loaded_tca.results.load_factors`.
+
+    Parameters
+    ----------
+    result : MeshCycle
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure, axes = style.one_panel()
+    pair, frame = result.gear_pair, result.gear_pair.pinion.flank.frame
+    borders = strip_borders(pair, result.path)
+    for torque, label, colour, _ in torque_styles(result):
+        maps = [one for row in result.maps[torque][:-1] for one in row if one is not None]
+        forces = np.sum([np.zeros(len(borders) - 1), *(strip_forces(pair, one, borders)[0] for one in maps)], axis=0)
+        factor = result.face_load_factor[torque]
+        told = label if np.isnan(factor) or label.startswith("_") else f"{label}, K_Hβ = {factor:.3g}"
+        axes.stairs(forces / (len(result.path) - 1) / np.diff(borders), borders, color=colour, label=told)
+    axes.set(xlabel=frame.labels[0], ylabel="normal force per face width [N/mm]")
+    axes.set_ylim(bottom=0.0)
+    about = f"load over the face width, {loads(result)}", "mean over a pitch", range_of_positions(result)
+    return style.finished(figure, axes, result, *about, columns=2)
 
 
 def plot_harmonics(result: MeshCycle) -> Figure:

@@ -34,9 +34,9 @@ SEAMS = "0.35"
 LIFT, AMBIENT = 3e-3, 0.4
 """How far pressure and path are lifted off the facets of the flank, over the length of the tooth, so that these do not
 hide them; light from everywhere."""
-FILLED = 0.75
+FILLED = 0.85
 """Part of the frame that the box of the teeth fills: its ticks and labels take the rest."""
-MOST_TICKS, LABEL_PAD = 5, 10.0
+MOST_TICKS, LABEL_PAD = 5, 7.0
 """Ticks of an axis, and the distance [points] of its name, at which neither covers the other."""
 DRAWN = Resolution(flank=25, fillet=9, land=3, lengthwise=25)
 EXTRA = "pyvista is not installed; install it with: pip install 'loaded_tca[three-d]'"
@@ -82,7 +82,7 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
     matplotlib.figure.Figure
     """
     figure = Figure(figsize=(9.0, 7.5), layout="constrained")
-    axes: Any = figure.add_subplot(projection="3d", computed_zorder=False)
+    axes: Any = figure.add_subplot(projection="3d", proj_type="ortho", computed_zorder=False)
     points = np.concatenate([shown.pinion.vertices, shown.wheel.vertices])
     low, high = points.min(axis=0), points.max(axis=0)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
@@ -104,7 +104,7 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
         corners = shown.pressure.corners
         axes.add_collection3d(Poly3DCollection(corners, facecolors=faces, edgecolors=faces, linewidths=0.2))
         bar = ScalarMappable(norm, COLOURS)
-        figure.colorbar(bar, ax=axes, label="contact pressure [MPa]", shrink=0.7, extend=extend)
+        figure.colorbar(bar, ax=axes, label="contact pressure [MPa]", shrink=0.7, pad=0.08, extend=extend)
     axes.plot(*shown.path.T, ".", color=ACCENT, markersize=3.0)
     axes.add_collection3d(_solid(shown.wheel, WHEEL, SEE_THROUGH, shown.eye))
     axes.add_collection3d(_lines(shown.wheel, side))
