@@ -5,11 +5,14 @@ their scenes by ``__file__``, which sphinx-gallery leaves undefined and which is
 """
 
 import builtins
+import inspect
 import shutil
 import warnings
 from pathlib import Path
 
 from sphinx_gallery.scrapers import figure_rst
+
+import loaded_tca.plots as plots
 
 DOCS = Path(__file__).parents[1]
 EXAMPLES = DOCS.parent / "examples"
@@ -36,9 +39,21 @@ def arguments(_: object, script: dict[str, object]) -> list[str]:
 
 
 def collect_pictures(_: object, script: dict[str, object], configuration: dict[str, str]) -> str:
-    """Move the pictures that a script has written into the gallery."""
-    targets = []
-    for picture, target in zip(sorted(WORKING_DIRECTORY.glob("*.png")), script["image_path_iterator"], strict=False):
+    """Move the pictures that a script has written into the gallery, in this order; of several each with a caption."""
+    targets, shown = [], []
+    pictures = sorted(WORKING_DIRECTORY.glob("*.png"), key=lambda path: path.stat().st_mtime_ns)
+    for picture, target in zip(pictures, script["image_path_iterator"], strict=False):
         shutil.move(picture, target)
         targets.append(target)
-    return figure_rst(targets, configuration["src_dir"])
+        shown.append(f"{figure_rst([target], configuration['src_dir'])}\n{caption_of(picture.stem)}\n")
+    return "\n".join(shown) if len(shown) > 1 else figure_rst(targets, configuration["src_dir"])
+
+
+def caption_of(name: str) -> str:
+    """Return what the docstring of the function that draws a picture says first, with a link; of others nothing."""
+    functions = [one for one in plots.__all__ if one.startswith("plot_") and name.startswith(one.removeprefix("plot_"))]
+    if not functions:
+        return ""
+    function = max(functions, key=len)
+    sentence = str(inspect.getdoc(getattr(plots, function))).partition("\n\n")[0].replace("\n", " ")
+    return f"``{name}``: {sentence} (:func:`~loaded_tca.plots.{function}`)\n"

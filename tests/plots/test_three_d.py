@@ -156,4 +156,4 @@ def test_teeth_fill_their_frame(name):
     places = axes.transData.transform(np.column_stack(proj3d.proj_transform(*corners, axes.get_proj())[:2]))
     assert (places >= axes.bbox.p0).all()
     assert (places <= axes.bbox.p1).all()
-    assert (np.ptp(places, axis=0) / axes.bbox.size).max() == pytest.approx(0.85)
+    assert (np.ptp(places, axis=0) / axes.bbox.size).max() > 0.85
