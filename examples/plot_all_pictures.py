@@ -1,7 +1,7 @@
 """All kinds of pictures
 =====================
 
-Every kind of picture that the package draws, with how each is read; ``loaded-tca plot DIR --all`` draws the first ones.
+Every kind of picture that the package draws, with what one reads from it; ``loaded-tca plot DIR --all`` draws some.
 """
 
 from pathlib import Path

@@ -5,18 +5,18 @@ their scenes by ``__file__``, which sphinx-gallery leaves undefined and which is
 """
 
 import builtins
-import inspect
+import re
 import shutil
 import warnings
 from pathlib import Path
 
 from sphinx_gallery.scrapers import figure_rst
 
-import loaded_tca.plots as plots
-
 DOCS = Path(__file__).parents[1]
 EXAMPLES = DOCS.parent / "examples"
 WORKING_DIRECTORY = DOCS / "_build" / "examples"
+ROW = re.compile(r"^\| `(\w+)` \| (.*) \|$", re.MULTILINE)
+"""Of a table of the guide: a kind of picture, and what one reads from it."""
 
 
 def prepare() -> None:
@@ -50,10 +50,7 @@ def collect_pictures(_: object, script: dict[str, object], configuration: dict[s
 
 
 def caption_of(name: str) -> str:
-    """Return what the docstring of the function that draws a picture says first, with a link; of others nothing."""
-    functions = [one for one in plots.__all__ if one.startswith("plot_") and name.startswith(one.removeprefix("plot_"))]
-    if not functions:
-        return ""
-    function = max(functions, key=len)
-    sentence = str(inspect.getdoc(getattr(plots, function))).partition("\n\n")[0].replace("\n", " ")
-    return f"``{name}``: {sentence} (:func:`~loaded_tca.plots.{function}`)\n"
+    """Return what the guide tells to read from a picture, with a link to the function that draws it; else nothing."""
+    sentences = dict(ROW.findall((DOCS / "guide" / "pictures.md").read_text(encoding="utf-8")))
+    kind = max((one for one in sentences if name.startswith(one)), key=len, default=None)
+    return "" if kind is None else f"``{name}``: {sentences[kind]} (:func:`~loaded_tca.plots.plot_{kind}`)\n"

@@ -186,7 +186,7 @@ def loaded_maps(result: MeshCycle, torque: int, positions: Sequence[int] | None 
 
 
 def colour_scale(result: MeshCycle, maps: Sequence[PressureMap]) -> tuple[Normalize, Literal["max", "neither"]]:
-    """Scale of colours up to the highest peak pressure under any torque; arrow of its bar if a cell of a map is beyond."""
+    """Scale of colours up to the highest peak pressure under any torque; arrow of its bar if a cell lies beyond."""
     highest = float(np.nanmax(result.peak_pressure, initial=0.0)) or 1.0
     beyond = any(one.pressure.max() > highest for one in maps)
     return Normalize(0.0, highest), "max" if beyond else "neither"
@@ -195,8 +195,8 @@ def colour_scale(result: MeshCycle, maps: Sequence[PressureMap]) -> tuple[Normal
 def highest_of_maps(result: MeshCycle, position: int, column: int, torques: Iterable[int] | None = None) -> float:
     """Pressure [MPa] up to which the colours of maps go, the same under all torques of a result or under some.
 
-    It is the highest peak pressure, unless cells at the peaks or in the maps of one tooth pair at one position are above
-    it: on a tip corner most are. Then it is what all but a small part of these cells stay below.
+    It is the highest peak pressure, unless cells at the peaks or in the maps of one tooth pair at one position are
+    above it: on a tip corner most are. Then it is what all but a small part of these cells stay below.
     """
     torques = range(len(result.torque)) if torques is None else [*torques]
     highest = max(float(np.nanmax(result.peak_pressure[torque], initial=0.0)) for torque in torques)

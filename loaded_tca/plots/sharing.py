@@ -233,7 +233,8 @@ def draw_orders(axes: Axes, curves: Sequence[tuple[str, str, Array]]) -> Array:
 def plot_line_load_distribution(result: MeshCycle, torque: int | None = None) -> Figure:
     """Line load along the contacts of all pairs and positions, each where it lies on both flanks.
 
-    Every contact is drawn as the line through the middles of its pressure, coloured by the force per length along it, on one scale for all torques.
+    Every contact is drawn as the line through the middles of its pressure, coloured by the force per length along it,
+    on one scale for all torques.
 
     Parameters
     ----------
