@@ -45,9 +45,7 @@ def main() -> float:
     axes.plot(np.degrees(angle), error, "o", label="finite elements, plane strain")
     axes.set_xlabel("pinion angle [deg]")
     axes.set_ylabel("loaded transmission error [µm]")
-    torque, cells = scene.load.pinion_torque_Nm, " x ".join(map(str, scene.analysis.cells))
-    grid = f"pinion torque {torque:g} N m, {len(ours)} positions, {cells} cells"
-    figure.suptitle(f"{scene.title}\n{grid}", fontsize="medium")
+    figure.suptitle(f"{scene.title}, pinion torque {scene.load.pinion_torque_Nm:g} N m", fontsize="medium")
     figure.legend(loc="outside lower center", ncols=2, fontsize="small")
     save_figure(figure, "against_finite_elements.png")
 

@@ -45,7 +45,7 @@ def main() -> float:
         title = f"roller, cap {cap:.0f} MPa" if cap else "roller, elastic"
         row[0].set(title=title, xlabel="along [mm]", ylabel="across [mm]")
         row[1].plot(y, roller.pressure[48])
-        row[1].set(title=f"approach {1e3 * roller.approach:.1f} um", xlabel="along [mm]", ylabel="pressure [MPa]")
+        row[1].set(title=f"approach {1e3 * roller.approach:.1f} µm", xlabel="along [mm]", ylabel="pressure [MPa]")
         colours = row[2].pcolormesh(z, z, rough.pressure, vmin=0.0, vmax=3000.0)
         figure.colorbar(colours, ax=row[2], label="pressure [MPa]", extend="max")
         row[2].set(title=f"rough ball, peak {rough.peak_pressure:.0f} MPa", xlabel="[mm]", aspect="equal")

@@ -36,7 +36,7 @@ def main() -> float:
     axes = figure.subplots()
     levels = np.linspace(0.0, 1e3 * pattern.compound, 7)
     filled = axes.contourf(pattern.axial, pattern.diameter, 1e3 * pattern.gap, levels, cmap="viridis")
-    figure.colorbar(filled, ax=axes, label="smallest gap over the passage [µm]")
+    figure.colorbar(filled, ax=axes, label="smallest gap over the passage [µm]", format="%.3g")
     for number, area in enumerate(areas):
         closed = np.append(np.arange(len(area.point)), 0)
         label = "contact area at one position" if number == 0 else None
@@ -46,10 +46,10 @@ def main() -> float:
         axes.plot(ellipse[:, 2], 2.0 * np.hypot(*ellipse[:, :2].T), "--", color="#d55e00", linewidth=1.0, label=label)
     axes.plot(path.pinion_axial, 2.0 * path.pinion_radius, "o", color="w", markeredgecolor="k", label="contact point")
     axes.set(xlim=(pattern.axial.min(), pattern.axial.max()), ylim=(pattern.diameter.min(), pattern.diameter.max()))
-    axes.set(xlabel="z on the pinion [mm]", ylabel="diameter on the pinion [mm]")
+    axes.set(xlabel="axial position from mid-face [mm]", ylabel="diameter [mm]")
     axes.legend(loc="lower left")
     axes.set_title(
-        "Helical pair crowned 20 µm (lead) and 10 µm (profile), out-of-plane error 0.05 deg, compound 6.35 µm"
+        "Pinion of a helical pair: crowning 20 µm (lead), 10 µm (profile), axes 0.05 deg out of plane, compound 6.35 µm"
     )
     save_figure(figure, "contact_pattern.png")
     return areas[3].area / areas[3].ellipse_area

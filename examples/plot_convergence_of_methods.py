@@ -45,7 +45,7 @@ def main() -> float:
     for good, label, style in ((reduced, "two equations (reduced)", "-"), (five, "five equations", "--")):
         axes.stairs(100.0 * np.histogram(offset[good], edges)[0] / total, edges, label=label, ls=style, lw=2)
     axes.set(xlabel="first guess of the wheel angle - answer [rad]", ylabel="starts that find the contact [%]")
-    axes.legend()
+    figure.legend(loc="outside upper center", ncols=2)
     save_figure(figure, "convergence_of_methods.png")
     return float(100.0 * reduced.mean())
 

@@ -43,7 +43,7 @@ def main() -> float:
     motion.set(xlabel="pinion angle [deg]", ylabel="unloaded transmission error [arcsec]")
     figure.legend(title="out-of-plane error", loc="outside lower center", ncols=3)
     half = 0.5 * pair.face_width
-    flank.set(xlim=(-half, half), xlabel="z on the pinion [mm]", ylabel="diameter on the pinion [mm]")
+    flank.set(xlim=(-half, half), xlabel="axial position on the pinion [mm]", ylabel="diameter [mm]")
     figure.suptitle("Crowned helical pair (lead 20 µm, profile 5 µm): transmission error and contact path, unloaded")
     save_figure(figure, "misalignment_sensitivity.png")
     return shifts[0] / shifts[-1]

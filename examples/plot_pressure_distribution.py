@@ -25,7 +25,9 @@ def main() -> float:
     )
     result = analyse(scene)
     print(result.summary())
-    save_figure(plot_pressure_map(result), "pressure_distribution.png")
+    position, pair = result.most_loaded_contact(0)  # the peak pressure is that of a tip corner under little load
+    highest = result.peak_pressure[0, position, pair]
+    save_figure(plot_pressure_map(result, position, column=pair, highest=highest), "pressure_distribution.png")
 
     carried = 0.0  # N mm, by the tooth pairs under the first torque at the first position
     for one, path in zip(result.maps[0][0], result.paths, strict=True):

@@ -66,3 +66,13 @@ def test_every_page_and_picture_is_linked():
     listed = subprocess.run(["git", "ls-files", "docs"], cwd=ROOT, capture_output=True, text=True, check=False).stdout
     files = [ROOT / line for line in listed.splitlines() if line.endswith((".md", ".png"))]
     assert [str(path) for path in files if path.resolve() not in linked] == []
+
+
+def test_every_picture_has_a_script_that_draws_it():
+    """It names the picture; numbered ones are named without their number."""
+    scripts = [*(path for path in SOURCES if path.suffix == ".py" and path.relative_to(ROOT).parts[0] == "docs")]
+    scripts += sorted((ROOT / "validation").rglob("*.py"))
+    words = {word for path in scripts for word in re.findall(r"\w+", path.read_text(encoding="utf-8"))}
+    listed = subprocess.run(["git", "ls-files", "docs"], cwd=ROOT, capture_output=True, text=True, check=False).stdout
+    stems = {re.sub(r"_\d+$", "_", Path(line).stem) for line in listed.splitlines() if line.endswith(".png")}
+    assert stems - words == set()

@@ -1,13 +1,14 @@
 """Every example runs, writes its picture, and one number of it is what physics asks for."""
 
 import importlib.util
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca import trace_contact
+from loaded_tca import plots, trace_contact
 from loaded_tca.scene import read_scene
 from loaded_tca.studies import load_design, load_study, read_study
 
@@ -63,6 +64,17 @@ def test_second_order_of_the_tooth_mesh_has_its_resonance_at_half_the_speed(tmp_
     assert loaded(EXAMPLES / "export_to_dynamics.py").main() == pytest.approx(0.5, abs=0.03)
     names = ["dynamics.csv", "dynamics_orders.csv", "export_to_dynamics.png"]
     assert sorted(path.name for path in tmp_path.iterdir()) == names
+
+
+@pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # contacts that reach an edge
+def test_page_of_pictures_has_every_kind(tmp_path, monkeypatch):
+    """Those of studies have the name of their figure behind their own."""
+    monkeypatch.chdir(tmp_path)
+    loaded(EXAMPLES / "plot_all_pictures.py").main()
+    drawn = {re.sub("^(study_.*?)_(peak_pressure|transmission_error).*", r"\1", path.stem) for path in Path().iterdir()}
+    several = {"all", "study", "subsurface"}  # the last one is stress_below, of arrays
+    kinds = {name.removeprefix("plot_") for name in plots.__all__ if name.startswith("plot_")} - several
+    assert kinds - drawn == set()
 
 
 def test_study_on_a_cluster_follows_hertz(tmp_path, monkeypatch):

@@ -1,9 +1,12 @@
 """The documentation site builds without a warning: every cross reference, picture and docstring of it resolves."""
 
+import importlib.util
 import shutil
 import subprocess
 import sys
 from pathlib import Path
+
+from loaded_tca import plots
 
 ROOT = Path(__file__).parents[1]
 BUILT = shutil.ignore_patterns("_build", "gallery", "generated", "api")
@@ -19,3 +22,17 @@ def test_site_builds_without_a_warning(tmp_path):
         [sys.executable, "-m", "sphinx", *options, "docs", "built"], cwd=tmp_path, capture_output=True, text=True
     )
     assert built.returncode == 0, built.stderr
+
+
+def test_every_kind_of_picture_has_a_sentence_on_what_one_reads_from_it():
+    """Several kinds begin alike, and names of files go on behind them."""
+    path = ROOT / "docs" / "_extensions" / "gallery.py"
+    specification = importlib.util.spec_from_file_location("gallery", path)
+    gallery = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(gallery)
+    several = {"plot_all", "plot_study", "plot_subsurface"}  # the last one is plot_stress_below, of arrays
+    for function in {name for name in plots.__all__ if name.startswith("plot_")} - several:
+        for ending in ("", "_edge", "_peak_pressure_MPa"):
+            caption = gallery.caption_of(function.removeprefix("plot_") + ending)
+            assert caption.endswith(f". (:func:`~loaded_tca.plots.{function}`)\n")
+    assert gallery.caption_of("monte_carlo") == ""

@@ -5,6 +5,7 @@ their scenes by ``__file__``, which sphinx-gallery leaves undefined and which is
 """
 
 import builtins
+import re
 import shutil
 import warnings
 from pathlib import Path
@@ -14,6 +15,8 @@ from sphinx_gallery.scrapers import figure_rst
 DOCS = Path(__file__).parents[1]
 EXAMPLES = DOCS.parent / "examples"
 WORKING_DIRECTORY = DOCS / "_build" / "examples"
+ROW = re.compile(r"^\| `(\w+)` \| (.*) \|$", re.MULTILINE)
+"""Of a table of the guide: a kind of picture, and what one reads from it."""
 
 
 def prepare() -> None:
@@ -36,9 +39,18 @@ def arguments(_: object, script: dict[str, object]) -> list[str]:
 
 
 def collect_pictures(_: object, script: dict[str, object], configuration: dict[str, str]) -> str:
-    """Move the pictures that a script has written into the gallery."""
-    targets = []
-    for picture, target in zip(sorted(WORKING_DIRECTORY.glob("*.png")), script["image_path_iterator"], strict=False):
+    """Move the pictures that a script has written into the gallery, in this order; of several each with a caption."""
+    targets, shown = [], []
+    pictures = sorted(WORKING_DIRECTORY.glob("*.png"), key=lambda path: path.stat().st_mtime_ns)
+    for picture, target in zip(pictures, script["image_path_iterator"], strict=False):
         shutil.move(picture, target)
         targets.append(target)
-    return figure_rst(targets, configuration["src_dir"])
+        shown.append(f"{figure_rst([target], configuration['src_dir'])}\n{caption_of(picture.stem)}\n")
+    return "\n".join(shown) if len(shown) > 1 else figure_rst(targets, configuration["src_dir"])
+
+
+def caption_of(name: str) -> str:
+    """Return what the guide tells to read from a picture, with a link to the function that draws it; else nothing."""
+    sentences = dict(ROW.findall((DOCS / "guide" / "pictures.md").read_text(encoding="utf-8")))
+    kind = max((one for one in sentences if name.startswith(one)), key=len, default=None)
+    return "" if kind is None else f"``{name}``: {sentences[kind]} (:func:`~loaded_tca.plots.plot_{kind}`)\n"

@@ -22,11 +22,11 @@ def main() -> None:
     result = optimise(model, "mean + k sigma", limits={"pressure_MPa": {300e3: 1300.0}})
     kept = robustness(model, {"start": result.start, "optimum": result.optimum}, np.linspace(0.0, 2.0, 9))
     for name, figure in {
-        "before_and_after": plot_before_and_after(result),
-        "over_torque": plot_peak_to_peak_over_torque(result),
-        "robustness": plot_robustness(kept),
+        "design_before_and_after": plot_before_and_after(result),
+        "design_over_torque": plot_peak_to_peak_over_torque(result),
+        "design_robustness": plot_robustness(kept),
     }.items():
-        figure.savefig(FOLDER / f"design_{name}.png", dpi=100)
+        figure.savefig(FOLDER / f"{name}.png", dpi=100)
 
 
 if __name__ == "__main__":

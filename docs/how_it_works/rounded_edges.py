@@ -171,8 +171,13 @@ def _draw_along(axes: Axes, changes: dict[str, Any], label: str, colour: str, st
 
 def main() -> None:
     """Draw all pictures."""
-    for name, figure in {"tip": tip(), "radius": over_the_radius(), "face_end": face_end()}.items():
-        figure.savefig(FOLDER / f"rounded_edges_{name}.png", dpi=90)
+    figures = {
+        "rounded_edges_tip": tip(),
+        "rounded_edges_radius": over_the_radius(),
+        "rounded_edges_face_end": face_end(),
+    }
+    for name, figure in figures.items():
+        figure.savefig(FOLDER / f"{name}.png", dpi=90)
 
 
 if __name__ == "__main__":

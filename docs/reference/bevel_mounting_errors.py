@@ -26,7 +26,7 @@ def draw() -> Figure:
     for axes in (section, front):
         axes.set_aspect("equal")
         axes.axis("off")
-    figure.suptitle("Bevel pair in the fixed frame (axes x, y, z); orange: mounting errors, in their positive sense")
+    figure.suptitle("Bevel pair in the fixed frame (axes x, y, z); orange: mounting errors, in their positive sense\n")
     return figure
 
 
@@ -48,8 +48,9 @@ def _draw_section(axes: Axes, pinion: BevelGear, wheel: BevelGear) -> None:
     axes.text(1.48 * heel, 0.0, "$z$\npinion axis", va="center", color=FRAME)
     axes.text(0.0, 1.5 * heel, "$x$\nwheel axis $z_2$", ha="center", color=FRAME)
     axes.plot(*zip((0.0, 0.0), _polar(1.2 * heel, delta), strict=True), "--", color="black", linewidth=0.8)
-    for distance, name in ((pinion.inner_cone_distance - 5.0, "toe"), (heel + 6.0, "heel"), (1.3 * heel, "pitch line")):
-        axes.text(*_polar(distance, delta), name, ha="center", va="center", fontsize="small")
+    for distance, name in ((pinion.inner_cone_distance - 5.0, "toe"), (heel + 7.0, "heel"), (1.3 * heel, "pitch line")):
+        ground = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
+        axes.text(*_polar(distance, delta), name, ha="center", va="center", fontsize="small", bbox=ground)
     axes.plot(*_polar(pinion.mean_cone_distance, delta), "k.")
     _arrow(axes, (1.05 * heel, -9.0), (1.05 * heel + 18.0, -9.0), ERROR, "$P$, pinion_axial_mm", (9.0, -6.0))
     _arrow(axes, (-9.0, 1.05 * heel), (-9.0, 1.05 * heel + 18.0), ERROR, "$G$, wheel_axial_mm", (-4.0, 9.0), "right")

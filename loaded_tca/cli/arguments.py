@@ -30,6 +30,7 @@ and where tooth pairs share the load
   mesh_stiffness.png        over the positions, all torques
   line_load.png             over the positions, all torques
   line_load_distribution.png    along the contacts on the flanks, under the largest torque
+  face_load.png             load over the face width with K_Hbeta, all torques
   pressure_envelope.png     the highest pressure on the flanks, under the largest torque
   path_pressure.png         from the begin to the end of contact, all torques
 and with analysis.root_stress = true

@@ -58,7 +58,7 @@ class CylinderFrame(FlankFrame):
     'diameter 102 mm, 3 mm from mid-face'
     """
 
-    labels = ("axial place, from mid-face [mm]", "diameter [mm]")
+    labels = ("axial position from mid-face [mm]", "diameter [mm]")
     heelwards = "z > 0"
     edges = ("tip circle", "root form circle", "end of the face at z < 0", "end of the face at z > 0")
 
@@ -108,7 +108,7 @@ class ConeFrame(FlankFrame):
     def profile_span(self, first: Point, last: Point) -> str:
         """Cone angles."""
         angles = (math.degrees(math.atan2(*point)) for point in (first, last))
-        return "cone angle " + " to ".join(f"{angle:.3f}" for angle in angles) + " deg"
+        return "cone angle " + " to ".join(f"{angle:.2f}" for angle in angles) + " deg"
 
     def place(self, rho: float, z: float) -> str:
         """Cone distance from the middle and height."""

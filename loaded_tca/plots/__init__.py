@@ -18,6 +18,7 @@ from loaded_tca.plots.removal import plot_removal_weights
 from loaded_tca.plots.root_stress import plot_root_stress, plot_root_stress_cycle, plot_root_stress_over_torque
 from loaded_tca.plots.sensitivities import plot_sensitivity_curves, plot_tornado, plot_transmission_error_band
 from loaded_tca.plots.sharing import (
+    plot_face_load,
     plot_harmonics,
     plot_line_load,
     plot_line_load_distribution,
@@ -50,6 +51,7 @@ __all__ = [
     "plot_contact_path",
     "plot_contact_patterns",
     "plot_ease_off",
+    "plot_face_load",
     "plot_first_order_scatter",
     "plot_full_mesh",
     "plot_harmonics",
@@ -101,6 +103,7 @@ PICTURES = (
     "mesh_stiffness",
     "line_load",
     "line_load_distribution",
+    "face_load",
     "pressure_envelope",
     "path_pressure",
     "root_stress",
@@ -167,7 +170,7 @@ def result_figures(
         ``pressure_map`` of the peak pressure; if a higher one lies at an edge or a relief start in another
         position, ``pressure_map_edge``; if Hertz holds in other positions only, ``pressure_map_hertz`` of the
         highest pressure where it holds. Where tooth pairs share the load: ``load_share``, ``harmonics``,
-        ``mesh_stiffness``, ``line_load``, ``line_load_distribution``, ``pressure_envelope``,
+        ``mesh_stiffness``, ``line_load``, ``line_load_distribution``, ``face_load``, ``pressure_envelope``,
         ``path_pressure``. With root stress: ``root_stress``; of several positions ``root_stress_cycle``; of
         several torques ``root_stress_over_torque``. With ``more``: under several torques
         ``contact_patterns``, and ``full_mesh``.
@@ -203,6 +206,7 @@ def result_figures(
             "mesh_stiffness": plot_mesh_stiffness(result),
             "line_load": plot_line_load(result),
             "line_load_distribution": plot_line_load_distribution(result, torque),
+            "face_load": plot_face_load(result),
             "pressure_envelope": plot_pressure_envelope(result, torque),
             "path_pressure": plot_path_pressure(result),
         }

@@ -16,7 +16,7 @@ from matplotlib.patches import Rectangle
 from loaded_tca.arrays import index_checks
 from loaded_tca.errors import require
 from loaded_tca.plots import style
-from loaded_tca.plots.flanks import highest_of_map
+from loaded_tca.plots.flanks import highest_of_maps
 from loaded_tca.plots.pressure_map import PRESSURE, draw_map, scale_factor
 from loaded_tca.plots.sharing import MOST_ORDERS, OVER_THE_PATH, draw_orders, over_the_path
 from loaded_tca.plots.style import COLOURS, DISTINCT_COLOURS, MARKERS, NO_MATERIAL
@@ -95,7 +95,7 @@ def plot_comparison(results: Results, torque: float | None = None) -> Figure:
     harmonics.set_ylabel("amplitude [µm]")
     for axes, over, label in (
         (absolute, "pinion angle", "transmission error [µm]"),
-        (about_mean, "pinion angle", "the same, less its mean [µm]"),
+        (about_mean, "pinion angle", "transmission error less its mean [µm]"),
         (stiffness, "pinion angle", "mesh stiffness [N/(mm µm)]"),
         (pressure, OVER_THE_PATH, "peak pressure [MPa]"),
         (share, OVER_THE_PATH, "share of the torque [%]"),
@@ -152,14 +152,15 @@ def plot_compared_maps(results: Results, torque: float | None = None, position: 
     figure = Figure(figsize=size, layout="constrained")
     panels = figure.subplots(rows, columns, squeeze=False).ravel().tolist()
     loaded = [one is not None and bool(one.pressure.any()) for one in maps]
-    of_loaded = [(result, at) for result, at, carries in zip(named.values(), places, loaded, strict=True) if carries]
-    highest = max((highest_of_map(result, *at) for result, at in of_loaded), default=0.0)
+    of_results = zip(named.values(), places, comparison.indices.T.tolist(), strict=True)
+    highest = max(highest_of_maps(result, n, column, torques) for result, (_, n, column), torques in of_results)
     for axes, (name, result), (k, n, column), one in zip(panels, named.items(), places, maps, strict=False):
         if one is None:
             style.tell(axes, "no tooth pair is in contact here")
         else:
             draw_map(axes, result, k, (n, column), highest, scale)
-        axes.set(xlim=limits[0], ylim=limits[1])
+        axes.set_xbound(*limits[0])  # keeps an axis that runs the other way
+        axes.set_ybound(*limits[1])
         if one is not None and [(float(ends[0]), float(ends[-1])) for ends in one.borders[::-1]] != limits:
             axes.add_patch(Rectangle((0.0, 0.0), 1.0, 1.0, transform=axes.transAxes, **BEYOND))
         axes.set_title(f"{name}\n{style.position_label(result, n, column)}", fontsize="small", parse_math=False)

@@ -41,7 +41,7 @@ def plot_transmission_error(result: MeshCycle) -> Figure:
         absolute.plot(angle, error * ARCSEC, color=colour, marker=marker, markersize=4.0, label=label)
         about_mean.plot(angle, (error - mean) * ARCSEC, color=colour, marker=marker, markersize=4.0)
     absolute.set_ylabel("transmission error [arcsec]")
-    about_mean.set_ylabel("the same, less its mean [arcsec]")
+    about_mean.set_ylabel("transmission error\nless its mean [arcsec]")
     about_mean.set_xlabel("pinion angle [deg]")
     figure.legend(*absolute.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize="small")
     factor = result.wheel_base_radius * 1e3 / ARCSEC  # um per arcsec

@@ -75,7 +75,7 @@ def plot_contact_patterns(result: MeshCycle) -> Figure:
 def _envelopes(result: MeshCycle, torques: list[int]) -> tuple[Figure, list[Axes]]:
     """Both flanks with their pressure envelope in a row for each torque, without a title."""
     maps = [one for torque in torques for one in loaded_maps(result, torque)]
-    scale, extend = colour_scale(result, torques, maps)
+    scale, extend = colour_scale(result, maps)
 
     def draw(torque: int, axes: Axes, to_picture: ToPicture) -> list[Artist]:
         low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])

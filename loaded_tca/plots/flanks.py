@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
 from typing import Any, Literal
 
@@ -74,7 +74,7 @@ def plot_contact_path(result: MeshCycle, torque: int | None = None) -> Figure:
     positions = sorted({round(last * part / (MOST_AREAS - 1)) for part in range(MOST_AREAS)})
     drawn = [row for row in (loaded_maps(result, torque, [position]) for position in positions) if row]
     maps = [one for row in drawn for one in row]
-    scale, extend = colour_scale(result, torque, maps)
+    scale, extend = colour_scale(result, maps)
 
     def draw(axes: Axes, to_picture: ToPicture) -> list[Artist]:
         for path in result.paths:
@@ -133,7 +133,7 @@ def plot_full_mesh(result: MeshCycle, position: int | None = None, torque: int |
     if position is None or not result.path.in_contact[position]:
         raise IndexError("no mesh to show: no tooth pair is in contact at this position")
     maps = loaded_maps(result, torque, [position])
-    scale, extend = colour_scale(result, torque, maps)
+    scale, extend = colour_scale(result, maps)
 
     def draw(axes: Axes, to_picture: ToPicture) -> list[Artist]:
         for number, share, one in zip(
@@ -185,27 +185,30 @@ def loaded_maps(result: MeshCycle, torque: int, positions: Sequence[int] | None 
     return [one for row in rows for one in row if one is not None and one.pressure.any()]
 
 
-def colour_scale(
-    result: MeshCycle, torque: int | list[int], maps: Sequence[PressureMap]
-) -> tuple[Normalize, Literal["max", "neither"]]:
-    """Scale of colours up to the highest peak pressure under some torques; arrow of its bar if a cell lies beyond."""
-    highest = float(np.nanmax(result.peak_pressure[torque], initial=0.0)) or 1.0
+def colour_scale(result: MeshCycle, maps: Sequence[PressureMap]) -> tuple[Normalize, Literal["max", "neither"]]:
+    """Scale of colours up to the highest peak pressure under any torque; arrow of its bar if a cell lies beyond."""
+    highest = float(np.nanmax(result.peak_pressure, initial=0.0)) or 1.0
     beyond = any(one.pressure.max() > highest for one in maps)
     return Normalize(0.0, highest), "max" if beyond else "neither"
 
 
-def highest_of_map(result: MeshCycle, torque: int, position: int, column: int) -> float:
-    """Pressure [MPa] up to which the colours of a map under pressure go: its peak pressure, where cells are above it.
+def highest_of_maps(result: MeshCycle, position: int, column: int, torques: Iterable[int] | None = None) -> float:
+    """Pressure [MPa] up to which the colours of maps go, the same under all torques of a result or under some.
 
-    On a tip corner most of them are: there it is what all but a small part of them stay below.
+    It is the highest peak pressure, unless cells at the peaks or in the maps of one tooth pair at one position are
+    above it: on a tip corner most are. Then it is what all but a small part of these cells stay below.
     """
-    one, at = result.maps[torque][position][column], (torque, position, column)
-    assert one is not None
-    highest = float(one.pressure.max())
-    if not (result.on_edge[at] or result.on_relief_start[at]):
-        return highest
-    body = float(np.quantile(one.pressure[one.pressure > 0.0], 1.0 - CELLS_OF_SPIKES))
-    return min(highest, max(body, float(result.peak_pressure[at])))
+    torques = range(len(result.torque)) if torques is None else [*torques]
+    highest = max(float(np.nanmax(result.peak_pressure[torque], initial=0.0)) for torque in torques)
+    for at in {place for torque in torques if (place := result.peak_contact(torque))} | {(position, column)}:
+        for torque in torques:
+            one = result.maps[torque][at[0]][at[1]]
+            if one is None or not one.pressure.any():
+                continue
+            spiky = result.on_edge[torque][at] or result.on_relief_start[torque][at]
+            part = 1.0 - CELLS_OF_SPIKES if spiky else 1.0
+            highest = max(highest, float(np.quantile(one.pressure[one.pressure > 0.0], part)))
+    return highest
 
 
 def both_flanks(result: MeshCycle, *draw: Callable[[Axes, ToPicture], Sequence[Artist]]) -> tuple[Figure, list[Axes]]:

@@ -14,8 +14,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse, Patch, Rectangle
 from matplotlib.ticker import MaxNLocator
 
+from loaded_tca.errors import require_positive
 from loaded_tca.flanks.frame import FlankFrame
-from loaded_tca.plots.flanks import highest_of_map
+from loaded_tca.plots.flanks import highest_of_maps
 from loaded_tca.plots.style import ACCENT, COLOURS, NO_LOAD, NO_MATERIAL, chosen_torque, load, place, set_title, tell
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
@@ -26,12 +27,17 @@ TICKS = 5
 
 
 def plot_pressure_map(
-    result: MeshCycle, position: int | None = None, torque: int | None = None, column: int | None = None
+    result: MeshCycle,
+    position: int | None = None,
+    torque: int | None = None,
+    column: int | None = None,
+    *,
+    highest: float | None = None,
 ) -> Figure:
     """Contact pressure of one tooth pair at one position in the tangent plane, with the area after Hertz.
 
-    Cells without material are grey, cells without pressure white. The direction across is drawn larger than the
-    one along by a factor that the axis tells. The axes say where the heel (or z > 0) and the pinion's tip lie.
+    Cells without material are grey, cells without pressure white. The pinion's tip is on top, the heel (or z > 0) on
+    the right. The direction across is drawn larger than the one along by a factor that the axis tells.
 
     Parameters
     ----------
@@ -42,6 +48,9 @@ def plot_pressure_map(
         Index of the torque; default: the largest torque.
     column : int, optional
         Index of the tooth pair in ``result.pair``; default: that with the highest peak pressure at the position.
+    highest : float [MPa], optional
+        Pressure at the upper end of the colours; default: the highest peak pressure of the result under all its
+        torques, so that maps of several torques compare.
 
     Returns
     -------
@@ -50,11 +59,13 @@ def plot_pressure_map(
     Raises
     ------
     InputError
-        If the result has no such torque, position or tooth pair.
+        If the result has no such torque, position or tooth pair, or the pressure is not positive.
     IndexError
         If nothing is in contact at that position.
     """
     torque = chosen_torque(result, torque, position, column)
+    if highest is not None:
+        require_positive(highest=highest)
     at = result.peak_contact(torque) if position is None else (position, int(result.peak_column[torque, position]))
     if at is not None and column is not None:
         at = at[0], column
@@ -64,7 +75,7 @@ def plot_pressure_map(
     scale, height = scale_factor(len(one.y) * one.spacing[1], len(one.x) * one.spacing[0])
     figure = Figure(figsize=(9.0, 1.8 + height), layout="constrained")
     axes = figure.add_subplot()
-    highest = highest_of_map(result, torque, *at) if one.pressure.any() else 0.0
+    highest = highest_of_maps(result, *at) if highest is None else highest
     draw_map(axes, result, torque, at, highest, scale)
     if one.pressure.any():
         peak = float(one.pressure.max())
@@ -105,14 +116,15 @@ def draw_map(
 
 
 def _label_axes(axes: Axes, one: PressureMap, scale: float, frame: FlankFrame) -> None:
-    """Names of the axes, with the sides on which the heel (or z > 0) and the pinion's tip lie."""
+    """Names of the axes, which are turned so that the pinion's tip is on top and the heel (or z > 0) on the right."""
     dx, dy = one.spacing
     points = one.origin + np.stack([np.zeros(3), dy * one.axes[1], dx * one.axes[0]])
     (here, right, _), (level, _, above) = frame.to_picture(np.hypot(points[:, 0], points[:, 1]), points[:, 2])
-    axes.set_xlabel(f"along the contact [mm], towards {frame.heelwards} on the {'right' if right > here else 'left'}")
+    axes.xaxis.set_inverted(bool(right < here))
+    axes.yaxis.set_inverted(bool(above < level))
+    axes.set_xlabel(f"along the contact [mm], {frame.heelwards} on the right")
     axes.set_ylabel(
-        f"across the contact [mm]\n(pinion's {'tip' if above > level else 'root'} at the top)"
-        + (f"\n(drawn {scale:g} times larger)" if scale != 1.0 else "")
+        "across the contact [mm]\n(pinion's tip on top)" + (f"\n(drawn {scale:g} times larger)" if scale != 1.0 else "")
     )
 
 

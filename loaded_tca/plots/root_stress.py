@@ -34,7 +34,7 @@ NOMINAL = ":"
 
 
 def plot_root_stress(result: MeshCycle, torque: int | None = None) -> Figure:
-    """Root stress over fillet and face of both gears under one torque, on one scale of colours.
+    """Root stress over fillet and face of both gears under one torque, on one scale of colours for all torques.
 
     Above at the position of the largest tension, below the largest and the smallest stress that a tooth sees in a whole
     turn. Each panel has both sides of a tooth, from its root in the middle of the space on its back (left) to that on
@@ -61,7 +61,7 @@ def plot_root_stress(result: MeshCycle, torque: int | None = None) -> Figure:
     maps = result.root_stress
     figure = Figure(figsize=(10.0, 9.0), layout="constrained")
     panels = figure.subplots(3, 2, sharex=True, sharey="col")
-    largest = max(float(np.nanmax(np.abs(part[torque]), initial=0.0)) for one in maps for part in _shown(one))
+    largest = max(float(np.nanmax(np.abs(part), initial=0.0)) for one in maps for part in _shown(one))
     scale = Normalize(-largest or -1.0, largest or 1.0)
     for column, (gear, one) in enumerate(zip(GEARS, maps, strict=True)):
         titles = "at its largest tension", "largest stress in a turn", "smallest stress in a turn"
@@ -70,7 +70,8 @@ def plot_root_stress(result: MeshCycle, torque: int | None = None) -> Figure:
             _draw_fillets(axes, one, part[torque], scale)
             _mark_extremes(axes, one, part[torque], signs)
             axes.set_title(f"{gear}, {title}", fontsize="medium")
-            axes.set_ylabel(f"axial place on the {gear} [mm]")
+            axes.set_ylabel(f"axial position on the {gear} [mm]")
+        panels[-1, column].set_xticks(range(-60, 61, 30))  # 30 deg: the critical section of ISO 6336-3
         panels[-1, column].set_xlabel("tangent angle [deg]: back of the tooth | side in contact")
     figure.colorbar(ScalarMappable(scale, DIVERGING), ax=panels, label="root stress [MPa], tension positive")
     style.set_title(figure, result, f"root stress, {load(result, torque)}", range_of_positions(result))

@@ -34,7 +34,6 @@ SMALLEST_SPAN_UM = 1e-4
 BANDS = ((1.0, 0.45), (2.0, 0.2))
 """Standard deviations either side, and how opaque the band is."""
 BASE_CIRCLE = "at the wheel's base circle [µm]"
-LESS_MEAN = "the same, less its mean [µm]"
 
 
 def sensitivity_pictures(found: Sensitivities, tolerances: Mapping[str, float], torque: int) -> dict[str, Figure]:
@@ -163,7 +162,7 @@ def plot_sensitivity_curves(
         absolute.plot(angle, curve, color=colour, marker=marker, markersize=4.0, label=label)
         about_mean.plot(angle, curve - mean_over_a_pitch(curve), color=colour, marker=marker, markersize=4.0)
     absolute.set_ylabel(f"change of the transmission error\n{BASE_CIRCLE}")
-    about_mean.set_ylabel(LESS_MEAN)
+    about_mean.set_ylabel("change less its mean [µm]")
     about_mean.set_xlabel("pinion angle [deg]")
     if not known.any():
         style.tell(absolute, style.NO_LOAD)
@@ -218,7 +217,7 @@ def plot_transmission_error_band(
         swing = curve - mean_over_a_pitch(curve)
         _draw_band(about_mean, angle, swing, np.sqrt((about**2).sum(axis=-1)), colours[index])
         absolute.set_ylabel(f"transmission error\n{BASE_CIRCLE}")
-        about_mean.set_ylabel(LESS_MEAN)
+        about_mean.set_ylabel("transmission error\nless its mean [µm]")
         if len(result.torque) > 1:
             absolute.set_title(style.torque_label(result, index), fontsize="small")
     for axes in rows[-1]:

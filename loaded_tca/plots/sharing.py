@@ -30,6 +30,7 @@ from loaded_tca.plots.style import (
     torque_styles,
     torques_with_panels,
 )
+from loaded_tca.results.load_factors import strip_borders, strip_forces
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import slice_middles
 from loaded_tca.results.summary import signed
@@ -146,6 +147,35 @@ def plot_line_load(result: MeshCycle) -> Figure:
     return style.finished(figure, axes, result, *about)
 
 
+def plot_face_load(result: MeshCycle) -> Figure:
+    """Load over the face width: normal force of all tooth pairs per width, the mean over a pitch, under each torque.
+
+    In the strips of the face whose highest load over the mean is the face load factor K_Hbeta; see
+    :mod:`loaded_tca.results.load_factors`.
+
+    Parameters
+    ----------
+    result : MeshCycle
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure, axes = style.one_panel()
+    pair, frame = result.gear_pair, result.gear_pair.pinion.flank.frame
+    borders = strip_borders(pair, result.path)
+    for torque, label, colour, _ in torque_styles(result):
+        maps = [one for row in result.maps[torque][:-1] for one in row if one is not None]
+        forces = np.sum([np.zeros(len(borders) - 1), *(strip_forces(pair, one, borders)[0] for one in maps)], axis=0)
+        factor = result.face_load_factor[torque]
+        told = label if np.isnan(factor) or label.startswith("_") else f"{label}, K_Hβ = {factor:.3g}"
+        axes.stairs(forces / (len(result.path) - 1) / np.diff(borders), borders, color=colour, label=told)
+    axes.set(xlabel=frame.labels[0], ylabel="normal force per face width [N/mm]")
+    axes.set_ylim(bottom=0.0)
+    about = f"load over the face width, {loads(result)}", "mean over a pitch", range_of_positions(result)
+    return style.finished(figure, axes, result, *about, columns=2)
+
+
 def plot_harmonics(result: MeshCycle) -> Figure:
     """Amplitudes and phases of the orders of the tooth mesh in the loaded transmission error, under each torque.
 
@@ -203,7 +233,8 @@ def draw_orders(axes: Axes, curves: Sequence[tuple[str, str, Array]]) -> Array:
 def plot_line_load_distribution(result: MeshCycle, torque: int | None = None) -> Figure:
     """Line load along the contacts of all pairs and positions, each where it lies on both flanks.
 
-    Every contact is drawn as the line through the middles of its pressure, coloured by the force per length along it.
+    Every contact is drawn as the line through the middles of its pressure, coloured by the force per length along it,
+    on one scale for all torques.
 
     Parameters
     ----------
@@ -221,15 +252,14 @@ def plot_line_load_distribution(result: MeshCycle, torque: int | None = None) ->
         If the result has no such torque.
     """
     torque = chosen_torque(result, torque)
-    segments, values, highest = [np.zeros((0, 2, 3))], [np.zeros(0)], 0.0
+    segments, values = [np.zeros((0, 2, 3))], [np.zeros(0)]
     for one in loaded_maps(result, torque):
         loaded, across = slice_middles(one.x, one.pressure)
         points = one.origin + across[:, None] * one.axes[0] + one.y[loaded, None] * one.axes[1]
         line_load = one.pressure[:, loaded].sum(axis=0) * one.spacing[0]
         segments.append(np.stack([points[:-1], points[1:]], axis=1))
         values.append(0.5 * (line_load[:-1] + line_load[1:]))
-        highest = max(highest, float(line_load.max()))
-    scale = Normalize(0.0, highest or 1.0)
+    scale = Normalize(0.0, float(np.nanmax(result.line_load, initial=0.0)) or 1.0)
 
     def draw(axes: Axes, to_picture: ToPicture) -> list[Artist]:
         places = list(to_picture(np.concatenate(segments)))

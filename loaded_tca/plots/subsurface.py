@@ -69,7 +69,7 @@ def plot_subsurface(stress: SubsurfaceStress, quantity: Quantity = "max_shear", 
 
 
 def plot_stress_below(below: StressBelow, quantity: Quantity = "max_shear") -> Figure:
-    """Picture of ``plot_subsurface`` for one pressure map of a result, which the title names.
+    """Stress below one pressure map of a result: depth against the direction across, where the stress is largest.
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.output.teeth_in_space import TeethInSpace, teeth_in_space
 from loaded_tca.pairs import mating_teeth
-from loaded_tca.plots.flanks import highest_of_map
+from loaded_tca.plots.flanks import highest_of_maps
 from loaded_tca.plots.style import ACCENT, COLOURS, load, place, set_title
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.tooth import PATCHES, Resolution, TriangleMesh
@@ -34,9 +34,9 @@ SEAMS = "0.35"
 LIFT, AMBIENT = 3e-3, 0.4
 """How far pressure and path are lifted off the facets of the flank, over the length of the tooth, so that these do not
 hide them; light from everywhere."""
-FILLED = 0.75
+FILLED = 0.85
 """Part of the frame that the box of the teeth fills: its ticks and labels take the rest."""
-MOST_TICKS, LABEL_PAD = 5, 10.0
+MOST_TICKS, LABEL_PAD = 5, 7.0
 """Ticks of an axis, and the distance [points] of its name, at which neither covers the other."""
 DRAWN = Resolution(flank=25, fillet=9, land=3, lengthwise=25)
 EXTRA = "pyvista is not installed; install it with: pip install 'loaded_tca[three-d]'"
@@ -82,7 +82,7 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
     matplotlib.figure.Figure
     """
     figure = Figure(figsize=(9.0, 7.5), layout="constrained")
-    axes: Any = figure.add_subplot(projection="3d", computed_zorder=False)
+    axes: Any = figure.add_subplot(projection="3d", proj_type="ortho", computed_zorder=False)
     points = np.concatenate([shown.pinion.vertices, shown.wheel.vertices])
     low, high = points.min(axis=0), points.max(axis=0)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
@@ -98,13 +98,13 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
     axes.add_collection3d(_solid(shown.pinion, PINION, 1.0, shown.eye))
     axes.add_collection3d(_lines(shown.pinion, side))
     if shown.highest_pressure > 0.0:
-        highest = highest_of_map(result, shown.torque, shown.position, shown.column)
+        highest = highest_of_maps(result, shown.position, shown.column)
         norm, extend = Normalize(0.0, highest), "max" if shown.highest_pressure > highest else "neither"
         faces = colormaps[COLOURS](norm(shown.pressure.cell_data["pressure_MPa"]))
         corners = shown.pressure.corners
         axes.add_collection3d(Poly3DCollection(corners, facecolors=faces, edgecolors=faces, linewidths=0.2))
         bar = ScalarMappable(norm, COLOURS)
-        figure.colorbar(bar, ax=axes, label="contact pressure [MPa]", shrink=0.7, extend=extend)
+        figure.colorbar(bar, ax=axes, label="contact pressure [MPa]", shrink=0.7, pad=0.08, extend=extend)
     axes.plot(*shown.path.T, ".", color=ACCENT, markersize=3.0)
     axes.add_collection3d(_solid(shown.wheel, WHEEL, SEE_THROUGH, shown.eye))
     axes.add_collection3d(_lines(shown.wheel, side))
@@ -181,7 +181,7 @@ def show_teeth(
     plotter.add_mesh(_poly_data(pyvista, shown.pinion), color=PINION, ambient=AMBIENT)
     plotter.add_mesh(_poly_data(pyvista, shown.wheel), color=WHEEL, ambient=AMBIENT, opacity=SEE_THROUGH)
     if shown.highest_pressure > 0.0:
-        limits = 0.0, highest_of_map(result, shown.torque, shown.position, shown.column)
+        limits = 0.0, highest_of_maps(result, shown.position, shown.column)
         bar = {"title": "contact pressure [MPa]", "fmt": "%.0f"}
         surface = _poly_data(pyvista, shown.pressure.moved(lift, np.eye(3)))
         colours = {"scalars": "pressure_MPa", "cmap": COLOURS, "clim": limits, "scalar_bar_args": bar}

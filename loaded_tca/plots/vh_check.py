@@ -47,7 +47,7 @@ EDGE = "edge contact within the pitch"
 
 
 def plot_vh_check(check: VHCheck, names: tuple[str, str] = ("V [mm]", "H [mm]"), title: str = "") -> Figure:
-    """Pattern in each cell, V upwards and H to the right; in it the tip is on top, the heel (z > 0) on the right.
+    """Contact pattern over V (upwards) and H (to the right); in each cell the tip is on top, the heel (z > 0) right.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def plot_loaded_vh_check(
     gear: GearName = "pinion",
     torque: int | None = None,
 ) -> Figure:
-    """Loaded contact pattern in each cell: the highest pressure that each place of the flank sees over the positions.
+    """Loaded contact pattern over V and H: the highest pressure that each place of the flank sees over the positions.
 
     Laid out as by :func:`plot_vh_check`, all cells in one scale of colours.
 

@@ -49,6 +49,8 @@ CAPTIONS = {
     "line_load": "Largest force per length along the contact of the most loaded pair; at a sharp face end "
     "mesh-dependent.",
     "line_load_distribution": "Force per length along the contacts of all positions, where they lie on the flanks.",
+    "face_load": "Normal force of all tooth pairs per face width, the mean over a pitch. Its largest value over its "
+    "mean is K_Hβ.",
     "pressure_envelope": "The highest pressure that each place of the flanks sees over the mesh cycle.",
     "path_pressure": "Peak pressure of a tooth pair from the begin to the end of its contact.",
     "root_stress": "Tangential stress over fillet and face: at the largest tension, and as envelopes over the mesh.",

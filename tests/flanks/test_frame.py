@@ -98,7 +98,7 @@ def test_span_of_a_profile_does_not_depend_on_the_place_lengthwise():
         assert CylinderFrame().profile_span((51.0, z), (55.8, z)) == "diameter 102.00 to 111.60 mm"
     for distance in (80.0, 100.0):
         ends = [(distance * math.sin(angle), distance * math.cos(angle)) for angle in (0.48, 0.52)]
-        assert ConeFrame(0.5, 100.0).profile_span(*ends) == "cone angle 27.502 to 29.794 deg"
+        assert ConeFrame(0.5, 100.0).profile_span(*ends) == "cone angle 27.50 to 29.79 deg"
 
 
 def test_modified_flank_keeps_the_frame_of_the_nominal_one():

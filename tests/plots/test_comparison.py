@@ -121,7 +121,7 @@ def test_maps_share_their_colours_and_lengths():
         assert_array_equal(pressure.get_array().filled(0.0).reshape(one.pressure.shape), one.pressure)
         assert_allclose(pressure.get_clim()[1], highest, rtol=0.02)  # a map's own peak is that of its cells
         assert pressure.get_clim() == drawn[0].collections[1].get_clim()
-        assert (axes.get_xlim(), axes.get_ylim()) == (drawn[0].get_xlim(), drawn[0].get_ylim())
+        assert (axes.get_xbound(), axes.get_ybound()) == (drawn[0].get_xbound(), drawn[0].get_ybound())
         assert axes.get_aspect() == drawn[0].get_aspect()
         assert axes.get_title().startswith(f"{name}\nposition {position + 1} of {len(cycle.path)}")
     assert bar.get_ylim()[1] == drawn[0].collections[1].get_clim()[1]

@@ -12,9 +12,13 @@ from loaded_tca.errors import InputError
 from loaded_tca.plots import (
     plot_all,
     plot_contact_path,
+    plot_full_mesh,
+    plot_line_load_distribution,
     plot_peak_pressure,
+    plot_pressure_envelope,
     plot_pressure_map,
     plot_stress_below,
+    plot_teeth,
     plot_transmission_error,
     save_figure,
 )
@@ -220,10 +224,13 @@ def test_pressure_map_leaves_cells_without_material_to_the_grey_ground():
 def test_pressure_map_tells_its_directions():
     cycle = result()
     one = cycle.maps[0][2][0]
-    shown = texts(plot_pressure_map(cycle, position=2))
-    assert f"towards z > 0 on the {'right' if one.axes[1, 2] > 0 else 'left'}" in shown
+    figure = plot_pressure_map(cycle, position=2)
+    shown = texts(figure)
+    assert "z > 0 on the right" in shown
+    assert "pinion's tip on top" in shown
+    assert figure.axes[0].xaxis.get_inverted() == (one.axes[1, 2] < 0)
     radius = np.hypot(*(one.origin + 0.1 * one.axes[0])[:2])
-    assert f"pinion's {'tip' if radius > cycle.path.pinion_radius[2] else 'root'} at the top" in shown
+    assert figure.axes[0].yaxis.get_inverted() == (radius < cycle.path.pinion_radius[2])
 
 
 def test_pressure_map_where_nothing_touches_is_told():
@@ -263,12 +270,16 @@ def test_flanks_are_drawn_with_the_part_that_the_mate_reaches(name):
 @pytest.mark.parametrize("name", ["straight_bevel", "spiral_bevel"])
 def test_pictures_of_bevel_pairs_speak_of_toe_and_heel(name):
     cycle = result(name, positions=3)
-    shown = texts(plot_pressure_map(cycle, position=0))
-    assert "towards the heel on the right" in shown
+    figure = plot_pressure_map(cycle, position=0)
+    shown = texts(figure)
+    assert "the heel on the right" in shown
+    assert "pinion's tip on top" in shown
     assert "pitch cone" in shown
     one, frame = cycle.maps[0][0][0], cycle.gear_pair.pinion.flank.frame
-    heights = [frame.to_picture(np.hypot(*p[:2]), p[2])[1] for p in (one.origin, one.origin + 0.01 * one.axes[0])]
-    assert f"pinion's {'tip' if heights[1] > heights[0] else 'root'} at the top" in shown
+    ends = one.origin, one.origin + 0.01 * one.axes[0], one.origin + 0.01 * one.axes[1]
+    at, across, along = (frame.to_picture(np.hypot(*p[:2]), p[2]) for p in ends)
+    assert figure.axes[0].yaxis.get_inverted() == (across[1] < at[1])
+    assert figure.axes[0].xaxis.get_inverted() == (along[0] < at[0])
     flanks = plot_contact_path(cycle)
     assert "toe left, heel right" in texts(flanks)
     assert "concave" in flanks.axes[0].get_title() or name == "straight_bevel"
@@ -358,3 +369,33 @@ def test_legend_of_the_flanks_names_a_grey_area_only_where_it_is_seen(part, told
     monkeypatch.setattr(type(scene), "active_starts", lambda _: starts)
     names = [text.get_text() for text in plot_contact_path(result()).legends[0].get_texts()]
     assert ("flank that the mating gear does not reach" in names) is told
+
+
+@pytest.mark.parametrize("position", [None, 0])
+def test_pressure_maps_of_several_torques_have_one_scale(position):
+    cycle = result("mesh_cycle_helical", positions=3, torques=(40.0, 260.0))
+    ends = {plot_pressure_map(cycle, position, torque).axes[-1].get_ylim() for torque in (0, 1)}
+    ((low, high),) = ends
+    assert low == 0.0
+    assert high >= np.nanmax(cycle.peak_pressure)
+
+
+@pytest.mark.parametrize("plot", [plot_contact_path, plot_full_mesh, plot_pressure_envelope, plot_teeth])
+def test_pressures_on_the_flanks_have_one_scale_for_all_torques(plot):
+    cycle = result("mesh_cycle_helical", positions=3, torques=(40.0, 260.0))
+    bars = [plot(cycle, torque=torque).axes[-1] for torque in (0, 1)]
+    assert bars[0].get_ylim() == bars[1].get_ylim()
+    assert bars[0].get_ylim()[1] >= np.nanmax(cycle.peak_pressure)
+
+
+def test_line_loads_on_the_flanks_have_one_scale_for_all_torques():
+    cycle = result("mesh_cycle_helical", positions=3, torques=(40.0, 260.0))
+    ends = [plot_line_load_distribution(cycle, torque).axes[-1].get_ylim()[1] for torque in (0, 1)]
+    assert_allclose(ends, np.nanmax(cycle.line_load))
+
+
+def test_scale_of_a_pressure_map_can_be_given():
+    bar = plot_pressure_map(result(), position=2, highest=5e3).axes[-1]
+    assert bar.get_ylim() == (0.0, 5e3)
+    with pytest.raises(InputError, match=r"^highest: -1.0 is not positive and finite$"):
+        plot_pressure_map(result(), highest=-1.0)

@@ -22,8 +22,9 @@ def panels(figure):
 
 def test_maps_of_both_gears_have_one_scale_of_colours_without_an_end_that_is_cut_off():
     cycle = result()
-    shown = panels(plot_root_stress(cycle))
-    assert len(shown) == 6
+    figures = [plot_root_stress(cycle), plot_root_stress(cycle, 0)]
+    assert [len(panels(figure)) for figure in figures] == [6, 6]
+    shown = [axes for figure in figures for axes in panels(figure)]
     norms = {(mesh.norm.vmin, mesh.norm.vmax) for axes in shown for mesh in axes.collections}
     assert len(norms) == 1
     ((low, high),) = norms

@@ -11,6 +11,7 @@ from loaded_tca.errors import GeometryError
 from loaded_tca.plots import (
     plot_contact_path,
     plot_contact_patterns,
+    plot_face_load,
     plot_full_mesh,
     plot_harmonics,
     plot_line_load_distribution,
@@ -325,3 +326,22 @@ def test_contact_points_of_every_pair_are_drawn():
     assert len(points) == len(cycle.pair)
     for line, path in zip(points, cycle.paths, strict=True):
         assert_allclose(line.get_ydata(), 2.0 * path.pinion_radius)
+
+
+@pytest.mark.parametrize("name", ["mesh_cycle_helical", "mesh_cycle_bevel"])
+def test_load_over_the_face_width_carries_the_force_and_has_the_load_factor(name):
+    cycle = shared(name, (0.8, 1.6) if "bevel" in name else (40.0, 260.0))
+    axes = plot_face_load(cycle).axes[0]
+    for torque, steps in enumerate(axes.patches):
+        load, borders, _ = steps.get_data()
+        force = np.nansum(cycle.normal_force[torque, :-1], axis=-1).mean()  # N; the last position is the first one
+        assert_allclose(load @ np.diff(borders), force, rtol=1e-6)
+        assert_allclose(load.max() / load.mean(), cycle.face_load_factor[torque], rtol=1e-12)
+        assert f"K_Hβ = {cycle.face_load_factor[torque]:.3g}" in steps.get_label()
+    assert axes.get_xlabel() == cycle.gear_pair.pinion.flank.frame.labels[0]
+
+
+def test_load_over_the_face_width_of_no_load_is_none():
+    axes = plot_face_load(shared(torques=(0.0,))).axes[0]
+    assert not axes.patches[0].get_data().values.any()
+    assert axes.patches[0].get_label() == "pinion torque 0 N m"

@@ -1,0 +1,59 @@
+"""All kinds of pictures
+=====================
+
+Every kind of picture that the package draws, with what one reads from it; ``loaded-tca plot DIR --all`` draws some.
+"""
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from scipy.stats import norm
+
+import loaded_tca.plots as plots
+from loaded_tca import analyse, read_scene
+from loaded_tca.flank_maps import ease_off_map, vh_check
+from loaded_tca.results import stress_below
+from loaded_tca.studies import DesignModel, Study, optimise, robustness, run_study, vh_study
+
+SCENES = Path(__file__).parent / "scenes"
+COARSE = {"analysis.positions": 7, "analysis.cells": (16, 24), "analysis.accuracy": None}  # seconds, not minutes
+FEW = COARSE | {"analysis.positions": 4, "analysis.compliance": "contact", "analysis.free_edges": False}
+LEAD, TIP = "pinion.modifications.lead_crowning_um", "wheel.modifications.tip_relief_um"
+RELIEF = {TIP: 10.0, "wheel.modifications.tip_relief_start_mm": 179.0, "analysis.torques_Nm": [60.0, 130.0]}
+HELICAL = read_scene(SCENES / "mesh_cycle_helical.toml").with_changes(COARSE | RELIEF)
+BEVEL = read_scene(SCENES / "mesh_cycle_bevel.toml").with_changes(FEW | {"analysis.torques_Nm": [0.8]})
+OFFSET, AXIAL, STEPS = "mounting.offset_mm", "mounting.pinion_axial_mm", (-0.01, 0.0, 0.01)
+SCATTER = {"mounting.misalignment_um": norm(0.0, 5.0), LEAD: norm(5.0, 1.0)}
+
+
+def main() -> None:
+    """Draw those of one result and of two, of a bevel pair, of sensitivities, of studies, of a design."""
+    result, other = (analyse(HELICAL.with_changes({"analysis.root_stress": True, LEAD: um})) for um in (5.0, 10.0))
+    drawn = plots.result_figures(result, more=True)
+    drawn |= {"teeth": plots.plot_teeth(result), "stress_below": plots.plot_stress_below(stress_below(result))}
+    both = {"crowning 5 µm": result, "crowning 10 µm": other}
+    drawn |= {"comparison": plots.plot_comparison(both), "compared_maps": plots.plot_compared_maps(both)}
+    check = vh_check(lambda v, h: BEVEL.with_changes({OFFSET: v, AXIAL: h}).pair(), STEPS, STEPS)
+    drawn |= {"ease_off": plots.plot_ease_off(ease_off_map(BEVEL.pair())), "vh_check": plots.plot_vh_check(check)}
+    study = vh_study(BEVEL, STEPS, STEPS)
+    with TemporaryDirectory() as folder:
+        loaded = run_study(study, out=Path(folder, "vh.nc"), keep_maps=range(len(study)))
+        drawn["loaded_vh_check"] = plots.plot_loaded_vh_check(loaded, Path(folder, "vh_maps"))
+    few = HELICAL.with_changes(FEW)
+    sampled, found = run_study(Study(few, {}, SCATTER, 8)), result.sensitivities(list(SCATTER))
+    for kind in ("tornado", "sensitivity_curves", "transmission_error_band", "removal_weights"):
+        drawn[kind] = getattr(plots, f"plot_{kind}")(found)
+    drawn["first_order_scatter"] = plots.plot_first_order_scatter(analyse(few).sensitivities(list(SCATTER)), sampled)
+    swept = run_study(Study(few, {LEAD: [2.0, 5.0, 8.0], TIP: [5.0, 10.0]}))
+    drawn |= plots.plot_study(swept, ["peak_pressure_MPa"]) | plots.plot_study(sampled, ["transmission_error_span_um"])
+    model = DesignModel(few, {LEAD: (0.0, 15.0), TIP: (0.0, 30.0)}, SCATTER, torques=[60e3, 130e3], samples=2)
+    design = optimise(model, "mean + k sigma")
+    kept = robustness(model, {"start": design.start, "optimum": design.optimum}, [0.0, 1.0, 2.0])
+    drawn |= {"before_and_after": plots.plot_before_and_after(design), "robustness": plots.plot_robustness(kept)}
+    drawn["peak_to_peak_over_torque"] = plots.plot_peak_to_peak_over_torque(design)
+    for name, figure in drawn.items():
+        plots.save_figure(figure, f"{name}.png")
+
+
+if __name__ == "__main__":
+    main()
