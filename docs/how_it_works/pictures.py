@@ -56,7 +56,7 @@ def ease_off_field() -> Figure:
     axes = figure.subplots()
     drawn = axes.contourf(axial, 2.0 * radius, drop, levels=np.linspace(-60.0, 0.0, 13), extend="min")
     axes.plot(contact.pinion_axial, 2.0 * contact.pinion_radius, "o", color=ORANGE, label="contact: the maximum")
-    axes.set(xlabel="axial place on the pinion [mm]", ylabel="pinion diameter [mm]")
+    axes.set(xlabel="axial position on the pinion [mm]", ylabel="pinion diameter [mm]")
     axes.legend(loc="lower right")
     figure.colorbar(drawn, label="ease-off below its maximum [µm]")
     figure.suptitle("Helical pair 34/57, crowned, 4 µm out of line, pinion angle 0", fontsize="medium")

@@ -134,7 +134,7 @@ class EdgePressure:
     solution: GradedSolution
 
     def compared_with(self, other: EdgePressure) -> EdgePressure:
-        """This pressure, with an error of at least the change from another solution."""
+        """Return this pressure with an error of at least its change from another solution."""
         change = abs(self.pressure - other.pressure) / self.pressure  # NaN if one of them is not reached
         return self if math.isnan(self.pressure) else replace(self, error=max(self.error, change))
 

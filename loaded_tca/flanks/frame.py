@@ -71,7 +71,7 @@ class CylinderFrame(FlankFrame):
         return f"diameter {2.0 * first[0]:.2f} to {2.0 * last[0]:.2f} mm"
 
     def place(self, rho: float, z: float) -> str:
-        """Diameter and axial place."""
+        """Diameter and axial position."""
         return f"diameter {2.0 * rho:.4g} mm, {_rounded(z)} mm from mid-face"
 
 

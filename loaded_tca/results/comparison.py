@@ -69,7 +69,7 @@ class Comparison:
         """Key figures as ``value``, ``difference`` and ``relative_difference`` to the first (torque, figure, result).
 
         NaN: not known. A relative difference is that over the magnitude of the first, and NaN where that is zero and
-        for angles and axial places, whose zero has no meaning.
+        for angles and axial positions, whose zero has no meaning.
         """
         import xarray
 

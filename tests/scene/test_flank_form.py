@@ -43,7 +43,7 @@ def csv_of(topography, columns=("radius_mm", "axial_mm", "deviation_um"), text="
 
 
 def deviations(scene, member="wheel", points=(7, 9)):
-    """Radius, axial place [mm] and crowning [um] at points of a flank."""
+    """Radius, axial position [mm] and crowning [um] at points of a flank."""
     flank = getattr(scene.pair(), member).flank
     rho, z = flank.grid(*points)
     along = flank.lengthwise_coordinate(rho, z).value
