@@ -73,7 +73,7 @@ def plot_vh_check(check: VHCheck, names: tuple[str, str] = ("V [mm]", "H [mm]"),
             _frame(panels[i, j], bool(check.edge_share[cell] > 0.0))
     figure.colorbar(drawn, ax=panels, label="smallest gap over the passage [µm]", format="%.3g")
     what = f"contact pattern on the {first.gear}, marking compound {1e3 * first.compound:.4g} µm, no load"
-    _set_legend(figure, "centre of the pattern", check.frame)
+    _set_legend(figure, "centre of the pattern", bool((check.edge_share > 0.0).any()), check.frame)
     write_title(figure, title, what)
     return figure
 
@@ -145,7 +145,7 @@ def plot_loaded_vh_check(
     )
     frame = (first.gear_pair.pinion if gear == "pinion" else first.gear_pair.wheel).flank.frame
     what = f"loaded contact pattern on the {gear}, {load(first, torque)}"
-    _set_legend(figure, "centre of the force", frame)
+    _set_legend(figure, "centre of the force", any(one.on_edge[torque].any() for one in kept.values()), frame)
     write_title(figure, first.scene.title, what, told_of_variants(study))
     return figure
 
@@ -171,10 +171,11 @@ def _frame(axes: Axes, on_edge: bool) -> None:
         spine.set(color=ACCENT if on_edge else "0.6", linewidth=2.0 if on_edge else 0.8)
 
 
-def _set_legend(figure: Figure, dot: str, frame: FlankFrame) -> None:
+def _set_legend(figure: Figure, dot: str, on_edge: bool, frame: FlankFrame) -> None:
     """Below the panels what dots and thick frames are, and how the flanks lie."""
+    thick = [Patch(fill=False, edgecolor=ACCENT, linewidth=2.0, label=EDGE)] if on_edge else []
     figure.legend(
-        handles=[Line2D([], [], label=dot, **DOT), Patch(fill=False, edgecolor=ACCENT, linewidth=2.0, label=EDGE)],
+        handles=[Line2D([], [], label=dot, **DOT), *thick],
         title=f"in each cell the tip is on top, {frame.heelwards} on the right",
         loc="lower center",
         fontsize="small",

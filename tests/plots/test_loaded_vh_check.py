@@ -51,9 +51,11 @@ def test_variants_lie_where_their_errors_say():
 
 
 def test_legend_below_the_panels_tells_what_frames_and_dots_are():
-    figure = plot_loaded_vh_check(study(), dict.fromkeys(range(6), cycle()))
-    (legend,) = figure.legends
-    assert [text.get_text() for text in legend.texts] == ["centre of the force", "edge contact within the pitch"]
+    for on_edge, told_there in ((True, ["edge contact within the pitch"]), (False, [])):
+        one = changed(cycle(), on_edge=np.full_like(cycle().on_edge, on_edge))
+        figure = plot_loaded_vh_check(study(), dict.fromkeys(range(6), one))
+        (legend,) = figure.legends
+        assert [text.get_text() for text in legend.texts] == ["centre of the force", *told_there]
     assert legend.get_title().get_text() == "in each cell the tip is on top, the heel on the right"
     figure.draw_without_rendering()
     name = figure._supxlabel.get_window_extent()
