@@ -8,6 +8,7 @@ import builtins
 import re
 import shutil
 import warnings
+import zipfile
 from pathlib import Path
 
 from sphinx_gallery.scrapers import figure_rst
@@ -15,16 +16,21 @@ from sphinx_gallery.scrapers import figure_rst
 DOCS = Path(__file__).parents[1]
 EXAMPLES = DOCS.parent / "examples"
 WORKING_DIRECTORY = DOCS / "_build" / "examples"
+ARCHIVE = DOCS / "_build" / "loaded_tca_examples.zip"
+ARCHIVE_LINK = f":download:`the archive of all examples </_build/{ARCHIVE.name}>`"
 ROW = re.compile(r"^\| `(\w+)` \| (.*) \|$", re.MULTILINE)
 """Of a table of the guide: a kind of picture, and what one reads from it."""
 
 
 def prepare() -> None:
-    """Copy the scripts and the heading of the gallery into a new working directory."""
+    """Copy the scripts and the heading of the gallery into a new working directory; pack the folder with its scenes."""
     shutil.rmtree(WORKING_DIRECTORY, ignore_errors=True)
     WORKING_DIRECTORY.mkdir(parents=True)
     for path in (*EXAMPLES.glob("*.py"), EXAMPLES / "GALLERY_HEADER.rst"):
         shutil.copy2(path, WORKING_DIRECTORY)
+    with zipfile.ZipFile(ARCHIVE, "w", zipfile.ZIP_DEFLATED) as archive:
+        for path in sorted([*EXAMPLES.glob("*.py"), *EXAMPLES.glob("scenes/*"), *EXAMPLES.glob("studies/*")]):
+            archive.write(path, path.relative_to(EXAMPLES.parent))
 
 
 def define_file(_: object, script: str) -> None:

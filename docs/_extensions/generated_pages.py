@@ -12,12 +12,14 @@ from typing import Any
 from sphinx.application import Sphinx
 from sphinx.config import Config
 
+import gallery
 import loaded_tca
 from loaded_tca.cli import command_line
 from loaded_tca.output import describe_results
 from loaded_tca.scene import describe_keys
 
 ABSOLUTE_VALUE = re.compile(r"\|([A-Za-z ]+)\|")
+NAMED_PAGE = re.compile(r"`{0,2}docs/([\w/]+)\.md`{0,2}")
 EXAMPLE = re.compile(r"\]\((?:\.\./)+examples/(\w+)\.py\)")
 
 
@@ -25,7 +27,7 @@ def setup(app: Sphinx) -> dict[str, bool]:
     """Write the pages as soon as the folders are known, before autosummary looks for them."""
     app.connect("config-inited", _write_pages)
     app.connect("autodoc-process-docstring", _escape_docstring)
-    app.connect("source-read", _link_examples_to_the_gallery)
+    app.connect("source-read", _complete_links)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
 
@@ -52,13 +54,16 @@ def write_pages(reference: Path) -> None:
 
 
 def describe_commands() -> str:
-    """Return the help of every command in Markdown."""
+    """Return the help of every command in Markdown; links to the pages that it names stand below it."""
     parser = command_line()
     (commands,) = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
     lines = []
     for name, command in commands.choices.items():
         command.formatter_class = lambda prog: argparse.RawDescriptionHelpFormatter(prog, width=100)
-        lines += [f"## {name}", "", "```text", command.format_help().rstrip(), "```", ""]
+        text = command.format_help().rstrip()
+        pages = [f"[](../{page}.md)" for page in NAMED_PAGE.findall(text)]  # shown by their titles
+        text = re.sub(rf"; {NAMED_PAGE.pattern} says more", "", text)
+        lines += [f"## {name}", "", "```text", text, "```", "", *(f"More: {page}." for page in pages), ""]
     return "\n".join(lines)
 
 
@@ -148,11 +153,17 @@ def _escape_docstring(*event: Any) -> None:
 
 
 def _escaped(line: str) -> str:
-    """Bars around a word are an absolute value in a docstring, and a substitution in reStructuredText; not in LaTeX."""
+    """One line of a docstring for reStructuredText: files of pages become links with their titles.
+
+    Bars around a word are an absolute value in a docstring, and a substitution in reStructuredText; not in LaTeX.
+    """
+    line = NAMED_PAGE.sub(r":doc:`/\1`", line)
     return line if "\\" in line else ABSOLUTE_VALUE.sub(r"\|\1\|", line)
 
 
-def _link_examples_to_the_gallery(_: Sphinx, document: str, source: list[str]) -> None:
-    """Links to a script of the repository lead to its page in the gallery."""
+def _complete_links(_: Sphinx, document: str, source: list[str]) -> None:
+    """Links to a script of the repository lead to its page in the gallery; there, the archive with its scenes follows."""
     up = "../" * document.count("/")
     source[0] = EXAMPLE.sub(rf"]({up}gallery/\1.rst)", source[0])
+    if document.startswith("gallery/") and document != "gallery/index":
+        source[0] += f"\nScenes and studies that a script reads are in {gallery.ARCHIVE_LINK}.\n"

@@ -28,7 +28,7 @@ from loaded_tca.contact.convolution import Convolution
 from loaded_tca.reference import hertz
 from validation.loaded import speed as speed_of_mesh_cycle
 
-CYCLES = "What whole cycles of 33 positions and three torques take is in [mesh_cycle_speed.md](mesh_cycle_speed.md)."
+CYCLES = "What whole cycles of 33 positions and three torques take is in [Time of a mesh cycle](mesh_cycle_speed.md)."
 Array = NDArray[np.float64]
 E_STAR = 115e3
 LOAD = 100.0
@@ -332,7 +332,7 @@ def main() -> None:
         "# Time against error\n",
         "Written by `python -m validation.contact.speed_against_error`;",
         "[the page on the contact solver](contact_solver.md#speed-against-error) says what is compared and how.\n",
-        *notes,
+        *(f"- {note}" for note in notes),
         "",
         table(found),
         "",
