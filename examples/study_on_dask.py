@@ -33,7 +33,7 @@ def main() -> float:
         executor = client.get_executor(pure=False)  # pure: Dask would hash every task, for nothing
         found = run_study(study, executor, "study_on_dask.nc")
     save_figure(plot_study_heat_map(found, "peak_pressure_MPa"), "study_on_dask.png")
-    print(found[["peak_pressure_MPa", "status"]].to_dataframe())
+    print(found[["peak_pressure_MPa", "status"]].to_dataframe().to_string())
     peak = found["peak_pressure_MPa"].values.reshape(3, 2)  # the last factor changes fastest
     return float(peak[0, 1] / peak[0, 0])
 
