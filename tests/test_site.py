@@ -4,6 +4,7 @@ import importlib.util
 import shutil
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 from loaded_tca import plots
@@ -22,6 +23,15 @@ def test_site_builds_without_a_warning(tmp_path):
         [sys.executable, "-m", "sphinx", *options, "docs", "built"], cwd=tmp_path, capture_output=True, text=True
     )
     assert built.returncode == 0, built.stderr
+    with zipfile.ZipFile(tmp_path / "docs" / "_build" / "loaded_tca_examples.zip") as archive:
+        packed = set(archive.namelist())
+    listed = subprocess.run(
+        ["git", "ls-files", "examples"], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout
+    assert {*listed.splitlines()} - packed == {"examples/GALLERY_HEADER.rst"}  # scripts run where it is unpacked
+    commands = (tmp_path / "docs" / "reference" / "generated" / "commands.md").read_text(encoding="utf-8")
+    assert "docs/" not in commands  # readers of the site have no such folder: links with titles
+    assert "[](../guide/comparing.md)" in commands
 
 
 def test_every_kind_of_picture_has_a_sentence_on_what_one_reads_from_it():

@@ -9,10 +9,10 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import gallery
 from sphinx.application import Sphinx
 from sphinx.config import Config
 
-import gallery
 import loaded_tca
 from loaded_tca.cli import command_line
 from loaded_tca.output import describe_results
@@ -162,7 +162,7 @@ def _escaped(line: str) -> str:
 
 
 def _complete_links(_: Sphinx, document: str, source: list[str]) -> None:
-    """Links to a script of the repository lead to its page in the gallery; there, the archive with its scenes follows."""
+    """Links to a script of the repository lead to its page in the gallery; there, a link to its scenes follows."""
     up = "../" * document.count("/")
     source[0] = EXAMPLE.sub(rf"]({up}gallery/\1.rst)", source[0])
     if document.startswith("gallery/") and document != "gallery/index":
