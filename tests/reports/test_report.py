@@ -1,5 +1,6 @@
 """Reports: all that a customer asks for is on one page, and the page needs nothing else."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -512,6 +513,21 @@ def test_command_tells_what_cannot_be_written(kept, capsys):
     assert cli.main(["report", "out", "--out", "out"]) == 2
     assert "out: cannot be written" in capsys.readouterr().err
     assert [path.name for path in (kept / "out").iterdir()] == ["result.nc"]
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="a system without named pipes")
+@pytest.mark.parametrize("name", ["out/result.nc", "link.html", "pipe"])
+def test_command_replaces_neither_its_input_nor_what_is_no_file(kept, capsys, name):
+    """And says so before it reads the result, which is none here."""
+    (kept / "out" / "result.nc").write_text("kept")
+    (kept / "link.html").symlink_to("out/result.nc")
+    os.mkfifo(kept / "pipe")
+    assert cli.main(["report", "out", "--out", name]) == 2
+    told = "cannot be written: not a regular file; give the name of a file"
+    told = told if name == "pipe" else "would replace the input; give another name"
+    assert capsys.readouterr().err == f"loaded-tca: --out: {name}: {told}\n"
+    assert (kept / "out" / "result.nc").read_text() == "kept"
+    assert (kept / "pipe").is_fifo()
 
 
 @pytest.mark.usefixtures("kept")
