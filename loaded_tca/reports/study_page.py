@@ -58,6 +58,7 @@ def study_content(study: xarray.Dataset) -> dict[str, Any]:
         "analysed_by": str(study.attrs.get("version", "")),
         "statuses": Counter(study["status"].values.tolist()).most_common(),
         "variants": variants,
+        "analysed": "ok" in study["status"].values,
         **scene_content(scene),
         "varied": _varied(study),
         "scatter": [*_scatter(study)],

@@ -367,6 +367,8 @@ def test_study_of_which_nothing_was_analysed_has_a_report(written):
     page = written(study.drop_vars(figures).assign(refused))
     assert f"{count} refused" in page.words
     assert "Ranking" not in page.headings
+    assert "no variant was analysed" in page.words
+    assert "met no limit" not in page.words
 
 
 def test_distributions_have_a_report(written):
