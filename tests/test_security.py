@@ -149,7 +149,10 @@ def test_report_of_a_study_or_design_opens_no_file_that_its_scene_names(folder, 
     """Not even one in the folder where the command runs."""
     monkeypatch.chdir(folder)
     shutil.copy(FLANK, "secret.csv")
-    write_dataset("forged.nc", xarray.Dataset(attrs={"kind": kind, "scene_toml": scene_with(folder, "secret.csv")}))
+    told = {"kind": kind, "scene_toml": scene_with(folder, "secret.csv"), "figure": "span_um"}
+    told |= dict.fromkeys(("warnings", "objective", "limits"), "")
+    numbers = dict.fromkeys(("value", "objective", "held_objective"), 1.0)
+    write_dataset("forged.nc", xarray.Dataset(numbers, attrs=told))
     code, _, errors = run("report", "forged.nc")
     assert (code, errors) == (2, ['loaded-tca: wheel.flank.file: found "secret.csv"; allowed no file here'])
     assert not Path("report.html").exists()

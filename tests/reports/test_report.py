@@ -270,6 +270,14 @@ def test_pictures_do_not_use_each_other_s_parts(page):
     assert used <= set(ids)
 
 
+def test_equal_images_of_a_picture_have_no_common_id(written):
+    """Heat maps under two torques have the same colour bar."""
+    page = written(grid(torques=(40.0, 80.0)))
+    ids = [value for _, name, value in page.attributes if name == "id"]
+    assert len(ids) > 100
+    assert len(ids) == len(set(ids))
+
+
 def test_every_picture_has_a_caption_and_a_name(page):
     pictures = [value for tag, name, value in page.attributes if (tag, name) == ("svg", "aria-label")]
     assert len(pictures) == len(re.findall(r"Figure \d+: ", page.words)) == 15
@@ -384,6 +392,22 @@ def test_design_has_a_report(written):
     assert "face_load_factor <= 1.9 at 100 N m" in page.words
     assert "lead_crowning_um = 7.5" in page.words
     assert "Appendix: scene file of the start" in page.headings
+
+
+def test_forged_design_is_bad_input(tmp_path, monkeypatch, capsys):
+    from loaded_tca.results.files import write_dataset
+
+    monkeypatch.chdir(tmp_path)
+    whole = design_dataset()
+    write_dataset("figure.nc", whole.assign_attrs(figure="xyz"))
+    write_dataset("bare.nc", whole.drop_vars("value").assign_attrs(limits=3.0))
+    assert cli.main(["report", "figure.nc"]) == 2
+    (told,) = capsys.readouterr().err.splitlines()
+    assert told.startswith("loaded-tca: figure.nc: not the result of a design: figure: 'xyz'; allowed span_um, ")
+    assert cli.main(["report", "bare.nc"]) == 2
+    told = capsys.readouterr().err
+    assert "limits: missing, or no text" in told
+    assert "value: missing" in told
 
 
 def design_dataset():
