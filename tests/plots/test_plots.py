@@ -408,4 +408,6 @@ def test_scale_of_a_pressure_map_can_be_given():
 def test_words_on_the_end_of_the_colours_are_those_of_the_pictures():
     files = Path(__file__).parents[2] / "docs" / "reference" / "files.md"
     for words in (files.read_text(encoding="utf-8"), plot_pressure_map.__doc__):
-        assert f"at most {100.0 * CELLS_OF_SPIKES:g} % of the cells under pressure lie beyond" in " ".join(words.split())
+        assert f"at most {100.0 * CELLS_OF_SPIKES:g} % of the cells under pressure lie beyond" in " ".join(
+            words.split()
+        )
