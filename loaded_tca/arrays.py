@@ -51,7 +51,8 @@ def index_checks(**indices: tuple[object, int]) -> list[tuple[bool, str]]:
     """Checks for ``require`` of indices, by name each with its count: None, or a whole number from 0 to count - 1."""
     return [
         (
-            index is None or (isinstance(index, int | np.integer) and bool(0 <= index < count)),
+            index is None
+            or (isinstance(index, int | np.integer) and not isinstance(index, bool) and bool(0 <= index < count)),
             f"{name}: {index!r:.60} is no index from 0 to {count - 1}",
         )
         for name, (index, count) in indices.items()

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from loaded_tca import load_result
 from loaded_tca.errors import InputError
 from loaded_tca.output import write_dynamics
 from tests.samples.results import changed_scene, result
@@ -86,6 +87,8 @@ def test_what_is_not_known_is_an_empty_cell(tmp_path):
         (["out", "--out", "out"], "--out out: a directory; give the name of a file, as out/dynamics.csv"),
         (["out", "--out", "out/result.nc/mesh.csv"], "result.nc is a file; give a directory"),
         (["out", "--out", ""], "the name is empty"),
+        (["out", "--out", "out/result.nc"], "--out: out/result.nc: would replace the input; give another name"),
+        (["out/result.nc", "--out", "out/../out/result.nc"], "would replace the input"),
     ],
 )
 def test_wrong_command_line_is_told(run, out, arguments, told):
@@ -94,6 +97,14 @@ def test_wrong_command_line_is_told(run, out, arguments, told):
     assert len(errors) == 1
     assert told in errors[0]
     assert os.listdir(out) == ["result.nc"]
+
+
+def test_second_table_does_not_replace_the_input(run, out):
+    os.rename("out/result.nc", "out/mesh_orders.nc")
+    code, _, errors = run("dynamics", "out/mesh_orders.nc", "--out", "out/mesh.nc")
+    assert (code, errors) == (2, ["loaded-tca: --out: out/mesh_orders.nc: would replace the input; give another name"])
+    assert load_result("out/mesh_orders.nc").pinion_angle.size == 5
+    assert os.listdir(out) == ["mesh_orders.nc"]
 
 
 def test_result_without_a_period_writes_nothing(run, out):

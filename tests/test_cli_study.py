@@ -10,8 +10,11 @@ import time
 from pathlib import Path
 
 import pytest
+import xarray
 
 from loaded_tca import cli, load_result
+from loaded_tca.cli import DEMO_SCENE
+from loaded_tca.results.files import write_dataset
 from loaded_tca.studies import load_study
 from tests.samples.studies import helical
 
@@ -108,6 +111,23 @@ def test_study_is_no_result(study, capsys):
     assert cli.main(["plot", "out/study.nc"]) == 2
     (told,) = capsys.readouterr().err.splitlines()
     assert told.endswith("a study, not the result of a mesh cycle; read it with loaded_tca.studies.load_study")
+
+
+@pytest.mark.parametrize(
+    ("attributes", "told"),
+    [
+        ({"kind": "study"}, "a study, not the result of a mesh cycle; read it with loaded_tca.studies.load_study"),
+        ({"kind": "design"}, "a design, not the result of a mesh cycle; read it with loaded_tca.studies.load_design"),
+        ({}, "not the result of a mesh cycle: it has neither paths of contact nor maps"),
+    ],
+)
+def test_other_file_of_the_package_is_told_in_one_line(tmp_path, run, monkeypatch, attributes, told):
+    """The last one as the stresses below a map are, which have a scene too."""
+    monkeypatch.chdir(tmp_path)
+    write_dataset("other.nc", xarray.Dataset(attrs=attributes | {"scene_toml": DEMO_SCENE.read_text(encoding="utf-8")}))
+    for command in ("plot", "tooth", "dynamics", "sensitivities"):
+        assert run(command, "other.nc") == (2, "", [f"loaded-tca: other.nc: {told}"])
+    assert run("compare", "other.nc", "other2.nc", "--out", "out") == (2, "", [f"loaded-tca: other.nc: {told}"])
 
 
 def test_wrong_study_is_told_before_anything_is_written(study, capsys):

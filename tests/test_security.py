@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray
 
 from loaded_tca import InputError, load_result, parse_scene, read_scene
 from loaded_tca.compliance import flexibility
@@ -141,6 +142,20 @@ def test_result_names_no_file(folder, monkeypatch):
         "result.nc: not the result of a mesh cycle",
         f'wheel.flank.file: found "{FLANK}"; allowed no file here',
     )
+
+
+@pytest.mark.parametrize("kind", ["study", "design"])
+def test_report_of_a_study_or_design_opens_no_file_that_its_scene_names(folder, kind, run, monkeypatch):
+    """Not even one in the folder where the command runs."""
+    monkeypatch.chdir(folder)
+    shutil.copy(FLANK, "secret.csv")
+    told = {"kind": kind, "scene_toml": scene_with(folder, "secret.csv"), "figure": "span_um"}
+    told |= dict.fromkeys(("warnings", "objective", "limits"), "")
+    numbers = dict.fromkeys(("value", "objective", "held_objective"), 1.0)
+    write_dataset("forged.nc", xarray.Dataset(numbers, attrs=told))
+    code, _, errors = run("report", "forged.nc")
+    assert (code, errors) == (2, ['loaded-tca: wheel.flank.file: found "secret.csv"; allowed no file here'])
+    assert not Path("report.html").exists()
 
 
 def test_packed_result_is_not_unpacked(tmp_path):

@@ -7,6 +7,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from loaded_tca.cli.named import (
+    check_files,
     check_place,
     ends_that_differ,
     executor_of,
@@ -154,13 +155,13 @@ def sensitivities(options: argparse.Namespace) -> None:
 
 def dynamics(options: argparse.Namespace) -> None:
     """Write the tables of a result that programs of rotor and gear dynamics read."""
-    from loaded_tca.output.dynamics_files import TABLE, write_dynamics
+    from loaded_tca.output.dynamics_files import TABLE, tables_at, write_dynamics
     from loaded_tca.results import load_result
 
     file = result_file(options.result)
     out = options.out or file.parent / TABLE
     require((not out.is_dir(), f"--out {out}: a directory; give the name of a file, as {out / TABLE}"))
-    check_place(out.parent)
+    check_files(tables_at(out), file)
     print_files(write_dynamics(load_result(file), out))
 
 
@@ -209,7 +210,7 @@ def report(options: argparse.Namespace) -> None:
 
     path, out = file_of_report(options.result), options.out
     out = path.parent / "report.html" if out is None else out
-    check_place(out.parent)
+    check_files([out], path)
     subject = subject_of_report(path)
     date = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
     print_files([write_html_report(subject, out, date=getattr(subject, "date", "") or date)])

@@ -9,7 +9,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from loaded_tca.errors import InputError, reason_of
+from loaded_tca.errors import InputError, named, reason_of
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -143,6 +143,16 @@ def check_place(directory: Path) -> None:
                 place.lstat()
         except OSError as error:  # a name that is too long
             raise InputError(f"--out {directory}: cannot be made a directory: {reason_of(error)}") from error
+
+
+def check_files(outs: Sequence[Path], read: Path) -> None:
+    """Refuse files that cannot be written, or that would replace the one that is read, before any work."""
+    from loaded_tca.results.files import require_replaceable
+
+    for out in outs:
+        check_place(out.parent)
+        with named("--out"):
+            require_replaceable(out, [read])
 
 
 @contextmanager

@@ -41,12 +41,14 @@ def write_dynamics(result: MeshCycle, path: FilePath) -> tuple[Path, ...]:
     InputError
         As ``MeshCycle.to_dynamics``, or if they cannot be written.
     """
-    dynamics, first = result.to_dynamics(), Path(path)
-    tables = {
-        first.name: _table(dynamics, OVER_PITCH),
-        f"{first.stem}_orders{first.suffix}": _table(dynamics, OVER_ORDERS),
-    }
+    dynamics, (first, orders) = result.to_dynamics(), tables_at(Path(path))
+    tables = {first.name: _table(dynamics, OVER_PITCH), orders.name: _table(dynamics, OVER_ORDERS)}
     return replace_together(first.parent, {name: text.encode() for name, text in tables.items()})
+
+
+def tables_at(first: Path) -> tuple[Path, Path]:
+    """Return the files of both tables, given that of the first."""
+    return first, first.with_name(f"{first.stem}_orders{first.suffix}")
 
 
 def _table(dynamics: xarray.Dataset, dimensions: tuple[str, str]) -> str:

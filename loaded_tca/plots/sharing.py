@@ -14,6 +14,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from loaded_tca.arrays import Array
+from loaded_tca.errors import require
 from loaded_tca.plots import style
 from loaded_tca.plots.flanks import ToPicture, both_flanks, loaded_maps
 from loaded_tca.plots.style import (
@@ -160,7 +161,13 @@ def plot_face_load(result: MeshCycle) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If the result has one position, which has no mean over a pitch.
     """
+    require((len(result.path) > 1, "face load: a mean over a pitch; found 1 position, allowed 2 or more"))
     figure, axes = style.one_panel()
     pair, frame = result.gear_pair, result.gear_pair.pinion.flank.frame
     borders = strip_borders(pair, result.path)

@@ -29,7 +29,7 @@ def design_content(design: DesignResult) -> dict[str, Any]:
     design : DesignResult
     """
     found = design.dataset
-    scene = parse_scene(found.attrs["scene_toml"], source="scene_toml")
+    scene = parse_scene(found.attrs["scene_toml"], source="scene_toml", folder=None)
     unit, words = FIGURE_TEXTS[found.attrs["figure"]]
     figures = {
         "before_and_after": plot_before_and_after(design),

@@ -18,8 +18,9 @@ DOTS_PER_INCH = 160
 """Of what is rasterised within a picture."""
 NAME = re.compile(r'(\bid="|url\(#|href="#)([^")]+)')
 """Where an SVG names a part of itself."""
-LEFT_OUT = re.compile(r"<metadata>.*?</metadata>|<style[^>]*>.*?</style>|<!--.*?-->", re.DOTALL)
-"""Of an SVG: its metadata; its style, which would hold for the whole page, and which the page has itself."""
+LEFT_OUT = re.compile(r'<metadata>.*?</metadata>|<style[^>]*>.*?</style>|<!--.*?-->| id="image[^"]*"', re.DOTALL)
+"""Of an SVG: its metadata; its style, which would hold for the whole page, and which the page has itself; the ids of
+images, which nothing uses, and which are alike for equal images."""
 SIZE = re.compile(r'<svg [^>]*?viewBox="0 0 ([\d.]+) ([\d.]+)"[^>]*>')
 UNIT = re.compile(r"\[[^\]]*\]")
 MISSING = (

@@ -41,7 +41,7 @@ def study_content(study: xarray.Dataset) -> dict[str, Any]:
     study : xarray.Dataset
         What :func:`loaded_tca.studies.run_study` returns.
     """
-    scene = parse_scene(study.attrs["scene_toml"], source="scene_toml")
+    scene = parse_scene(study.attrs["scene_toml"], source="scene_toml", folder=None)
     lines = Counter(line for told in study["warnings"].values.tolist() for line in told.splitlines())
     by_reason: dict[str, list[str]] = {}
     for line in lines:  # at which position differs from variant to variant
@@ -58,6 +58,7 @@ def study_content(study: xarray.Dataset) -> dict[str, Any]:
         "analysed_by": str(study.attrs.get("version", "")),
         "statuses": Counter(study["status"].values.tolist()).most_common(),
         "variants": variants,
+        "analysed": "ok" in study["status"].values,
         **scene_content(scene),
         "varied": _varied(study),
         "scatter": [*_scatter(study)],

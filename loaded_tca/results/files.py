@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import InputError, reason_of
+from loaded_tca.errors import InputError, reason_of, require
 
 if TYPE_CHECKING:  # xarray takes a third of a second to import: only what makes or reads a result needs it
     import xarray
@@ -197,7 +197,7 @@ def replacing(path: FilePath) -> Iterator[Path]:
     Raises
     ------
     InputError
-        If the file cannot be written.
+        If the file cannot be written, or ``path`` is no regular file, as a directory or a device.
 
     Examples
     --------
@@ -208,6 +208,7 @@ def replacing(path: FilePath) -> Iterator[Path]:
     ...     Path(directory, "a.txt").read_text()
     'all of it'
     """
+    require_replaceable(path)
     target = Path(path)
     temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
     try:
@@ -217,6 +218,16 @@ def replacing(path: FilePath) -> Iterator[Path]:
         raise InputError(f"{path}: cannot be written: {reason_of(error)}") from error
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def require_replaceable(path: FilePath, inputs: Iterable[FilePath] = ()) -> None:
+    """Refuse to replace a directory, a device or anything else that is no regular file, and files that are read."""
+    if not os.path.exists(path):
+        return
+    what = "a directory" if os.path.isdir(path) else "not a regular file"
+    require((os.path.isfile(path), f"{path}: cannot be written: {what}; give the name of a file"))
+    read = [one for one in inputs if os.path.exists(one) and os.path.samefile(path, one)]
+    require((not read, f"{path}: would replace the input; give another name"))
 
 
 def replace_together(directory: FilePath, contents: Mapping[str, Buffer], old: Iterable[str] = ()) -> tuple[Path, ...]:

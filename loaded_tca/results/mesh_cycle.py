@@ -465,10 +465,12 @@ class MeshCycle:
             If it cannot be read, is damaged, or is no such file.
         """
         file = read_dataset(path)
-        if file.attrs.get("kind") == "study":
-            raise InputError(
-                f"{path}: a study, not the result of a mesh cycle; read it with loaded_tca.studies.load_study"
-            )
+        kind = file.attrs.get("kind")
+        if kind in ("study", "design"):
+            reader = f"loaded_tca.studies.load_{kind}"
+            raise InputError(f"{path}: a {kind}, not the result of a mesh cycle; read it with {reader}")
+        if not IN_FILES.keys() & file.variables.keys():  # as of sensitivities, rather than a line for all it lacks
+            raise InputError(f"{path}: not the result of a mesh cycle: it has neither paths of contact nor maps")
         try:
             scene = parse_scene(str(file.attrs.get("scene_toml", "")), source="scene_toml", folder=None)
             in_dataset = QUANTITIES | (ROOT_PARTS if scene.analysis.root_stress or "root_tension" in file else {})

@@ -56,6 +56,8 @@ are coarser: a gain that is much larger than both is confirmed nearly whole, one
 LIMITS_CONFIRMED = 0.05
 """Part of a limit by which the full analysis may exceed it: K_Hbeta and pressures on two grids differ by percents."""
 KIND = "design"
+TEXTS, NUMBERS = ("scene_toml", "warnings", "objective", "limits"), ("value", "objective", "held_objective")
+"""Attributes and variables that every result has, besides its figure."""
 Limits = Mapping[str, float | Mapping[float, float]]
 Progress = Callable[[int, float, float], None]
 """Called with the number of designs evaluated, the objective of the last one, the part by which it exceeds a limit."""
@@ -188,11 +190,18 @@ def load_design(path: FilePath) -> DesignResult:
     Raises
     ------
     InputError
-        If the file cannot be read, is damaged, or is no design.
+        If the file cannot be read, is damaged, is no design, or lacks what all designs have.
     """
     dataset = read_dataset(path)
     if dataset.attrs.get("kind") != KIND:
         raise InputError(f"{path}: a result of loaded_tca, but no design; read it with load_result or load_study")
+    figure = dataset.attrs.get("figure")
+    require(
+        *((isinstance(dataset.attrs.get(name), str), f"{name}: missing, or no text") for name in TEXTS),
+        *((name in dataset, f"{name}: missing") for name in NUMBERS),
+        (str(figure) in FIGURE_TEXTS, f"figure: {figure!r:.60}; allowed {', '.join(FIGURE_TEXTS)}"),
+        owner=f"{path}: not the result of a design",
+    )
     return DesignResult(dataset)
 
 

@@ -41,7 +41,7 @@ def drawn_with(name):
 
 
 @pytest.mark.parametrize(("name", "argument"), INDICES)
-@pytest.mark.parametrize("index", [7, -1, 0.5])
+@pytest.mark.parametrize("index", [7, -1, 0.5, True])
 def test_index_that_the_result_does_not_have_is_told(name, argument, index):
     last = 1 if argument == "torque" else 2
     with pytest.raises(InputError, match=rf"^{argument}: {index} is no index from 0 to {last}$"):

@@ -1,6 +1,7 @@
 import os
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from loaded_tca.plots import (
     plot_transmission_error,
     save_figure,
 )
+from loaded_tca.plots.flanks import CELLS_OF_SPIKES
 from loaded_tca.plots.style import over_a_stretch
 from loaded_tca.results.key_figures import ARCSEC
 from loaded_tca.results.stress_below import stress_below
@@ -399,3 +401,13 @@ def test_scale_of_a_pressure_map_can_be_given():
     assert bar.get_ylim() == (0.0, 5e3)
     with pytest.raises(InputError, match=r"^highest: -1.0 is not positive and finite$"):
         plot_pressure_map(result(), highest=-1.0)
+    with pytest.raises(InputError, match=r"^highest: 'a' is not positive and finite$"):
+        plot_pressure_map(result(), highest="a")
+
+
+def test_words_on_the_end_of_the_colours_are_those_of_the_pictures():
+    files = Path(__file__).parents[2] / "docs" / "reference" / "files.md"
+    for words in (files.read_text(encoding="utf-8"), plot_pressure_map.__doc__):
+        assert f"at most {100.0 * CELLS_OF_SPIKES:g} % of the cells under pressure lie beyond" in " ".join(
+            words.split()
+        )

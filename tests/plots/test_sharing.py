@@ -7,7 +7,7 @@ import pytest
 from matplotlib.collections import LineCollection
 from numpy.testing import assert_allclose, assert_array_equal
 
-from loaded_tca.errors import GeometryError
+from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.plots import (
     plot_contact_path,
     plot_contact_patterns,
@@ -339,6 +339,12 @@ def test_load_over_the_face_width_carries_the_force_and_has_the_load_factor(name
         assert_allclose(load.max() / load.mean(), cycle.face_load_factor[torque], rtol=1e-12)
         assert f"K_Hβ = {cycle.face_load_factor[torque]:.3g}" in steps.get_label()
     assert axes.get_xlabel() == cycle.gear_pair.pinion.flank.frame.labels[0]
+
+
+def test_load_over_the_face_width_of_one_position_is_refused():
+    """Its last position is the first one of the next pitch: there is none to take the mean of."""
+    with pytest.raises(InputError, match="face load: a mean over a pitch; found 1 position, allowed 2 or more"):
+        plot_face_load(result(positions=1))
 
 
 def test_load_over_the_face_width_of_no_load_is_none():

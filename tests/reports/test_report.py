@@ -1,5 +1,6 @@
 """Reports: all that a customer asks for is on one page, and the page needs nothing else."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -269,6 +270,14 @@ def test_pictures_do_not_use_each_other_s_parts(page):
     assert used <= set(ids)
 
 
+def test_equal_images_of_a_picture_have_no_common_id(written):
+    """Heat maps under two torques have the same colour bar."""
+    page = written(grid(torques=(40.0, 80.0)))
+    ids = [value for _, name, value in page.attributes if name == "id"]
+    assert len(ids) > 100
+    assert len(ids) == len(set(ids))
+
+
 def test_every_picture_has_a_caption_and_a_name(page):
     pictures = [value for tag, name, value in page.attributes if (tag, name) == ("svg", "aria-label")]
     assert len(pictures) == len(re.findall(r"Figure \d+: ", page.words)) == 15
@@ -366,6 +375,8 @@ def test_study_of_which_nothing_was_analysed_has_a_report(written):
     page = written(study.drop_vars(figures).assign(refused))
     assert f"{count} refused" in page.words
     assert "Ranking" not in page.headings
+    assert "no variant was analysed" in page.words
+    assert "met no limit" not in page.words
 
 
 def test_distributions_have_a_report(written):
@@ -381,6 +392,22 @@ def test_design_has_a_report(written):
     assert "face_load_factor <= 1.9 at 100 N m" in page.words
     assert "lead_crowning_um = 7.5" in page.words
     assert "Appendix: scene file of the start" in page.headings
+
+
+def test_forged_design_is_bad_input(tmp_path, monkeypatch, capsys):
+    from loaded_tca.results.files import write_dataset
+
+    monkeypatch.chdir(tmp_path)
+    whole = design_dataset()
+    write_dataset("figure.nc", whole.assign_attrs(figure="xyz"))
+    write_dataset("bare.nc", whole.drop_vars("value").assign_attrs(limits=3.0))
+    assert cli.main(["report", "figure.nc"]) == 2
+    (told,) = capsys.readouterr().err.splitlines()
+    assert told.startswith("loaded-tca: figure.nc: not the result of a design: figure: 'xyz'; allowed span_um, ")
+    assert cli.main(["report", "bare.nc"]) == 2
+    told = capsys.readouterr().err
+    assert "limits: missing, or no text" in told
+    assert "value: missing" in told
 
 
 def design_dataset():
@@ -512,6 +539,21 @@ def test_command_tells_what_cannot_be_written(kept, capsys):
     assert cli.main(["report", "out", "--out", "out"]) == 2
     assert "out: cannot be written" in capsys.readouterr().err
     assert [path.name for path in (kept / "out").iterdir()] == ["result.nc"]
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="a system without named pipes")
+@pytest.mark.parametrize("name", ["out/result.nc", "link.html", "pipe"])
+def test_command_replaces_neither_its_input_nor_what_is_no_file(kept, capsys, name):
+    """And says so before it reads the result, which is none here."""
+    (kept / "out" / "result.nc").write_text("kept")
+    (kept / "link.html").symlink_to("out/result.nc")
+    os.mkfifo(kept / "pipe")
+    assert cli.main(["report", "out", "--out", name]) == 2
+    told = "cannot be written: not a regular file; give the name of a file"
+    told = told if name == "pipe" else "would replace the input; give another name"
+    assert capsys.readouterr().err == f"loaded-tca: --out: {name}: {told}\n"
+    assert (kept / "out" / "result.nc").read_text() == "kept"
+    assert (kept / "pipe").is_fifo()
 
 
 @pytest.mark.usefixtures("kept")

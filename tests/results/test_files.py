@@ -143,6 +143,37 @@ def test_full_disk_is_told(path):
     assert not os.listdir(path.parent)
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="a system without named pipes")
+@pytest.mark.parametrize("linked", [False, True])
+def test_pipe_is_not_replaced(tmp_path, linked):
+    """Nor a device, which is no regular file either, or a link to one."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    target = tmp_path / "link" if linked else pipe
+    if linked:
+        target.symlink_to(pipe)
+    with pytest.raises(InputError, match="cannot be written: not a regular file"):
+        write_dataset(target, dataset())
+    assert pipe.is_fifo()
+    assert target.is_symlink() == linked
+    assert len(os.listdir(tmp_path)) == 1 + linked
+
+
+def test_directory_is_not_replaced(tmp_path):
+    (tmp_path / "there").mkdir()
+    with pytest.raises(InputError, match="there: cannot be written: a directory; give the name of a file"):
+        replace_together(tmp_path, {"a.txt": b"a", "there": b"b"})
+    assert os.listdir(tmp_path) == ["there"]
+
+
+def test_link_to_a_file_is_replaced_and_the_file_is_kept(tmp_path):
+    (tmp_path / "old").write_text("old")
+    (tmp_path / "link").symlink_to("old")
+    replace_together(tmp_path, {"link": b"new"})
+    assert (tmp_path / "old").read_text() == "old"
+    assert (tmp_path / "link").read_text() == "new"
+
+
 def test_missing_file_is_told(path):
     assert problem(path) == f"{path}: cannot be read: No such file or directory"
 
