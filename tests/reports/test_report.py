@@ -231,6 +231,13 @@ def test_explanations_are_those_of_the_documents():
     assert len({one.words for one in EXPLANATIONS}) == len(EXPLANATIONS)
 
 
+def test_free_edges_are_advised_only_where_they_are_left_out():
+    told = "the contact reaches an edge of a flank, where the pressure of the map is mesh-dependent"
+    left_out = f"{told}; the free edge is left out (analysis.free_edges)"
+    assert "free_edges" not in explanation_of(told).advice
+    assert explanation_of(left_out).advice.startswith("`free_edges = true`")
+
+
 def test_every_warning_of_the_package_is_explained():
     sources = [path.read_text(encoding="utf-8") for path in (ROOT / "loaded_tca").rglob("*.py")]
     code = re.sub(r'"\s*\n?\s*f?"', "", "\n".join(one for one in sources if "EXPLANATIONS = (" not in one))
