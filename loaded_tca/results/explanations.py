@@ -93,6 +93,12 @@ EXPLANATIONS = (
         "measured points do not reach the edges",
         "results near these edges rest on no measurement",
     ),
+    Explanation(
+        "its continuation beyond them swings",
+        "a B-spline through every point follows the noise, too, and goes on with it beyond the outermost points: near "
+        "the edges the flank is no measured one",
+        "`degree = 3` with `coefficients = [4, 4]`, or few more; points nearer to the edges; compare two fits",
+    ),
     Explanation("misses the flank by", "the fit is coarse", "more points"),
     Explanation(
         "is its unit right?",
