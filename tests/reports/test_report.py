@@ -184,6 +184,46 @@ def test_discretisation_error_is_that_of_the_result(written):
     assert errors[0] > 0.0
 
 
+def test_accuracy_of_figures_is_what_the_studies_show(page):
+    """The largest differences of the tables: of faces of 100 mm, and of root tension in the plane and in space."""
+    folder = ROOT / "docs" / "studies"
+    rows = [
+        line.strip("| ").split(" | ")
+        for line in (folder / "mesh_cycle_fem.md").read_text(encoding="utf-8").splitlines()
+    ]
+    wide = np.array([[float(cell) for cell in row[5:8]] for row in rows if row[0] == "100" and len(row) > 8])
+    assert len(wide) == 6
+    mean, span, stiffness = np.abs(wide).max(axis=0)
+    roots = (folder / "root_stress_fem.md").read_text(encoding="utf-8")
+    tension = [abs(float(one)) for one in re.findall(r"\| tension \|.*\| ([+-][\d.]+) \| [\d.]+ \|$", roots, re.M)]
+    compression = [
+        abs(float(one)) for one in re.findall(r"\| compression \|.*\| ([+-][\d.]+) \| [\d.]+ \|$", roots, re.M)
+    ]
+    assert len(tension) == len(compression) == 8
+    shown = {
+        "transmission_error_mean_": mean,
+        "transmission_error_span_": span,
+        "mesh_stiffness_mean_": stiffness,
+        "pinion_root_tension_MPa": max(tension),
+        "wheel_root_tension_MPa": max(tension),
+        "pinion_root_compression_MPa": max(compression),
+        "wheel_root_compression_MPa": max(compression),
+    }
+    assert {*shown} == {*result_page.COMPARED}
+    for name, difference in shown.items():
+        said = float(re.search(r"within ([\d.]+) %", result_page.COMPARED[name])[1])
+        assert difference <= said < difference + 0.5, name
+    assert page.rows(label_of("transmission_error_mean_um"))[0][-1] == "of the flanks alone: the teeth do not bend"
+    assert page.rows(label_of("transmission_error_order_1_um"))[0][-1].startswith("of 5 positions: higher orders")
+    assert page.rows(label_of("transverse_load_factor"))[0][-1].startswith("the largest of 5 positions")
+
+
+def test_accuracy_of_teeth_that_bend_is_told(written):
+    page = written(changed_scene(cycle(), {"analysis.compliance": "contact+tooth"}))
+    for name in ("transmission_error_mean_um", "transmission_error_span_um", "mesh_stiffness_mean_N_per_mm_um"):
+        assert page.rows(label_of(name))[0][-1].endswith("% of finite elements"), name
+
+
 def test_every_warning_is_told_with_what_it_means(page):
     told = cycle().warnings
     assert told
