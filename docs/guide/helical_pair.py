@@ -17,7 +17,7 @@ def main() -> None:
     """Analyse, and draw."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)  # the guide says that the contact reaches the face ends
-        result = analyse(read_scene(SCENE))
+        result = analyse(read_scene(SCENE).with_changes({"analysis.positions": 33}))
     plot_pressure_envelope(result).savefig(FOLDER / "helical_pair_envelope.png", dpi=90)
     plot_transmission_error(result).savefig(FOLDER / "helical_pair_transmission_error.png", dpi=90)
 

@@ -30,7 +30,7 @@ LARGE_ERROR = 0.03
 MOST_PAIRS, MOST_PAIRS_IF_LARGE = 2_500_000, 10_000_000
 """Rows times pairs of columns from which on cells are not made finer: the next ones take five times as long. The second
 holds while the error is large."""
-ALIGNED_ERROR, ASKEW_ERROR = 0.12, 0.8
+ALIGNED_ERROR, ASKEW_ERROR = 0.13, 0.8
 """Relative error of the peak times the square of the cells across the pressed part, at the most: for columns of which
 one begins where the rounding does, and for others (``docs/studies/rounded_edge.md``)."""
 ASKEW_CELLS = 1.25

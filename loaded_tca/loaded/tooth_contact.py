@@ -350,11 +350,11 @@ def _solve_in_box(
         across_relief_start = _crosses_relief_start(pair, contact, first, expected)
 
         def smooth(solution: ContactSolution) -> bool:
-            return not (across_relief_start or _reaches_arc(pair, separation, solution.pressure))
+            return not (across_relief_start or _reaches_arc(pair, separation, solution.pressure_on_material))
 
         solution, _ = yield from refinement(solved, grid.accuracy, grid.tolerance, smooth, FIRST_CELLS, expected)
     at_relief_start = _crosses_relief_start(pair, contact, separation, solution.pressure_on_material)
-    at_arc = _reaches_arc(pair, separation, solution.pressure)
+    at_arc = _reaches_arc(pair, separation, solution.pressure_on_material)
     return LoadedContact(contact, separation, solution, at_relief_start, at_arc, tolerance, displaced, bent)
 
 

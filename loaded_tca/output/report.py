@@ -81,7 +81,7 @@ def write_report(result: MeshCycle, directory: FilePath, outdated: Iterable[str]
 
 
 def summary_json(result: MeshCycle) -> str:
-    """Return the key figures as JSON, their units in the names; null: not known."""
+    """Return the key figures as JSON, their units in the names; null: not known, or infinite as an error may be."""
     content = {
         "title": result.scene.title,
         "loaded_tca_version": result.version,
@@ -183,7 +183,7 @@ def cell(value: Any, name: str) -> str:
     """Return a number as tables have it: nine digits, zero for rounding, nothing where unknown; words as they are."""
     if isinstance(value, str):
         return value
-    return f"{without_rounding(value, name):.9g}" if math.isfinite(value) else ""
+    return "" if math.isnan(value) else f"{without_rounding(value, name):.9g}"
 
 
 def describe_results() -> str:

@@ -13,7 +13,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress
 from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.rounded_edges import PeakAtEdge
-from loaded_tca.loaded.tooth_contact import LoadedContact
+from loaded_tca.loaded.tooth_contact import EQUAL, LoadedContact
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import line_contact
 from loaded_tca.results.edge_cell import place_on_material, sharp_edge_cell
@@ -173,7 +173,7 @@ def _at_edge(
     if loaded.at_edge:
         across, along = sharp_edge_cell(pair, of_material)
         cell = float(of_material.pressure[across, along])
-        if not at_arc or cell > np.nan_to_num(pressure):
+        if not at_arc or cell > (1.0 + EQUAL) * np.nan_to_num(pressure):  # both are equal at the cap
             place = place_on_material(pair, one, (across, along))
             pressure, error, at_arc = cell, math.nan, False
     radius, axial = one.place(*place)

@@ -47,8 +47,9 @@ def warn_of_accuracy(
     """
     places: dict[str, list[str]] = {}
     solved, told = 0, []
-    worst = max((peak.error for peak in at_rounded_edges.values()), default=0.0)
-    size = "no limit where the edge meets a sharp one" if worst == math.inf else f"{worst:.0%} at the most"
+    large = {place: peak.error for place, peak in at_rounded_edges.items() if peak.error > LARGE_ERROR}
+    worst = max(large.values(), default=0.0)
+    size = "without a limit" if worst == math.inf else f"{worst:.0%} at the most"
     mesh_error = f"the pressure at a rounded edge has an estimated error above {LARGE_ERROR:.0%}, {size}"
     for t, (torque, rows) in enumerate(zip(carried.torque.tolist(), carried.contacts, strict=True)):
         loads = [loaded.solution.load for row in rows for loaded in row if loaded is not None]
@@ -61,9 +62,8 @@ def warn_of_accuracy(
                 if loaded is not None:
                     solved += 1
                     place = f"{1e-3 * torque:g} N m, pinion angle {math.degrees(angle):.4g} deg, tooth pair {number:+d}"
-                    peak = at_rounded_edges.get((t, n, k))
-                    coarse = [] if peak is None or peak.error <= LARGE_ERROR else [mesh_error]
-                    for reason in [*coarse, *_reasons(pair, grid, loaded)]:
+                    at_rounding = [mesh_error] if (t, n, k) in large else []
+                    for reason in [*at_rounding, *_reasons(pair, grid, loaded)]:
                         places.setdefault(reason, []).append(place)
     told += [f"{reason} (at {len(at)} of {solved} pressure maps; the first: {at[0]})" for reason, at in places.items()]
     turned = np.where(carried.rotation > 0.0, carried.rotation, math.inf)

@@ -296,7 +296,7 @@ pressures.
 
 {closed_form}
 
-The error of the peak times the square of the cells is 0.12 at the most where a column begins with the rounding: 4 cells
+The error of the peak times the square of the cells is 0.13 at the most where a column begins with the rounding: 4 cells
 give 1 %, 5 give 0.5 %. Columns off by half a cell need 7.
 
 ## Time against error
