@@ -170,6 +170,7 @@ def test_check_shows_the_geometry_and_writes_nothing(run):
     assert (code, err, os.listdir()) == (0, [], [])
     rows = {line[:44].strip(): line[44:].split() for line in out.splitlines()[1:]}
     assert rows["working pressure angle alpha_wt [deg]"] == ["20.6469"]
+    assert rows["base helix angle beta_b [deg]"] == ["14.0761"]
     assert rows["hand of the helix"] == ["right", "left"]
     assert rows["transverse contact ratio eps_alpha"] == ["1.6445"]
     assert rows["start of active profile d_Nf [mm]"] == ["101.1985", "172.4189"]

@@ -48,7 +48,13 @@ def test_tables_have_the_curves_and_their_orders(run, out):
             assert any(line.startswith(f"#   {column}: ") for line in comments)
             expected = dynamics[column].broadcast_like(dynamics[list(columns)[-1]]).values.ravel()
             assert_allclose(values, expected, rtol=1e-11)  # twelve digits
-        for told in (" phase_k)", "pinion_teeth = 34", "loaded_contact_ratio = ", "under 260 N m"):
+        for told in (
+            " phase_k)",
+            "pinion_teeth = 34",
+            "pinion_base_helix_angle_rad = ",
+            "loaded_contact_ratio = ",
+            "under 260 N m",
+        ):
             assert any(told in line for line in comments)
     in_both = {column for name in ("dynamics", "dynamics_orders") for column in table(f"out/{name}.csv")[1]}
     assert in_both >= {str(name) for name, one in dynamics.variables.items() if one.ndim == 2}

@@ -183,6 +183,7 @@ def command_line() -> argparse.ArgumentParser:
     told = "result.nc, study.nc, the file of a design, or the directory that holds one"
     report.add_argument("result", metavar="DIR|FILE", type=_path, help=told)
     report.add_argument("--out", metavar="FILE", type=_path, help="default: report.html beside the result")
+    report.add_argument("--rank-by", metavar="FIGURE", help="of a study, the least is best; default: TE span")
     check = command("check", run_by.check, "read a scene and show its geometry, without computing a contact", None)
     _add_scene(check)
     return parser

@@ -213,7 +213,8 @@ def report(options: argparse.Namespace) -> None:
     check_files([out], path)
     subject = subject_of_report(path)
     date = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
-    print_files([write_html_report(subject, out, date=getattr(subject, "date", "") or date)])
+    date = getattr(subject, "date", "") or date
+    print_files([write_html_report(subject, out, date=date, rank_by=options.rank_by)])
 
 
 def check(options: argparse.Namespace) -> None:

@@ -28,6 +28,10 @@ DEFAULT_POINTS = (33, 33)
 """Points of a fitted flank along the profile and lengthwise."""
 FIT_TOLERANCE = 1e-4
 """Distance [mm] between a flank and its B-spline beyond which a warning says so."""
+SWING = 0.1
+"""Part of the span of measured deviations by which those of the flank may leave their range. The range holds that of a
+biquadratic surface, which follows slopes, crownings and twist up to the edges; what leaves it by as much as this is
+ruled by the noise, or the waves, of the outermost points."""
 PITCH_POINT_STEPS = 50
 
 
@@ -184,7 +188,8 @@ def measured(
     Warns
     -----
     AccuracyWarning
-        If the outermost points leave more than 15 % of the flank uncovered at an end.
+        If the outermost points leave more than 15 % of the flank uncovered at an end, or the flank leaves the range of
+        the measured deviations, where it is continued beyond them, by more than 10 % of their span and 0.1 um.
 
     Raises
     ------
@@ -220,10 +225,25 @@ def measured(
     wanted = data.ordered(excess * angles)
     spline = fit(data.profile, data.lengthwise, wanted, degrees, counts)
     missed = (spline(data.profile, data.lengthwise).value - wanted) / data.ordered(angles)
+    _warn_if_swinging(nominal, excess, spline, fit(data.profile, data.lengthwise, wanted, (2, 2), (3, 3)))
     if turned:
         bare = SplineFlank(nominal, spline, FitError(0.0, 0.0))
         spline = spline.shifted(-float(bare.theta(*pitch_point(bare)).value))
     return SplineFlank(nominal, spline, FitError.of(missed))
+
+
+def _warn_if_swinging(nominal: Flank, excess: Array, spline: TensorSpline, smooth: TensorSpline) -> None:
+    """Warn where the deviations of a flank leave those of its points and of a smooth surface through them."""
+    rho, z = nominal.grid(*DEFAULT_POINTS)
+    at = flank_coordinates(nominal, rho, z)
+    angles = nominal.side * nominal.gradient_norm(rho, z).value
+    found, plain = (one(*at).value / angles for one in (spline, smooth))
+    known = np.concatenate([excess.ravel(), plain.ravel()])
+    beyond, span = max(known.min() - found.min(), found.max() - known.max()), float(np.ptp(excess))
+    if beyond > max(SWING * span, FIT_TOLERANCE):
+        from_to = (f"{1e3 * one.min():.3g} to {1e3 * one.max():.3g} um" for one in (excess, found))
+        message = "the points deviate by {}, the flank by {}: its continuation beyond them swings".format(*from_to)
+        give_accuracy_warning(message, stacklevel=3)
 
 
 def pitch_point(flank: Flank) -> tuple[Array, Array]:

@@ -110,7 +110,9 @@ def _spline_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
             rho, z = flank.grid(*DEFAULT_POINTS)
             excess = 1e3 * flank.distance_to(flank.nominal, rho, z)
             yield f"{name}: measured points", " x ".join(map(str, gear.flank.measurement.shape))
-            yield f"{name}: deviations from, to [um]", f"{excess.min():.2f}", f"{excess.max():.2f}"
+            at_points = 1e3 * flank.distance_to(flank.nominal, *gear.flank.measurement.places)
+            yield f"{name}: deviations at points, from, to [um]", f"{at_points.min():.2f}", f"{at_points.max():.2f}"
+            yield f"{name}: deviations of flank, from, to [um]", f"{excess.min():.2f}", f"{excess.max():.2f}"
         errors = {"at points": flank.fit_error, "between them": flank.check_error}
         for where, error in errors.items():
             if error is not None:

@@ -88,8 +88,21 @@ def plot_pressure_map(
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
     frame = result.gear_pair.pinion.flank.frame
     what = "contact pressure" if one.pressure.any() else "no contact pressure"
-    set_title(figure, result, f"{what}, {load(result, torque)}", *place(result, at[0], frame, at[1]))
+    told = [*place(result, at[0], frame, at[1]), *_edge(result, torque, at)]
+    set_title(figure, result, f"{what}, {load(result, torque)}", *told)
     return figure
+
+
+def _edge(result: MeshCycle, torque: int, at: tuple[int, int]) -> list[str]:
+    """The pressure at an edge that a contact reaches, and why a sharp one may exceed all cells of the map."""
+    pressure = float(result.edge_pressure[torque][at])
+    if not math.isfinite(pressure):
+        return []
+    rounded = bool(result.edge_is_rounded[torque][at])
+    return [
+        f"pressure at {'a rounded' if rounded else 'a sharp'} edge {pressure:.4g} MPa"
+        + ("" if rounded else ", mesh-dependent: the force of a cell that an edge cuts, on its part with material")
+    ]
 
 
 def draw_map(

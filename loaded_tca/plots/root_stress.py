@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
 from loaded_tca.arrays import Array
+from loaded_tca.compliance.root_stress import LEAST_ANGLE
 from loaded_tca.plots import style
 from loaded_tca.plots.style import (
     DISTINCT_COLOURS,
@@ -74,7 +75,8 @@ def plot_root_stress(result: MeshCycle, torque: int | None = None) -> Figure:
         panels[-1, column].set_xticks(range(-60, 61, 30))  # 30 deg: the critical section of ISO 6336-3
         panels[-1, column].set_xlabel("tangent angle [deg]: back of the tooth | side in contact")
     figure.colorbar(ScalarMappable(scale, DIVERGING), ax=panels, label="root stress [MPa], tension positive")
-    style.set_title(figure, result, f"root stress, {load(result, torque)}", range_of_positions(result))
+    bands = f"white bands beside the tooth: not evaluated, the flank or less than {math.degrees(LEAST_ANGLE):.0f} deg"
+    style.set_title(figure, result, f"root stress, {load(result, torque)}", range_of_positions(result), bands)
     return figure
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,8 @@ from loaded_tca.results.summary import shown
 from loaded_tca.scene import parse_scene
 from loaded_tca.studies.design import FIGURE_TEXTS, DesignResult
 
+PEAK = "MPa", "peak pressure, largest over the positions"
+NO_PEAK = ", above or below the peak pressure by up to a third"
 CAPTIONS = {
     "before_and_after": "Transmission error and peak pressure over a pitch, load factor and peak-to-peak over the "
     "torque. Lines: mean of the samples of the scatter, bands: all of them.",
@@ -46,15 +49,10 @@ def design_content(design: DesignResult) -> dict[str, Any]:
             ),
             ("", "start", "optimum"),
         ),
-        "values": Table(
-            tuple(
-                (label_of(key), key, shown(before, key), shown(design.optimum[key], key))
-                for key, before in design.start.items()
-            ),
-            ("what was designed", "key", "start", "optimum"),
-            of_words=True,
-        ),
-        "limits": found.attrs["limits"].splitlines(),
+        "values": _values(design),
+        "limits": [*map(_told_limit, found.attrs["limits"].splitlines())],
+        "scattered": _scattered(design),
+        "seeds": found.attrs.get("seeds", ""),
         "evaluations": design.evaluations,
         "samples": found.sizes["sample"],
         "figures": _figures(design),
@@ -64,14 +62,44 @@ def design_content(design: DesignResult) -> dict[str, Any]:
     }
 
 
+def _told_limit(limit: str) -> str:
+    """A limit with what its figure measures."""
+    name = limit.partition(" ")[0]
+    words = FIGURE_TEXTS[name][1] if name in FIGURE_TEXTS else ""
+    return f"{limit} ({words}{NO_PEAK if name == 'pressure_MPa' else ''})" if words else limit
+
+
+def _values(design: DesignResult) -> Table:
+    """What was designed, within which range."""
+    found = design.dataset
+    bounds = found["range"].values.tolist() if "range" in found else [(math.nan, math.nan)] * len(design.start)
+    rows = (
+        (label_of(key), key, *(shown(one, key) for one in (*ends, before, design.optimum[key])))
+        for (key, before), ends in zip(design.start.items(), bounds, strict=True)
+    )
+    return Table(tuple(rows), ("what was designed", "key", "from", "to", "start", "optimum"), of_words=True)
+
+
+def _scattered(design: DesignResult) -> Table | None:
+    """What scatters, how, and over which values."""
+    found = design.dataset
+    rows = []
+    for line in found.attrs.get("distributions", "").splitlines():
+        key, _, words = line.partition(": ")
+        values = found["scatter"].sel(scatter_key=key).values
+        rows.append((label_of(key), key, words, shown(values.min(), key), shown(values.max(), key)))
+    return Table(tuple(rows), ("what scatters", "key", "how", "from", "to"), of_words=True) if rows else None
+
+
 def _figures(design: DesignResult) -> Table:
     """The worst value over the samples of each figure under each torque, of start and optimum."""
     found = design.dataset
     rows = []
-    for name, (unit, words) in FIGURE_TEXTS.items():
+    for name, (unit, words) in {"peak_pressure": PEAK, **FIGURE_TEXTS}.items():
         if name not in found:
             continue
-        worst = np.fmax.reduce(found[name].transpose("design", "sample", "torque").values, axis=1)
+        values = found[name].max("position") if name == "peak_pressure" else found[name]
+        worst = np.fmax.reduce(values.transpose("design", "sample", "torque").values, axis=1)
         for k, torque in enumerate(found["torque"].values.tolist()):
             label = words + (f" [{unit.replace('um', 'µm')}]" if unit != "1" else "")
             rows.append((label, f"{1e-3 * torque:.4g}", *(shown(value, name) for value in worst[:, k].tolist())))

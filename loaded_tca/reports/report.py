@@ -7,7 +7,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, require
 from loaded_tca.reports import page
 from loaded_tca.reports.design_page import design_content
 from loaded_tca.reports.result_page import result_content
@@ -18,7 +18,7 @@ from loaded_tca.studies.design import DesignResult
 from loaded_tca.threads import one_thread
 
 
-def write_html_report(subject: Any, path: FilePath, *, date: str | None = None) -> Path:
+def write_html_report(subject: Any, path: FilePath, *, date: str | None = None, rank_by: str | None = None) -> Path:
     """Write the report of a result, a study or a design: one HTML file with pictures, which needs no other file.
 
     It tells what was asked, the geometry, the load cases, the key figures with their units and how accurate they are,
@@ -33,6 +33,10 @@ def write_html_report(subject: Any, path: FilePath, *, date: str | None = None) 
         Of the file; its directory is made if it does not exist.
     date : str, optional
         Of the analysis; default: of a result its own, of a study or design today's.
+    rank_by : str, optional
+        Figure that ranks the variants of a study, the least is best; default: the peak-to-peak transmission error.
+        Where the study has distributions, combinations of its other values are ranked, by the 95 % quantile over their
+        samples.
 
     Returns
     -------
@@ -42,8 +46,8 @@ def write_html_report(subject: Any, path: FilePath, *, date: str | None = None) 
     Raises
     ------
     InputError
-        If the subject is none of these, jinja2 is not installed, or the file cannot be written, which leaves what was
-        there before.
+        If the subject is none of these, or no study with the figure that is to rank it; if jinja2 is not installed, or
+        the file cannot be written, which leaves what was there before.
 
     Examples
     --------
@@ -57,14 +61,16 @@ def write_html_report(subject: Any, path: FilePath, *, date: str | None = None) 
     'report.html'
     """
     page.require_jinja2()
+    is_study = getattr(subject, "attrs", {}).get("kind") == "study"
+    require((rank_by is None or is_study, f"rank_by: {rank_by!r:.60}; a {type(subject).__name__} has no ranking"))
     with one_thread():  # sums of several threads differ in their last digits each time
         if isinstance(subject, MeshCycle):
             template, content = "result.html.j2", result_content(subject)
             date = date or subject.date
         elif isinstance(subject, DesignResult):
             template, content = "design.html.j2", design_content(subject)
-        elif getattr(subject, "attrs", {}).get("kind") == "study":
-            template, content = "study.html.j2", study_content(subject)
+        elif is_study:
+            template, content = "study.html.j2", study_content(subject, rank_by)
         else:
             raise InputError(f"report: found a {type(subject).__name__}; allowed a result, a study or a design")
     content = {"version": version("loaded_tca"), **content}

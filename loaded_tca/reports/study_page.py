@@ -13,11 +13,22 @@ from loaded_tca.plots.labels import label_of
 from loaded_tca.reports.page import Table, pictures_of
 from loaded_tca.reports.result_page import explained, scene_content
 from loaded_tca.results.summary import shown
+from loaded_tca.results.warnings import without_place
 from loaded_tca.scene import parse_scene
-from loaded_tca.studies.ranking import figure_values, main_figures, nominal_variant, rank_variants, varied_keys
+from loaded_tca.studies.ranking import (
+    QUANTILE,
+    figure_values,
+    is_sampled,
+    main_figures,
+    nominal_variant,
+    rank_combinations,
+    rank_variants,
+    varied_keys,
+)
 from loaded_tca.studies.summary import MAIN, PERCENTILES
 
 if TYPE_CHECKING:
+    import pandas
     import xarray
 
 MOST_ROWS = 30
@@ -33,25 +44,31 @@ CAPTIONS = {
 """How the pictures are read whose names begin so."""
 
 
-def study_content(study: xarray.Dataset) -> dict[str, Any]:
+def study_content(study: xarray.Dataset, rank_by: str | None = None) -> dict[str, Any]:
     """Return what the template of a study takes.
 
     Parameters
     ----------
     study : xarray.Dataset
         What :func:`loaded_tca.studies.run_study` returns.
+    rank_by : str, optional
+        As for :func:`loaded_tca.studies.rank_variants`.
     """
+    by = rank_by if main_figures(study) else None  # where all variants were refused there is nothing to rank by
+    sampled = is_sampled(study)
+    combinations = rank_combinations(study, by) if sampled else None
+    grouped = combinations is not None and bool(combinations["rank"].notna().any())
     scene = parse_scene(study.attrs["scene_toml"], source="scene_toml", folder=None)
     lines = Counter(line for told in study["warnings"].values.tolist() for line in told.splitlines())
     by_reason: dict[str, list[str]] = {}
-    for line in lines:  # at which position differs from variant to variant
-        by_reason.setdefault(line.split(" (at ")[0], []).append(line)
+    for line in lines:
+        by_reason.setdefault(without_place(line), []).append(line)
     concerned = {
         reason: sum(any(line in told.splitlines() for line in found) for told in study["warnings"].values.tolist())
         for reason, found in by_reason.items()
     }
     variants = study.sizes["sample"]
-    figures = plot_study(study)
+    figures = plot_study(study, rank_by=by)
     figures.pop("study_ranking")  # a table of the page
     return {
         "title": scene.title or "Study",
@@ -61,10 +78,16 @@ def study_content(study: xarray.Dataset) -> dict[str, Any]:
         "analysed": "ok" in study["status"].values,
         **scene_content(scene),
         "varied": _varied(study),
-        "scatter": [*_scatter(study)],
-        "best_and_worst": _best_and_worst(study),
-        "ranking": _ranking(study),
+        "seed": f"{study.attrs.get('seed', '-')}" if sampled else "",
+        "scatter": [*_scatter(study, by)],
+        "sampled": sampled,
+        "grouped": grouped,
+        "quantile": f"{QUANTILE:.0%}".replace("%", " %"),
+        "ranked_by": label_of(by or next(iter(main_figures(study)), "")),
+        "best_and_worst": _best_and_worst(study, by, combinations if grouped else None),
+        "ranking": _ranking(study, by, combinations if grouped else None),
         "most_rows": MOST_ROWS,
+        "ranked": len(combinations) if grouped and combinations is not None else variants,
         "failures": Counter(
             f"{status}: {' '.join(reason.split())}"
             for status, reason in zip(study["status"].values.tolist(), study["reason"].values.tolist(), strict=True)
@@ -83,15 +106,16 @@ def _varied(study: xarray.Dataset) -> Table:
         known = np.unique(values)
         span = f"{_cell(known[0])} to {_cell(known[-1])}" if known.dtype.kind in "fiu" else ", ".join(map(str, known))
         way = WAYS.get(study[key].attrs.get("sampling", "table"), "")
+        way += f", {study[key].attrs['distribution']}" if "distribution" in study[key].attrs else ""
         rows.append((label_of(key), key, way, f"{len(known)}", span))
     return Table(tuple(rows), ("what varies", "key", "how", "values", "from, to"), of_words=True)
 
 
-def _scatter(study: xarray.Dataset) -> Iterator[Table]:
+def _scatter(study: xarray.Dataset, by: str | None) -> Iterator[Table]:
     """Percentiles of the main figures over the variants, a table for each torque."""
     if not main_figures(study):
         return
-    names = dict.fromkeys([*main_figures(study), *(name for name in MAIN if name in study)])
+    names = dict.fromkeys([*([by] if by else []), *main_figures(study), *(name for name in MAIN if name in study)])
     torques = study["torque"].values if "torque" in study.coords else [None] * study.sizes["torque"]
     for k, torque in enumerate(torques):
         rows = []
@@ -106,28 +130,38 @@ def _scatter(study: xarray.Dataset) -> Iterator[Table]:
             yield Table(tuple(rows), (under, *PERCENTILES))
 
 
-def _best_and_worst(study: xarray.Dataset) -> Table | None:
-    """Keys and figures of the best and the worst variant, and of that with the values of the scene if there is one."""
-    ranking = rank_variants(study)
+def _best_and_worst(study: xarray.Dataset, by: str | None, combinations: pandas.DataFrame | None) -> Table | None:
+    """Keys and figures of the best and the worst variant, and of that with the values of the scene if there is one.
+
+    Of combinations where these are given: a single sample is best by chance.
+    """
+    ranking = rank_variants(study, by) if combinations is None else combinations
     ranked = ranking[ranking["rank"].notna()]
     if ranked.empty:
         return None
-    variants = {"best": ranked.iloc[0], "worst": ranked.iloc[-1]}
-    nominal = nominal_variant(study)
+    columns = {"best": ranked.iloc[0], "worst": ranked.iloc[-1]}
+    nominal = nominal_variant(study) if combinations is None else None
     if nominal is not None:
-        variants["as the scene"] = ranking[ranking["sample"] == nominal].iloc[0]
-    names = ["sample", *varied_keys(study), *main_figures(study)]
-    rows = [(label_of(name), *(_cell(one[name]) for one in variants.values())) for name in names]
-    return Table(tuple(rows), ("", *variants))
+        columns["as the scene"] = ranking[ranking["sample"] == nominal].iloc[0]
+    names = _columns(study, by) if combinations is None else [*combinations.columns[1:]]
+    rows = [
+        (head, *(_cell(one[name]) for one in columns.values())) for name, head in zip(names, _heads(names), strict=True)
+    ]
+    return Table(tuple(rows), ("", *columns))
 
 
-def _ranking(study: xarray.Dataset) -> Table | None:
-    """The variants, the best first."""
-    ranking = rank_variants(study)
+def _ranking(study: xarray.Dataset, by: str | None, combinations: pandas.DataFrame | None) -> Table | None:
+    """The variants, or the combinations where these are given, the best first."""
+    ranking = rank_variants(study, by) if combinations is None else combinations
     ranked = ranking[ranking["rank"].notna()].head(MOST_ROWS)
-    columns = ["rank", "sample", *varied_keys(study), *main_figures(study), "warnings"]
+    columns = [*combinations.columns] if combinations is not None else ["rank", *_columns(study, by), "warnings"]
     rows = [tuple(_cell(value) for value in row) for row in ranked[columns].to_numpy().tolist()]
     return Table(tuple(rows), tuple(_heads(columns))) if rows else None
+
+
+def _columns(study: xarray.Dataset, by: str | None) -> list[str]:
+    """What is told of a variant."""
+    return ["sample", *varied_keys(study), *dict.fromkeys([*([by] if by else []), *main_figures(study)])]
 
 
 def _heads(columns: Sequence[str]) -> Iterator[str]:

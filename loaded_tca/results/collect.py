@@ -16,7 +16,7 @@ from loaded_tca.loaded.rounded_edges import PeakAtEdge
 from loaded_tca.loaded.tooth_contact import EQUAL, LoadedContact
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import line_contact
-from loaded_tca.results.edge_cell import sharp_edge_cell
+from loaded_tca.results.edge_cell import place_on_material, sharp_edge_cell
 from loaded_tca.results.load_factors import load_factors
 from loaded_tca.results.mesh_cycle import MeshCycle, dataset_of
 from loaded_tca.results.pressure_map import PressureMap
@@ -174,7 +174,8 @@ def _at_edge(
         across, along = sharp_edge_cell(pair, of_material)
         cell = float(of_material.pressure[across, along])
         if not at_arc or cell > (1.0 + EQUAL) * np.nan_to_num(pressure):  # both are equal at the cap
-            pressure, place, error, at_arc = cell, (float(one.x[across]), float(one.y[along])), math.nan, False
+            place = place_on_material(pair, one, (across, along))
+            pressure, error, at_arc = cell, math.nan, False
     radius, axial = one.place(*place)
     return {
         "edge_pressure": pressure,

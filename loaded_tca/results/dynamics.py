@@ -29,6 +29,12 @@ QUANTITIES: dict[str, Part] = {
     "pinion_base_radius_m": ((), "m", "base radius of the pinion r_b1; of bevel gears at mid-face"),
     "wheel_base_radius_m": ((), "m", "base radius of the wheel r_b2; of bevel gears at mid-face"),
     "face_width_m": ((), "m", "common face width"),
+    "working_pressure_angle_rad": ((), "rad", "working transverse pressure angle alpha_wt, without mounting errors"),
+    "pinion_base_helix_angle_rad": (
+        (),
+        "rad",
+        "base helix angle beta_b of the pinion, positive for the right hand, 0 for spur gears; the wheel has the other",
+    ),
     TORQUE: ((TORQUE,), "N m", "pinion torque T1"),
     PHASE: ((PHASE,), "1", "mesh phase, z1 phi1/(2 pi) modulo 1"),
     "pinion_angle_rad": ((PHASE,), "rad", "angle of the pinion phi1 in its first pitch from 0"),
@@ -69,6 +75,7 @@ def dynamics_of(result: MeshCycle) -> xarray.Dataset:
     )
     pair, torque = result.gear_pair, 1e-3 * result.torque
     first, second = (1e-3 * radius for radius in pair.base_radii)
+    pressure_angle, base_helix = result.scene.transverse_angles
     begin = float(result.pinion_angle[0]) / pair.pitch
     phase = np.remainder(begin + np.arange(count - 1) / (count - 1), 1.0)
     ascending = np.argsort(phase)
@@ -92,6 +99,8 @@ def dynamics_of(result: MeshCycle) -> xarray.Dataset:
         "pinion_base_radius_m": first,
         "wheel_base_radius_m": second,
         "face_width_m": 1e-3 * result.face_width,
+        "working_pressure_angle_rad": pressure_angle,
+        "pinion_base_helix_angle_rad": base_helix,
         TORQUE: torque,
         PHASE: phase[ascending],
         "pinion_angle_rad": pair.pitch * phase[ascending],
@@ -110,7 +119,8 @@ def dynamics_of(result: MeshCycle) -> xarray.Dataset:
         arrays[f"{name}{ending}"] = over_pitch(curves[name])
         arrays[f"{name}_amplitude{ending}"] = np.hstack([mean, np.abs(coefficients)])
         arrays[f"{name}_phase_rad"] = np.hstack([np.zeros_like(mean), np.angle(coefficients)])
-    variables = variables_of(QUANTITIES, arrays)
+    known = {name: part for name, part in QUANTITIES.items() if part[0] or math.isfinite(arrays[name])}  # not of bevels
+    variables = variables_of(known, arrays)
     coordinates = {name: variables.pop(name) for name in COORDINATES}
     driving = "pinion" if pair.driving > 0 else "wheel"
     held = "" if result.scene.analysis.compliance == "contact" else ", from bores that are held rigid"

@@ -23,3 +23,28 @@ def sharp_edge_cell(pair: GearPair, one: PressureMap) -> tuple[int, int]:
     sharp = one.beside_end & ~arc_cells(pair, one).any(axis=-1)
     across, along = np.unravel_index(int(np.where(sharp, one.pressure, -1.0).argmax()), sharp.shape)
     return int(across), int(along)
+
+
+def place_on_material(pair: GearPair, one: PressureMap, cell: tuple[int, int]) -> tuple[float, float]:
+    """Middle of a cell from the contact point [mm]; where that lies beyond an edge, the edge beside it.
+
+    That is where the way from the middle of the nearest cell with material leaves both flanks; their distances to the
+    edges are straight over the width of a cell.
+    """
+    across, along = cell
+    middle, there = np.array([one.x[across], one.y[along]]), np.argwhere(np.isfinite(one.gap))
+    if np.isfinite(one.gap[cell]) or not there.size:
+        return float(middle[0]), float(middle[1])
+    inner = np.stack([one.x[there[:, 0]], one.y[there[:, 1]]], axis=-1)
+    ends = np.stack([inner[np.hypot(*(inner - middle).T).argmin()], middle])
+    points = one.origin + ends @ one.axes[:2]
+    radius, _, axial = pair.to_wheel(points)
+    edges = [
+        *pair.pinion.flank.edges(np.hypot(points[:, 0], points[:, 1]), points[:, 2]),
+        *pair.wheel.flank.edges(radius, axial),
+    ]
+    within, beyond = np.array([np.broadcast_to(edge.value, 2) for edge in edges]).T
+    crossed = (beyond < 0.0) & (within >= 0.0)
+    part = float(np.min(within[crossed] / (within - beyond)[crossed], initial=1.0))
+    x, y = (ends[0] + part * (ends[1] - ends[0])).tolist()
+    return x, y

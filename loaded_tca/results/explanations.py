@@ -11,7 +11,7 @@ class Explanation(NamedTuple):
     Attributes
     ----------
     words : str
-        A part of its sentence that no other one has.
+        A part of its sentence; the first one whose words are in a sentence explains it.
     meaning, advice : str
     """
 
@@ -22,10 +22,17 @@ class Explanation(NamedTuple):
 
 EXPLANATIONS = (
     Explanation(
+        "the free edge is left out (analysis.free_edges)",
+        "a tip or face end ends the contact; theory has an infinite pressure at a sharp edge, and the half-space goes "
+        "on beyond it, which is too stiff there",
+        "`free_edges = true`; read `peak_pressure`, not `edge_pressure` or the cells of the map; more crowning, end or "
+        "tip relief on the gears",
+    ),
+    Explanation(
         "the contact reaches an edge of a flank",
         "a tip or face end ends the contact; theory has an infinite pressure at a sharp edge",
-        "read `peak_pressure`, not `edge_pressure` or the cells of the map; `free_edges = true`; more crowning, end or "
-        "tip relief on the gears",
+        "read `peak_pressure`, not `edge_pressure` or the cells of the map; more crowning, end or tip relief on the "
+        "gears",
     ),
     Explanation(
         "the pressure at a rounded edge has an estimated error",
@@ -85,6 +92,12 @@ EXPLANATIONS = (
         "of the flank uncovered",
         "measured points do not reach the edges",
         "results near these edges rest on no measurement",
+    ),
+    Explanation(
+        "its continuation beyond them swings",
+        "a B-spline through every point follows the noise, too, and goes on with it beyond the outermost points: near "
+        "the edges the flank is no measured one",
+        "`degree = 3` with `coefficients = [4, 4]`, or few more; points nearer to the edges; compare two fits",
     ),
     Explanation("misses the flank by", "the fit is coarse", "more points"),
     Explanation(

@@ -373,7 +373,8 @@ class MeshCycle:
             ``transmission_error_m`` and ``_rad``, ``mesh_stiffness_N_per_m``, ``torsional_stiffness_Nm_per_rad``,
             ``loaded_pairs``, ``normal_force_per_torque_N_per_Nm``; over the torque and ``order``, from 0:
             ``transmission_error_amplitude_m``, ``transmission_error_phase_rad``, and so on; base radii, numbers of
-            teeth.
+            teeth; of cylindrical gears ``working_pressure_angle_rad`` and ``pinion_base_helix_angle_rad``, whose
+            sign is the hand.
 
         Raises
         ------

@@ -84,6 +84,11 @@ def warn_of_accuracy(
         give_accuracy_warning(sentence, stacklevel=3)
 
 
+def without_place(sentence: str) -> str:
+    """Return an accuracy warning without how many pressure maps it concerns, which differs between analyses."""
+    return sentence.split(" (at ")[0]
+
+
 def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[str]:
     solution = loaded.solution
     found = []

@@ -177,6 +177,12 @@ class CylindricalScene(BlankScene):
         return mesh.transverse_contact_ratio * width / math.cos(mesh.pinion.base_helix_angle)
 
     @property
+    def transverse_angles(self) -> tuple[float, float]:
+        """alpha_wt and beta_b of the pinion [rad], positive for the right hand."""
+        mesh = self.mesh()
+        return mesh.working_pressure_angle, mesh.pinion.base_helix_angle
+
+    @property
     def nominal_root_stress(self) -> tuple[float, float]:
         """Nominal root stress sigma_F0 after ISO 6336-3, method B, over the common face, per torque [MPa/(N mm)].
 
@@ -207,6 +213,7 @@ class CylindricalScene(BlankScene):
         return [
             ("working centre distance a_w [mm]", f"{mesh.working_centre_distance:.4f}"),
             ("working pressure angle alpha_wt [deg]", f"{math.degrees(mesh.working_pressure_angle):.4f}"),
+            ("base helix angle beta_b [deg]", f"{abs(math.degrees(mesh.pinion.base_helix_angle)):.4f}"),
             ("profile shift sum: given, without backlash", *(f"{value:.4f}" for value in _profile_shift_sums(mesh))),
             ("backlash j_wt at the working circles [mm]", f"{_backlash(mesh):.4f}"),
             ("transverse contact ratio eps_alpha", f"{mesh.transverse_contact_ratio:.4f}"),

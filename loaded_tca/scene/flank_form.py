@@ -7,6 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
+import numpy as np
+
+from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, named
 from loaded_tca.flanks.spline import DEFAULT_POINTS
 from loaded_tca.flanks.structured_grid import FEWEST_POINTS
@@ -92,6 +95,13 @@ class Measurement(Section):
         lines = self.x_mm or self.radius_mm
         assert lines is not None  # by the rules of the section
         return len(lines), len(lines[0])
+
+    @property
+    def places(self) -> tuple[Array, Array]:
+        """Radius and axial coordinate of the points [mm]."""
+        if self.radius_mm is None:
+            return np.hypot(self.x_mm, self.y_mm), np.asarray(self.z_mm)  # type: ignore[arg-type]
+        return np.asarray(self.radius_mm), np.asarray(self.axial_mm)
 
 
 def _only_for(name: str, *forms: str) -> Rule:

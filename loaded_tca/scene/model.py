@@ -186,6 +186,11 @@ class Scene(Section, ABC):
         return math.nan
 
     @property
+    def transverse_angles(self) -> tuple[float, float]:
+        """Working transverse pressure angle, and base helix angle of the pinion [rad]; NaN for bevel gears."""
+        return math.nan, math.nan
+
+    @property
     def nominal_root_stress(self) -> tuple[float, float]:
         """Nominal root stress sigma_F0 of pinion and wheel after ISO 6336-3 per pinion torque [MPa/(N mm)].
 

@@ -14,6 +14,7 @@ optimisation by gradients).
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
@@ -25,6 +26,7 @@ from loaded_tca.analysis import analyse
 from loaded_tca.arrays import Array, real
 from loaded_tca.errors import ConvergenceError, InputError, noted_accuracy_warnings, require
 from loaded_tca.results.files import FilePath, Part, read_dataset, variables_of, write_dataset
+from loaded_tca.results.warnings import without_place
 from loaded_tca.scene import Scene
 from loaded_tca.studies.design_model import (
     FIGURES,
@@ -134,8 +136,9 @@ class DesignResult:
     dataset : xarray.Dataset
         Over ``design`` ("start", "optimum"), sample, torque, position and key: ``value`` of the keys, analysed
         ``transmission_error`` [rad], ``peak_pressure`` [MPa], load factors and ``FIGURES``; those on held contacts as
-        ``held_...``; ``history_x``, ``history_objective`` and ``history_excess`` over the evaluations; ``attrs`` has
-        the ``limits`` in words.
+        ``held_...``; ``history_x``, ``history_objective`` and ``history_excess`` over the evaluations; ``range`` of the
+        keys and ``scatter``; ``attrs`` has in words ``limits``, ``distributions`` of the scatter, ``seeds`` and
+        ``warnings``, each with the number of analyses that it concerns.
     """
 
     dataset: xarray.Dataset
@@ -227,7 +230,7 @@ def optimise(
         Of the figure, its mean over the torques, over the samples of the scatter.
     limits : mapping, optional
         Figure -> its highest value under every torque with every sample, or a mapping of torques [N mm] to values.
-        ``pressure_MPa`` is a norm, above or below the highest pressure by up to a fifth; ``edge_pressure_MPa`` keeps
+        ``pressure_MPa`` is a norm, above or below the highest pressure by up to a third; ``edge_pressure_MPa`` keeps
         contacts away from the ends of the flanks.
     k : float
         Standard deviations on top of the mean.
@@ -281,7 +284,8 @@ def optimise(
     )
     if best.excess > KEPT:
         raise InputError(_told_unmet(model, given, best.x))
-    result = _analysed_result(model, wanted, given, history, best.x, executor)
+    told_starts = [f"{seed} of the {starts} starts"] if starts > 1 else []
+    result = _analysed_result(model, wanted, given, history, best.x, executor, told_starts)
     _require_confirmed(result, given)
     return result
 
@@ -484,7 +488,7 @@ def _analysed(scene: Scene) -> dict[str, Any]:
         "peak_pressure": np.fmax.reduce(result.peak_pressure, axis=2),
         "face_load_factor": result.face_load_factor,
         "transverse_load_factor": result.transverse_load_factor,
-        "warnings": [*dict.fromkeys(told)],
+        "warnings": [*dict.fromkeys(map(without_place, told))],
     }
     found |= {name: np.array([of(row, SMOOTHING)[0] for row in errors]) for name, of in OF_ERRORS.items()}
     for gear, name in enumerate(OF_ROOTS if scene.analysis.root_stress else ()):
@@ -502,6 +506,7 @@ def _analysed_result(
     history: Sequence[Trial],
     x: Array,
     executor: Executor | None,
+    told_starts: list[str],
 ) -> DesignResult:
     """The result of a search, with the full analyses of start and optimum."""
     import xarray
@@ -509,7 +514,7 @@ def _analysed_result(
     designs = (model.start, x)
     scenes = [scene for design in designs for scene in model.scenes(design)]
     found = [*(map if executor is None else executor.map)(_analysed, scenes)]
-    lines = dict.fromkeys(line for one in found for line in one.pop("warnings"))
+    reasons = Counter(reason for one in found for reason in one.pop("warnings"))
     shape = len(designs), len(model.deviations)
     arrays = {name: np.array([one[name] for one in found]).reshape(*shape, *found[0][name].shape) for name in found[0]}
     held = [model.evaluate(design) for design in designs]
@@ -517,7 +522,11 @@ def _analysed_result(
     arrays["held_transmission_error"] = np.array([one.transmission_error for one in held])
     for prefix in ("", "held_"):
         arrays[f"{prefix}objective"] = np.array([objective.of(one)[0] for one in arrays[prefix + objective.figure]])
-    arrays |= {"value": np.array(designs), "scatter": np.array([[*one.values()] for one in model.deviations])}
+    arrays |= {
+        "value": np.array(designs),
+        "range": model.bounds,
+        "scatter": np.array([[*one.values()] for one in model.deviations]),
+    }
     arrays |= {f"history_{name}": np.array([getattr(one, name) for one in history]) for name in Trial._fields}
     coordinates = {
         "design": ["start", "optimum"],
@@ -525,8 +534,12 @@ def _analysed_result(
         "torque": ("torque", model.torques, {"units": "N mm"}),
         **({"scatter_key": [*model.scatter]} if model.scatter else {}),
     }
-    attributes = {"kind": KIND, "scene_toml": model.scene.to_toml(), "warnings": "\n".join(lines)}
+    attributes = {"kind": KIND, "scene_toml": model.scene.to_toml()}
+    attributes["warnings"] = "\n".join(
+        f"{reason} (in {count} of {len(found)} analyses)" for reason, count in reasons.items()
+    )
     attributes |= {"objective": objective.told, "figure": objective.figure}
+    attributes |= {"distributions": "\n".join(model.told_scatter), "seeds": "; ".join(model.told_seed + told_starts)}
     attributes["limits"] = "\n".join(
         f"{one.figure} <= {one.highest:g} at {', '.join(f'{1e-3 * model.torques[t]:g}' for t in one.torques)} N m"
         for one in limits
@@ -566,6 +579,7 @@ FIGURE_TEXTS = {
 }
 PARTS: dict[str, Part] = {
     "value": (("design", "key"), "1", "value of the key, in the unit at the end of its name"),
+    "range": (("key", "bound"), "1", "lowest and highest value of the key"),
     "scatter": (("sample", "scatter_key"), "1", "value of the key, or its deviation from that of the design"),
     "transmission_error": (ANALYSED, "rad", "loaded transmission error"),
     "peak_pressure": (ANALYSED, "MPa", "largest peak pressure of the tooth pairs"),

@@ -36,7 +36,7 @@ from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.root_stress import GEARS, root_stress_of_gear, stress_at_extreme
 from loaded_tca.scene import Scene
 from loaded_tca.separation.gap_change import value_at
-from loaded_tca.studies.study import Distribution, Study, is_finite, is_whole
+from loaded_tca.studies.study import Distribution, Study, is_finite, is_whole, told_distribution
 from loaded_tca.unloaded import ContactPoint, trace_teeth
 
 CELLS = (24, 40)
@@ -223,6 +223,19 @@ class DesignModel:
             *((False, f"torques: {self.torques[t]:g} N mm loads no tooth pair; allowed more") for t in sorted(idle))
         )
         return Evaluation(self, values, [*found.values()])
+
+    @property
+    def told_scatter(self) -> list[str]:
+        """The scatter in words, a line for each key."""
+        farther = "" if self.multiple == 1.0 else f", {self.multiple:g} times as far from its median"
+        told = (told_distribution(one) if hasattr(one, "ppf") else "given values" for one in self.scatter.values())
+        return [f"{key}: {words}{farther}" for key, words in zip(self.scatter, told, strict=True)]
+
+    @property
+    def told_seed(self) -> list[str]:
+        """The seed in words, where samples are drawn."""
+        drawn = any(hasattr(one, "ppf") for one in self.scatter.values())
+        return [f"{self.seed} of the samples"] if drawn else []
 
     def _samples(self) -> list[dict[str, float]]:
         """What the keys of the scatter have, or deviate by, in each sample."""

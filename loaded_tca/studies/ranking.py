@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 ROOT_TENSION = "pinion_root_tension_MPa", "wheel_root_tension_MPa"
 MAIN_FIGURES = ("transmission_error_span_um", "peak_pressure_MPa", "face_load_factor", *ROOT_TENSION)
 """Figures by which variants are compared unless others are asked for; the first one ranks them."""
+QUANTILE = 0.95
+"""Of a figure over the samples of a combination."""
 
 
 def varied_keys(study: xarray.Dataset) -> list[str]:
@@ -59,6 +61,58 @@ def nominal_variant(study: xarray.Dataset) -> int | None:
             nominal = nominal.get(section, {})
         agrees &= np.array([value == nominal for value in study[key].values.tolist()], dtype=bool)
     return int(agrees.argmax()) if agrees.any() else None
+
+
+def is_sampled(study: xarray.Dataset) -> bool:
+    """Whether variants are samples of distributions."""
+    return any(study[key].attrs.get("sampling") == "distribution" for key in varied_keys(study))
+
+
+def rank_combinations(study: xarray.Dataset, by: str | None = None) -> pandas.DataFrame:
+    """Combinations of the given values of a study with distributions, the best first.
+
+    Parameters
+    ----------
+    study : xarray.Dataset
+    by : str, optional
+        As for :func:`rank_variants`; the least value is the best.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per combination: ``rank`` from 1, ``samples`` (how many are ok), the keys of factors and table, and of
+        each figure, its worst value over the torques, the 95 % quantile over the samples. A combination without the
+        figure has no rank. No rows where every key has a distribution.
+
+    Raises
+    ------
+    InputError
+        If the study has no such figure.
+
+    Examples
+    --------
+    >>> import xarray
+    >>> words = {name: ("sample", [word] * 4) for name, word in {"status": "ok", "reason": "", "warnings": ""}.items()}
+    >>> keys = {"pinion.teeth": ("sample", [20, 20, 25, 25], {"sampling": "factor"}),
+    ...     "mounting.misalignment_um": ("sample", [0.0, 9.0, 0.0, 9.0], {"sampling": "distribution"})}
+    >>> factor = {"face_load_factor": (("sample", "torque"), [[1.0], [2.0], [1.2], [1.4]])}
+    >>> rank_combinations(xarray.Dataset({**factor, **words}, keys))["pinion.teeth"].tolist()
+    [25, 20]
+    """
+    import pandas
+
+    variants = rank_variants(study, by)
+    keys = [key for key in varied_keys(study) if study[key].attrs.get("sampling") != "distribution"]
+    figures = list(dict.fromkeys([*([by] if by else []), *main_figures(study)]))
+    if not (keys and figures):
+        return pandas.DataFrame(columns=["rank", "samples", *keys, *figures])
+    groups = variants.groupby(keys, sort=False)
+    found = groups[figures].quantile(QUANTILE)
+    found.insert(0, "samples", groups["status"].agg(lambda status: int((status == "ok").sum())))
+    found = found.reset_index().sort_values(figures[0], kind="stable", ignore_index=True)
+    found.insert(0, "rank", pandas.array(found.index + 1, dtype="Int64"))
+    found.loc[found[figures[0]].isna(), "rank"] = pandas.NA
+    return found[["rank", "samples", *keys, *figures]]
 
 
 def rank_variants(

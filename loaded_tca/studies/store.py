@@ -16,7 +16,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, reason_of
 from loaded_tca.results.files import FilePath, make_directory, read_dataset
 from loaded_tca.scene.text import literal
-from loaded_tca.studies.study import Study
+from loaded_tca.studies.study import Study, told_distribution
 
 if TYPE_CHECKING:
     import xarray
@@ -123,8 +123,8 @@ def dataset_of(study: Study, rows: Iterable[Row], attributes: dict[str, Any]) ->
     xarray.Dataset
         Dimensions sample (the number of the variant) and torque [N mm], which has a coordinate where all variants have
         the same. Over both the key figures, NaN where there are none; over the samples the varied
-        keys (coordinates, with the attribute ``sampling``: "table", "factor" or "distribution"), ``status``,
-        ``reason``, ``warnings`` (lines) and ``seconds``.
+        keys (coordinates, with the attribute ``sampling``: "table", "factor" or "distribution", and of the last one
+        ``distribution``: its name and parameters), ``status``, ``reason``, ``warnings`` (lines) and ``seconds``.
     """
     import xarray
 
@@ -172,6 +172,8 @@ def _varied(study: Study) -> dict[str, tuple[str, Array, dict[str, str]]]:
             columns[key].append(value if plain else literal(value))
     ways = [("table", study.table), ("factor", study.factors), ("distribution", study.distributions)]
     sampling = {key: {"sampling": way} for way, keys in ways for key in keys}
+    for key, distribution in study.distributions.items():
+        sampling[key]["distribution"] = told_distribution(distribution)
     return {key: ("sample", np.array(column), sampling[key]) for key, column in columns.items()}
 
 

@@ -187,6 +187,21 @@ class Study:
         return np.stack([np.asarray(one.ppf(column), dtype=float) for one, column in columns], axis=1)
 
 
+def told_distribution(distribution: Any) -> str:
+    """Name and parameters of a distribution; of what is none of ``scipy.stats`` its class.
+
+    Examples
+    --------
+    >>> from scipy.stats import norm
+    >>> told_distribution(norm(0.0, scale=5.0))
+    'norm(0.0, scale=5.0)'
+    """
+    if not all(hasattr(distribution, name) for name in ("dist", "args", "kwds")):
+        return type(distribution).__name__
+    named = (f"{name}={shown(value)}" for name, value in distribution.kwds.items())
+    return f"{distribution.dist.name}({', '.join([*map(shown, distribution.args), *named])})"
+
+
 def is_whole(value: Any, low: float, high: float) -> bool:
     """Whether a value is a whole number, but no boolean, within a range."""
     return isinstance(value, Integral) and not isinstance(value, bool) and low <= int(value) <= high

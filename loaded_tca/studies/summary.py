@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from loaded_tca.results.warnings import without_place
+
 if TYPE_CHECKING:
     import xarray
 
@@ -80,9 +82,7 @@ def _reasons(study: xarray.Dataset) -> Iterator[str]:
         if status != "ok"
     ]
     doubtful = [
-        f"warning: {line.split(' (at ')[0]}"  # at which position differs from variant to variant
-        for lines in study["warnings"].values.tolist()
-        for line in lines.splitlines()
+        f"warning: {without_place(line)}" for lines in study["warnings"].values.tolist() for line in lines.splitlines()
     ]
     for sentences in (failed, doubtful):
         counted = Counter(sentences).most_common()

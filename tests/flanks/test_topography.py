@@ -1,6 +1,8 @@
 """Measured flanks: what a measurement of a known flank gives back, and every grid of points that is refused."""
 
 import math
+import re
+import warnings
 
 import numpy as np
 import pytest
@@ -189,6 +191,34 @@ def test_points_that_stop_short_of_the_edges_are_continued_and_a_wide_margin_war
         measured(nominal, inner(4, 17))
     with pytest.raises(InputError, match="lengthwise: the points cover 40 % of the flank; at least 50 % is needed"):
         measured(nominal, inner(6, 15))
+
+
+@pytest.mark.parametrize(("coefficients", "degree"), [(None, None), (None, 3), ((6, 6), None), ((4, 4), 3)])
+def test_continuation_that_follows_the_noise_warns(coefficients, degree, rng):
+    """A parabola and noise of 1 um, which even one quintic goes on with; a cubic goes on as the parabola does."""
+    nominal = unmodified(pair_of("helical").pinion.flank)
+    rho, z = (part[2:-2, 2:-2] for part in nominal.grid(21, 21))
+    parabola = -0.012 * (z / z.max()) ** 2
+    noisy = MeasuredDeviations(rho, z, parabola + 1e-3 * rng.normal(size=rho.shape))
+    plain = measured(nominal, MeasuredDeviations(rho, z, parabola), turned=False)  # leaves its points by 56 %, rightly
+    ends = plain.distance_to(nominal, *nominal.grid(9, 9))
+    assert_allclose(ends.min(), -0.012 / 0.8**2, rtol=1e-3)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        measured(nominal, noisy, coefficients=coefficients, degree=degree)
+    told = [str(one.message) for one in caught]
+    if coefficients != (4, 4):
+        (sentence,) = told
+        assert re.match(r"the points deviate by -1\d.* to .* um, the flank by -\d+.* um: its continuation", sentence)
+    else:
+        assert told == []
+
+
+def test_flank_without_deviations_does_not_swing():
+    nominal = unmodified(pair_of("helical").pinion.flank)
+    rho, z = (part[2:-2, 2:-2] for part in nominal.grid(21, 21))
+    flank = measured(nominal, MeasuredDeviations(rho, z, np.zeros(rho.shape)))  # warnings are errors
+    assert flank.fit_error.largest == 0.0
 
 
 # Refusals

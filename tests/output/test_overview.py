@@ -195,8 +195,10 @@ def test_measured_flank_shows_its_points_and_deviations():
     assert "pinion.flank.form" not in text
     assert cells(text, "wheel.flank.form") == ["measured"]
     assert cells(text, "wheel: measured points") == ["9", "x", "15"]
-    low, high = (float(cell) for cell in cells(text, "wheel: deviations from, to [um]"))
+    low, high = (float(cell) for cell in cells(text, "wheel: deviations of flank, from, to [um]"))
     assert -15.0 < low < -11.0 < 0.0 < high < 1.0  # 8 um and 3 um of crowning with slopes and waves
+    inner = [float(cell) for cell in cells(text, "wheel: deviations at points, from, to [um]")]
+    assert low - 0.01 <= inner[0] < inner[1] <= high + 0.01  # the flank goes on beyond them
     rms = float(cells(text, "wheel: fit at points, largest, rms [um]")[1])
     assert rms < 0.2  # what smoothing leaves out: noise of 0.15 um
     assert "between them" not in text

@@ -97,6 +97,18 @@ def test_peak_at_a_edge_has_a_map_of_its_own(tmp_path):
     assert "pressure_map_edge" in {path.stem for path in drawn}
 
 
+@pytest.mark.parametrize(("rounded", "kind"), [(False, "a sharp"), (True, "a rounded")])
+def test_map_at_an_edge_tells_the_pressure_there_and_why_cells_have_less(rounded, kind):
+    cycle = result()
+    at = cycle.peak_contact(0)
+    pressure, is_rounded = np.full((1, 5, 1), np.nan), np.full((1, 5, 1), rounded)
+    pressure[0][at] = 2061.4
+    found = told(plot_pressure_map(changed(cycle, edge_pressure=pressure, edge_is_rounded=is_rounded), *at[:1]))
+    assert f"pressure at {kind} edge 2061 MPa" in found
+    assert ("the force of a cell that an edge cuts" in found) == (not rounded)
+    assert "pressure at" not in told(plot_pressure_map(cycle, *at[:1])).partition("contact pressure")[2]
+
+
 def test_map_and_flanks_of_one_torque_and_position(tmp_path):
     paths = plot_all(result(torques=(20.0, 80.0)), tmp_path, torque=0, position=3)
     assert {path.stem for path in paths} == {"contact_path", "transmission_error", "peak_pressure", "pressure_map"}

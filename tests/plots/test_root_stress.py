@@ -11,6 +11,7 @@ from loaded_tca.plots import (
     plot_root_stress_over_torque,
     png_of,
 )
+from loaded_tca.plots.style import note_of
 from tests.samples.root_stress import result
 
 WITHOUT = {"analysis.root_stress": False}
@@ -43,6 +44,14 @@ def test_maps_are_those_of_the_asked_torque_with_the_back_on_the_left():
     assert back.get_coordinates()[..., 0].max() < 0.0 < in_contact.get_coordinates()[..., 0].min()
     told = [text.get_text() for text in first.texts]
     assert f"{cycle.root_tension[0, :, 0].max():.0f}" in told
+
+
+def test_white_bands_beside_the_tooth_are_told():
+    """Between the grey of the tooth, which ends at 10 deg, and the first stress at 15 deg."""
+    figure = plot_root_stress(result(), 0)
+    (in_contact, _) = panels(figure)[0].collections
+    assert in_contact.get_coordinates()[..., 0].min() >= 15.0 - 0.1
+    assert "white bands beside the tooth: not evaluated, the flank or less than 15 deg" in note_of(figure)
 
 
 def test_curves_over_the_mesh_are_those_of_both_gears_on_one_axis():

@@ -23,7 +23,7 @@ from loaded_tca.results.explanations import EXPLANATIONS, explanation_of
 from loaded_tca.results.summary import known_rows, shown
 from loaded_tca.studies.design import DesignResult
 from tests.samples.results import SCENES, changed, changed_scene, result
-from tests.samples.study_datasets import grid, sampled
+from tests.samples.study_datasets import LEAD, MISALIGNMENT, dataset, grid, sampled
 
 ROOT = Path(__file__).parents[2]
 TORQUES = (20.0, 80.0, 130.0)
@@ -185,6 +185,46 @@ def test_discretisation_error_is_that_of_the_result(written):
     assert errors[0] > 0.0
 
 
+def test_accuracy_of_figures_is_what_the_studies_show(page):
+    """The largest differences of the tables: of faces of 100 mm, and of root tension in the plane and in space."""
+    folder = ROOT / "docs" / "studies"
+    rows = [
+        line.strip("| ").split(" | ")
+        for line in (folder / "mesh_cycle_fem.md").read_text(encoding="utf-8").splitlines()
+    ]
+    wide = np.array([[float(cell) for cell in row[5:8]] for row in rows if row[0] == "100" and len(row) > 8])
+    assert len(wide) == 6
+    mean, span, stiffness = np.abs(wide).max(axis=0)
+    roots = (folder / "root_stress_fem.md").read_text(encoding="utf-8")
+    tension = [abs(float(one)) for one in re.findall(r"\| tension \|.*\| ([+-][\d.]+) \| [\d.]+ \|$", roots, re.M)]
+    compression = [
+        abs(float(one)) for one in re.findall(r"\| compression \|.*\| ([+-][\d.]+) \| [\d.]+ \|$", roots, re.M)
+    ]
+    assert len(tension) == len(compression) == 8
+    shown = {
+        "transmission_error_mean_": mean,
+        "transmission_error_span_": span,
+        "mesh_stiffness_mean_": stiffness,
+        "pinion_root_tension_MPa": max(tension),
+        "wheel_root_tension_MPa": max(tension),
+        "pinion_root_compression_MPa": max(compression),
+        "wheel_root_compression_MPa": max(compression),
+    }
+    assert {*shown} == {*result_page.COMPARED}
+    for name, difference in shown.items():
+        said = float(re.search(r"within ([\d.]+) %", result_page.COMPARED[name])[1])
+        assert difference <= said < difference + 0.5, name
+    assert page.rows(label_of("transmission_error_mean_um"))[0][-1] == "of the flanks alone: the teeth do not bend"
+    assert page.rows(label_of("transmission_error_order_1_um"))[0][-1].startswith("of 5 positions: higher orders")
+    assert page.rows(label_of("transverse_load_factor"))[0][-1].startswith("the largest of 5 positions")
+
+
+def test_accuracy_of_teeth_that_bend_is_told(written):
+    page = written(changed_scene(cycle(), {"analysis.compliance": "contact+tooth"}))
+    for name in ("transmission_error_mean_um", "transmission_error_span_um", "mesh_stiffness_mean_N_per_mm_um"):
+        assert page.rows(label_of(name))[0][-1].endswith("% of finite elements"), name
+
+
 def test_every_warning_is_told_with_what_it_means(page):
     told = cycle().warnings
     assert told
@@ -230,6 +270,13 @@ def test_explanations_are_those_of_the_documents():
         known = explanation_of(sentence)
         assert (known.meaning, known.advice) == (meaning, advice)
     assert len({one.words for one in EXPLANATIONS}) == len(EXPLANATIONS)
+
+
+def test_free_edges_are_advised_only_where_they_are_left_out():
+    told = "the contact reaches an edge of a flank, where the pressure of the map is mesh-dependent"
+    left_out = f"{told}; the free edge is left out (analysis.free_edges)"
+    assert "free_edges" not in explanation_of(told).advice
+    assert explanation_of(left_out).advice.startswith("`free_edges = true`")
 
 
 def test_every_warning_of_the_package_is_explained():
@@ -380,13 +427,67 @@ def test_study_of_which_nothing_was_analysed_has_a_report(written):
 
 
 def test_distributions_have_a_report(written):
-    assert "distributed" in written(sampled()).words
+    page = written(sampled())
+    assert "distributed" in page.words
+    assert "Best and worst sample" in page.headings
+    assert "Single samples of the distributions, not designs." in page.words
+
+
+def test_report_of_a_study_is_ranked_by_the_figure_that_is_asked_for(written):
+    """The pressure grows with both keys, so that the first variant has the least."""
+    page = written(grid(), rank_by="peak_pressure_MPa")
+    ranking = next(table for table in page.tables if table[0][0] == "rank")
+    assert [row[1] for row in ranking[1:]] == ["0", "1", "2", "3", "4", "5"]
+    assert "ranked bypeak pressure [MPa], the least is best" in page.words.replace("ranked by ", "ranked by")
+
+
+@pytest.mark.parametrize(
+    ("subject", "told"),
+    [
+        (grid, r'peak_presure_MPa: no figure of the study; did you mean "peak_pressure_MPa"'),
+        (cycle, r"rank_by: 'peak_presure_MPa'; a MeshCycle has no ranking"),
+    ],
+)
+def test_figure_that_cannot_rank_is_one_clear_error(subject, told, tmp_path):
+    with pytest.raises(InputError, match=told):
+        write_html_report(subject(), tmp_path / "report.html", rank_by="peak_presure_MPa")
+    assert not [*tmp_path.iterdir()]
+
+
+def test_report_ranks_combinations_where_others_scatter(written):
+    """The best sample is one of a design that scatters widely; by the quantile the other one is better."""
+    page = written(scattering(), date=WHEN)
+    ranking = next(table for table in page.tables if table[0][0] == "rank")
+    assert [row[:3] for row in ranking[1:]] == [["1", "21", "3"], ["2", "21", "0"]]
+    assert [row[3] for row in ranking[1:]] == ["6", "19"]
+    best = next(table for table in page.tables if table[0][1:] == ["best", "worst"])
+    assert ["pinion lead crowning [µm]", "3", "0"] in best
+    assert "Best and worst combination" in page.headings
+    assert "95 % quantile over the samples" in page.words
+    assert "those of all combinations together" in page.words
+
+
+def test_report_tells_distributions_and_the_seed(written):
+    study = scattering().assign_attrs(seed=7)
+    study[MISALIGNMENT].attrs["distribution"] = "norm(0.0, scale=5.0)"
+    page = written(study)
+    (row,) = page.rows(label_of(MISALIGNMENT))
+    assert row[2] == "distributed, norm(0.0, scale=5.0)"
+    assert "seed of the samples 7" in page.words.replace("samples7", "samples 7")
+
+
+def scattering():
+    """Crowning 0: spans 0, 1, ... 20 um over the samples; crowning 3: 6 um with each of them."""
+    lead, along = np.repeat([0.0, 3.0], 21), np.tile(np.arange(21.0), 2)
+    study = dataset({LEAD: lead, MISALIGNMENT: along}, {"transmission_error_span_um": np.where(lead > 0.0, 6.0, along)})
+    study[MISALIGNMENT].attrs["sampling"] = "distribution"
+    return study
 
 
 def test_design_has_a_report(written):
     page = written(DesignResult(design_dataset()))
     assert page.rows("pinion lead crowning [µm]") == [
-        ["pinion lead crowning [µm]", "pinion.modifications.lead_crowning_um", "5", "7.5"]
+        ["pinion lead crowning [µm]", "pinion.modifications.lead_crowning_um", "1", "12", "5", "7.5"]
     ]
     assert ["by the full analysis", "0.9", "0.4"] in page.tables[1]
     assert "face_load_factor <= 1.9 at 100 N m" in page.words
@@ -410,6 +511,24 @@ def test_forged_design_is_bad_input(tmp_path, monkeypatch, capsys):
     assert "value: missing" in told
 
 
+def test_design_tells_the_peak_pressure_beside_the_limit_on_another_measure(written):
+    """900 MPa and 1e8 times the height of the transmission error, at one position of one sample 40 more."""
+    found = design_dataset()
+    found["peak_pressure"][1, 0, 0, 3] += 40.0
+    page = written(DesignResult(found.assign_attrs(limits="pressure_MPa <= 1150 at 100 N m")))
+    assert page.rows("peak pressure, largest over the positions [MPa]")[0][1:] == ["100", "1100", "1040"]
+    assert "pressure_MPa <= 1150 at 100 N m (norm of the pressure away from the ends" in page.words
+    assert "above or below the peak pressure by up to a third" in page.words
+
+
+def test_design_tells_its_scatter_and_seed(written):
+    told = {"distributions": f"{MISALIGNMENT}: norm(0.0, scale=5.0)", "seeds": "3 of the samples"}
+    scatter = xarray.DataArray([[-4.0], [6.0]], {"scatter_key": [MISALIGNMENT]}, ("sample", "scatter_key"))
+    page = written(DesignResult(design_dataset().assign(scatter=scatter).assign_attrs(told)))
+    assert page.rows(label_of(MISALIGNMENT))[0][1:] == [MISALIGNMENT, "norm(0.0, scale=5.0)", "-4", "6"]
+    assert "3 of the samples" in page.words
+
+
 def design_dataset():
     scene = cycle().scene
     phase = np.linspace(0.0, 2.0 * np.pi, 5)
@@ -421,6 +540,7 @@ def design_dataset():
         "span_um": (axes[:3], 1e5 * height),
         "face_load_factor": (axes[:3], 1.0 + 1e5 * height),
         "value": (("design", "key"), [[5.0], [7.5]]),
+        "range": (("key", "bound"), [[1.0, 12.0]]),
         "objective": (("design",), [0.9, 0.4]),
         "held_objective": (("design",), [0.95, 0.38]),
         "history_objective": (("evaluation",), [0.95, 0.5, 0.38]),
@@ -518,6 +638,9 @@ def test_command_takes_studies_and_designs(tmp_path, monkeypatch):
     write_dataset("mine.nc", design_dataset())
     assert cli.main(["report", "study"]) == 0
     assert "What varies" in Page("study/report.html").headings
+    assert cli.main(["report", "study", "--rank-by", "peak_pressure_MPa"]) == 0
+    ranking = next(table for table in Page("study/report.html").tables if table[0][0] == "rank")
+    assert ranking[1][1] == "0"
     assert cli.main(["report", "mine.nc", "--out", "mine.html"]) == 0
     assert "What was found" in Page("mine.html").headings
 

@@ -110,6 +110,18 @@ def test_radii_turn_forces_into_torques_and_lengths_into_angles():
     assert_allclose(force, along_normal, rtol=2e-3)  # lengthwise crowning tilts the normals a little
 
 
+def test_angles_of_cylindrical_gears_give_the_direction_of_the_force():
+    """sin(beta_b) = sin(beta) cos(alpha_n); no profile shift: alpha_wt = alpha_t."""
+    dynamics = cycle().to_dynamics()
+    helix, transverse = np.radians(15.0), np.arctan(np.tan(np.radians(20.0)) / np.cos(np.radians(15.0)))
+    sign = {"right": 1.0, "left": -1.0}[cycle().scene.hands[0]]
+    base_helix = sign * np.arcsin(np.sin(helix) * np.cos(np.radians(20.0)))
+    assert_allclose(dynamics.pinion_base_helix_angle_rad, base_helix, rtol=1e-12)
+    assert_allclose(dynamics.working_pressure_angle_rad, transverse, rtol=1e-7)
+    bevel = result("mesh_cycle_bevel", positions=5, torques=(98.0, 100.0, 102.0)).to_dynamics()
+    assert not {"pinion_base_helix_angle_rad", "working_pressure_angle_rad"} & {*bevel}
+
+
 @pytest.mark.parametrize("name", ["helical", "bevel"])
 def test_stiffness_is_the_slope_of_the_transmission_error(name):
     """Between two torques the wheel falls back by the change of T1/r_b1 over the stiffness."""

@@ -8,10 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
+from scipy.ndimage import binary_dilation
 
 from loaded_tca.analysis import analyse
 from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.plots import plot_transmission_error
+from loaded_tca.results.edge_cell import place_on_material
 from loaded_tca.results.key_figures import harmonic_coefficients, mean_over_a_pitch
 from loaded_tca.scene import read_scene
 from tests.samples.results import FLANKS_ALONE, SCENES, changed, result
@@ -99,6 +101,36 @@ def test_edge_pressure_stands_with_its_force_and_place():
     assert figures["edge_is_rounded"] is False
     (smooth,) = result(positions=1).key_figures()
     assert np.isnan([smooth["edge_pressure_MPa"], smooth["normal_force_at_edge_N"]]).all()
+
+
+@pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # that it is reached
+@pytest.mark.parametrize("cells", [(16, 16), (24, 31)])
+def test_place_of_a_cell_beyond_an_edge_is_on_the_edge(cells):
+    """Whatever part of a cell the end of either face leaves, and at their corners; the others keep their middles."""
+    scene = read_scene(SCENES / "misaligned.toml").with_changes({**FLANKS_ALONE, "analysis.positions": 2})
+    cycle = analyse(scene.with_changes({"analysis.cells": cells}))
+    pair, one = cycle.gear_pair, cycle.maps[0][0][int(cycle.peak_column[0, 0])]
+    diagonal, bare = np.hypot(*one.spacing), np.isinf(one.gap)
+    beside = binary_dilation(~bare, np.ones((3, 3), dtype=bool)) & bare
+    assert beside.any()
+
+    def room(x, y):
+        """Distance to the nearest edge of both flanks."""
+        point = one.origin + x * one.axes[0] + y * one.axes[1]
+        radius, _, axial = pair.to_wheel(point)
+        return min(pair.pinion.flank.room(np.hypot(*point[:2]), point[2]), pair.wheel.flank.room(radius, axial))
+
+    beyond = 0
+    for row, column in np.argwhere(beside | ~bare).tolist():
+        middle = one.x[row], one.y[column]
+        found = place_on_material(pair, one, (row, column))
+        if bare[row, column] and room(*middle) < 0.0:  # in the plane, from which the flanks fall away
+            beyond += 1
+            assert_allclose(room(*found), 0.0, atol=1e-4)
+            assert np.hypot(*np.subtract(found, middle)) <= 1.001 * diagonal
+        else:
+            assert_array_equal(found, middle)
+    assert beyond > 5
 
 
 def test_load_factors_of_the_figures_are_those_of_the_result():

@@ -1,6 +1,7 @@
 """Designs: gradients of held contacts, held contacts beside the whole analysis, the search, and what is refused."""
 
 import pickle
+import re
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -188,6 +189,25 @@ def test_a_result_says_what_was_found(found):
     result, _ = found
     before, after = result.objective
     assert f"mean + 1 sigma of smooth_span_um: {before:.4g} -> {after:.4g}, {CROWNING} = " in repr(result)
+
+
+def test_a_result_tells_ranges_scatter_and_warnings(found):
+    """Each reason of a warning once, with how many of the four analyses gave it."""
+    result, _ = found
+    assert result.dataset["range"].values.tolist() == [[*ends] for ends in VARIABLES.values()]
+    assert result.dataset.attrs["distributions"] == f"{MISALIGNMENT}: given values"
+    assert result.dataset.attrs["seeds"] == ""
+    told = result.dataset.attrs["warnings"].splitlines()
+    reasons = [line.partition(" (in ")[0] for line in told]
+    assert len(reasons) == len(set(reasons)) > 0
+    assert all(re.search(r" \(in [1-4] of 4 analyses\)$", line) for line in told)
+
+
+def test_a_model_tells_its_distributions_and_their_seed():
+    one = model(variables={CROWNING: (1.0, 12.0)}, scatter={MISALIGNMENT: norm(1.0, scale=5.0)}, samples=2, seed=3)
+    assert one.told_scatter == [f"{MISALIGNMENT}: norm(1.0, scale=5.0)"]
+    assert one.told_seed == ["3 of the samples"]
+    assert one.with_scatter(2.0).told_scatter[0].endswith("2 times as far from its median")
 
 
 def test_a_result_comes_back_from_its_file(found, tmp_path):
