@@ -149,7 +149,8 @@ def _key_figures(result: MeshCycle, figures: Sequence[Figures]) -> Table:
         for name in names if label != TORQUE else ():
             indent = "  " if label.startswith(" ") else ""
             values = (shown(one.get(name, math.nan), name) for one in figures)
-            rows.append((indent + label_of(name), *values, _note(name, result, figures)))
+            unit = " [%]" if name == "edge_pressure_error" else ""  # as summaries show it
+            rows.append((indent + label_of(name) + unit, *values, _note(name, result, figures)))
     return Table(tuple(rows), ("key figure", *_under(figures), "accuracy"))
 
 

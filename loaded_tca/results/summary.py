@@ -176,6 +176,13 @@ def limits_of(figures: Sequence[Figures]) -> Iterator[str]:
     """Yield sentences on what limits the figures; none for an ordinary point contact."""
     apart = [entry["positions"] - entry["positions_in_contact"] for entry in figures]
     yield from _counted(figures, apart, "no tooth pair is in contact")
+    higher = [
+        bool(entry.get("edge_is_rounded", False)) and entry["edge_pressure_MPa"] > entry["peak_pressure_MPa"]
+        for entry in figures
+    ]
+    if any(higher):
+        torques = _for_torques(figures, higher)
+        yield f"the pressure at a rounded edge is above the peak pressure, which leaves edges out{torques}"
     for name, sentence in NOTES:
         yield from _counted(figures, [entry[name] for entry in figures], sentence)
     for name in ON_BACK:

@@ -244,7 +244,10 @@ class Analysis(Section):
         False,
     )
     torques_Nm: tuple[float, ...] | None = key(
-        List(TORQUE_Nm, 1, 1000), "several pinion torques, all analysed", None, "the one of [load]"
+        List(TORQUE_Nm, 1, 1000),
+        "several pinion torques, all analysed instead of that of [load]",
+        None,
+        "the one of [load]",
     )
 
     @property

@@ -163,6 +163,8 @@ def test_pressure_at_a_rounded_edge_is_told_with_its_error(written):
     page = written(one)
     (edge,) = page.rows("edge pressure [MPa]")
     assert edge[-1] == "rounded edge: with the error below"
+    (error,) = page.rows("edge pressure error [%]")
+    assert "1.2" in error
     (row,) = page.rows("estimated error of the pressure at rounded edges, largest")
     held = known.any(axis=(1, 2))
     assert row[1:] == ["1.23%" if one else "-" for one in held]

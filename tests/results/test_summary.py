@@ -48,7 +48,10 @@ def test_edges_are_told_apart_by_whether_they_are_rounded():
         text = summary_text("title", "scope", entries)
         assert cells(text, f"{label} [MPa] | its force [N]")[:3] == ["2000", "|", "5"]
         assert cells(text, "  estimated error [%]") == errors
+        count = ", ".join(["130"] * entries.count(rounded))
+        assert f"above the peak pressure, which leaves edges out ({count} N m)" in text
     assert "estimated error" not in summary_text("title", "scope", [sharp, figures])
+    assert "leaves edges out" not in summary_text("title", "scope", [rounded | {"edge_pressure_MPa": 1.0}])
 
 
 def test_row_after_hertz_is_left_out_where_it_holds_nowhere():
