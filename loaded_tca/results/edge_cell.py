@@ -1,14 +1,24 @@
-"""Cells of a pressure map at edges: beside the end of a flank, or on the arc of a rounded edge."""
+"""Edges in a pressure map: distances to them, cells beside the end of a flank or on the arc of a rounded edge."""
 
 from __future__ import annotations
 
 import numpy as np
 from scipy.ndimage import binary_dilation
 
-from loaded_tca.arrays import Mask
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.unloaded.arcs import arcs_at
+
+
+def edge_distances(pair: GearPair, points: Array) -> Array:
+    """Distances (n, 8) [mm] of points (n, 3) of the fixed frame to the edges of both flanks, negative beyond them."""
+    radius, _, axial = pair.to_wheel(points)
+    edges = [
+        *pair.pinion.flank.edges(np.hypot(points[:, 0], points[:, 1]), points[:, 2]),
+        *pair.wheel.flank.edges(radius, axial),
+    ]
+    return np.stack([np.broadcast_to(edge.value, len(points)) for edge in edges], axis=-1)
 
 
 def arc_cells(pair: GearPair, one: PressureMap) -> Mask:
@@ -37,13 +47,7 @@ def place_on_material(pair: GearPair, one: PressureMap, cell: tuple[int, int]) -
         return float(middle[0]), float(middle[1])
     inner = np.stack([one.x[there[:, 0]], one.y[there[:, 1]]], axis=-1)
     ends = np.stack([inner[np.hypot(*(inner - middle).T).argmin()], middle])
-    points = one.origin + ends @ one.axes[:2]
-    radius, _, axial = pair.to_wheel(points)
-    edges = [
-        *pair.pinion.flank.edges(np.hypot(points[:, 0], points[:, 1]), points[:, 2]),
-        *pair.wheel.flank.edges(radius, axial),
-    ]
-    within, beyond = np.array([np.broadcast_to(edge.value, 2) for edge in edges]).T
+    within, beyond = edge_distances(pair, one.origin + ends @ one.axes[:2])
     crossed = (beyond < 0.0) & (within >= 0.0)
     part = float(np.min(within[crossed] / (within - beyond)[crossed], initial=1.0))
     x, y = (ends[0] + part * (ends[1] - ends[0])).tolist()

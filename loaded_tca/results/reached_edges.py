@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
 
 from loaded_tca.flanks.base import EDGE_NAMES
-from loaded_tca.results.edge_cell import arc_cells
+from loaded_tca.results.edge_cell import arc_cells, edge_distances
 from loaded_tca.results.mesh_cycle import MeshCycle
 
 NAMES = tuple(f"{gear} {edge}" for gear in ("pinion", "wheel") for edge in EDGE_NAMES)
@@ -36,12 +36,7 @@ def reached_edges(result: MeshCycle) -> NDArray[np.bool_]:
             continue
         row, column = np.nonzero(binary_dilation(one.pressure > 0.0) & np.isinf(one.gap))
         points = one.origin + one.x[row, None] * one.axes[0] + one.y[column, None] * one.axes[1]
-        radius, _, axial = pair.to_wheel(points)
-        edges = [
-            *pair.pinion.flank.edges(np.hypot(points[:, 0], points[:, 1]), points[:, 2]),
-            *pair.wheel.flank.edges(radius, axial),
-        ]
-        reached[t, n, k] |= [bool((np.broadcast_to(edge.value, row.shape) < 0.0).any()) for edge in edges]
+        reached[t, n, k] |= (edge_distances(pair, points) < 0.0).any(axis=0)
         if pair.sharp is not pair:
             reached[t, n, k] |= arc_cells(pair, one)[one.pressure > 0.0].any(axis=0)
     return reached
