@@ -1,6 +1,7 @@
 """What every test shares: NaN stops at once, pictures go to no screen, random numbers are seeded."""
 
 import os
+import signal
 
 import hypothesis
 import matplotlib
@@ -13,6 +14,11 @@ matplotlib.use("Agg")
 hypothesis.settings.register_profile("suite", deadline=None, max_examples=100, derandomize=True)
 hypothesis.settings.register_profile("nightly", deadline=None, max_examples=2000)
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "suite"))
+
+
+def pytest_configure():
+    """Let Ctrl-C interrupt as at a terminal: a shell starts its background jobs with SIGINT ignored, and they inherit it."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(autouse=True)
