@@ -17,7 +17,7 @@ hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "suite"))
 
 
 def pytest_configure():
-    """Let Ctrl-C interrupt as at a terminal: a shell starts its background jobs with SIGINT ignored, and they inherit it."""
+    """Let SIGINT interrupt as at a terminal: jobs that a shell starts in the background inherit that it is ignored."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
