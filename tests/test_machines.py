@@ -70,7 +70,7 @@ def test_a_run_without_results_has_failed_whatever_an_earlier_one_left(runs, tmp
 
 def test_errors_of_types_are_failures(runs, tmp_path, capsys):
     started, ends = runs
-    error = "loaded_tca/a.py:1: error: Module has no attribute"
+    error = "loaded_tca/errors.py:1: error: Module has no attribute"
     ends += [("", f"{error}\nFound 1 error\n", 1), ("", "Success: no issues found\n", 0)]
     assert main(["win32", "darwin", "--folder", str(tmp_path)]) == 1
     _, first, second, name = capsys.readouterr().out.splitlines()
