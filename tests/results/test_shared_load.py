@@ -16,7 +16,7 @@ from loaded_tca.pairs import mating_teeth
 from loaded_tca.plots import MORE_PICTURES, PICTURES, plot_all
 from loaded_tca.reference.weber_banaschek import ring_torsion
 from loaded_tca.results.files import read_dataset, write_dataset
-from loaded_tca.results.key_figures import harmonic_coefficients
+from loaded_tca.unloaded.harmonics import harmonic_coefficients
 from tests.samples.results import FLANKS_ALONE, ONE_PAIR, PER_PAIR, SCENES, assert_same
 
 EQUILIBRIUM = 1e-8
