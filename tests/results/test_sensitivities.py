@@ -195,6 +195,7 @@ def test_spread_adds_up_the_squares_of_independent_deviations():
     both = found.spread({CROWNING: 2.0, SLOPE: 3.0})
     for name in ("transmission_error", "peak_pressure", "face_load_factor"):
         slopes = getattr(found, name)
+        # also below: a root of two squares, 1e-16 seen
         assert_allclose(both[name], np.hypot(2.0 * slopes[..., 0], 3.0 * slopes[..., 1]), rtol=1e-12)
     assert_allclose(found.spread({SLOPE: 3.0})["peak_to_peak"], 3.0 * np.abs(found.peak_to_peak[:, 1]), rtol=1e-12)
 
