@@ -117,6 +117,7 @@ def test_one_torque_has_an_axis_too(scene):
 
 
 def test_positions_cover_one_pitch_with_both_ends(scene):
+    # rad; the middle of a pitch of 0.2
     assert_allclose(analyse(scene).pinion_angle, np.pi / 34 * np.array([-1.0, 0.0, 1.0]), atol=1e-15)
 
 
@@ -210,7 +211,7 @@ def test_unmodified_pair_carries_line_contact_hertz_in_the_middle(scene):
 def test_pressure_is_capped_by_the_material(scene):
     soft = scene.with_changes({"material.max_pressure_MPa": 600.0, "analysis.positions": 1})
     result = analyse(soft)
-    assert_allclose(result.peak_pressure, 600.0, rtol=1e-12)
+    assert_allclose(result.peak_pressure, 600.0, rtol=1e-12)  # of cells that are clipped at the cap
 
 
 def test_peak_pressure_converges_with_the_order_of_a_smooth_contact(scene):

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.errors import InputError
 from loaded_tca.material import Material, contact_modulus
 
-ROUNDING = 1e-14
+ROUNDING = 1e-14  # a few operations
 
 materials = st.builds(Material, st.floats(1.0, 1e6), st.floats(0.0, 0.5))
 
@@ -37,6 +37,7 @@ def test_contact_modulus_against_a_rigid_body_is_the_plane_strain_modulus(materi
 @given(materials, materials, st.floats(1e-3, 1e3))
 def test_contact_modulus_scales_with_both_moduli(first, second, factor):
     scaled = [Material(factor * one.youngs_modulus, one.poisson_ratio) for one in (first, second)]
+    # a few operations on scaled numbers
     assert_allclose(contact_modulus(*scaled), factor * contact_modulus(first, second), rtol=1e-12)
 
 

@@ -83,7 +83,7 @@ def test_large_contact_is_the_same_on_one_thread(monkeypatch, blas):  # noqa: AR
 
     (free, helped), (bound, unhelped) = helpers_after(solved), helpers_after(alone)
     assert (helped, unhelped) == ([2], [])
-    assert_array_equal(free, bound)
+    assert_array_equal(free, bound)  # exact: threads share lines of a transform, each line is of one thread
 
 
 @pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")
@@ -97,4 +97,5 @@ def test_analysis_is_the_same_on_one_thread(monkeypatch, blas):  # noqa: ARG001 
     with one_thread():
         bound = analyse(scene)
     for name, values in free.dataset.variables.items():
+        # exact: matrices are multiplied on one thread of BLAS in both
         assert_array_equal(values, bound.dataset.variables[name], err_msg=name)

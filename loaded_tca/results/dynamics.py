@@ -10,7 +10,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import require
 from loaded_tca.results.files import Part, variables_of
-from loaded_tca.results.key_figures import harmonic_coefficients
+from loaded_tca.unloaded.harmonics import harmonic_coefficients
 
 if TYPE_CHECKING:
     import xarray
@@ -112,8 +112,7 @@ def dynamics_of(result: MeshCycle) -> xarray.Dataset:
         "normal_force_per_torque_N_per_Nm": over_pitch(result.normal_force.sum(axis=-1) * per_torque[:, None]),
     }
     for name, unit in SERIES.items():
-        coefficients = np.stack([harmonic_coefficients(curve, order[-1]) for curve in curves[name]])
-        coefficients *= np.exp(-2j * np.pi * begin * order[1:])
+        coefficients = np.stack([harmonic_coefficients(curve, order[-1], begin) for curve in curves[name]])
         mean = curves[name][:, :-1].mean(axis=-1, keepdims=True)
         ending = f"_{unit}" if unit else ""
         arrays[f"{name}{ending}"] = over_pitch(curves[name])

@@ -6,7 +6,6 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
 from loaded_tca.results.root_figures import root_figures
@@ -21,38 +20,6 @@ CAPPED = 1.0 - 1e-6
 """Part of the cap on the pressure from which a pressure equals it."""
 ORDERS = 3
 """Orders of the tooth mesh that the key figures name."""
-
-
-def harmonic_coefficients(error: Array, count: int) -> NDArray[np.complex128]:
-    r"""Complex amplitudes of the orders 1 to ``count`` of a periodic curve.
-
-    .. math:: c_k = \frac{2}{N} \sum_{n=0}^{N-1} e_n \exp(-2 \pi i k n / N)
-
-    so that e(t) = mean + sum of \|c_k\| cos(2 pi k t + arg c_k), t from 0 to 1 over the period.
-
-    Parameters
-    ----------
-    error : (N + 1,) array
-        At even positions over one period, both ends included.
-    count : int
-
-    Returns
-    -------
-    (count,) complex array
-        In the unit of the curve; NaN for orders of which the positions are too few, and for a curve with a gap.
-
-    Examples
-    --------
-    >>> wave = harmonic_coefficients(np.cos(np.linspace(0.0, 2.0 * np.pi, 9) + 0.5), 4)
-    >>> np.abs(wave).round(12), np.angle(wave[0]).round(12)
-    (array([ 1.,  0.,  0., nan]), np.float64(0.5))
-    """
-    period = error[:-1]
-    coefficients = np.full(count, complex(math.nan, math.nan))
-    known = min(count, (len(period) - 1) // 2)
-    if known > 0 and np.isfinite(period).all():
-        coefficients[:known] = 2.0 / len(period) * np.fft.rfft(period)[1 : known + 1]
-    return coefficients
 
 
 def mean_over_a_pitch(values: Array) -> float:

@@ -18,13 +18,14 @@ from loaded_tca.loaded.sensitivity import LoadedStates
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.dynamics import dynamics_of
 from loaded_tca.results.files import Buffer, FilePath, Part, arrays_of, netcdf_of, read_dataset, replacing, variables_of
-from loaded_tca.results.key_figures import harmonic_coefficients, key_figures
+from loaded_tca.results.key_figures import key_figures
 from loaded_tca.results.pressure_map import MAP_PARTS, SIZES, Maps, maps_from, stacked_maps
 from loaded_tca.results.root_stress import ROOT_PARTS, RootStressMap, not_asked, root_stress_maps
 from loaded_tca.results.sensitivities import Sensitivities, sensitivities
 from loaded_tca.results.summary import signed, summary_text
 from loaded_tca.scene import Scene, parse_scene
 from loaded_tca.unloaded import ContactPath
+from loaded_tca.unloaded.harmonics import harmonic_coefficients
 
 if TYPE_CHECKING:
     import xarray
@@ -323,16 +324,16 @@ class MeshCycle:
         (m, count) array [rad]
             From -pi to pi; NaN where the amplitude is. That of an amplitude near zero is rounding.
         """
-        coefficients = self._harmonic_coefficients(count)
-        turned = np.arange(1, count + 1) * 2.0 * math.pi * self.pinion_angle[0] / self.gear_pair.pitch
-        return np.angle(coefficients * np.exp(-1j * turned))
+        return np.angle(self._harmonic_coefficients(count))
 
     def _harmonic_coefficients(self, count: int) -> NDArray[np.complex128]:
-        """Complex amplitudes (m, count) [rad] of the orders, phases from the first position."""
+        """Complex amplitudes (m, count) [rad] of the orders, phases from the pinion angle 0."""
         if not isinstance(count, int | np.integer) or count < 1:
             raise InputError(f"count: {count!r} is not a whole number from 1 on")
         periodic = self.scene.analysis.load_sharing
-        return np.stack([harmonic_coefficients(e if periodic else e[:0], count) for e in self.transmission_error])
+        begin = float(self.pinion_angle[0]) / self.gear_pair.pitch
+        curves = self.transmission_error[:, : None if periodic else 0]
+        return np.stack([harmonic_coefficients(curve, count, begin) for curve in curves])
 
     def sensitivities(self, keys: Sequence[str]) -> Sensitivities:
         """Return the derivatives with respect to keys of the scene, all from one linear problem for each state.

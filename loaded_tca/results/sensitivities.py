@@ -23,11 +23,11 @@ from loaded_tca.results.figure_slopes import (
     peak_pressure_slopes,
     pressure_norm,
 )
-from loaded_tca.results.key_figures import harmonic_coefficients
 from loaded_tca.results.loaded_grids import states_of_maps
 from loaded_tca.results.root_stress import stress_at_extreme
 from loaded_tca.separation import Separation
 from loaded_tca.separation.gap_change import PairChange, contact_changes, pair_changes
+from loaded_tca.unloaded.harmonics import harmonic_coefficients
 
 if TYPE_CHECKING:
     import xarray

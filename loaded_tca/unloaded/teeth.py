@@ -15,7 +15,6 @@ contact do not cross inside both their ranges, so that a tooth edge bridges the 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from functools import cached_property
@@ -27,6 +26,7 @@ from numpy.typing import ArrayLike
 from loaded_tca.arrays import Array, Indices, finite_row
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.unloaded.harmonics import harmonic_coefficients
 from loaded_tca.unloaded.path import ContactPath, default_angles, trace_contact, warn_of_fillets
 from loaded_tca.unloaded.search import spread
 from loaded_tca.unloaded.tooth_cycle import (
@@ -148,9 +148,9 @@ class MeshPath:
             most = (per_pitch - 1) // 2
             raise InputError(f"count: found {count}; allowed 1 to {most} with {per_pitch} positions per pitch")
         order = np.arange(1, count + 1)
-        spectrum = np.fft.rfft(self.transmission_error[:per_pitch])[order] * (2.0 / per_pitch)
-        turned = spectrum * np.exp(-2j * math.pi * order * self.pinion_angle[0] / self.pair.pitch)
-        return Harmonics(order, np.abs(turned), np.angle(turned))
+        closed = self.transmission_error[np.arange(per_pitch + 1) % per_pitch]
+        coefficients = harmonic_coefficients(closed, count, float(self.pinion_angle[0]) / self.pair.pitch)
+        return Harmonics(order, np.abs(coefficients), np.angle(coefficients))
 
     def contact_ratio(self, tolerance: float = 1e-3) -> float:
         """Unloaded actual contact ratio: how many pairs touch on average, to within a tolerance; at least 1.

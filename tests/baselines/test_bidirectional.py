@@ -26,7 +26,7 @@ from validation.face_milled.pairs import (
 )
 
 HALF_DIGIT = 0.5e-6  # rad, of the paper's azimuths
-ROUNDING = 1e-12
+ROUNDING = 1e-12  # rad or parts of a unit vector; a dozen turns of angles up to 2 pi: 2e-15 seen
 SAME_CONTACT = 1e-9  # rad; y and z of the normals leave their root nearly double, the equations are solved to 1e-12
 PAIRS = {
     "duplex paper": (duplex_paper_gears(), "concave"),
@@ -90,7 +90,7 @@ def test_steps_after_the_first_depend_on_neither_radial_setting_nor_cutter_radiu
         [changed.pinion_azimuth, changed.pinion_turn, changed.wheel_turn],
         [one.pinion_azimuth, one.pinion_turn, one.wheel_turn],
         rtol=0,
-        atol=1e-12,
+        atol=ROUNDING,
     )
 
 
@@ -116,7 +116,7 @@ def test_start_fulfils_the_meshing_equation_and_has_opposite_normals(gears, flan
         point, normal = standing(pair, values, member, gears)
         first = np.cross([0.0, 0.0, 1.0], point)
         second = np.cross(-pair.ratio * pair.wheel_axes[2], point - pair.wheel_origin)
-        assert_allclose(normal @ (first - second), 0.0, rtol=0, atol=1e-12 * np.linalg.norm(first))
+        assert_allclose(normal @ (first - second), 0.0, rtol=0, atol=ROUNDING * np.linalg.norm(first))
         assert_allclose(standing(pair, values, 1 - member, gears)[1], -normal, rtol=0, atol=ROUNDING)
 
 
@@ -158,7 +158,9 @@ def test_mirrored_pair_has_the_mirrored_start():
     (start, _), (other, _) = start_of(gears), start_of(mirrored)
     values, opposite = start.mean(), other.mean()
     assert_allclose(opposite.pinion_azimuth, 2.0 * np.pi - values.pinion_azimuth, rtol=ROUNDING)
-    assert_allclose([opposite.pinion_turn, opposite.wheel_turn], [-values.pinion_turn, -values.wheel_turn], atol=1e-12)
+    assert_allclose(
+        [opposite.pinion_turn, opposite.wheel_turn], [-values.pinion_turn, -values.wheel_turn], atol=ROUNDING
+    )
     one, two = start.guess(values), other.guess(opposite)
     assert_allclose(one.unknowns, two.unknowns, rtol=0, atol=1e-9)
     assert_allclose(one.pinion_angle, two.pinion_angle, rtol=0, atol=1e-10)

@@ -131,7 +131,7 @@ def test_starts_that_diverge_are_marked_and_stay_finite(rng):
     assert np.isfinite(found.unknowns).all()
     assert np.isfinite(found.wheel_angle).all()
     assert not np.isnan(found.residual).any()
-    assert (found.residual[~found.converged] > 1e-12).all()
+    assert (found.residual[~found.converged] > 1e-12).all()  # where iterations stop
     assert (np.abs(found.wheel_angle) <= math.pi).all()
 
 

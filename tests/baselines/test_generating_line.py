@@ -65,7 +65,8 @@ def test_normal_is_that_of_the_flank(gear, flank):
 @every_case
 def test_moment_is_that_of_the_normal_about_the_apex(gear, flank):
     found = GeneratingLine(gear, flank).at(azimuths(gear))
-    assert_allclose(found.moment, np.cross(found.point, found.normal), rtol=1e-14)
+    assert_allclose(found.moment, np.cross(found.point, found.normal), rtol=1e-14)  # the same product
+    # three products of a moment and a unit vector
     assert_allclose((found.moment * found.normal).sum(axis=-1), 0.0, rtol=0, atol=1e-12 * gear.machine.radial)
 
 
@@ -78,7 +79,7 @@ def test_normal_of_a_straight_blade_tells_the_azimuth_about_the_cutter(shift):
     normal = GeneratingLine(gear, "concave").at(angle).normal[0]
     sine, cosine = np.sin(gear.machine.root_angle), np.cos(gear.machine.root_angle)
     on_machine_x = normal[0] * sine + normal[2] * cosine
-    assert_allclose(np.arctan2(-normal[1], -on_machine_x), angle, rtol=0, atol=1e-12)
+    assert_allclose(np.arctan2(-normal[1], -on_machine_x), angle, rtol=0, atol=1e-12)  # rad; of order one: 2e-16 seen
 
 
 def test_hands_are_mirror_images():
@@ -86,7 +87,7 @@ def test_hands_are_mirror_images():
     right = replace(left, blank=replace(left.blank, hand="right"))
     angles = azimuths(left)
     one, other = (GeneratingLine(gear, "concave").at(at) for gear, at in ((left, angles), (right, -angles)))
-    assert_allclose(one.rho, other.rho, rtol=1e-13)
+    assert_allclose(one.rho, other.rho, rtol=1e-13)  # also below: the same operations with signs turned, none seen
     assert_allclose(one.azimuth, -other.azimuth, rtol=0, atol=1e-14)
     assert_allclose(one.normal, other.normal * [1.0, -1.0, 1.0], rtol=0, atol=1e-13)
 
@@ -94,6 +95,7 @@ def test_hands_are_mirror_images():
 def test_azimuths_a_whole_turn_apart_are_one():
     line = GeneratingLine(matched_pinion(), "concave")
     angle = azimuths(matched_pinion())[4]
+    # an angle up to 4 pi is rounded to 1e-15: 6e-16 seen
     assert_allclose(line.at(angle).rho, line.at(angle + 2.0 * np.pi).rho, rtol=1e-13)
 
 

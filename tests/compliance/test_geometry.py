@@ -84,7 +84,7 @@ def test_bore_is_that_of_the_gear_or_the_default():
         gear = pinion(bore)
         nodes = gear_nodes(gear, DENSITY)
         assert_allclose(gear.smallest_bore, expected)
-        assert_allclose(nodes.radius[:, 0], 0.5 * expected, rtol=1e-12)
+        assert_allclose(nodes.radius[:, 0], 0.5 * expected, rtol=1e-12)  # half a diameter
 
 
 @pytest.mark.parametrize("kind", gears())

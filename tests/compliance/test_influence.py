@@ -211,6 +211,7 @@ def test_variants_of_the_micro_geometry_share_one_model(monkeypatch):
     influence.forget()
     apart = gear_compliance(gears[-1], COARSE)
     influence.forget()
+    # exact, also below: the same model made twice
     assert_array_equal(apart.table.displacement, found[0].table.displacement)
     one = line(apart, 0.4, 0.7)
     away = np.abs(one.z[:, None] - one.z)

@@ -89,6 +89,7 @@ def test_stress_fades_from_tooth_to_tooth_and_is_nothing_beyond_the_model():
 
 
 def test_teeth_are_counted_around_the_gear():
+    # exact, also below: the same rows of one table
     assert_array_equal(model().stress(24, [line()]), model().stress(-1, [line()]))
     assert_array_equal(model().stress(7, [line(tooth=6)]), model().stress(1, [line()]))
 
@@ -222,7 +223,7 @@ def test_model_is_made_once_and_found_on_disk(folder, made):
     again = root_stress_model(pinion(), TINY)
     assert len(made) == len(list(folder.glob("*.npz"))) == 1
     for name, values in vars(first.table).items():
-        assert_array_equal(getattr(again.table, name), values)
+        assert_array_equal(getattr(again.table, name), values)  # exact: written and read
         assert not values.flags.writeable
 
 

@@ -62,7 +62,7 @@ def test_convolution_leaves_its_input_alone(rng):
     before = pressure.copy()
     first, second = convolved(pressure, 1.0), convolved(pressure, 1.0)
     assert np.array_equal(pressure, before)
-    assert np.array_equal(first, second)
+    assert np.array_equal(first, second)  # the same plan for the same numbers
 
 
 def test_preconditioner_nearly_inverts_the_convolution_in_the_middle(rng):
@@ -92,7 +92,7 @@ def test_fast_lengths_are_even_few_and_hardly_too_long():
 def test_results_do_not_depend_on_threads(rng):
     pressure = rng.random((700, 600))
     one, two = (convolved(pressure, 1.0, threads=n) for n in (1, 2))
-    assert np.array_equal(one, two)
+    assert np.array_equal(one, two)  # threads share lines of a transform, and each line is of one thread
 
 
 def test_small_transforms_keep_to_one_thread():

@@ -13,6 +13,8 @@ from loaded_tca.errors import InputError
 from loaded_tca.reference import hertz, punch
 from tests.samples.contact_conditions import contact_conditions
 
+ROUNDING = 1e-12
+"""Of loads, scaled and added up over some thousand cells, and of closed forms: 1e-15 was seen."""
 E_STAR = 115e3
 LOAD = 100.0
 TOLERANCE = 1e-8
@@ -192,8 +194,8 @@ def test_cap_on_the_pressure_is_met_exactly(share):
     gap, spacing, contact = ellipse((64, 64), (0.1, 0.1))
     cap = share * contact.max_pressure
     solution = solve(gap, spacing, load=LOAD, max_pressure=cap)
-    assert solution.pressure.max() == pytest.approx(cap, rel=1e-15)
-    assert_allclose(solution.pressure.sum() * solution.cell_area, LOAD, rtol=1e-12)
+    assert solution.pressure.max() == pytest.approx(cap, rel=1e-15)  # clipped at the cap
+    assert_allclose(solution.pressure.sum() * solution.cell_area, LOAD, rtol=ROUNDING)
 
 
 @pytest.mark.parametrize("filled", [0.9, 0.99, 0.9999])
@@ -201,7 +203,7 @@ def test_cap_nearly_filled(filled):
     gap, spacing, _ = ellipse((64, 64), (0.1, 0.1))
     area = gap.size * spacing[0] * spacing[1]
     solution = solve(gap, spacing, load=filled * area * 100.0, max_pressure=100.0)
-    assert_allclose(solution.pressure.mean(), filled * 100.0, rtol=1e-12)
+    assert_allclose(solution.pressure.mean(), filled * 100.0, rtol=ROUNDING)
 
 
 @pytest.mark.parametrize("load", [1e-3, 1.0, 1e3])
@@ -234,7 +236,7 @@ def test_rough_surface(load, crown, rng):
     n = 128
     gap = rough(rng, n, 1e-3) + crown * radius_squared(n, 4.0 / n)
     solution = solve(gap, (4.0 / n, 4.0 / n), load=load)
-    assert_allclose(solution.pressure.sum() * solution.cell_area, load, rtol=1e-12)
+    assert_allclose(solution.pressure.sum() * solution.cell_area, load, rtol=ROUNDING)
 
 
 def test_far_asperity_of_one_cell_is_found():
@@ -249,10 +251,10 @@ def test_contact_of_a_single_cell():
     gap = np.full((20, 20), np.inf)
     gap[7, 8] = 0.3
     solution = solve(gap, (0.1, 0.1), load=LOAD)
-    assert_allclose(solution.pressure[7, 8], LOAD / 0.01, rtol=1e-12)
+    assert_allclose(solution.pressure[7, 8], LOAD / 0.01, rtol=ROUNDING)
     # Love's coefficient of a square on its own centre
     own = 4.0 * math.log(1.0 + math.sqrt(2.0)) / math.pi * 0.1 / E_STAR
-    assert_allclose(solution.approach, 0.3 + own * LOAD / 0.01, rtol=1e-12)
+    assert_allclose(solution.approach, 0.3 + own * LOAD / 0.01, rtol=ROUNDING)
 
 
 @pytest.mark.parametrize("n", [1, 2, 3, 15, 64, 200])
@@ -295,7 +297,7 @@ def test_pressure_grows_with_the_cube_root_of_the_load(power):
     unit_solution = solve(unit_gap, unit_spacing, load=1.0, tolerance=1e-6)
     # the same grid but for its scale: equal up to the tolerance, which leaves 1e-5 of the peak
     assert_allclose(solution.peak_pressure / load ** (1 / 3), unit_solution.peak_pressure, rtol=1e-5)
-    assert_allclose(contact.max_pressure / load ** (1 / 3), unit.max_pressure, rtol=1e-12)
+    assert_allclose(contact.max_pressure / load ** (1 / 3), unit.max_pressure, rtol=ROUNDING)
 
 
 @given(seed=st.integers(0, 2**32 - 1), load=st.floats(0.1, 1e4))

@@ -7,6 +7,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.contact import levels
 
 ROUNDING = 1e-14
+"""Of means of a few cells, and of the square of a root: 6e-16 was seen."""
 
 
 def cubic(shape, width=1.0):
@@ -17,7 +18,7 @@ def cubic(shape, width=1.0):
 def test_coarse_gap_samples_a_cubic_exactly_inside():
     fine, coarse = cubic((20, 24)), cubic((10, 12), width=2.0)
     merged = levels.coarsen(fine, (2, 2))
-    assert_allclose(merged[1:-1, 1:-1], coarse[1:-1, 1:-1], rtol=1e-12)
+    assert_allclose(merged[1:-1, 1:-1], coarse[1:-1, 1:-1], rtol=1e-12)  # terms to 1e3: 3e-16 of them seen
 
 
 def test_coarse_gap_of_a_plane_is_the_plane_up_to_the_border():

@@ -11,6 +11,9 @@ from numpy.testing import assert_allclose
 from loaded_tca.contact import patch, solve_contact
 from loaded_tca.reference import hertz
 
+ROUNDING = 1e-12
+"""Of parabolas through cells, by least squares: 1e-14 was seen."""
+
 
 def ellipse(shape, centre, axes, angle=0.0):
     """Pressure 1 in the middle of an ellipse, cells of width one."""
@@ -26,7 +29,7 @@ def ellipse(shape, centre, axes, angle=0.0):
 )
 def test_peak_of_an_ellipse_is_exact_wherever_it_lies(offset, axes, angle):
     pressure = ellipse((40, 40), (19.5 + offset[0], 19.5 + offset[1]), axes, angle)
-    assert_allclose(patch.peak_pressure(7.0 * pressure), 7.0, rtol=1e-12)
+    assert_allclose(patch.peak_pressure(7.0 * pressure), 7.0, rtol=ROUNDING)
 
 
 def test_peak_of_other_shapes_is_their_largest_cell():
@@ -38,7 +41,7 @@ def test_peak_of_other_shapes_is_their_largest_cell():
 
 def test_peak_of_many_cells_is_thinned_without_loss():
     pressure = ellipse((600, 500), (300.3, 250.2), (280.0, 200.0))
-    assert_allclose(patch.peak_pressure(pressure), 1.0, rtol=1e-12)
+    assert_allclose(patch.peak_pressure(pressure), 1.0, rtol=ROUNDING)
 
 
 @given(
@@ -107,4 +110,4 @@ def test_contact_that_the_material_cuts_ends_where_that_does(part):
     cover[9], cover[10:] = part, 0.0
     place = np.broadcast_to(np.arange(20.0)[:, None], pressure.shape)
     ends = patch.values_at_ends(np.where(cover > 0.0, pressure, 0.0), place, cover, axes=(0,))
-    assert_allclose(ends.max(), 8.5 + part, rtol=1e-12)
+    assert_allclose(ends.max(), 8.5 + part, rtol=ROUNDING)

@@ -52,7 +52,7 @@ def test_solution_keeps_the_problem_as_it_was():
     assert solution.problem.cap == solution.problem.max_pressure == 900.0
     assert solution.problem.first_contact == before.min()
     again = solve_problem(solution.problem)
-    assert_array_equal(again.pressure, solution.pressure)
+    assert_array_equal(again.pressure, solution.pressure)  # the same problem once more: the same steps
 
 
 def test_load_is_changed_by_replacement():

@@ -10,6 +10,8 @@ from loaded_tca.contact import RoundedEdge, edge_pressures, solve_contact
 from loaded_tca.errors import ConvergenceError, InputError
 from loaded_tca.reference.punch import RoundedPunch
 
+ROUNDING = 1e-12
+"""Of closed forms of a few operations, which gave the same number on every processor tried."""
 E_STAR = 113187.0
 RADIUS = 0.2
 BOX = ((-0.15, 0.15), (-2.0, 2.1))
@@ -137,7 +139,7 @@ def test_slices_along_the_edge_have_the_rows():
     peak(slice_compliance=slices, slice_axis=0)
     x, widths = seen[-1]
     assert_allclose(widths, np.full(x.size, 0.3 / x.size))
-    assert_allclose(x.mean(), 0.0, atol=1e-15)
+    assert_allclose(x.mean(), 0.0, atol=1e-15)  # columns within 0.15 mm that cancel: 2e-18 seen
 
 
 @pytest.mark.parametrize("sine", [0.1, 0.5])
@@ -210,10 +212,10 @@ def test_a_wedge_of_two_right_angles_is_a_half_space():
 
 def test_faces_of_a_wedge_meet_where_they_would_without_the_rounding():
     ends = [RoundedEdge((0.0, 2.0), (0.0, side), 0.2, 0.5 * math.pi, 0.2).free_edge(-2.0) for side in (3.0, -3.0)]
-    assert_allclose([end.position for end in ends], [4.2, 3.8], rtol=1e-12)
+    assert_allclose([end.position for end in ends], [4.2, 3.8], rtol=ROUNDING)
     assert [end.material for end in ends] == ["below", "above"]
     # Hetenyi in plane strain: the side returns 2/pi of a load, and twice that falls on the top again.
-    assert_allclose(5.0 * ends[0].factor, 2.0 / (1.0 - (2.0 / math.pi) ** 2) - 1.0, rtol=1e-12)
+    assert_allclose(5.0 * ends[0].factor, 2.0 / (1.0 - (2.0 / math.pi) ** 2) - 1.0, rtol=ROUNDING)
     assert RoundedEdge((0.0, 2.0), (0.0, 1.0), 0.2, 1.4).free_edge(0.0).factor == 0.6  # as far as it converges
 
 

@@ -51,6 +51,7 @@ def test_border_and_material_edge_are_told_apart():
 
 
 def test_peak_of_a_capped_contact_is_the_cap():
+    # of cells that are clipped at the cap
     assert ball(max_pressure=500.0).peak_pressure == pytest.approx(500.0, rel=1e-12)
 
 

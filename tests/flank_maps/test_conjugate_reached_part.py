@@ -11,6 +11,8 @@ from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from tests.samples.gear_pairs import cylindrical_mesh, gear_pair
 
+ROUNDING = 1e-12
+"""Of lengths and angles of closed forms, or mm of the face: 2e-16 was seen."""
 FOUND = 1e-6
 """mm: edges are found to 1e-9 of the flank, where they are not its own."""
 
@@ -26,8 +28,8 @@ def test_profile_is_the_active_one(helix_deg):
         rho, z = mated_grid(seen, 7, 5)
         roll = roll_lengths(seen, rho)
         assert_allclose(roll[0], active.start_roll_length, atol=FOUND)
-        assert_allclose(rho[-1], active.end_radius, rtol=1e-12)
-        assert_allclose(z, np.broadcast_to(np.linspace(-12.5, 12.5, 5), z.shape), atol=1e-12)
+        assert_allclose(rho[-1], active.end_radius, rtol=ROUNDING)
+        assert_allclose(z, np.broadcast_to(np.linspace(-12.5, 12.5, 5), z.shape), atol=ROUNDING)
 
 
 def test_grid_is_even():
@@ -42,7 +44,7 @@ def test_profile_of_a_bevel_pair_is_the_active_one():
     for seen, (start, end) in zip((pair, exchanged(pair)), mesh.active_cones, strict=True):
         angle = np.arctan2(*mated_grid(seen, 5, 5))
         assert_allclose(angle[0], start, atol=1e-7)
-        assert_allclose(angle[-1], end, rtol=1e-12)
+        assert_allclose(angle[-1], end, rtol=ROUNDING)
 
 
 def test_face_ends_with_the_narrower_gear():
@@ -64,7 +66,7 @@ def test_larger_centre_distance_shortens_the_profile_from_below():
         for pair in (gear_pair(mounting=Mounting(centre_distance_error=error)) for error in (0.0, 0.5))
     ]
     assert (rolls[1][0] > rolls[0][0] + 0.5).all()
-    assert_allclose(rolls[1][-1], rolls[0][-1], rtol=1e-12)
+    assert_allclose(rolls[1][-1], rolls[0][-1], rtol=ROUNDING)
 
 
 @pytest.mark.parametrize("error", [{"axial_offset": 26.0}, {"centre_distance_error": 6.5}])

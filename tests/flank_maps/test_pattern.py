@@ -43,7 +43,7 @@ def test_gap_is_zero_at_the_contact_and_nowhere_negative(helix_deg, driving):
         assert_allclose(
             [gap[0], radius[0], axial[0]],
             [0.0, *(getattr(here, f"{mating}_{x}") for x in ("radius", "axial"))],
-            atol=1e-12,
+            atol=1e-12,  # mm; of coordinates of 50 mm: 1e-16 seen
         )
         gap, _, _ = flank_gap(pair, gear, (here.pinion_angle, here.wheel_angle), flank.grid(40, 40))
         assert gap.min() >= 0.0
@@ -236,7 +236,7 @@ def test_pattern_touches_along_the_contact_path(pattern):
     j = np.abs(pattern.axial[:1].T - lead.pinion_axial).argmin(axis=0)
     assert pattern.touched[i, j].all()
     assert 0.1 < pattern.touched.mean() < 0.5
-    assert pattern.gap.min() >= -1e-12
+    assert pattern.gap.min() >= -1e-12  # mm; the smallest gap is taken off: rounding
     assert_allclose(pattern.diameter, 2.0 * pattern.radius)
     assert "touched" in repr(pattern)
 

@@ -138,7 +138,7 @@ def test_formate_flank_is_the_surface_of_the_cutter():
     rho, z = 110.0 * np.sin(angle), 110.0 * np.cos(angle)
     points = generation.solve(rho, z)
     assert points.found.all()
-    assert_allclose(points.cradle, 0.0, atol=1e-15)
+    assert_allclose(points.cradle, 0.0, atol=1e-15)  # the angle of the section itself, where nothing turns
     blade = generation.blade
     for k in range(rho.size):
         gamma, theta = machine.root_angle, points.theta.value[k]
@@ -165,7 +165,7 @@ def test_machine_centre_to_back_moves_the_surface_along_the_axis():
     blade, (rho, z) = pinion.cutter.blade("convex"), PLACES
     first = CradleGeneration(blade, "convex", pinion.machine).solve(rho, z).theta.value
     moved = CradleGeneration(blade, "convex", withdrawn).solve(rho, z - 0.5).theta.value
-    assert_allclose(moved, first, atol=1e-12)
+    assert_allclose(moved, first, atol=1e-12)  # rad; rounding of angles of order one, beside rtol
 
 
 def test_sliding_base_away_from_the_tips_leaves_more_material():

@@ -13,7 +13,8 @@ from loaded_tca.flanks import InvoluteFlank
 from loaded_tca.flanks.base import EDGE_NAMES, outward_normal
 
 BASE, WORKING, RADII, WIDTH = 47.9, 51.0, (48.5, 54.0), 25.0
-ROUNDING = 1e-12
+ROUNDING = 1e-12  # of closed forms: 2e-16 seen
+OF_ANGLES = 1e-14  # rad; of some 0.1 rad, an involute and a lead: 1e-16 seen
 COMPLEX_STEP = 1e-30  # the derivative carries no cancellation
 SECOND_DIFFERENCE = 2e-8  # central differences of the exact slope with a step of 1e-4 mm near the base circle
 
@@ -44,7 +45,7 @@ def slope(radius, side):
 @given(radii, places, sides, helices)
 def test_theta_and_its_derivatives_agree_with_the_involute_function(rho, z, side, helix):
     jet = flank(side, helix).theta(np.array(rho), np.array(z))
-    assert_allclose(jet.value, theta(rho, z, side, helix).real, rtol=0, atol=1e-14)
+    assert_allclose(jet.value, theta(rho, z, side, helix).real, rtol=0, atol=OF_ANGLES)
     assert_allclose(jet.rho, slope(rho, side), rtol=1e-11)
     assert_allclose(jet.z, math.tan(helix) / BASE, rtol=ROUNDING)
     step = 1e-4
@@ -59,17 +60,19 @@ def test_flank_holds_the_points_of_the_unwound_thread(roll, z, side, helix):
     x, y = BASE * (math.cos(roll) + roll * math.sin(roll)), BASE * (math.sin(roll) - roll * math.cos(roll))
     turned = side * (involute(WORKING).real - math.atan2(y, x)) + z * math.tan(helix) / BASE
     found = flank(side, helix).theta(np.array(math.hypot(x, y)), np.array(z)).value
-    assert_allclose(found, turned, rtol=0, atol=1e-14)
+    assert_allclose(found, turned, rtol=0, atol=OF_ANGLES)
 
 
 @pytest.mark.parametrize("side", [1, -1])
 def test_theta_is_zero_at_the_working_radius_of_the_middle_section(side):
+    # an involute of 0.01 less itself
     assert_allclose(flank(side, 0.3).theta(np.array(WORKING), np.array(0.0)).value, 0.0, atol=1e-16)
 
 
 @given(radii, places, helices)
 def test_theta_of_the_other_side_is_the_mirror_image_of_the_other_hand(rho, z, helix):
     rho, z = np.array(rho), np.array(z)
+    # the same operations with the signs turned
     assert_allclose(flank(-1, helix).theta(rho, z).value, -flank(1, -helix).theta(rho, z).value, atol=1e-16)
 
 
@@ -84,7 +87,7 @@ def test_normal_is_tangent_to_the_base_cylinder_and_leaves_the_material(rho, z, 
     """Its lever about the axis is r_b cos(beta_b), its axial part sin(beta_b), everywhere."""
     across, around, axial = outward_normal(flank(side, helix), np.array(rho), np.array(z))
     assert_allclose(around * rho, side * BASE * math.cos(helix), rtol=ROUNDING)
-    assert_allclose(axial, -side * math.sin(helix), rtol=1e-10, atol=1e-15)
+    assert_allclose(axial, -side * math.sin(helix), rtol=1e-10, atol=1e-15)  # atol: a spur gear, whose sine is none
     assert across > 0.0, "the flank of an external tooth faces outwards"
 
 

@@ -46,7 +46,7 @@ def test_lengthwise_place_is_the_coordinate_of_lengthwise_modifications(kind, me
     flank = getattr(PAIRS[kind](), member).flank
     rho, z = flank.grid(5, 4)
     expected = np.broadcast_to(flank.lengthwise_coordinate(rho, z).value, rho.shape)
-    assert_allclose(flank.frame.to_picture(rho, z)[0], expected, atol=1e-12)
+    assert_allclose(flank.frame.to_picture(rho, z)[0], expected, atol=1e-12)  # mm; of some 50 mm, beside rtol
 
 
 @flanks
@@ -67,6 +67,7 @@ def test_height_on_a_cone_is_zero_on_the_pitch_cone_and_grows_with_the_cone_dist
     for angle, height in ((mesh.pinion.pitch_angle, 0.0), (mesh.pinion.tip_angle, 1.0)):
         rho, z = distance * np.sin(angle), distance * np.cos(angle)
         rise = distance * (mesh.pinion.tip_angle - mesh.pinion.pitch_angle)
+        # mm; of heights of some mm, beside rtol
         assert_allclose(frame.to_picture(rho, z)[1], height * rise, atol=1e-12)
 
 

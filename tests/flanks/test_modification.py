@@ -27,7 +27,8 @@ from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.pairs.gear_pair import cylindrical_basis
 from tests.samples.gear_pairs import cylindrical_mesh, gear_pair, meshes, modifications
 
-ROUNDING = 1e-12
+ROUNDING = 1e-12  # of an amount of 0.02 mm: none seen
+OF_REMOVAL = 1e-15  # mm; of amounts up to 0.06 mm that are added up: 1e-17 seen
 AMOUNT = 0.02
 MESH = cylindrical_mesh(helix_deg=15.0)
 GEAR, ACTIVE = MESH.pinion, MESH.pinion_active_profile
@@ -80,7 +81,7 @@ def test_lead_crowning_between_the_ends_follows_its_formula():
 def test_profile_crowning_is_nothing_midway_in_roll_length_and_its_amount_at_both_ends_of_the_active_profile():
     flank = modified(profile_crowning=AMOUNT)
     found = [removed(flank, radius_at(share), 3.0) for share in (0.0, 0.25, 0.5, 1.0)]
-    assert_allclose(found, [AMOUNT, 0.25 * AMOUNT, 0.0, AMOUNT], rtol=1e-10, atol=1e-17)
+    assert_allclose(found, [AMOUNT, 0.25 * AMOUNT, 0.0, AMOUNT], rtol=1e-10, atol=1e-17)  # atol: what is zero
 
 
 @pytest.mark.parametrize(("form", "power"), [("linear", 1), ("parabolic", 2)])
@@ -108,9 +109,11 @@ def test_active_profile_starts_where_the_tip_of_the_mate_reaches():
 @pytest.mark.parametrize("amount", [AMOUNT, -AMOUNT])
 def test_slopes_grow_from_nothing_to_their_amount(amount):
     helix, profile = modified(helix_slope=amount), modified(profile_slope=amount)
-    assert_allclose([removed(helix, WORKING, z) for z in (-HALF, 0.0, HALF)], [0.0, 0.5 * amount, amount], atol=1e-16)
+    assert_allclose(
+        [removed(helix, WORKING, z) for z in (-HALF, 0.0, HALF)], [0.0, 0.5 * amount, amount], atol=OF_REMOVAL
+    )
     found = [removed(profile, radius_at(share), 0.0) for share in (0.0, 0.5, 1.0)]
-    assert_allclose(found, [0.0, 0.5 * amount, amount], atol=1e-15)
+    assert_allclose(found, [0.0, 0.5 * amount, amount], atol=OF_REMOVAL)
 
 
 @pytest.mark.parametrize("length", [4.0, HALF])
@@ -156,7 +159,7 @@ def test_relief_starts_at_the_diameter_of_its_roll_angle_or_roll_length(relief, 
     assert expected[0].max() > 0.9 * AMOUNT
     for flank in flanks[1:]:
         for found, part in zip(parts(flank, rho, z), expected, strict=True):
-            assert_allclose(found, part, rtol=1e-10, atol=1e-13)
+            assert_allclose(found, part, rtol=1e-10, atol=1e-13)  # atol: derivatives that are zero
 
 
 def test_relief_of_a_bevel_gear_starts_at_the_cone_that_its_roll_angle_unwinds():
@@ -189,7 +192,7 @@ def test_twist_is_the_helix_slope_at_the_tip_less_that_at_the_start_of_the_profi
     flank = build(twist=amount)
     rho, z = flank.grid(41, 5)
     up, along = (1e3 * slopes[name].removal(rho, z).value for name in ("profile_slope", "helix_slope"))
-    assert_allclose(flank.removal(rho, z).value, amount * (up - 0.5) * (along - 0.5), rtol=0, atol=1e-15)
+    assert_allclose(flank.removal(rho, z).value, amount * (up - 0.5) * (along - 0.5), rtol=0, atol=OF_REMOVAL)
 
 
 @pytest.mark.parametrize("build", [modified, bevel_modified])
@@ -202,7 +205,7 @@ def test_squares_of_the_polynomial_are_the_parabolic_crownings(build):
     flank = build(polynomial=(0.0, 0.0, 0.0, 0.0, *squares))
     rho, z = flank.grid(7, 7)
     for ours, theirs in zip(parts(flank, rho, z), parts(crowned, rho, z), strict=True):
-        assert_allclose(ours, theirs, rtol=1e-11, atol=1e-16)
+        assert_allclose(ours, theirs, rtol=1e-11, atol=1e-16)  # atol: what is zero on one side
 
 
 def parts(flank, rho, z):
@@ -249,7 +252,7 @@ def test_modifications_add_up(data, mesh):
         rho, z = pair.pinion.flank.grid(7, 7)
         return pair.pinion.flank.removal(rho, z).value if isinstance(pair.pinion.flank, ModifiedFlank) else 0.0 * rho
 
-    assert_allclose(field(whole), sum(field(one) for one in single), rtol=0, atol=1e-15)
+    assert_allclose(field(whole), sum(field(one) for one in single), rtol=0, atol=OF_REMOVAL)
 
 
 def test_no_modification_leaves_the_nominal_flank():
@@ -362,6 +365,7 @@ def test_relief_starts_are_the_starts_of_the_linear_reliefs_only():
         distances = both.relief_starts(np.array(radius_at(share)), np.array(0.0))
         assert tuple(bool(jet.value > 0.0) for jet in distances) == expected
         length = ACTIVE.end_roll_length - ACTIVE.start_roll_length
+        # mm; coordinates of some 50 mm are subtracted
         assert_allclose([jet.value for jet in distances], [length * (share - 0.7), length * (0.3 - share)], atol=1e-12)
     assert (
         modified(tip_relief=AMOUNT, tip_relief_start=2.0 * radius_at(0.7)).relief_starts(np.array(52.0), np.array(0.0))
@@ -399,6 +403,7 @@ def test_modified_flank_of_the_other_side_is_the_mirror_image_of_the_other_hand(
     second = cylindrical_pair(other, modifications=both, driving="wheel").pinion.flank
     rho = np.array(GEAR.form_radius + height * (TIP - GEAR.form_radius))
     z = np.array(place * GEAR.face_width)
+    # the same operations with the signs turned
     assert_allclose(first.theta(rho, z).value, -second.theta(rho, z).value, rtol=0, atol=1e-16)
 
 

@@ -90,8 +90,8 @@ def test_points_lie_on_an_arc_about_one_centre_across_the_edge(make, edge):
     turn = np.arctan2(x - centre, RADIUS - depth)
     on = (x > centre) & (turn < min(math.radians(40.0), 0.7 * (math.pi - angle)))
     assert on.sum() > 100
-    assert_allclose(np.hypot(x - centre, RADIUS - depth)[on], RADIUS, rtol=0.0, atol=1e-12)
-    assert_allclose(depth[x < centre], 0.0, atol=1e-15)
+    assert_allclose(np.hypot(x - centre, RADIUS - depth)[on], RADIUS, rtol=0.0, atol=1e-12)  # mm; 4e-16 seen
+    assert_allclose(depth[x < centre], 0.0, atol=1e-15)  # nothing is taken there
 
 
 @pytest.mark.parametrize("edge", [TIP, LOWER, UPPER])
@@ -125,12 +125,13 @@ def test_arc_begins_tangent_to_the_flank_and_leaves_the_rest_as_it_is(make):
     rho, z = flank.off_arcs(*(part[:, 1:-1].ravel() for part in bare.grid(2, 41)))
     rounded, plain = flank.theta(rho, z), bare.theta(rho, z)
     steep = np.sqrt(1.0 / rho**2 + plain.rho**2 + plain.z**2)
-    assert_allclose((rounded.value - plain.value) / steep, 0.0, atol=1e-12)
+    assert_allclose((rounded.value - plain.value) / steep, 0.0, atol=1e-12)  # mm; nothing is taken there
     for one, other in ((rounded.rho, plain.rho), (rounded.z, plain.z)):
         assert_allclose((one - other) / steep, 0.0, atol=1e-8)
     inner = [part[3:-3, 3:-3] for part in bare.grid(33, 65)]
     clear = np.stack(flank.past_tangents(*inner)).max(axis=0) < 0.0
     assert clear.any()
+    # exact: the rounding adds zeros there
     assert_array_equal(flank.theta(*inner).value[clear], bare.theta(*inner).value[clear])
 
 
@@ -164,6 +165,7 @@ def test_arc_goes_on_as_its_parabola_without_a_jump_of_curvature():
     jumps = np.abs(np.diff((removal.rho_rho + 0.0 * rho)[begun]))
     assert jumps.max() < 0.05 * removal.rho_rho.max(), "the second derivative is continuous"
     last = (removal.rho_rho + 0.0 * rho)[-100:]
+    # the same coefficient at each place
     assert_allclose(last, last[0], rtol=1e-12, err_msg="a parabola has one second derivative")
 
 
@@ -187,4 +189,4 @@ def test_drawn_grid_is_fine_on_the_arcs():
     for end in (LOWER, UPPER):
         assert (distances[end][0] <= 1.2 * RADIUS + 1e-2).sum() >= 9
     for got, wanted in zip((rho, z), flank.grid(2, 2), strict=True):
-        assert_allclose(got[np.ix_((0, -1), (0, -1))], wanted, rtol=1e-14)
+        assert_allclose(got[np.ix_((0, -1), (0, -1))], wanted, rtol=1e-14)  # the same jets at the corners of a grid

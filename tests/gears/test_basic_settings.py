@@ -13,7 +13,7 @@ from loaded_tca.flanks import GeneratedFlank
 from loaded_tca.gears import BevelBlank
 from loaded_tca.gears.basic_settings import cutter_number, duplex_spread_blade, point_width, spread_blade
 
-ROUNDING = 1e-12
+ROUNDING = 1e-12  # of some dozen sines and products
 PRINTED = 5e-10  # half a unit of the last printed digit, nine after the point
 
 

@@ -12,7 +12,7 @@ from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.gears import BevelGear, BevelMesh, bevel_mesh
 from loaded_tca.gears.bevel import pitch_angles
 
-ROUNDING = 1e-12
+ROUNDING = 1e-12  # of some dozen operations
 PRINTED = 6e-5  # deg: four decimals
 
 

@@ -13,7 +13,7 @@ from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.gears import BevelBlank, bevel_mesh
 from loaded_tca.gears.bevel_blank import crown_gear_factors
 
-ROUNDING = 1e-11
+ROUNDING = 1e-11  # of some dozen operations, one after another
 TAPERS = ["standard", "uniform", "duplex", "modified"]
 
 
@@ -76,7 +76,7 @@ def test_clearance_between_tip_and_root_is_the_same_along_the_face(taper):
 def test_apexes_of_the_cones_agree_with_the_depths_at_mid_face(taper):
     """Wheel exactly; pinion to c (1 - cos theta), below 2e-3 clearances here."""
     pair = blank(taper=taper)
-    for gear, allowed in ((pair.wheel, 1e-12), (pair.pinion, 2e-3 * pair.clearance)):
+    for gear, allowed in ((pair.wheel, 1e-12), (pair.pinion, 2e-3 * pair.clearance)):  # mm; of lengths of 100 mm
         for angle, apex, height in (
             (gear.face_angle, gear.face_apex, gear.mean_addendum),
             (gear.root_angle, gear.root_apex, -gear.mean_dedendum),
@@ -90,7 +90,7 @@ def test_apexes_of_the_cones_agree_with_the_depths_at_mid_face(taper):
 
 def test_root_cones_of_standard_taper_pass_through_the_pitch_apex():
     pair = blank(taper="standard")
-    assert_allclose(pair.wheel.root_apex, 0.0, atol=1e-12)
+    assert_allclose(pair.wheel.root_apex, 0.0, atol=1e-12)  # mm; of 100 mm: 1e-15 seen
     assert_allclose(math.tan(pair.pinion.dedendum_angle), pair.pinion.mean_dedendum / pair.mean_cone_distance)
 
 

@@ -20,7 +20,7 @@ radii = st.floats(50.0, 5000.0)
 
 def test_straight_edge_recedes_with_the_tangent_of_its_angle():
     value, slope, bend = Blade(95.0, ANGLE).widening(HEIGHTS)
-    assert_allclose(value, HEIGHTS * math.tan(ANGLE), atol=1e-15)
+    assert_allclose(value, HEIGHTS * math.tan(ANGLE), atol=1e-15)  # atol: at no height
     assert_allclose(slope, math.tan(ANGLE))
     assert_allclose(bend, 0.0)
 
@@ -29,6 +29,7 @@ def test_straight_edge_recedes_with_the_tangent_of_its_angle():
 def test_hollow_edge_is_a_circular_arc_that_starts_with_the_blade_angle(angle, radius):
     value, slope, _ = Blade(95.0, angle, blade_radius=radius).widening(HEIGHTS)
     centre = radius * math.cos(angle), -radius * math.sin(angle)
+    # the root of two squares: 2e-16 seen
     assert_allclose(np.hypot(value - centre[0], HEIGHTS - centre[1]), radius, rtol=1e-13)
     assert_allclose(slope[0], math.tan(angle))
     assert (np.diff(slope) > 0.0).all()  # the centre lies on the side of the workpiece
@@ -56,6 +57,7 @@ def test_rounded_tip_touches_the_edge_at_the_form_height(angle, radius, edge):
     """The centre of the rounding lies an edge radius above the tip plane and as far from the edge, along its normal."""
     blade = Blade(95.0, angle, blade_radius=radius, edge_radius=edge)
     _, slope, _ = blade.widening(blade.form_height)
+    # a few operations: 3e-16 seen
     assert_allclose(blade.form_height + edge * slope / math.hypot(1.0, slope), edge, rtol=1e-12)
 
 

@@ -46,7 +46,8 @@ def ordinary_meshes(draw):
 @given(st.floats(1e-4, 1.5))
 def test_inverse_involute_undoes_the_involute(angle):
     # inv(alpha) = alpha^3/3 + ... loses three digits of alpha per digit of smallness: eps/alpha^2
-    assert_allclose(inverse_involute(involute(angle)), angle, rtol=1e-15 + 1e-15 / angle**2)
+    # tan(angle) - angle leaves angle^3/3, known to eps/angle^2: 1.4e-16/angle^2 seen
+    assert_allclose(inverse_involute(involute(angle)), angle, rtol=2e-15 + 2e-15 / angle**2)
 
 
 def test_inverse_involute_ends_at_its_limits():
@@ -71,6 +72,7 @@ def test_spur_gear_sizes_follow_from_teeth_and_module():
         [30.0, 30.0 * cos(radians(20)), 32.0, 27.5, 2.0 * pi * cos(radians(20))],
         rtol=ROUNDING,
     )
+    # atol: mm, a difference of equal numbers
     assert_allclose([spur.tooth_thickness, spur.tip_alteration], [pi, 0.0], rtol=ROUNDING, atol=1e-14)
 
 
@@ -100,14 +102,14 @@ def test_tooth_thickness_at_reference_and_base_circle(teeth, shift, helix):
 def test_tooth_thickness_vanishes_at_the_pointed_radius():
     spur = gear(20, profile_shift=0.5)
     assert spur.pointed_radius > spur.tip_radius
-    assert_allclose(spur.tooth_thickness_at(spur.pointed_radius), 0.0, atol=1e-13)
+    assert_allclose(spur.tooth_thickness_at(spur.pointed_radius), 0.0, atol=1e-13)  # mm; of 50 mm: 9e-15 seen
 
 
 @given(st.floats(0.0, 40.0))
 def test_radius_and_roll_length_are_inverse(roll_length):
     spur = gear()
     # sqrt(r^2 - r_b^2) loses digits near the base circle: eps r_b^2/a^2
-    assert_allclose(spur.roll_length(spur.radius_at_roll_length(roll_length)), roll_length, rtol=1e-12, atol=1e-6)
+    assert_allclose(spur.roll_length(spur.radius_at_roll_length(roll_length)), roll_length, rtol=ROUNDING, atol=1e-6)
 
 
 def test_roll_length_starts_at_the_base_circle():
@@ -399,13 +401,14 @@ def test_lengths_scale_with_the_module(pair, factor):
 def test_path_of_contact_agrees_with_the_active_profiles(pair):
     path, pinion, wheel = pair.path_of_contact, pair.pinion_active_profile, pair.wheel_active_profile
     assert pinion.start_roll_length == path.A
-    assert_allclose(path.T2 - path.E, wheel.start_roll_length, rtol=1e-12, atol=1e-12)
+    # atol: mm, lengths of some 30 mm are subtracted
+    assert_allclose(path.T2 - path.E, wheel.start_roll_length, rtol=ROUNDING, atol=1e-12)
     assert pinion.start_radius >= pair.pinion.form_radius * (1.0 - ROUNDING)
     assert pinion.end_radius == pair.pinion.tip_radius
     assert pinion.end_roll_length >= path.E * (1.0 - ROUNDING)
     assert 0.0 <= path.A < path.C < path.E <= path.T1T2
-    assert_allclose(path.AD, pair.pinion.base_pitch, rtol=1e-12)
-    assert_allclose(path.E - path.B, pair.pinion.base_pitch, rtol=1e-12)
+    assert_allclose(path.AD, pair.pinion.base_pitch, rtol=ROUNDING)
+    assert_allclose(path.E - path.B, pair.pinion.base_pitch, rtol=ROUNDING)
 
 
 def test_pitch_point_lies_on_both_working_circles():

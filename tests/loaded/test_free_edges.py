@@ -56,8 +56,8 @@ def test_half_space_that_ends_is_none_of_the_block():
 
 def test_ends_of_equal_faces_soften_both_ends_alike():
     added, _ = added_of(pair_of(), box=(0.3, 6.375))
-    assert_allclose(added, added.T, rtol=1e-12)
-    assert_allclose(added, added[::-1, ::-1], rtol=1e-6, atol=1e-12)
+    assert_allclose(added, added.T, rtol=1e-12)  # one number for both
+    assert_allclose(added, added[::-1, ::-1], rtol=1e-6, atol=1e-12)  # atol: mm/N, far from both ends, of 1e-5
     assert added[1, 1] > added[2, 2] > 0.0
     assert (np.linalg.eigvalsh(added) > -0.05 * np.linalg.eigvalsh(added)[-1]).all()
 
@@ -69,7 +69,7 @@ def test_slices_may_be_listed_towards_either_end():
     forth = Columns(grid.y, grid.widths, grid.origin, grid.axes)
     added, back = (edge_compliances(pair, [one])[0] for one in (forth, turned))
     assert added.any()
-    assert_allclose(back[::-1, ::-1], added, rtol=1e-9, atol=1e-12 * added.max())
+    assert_allclose(back[::-1, ::-1], added, rtol=1e-9, atol=1e-12 * added.max())  # atol: slices far from the end
 
 
 def test_both_gears_that_end_together_soften_twice_as_much_as_one():
@@ -199,7 +199,7 @@ def test_grids_found_together_are_as_each_alone(monkeypatch):
     together = edge_compliances(pair, grids)
     assert [one is None for one in together] == [False, False, False, True]
     for found, expected in zip(together[:3], alone[:3], strict=True):
-        assert_allclose(found, expected, rtol=1e-12, atol=1e-18)
+        assert_allclose(found, expected, rtol=1e-12, atol=1e-18)  # factors of the same matrix; atol: where it is zero
 
 
 def test_end_that_is_too_sharp_is_told_of_its_own_grid_alone(monkeypatch):

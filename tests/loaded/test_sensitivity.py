@@ -242,6 +242,7 @@ def test_contacts_without_a_cell_between_the_bounds_have_no_part_in_the_rate():
     capped, none = (replace(first, pressure=p * np.isfinite(first.problem.gap)) for p in (first.problem.cap, 0.0))
     states = [[capped], [second], [capped, none], [capped, second, none], []]
     rate = loaded_states([[second]]).stiffness[0]
+    # exact: each state by itself
     assert_array_equal(loaded_states(states, pairs).stiffness, [0.0, rate, 0.0, rate, 0.0])
     assert rate > 0.0
     assert_array_equal(loaded_states([]).stiffness, [])

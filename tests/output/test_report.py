@@ -134,7 +134,7 @@ def test_table_agrees_with_the_result():
     def column(name):
         return np.array([float(row[name]) for row in rows])
 
-    nine_digits = {"rtol": 1e-8, "atol": 1e-12}
+    nine_digits = {"rtol": 1e-8, "atol": 1e-12}  # atol: what is zero but for rounding
     assert_allclose(column("pinion_angle_deg"), np.degrees(cycle.pinion_angle), **nine_digits)
     assert_allclose(column("peak_pressure_MPa"), cycle.peak_pressure[0, :, 0], **nine_digits)
     arcsec = np.degrees(cycle.transmission_error[0]) * 3600.0

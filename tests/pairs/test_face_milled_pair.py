@@ -128,6 +128,7 @@ def test_mirrored_pair_has_the_same_transmission_error():
     gears = matched_pinion(), published_wheel()
     mirrored = [with_hand(gear, hand) for gear, hand in zip(gears, ("right", "left"), strict=True)]
     first, second = (trace_contact(face_milled_pair(*pair), [-0.1, 0.0, 0.1]) for pair in (gears, mirrored))
+    # rad; angles of order 0.1, beside rtol
     assert_allclose(first.transmission_error, second.transmission_error, atol=1e-13)
     assert_allclose(first.point, second.point * [1.0, -1.0, 1.0], atol=1e-9)
 
@@ -146,6 +147,7 @@ def test_modifications_take_material_off_at_the_ends_of_the_flank():
     )
     rho, z = plain.pinion.flank.grid(3, 3)
     removed = crowned.pinion.flank.removal(rho, z).value
+    # mm, also below: parabolas whose origin is rounded
     assert_allclose(removed, [[0.03, 0.02, 0.03], [0.01, 0.0, 0.01], [0.03, 0.02, 0.03]], atol=1e-12)
     path = trace_contact(crowned, [0.0, 0.16])
     assert path.transmission_error[1] < trace_contact(plain, [0.16]).transmission_error[0]
@@ -168,7 +170,7 @@ def test_relief_starts_at_a_length_over_the_form_line(length):
     flank = matched(modifications=(relieved, NONE)).pinion.flank
     rho, z = flank.grid(101, 3)
     height, removed = flank.profile_coordinate(rho, z).value, flank.removal(rho, z).value
-    assert_allclose(removed[height <= length], 0.0, atol=1e-15)
+    assert_allclose(removed[height <= length], 0.0, atol=1e-15)  # nothing is removed there
     assert (removed[height > length] > 0.0).all()
 
 
@@ -206,7 +208,7 @@ def test_perturbed_settings_touch_where_a_dense_grid_does(pinion, wheel, part):
     angle = part * pair.pitch
     found = trace_contact(pair, [angle]).transmission_error[0]
     expected = highest_on_grid(pair, angle)
-    assert found >= expected - 1e-12
+    assert found >= expected - 1e-12  # rounding
     assert_allclose(found, expected, atol=3e-5)  # what the curved gap drops by between grid points, on an edge slopes
 
 

@@ -16,7 +16,7 @@ from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.pairs.gear_pair import cylindrical_basis
 from tests.samples.gear_pairs import cylindrical_mesh, gear_pair
 
-ROUNDING = 1e-12
+ROUNDING = 1e-12  # of products of rotations and a few factors: 4e-16 seen
 DISTANCE = 136.5  # mm, the pair 34/57 of module 3
 
 angles = st.floats(-0.05, 0.05)
@@ -100,6 +100,7 @@ def test_wheel_basis_is_the_gradient_of_the_wheel_coordinates(mounting, point):
 def test_cylindrical_basis_is_orthonormal_for_any_shape_of_angles():
     basis = cylindrical_basis(np.linspace(-4.0, 4.0, 6).reshape(2, 3))
     assert basis.shape == (2, 3, 3, 3)
+    # products of unit vectors: 3e-17 seen
     assert_allclose(basis @ np.swapaxes(basis, -1, -2), np.broadcast_to(np.eye(3), basis.shape), atol=1e-15)
 
 

@@ -32,7 +32,7 @@ def test_teeth_touch_at_the_contact_point_without_passing_through_each_other(nam
     theta = np.arctan2(points[there, 1], points[there, 0]) - pair.sense * contact.pinion_angle
     apart = pair.pinion.flank.side * (theta - pair.pinion.flank.theta(rho[there], z[there]).value)
     assert there.any()
-    assert apart.min() > -1e-12
+    assert apart.min() > -1e-12  # mm; rounding of 100 mm
     assert_allclose(
         teeth.on_pinion(np.array(contact.pinion_radius), np.array(contact.pinion_axial), contact.pinion_angle),
         contact.point,
@@ -51,7 +51,7 @@ def test_tooth_in_mesh_holds_the_flank_of_the_pair(name):
     points = wheel.vertices[np.unique(wheel.triangles[wheel.cell_data["patch"] == patch])]
     radius, theta, axial = pair.to_wheel(points)
     turned = np.remainder(theta + 0.07 - pair.wheel.flank.theta(radius, axial).value + math.pi, 2.0 * math.pi) - math.pi
-    assert np.abs(turned).max() < 1e-12
+    assert np.abs(turned).max() < 1e-12  # rad; none seen
 
 
 def test_pressure_lies_on_the_flank_and_keeps_its_values():

@@ -15,7 +15,7 @@ from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from tests.samples.gear_pairs import NONE, cylindrical_mesh
 
 CROWNED = FlankModifications(lead_crowning=0.005)
-SAME_ANGLE = 1e-13  # rad
+SAME_ANGLE = 1e-13  # rad; contacts at the base circle, whose radius is near its smallest: 5e-15 seen
 SAME_PLACE = 1e-6  # mm; the flat direction of a maximum is known to the root of rounding
 NEAR_BASE = 1e-7  # mm; at a roll length of 1 um the radius is 2e-8 mm above the base circle
 SAME_NORMAL = 1e-4  # 2e-8 mm beside a contact at the base circle, where the profile bends most

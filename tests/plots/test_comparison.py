@@ -40,7 +40,7 @@ def test_curves_are_those_of_each_result_under_the_shared_torque():
             assert_allclose(line.get_ydata(), curve)
         amplitudes = length * cycle.harmonics(8)[torque]
         heights = [bar.get_height() for bar in drawn["harmonics"].containers[k]]
-        assert_array_equal(heights, amplitudes)
+        assert_array_equal(heights, amplitudes)  # exact: the same product, copied
         for panel, values in (("pressure", cycle.peak_pressure), ("share", 100.0 * cycle.load_share)):
             line = drawn[panel].get_lines()[k]
             assert (np.diff(line.get_xdata()) >= 0.0).all()

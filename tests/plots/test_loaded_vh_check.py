@@ -75,7 +75,7 @@ def test_pattern_lies_around_the_centre_of_the_force(gear):
     (dot,) = axes.lines
     span = np.ptp(axes.dataLim.get_points(), axis=0)
     assert np.all(np.abs(corners - dot.get_xydata()[0]) < 0.25 * span)
-    assert_allclose(mesh.norm.vmax, np.nanmax(cycle().peak_pressure[1]), rtol=1e-12)
+    assert_allclose(mesh.norm.vmax, np.nanmax(cycle().peak_pressure[1]), rtol=1e-12)  # the same number
     title = told(figure)
     assert f"loaded contact pattern on the {gear}, pinion torque 0.8 N m" in title
 

@@ -23,6 +23,8 @@ from loaded_tca.results.key_figures import mean_over_a_pitch
 from tests.samples.pictures import told
 from tests.samples.results import result
 
+ROUNDING = 1e-12
+"""Of numbers that are drawn, after one factor."""
 TOLERANCES = {
     "pinion.modifications.lead_crowning_um": 2.0,
     "wheel.modifications.helix_slope_um": 3.0,
@@ -52,8 +54,8 @@ def test_bars_of_the_tornado_are_sensitivity_times_tolerance_the_longest_on_top(
         raised, lowered = ([bar.get_width() for bar in bars] for bars in axes.containers)
         expected = values[0] * SPREAD
         order = np.argsort(-np.abs(expected))
-        assert_allclose(raised, expected[order], rtol=1e-12)
-        assert_allclose(lowered, -expected[order], rtol=1e-12)
+        assert_allclose(raised, expected[order], rtol=ROUNDING)
+        assert_allclose(lowered, -expected[order], rtol=ROUNDING)
         words = ["lead crowning ± 2 µm", "helix slope ± 3 µm", "error ± 0.02 mm", "plane ± 0.01 deg", "torque ± 5 N m"]
         labels = [label.get_text() for label in axes.get_yticklabels()]
         assert all(words[k] in label for k, label in zip(order, labels, strict=True))
@@ -69,7 +71,7 @@ def test_tornado_of_many_keys_shows_the_longest_bars(monkeypatch):
     figure = plot_tornado(found(), TOLERANCES, ["peak_pressure_MPa"])
     (axes,) = figure.axes
     longest = np.sort(np.abs(key_figure_slopes(found())["peak_pressure_MPa"][1] * SPREAD))[:-3:-1]
-    assert_allclose(np.abs([bar.get_width() for bar in axes.containers[0]]), longest, rtol=1e-12)
+    assert_allclose(np.abs([bar.get_width() for bar in axes.containers[0]]), longest, rtol=ROUNDING)
     assert "2 of 5 keys" in told(figure)
 
 
@@ -86,8 +88,8 @@ def test_curves_are_sensitivity_times_tolerance():
     absolute, about_mean = figure.axes
     expected = length(found()) * found().transmission_error[1] * SPREAD
     for k, (one, other) in enumerate(zip(absolute.lines, about_mean.lines, strict=True)):
-        assert_allclose(one.get_ydata(), expected[:, k], rtol=1e-12)
-        assert_allclose(other.get_ydata(), expected[:, k] - mean_over_a_pitch(expected[:, k]), rtol=0, atol=1e-12)
+        assert_allclose(one.get_ydata(), expected[:, k], rtol=ROUNDING)
+        assert_allclose(other.get_ydata(), expected[:, k] - mean_over_a_pitch(expected[:, k]), rtol=0, atol=ROUNDING)
     assert len(absolute.lines) == len(TOLERANCES)
     assert all("[µm]" in axes.get_ylabel() for axes in figure.axes)
     assert about_mean.get_xlabel() == "pinion angle [deg]"
@@ -117,7 +119,7 @@ def test_band_is_the_root_of_the_sum_of_the_squares():
                     heights = border[np.isclose(border[:, 0], place), 1]
                     assert_allclose([heights.min(), heights.max()], middle + times * one * np.array([-1.0, 1.0]))
         error = length(found()) * found().result.transmission_error[torque]
-        assert_allclose(absolute.lines[0].get_ydata(), error, rtol=1e-12)
+        assert_allclose(absolute.lines[0].get_ydata(), error, rtol=ROUNDING)
         assert "[µm]" in absolute.get_ylabel()
     assert "tolerances of 5 keys, to first order" in told(figure)
 

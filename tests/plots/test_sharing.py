@@ -25,6 +25,9 @@ from loaded_tca.unloaded import contact_span
 from tests.samples.pictures import told
 from tests.samples.results import changed, changed_scene, result, with_a_gap
 
+ROUNDING = 1e-12
+"""Of numbers that are drawn; matplotlib moves limits by parts of eps."""
+
 
 def shared(name="mesh_cycle_helical", torques=(260.0,)):
     return result(name, positions=5, torques=torques)
@@ -81,7 +84,7 @@ def test_pair_at_the_pitch_point_has_no_sign():
 def test_colours_of_the_flanks_do_not_follow_the_spikes_of_edges():
     cycle = shared()
     bar = plot_contact_path(cycle).axes[-1]
-    assert_allclose(bar.get_ylim()[1], np.nanmax(cycle.peak_pressure), rtol=1e-12)
+    assert_allclose(bar.get_ylim()[1], np.nanmax(cycle.peak_pressure), rtol=ROUNDING)
 
 
 def test_side_on_which_nothing_touches_has_no_mark(monkeypatch):
@@ -231,7 +234,7 @@ def test_scale_of_the_envelope_ends_at_the_highest_peak_pressure():
     cycle = shared()
     assert np.nanmax(cycle.edge_pressure) > 1.2 * np.nanmax(cycle.peak_pressure)
     _, _, bar, limits = envelope(cycle)
-    assert_allclose(limits, (0.0, np.nanmax(cycle.peak_pressure)), rtol=1e-12)
+    assert_allclose(limits, (0.0, np.nanmax(cycle.peak_pressure)), rtol=ROUNDING)
     assert bar._colorbar.extend == "max"
     assert envelope(shared("mesh_cycle_spur", torques=(40.0,)))[2]._colorbar.extend == "neither"
 
@@ -244,11 +247,11 @@ def test_contact_patterns_are_the_envelopes_of_their_torques_on_one_scale():
         for axes, alone in zip(panels[2 * torque : 2 * torque + 2], own, strict=False):
             drawn, expected = axes.collections[0], alone.collections[0]
             assert_array_equal(drawn.get_array().filled(0.0), expected.get_array().filled(0.0))
-            assert_allclose(drawn.get_clim(), (0.0, np.nanmax(cycle.peak_pressure)), rtol=1e-12)
+            assert_allclose(drawn.get_clim(), (0.0, np.nanmax(cycle.peak_pressure)), rtol=ROUNDING)
             assert (axes.get_xlim(), axes.get_ylim()) == (alone.get_xlim(), alone.get_ylim())
     assert panels[0].get_ylabel().startswith("pinion torque 40 N m\n")
     assert panels[2].get_ylabel().startswith("pinion torque 130 N m\n")
-    assert_allclose(bar.get_ylim()[1], np.nanmax(cycle.peak_pressure), rtol=1e-12)
+    assert_allclose(bar.get_ylim()[1], np.nanmax(cycle.peak_pressure), rtol=ROUNDING)
 
 
 def test_contact_patterns_of_many_torques_stay_few():
@@ -336,7 +339,7 @@ def test_load_over_the_face_width_carries_the_force_and_has_the_load_factor(name
         load, borders, _ = steps.get_data()
         force = np.nansum(cycle.normal_force[torque, :-1], axis=-1).mean()  # N; the last position is the first one
         assert_allclose(load @ np.diff(borders), force, rtol=1e-6)
-        assert_allclose(load.max() / load.mean(), cycle.face_load_factor[torque], rtol=1e-12)
+        assert_allclose(load.max() / load.mean(), cycle.face_load_factor[torque], rtol=ROUNDING)
         assert f"K_Hβ = {cycle.face_load_factor[torque]:.3g}" in steps.get_label()
     assert axes.get_xlabel() == cycle.gear_pair.pinion.flank.frame.labels[0]
 

@@ -69,6 +69,7 @@ def test_lines_are_the_figure_over_the_first_key_one_for_each_value_of_the_secon
     for axes, factor in zip(figure.axes, (0.5, 1.0), strict=True):
         for line, tip in zip(curves(axes), (0.0, 10.0), strict=True):
             assert_allclose(line.get_xdata(), [0.0, 3.0, 6.0])
+            # one factor
             assert_allclose(line.get_ydata(), factor * (500.0 + 10.0 * line.get_xdata() + tip), rtol=1e-12)
         assert (axes.get_xlabel(), axes.get_ylabel()) == ("pinion lead crowning [µm]", "peak pressure [MPa]")
     assert [text.get_text() for text in figure.legends[0].texts] == ["0", "10"]

@@ -14,6 +14,9 @@ from loaded_tca.plots.three_d import plot_teeth, show_teeth
 from tests.samples.pictures import told
 from tests.samples.results import changed_scene, result, with_a_gap
 
+ROUNDING = 1e-12
+"""Of numbers that are drawn."""
+
 
 def axes_of(figure):
     return figure.axes[0]
@@ -60,7 +63,7 @@ def test_colours_of_the_teeth_do_not_follow_the_spike_of_an_edge():
     cycle = result("fzg_c14", positions=3)
     bar = plot_teeth(cycle).axes[1]
     assert cycle.on_edge.all()
-    assert_allclose(bar.get_ylim()[1], cycle.peak_pressure.max(), rtol=1e-12)
+    assert_allclose(bar.get_ylim()[1], cycle.peak_pressure.max(), rtol=ROUNDING)
     assert bar._colorbar.extend == "max"
 
 
@@ -68,7 +71,7 @@ def test_colours_of_the_teeth_end_at_the_highest_pressure_of_all_positions():
     cycle = result()
     lowest = int(cycle.peak_pressure[0, :, 0].argmin())
     bar = plot_teeth(cycle, position=lowest).axes[1]
-    assert_allclose(bar.get_ylim()[1], np.nanmax(cycle.peak_pressure), rtol=1e-12)
+    assert_allclose(bar.get_ylim()[1], np.nanmax(cycle.peak_pressure), rtol=ROUNDING)
     assert bar._colorbar.extend == "neither"
 
 

@@ -11,7 +11,7 @@ from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.gears.cylindrical import involute
 from loaded_tca.reference.iso6336_3 import face_load_factor, helix_angle_factor, nominal_root_stress, root_section
 
-ROUNDING = 1e-12
+ROUNDING = 1e-12  # a few dozen floating point operations
 USUAL = {"teeth": 25, "profile_shift": 0.0, "tip_diameter": 27.0, "transverse_contact_ratio": 1.6}
 
 

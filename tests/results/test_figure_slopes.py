@@ -253,7 +253,7 @@ def test_peaks_of_several_contacts_are_those_of_each():
     _, coarse = on_relief_start((24, 20))
     together = peak_pressure_slopes(pair, [contact, coarse, contact], [True, True, False])
     for found, one, rough in zip(together, [contact, coarse, contact], [True, True, False], strict=True):
-        assert_array_equal(found, peak_pressure_slopes(pair, [one], [rough])[0])
+        assert_array_equal(found, peak_pressure_slopes(pair, [one], [rough])[0])  # exact: each contact by itself
     assert peak_pressure_slopes(pair, [], []) == []
 
 

@@ -14,8 +14,9 @@ from loaded_tca.analysis import analyse
 from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.plots import plot_transmission_error
 from loaded_tca.results.edge_cell import place_on_material
-from loaded_tca.results.key_figures import harmonic_coefficients, mean_over_a_pitch
+from loaded_tca.results.key_figures import mean_over_a_pitch
 from loaded_tca.scene import read_scene
+from loaded_tca.unloaded.harmonics import harmonic_coefficients
 from tests.samples.results import FLANKS_ALONE, SCENES, changed, result
 
 

@@ -67,6 +67,7 @@ def test_nominal_stress_of_a_spur_pair_is_near_the_tension():
 
 def test_nominal_stress_grows_with_the_helix_and_shrinks_with_the_face():
     narrow, wide = (scene(**{"pinion.face_width_mm": width, "wheel.face_width_mm": width}) for width in (10.0, 20.0))
+    # also below: half the width enters once, as a factor
     assert_allclose(narrow.nominal_root_stress, 2.0 * np.array(wide.nominal_root_stress), rtol=1e-12)
     assert_allclose(narrow.tooth_height_over_width, 2.0 * wide.tooth_height_over_width, rtol=1e-12)
 

@@ -80,6 +80,7 @@ def test_root_stress_follows_a_wheel_that_moves_below_the_contact(key, step):
 def test_sensitivities_are_found_anew_by_pickle_and_copy():
     found = result(**{"analysis.torques_Nm": (150.0,)}).sensitivities([CROWNING])
     for again in (pickle.loads(pickle.dumps(found)), copy.deepcopy(found)):
+        # the same numbers from the file, the same equations
         assert_allclose(again.transmission_error, found.transmission_error, rtol=1e-12)
 
 

@@ -93,6 +93,6 @@ def assert_same(first, second):
             assert_same(one, other)
     elif isinstance(first, np.ndarray):
         assert first.dtype == second.dtype
-        assert_array_equal(first, second, strict=True)
+        assert_array_equal(first, second, strict=True)  # exact: copied, or read from a file that keeps every digit
     else:
         assert first == second or (first != first and second != second)  # NaN is the same as NaN

@@ -304,6 +304,7 @@ def test_replace_checks_again(scene):
 def test_every_setting_reaches_the_machine(scene):
     gear = scene.with_changes(EVERY_KEY).mesh().pinion
     found = {field.name: getattr(gear.machine, field.name) for field in fields(gear.machine)}
+    # one factor, one rounding
     assert_allclose([found.pop("tilt"), found.pop("swivel")], np.radians([0.5, -30.0]), rtol=1e-15)
     assert_allclose([found.pop("cradle_angle"), found.pop("root_angle")], np.radians([52.796746783, 15.640967271]))
     assert found == {
@@ -339,7 +340,7 @@ def test_pair_is_the_one_made_by_hand(scene):
     )
     assert (found.teeth, found.driving, found.sense) == ((19, 62), 1, -1)
     assert [gear.material.youngs_modulus for gear in (found.pinion, found.wheel)] == [206000.0, 1e5]
-    assert_allclose(found.wheel_origin, expected.wheel_origin, atol=1e-12)
+    assert_allclose(found.wheel_origin, expected.wheel_origin, atol=1e-12)  # mm; of 100 mm, beside rtol
     assert_allclose(found.wheel_axes, expected.wheel_axes, atol=PRINTED)
     assert_allclose(found.base_radii, expected.base_radii, rtol=PRINTED)
     for member in ("pinion", "wheel"):

@@ -186,6 +186,7 @@ def test_scene_needs_the_file_no_more_once_it_is_read(small, scene, tmp_path):
     assert again.wheel.flank.measurement.source == "wheel.csv"
     assert again.wheel.flank.file is None
     rho, z = first.pair().wheel.flank.grid(5, 5)
+    # exact: every digit is written, the same operations
     assert_array_equal(again.pair().wheel.flank.theta(rho, z).value, first.pair().wheel.flank.theta(rho, z).value)
 
 
@@ -379,7 +380,11 @@ def test_polynomial_of_the_crowning_is_the_crowning(scene):
     )
     assert isinstance(by_polynomial, CylindricalScene)
     assert_allclose(
-        in_contact(by_polynomial).transmission_error, in_contact(by_crowning).transmission_error, rtol=0, atol=1e-14
+        # rad; of angles of order 0.1
+        in_contact(by_polynomial).transmission_error,
+        in_contact(by_crowning).transmission_error,
+        rtol=0,
+        atol=1e-14,
     )
 
 

@@ -82,7 +82,7 @@ def test_curvatures_found_together_are_those_found_alone(name):
     together = relative_curvatures(pair, [c for c in contacts_of(pair) if c.in_contact])
     alone = [relative_curvature(pair, contact) for contact in contacts_of(pair) if contact.in_contact]
     for one, other in zip(together, alone, strict=True):
-        assert (one.across, one.along) == (other.across, other.along)
+        assert (one.across, one.along) == (other.across, other.along)  # exact, also below: each contact by itself
         np.testing.assert_array_equal(one.axes, other.axes)
 
 
@@ -140,6 +140,7 @@ def test_box_beside_the_contact_point_is_a_part_of_a_larger_one():
     (beside,) = sample_separations(pair, [contact], **given)
     whole = sample_separation(pair, contact, cells=(12, 20), box=(0.3, 5.0))
     for part, axis in (("x", slice(4, 12)), ("y", slice(0, 12))):
+        # mm, also below: the same cells from other ends of the box, beside rtol
         np.testing.assert_allclose(getattr(beside, part), getattr(whole, part)[axis], atol=1e-12)
     np.testing.assert_allclose(beside.gap, whole.gap[4:, :12], atol=1e-12)
     np.testing.assert_allclose(beside.cover, whole.cover[4:, :12])

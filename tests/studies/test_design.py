@@ -247,6 +247,7 @@ def test_starts_and_analyses_on_an_executor(found):
 def test_a_model_is_made_again_elsewhere():
     one = model(variables={CROWNING: (1.0, 12.0)})
     again = pickle.loads(pickle.dumps(one))
+    # the same analysis once more
     assert_allclose(again.evaluate([5.0]).transmission_error, one.evaluate([5.0]).transmission_error, rtol=1e-12)
 
 
@@ -257,7 +258,7 @@ def test_objectives_over_the_samples():
     for kind, value in expected.items():
         objective = designs.Objective(kind, k=2.0, percentile=75.0)
         found, weights = objective.of(figures)
-        assert found == pytest.approx(value, rel=1e-12)
+        assert found == pytest.approx(value, rel=1e-12)  # the same figure
         change = 1e-6 * np.arange(8.0).reshape(4, 2)
         assert_allclose((weights * change).sum(), objective.of(figures + change)[0] - found, rtol=1e-4)
 

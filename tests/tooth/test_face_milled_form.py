@@ -45,6 +45,7 @@ def test_root_lies_on_the_cone_of_the_blank_about_its_own_apex():
     tooth = build_tooth(pinion.flanks, pinion.form, Resolution(9, 5, 3, 7))
     root = tooth.outline[0]
     rho, z = np.hypot(root[:, 0], root[:, 1]), root[:, 2]
+    # rad; of order one, beside rtol
     assert_allclose(np.arctan2(rho, z + 0.4), gears.pinion.blank.root_angle, atol=1e-12)
 
 

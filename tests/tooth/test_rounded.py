@@ -22,6 +22,7 @@ def test_tip_land_and_face_ends_are_narrower_by_the_arcs():
     flank, sharp_flank = (one.patch("flank +") for one in (tooth, sharp_tooth))
     azimuth, sharp_azimuth = (np.arctan2(one[..., 1], one[..., 0]) for one in (flank, sharp_flank))
     assert azimuth[-1, 0] < azimuth[-1, 16], "the end of the face is turned in"
+    # rad; away from the arcs the rounding adds zeros
     assert azimuth[-1, 16] == pytest.approx(sharp_azimuth[-1, 16], abs=1e-12)
 
 
@@ -40,7 +41,7 @@ def test_teeth_whose_corners_have_no_room_for_all_arcs_are_built():
     tooth = build_tooth(gear.flanks, gear.form)
     azimuth = np.arctan2(tooth.outline[..., 1], tooth.outline[..., 0])
     thickness = azimuth[tooth.joints[4]] - azimuth[tooth.joints[3]]
-    assert (thickness >= -1e-15).all()
+    assert (thickness >= -1e-15).all()  # mm; a depth less itself
     assert thickness[len(thickness) // 2] > 0.0
 
 

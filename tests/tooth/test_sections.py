@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.tooth import ApexSpheres, TransversePlanes
 
 FAMILIES = [TransversePlanes(), ApexSpheres()]
-ROUNDING = 1e-13
+ROUNDING = 1e-13  # of a few functions: 6e-16 seen, at lengths near zero 3e-15 mm
 DIFFERENCE = 1e-8  # central differences over 1e-4 mm
 
 
@@ -61,5 +61,6 @@ def test_circle_on_a_sphere_has_a_circle_as_image():
     flat = radius[:, None] * np.stack([x, y], axis=1) / np.hypot(x, y)[:, None]
     system = np.column_stack([2.0 * flat, np.ones(len(flat))])
     solution, residual, *_ = np.linalg.lstsq(system, (flat**2).sum(axis=1))
+    # the square of a length in squared mm: a place to 1e-9 of the distance, 2e-24 seen
     assert residual[0] < 1e-18 * distance**4
     assert np.isfinite(solution).all()

@@ -119,7 +119,7 @@ def test_curvature_across_a_line_contact_is_that_of_two_involutes(helix_deg):
     lengths = [radius * math.tan(mesh.working_pressure_angle) for radius in pair.base_radii]
     expected = math.cos(mesh.pinion.base_helix_angle) * sum(1.0 / length for length in lengths)
     assert_allclose(found.across, expected, rtol=CLOSED_FORM)
-    assert_allclose(found.along, 0.0, atol=1e-15)
+    assert_allclose(found.along, 0.0, atol=1e-15)  # 1/mm, of curvatures of 0.1: 2e-19 seen
 
 
 @pytest.mark.parametrize(("helix_deg", "radius"), [(0.0, 10.9259), (15.0, 12.0224)])
@@ -142,7 +142,7 @@ def test_crowning_over_the_face_width_curves_a_spur_flank_along_its_contact_line
 def test_axes_are_right_handed_with_the_normal_out_of_the_pinion_and_the_second_towards_positive_z(pair, turn):
     contact = trace_contact(pair, [turn * pair.pitch])[0]
     axes = relative_curvature(pair, contact).axes
-    assert_allclose(axes @ axes.T, np.eye(3), atol=1e-12)
+    assert_allclose(axes @ axes.T, np.eye(3), atol=1e-12)  # also below: products of three unit vectors, 4e-16 seen
     assert_allclose(np.linalg.det(axes), 1.0, rtol=1e-12)
     assert_allclose(axes[2], contact.normal)
     assert axes[1, 2] >= 0.0
@@ -157,6 +157,7 @@ def test_second_axis_of_a_bevel_contact_leads_to_the_heel_also_on_a_flat_gear(te
     for contact in map(trace_contact(pair, np.linspace(-0.4, 0.4, 5) * pair.pitch).__getitem__, range(5)):
         axes = relative_curvature(pair, contact).axes
         assert np.linalg.norm(contact.point + 0.1 * axes[1]) > np.linalg.norm(contact.point)
+        # of a unit vector, beside rtol
         assert_allclose(heelwards(pair, contact), contact.point / np.linalg.norm(contact.point), atol=1e-12)
 
 

@@ -75,7 +75,7 @@ def test_value_is_the_scaled_transmission_error_of_the_definition(pair, share, t
     value = pair.driving * lag * pair.base_radii[1]
     field = EaseOff(pair)
     station = field.station(phi1, rho, z)
-    assert_allclose(field.value(station, phi1), value, atol=1e-12)
+    assert_allclose(field.value(station, phi1), value, atol=1e-12)  # mm, also below: coordinates of 100 mm, beside rtol
     assert_allclose(field.heights(phi1, rho, z)[0], value, atol=1e-12)
 
 
@@ -91,7 +91,7 @@ def test_slope_of_the_field_is_the_tilt_of_the_normals_over_the_lever(pair, shar
     turning = np.cross(-pair.wheel_axes[2], station.point[0] - pair.wheel_origin)
     expected = (station.tangents[0] @ normal) / (normal @ turning) * pair.sense
     found = field.gradient(station)[0] / (pair.driving * pair.base_radii[1])
-    assert_allclose(found, expected, rtol=1e-9, atol=1e-14)
+    assert_allclose(found, expected, rtol=1e-9, atol=1e-14)  # atol: rad, an angle that is none
 
 
 @given(pairs(), shares, turns)
@@ -126,6 +126,7 @@ def test_edge_normal_is_the_gradient_of_the_edge_in_space(pair, share, turn, edg
     field = EaseOff(pair)
     station = field.station(np.array([turn * pair.pitch]), rho, z)
     normal = field.edge_normal(station, edge)[0]
+    # of unit vectors: 5e-17 seen
     assert_allclose(station.tangents[0] @ normal, field.edges(station)[1][0, edge], atol=1e-12)
 
 
@@ -166,4 +167,4 @@ def test_points_turn_with_the_pinion_in_the_sense_of_motion(sense):
     field, rho, z = EaseOff(pair), np.array([51.0]), np.array([2.0])
     rest, turned = (field.station(np.array([angle]), rho, z).point[0] for angle in (0.0, 0.1))
     basis = cylindrical_basis(np.array(0.1 * pair.sense))
-    assert_allclose(turned, rest @ basis, atol=1e-12)
+    assert_allclose(turned, rest @ basis, atol=1e-12)  # of unit vectors, beside rtol

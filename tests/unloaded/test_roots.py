@@ -16,7 +16,7 @@ def test_roots_are_found_each_in_its_bracket_with_few_calls():
 
     ends = np.array([[0.0, 1.0, 2.5], [2.0, 2.0, 4.0]])
     values = np.stack([cubic(side, np.arange(3)) for side in ends])
-    assert_allclose(find_roots(cubic, ends, values, 1e-12), [1.0, 2.0 ** (1 / 3), 3.0], atol=1e-11)
+    assert_allclose(find_roots(cubic, ends, values, 1e-12), [1.0, 2.0 ** (1 / 3), 3.0], atol=1e-11)  # ends at 1e-12
     assert len(calls) < 15
 
 

@@ -106,7 +106,7 @@ def test_every_random_start_climbs_to_the_same_maximum(seed):
     starts = [rng.uniform(part.min(), part.max(), 300) for part in (rho, z)]
     found = climb(EaseOff(pair), np.full(300, 0.02), *starts)
     assert found.converged.all()
-    assert_allclose(found.value, found.value.max(), rtol=0, atol=1e-12)
+    assert_allclose(found.value, found.value.max(), rtol=0, atol=1e-12)  # mm; coordinates of 100 mm: 1e-14 seen
     assert found.iterations.mean() < 12
 
 

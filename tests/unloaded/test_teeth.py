@@ -18,7 +18,7 @@ from loaded_tca.unloaded.tooth_cycle import REACH
 from tests.samples.gear_pairs import cylindrical_mesh, gear_pair, highest_on_grid, pairs
 
 ARCSEC = math.degrees(3600.0)
-ROUNDING = 1e-13  # rad
+ROUNDING = 1e-13  # rad; angles of order 0.1, and mm from them: 1e-16 seen
 CROSSING = 1e-10  # rad, promised accuracy of a transfer point
 LEAD = FlankModifications(lead_crowning=0.02)
 BOTH = FlankModifications(lead_crowning=0.02, profile_crowning=0.01)
@@ -70,7 +70,7 @@ def test_pair_plus_one_comes_into_mesh_after_pair_zero():
     mesh = trace_teeth(pair, pitch(pair, 21, 0.0))
     assert mesh.pairs[:3].tolist() == [0, 1, -1]
     assert mesh.leading_pair[[0, -1]].tolist() == [0, 1]
-    assert_allclose(mesh.paths[1].pinion_angle, mesh.pinion_angle - pair.pitch, rtol=1e-15)
+    assert_allclose(mesh.paths[1].pinion_angle, mesh.pinion_angle - pair.pitch, rtol=1e-15)  # the same operation
     first = mesh.paths[1].pinion_radius[np.flatnonzero(mesh.paths[1].in_contact & ~mesh.paths[1].on_edge)]
     assert (np.diff(first) > 0.0).all(), "it starts at the root of the driving pinion"
 
@@ -89,6 +89,7 @@ def test_transmission_error_repeats_with_the_pitch(mesh, driving):
 def test_wheel_angle_follows_the_envelope():
     pair = gear_pair(BOTH)
     mesh = trace_teeth(pair)
+    # rad; angles of order 0.1, beside rtol
     assert_allclose(mesh.wheel_angle - pair.ratio * mesh.pinion_angle, mesh.transmission_error, atol=1e-15)
     assert len(mesh) == 21
     assert "tooth pairs" in repr(mesh)
@@ -128,6 +129,7 @@ def test_leading_contact_is_that_of_the_leading_pair():
     pair = gear_pair(BOTH, mounting=TILTED)
     mesh = trace_teeth(pair)
     lead = mesh.leading_contact
+    # rad; angles of order 0.1, beside rtol
     assert_allclose(lead.pinion_angle, mesh.pinion_angle - mesh.leading_pair * pair.pitch, atol=1e-15)
     assert_allclose(lead.transmission_error, mesh.transmission_error, atol=ROUNDING)
     assert lead.in_contact.all()
@@ -192,6 +194,7 @@ def test_curves_cross_at_the_transfer_point(helix_deg, driving):
     for shift, sign in ((-CROSSING, 1.0), (CROSSING, -1.0)):
         old, new = trace_contact(pair, own + shift).transmission_error
         assert sign * pair.driving * (old - new) > 0.0
+    # rad; the same contact from another start, beside rtol
     assert_allclose(transfer.transmission_error, trace_contact(pair, own).transmission_error, atol=1e-12)
     assert transfer.is_continuous
 
@@ -207,6 +210,7 @@ def test_contacts_of_a_transfer_touch_at_once():
     pair = gear_pair(BOTH, mounting=TILTED, helix_deg=15.0)
     transfer = trace_teeth(pair, pitch(pair, 2, 0.0)).transfers[0]
     first, second = transfer.contacts
+    # angles of order 0.1 are subtracted
     assert_allclose(first.pinion_angle - second.pinion_angle, pair.pitch, rtol=1e-12)
     assert_allclose(first.wheel_angle - second.wheel_angle, pair.ratio * pair.pitch, rtol=1e-9)
 
@@ -313,6 +317,7 @@ def test_harmonics_of_a_known_function():
     mesh = with_error(pair, lambda x: -3.0 + 2.0 * np.cos(x + 0.5) + 0.25 * np.cos(3.0 * x - 1.0))
     found = mesh.harmonics(4)
     assert found.order.tolist() == [1, 2, 3, 4]
+    # also below: sums of some ten terms of order one, 2e-16 seen
     assert_allclose(found.amplitude, [2.0, 0.0, 0.25, 0.0], atol=1e-12)
     assert_allclose(found.phase[[0, 2]], [0.5, -1.0], atol=1e-12)
     assert mesh.mean == pytest.approx(-3.0)
@@ -361,6 +366,7 @@ def test_peak_to_peak_is_that_of_positions_packed_about_the_highest_and_the_lowe
 def test_peak_to_peak_of_part_of_a_pitch_is_that_of_its_ends_where_the_error_only_falls():
     pair = gear_pair(BOTH)
     mesh = trace_teeth(pair, np.array([0.1, 0.4]) * pair.pitch)
+    # the same two numbers are subtracted
     assert mesh.peak_to_peak == pytest.approx(float(np.ptp(mesh.transmission_error)), rel=1e-12)
     assert trace_teeth(pair, [0.1]).peak_to_peak == 0.0
 

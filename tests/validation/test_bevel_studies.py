@@ -81,14 +81,14 @@ def test_pitch_point_is_the_origin_of_the_frame(gears):
     gear = gears.mesh.pinion
     pitch, distance = gear.pitch_angle, gear.mean_cone_distance
     points = np.outer([math.sin(pitch), math.cos(pitch)], [1.1 * distance, distance])
-    assert_allclose(gears.place(*points), [[0.1 * distance, 0.0], [0.0, 0.0]], atol=1e-12)
+    assert_allclose(gears.place(*points), [[0.1 * distance, 0.0], [0.0, 0.0]], atol=1e-12)  # mm; of 100 mm
 
 
 def test_relief_of_the_spiral_pair_removes_at_its_ends_what_the_source_says():
     pinion, pitch = SPIRAL.pair(pinion=spiral_modifications(0.0, 0.08)).pinion.flank, SPIRAL.mesh.pinion.pitch_angle
     angle, distance = np.array([*SPIRAL.mesh.active_cones[0], pitch]), SPIRAL.mesh.pinion.mean_cone_distance
     removed = pinion.removal(distance * np.sin(angle), distance * np.cos(angle)).value
-    assert_allclose(removed, 0.08 * ((angle - pitch) / 0.16) ** 2, atol=1e-12)
+    assert_allclose(removed, 0.08 * ((angle - pitch) / 0.16) ** 2, atol=1e-12)  # mm; of amounts of 0.1, beside rtol
 
 
 # Mounting errors

@@ -19,7 +19,7 @@ from validation.calculix.run import ContactForce, Run, UnsettledError, _check_co
 from validation.calculix.tables import read_table, write_table
 from validation.calculix.tooth_form import ToothForm
 
-ROUNDING = 1e-12
+ROUNDING = 1e-12  # of lengths of 100 mm
 TROCHOID = 1e-6
 """Points of the trochoid are interpolated between samples [mm]."""
 SEARCH = 1e-6

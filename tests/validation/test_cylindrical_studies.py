@@ -128,7 +128,7 @@ def test_offset_across_the_line_of_centres_turns_the_wheel_and_leaves_the_motion
     across = np.array([0.0, 0.2, 0.0])
     meshes = [trace_teeth(replace(pair, wheel_origin=pair.wheel_origin + sign * across)) for sign in (1.0, -1.0)]
     assert all(mesh.is_continuous for mesh in meshes)
-    assert max(mesh.peak_to_peak for mesh in meshes) < 1e-12
+    assert max(mesh.peak_to_peak for mesh in meshes) < 1e-12  # rad; conjugate, angles of order 0.1
     turn = math.atan2(0.2, pair.wheel_origin[0])  # of the line of centres: both gears see it, z1 = z2
     assert_allclose(0.5 * (meshes[1].mean - meshes[0].mean), 2.0 * turn, rtol=1e-6)
 

@@ -35,5 +35,5 @@ def test_surface_under_a_longer_wave_grows_by_its_logarithm():
 def test_spread_of_a_normal_distribution_is_found_again():
     one = Spread(0.5, 0.8e-6 * np.exp(-((WAVES * 5.9) ** 2)))
     assert_allclose(one.length, 5.9, rtol=1e-9)
-    assert_allclose(one.misfit(math.sqrt(2.0) * 5.9), 0.0, atol=1e-12)
+    assert_allclose(one.misfit(math.sqrt(2.0) * 5.9), 0.0, atol=1e-12)  # a misfit of order one at its zero
     assert one.misfit(4.0) > 0.1

@@ -6,9 +6,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from validation.calculix.case import pinion_angle
+from validation.calculix.case import line_load, pinion_angle
 from validation.calculix.comparison import PairLoad, Position, model, read_cycles
-from validation.calculix.mesh_cycle import is_parting, rows_of, share_difference
+from validation.calculix.mesh_cycle import is_parting, rows_of, share_difference, stiffness_errors
 from validation.calculix.pairs_in_space import InSpace, read_in_space, rows_of_crowned, rows_of_flat
 from validation.calculix.tables import write_table
 
@@ -76,6 +76,24 @@ def test_share_difference_counts_pairs_that_one_side_alone_has():
     assert share_difference(PITCH_POINT, other) == pytest.approx(0.04)
     assert not is_parting(PITCH_POINT, other)
     assert is_parting(PITCH_POINT, replace(other, pairs={**other.pairs, 1: PairLoad(0.01, 50.0, 50.0, False)}))
+
+
+def test_stiffness_that_is_not_the_slope_of_the_deflections_is_uncertain_by_the_difference():
+    """w = F' (0.1 - 0.005 ln F'), its slope 0.1 - 0.005 (ln F' + 1)."""
+    kept = {}
+    for torque, error in ((20.0, 0.0), (100.0, 0.01), (200.0, -0.02)):
+        force = line_load(torque)
+        deflection, slope = force * (0.1 - 0.005 * np.log(force)), 0.1 - 0.005 * (np.log(force) + 1.0)
+        smooth = replace(PITCH_POINT, transmission_error=-deflection, mesh_stiffness=(1.0 + error) / slope)
+        corner = replace(smooth, mesh_stiffness=99.0, pairs={0: PairLoad(1.0, 363.1, 363.1, True)})
+        kept["unmodified", torque] = [smooth, corner]
+    assert stiffness_errors(kept) == pytest.approx({20.0: 0.0, 100.0: 0.01, 200.0: 0.02}, abs=1e-9)
+    assert stiffness_errors({key: kept[key] for key in [*kept][:2]}) == {}
+
+
+def test_kept_deflections_under_other_torques_support_the_kept_stiffness():
+    """To a fraction of what is asked; it is added to that."""
+    assert all(0.0 < error < 0.02 for error in stiffness_errors(read_cycles()).values())
 
 
 def test_rows_tell_a_quantity_beyond_what_is_asked():

@@ -19,7 +19,7 @@ from validation.calculix.tables import RING_FILLETS_FILE, RINGS_FILE, ROOT_MESH_
 from validation.calculix.tooth_form import ToothForm
 from validation.loaded import root_face_load, root_stress_cycle, root_stress_space
 
-ROUNDING = 1e-12
+ROUNDING = 1e-12  # of a few operations
 COARSE = Meshing(per_half_width=2.0, growth=0.8, coarsest=1.5, beside=3.0, far=6.0, rim=0.3, fillet=0.3)
 RING = RingMeshing(fillet=0.6, flank=1.5, beside=3.0, far=6.0, end=2.0, layer=5.0)
 WIDTH = 20.0

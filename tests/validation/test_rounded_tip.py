@@ -16,6 +16,7 @@ def test_outline_is_a_line_an_arc_and_a_line(degrees):
     curve = tip.tip_curve(s, math.radians(degrees))
     assert_allclose(np.hypot(*np.diff(curve, axis=0).T), s[1] - s[0], rtol=1e-4)  # s is the length
     arc = (s > 0.0) & (s < tip.RADIUS * turn)
+    # the root of two squares
     assert_allclose(np.hypot(curve[arc, 0], curve[arc, 1] - tip.RADIUS), tip.RADIUS, rtol=1e-12)
     land = curve[-1] - curve[-2]
     assert_allclose(math.atan2(land[1], land[0]), turn, rtol=1e-9)
