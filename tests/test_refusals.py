@@ -21,7 +21,14 @@ def raised(*problems):
 )
 def test_wrong_row_fails(request, call, words):
     with pytest.raises((pytest.fail.Exception, AssertionError)):
-        check(request, call, (), words, InputError)
+        check(request, call, (), words)
+
+
+@pytest.mark.parametrize("words", ["load: -1", "load: -1 N$", ("load: -1 N", "cells: 0")])
+def test_plain_words_are_the_whole_problem(request, words):
+    check(request, lambda: raised("load: -1 N"), (), "load: -1 N", plain=True)
+    with pytest.raises(AssertionError):
+        check(request, lambda: raised("load: -1 N"), (), words, plain=True)
 
 
 def test_error_of_another_class_is_not_taken(request):

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.errors import GeometryError, InputError, LoadedTCAError
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.gears.cylindrical import inverse_involute, involute
-from tests.refusals import refused_calls
+from tests.refusals import refusals, refused_calls
 
 ROUNDING = 1e-12  # a few dozen floating point operations
 FITTED = 1e-10  # brentq stops at 2e-12 rad of the rack's normal
@@ -212,35 +212,6 @@ def test_sharp_cornered_rack_undercuts_more_than_a_rounded_one():
 # Gears that cannot be
 
 
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"teeth": 2}, "teeth: 2 is not a whole number from 3 on"),
-        ({"teeth": 20.5}, "teeth: 20.5 is not a whole number"),
-        ({"teeth": nan}, "teeth: nan is not a whole number"),
-        ({"normal_module": 0.0}, "normal_module: 0.0 is not positive and finite"),
-        ({"face_width": 5e-324}, "face_width: 5e-324 mm is below 0.001 normal_module, 0.002 mm"),
-        ({"face_width": "wide"}, "face_width: wide is not positive and finite"),
-        ({"pressure_angle": None}, "pressure_angle: nan rad is not between"),
-        ({"helix_angle": "left"}, "helix_angle: nan rad is not within"),
-        ({"face_width": -1.0}, "face_width: -1.0 is not positive and finite"),
-        ({"tip_diameter": inf}, "tip_diameter: inf is not positive and finite"),
-        ({"bore_diameter": nan}, "bore_diameter: nan is not positive and finite"),
-        ({"bore_diameter": 55.0}, "bore_diameter: 55 mm is not below the root diameter 55 mm"),
-        ({"dedendum_coefficient": 0.0}, "dedendum_coefficient: 0.0 is not positive"),
-        ({"dedendum_coefficient": 2.2}, "dedendum_coefficient: 2.2 is beyond the point of the rack's tooth"),
-        ({"root_radius_coefficient": -0.1}, "root_radius_coefficient: -0.1 is negative"),
-        ({"pressure_angle": 20.0}, r"pressure_angle: 20 rad is not between 0.0175 and 0.785 rad \(1 to 45 deg\)"),
-        ({"helix_angle": -15.0}, r"helix_angle: -15 rad is not within 1.047 rad \(60 deg\)"),
-        ({"profile_shift": nan}, "profile_shift: nan is not finite"),
-        ({"profile_shift": -14.0}, "profile_shift: -14 makes the root diameter -1 mm"),
-    ],
-)
-def test_gear_refuses_an_impossible_value(changes, message):
-    with pytest.raises(InputError, match=f"gear: {message}"):
-        gear(**changes)
-
-
 @given(
     teeth=st.integers(-1, 60),
     normal_module=st.floats(0.01, 50.0),
@@ -264,14 +235,32 @@ def test_any_input_makes_a_sound_gear_or_a_clear_error(**sizes):
     assert_allclose(radius[0], made.form_radius, rtol=1e-9)
 
 
-def test_gear_tells_every_problem_at_once():
-    with pytest.raises(InputError) as refused:
-        gear(1, normal_module=-1.0, helix_angle=nan, name="wheel")
-    assert [problem.split(":")[:2] for problem in refused.value.problems] == [
-        ["wheel", " teeth"],
-        ["wheel", " normal_module"],
-        ["wheel", " helix_angle"],
-    ]
+test_gear_refuses_an_impossible_value = refusals(
+    lambda changes: gear(**changes),
+    ({"teeth": 2}, "gear: teeth: 2 is not a whole number from 3 on"),
+    ({"teeth": 20.5}, "gear: teeth: 20.5 is not a whole number"),
+    ({"teeth": nan}, "gear: teeth: nan is not a whole number"),
+    ({"normal_module": 0.0}, "gear: normal_module: 0.0 is not positive and finite"),
+    ({"face_width": 5e-324}, "gear: face_width: 5e-324 mm is below 0.001 normal_module, 0.002 mm"),
+    ({"face_width": "wide"}, "gear: face_width: wide is not positive and finite"),
+    ({"pressure_angle": None}, "gear: pressure_angle: nan rad is not between"),
+    ({"helix_angle": "left"}, "gear: helix_angle: nan rad is not within"),
+    ({"face_width": -1.0}, "gear: face_width: -1.0 is not positive and finite"),
+    ({"tip_diameter": inf}, "gear: tip_diameter: inf is not positive and finite"),
+    ({"bore_diameter": nan}, "gear: bore_diameter: nan is not positive and finite"),
+    ({"bore_diameter": 55.0}, "gear: bore_diameter: 55 mm is not below the root diameter 55 mm"),
+    ({"dedendum_coefficient": 0.0}, "gear: dedendum_coefficient: 0.0 is not positive"),
+    ({"dedendum_coefficient": 2.2}, "gear: dedendum_coefficient: 2.2 is beyond the point of the rack's tooth"),
+    ({"root_radius_coefficient": -0.1}, "gear: root_radius_coefficient: -0.1 is negative"),
+    ({"pressure_angle": 20.0}, r"gear: pressure_angle: 20 rad is not between 0.0175 and 0.785 rad \(1 to 45 deg\)"),
+    ({"helix_angle": -15.0}, r"gear: helix_angle: -15 rad is not within 1.047 rad \(60 deg\)"),
+    ({"profile_shift": nan}, "gear: profile_shift: nan is not finite"),
+    ({"profile_shift": -14.0}, "gear: profile_shift: -14 makes the root diameter -1 mm"),
+    (
+        {"teeth": 1, "normal_module": -1.0, "helix_angle": nan, "name": "wheel"},
+        ("^wheel: teeth:", "^wheel: normal_module:", "^wheel: helix_angle:"),
+    ),
+)
 
 
 def test_gear_refuses_a_pointed_tooth_and_says_where():
