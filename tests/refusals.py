@@ -23,7 +23,12 @@ def refused_calls(*rows, error=InputError):
     cases = []
     for call, words, *more in rows:
         raised = next((each for each in more if not isinstance(each, list)), error)
-        values = [((value,), f"{words}-{value!r}") for each in more if isinstance(each, list) for value in each]
+        values = [
+            ((value,), f"{words}-{getattr(value, '__name__', repr(value))}")
+            for each in more
+            if isinstance(each, list)
+            for value in each
+        ]
         cases += [pytest.param(call, given, words, raised, id=str(name)) for given, name in values or [((), words)]]
     return _test(cases)
 

@@ -219,7 +219,11 @@ test_face_milled_pair_refuses = refused_calls(
         lambda: matched(modifications=(FlankModifications(root_relief=0.02, root_relief_start_roll=0.3), NONE)),
         r"^pinion\.root_relief_start_roll: the flank is no involute and has no roll angle; give root_relief_start ",
     ),
-    (lambda: trace_contact(matched(mounting=BevelMounting(wheel_axial=30.0)), [0.0]), "mm", GeometryError),
+    (
+        lambda: trace_contact(matched(mounting=BevelMounting(wheel_axial=30.0)), [0.0]),
+        "no common flank: at none of",
+        GeometryError,
+    ),
     (
         lambda: face_milled_pair(published_pinion(), replace(published_pinion(), teeth=40), pinion_flank="hollow"),
         ("^pinion_flank:", "^hand:", "^pitch_angle:"),

@@ -154,18 +154,16 @@ test_gear_pair_refuses = refused_calls(
     (lambda: gear_pair(driving="motor"), "driving: 'motor' is not 'pinion' or 'wheel'"),
     (lambda: gear_pair(sense="left"), "sense: 'left' is not 'positive' or 'negative'"),
     (lambda value: Mounting(axial_offset=value), r"axial_offset: .* mm is not finite", [None, "x", [0.1], 1j]),
+    (
+        lambda: Mounting(in_plane=math.nan, axial_offset=math.inf),
+        ("^in_plane: nan rad is not finite$", "^axial_offset: inf mm is not finite$"),
+    ),
+    (
+        lambda: gear_pair(teeth=(14, 62), module=1.0, helix_deg=20.0, width=300.0),
+        r"pinion: its teeth wind .* times around the gear .* 300 mm",
+        GeometryError,
+    ),
 )
-
-
-def test_mounting_error_that_is_not_finite_is_refused_all_at_once():
-    with pytest.raises(InputError) as caught:
-        Mounting(in_plane=math.nan, axial_offset=math.inf)
-    assert caught.value.problems == ("in_plane: nan rad is not finite", "axial_offset: inf mm is not finite")
-
-
-def test_teeth_that_wind_around_the_gear_are_refused():
-    with pytest.raises(GeometryError, match=r"pinion: its teeth wind .* times around the gear .* 300 mm"):
-        gear_pair(teeth=(14, 62), module=1.0, helix_deg=20.0, width=300.0)
 
 
 @pytest.mark.parametrize("offset", [24.998, 25.0, -25.0, 25.002])

@@ -1,11 +1,9 @@
 from math import cos, pi, radians, sqrt
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from loaded_tca.errors import InputError
 from loaded_tca.reference import iso6336
 from loaded_tca.reference.hertz import line_contact
 from tests.refusals import refused_calls
@@ -108,13 +106,8 @@ test_iso6336_refuses = refused_calls(
     ),
     (lambda: iso6336.single_stiffness(17.0, 0.0, youngs_modulus=float("nan")), r"youngs_modulus: nan is not positive"),
     (lambda: iso6336.mesh_stiffness(0.0, 1.5), r"single_stiffness: 0.0 is not positive"),
+    (
+        lambda: iso6336.nominal_contact_stress(**{**STRESS, "tangential_force": -1.0, "face_width": 0.0}),
+        ("^tangential_force: -1.0 is not positive and finite$", "^face_width: 0.0 is not positive and finite$"),
+    ),
 )
-
-
-def test_contact_stress_tells_every_problem_at_once():
-    with pytest.raises(InputError) as refused:
-        iso6336.nominal_contact_stress(**{**STRESS, "tangential_force": -1.0, "face_width": 0.0})
-    assert refused.value.problems == (
-        "tangential_force: -1.0 is not positive and finite",
-        "face_width: 0.0 is not positive and finite",
-    )
