@@ -40,10 +40,10 @@ def check(request, call, arguments, words, error=InputError, plain=False):
     values = [request.getfixturevalue(each.name) for each in fixtures]
     with pytest.raises(error, match=words if isinstance(words, str) and not plain else None) as caught:
         call(*arguments, *values)
+    problems = getattr(caught.value, "problems", ())
     if plain:
-        assert list(caught.value.problems) == ([words] if isinstance(words, str) else list(words))
+        assert list(problems) == ([words] if isinstance(words, str) else list(words)), problems
     elif not isinstance(words, str):
-        problems = caught.value.problems
         assert len(problems) == len(words), problems
         assert all(map(re.search, words, problems)), problems
 
