@@ -43,3 +43,17 @@ def run(capsys):
         return code, captured.out, captured.err.splitlines()
 
     return run
+
+
+@pytest.fixture
+def refused(run):
+    """Run the command with input that it refuses; returns its message, one line."""
+
+    def refused(*arguments):
+        code, out, errors = run(*arguments)
+        assert (code, out, len(errors)) == (2, "", 1)
+        start, _, message = errors[0].partition("loaded-tca: ")
+        assert start == ""
+        return message
+
+    return refused

@@ -42,11 +42,8 @@ def test_tooth_writes_elsewhere_the_whole_gears_if_asked(run, directory):
         (("--position", 4), "--position 4: the result has the positions 1 to 3"),
     ],
 )
-def test_what_does_not_fit_is_told_in_one_line(run, directory, options, told):
-    code, _, errors = run("tooth", directory, *options)
-    assert code == 2
-    assert len(errors) == 1
-    assert told in errors[0]
+def test_what_does_not_fit_is_told_in_one_line(refused, directory, options, told):
+    assert told in refused("tooth", directory, *options)
     assert names(directory) == {"result.nc"}
 
 

@@ -2,13 +2,12 @@
 
 import math
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from loaded_tca.errors import InputError
 from loaded_tca.material import Material, contact_modulus
+from tests.refusals import refusals
 
 ROUNDING = 1e-14  # a few operations
 
@@ -41,30 +40,27 @@ def test_contact_modulus_scales_with_both_moduli(first, second, factor):
     assert_allclose(contact_modulus(*scaled), factor * contact_modulus(first, second), rtol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("values", "problem"),
-    [
-        ({"youngs_modulus": 0.0}, "youngs_modulus: 0.0 MPa is not finite and at least 0.001 MPa"),
-        ({"youngs_modulus": math.inf}, "youngs_modulus: inf MPa is not finite and at least 0.001 MPa"),
-        ({"youngs_modulus": math.nan}, "youngs_modulus: nan MPa is not finite and at least 0.001 MPa"),
-        ({"youngs_modulus": 1e-300}, "youngs_modulus: 1e-300 MPa is not finite and at least 0.001 MPa"),
-        ({"youngs_modulus": "steel"}, "youngs_modulus: steel MPa is not finite and at least 0.001 MPa"),
-        ({"poisson_ratio": None}, "poisson_ratio: None is not between 0 and 0.5"),
-        ({"poisson_ratio": -0.1}, "poisson_ratio: -0.1 is not between 0 and 0.5"),
-        ({"poisson_ratio": 0.51}, "poisson_ratio: 0.51 is not between 0 and 0.5"),
-        ({"poisson_ratio": math.nan}, "poisson_ratio: nan is not between 0 and 0.5"),
-        ({"max_pressure": 0.0}, "max_pressure: 0.0 MPa is not positive"),
-        ({"max_pressure": "high"}, "max_pressure: high MPa is not positive"),
-        ({"max_pressure": math.nan}, "max_pressure: nan MPa is not positive"),
-    ],
+test_value_out_of_its_range_is_refused = refusals(
+    lambda values: Material(**values),
+    ({"youngs_modulus": 0.0}, "youngs_modulus: 0.0 MPa is not finite and at least 0.001 MPa"),
+    ({"youngs_modulus": math.inf}, "youngs_modulus: inf MPa is not finite and at least 0.001 MPa"),
+    ({"youngs_modulus": math.nan}, "youngs_modulus: nan MPa is not finite and at least 0.001 MPa"),
+    ({"youngs_modulus": 1e-300}, "youngs_modulus: 1e-300 MPa is not finite and at least 0.001 MPa"),
+    ({"youngs_modulus": "steel"}, "youngs_modulus: steel MPa is not finite and at least 0.001 MPa"),
+    ({"poisson_ratio": None}, "poisson_ratio: None is not between 0 and 0.5"),
+    ({"poisson_ratio": -0.1}, "poisson_ratio: -0.1 is not between 0 and 0.5"),
+    ({"poisson_ratio": 0.51}, "poisson_ratio: 0.51 is not between 0 and 0.5"),
+    ({"poisson_ratio": math.nan}, "poisson_ratio: nan is not between 0 and 0.5"),
+    ({"max_pressure": 0.0}, "max_pressure: 0.0 MPa is not positive"),
+    ({"max_pressure": "high"}, "max_pressure: high MPa is not positive"),
+    ({"max_pressure": math.nan}, "max_pressure: nan MPa is not positive"),
+    (
+        {"youngs_modulus": -1.0, "poisson_ratio": 0.7, "max_pressure": -3.0},
+        (
+            "youngs_modulus: -1.0 MPa is not finite and at least 0.001 MPa",
+            "poisson_ratio: 0.7 is not between 0 and 0.5",
+            "max_pressure: -3.0 MPa is not positive",
+        ),
+    ),
+    plain=True,
 )
-def test_value_out_of_its_range_is_refused(values, problem):
-    with pytest.raises(InputError) as caught:
-        Material(**values)
-    assert caught.value.problems == (problem,)
-
-
-def test_every_problem_of_a_material_is_told_at_once():
-    with pytest.raises(InputError) as caught:
-        Material(-1.0, 0.7, -3.0)
-    assert len(caught.value.problems) == 3

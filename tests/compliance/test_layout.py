@@ -3,7 +3,7 @@ import pytest
 
 from loaded_tca.compliance import MeshDensity
 from loaded_tca.compliance.layout import RingLayout
-from loaded_tca.errors import InputError
+from tests.refusals import refusals, refused_calls
 
 
 def test_elements_close_to_a_ring():
@@ -51,36 +51,22 @@ def test_bricks_fill_every_layer(layers):
     assert (spans[blocks > 0] == 1).sum() == (layers % 2) * (layout.blocks > 0).sum()
 
 
-def test_a_tooth_outside_the_model_is_refused():
-    with pytest.raises(InputError, match="3 is not one of the 3 teeth"):
-        RingLayout(25, MeshDensity()).sector(3)
-
-
-def test_density_tells_every_problem():
-    with pytest.raises(InputError) as error:
-        MeshDensity(through=0, flank=2.5, neighbours=-1)
-    assert [problem.split(":")[0] for problem in error.value.problems] == ["through", "flank", "neighbours"]
-
-
-def test_an_odd_number_of_elements_through_the_tooth_is_refused():
-    with pytest.raises(InputError, match="through: 3 is not even"):
-        MeshDensity(through=3)
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"grading": 0.9}, "grading: 0.9 is not between 1 and 10"),
-        ({"grading": np.nan}, "grading: nan is not between 1 and 10"),
-        ({"skin": -0.1}, "skin: -0.1 is not between 0 and 0.1"),
-        ({"skin": 0.2}, "skin: 0.2 is not between 0 and 0.1"),
-        ({"thin_ends": True, "lengthwise": 9}, "lengthwise: 9 is not an even number from 6 on"),
-        ({"thin_ends": True, "lengthwise": 4}, "lengthwise: 4 is not an even number from 6 on"),
-    ],
+test_layout_refuses = refused_calls(
+    (lambda: RingLayout(25, MeshDensity()).sector(3), "3 is not one of the 3 teeth"),
+    (lambda: MeshDensity(through=0, flank=2.5, neighbours=-1), ("^through:", "^flank:", "^neighbours:")),
+    (lambda: MeshDensity(through=3), "through: 3 is not even"),
 )
-def test_gradings_out_of_range_are_refused(change, message):
-    with pytest.raises(InputError, match=message):
-        MeshDensity(**change)
+
+
+test_gradings_out_of_range_are_refused = refusals(
+    lambda change: MeshDensity(**change),
+    ({"grading": 0.9}, "grading: 0.9 is not between 1 and 10"),
+    ({"grading": np.nan}, "grading: nan is not between 1 and 10"),
+    ({"skin": -0.1}, "skin: -0.1 is not between 0 and 0.1"),
+    ({"skin": 0.2}, "skin: 0.2 is not between 0 and 0.1"),
+    ({"thin_ends": True, "lengthwise": 9}, "lengthwise: 9 is not an even number from 6 on"),
+    ({"thin_ends": True, "lengthwise": 4}, "lengthwise: 4 is not an even number from 6 on"),
+)
 
 
 def test_outermost_layers_of_thin_ends_are_half_as_thick():

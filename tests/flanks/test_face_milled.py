@@ -12,6 +12,7 @@ from loaded_tca.flanks import GeneratedFlank
 from loaded_tca.flanks.base import outward_normal
 from loaded_tca.flanks.face_milled import tooth_angle
 from loaded_tca.gears import Blade, Cutter
+from tests.refusals import refused_calls
 from tests.samples.face_milled import matched_pinion, on_machine, published_pinion, published_wheel
 
 FLANKS = ("concave", "convex")
@@ -149,14 +150,6 @@ def test_tooth_of_the_published_pinion_narrows_to_its_tip():
     assert 0.3 * module < thickness[-1] < thickness[0] < math.pi * module
 
 
-def test_undercut_is_found_and_named_with_its_place():
-    deep = on_machine(published_pinion(), sliding_base=-2.0)
-    with pytest.raises(
-        GeometryError, match=r"pinion, concave flank: undercut: .* 18\.4 mm from mid-face to the toe, 2\.\d+"
-    ):
-        GeneratedFlank(deep, "concave")
-
-
 def test_undercut_begins_where_the_generated_surface_turns_back_at_the_form_line():
     """Cut a little less deep than the limit, the sharpness at the form line is small and positive."""
     flank = GeneratedFlank(on_machine(published_pinion(), sliding_base=-1.2), "concave")
@@ -166,19 +159,22 @@ def test_undercut_begins_where_the_generated_surface_turns_back_at_the_form_line
         GeneratedFlank(on_machine(published_pinion(), sliding_base=-1.3), "concave")
 
 
-def test_blank_that_the_cutter_misses_is_refused():
-    with pytest.raises(GeometryError, match=r"pinion, concave flank: the cutter does not cut \d+ of 11 points"):
-        GeneratedFlank(on_machine(published_pinion(), radial=5.0), "concave")
-
-
-def test_form_line_above_the_tip_is_refused():
-    with pytest.raises(GeometryError, match=r"no flank is left: the form line lies above the face cone"):
-        GeneratedFlank(on_machine(published_pinion(), sliding_base=9.0), "convex")
-
-
-def test_flank_without_a_blade_is_refused():
-    with pytest.raises(InputError, match=r"cutter\.convex: missing"):
-        GeneratedFlank(matched_pinion(), "convex")
+test_face_milled_refuses = refused_calls(
+    (
+        lambda: GeneratedFlank(on_machine(published_pinion(), sliding_base=-2.0), "concave"),
+        r"pinion, concave flank: undercut: .* 18\.4 mm from mid-face to the toe, 2\.\d+",
+    ),
+    (
+        lambda: GeneratedFlank(on_machine(published_pinion(), radial=5.0), "concave"),
+        r"pinion, concave flank: the cutter does not cut \d+ of 11 points",
+    ),
+    (
+        lambda: GeneratedFlank(on_machine(published_pinion(), sliding_base=9.0), "convex"),
+        r"no flank is left: the form line lies above the face cone",
+    ),
+    (lambda: GeneratedFlank(matched_pinion(), "convex"), r"cutter\.convex: missing", InputError),
+    error=GeometryError,
+)
 
 
 def test_formate_wheel_has_flanks_too():

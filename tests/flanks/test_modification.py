@@ -25,6 +25,7 @@ from loaded_tca.gears import bevel_mesh
 from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.pairs.gear_pair import cylindrical_basis
+from tests.refusals import refusals
 from tests.samples.gear_pairs import cylindrical_mesh, gear_pair, meshes, modifications
 
 ROUNDING = 1e-12  # of an amount of 0.02 mm: none seen
@@ -410,17 +411,31 @@ def test_modified_flank_of_the_other_side_is_the_mirror_image_of_the_other_hand(
 # Failure paths
 
 
-@pytest.mark.parametrize("relief", ["tip_relief", "root_relief"])
-@pytest.mark.parametrize("diameter", [0.0, 90.0, 2.0 * ACTIVE.start_radius, 2.0 * TIP, 130.0])
-def test_relief_that_starts_off_the_active_profile_is_refused(relief, diameter):
-    with pytest.raises(InputError, match=rf"pinion.{relief}_start .*: {diameter:g} mm is not between"):
-        modified(**{relief: AMOUNT, f"{relief}_start": diameter})
-
-
-@pytest.mark.parametrize("length", [0.0, -1.0, 1.01 * HALF])
-def test_end_relief_longer_than_half_the_face_or_without_length_is_refused(length):
-    with pytest.raises(InputError, match=r"end_relief_length: .* mm is not between 0 and 12.5 mm"):
-        modified(end_relief=AMOUNT, end_relief_length=length)
+test_modifications_off_the_flank_are_refused = refusals(
+    lambda amounts: modified(**amounts),
+    *(
+        ({relief: AMOUNT, f"{relief}_start": diameter}, rf"pinion.{relief}_start .*: {diameter:g} mm is not between")
+        for relief in ("tip_relief", "root_relief")
+        for diameter in (0.0, 90.0, 2.0 * ACTIVE.start_radius, 2.0 * TIP, 130.0)
+    ),
+    *(
+        ({"end_relief": AMOUNT, "end_relief_length": length}, r"end_relief_length: .* mm is not between 0 and 12.5 mm")
+        for length in (0.0, -1.0, 1.01 * HALF)
+    ),
+    *(
+        (
+            {"end_relief": AMOUNT, "end_relief_length": 3.0, f"end_relief_{end}_length": 13.0},
+            f"end_relief_{end}_length: 13 mm is not between 0 and 12.5 mm",
+        )
+        for end in ("lower", "upper")
+    ),
+    ({"end_relief_lower": AMOUNT}, r"end_relief_length: 0 mm is not between 0 and 12\.5 mm"),
+    ({"end_relief_upper": AMOUNT}, r"end_relief_length: 0 mm is not between 0 and 12\.5 mm"),
+    (
+        {"lead_crowning": 13.0, "lead_crowning_form": "circular"},
+        "lead_crowning: 13 mm is more than a circular arc over 25 mm can fall",
+    ),
+)
 
 
 @pytest.mark.parametrize("relief", ["tip_relief", "root_relief"])
@@ -436,55 +451,35 @@ def test_roll_angle_or_length_off_the_active_profile_is_refused_in_its_own_unit(
         modified(**{relief: AMOUNT, f"{relief}_start_length": 99.0})
 
 
-def test_relief_with_two_starts_is_refused():
-    told = "^tip_relief_start: found tip_relief_start = 105.0, tip_relief_start_length = 20.0; give one of them$"
-    with pytest.raises(InputError, match=told):
-        FlankModifications(tip_relief=AMOUNT, tip_relief_start=105.0, tip_relief_start_length=20.0)
-
-
-@pytest.mark.parametrize("end", ["lower", "upper"])
-def test_length_of_the_relief_of_one_end_is_checked_by_its_own_name(end):
-    with pytest.raises(InputError, match=f"end_relief_{end}_length: 13 mm is not between 0 and 12.5 mm"):
-        modified(end_relief=AMOUNT, end_relief_length=3.0, **{f"end_relief_{end}_length": 13.0})
-    with pytest.raises(InputError, match=r"end_relief_length: 0 mm is not between 0 and 12\.5 mm"):
-        modified(**{f"end_relief_{end}": AMOUNT})
-
-
 def test_starts_of_reliefs_that_are_not_there_are_not_looked_at():
     assert isinstance(modified(tip_relief_start=3.0, end_relief_length=999.0), InvoluteFlank)
 
 
-@pytest.mark.parametrize("name", ["lead_crowning", "tip_relief", "end_relief_length", "profile_slope"])
-@pytest.mark.parametrize("value", [math.nan, math.inf, "much", None])
-def test_amount_that_is_not_finite_is_refused(name, value):
-    with pytest.raises(InputError, match=f"{name}: {value} mm is not finite"):
-        FlankModifications(**{name: value})
-
-
-@pytest.mark.parametrize(("name", "unit"), [("root_relief_start_roll", "rad"), ("end_relief_lower", "mm")])
-def test_optional_number_that_is_not_finite_is_refused_in_its_unit(name, unit):
-    with pytest.raises(InputError, match=rf"^{name}: nan {unit} is not finite$"):
-        FlankModifications(**{name: math.nan})
-
-
-def test_unknown_forms_are_refused_all_at_once():
-    with pytest.raises(InputError) as caught:
-        FlankModifications(lead_crowning_form="round", tip_relief_form="quadratic")
-    assert caught.value.problems == (
-        "lead_crowning_form: 'round' is not 'parabolic', 'circular' or 'logarithmic'",
-        "tip_relief_form: 'quadratic' is not 'parabolic' or 'linear'",
-    )
-
-
-@pytest.mark.parametrize("wrong", [(1.0, 2.0), (0.0,) * 5 + (math.nan,), ("a",) * 6, 3.0, None])
-def test_polynomial_that_is_not_six_finite_numbers_is_refused(wrong):
-    with pytest.raises(InputError, match=r"polynomial: .* is not six finite numbers, a1 to a6"):
-        FlankModifications(polynomial=wrong)
-
-
-def test_circular_crowning_of_more_than_half_the_face_is_refused():
-    with pytest.raises(InputError, match="lead_crowning: 13 mm is more than a circular arc over 25 mm can fall"):
-        modified(lead_crowning=13.0, lead_crowning_form="circular")
+test_modifications_that_cannot_be_are_refused = refusals(
+    lambda amounts: FlankModifications(**amounts),
+    (
+        {"tip_relief": AMOUNT, "tip_relief_start": 105.0, "tip_relief_start_length": 20.0},
+        "^tip_relief_start: found tip_relief_start = 105.0, tip_relief_start_length = 20.0; give one of them$",
+    ),
+    *(
+        ({name: value}, f"{name}: {value} mm is not finite")
+        for name in ("lead_crowning", "tip_relief", "end_relief_length", "profile_slope")
+        for value in (math.nan, math.inf, "much", None)
+    ),
+    ({"root_relief_start_roll": math.nan}, r"^root_relief_start_roll: nan rad is not finite$"),
+    ({"end_relief_lower": math.nan}, r"^end_relief_lower: nan mm is not finite$"),
+    (
+        {"lead_crowning_form": "round", "tip_relief_form": "quadratic"},
+        (
+            "^lead_crowning_form: 'round' is not 'parabolic', 'circular' or 'logarithmic'$",
+            "^tip_relief_form: 'quadratic' is not 'parabolic' or 'linear'$",
+        ),
+    ),
+    *(
+        ({"polynomial": wrong}, r"polynomial: .* is not six finite numbers, a1 to a6")
+        for wrong in ((1.0, 2.0), (0.0,) * 5 + (math.nan,), ("a",) * 6, 3.0, None)
+    ),
+)
 
 
 @pytest.mark.parametrize(

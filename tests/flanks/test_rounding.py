@@ -1,19 +1,18 @@
 """Rounded edges: exact arcs from the flank towards the edge, tangent to it, with the derivatives they claim."""
 
 import math
-import re
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from loaded_tca.errors import InputError
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.base import outward_normal, unmodified
 from loaded_tca.flanks.rounding import LOWER, TIP, UPPER, EdgeRounding, RoundedFlank, edge_places, sharp
 from loaded_tca.gears import bevel_mesh
 from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.tooth.face_milled import FaceMilledTooth
+from tests.refusals import refusals
 from tests.samples.face_milled import published_wheel
 from tests.samples.gear_pairs import gear_pair
 
@@ -169,16 +168,14 @@ def test_arc_goes_on_as_its_parabola_without_a_jump_of_curvature():
     assert_allclose(last, last[0], rtol=1e-12, err_msg="a parabola has one second derivative")
 
 
-@pytest.mark.parametrize("wrong", [0.005, -0.1, math.nan, math.inf])
-def test_radius_that_is_none_is_refused(wrong):
-    with pytest.raises(InputError, match=r"side: found .*; allowed 0 \(sharp\), or from 0.01 mm on"):
-        EdgeRounding(tip=0.2, side=wrong)
-
-
-def test_both_radii_are_told_at_once():
-    with pytest.raises(InputError) as refused:
-        EdgeRounding(-1.0, 0.001)
-    assert [re.match(r"\w+", problem)[0] for problem in refused.value.problems] == ["tip", "side"]
+test_radius_that_is_none_is_refused = refusals(
+    EdgeRounding,
+    *(
+        (0.2, side, r"side: found .*; allowed 0 \(sharp\), or from 0.01 mm on")
+        for side in (0.005, -0.1, math.nan, math.inf)
+    ),
+    (-1.0, 0.001, ("^tip:", "^side:")),
+)
 
 
 def test_drawn_grid_is_fine_on_the_arcs():

@@ -3,13 +3,12 @@
 import math
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from loaded_tca.errors import InputError
 from loaded_tca.gears import Blade, Cutter
+from tests.refusals import refused_calls
 
 ANGLE = math.radians(20.0)
 HEIGHTS = np.linspace(0.0, 9.0, 10)
@@ -73,29 +72,13 @@ def test_number_of_the_blade_group_corrects_both_angles_by_ten_minutes_each():
     assert_allclose(math.degrees(inside), 21.0 + 50.0 / 60.0)
 
 
-def test_blade_that_cannot_be_is_refused_with_every_problem():
-    with pytest.raises(InputError) as caught:
-        Blade(0.0, 2.0, blade_radius=-1.0, edge_radius=-0.1)
-    assert [problem.split(":")[0] for problem in caught.value.problems] == [
-        "point_radius",
-        "blade_angle",
-        "blade_radius",
-        "edge_radius",
-    ]
-
-
-def test_cutter_without_blades_is_refused():
-    with pytest.raises(InputError, match="a blade is needed for at least one flank"):
-        Cutter()
-
-
-def test_number_that_is_not_finite_or_turns_the_blade_over_is_refused():
-    with pytest.raises(InputError, match="number: nan is not finite"):
-        Cutter(Blade(44.0, ANGLE), number=math.nan)
-    with pytest.raises(InputError, match="blade_angle"):
-        Cutter(convex=Blade(44.0, ANGLE), number=400)
-
-
-def test_missing_blade_is_named_where_it_is_asked_for():
-    with pytest.raises(InputError, match=r"cutter\.convex: missing"):
-        Cutter(Blade(44.0, ANGLE)).blade("convex")
+test_cutter_refuses = refused_calls(
+    (
+        lambda: Blade(0.0, 2.0, blade_radius=-1.0, edge_radius=-0.1),
+        ("^point_radius:", "^blade_angle:", "^blade_radius:", "^edge_radius:"),
+    ),
+    (Cutter, "a blade is needed for at least one flank"),
+    (lambda: Cutter(Blade(44.0, ANGLE), number=math.nan), "number: nan is not finite"),
+    (lambda: Cutter(convex=Blade(44.0, ANGLE), number=400), "blade_angle"),
+    (lambda: Cutter(Blade(44.0, ANGLE)).blade("convex"), r"cutter\.convex: missing"),
+)

@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.errors import ConvergenceError, InputError
+from loaded_tca.errors import ConvergenceError
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.loaded.load_sharing import ToothPair, share_load, tooth_pairs_at
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.material import Material
 from loaded_tca.separation import sample_separation
 from loaded_tca.unloaded import trace_teeth
+from tests.refusals import refused_calls
 from tests.samples.gear_pairs import NONE, gear_pair, sam_paper
 from tests.samples.tangents import torque_rate
 
@@ -316,15 +317,10 @@ def test_sharing_does_not_depend_on_who_drives_or_how(driving, sense):
     assert_allclose([share.torque / TORQUE for share in found.shares], 0.5, atol=1e-6)
 
 
-@pytest.mark.parametrize("torque", [-1.0, math.nan, math.inf])
-def test_torque_that_is_no_number_from_zero_on_is_refused(torque):
-    with pytest.raises(InputError, match="torque"):
-        shared(spur, 0.0, torque)
-
-
-def test_no_tooth_pair_is_refused():
-    with pytest.raises(InputError, match="tooth_pairs: none given"):
-        share_load(spur(), (), TORQUE, GRID)
+test_load_sharing_refuses = refused_calls(
+    (lambda torque: shared(spur, 0.0, torque), "torque", [-1.0, math.nan, math.inf]),
+    (lambda: share_load(spur(), (), TORQUE, GRID), "tooth_pairs: none given"),
+)
 
 
 def test_candidates_are_those_within_reach():

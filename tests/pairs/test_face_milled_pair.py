@@ -9,11 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from loaded_tca import GeometryError, InputError, sample_separation, trace_contact
+from loaded_tca import GeometryError, sample_separation, trace_contact
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.pairs.bevel import BevelMounting
 from loaded_tca.pairs.face_milled import face_milled_pair
 from loaded_tca.reference import hertz
+from tests.refusals import refused_calls
 from tests.samples.face_milled import duplex_paper_gears, matched_pinion, on_machine, published_pinion, published_wheel
 from tests.samples.gear_pairs import highest_on_grid
 
@@ -174,13 +175,6 @@ def test_relief_starts_at_a_length_over_the_form_line(length):
     assert (removed[height > length] > 0.0).all()
 
 
-def test_generated_flank_has_no_roll_angle():
-    relieved = FlankModifications(root_relief=0.02, root_relief_start_roll=0.3)
-    told = r"^pinion\.root_relief_start_roll: the flank is no involute and has no roll angle; give root_relief_start "
-    with pytest.raises(InputError, match=told):
-        matched(modifications=(relieved, NONE))
-
-
 def test_wheel_moved_away_lets_the_wheel_lag():
     aligned = trace_contact(matched(), [0.0])[0]
     withdrawn = trace_contact(matched(mounting=BevelMounting(wheel_axial=0.05)), [0.0])[0]
@@ -212,25 +206,7 @@ def test_perturbed_settings_touch_where_a_dense_grid_does(pinion, wheel, part):
     assert_allclose(found, expected, atol=3e-5)  # what the curved gap drops by between grid points, on an edge slopes
 
 
-def test_settings_of_gears_that_miss_each_other_are_refused_with_how_far():
-    pair = matched(mounting=BevelMounting(wheel_axial=30.0))
-    with pytest.raises(GeometryError, match="mm"):
-        trace_contact(pair, [0.0])
-
-
 # Failures
-
-
-def test_gears_that_do_not_fit_are_refused_with_every_problem():
-    pinion = published_pinion()
-    with pytest.raises(InputError) as caught:
-        face_milled_pair(pinion, replace(pinion, teeth=40), pinion_flank="hollow")
-    assert [problem.split(":")[0] for problem in caught.value.problems] == ["pinion_flank", "hand", "pitch_angle"]
-
-
-def test_unknown_driving_is_refused():
-    with pytest.raises(InputError, match=r"driving: 'motor' is not 'pinion' or 'wheel'"):
-        matched(driving="motor")
 
 
 def test_pointed_tooth_is_refused_with_its_place():
@@ -240,6 +216,23 @@ def test_pointed_tooth_is_refused_with_its_place():
         face_milled_pair(tall, published_wheel())
 
 
-def test_relief_off_the_flank_is_refused_by_the_name_of_the_gear():
-    with pytest.raises(InputError, match=r"pinion\.tip_relief_start .* 10 mm is not between"):
-        matched(modifications=(FlankModifications(tip_relief=0.02, tip_relief_start=10.0), NONE))
+test_face_milled_pair_refuses = refused_calls(
+    (
+        lambda: matched(modifications=(FlankModifications(root_relief=0.02, root_relief_start_roll=0.3), NONE)),
+        r"^pinion\.root_relief_start_roll: the flank is no involute and has no roll angle; give root_relief_start ",
+    ),
+    (
+        lambda: trace_contact(matched(mounting=BevelMounting(wheel_axial=30.0)), [0.0]),
+        "no common flank: at none of",
+        GeometryError,
+    ),
+    (
+        lambda: face_milled_pair(published_pinion(), replace(published_pinion(), teeth=40), pinion_flank="hollow"),
+        ("^pinion_flank:", "^hand:", "^pitch_angle:"),
+    ),
+    (lambda: matched(driving="motor"), r"driving: 'motor' is not 'pinion' or 'wheel'"),
+    (
+        lambda: matched(modifications=(FlankModifications(tip_relief=0.02, tip_relief_start=10.0), NONE)),
+        r"pinion\.tip_relief_start .* 10 mm is not between",
+    ),
+)

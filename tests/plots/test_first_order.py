@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.errors import InputError
 from loaded_tca.plots import plot_first_order_scatter
 from loaded_tca.results import key_figure_slopes
+from tests.refusals import refusals
 from tests.samples.pictures import told
 from tests.samples.results import result
 from tests.samples.study_datasets import dataset
@@ -56,16 +56,11 @@ def test_linear_scatter_is_that_of_first_order(torque):
     assert "500 variants: 500 ok" in told(figure)
 
 
-@pytest.mark.parametrize(
-    ("changes", "told"),
-    [
-        ({"keys": (KEYS[0], "pinion.teeth")}, "study: varies pinion.teeth, to which no derivatives are known"),
-        ({"torques": TORQUES[:1]}, "study: its torques are not those of the result"),
-        ({"torques": (40.0, 250.0)}, "study: its torques are not those of the result"),
-        ({"name": "crowning_um"}, "study: has none of transmission_error_mean_um"),
-        ({"count": 4, "status": 4 * ["refused"]}, "study: has none of transmission_error_mean_um"),
-    ],
+test_study_of_something_else_is_refused = refusals(
+    lambda changes: plot_first_order_scatter(found(), study(**changes)),
+    ({"keys": (KEYS[0], "pinion.teeth")}, "study: varies pinion.teeth, to which no derivatives are known"),
+    ({"torques": TORQUES[:1]}, "study: its torques are not those of the result"),
+    ({"torques": (40.0, 250.0)}, "study: its torques are not those of the result"),
+    ({"name": "crowning_um"}, "study: has none of transmission_error_mean_um"),
+    ({"count": 4, "status": 4 * ["refused"]}, "study: has none of transmission_error_mean_um"),
 )
-def test_study_of_something_else_is_refused(changes, told):
-    with pytest.raises(InputError, match=told):
-        plot_first_order_scatter(found(), study(**changes))

@@ -27,6 +27,7 @@ from loaded_tca.plots.flanks import CELLS_OF_SPIKES
 from loaded_tca.plots.style import over_a_stretch
 from loaded_tca.results.key_figures import ARCSEC
 from loaded_tca.results.stress_below import stress_below
+from tests.refusals import refused_calls
 from tests.samples.pictures import told
 from tests.samples.results import PER_PAIR, PER_POSITION, changed, changed_scene, result, with_a_gap
 
@@ -247,11 +248,6 @@ def test_pressure_map_tells_its_directions():
     assert figure.axes[0].yaxis.get_inverted() == (radius < cycle.path.pinion_radius[2])
 
 
-def test_pressure_map_where_nothing_touches_is_told():
-    with pytest.raises(IndexError, match="is not in contact"):
-        plot_pressure_map(with_a_gap(), position=1)
-
-
 def test_contact_areas_lie_around_the_path_within_the_flank():
     cycle = result()
     for axes, radius in zip(
@@ -357,9 +353,11 @@ def test_pictures_touch_no_global_state():
     assert sys.modules.get("matplotlib.pyplot") is before
 
 
-def test_picture_that_cannot_be_written_is_told(tmp_path):
-    with pytest.raises(InputError, match="cannot be written"):
-        save_figure(Figure(), tmp_path / "absent" / "a.png")
+test_plots_refuses = refused_calls(
+    (lambda: plot_pressure_map(with_a_gap(), position=1), "is not in contact"),
+    (lambda tmp_path: save_figure(Figure(), tmp_path / "absent" / "a.png"), "cannot be written", InputError),
+    error=IndexError,
+)
 
 
 @pytest.mark.parametrize(("name", "torques"), [("fzg_c14", None), ("mesh_cycle_helical", (260.0,))])

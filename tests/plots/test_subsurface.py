@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from loaded_tca.contact import subsurface_stress
-from loaded_tca.errors import InputError
 from loaded_tca.plots.style import save_figure
 from loaded_tca.plots.subsurface import plot_subsurface
+from tests.refusals import refusals
 from tests.samples.pictures import told
 
 DEPTHS = np.linspace(0.0, 2.0, 21)
@@ -41,14 +41,9 @@ def test_mark_lies_at_the_largest_value_whatever_the_order_of_depths():
     assert 0.4 <= downward.get_ydata()[0] <= 0.5
 
 
-@pytest.mark.parametrize(
-    ("stress", "quantity", "words"),
-    [
-        (circle(), "pressure", "quantity: 'pressure'"),
-        (circle([0.5, 0.5]), "max_shear", "two depths"),
-        (subsurface_stress(np.zeros((4, 4)), (1.0, 1.0), DEPTHS), "max_shear", "none anywhere"),
-    ],
+test_what_cannot_be_drawn_is_refused = refusals(
+    plot_subsurface,
+    (circle(), "pressure", "quantity: 'pressure'"),
+    (circle([0.5, 0.5]), "max_shear", "two depths"),
+    (subsurface_stress(np.zeros((4, 4)), (1.0, 1.0), DEPTHS), "max_shear", "none anywhere"),
 )
-def test_what_cannot_be_drawn_is_refused(stress, quantity, words):
-    with pytest.raises(InputError, match=words):
-        plot_subsurface(stress, quantity)

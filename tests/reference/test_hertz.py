@@ -13,6 +13,7 @@ from scipy.special import ellipe, ellipk
 
 from loaded_tca.errors import InputError
 from loaded_tca.reference import hertz
+from tests.refusals import refusals
 
 EXACT = 1e-13  # closed forms on both sides, a few rounding errors apart
 ROOT_SOLVED = 1e-12  # the ratio of the axes comes from a root finder
@@ -163,20 +164,15 @@ def test_line_pressure_integrates_to_the_line_load():
     assert_allclose(line.mean_pressure, math.pi / 4 * line.max_pressure, rtol=EXACT)
 
 
-@pytest.mark.parametrize(
-    ("load", "pair", "modulus", "name"),
-    [
-        (0.0, (0.1, 0.1), STEEL, "load"),
-        (-1.0, (0.1, 0.1), STEEL, "load"),
-        (math.nan, (0.1, 0.1), STEEL, "load"),
-        (1.0, (0.0, 0.1), STEEL, "curvature_1"),
-        (1.0, (0.1, math.inf), STEEL, "curvature_2"),
-        (1.0, (0.1, 0.1), 0.0, "contact_modulus"),
-    ],
+test_point_contact_refuses = refusals(
+    hertz.point_contact,
+    (0.0, (0.1, 0.1), STEEL, "load"),
+    (-1.0, (0.1, 0.1), STEEL, "load"),
+    (math.nan, (0.1, 0.1), STEEL, "load"),
+    (1.0, (0.0, 0.1), STEEL, "curvature_1"),
+    (1.0, (0.1, math.inf), STEEL, "curvature_2"),
+    (1.0, (0.1, 0.1), 0.0, "contact_modulus"),
 )
-def test_point_contact_refuses(load, pair, modulus, name):
-    with pytest.raises(InputError, match=name):
-        hertz.point_contact(load, pair, modulus)
 
 
 def test_line_contact_tells_every_problem_at_once():

@@ -10,6 +10,7 @@ from scipy.integrate import quad
 
 from loaded_tca.errors import InputError
 from loaded_tca.reference import hertz, punch
+from tests.refusals import refusals
 
 EXACT = 1e-12  # closed forms on both sides: 2e-15 seen
 
@@ -94,16 +95,11 @@ def test_rounded_punch_without_a_flat_part_is_a_cylinder():
     assert_allclose(line.pressure(x), same.max_pressure * shape, atol=1e-9 * same.max_pressure)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "told"),
-    [
-        ((-0.1, 0.2, 0.11, 1e5), "^half_width: -0.1 mm is negative or not finite$"),
-        ((0.1, 0.2, 0.1, 1e5), "^contact_half_width: 0.1 mm is not finite and above half_width$"),
-        ((0.1, 0.2, math.inf, 1e5), "^contact_half_width: inf"),
-        ((0.1, 0.0, 0.11, 1e5), "^radius: 0.0 is not positive and finite$"),
-        ((0.1, 0.2, 0.11, math.nan), "^contact_modulus: nan is not positive and finite$"),
-    ],
+test_rounded_punch_that_cannot_be_is_refused = refusals(
+    lambda arguments: punch.RoundedPunch(*arguments),
+    ((-0.1, 0.2, 0.11, 1e5), "^half_width: -0.1 mm is negative or not finite$"),
+    ((0.1, 0.2, 0.1, 1e5), "^contact_half_width: 0.1 mm is not finite and above half_width$"),
+    ((0.1, 0.2, math.inf, 1e5), "^contact_half_width: inf"),
+    ((0.1, 0.0, 0.11, 1e5), "^radius: 0.0 is not positive and finite$"),
+    ((0.1, 0.2, 0.11, math.nan), "^contact_modulus: nan is not positive and finite$"),
 )
-def test_rounded_punch_that_cannot_be_is_refused(arguments, told):
-    with pytest.raises(InputError, match=told):
-        punch.RoundedPunch(*arguments)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.errors import InputError
 from loaded_tca.reference.wedge import FARTHEST, extra_displacement
+from tests.refusals import refusals
 
 PLACES = np.geomspace(0.01, 100.0, 9)
 
@@ -77,15 +77,10 @@ def test_a_wedge_is_softer_than_a_half_plane():
     assert energy.min() > 0.0
 
 
-@pytest.mark.parametrize(
-    ("place", "angle", "told"),
-    [
-        (0.0, 1.0, "^place: 0.0 "),
-        (1.0, 0.0, "^angle: 0.0 rad is not between 0 and pi$"),
-        (1.0, 4.0, "^angle: 4.0 rad"),
-        (2.0 * FARTHEST, 1.0, "^place: .* times as far as load_place"),
-    ],
+test_arguments_out_of_range_are_refused = refusals(
+    lambda place, angle: extra_displacement(place, 1.0, angle),
+    (0.0, 1.0, "^place: 0.0 "),
+    (1.0, 0.0, "^angle: 0.0 rad is not between 0 and pi$"),
+    (1.0, 4.0, "^angle: 4.0 rad"),
+    (2.0 * FARTHEST, 1.0, "^place: .* times as far as load_place"),
 )
-def test_arguments_out_of_range_are_refused(place, angle, told):
-    with pytest.raises(InputError, match=told):
-        extra_displacement(place, 1.0, angle)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from loaded_tca.errors import InputError
 from loaded_tca.results import compare_results
 from loaded_tca.scene.section import as_table
+from tests.refusals import refusals, refused_calls
 from tests.samples.results import changed, changed_scene, result, with_a_gap
 
 
@@ -66,27 +66,24 @@ def test_compared_are_the_torques_that_all_have():
     assert "note" not in compare_results([two_torques(), two_torques()]).summary()
 
 
-def test_results_without_a_common_torque_are_told_theirs():
-    with pytest.raises(InputError, match=r"have no torque in common \(a: 20, 80 N m; b: 130 N m\)"):
-        compare_results({"a": two_torques(), "b": result()})
-
-
-@pytest.mark.parametrize(
-    ("results", "told"),
-    [
-        ([], "results: 0 given"),
-        ({"alone": None}, "results: 1 given"),
-        (["out", "other"], "results: result 1 is no MeshCycle but 'out'"),
-    ],
+test_what_is_no_pair_of_results_is_told = refusals(
+    compare_results,
+    ([], "results: 0 given"),
+    ({"alone": None}, "results: 1 given"),
+    (["out", "other"], "results: result 1 is no MeshCycle but 'out'"),
 )
-def test_what_is_no_pair_of_results_is_told(results, told):
-    with pytest.raises(InputError, match=told):
-        compare_results(results)
 
 
-def test_torque_that_is_not_shared_is_told():
-    with pytest.raises(InputError, match="torque: 50 N m; the results share 20, 80 N m"):
-        compare_results([two_torques(), two_torques()]).summary(50e3)
+test_comparison_refuses = refused_calls(
+    (
+        lambda: compare_results({"a": two_torques(), "b": result()}),
+        r"have no torque in common \(a: 20, 80 N m; b: 130 N m\)",
+    ),
+    (
+        lambda: compare_results([two_torques(), two_torques()]).summary(50e3),
+        "torque: 50 N m; the results share 20, 80 N m",
+    ),
+)
 
 
 def test_keys_of_the_scenes_that_differ():

@@ -15,6 +15,7 @@ from loaded_tca.errors import InputError
 from loaded_tca.results.files import read_dataset, write_dataset
 from loaded_tca.results.mesh_cycle import QUANTITIES, MeshCycle
 from loaded_tca.scene import read_scene
+from tests.refusals import refused_calls
 from tests.samples.results import ONE_PAIR, PER_PAIR, PER_POSITION, SCENES, assert_same, changed, result, with_a_gap
 
 SCENE = str(SCENES / "helical.toml")
@@ -111,11 +112,6 @@ def test_file_without_a_torque_is_told(path):
     assert caught.value.problems[1:] == ("torque: 0 long, expected at least 1",)
 
 
-def test_directory_instead_of_a_result_is_told(tmp_path):
-    with pytest.raises(InputError, match=r"a directory; name the result file in it, as .*result\.nc"):
-        MeshCycle.load(tmp_path)
-
-
 def test_what_a_user_adds_to_the_dataset_is_kept(path):
     cycle = result()
     added = {"wear": (("torque", "position"), np.array([[0.1, 0.2, 0.3, 0.4, 0.5]]), {"units": "um"})}
@@ -166,9 +162,10 @@ def test_every_quantity_is_an_array_with_its_axes(torques):
             assert isinstance(values, float)
 
 
-def test_unknown_name_is_no_attribute():
-    with pytest.raises(AttributeError, match="'MeshCycle' object has no attribute 'peak'"):
-        result().peak  # noqa: B018
+test_mesh_cycle_refuses = refused_calls(
+    (lambda tmp_path: MeshCycle.load(tmp_path), r"a directory; name the result file in it, as .*result\.nc"),
+    (lambda: result().peak, "'MeshCycle' object has no attribute 'peak'", AttributeError),
+)
 
 
 def test_dataset_selects_tabulates_and_draws():

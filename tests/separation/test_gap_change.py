@@ -7,9 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca import read_scene, sample_separation, trace_contact
-from loaded_tca.errors import InputError
 from loaded_tca.separation.gap_change import contact_changes, pair_changes
 from loaded_tca.separation.normal_gap import NormalGap
+from tests.refusals import refusals
 from tests.samples.results import SCENES
 
 AGREEMENT = 1e-6
@@ -215,27 +215,18 @@ def test_gap_of_helical_gears_grows_by_the_sine_of_the_pressure_angle_with_the_c
     assert_allclose(abs(along), math.sin(abs(gear.base_helix_angle)), rtol=1e-3)
 
 
-@pytest.mark.parametrize(
-    ("key", "told"),
-    [
-        ("pinion.modifications.lead_crownin_um", "unknown key"),
-        ("nothing", "unknown key"),
-        ("pinion.face_width_mm", "does not change the gap alone"),
-        ("material.youngs_modulus_MPa", "does not change the gap alone"),
-        ("pinion.modifications.lead_crowning_form", "does not change the gap alone"),
-        ("pinion.modifications.polynomial_mm", "one number"),
-        ("pinion.modifications.end_relief_lower_um", "found None"),
-        ("wheel.modifications.tip_relief_um", "tip_relief_start_mm"),
-    ],
+test_keys_that_cannot_be_varied_are_refused_by_name = refusals(
+    lambda keys: pair_changes(scene_of("mesh_cycle_helical"), keys),
+    (["pinion.modifications.lead_crownin_um"], "pinion.modifications.lead_crownin_um: unknown key"),
+    (["nothing"], "nothing: unknown key"),
+    (["pinion.face_width_mm"], "pinion.face_width_mm: does not change the gap alone"),
+    (["material.youngs_modulus_MPa"], "material.youngs_modulus_MPa: does not change the gap alone"),
+    (
+        ["pinion.modifications.lead_crowning_form"],
+        "pinion.modifications.lead_crowning_form: does not change the gap alone",
+    ),
+    (["pinion.modifications.polynomial_mm"], "pinion.modifications.polynomial_mm: .* one number"),
+    (["pinion.modifications.end_relief_lower_um"], "pinion.modifications.end_relief_lower_um: found None"),
+    (["wheel.modifications.tip_relief_um"], "wheel.modifications.tip_relief_um: .*tip_relief_start_mm"),
+    (["one", "mounting.two_mm"], ("^one: unknown key", "^mounting.two_mm: unknown key")),
 )
-def test_keys_that_cannot_be_varied_are_refused_by_name(key, told):
-    scene = scene_of("mesh_cycle_helical")
-    with pytest.raises(InputError, match=told) as refused:
-        pair_changes(scene, [key])
-    assert key in str(refused.value)
-
-
-def test_all_keys_that_cannot_be_varied_are_told_at_once():
-    with pytest.raises(InputError) as refused:
-        pair_changes(scene_of("mesh_cycle_helical"), ["one", "mounting.two_mm"])
-    assert len(refused.value.problems) == 2

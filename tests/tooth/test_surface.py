@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.errors import InputError
 from loaded_tca.gears.transverse_profile import transverse_profile
 from loaded_tca.tooth import PATCHES, Resolution
 from loaded_tca.tooth.surface import CLOSING
+from tests.refusals import refused_calls
 from tests.samples.teeth import CROWNED, MESHES, tooth_of
 
 ROUNDING = 1e-12
@@ -91,15 +91,10 @@ def test_turned_tooth_keeps_its_form():
     assert_allclose(turned.turned(-0.3).outline, tooth.outline, atol=1e-13)  # mm; turned forth and back: 2e-16 seen
 
 
-def test_patch_of_another_name_is_refused():
-    with pytest.raises(InputError, match=r"'top' is not one of 'root land -', .*'root land \+'"):
-        tooth_of(MESHES["spur"]).patch("top")
-
-
-@pytest.mark.parametrize("copies", [0, 25])
-def test_more_teeth_than_the_gear_has_are_refused(copies):
-    with pytest.raises(InputError, match=r"copies: .* is not between 1 and 24"):
-        tooth_of(MESHES["spur"]).triangles(copies)
+test_surface_refuses = refused_calls(
+    (lambda: tooth_of(MESHES["spur"]).patch("top"), r"'top' is not one of 'root land -', .*'root land \+'"),
+    (lambda copies: tooth_of(MESHES["spur"]).triangles(copies), r"copies: .* is not between 1 and 24", [0, 25]),
+)
 
 
 def test_repr_is_short():

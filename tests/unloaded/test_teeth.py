@@ -15,6 +15,7 @@ from loaded_tca.flanks import FlankModifications
 from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.unloaded.teeth import MeshPath, trace_teeth
 from loaded_tca.unloaded.tooth_cycle import REACH
+from tests.refusals import refused_calls
 from tests.samples.gear_pairs import cylindrical_mesh, gear_pair, highest_on_grid, pairs
 
 ARCSEC = math.degrees(3600.0)
@@ -403,37 +404,12 @@ def test_harmonics_beyond_the_positions_are_refused(count):
 # What is refused, and warned of
 
 
-@pytest.mark.parametrize("angles", [[], [[0.0, 0.1]], [0.0, math.nan], [0.1, 0.0], [0.0, 0.0], 0.0, "ab", [1j]])
-def test_angles_that_are_not_finite_and_increasing_are_refused(angles):
-    with pytest.raises(InputError, match=r"pinion_angles: .*(finite numbers|increasing angles)"):
-        trace_teeth(gear_pair(), angles)
-
-
-@pytest.mark.parametrize("teeth", [[], [0, 0], [0.5]])
-def test_teeth_that_are_none_are_refused(teeth):
-    with pytest.raises(InputError, match="whole numbers are asked for"):
-        trace_teeth(gear_pair(), teeth=teeth)
-
-
 def test_chosen_teeth_alone_make_the_envelope():
     pair = gear_pair(BOTH)
     mesh = trace_teeth(pair, np.linspace(-0.6, 0.6, 13) * pair.pitch, teeth=[0])
     assert (mesh.leading_pair == 0).all()
     assert mesh.transfers == ()
     assert_allclose(mesh.transmission_error, trace_contact(pair, mesh.pinion_angle).transmission_error, atol=ROUNDING)
-
-
-def test_positions_where_none_of_the_chosen_teeth_touches_are_told():
-    pair = gear_pair()
-    with pytest.raises(GeometryError, match=r"none of the tooth pairs \[0\] touches at .* first at pinion angle"):
-        trace_teeth(pair, np.linspace(0.0, 3.0, 13) * pair.pitch, teeth=[0])
-    with pytest.raises(GeometryError, match=r"none of the tooth pairs \[9\] comes into reach"):
-        trace_teeth(pair, teeth=[9])
-
-
-def test_pair_without_a_common_flank_is_told():
-    with pytest.raises(GeometryError, match="no common flank"):
-        trace_teeth(gear_pair(mounting=Mounting(axial_offset=30.0)))
 
 
 def test_fillet_interference_is_warned_of_only_where_it_leads():
@@ -446,18 +422,29 @@ def test_fillet_interference_is_warned_of_only_where_it_leads():
         trace_teeth(gear_pair(hollow, dedendum_coefficient=1.05))
 
 
-@pytest.mark.parametrize("teeth", [[math.nan], [math.inf], [10**30, 0], [0.5], 1.5, "ab", [True]])
-def test_teeth_that_are_no_whole_numbers_are_refused(teeth):
-    with pytest.raises(InputError, match=r"teeth: .* whole numbers"):
-        trace_teeth(gear_pair(), [0.0], teeth=teeth)
-
-
-@pytest.mark.parametrize("tolerance", [-1.0, 0.16, math.nan, math.inf, "1 um"])
-def test_contact_ratio_of_no_length_within_reach_is_refused(tolerance):
-    with pytest.raises(InputError, match=r"tolerance: .* not a length from 0 to 0.15 mm, 0.05 modules"):
-        trace_teeth(gear_pair()).contact_ratio(tolerance)
-
-
-def test_harmonics_of_half_an_order_are_refused():
-    with pytest.raises(InputError, match=r"count: found 2\.5"):
-        trace_teeth(gear_pair()).harmonics(2.5)
+test_teeth_refuses = refused_calls(
+    (
+        lambda angles: trace_teeth(gear_pair(), angles),
+        r"pinion_angles: .*(finite numbers|increasing angles)",
+        [[], [[0.0, 0.1]], [0.0, math.nan], [0.1, 0.0], [0.0, 0.0], 0.0, "ab", [1j]],
+    ),
+    (lambda teeth: trace_teeth(gear_pair(), teeth=teeth), "whole numbers are asked for", [[], [0, 0], [0.5]]),
+    (
+        lambda: trace_teeth(gear_pair(), np.linspace(0.0, 3.0, 13) * gear_pair().pitch, teeth=[0]),
+        r"none of the tooth pairs \[0\] touches at .* first at pinion angle",
+        GeometryError,
+    ),
+    (lambda: trace_teeth(gear_pair(), teeth=[9]), r"none of the tooth pairs \[9\] comes into reach", GeometryError),
+    (lambda: trace_teeth(gear_pair(mounting=Mounting(axial_offset=30.0))), "no common flank", GeometryError),
+    (
+        lambda teeth: trace_teeth(gear_pair(), [0.0], teeth=teeth),
+        r"teeth: .* whole numbers",
+        [[math.nan], [math.inf], [10**30, 0], [0.5], 1.5, "ab", [True]],
+    ),
+    (
+        lambda tolerance: trace_teeth(gear_pair()).contact_ratio(tolerance),
+        r"tolerance: .* not a length from 0 to 0.15 mm, 0.05 modules",
+        [-1.0, 0.16, math.nan, math.inf, "1 um"],
+    ),
+    (lambda: trace_teeth(gear_pair()).harmonics(2.5), r"count: found 2\.5"),
+)
