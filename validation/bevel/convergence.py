@@ -11,6 +11,7 @@ from pathlib import Path
 
 from loaded_tca.flanks import FlankModifications
 from validation.bevel.pairs import SPIRAL, STRAIGHT, BevelGears, spiral_modifications
+from validation.page import machine
 from validation.table import Row
 from validation.unloaded.random_starts import (
     COMPONENTS,
@@ -20,7 +21,6 @@ from validation.unloaded.random_starts import (
     Case,
     conventional,
     draw,
-    machine,
     reduced,
     study,
     table,
@@ -144,7 +144,7 @@ def main() -> None:
         draw(case, outcomes, arguments.out / picture)
         pictures.append(f"![{case.name}: domain and range]({picture})\n")
         assumed.append(f"- {case.name}: {case.assumed}.")
-    text = INTRODUCTION.format(machine=machine(), scipy=SCIPY_STARTS, runs=RUNS, starts=arguments.starts)
+    text = INTRODUCTION.format(machine=machine(numpy=True), scipy=SCIPY_STARTS, runs=RUNS, starts=arguments.starts)
     text += "\n".join(tables) + "\n" + CONCLUSION.format(assumed="\n".join(assumed)) + "\n".join(pictures)
     (arguments.out / "bevel_convergence.md").write_text(text)
 

@@ -37,8 +37,8 @@ from validation.bevel.miter_gear_paper import (
     slowness,
 )
 from validation.bevel.pictures import COLOURS, draw_flank
+from validation.page import machine
 from validation.table import render
-from validation.unloaded.random_starts import machine
 
 Array = NDArray[np.float64]
 OFFSETS = (0.0, 0.05, 0.1, 0.13, 0.15, 0.2, 0.3)
@@ -104,7 +104,7 @@ Both flanks as quintic B-splines through 33 x 33 of their points: a path takes {
 def document() -> str:
     """The page."""
     return TEXT.format(
-        machine=machine(),
+        machine=machine(numpy=True),
         profile=1e3 * PROFILE,
         motion=largest_error(PROFILE),
         one=largest_error(PROFILE, one_pair=True),

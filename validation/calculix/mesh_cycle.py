@@ -23,8 +23,8 @@ from loaded_tca.plots import save_figure
 from validation.calculix import pairs_in_space
 from validation.calculix.case import FACE_WIDTH, POSITIONS, pinion_angle
 from validation.calculix.comparison import Key, Model, Position, model, read_cycles
+from validation.page import machine
 from validation.table import Row, render
-from validation.unloaded.random_starts import machine
 
 SOURCE = "finite elements, plane strain (CalculiX)"
 WIDE = 100.0
@@ -349,7 +349,7 @@ def write(out: Path, kept: Cycles) -> None:
         for key, pairs in by_key.items()
     ]
     page = PAGE.format(
-        machine=machine(),
+        machine=machine(numpy=True),
         count=sum(map(len, kept.values())),
         wide=WIDE,
         narrow=FACE_WIDTH,

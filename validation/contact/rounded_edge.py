@@ -33,7 +33,7 @@ from loaded_tca.contact import (
 from loaded_tca.contact.columns import EVEN, FineZone, column_borders, pressed_width
 from loaded_tca.reference.punch import RoundedPunch
 from loaded_tca.threads import one_thread
-from validation.contact.speed_against_error import machine
+from validation.page import machine
 from validation.table import Row
 
 Array = NDArray[np.float64]

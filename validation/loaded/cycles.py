@@ -103,7 +103,7 @@ def _run(tree: Path, name: str, setting: str, profiled: bool = False) -> dict[st
 
 def page(trees: dict[str, Path]) -> str:
     """Markdown of all measurements."""
-    from validation.contact.speed_against_error import machine
+    from validation.page import machine
 
     rows = []
     for name in NAMES:

@@ -29,7 +29,7 @@ from loaded_tca.compliance.influence import forget
 from loaded_tca.loaded.free_edges import edge_compliance
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
-from validation.contact.speed_against_error import machine
+from validation.page import machine
 from validation.table import Row
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"

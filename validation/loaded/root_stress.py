@@ -49,7 +49,7 @@ from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.reference.iso6336_3 import RootSection, root_section
 from loaded_tca.tooth.profile import polar
-from validation.contact.speed_against_error import machine
+from validation.page import machine
 from validation.table import Row
 
 ROOT = Path(__file__).parents[2]

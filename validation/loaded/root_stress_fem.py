@@ -19,8 +19,8 @@ from validation.calculix.tables import RING_FILLETS_FILE, RINGS_FILE, ROOT_MESH_
 from validation.loaded import root_face_load, root_stress_cycle, root_stress_space
 from validation.loaded.root_stress_cycle import GEARS, SIGNS, WIDE, RootCycle
 from validation.loaded.root_stress_space import SIDES, Fillets
+from validation.page import machine
 from validation.table import Row, render
-from validation.unloaded.random_starts import machine
 
 PAGE = """# Tooth root stress against finite elements
 
@@ -237,7 +237,7 @@ def write(out: Path) -> None:
     }
     rows: list[Row] = [*root_stress_cycle.rows(), *root_stress_space.rows(), *root_face_load.rows()]
     page = PAGE.format(
-        machine=machine(),
+        machine=machine(numpy=True),
         wide=WIDE,
         cycle="\n".join(cycle_lines(cycles)),
         meshes="\n".join(mesh_lines()),

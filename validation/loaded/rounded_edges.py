@@ -38,7 +38,7 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
 from loaded_tca.threads import one_thread
-from validation.contact.speed_against_error import machine
+from validation.page import machine
 from validation.table import Row, render
 
 Place = tuple[int, int, int]

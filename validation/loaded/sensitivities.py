@@ -33,7 +33,7 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
 from loaded_tca.studies import Study, process_pool, run_study
 from loaded_tca.studies.ranking import figure_values
-from validation.contact.speed_against_error import machine
+from validation.page import machine
 from validation.table import Row
 
 ROOT = Path(__file__).resolve().parents[2]

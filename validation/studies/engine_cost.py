@@ -186,7 +186,7 @@ def tell(name: str) -> None:
 
 def page(found: Mapping[str, Mapping[str, float]]) -> str:
     """Markdown of all measurements."""
-    from validation.contact.speed_against_error import machine
+    from validation.page import machine
 
     rate = 1e3 / found["on_cluster"]["bare"]
     rows = [

@@ -26,7 +26,7 @@ from scipy.stats import norm
 
 from loaded_tca import read_scene
 from loaded_tca.studies.design import ACCURACY, DesignModel, DesignResult, Objective, optimise, robustness
-from validation.contact.speed_against_error import machine
+from validation.page import machine
 from validation.table import Row
 
 ROOT = Path(__file__).parents[2]

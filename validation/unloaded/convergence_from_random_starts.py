@@ -18,6 +18,7 @@ from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair
+from validation.page import machine
 from validation.table import Row
 from validation.unloaded.random_starts import (
     RUNS,
@@ -27,7 +28,6 @@ from validation.unloaded.random_starts import (
     Draw,
     conventional,
     draw,
-    machine,
     reduced,
     study,
     table,
@@ -241,7 +241,7 @@ def main() -> None:
         draw(case, outcomes, arguments.out / picture)
         pictures.append(f"![{case.name}: domain and range]({picture})\n")
         assumed.append(f"- {case.name}: {case.assumed}.")
-    text = INTRODUCTION.format(machine=machine(), scipy=SCIPY_STARTS, runs=RUNS) + "\n".join(tables) + "\n"
+    text = INTRODUCTION.format(machine=machine(numpy=True), scipy=SCIPY_STARTS, runs=RUNS) + "\n".join(tables) + "\n"
     text += DISSERTATION_NUMBERS.format(
         assumed="\n".join(assumed), stated="\n".join(stated_table()), stated_starts=STATED_STARTS
     )

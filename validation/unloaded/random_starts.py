@@ -5,8 +5,6 @@ for the conventional one. A start counts if it ends at the contact that ``trace_
 """
 
 import math
-import os
-import platform
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
@@ -197,15 +195,6 @@ def table(case: Case, outcomes: list[Outcome]) -> str:
         for one in outcomes
     ]
     return "\n".join(lines)
-
-
-def machine() -> str:
-    """Processor, cores and Python of this machine."""
-    model = platform.processor()
-    if Path("/proc/cpuinfo").exists():
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-        model = next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), model)
-    return f"{model}, {os.cpu_count()} cores, Python {platform.python_version()}, NumPy {np.__version__}"
 
 
 def draw(case: Case, outcomes: list[Outcome], path: Path) -> None:
