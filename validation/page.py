@@ -5,6 +5,8 @@ is printed and written with its pictures into ``docs/studies``, or where ``--out
 turns (:func:`take_turns`), and the page has medians (:func:`medians`, :func:`median_ratio`).
 """
 
+from __future__ import annotations
+
 import json
 import math
 import os
@@ -17,11 +19,14 @@ import time
 from argparse import ArgumentParser
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
-from matplotlib.figure import Figure
+
+if TYPE_CHECKING:  # processes whose memory is measured load no matplotlib
+    from matplotlib.figure import Figure
 
 ROOT = Path(__file__).resolve().parents[1]
 STUDIES, SCENES = ROOT / "docs" / "studies", ROOT / "examples" / "scenes"
@@ -181,7 +186,11 @@ def take_times(
     calls: Mapping[str, Callable[[], object]], runs: int, clock: Callable[[], float] = time.perf_counter
 ) -> dict[str, list[float]]:
     """Times [s] of calls that take turns."""
-    return take_turns({name: lambda call=call: timed(call, clock=clock)[1][0] for name, call in calls.items()}, runs)
+
+    def taken(call: Callable[[], object]) -> float:
+        return timed(call, clock=clock)[1][0]
+
+    return take_turns({name: partial(taken, call) for name, call in calls.items()}, runs)
 
 
 def medians(values: Mapping[str, Iterable[float]]) -> dict[str, float]:
