@@ -127,7 +127,7 @@ def table(head: Cells, rows: Iterable[Cells], rule: str = "---") -> str:
     return "\n".join([first, "|" + f"{rule}|" * (first.count("|") - 1), *map(line, rows)])
 
 
-def numbers(style: str, *values: float) -> list[str]:
+def formatted(style: str, *values: float) -> list[str]:
     """Numbers in one format."""
     return [f"{value:{style}}" for value in values]
 

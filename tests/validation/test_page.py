@@ -13,11 +13,11 @@ from validation.page import (
     ROOT,
     SPACED,
     Page,
+    formatted,
     in_a_process,
     lines,
     median_ratio,
     medians,
-    numbers,
     peak_memory,
     table,
     take_times,
@@ -45,7 +45,7 @@ def test_a_table_has_a_rule_and_a_line_for_each_row():
 
 
 def test_numbers_have_one_format():
-    assert numbers("+.2f", 1.0, -0.126) == ["+1.00", "-0.13"]
+    assert formatted("+.2f", 1.0, -0.126) == ["+1.00", "-0.13"]
 
 
 def test_a_page_is_written_with_its_pictures(tmp_path, monkeypatch, capsys):
@@ -110,7 +110,7 @@ def test_a_process_of_its_own_takes_the_package_of_a_checkout(tmp_path):
     (tmp_path / "loaded_tca").mkdir()
     other = tmp_path / "loaded_tca" / "__init__.py"
     other.touch()
-    assert in_a_process(module.numbers, ".1f", 2.0) == ["2.0"]
+    assert in_a_process(module.formatted, ".1f", 2.0) == ["2.0"]
     assert in_a_process(package_path) == str(ROOT / "loaded_tca" / "__init__.py")
     assert in_a_process(package_path, tree=tmp_path) == str(other)
 

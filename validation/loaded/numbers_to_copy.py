@@ -25,7 +25,7 @@ from loaded_tca.compliance.influence import forget
 from loaded_tca.loaded.free_edges import edge_compliance
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
-from validation.page import SCENES, SPACED, Page, machine, numbers, table, timed, write_page
+from validation.page import SCENES, SPACED, Page, formatted, machine, table, timed, write_page
 from validation.table import Row
 
 EARLIER = {"load_sharing": False, "compliance": "contact", "free_edges": False}
@@ -147,10 +147,10 @@ def load_factors() -> str:
         line = [f"{um:g}"]
         for compliance in ("contact+tooth", "contact"):
             coarse, fine = (float(misaligned(um, cells, compliance).face_load_factor[0]) for cells in GRIDS)
-            line += [*numbers(".3f", coarse, fine), f"{fine / coarse - 1.0:+.1%}"]
+            line += [*formatted(".3f", coarse, fine), f"{fine / coarse - 1.0:+.1%}"]
         both = _on_grids(um)
-        across = numbers(".3f", *(one.transverse_load_factor[0] for one in both))
-        lines.append([*line, *across, *numbers(".0f", *map(_peak, both))])
+        across = formatted(".3f", *(one.transverse_load_factor[0] for one in both))
+        lines.append([*line, *across, *formatted(".0f", *map(_peak, both))])
     return table(f"{head} | K_Halpha, {grids} | peak pressure [MPa], {grids}", lines, SPACED)
 
 
@@ -161,14 +161,14 @@ def boxes() -> str:
         name = f"`{case[0]}.toml`, {case[1]:g} N m, {case[2]:g} pitches"
         spaces = in_boxes(*case, free_edges=False), in_boxes(*case), np.array(before)
         for words, values in zip(("half-spaces", "free edges", "free edges, before"), spaces, strict=True):
-            lines.append([name, words, *numbers(".3f", *values), f"{_spread(values):.2%}"])
+            lines.append([name, words, *formatted(".3f", *values), f"{_spread(values):.2%}"])
     return table(f"contact | | {' | '.join(f'box x {factor:g}' for factor in BOXES)} | spread", lines, SPACED)
 
 
 def repeated() -> str:
     """Rotation a pitch later and stiffness, beside those of before."""
     lines = [
-        [f"`{case[0]}.toml`, {case[1]:g} N m", *numbers(".3f", *a_pitch_later(*case), *before)]
+        [f"`{case[0]}.toml`, {case[1]:g} N m", *formatted(".3f", *a_pitch_later(*case), *before)]
         for case, before in A_PITCH_LATER.items()
     ]
     head = "rotation [urad] | a pitch later | stiffness ratio"
@@ -182,7 +182,7 @@ def at_sharp_edges() -> str:
         for cells, earlier in zip((*GRIDS, FINEST), before, strict=True):
             cycle = helical(cells) if name.startswith("34/57") else misaligned(16.0, cells)
             cell = max(float(one.pressure.max()) for row in cycle.maps[0] for one in row if one is not None)
-            lines.append([name, cells, *numbers(".0f", _peak(cycle), np.nanmax(cycle.edge_pressure), cell), *earlier])
+            lines.append([name, cells, *formatted(".0f", _peak(cycle), np.nanmax(cycle.edge_pressure), cell), *earlier])
     head = "pair | cells along each axis | peak pressure [MPa] | edge pressure [MPa] | highest cell [MPa]"
     return table(f"{head} | before: peak pressure [MPa] | highest cell [MPa]", lines, SPACED)
 
@@ -200,10 +200,10 @@ def examples() -> tuple[str, str]:
             today, again = timed_anew(scene, TODAY)
         line = [f"`{file.name}`"]
         for (key, _), style in zip(FIGURES, (".0f", ".2f", ".1f", ".2f"), strict=True):
-            line += numbers(style, *(cycle.key_figures()[-1][key] for cycle in (earlier, today)))
+            line += formatted(style, *(cycle.key_figures()[-1][key] for cycle in (earlier, today)))
         figures.append(line)
         count = f"{len(today.torque)} x {len(today.pinion_angle)}"
-        times.append([f"`{file.name}`", count, *numbers(".2f", seconds, first, again)])
+        times.append([f"`{file.name}`", count, *formatted(".2f", seconds, first, again)])
     head = " | ".join(f"{name}, earlier | today" for _, name in FIGURES)
     second = "scene | torques x positions | earlier | today, models of teeth made anew | today, read from disk"
     return table(f"scene | {head}", figures, SPACED), table(second, times, SPACED)

@@ -17,7 +17,7 @@ from validation.calculix.tables import RING_FILLETS_FILE, RINGS_FILE, ROOT_MESH_
 from validation.loaded import root_face_load, root_stress_cycle, root_stress_space
 from validation.loaded.root_stress_cycle import GEARS, SIGNS, WIDE, RootCycle
 from validation.loaded.root_stress_space import SIDES, Fillets
-from validation.page import Page, lines, machine, numbers, write_page
+from validation.page import Page, formatted, lines, machine, write_page
 from validation.table import Row, render
 
 PAGE = """# Tooth root stress against finite elements
@@ -117,7 +117,7 @@ def cycle_cells(cycles: Cycles) -> Iterable[Iterable[str]]:
             factor, found = SIGNS[sign], ours.stress[gear, sign]
             highest, own = factor * (factor * values).max(), factor * (factor * found).max()
             apart = 100.0 * np.abs(found - values).max() / abs(highest)
-            sizes = *numbers(".2f", highest, own), f"{100.0 * (own / highest - 1.0):+.2f}", f"{apart:.2f}"
+            sizes = *formatted(".2f", highest, own), f"{100.0 * (own / highest - 1.0):+.2f}", f"{apart:.2f}"
             yield variant.replace("_", " "), gear, sign, *sizes
 
 
@@ -143,7 +143,7 @@ def ring_cells(rings: Rings) -> Iterable[Iterable[str]]:
             before = sign * max(sign * float(row[f"{name}_MPa"]) for row in coarser[ring, load])
             highest, own = sign * (sign * values).max(), sign * (sign * ours.largest(side)).max()
             apart = 100.0 * np.abs(ours.at(side, heights) - values).max() / abs(highest)
-            sizes = numbers(".2f", highest, before, own)
+            sizes = formatted(".2f", highest, before, own)
             yield ring, load, name, *sizes, f"{100.0 * (own / highest - 1.0):+.2f}", f"{apart:.2f}"
 
 
@@ -239,7 +239,7 @@ def page() -> Page:
         coarser=WAYS["standard"].fillet,
         finer=WAYS["finer"].fillet,
         ratios=lines(
-            [name, *numbers(".3f", one.contact_factor, one.iso_factor, one.ratio)] for name, one in loads.items()
+            [name, *formatted(".3f", one.contact_factor, one.iso_factor, one.ratio)] for name, one in loads.items()
         ),
         inside=float(np.abs(misaligned.along).max() - abs(misaligned.along[misaligned.tension.argmax()])),
         rows=render(rows),

@@ -25,7 +25,7 @@ from scipy.stats import norm
 
 from loaded_tca import read_scene
 from loaded_tca.studies.design import ACCURACY, DesignModel, DesignResult, Objective, optimise, robustness
-from validation.page import SCENES, SPACED, Page, lines, machine, numbers, table, timed, write_page
+from validation.page import SCENES, SPACED, Page, formatted, lines, machine, table, timed, write_page
 from validation.table import Row
 
 SCENE = SCENES / "design_helical.toml"
@@ -197,10 +197,10 @@ def page() -> str:
     ]
     designs = {"start": result.start, "one torque": one.optimum, "robust": result.optimum}
     curves = robustness(model(), designs, MULTIPLES, figure="span_um")["objective"].values
-    over_scatter = [[f"{m:g}", *numbers(".4g", *column)] for m, column in zip(MULTIPLES, curves.T, strict=True)]
+    over_scatter = [[f"{m:g}", *formatted(".4g", *column)] for m, column in zip(MULTIPLES, curves.T, strict=True)]
     scattered = table(["multiple", *designs], over_scatter, SPACED)
     optima = [
-        [f"`{key}`", *numbers(".4g", *(round(own[key], 3) for own in designs.values()))] for key in result.optimum
+        [f"`{key}`", *formatted(".4g", *(round(own[key], 3) for own in designs.values()))] for key in result.optimum
     ]
     values = table(["key", *designs], optima, SPACED)
     alone = [float(span) for span in one.dataset["span_um"].values[:, 0, 0]]
