@@ -12,5 +12,6 @@
 | `calculix` | runs of CalculiX, the numbers kept of them, and the loaded mesh cycle beside them |
 
 ``python -m validation`` prints the rows of all comparisons in one table; a script that writes a page of
-``docs/studies`` is called by its own name, ``python -m validation.bevel.pressure``.
+``docs/studies`` is called by its own name, ``python -m validation.bevel.pressure``. What these scripts share (tables,
+times, the command line) is in ``page``.
 """

@@ -6,24 +6,20 @@ cylindrical gears, see :mod:`validation.unloaded.convergence_from_random_starts`
 Run from the root of the repository: ``python -m validation.bevel.convergence``.
 """
 
-import argparse
-from pathlib import Path
-
 from loaded_tca.flanks import FlankModifications
 from validation.bevel.pairs import SPIRAL, STRAIGHT, BevelGears, spiral_modifications
+from validation.page import Page, machine, write_page
 from validation.table import Row
 from validation.unloaded.random_starts import (
     COMPONENTS,
+    DOTS_PER_INCH,
     RUNS,
     SCIPY_STARTS,
     SPREADS,
     Case,
     conventional,
-    draw,
-    machine,
+    parts_of_page,
     reduced,
-    study,
-    table,
 )
 
 STARTS = 1000
@@ -129,25 +125,13 @@ the pinion. The axes of the range are linear up to the size of the flank and log
 """
 
 
-def main() -> None:
-    """Run the study, print the table, write it and the pictures."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs/studies"))
-    parser.add_argument("--starts", type=int, default=STARTS)
-    arguments = parser.parse_args()
-    tables, pictures, assumed = [], [], []
-    for number, case in enumerate(cases(arguments.starts), 1):
-        outcomes = study(case, COMPONENTS)
-        tables.append(table(case, outcomes))
-        print(tables[-1], flush=True)
-        picture = f"bevel_convergence_{number}.png"
-        draw(case, outcomes, arguments.out / picture)
-        pictures.append(f"![{case.name}: domain and range]({picture})\n")
-        assumed.append(f"- {case.name}: {case.assumed}.")
-    text = INTRODUCTION.format(machine=machine(), scipy=SCIPY_STARTS, runs=RUNS, starts=arguments.starts)
-    text += "\n".join(tables) + "\n" + CONCLUSION.format(assumed="\n".join(assumed)) + "\n".join(pictures)
-    (arguments.out / "bevel_convergence.md").write_text(text)
+def page(starts: int) -> Page:
+    """Run the study from so many starts."""
+    parts = parts_of_page("bevel_convergence_", cases(starts), COMPONENTS)
+    text = INTRODUCTION.format(machine=machine(numpy=True), scipy=SCIPY_STARTS, runs=RUNS, starts=starts)
+    text += parts.lines + "\n" + CONCLUSION.format(assumed=parts.assumed) + parts.links
+    return Page("bevel_convergence", text, parts.pictures, DOTS_PER_INCH)
 
 
 if __name__ == "__main__":
-    main()
+    write_page(__doc__, page, starts=STARTS)

@@ -5,9 +5,6 @@ Run from the root of the repository: ``python -m validation.bevel.miter_gear_doc
 
 from __future__ import annotations
 
-import argparse
-from pathlib import Path
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -37,8 +34,8 @@ from validation.bevel.miter_gear_paper import (
     slowness,
 )
 from validation.bevel.pictures import COLOURS, draw_flank
+from validation.page import Page, lines, machine, write_page
 from validation.table import render
-from validation.unloaded.random_starts import machine
 
 Array = NDArray[np.float64]
 OFFSETS = (0.0, 0.05, 0.1, 0.13, 0.15, 0.2, 0.3)
@@ -47,7 +44,6 @@ FINE = 30
 """Sections of the golden-section search in the table."""
 WIDE = np.linspace(-1.5, 1.5, 241)
 """Positions of the curves of transmission error, in pitches."""
-DOTS_PER_INCH = 90
 
 TEXT = """# The straight bevel pair of the miter-gear paper: three methods, its contact pattern, its edges
 
@@ -104,38 +100,38 @@ Both flanks as quintic B-splines through 33 x 33 of their points: a path takes {
 def document() -> str:
     """The page."""
     return TEXT.format(
-        machine=machine(),
+        machine=machine(numpy=True),
         profile=1e3 * PROFILE,
         motion=largest_error(PROFILE),
         one=largest_error(PROFILE, one_pair=True),
-        crownings="\n".join(_crowning_line(error) for error in PRINTED.values()),
+        crownings=lines(map(_crowning_cells, PRINTED.values())),
         positions=POSITIONS,
         few=FEW,
-        edges="\n".join(_edge_line(offset) for offset in OFFSETS),
-        areas="\n".join(_area_line(offset) for offset in OFFSETS),
+        edges=lines(map(_edge_cells, OFFSETS)),
+        areas=lines(map(_area_cells, OFFSETS)),
         slower=slowness(),
         rows=render(rows()),
     )
 
 
-def _crowning_line(error: float) -> str:
+def _crowning_cells(error: float) -> list[str]:
     amounts = (crowning_for(error, one_pair=one_pair) for one_pair in (False, True))
-    return f"| {error:g} arcsec | " + " | ".join(f"{1e3 * amount:.2f} um" for amount in amounts) + " |"
+    return [f"{error:g} arcsec", *(f"{1e3 * amount:.2f} um" for amount in amounts)]
 
 
-def _edge_line(offset: float) -> str:
+def _edge_cells(offset: float) -> str:
     gears = pair(mounting=BevelMounting(offset=offset))
     path = path_of(gears)
     own, best = (five_equations(gears, path, from_answer=start).found for start in (False, True))
     angle, place = golden(gears, path_of(gears, FEW), FINE).largest
-    return f"| {offset:g} | {path.on_edge.sum()} | {own} | {best} | {angle:.1e} | {place:.1e} |"
+    return f"{offset:g} | {path.on_edge.sum()} | {own} | {best} | {angle:.1e} | {place:.1e}"
 
 
-def _area_line(offset: float) -> str:
+def _area_cells(offset: float) -> str:
     area = area_at(BevelMounting(offset=offset))
     sizes = (" x ".join(f"{axis:.3f}" for axis in axes) for axes in (area.semi_axes, area.ellipse_semi_axes))
     cut = ", cut" if area.is_cut else ""
-    return f"| {offset:g} | {area.area:.3f}{cut} | {area.ellipse_area:.3f} | {' | '.join(sizes)} |"
+    return f"{offset:g} | {area.area:.3f}{cut} | {area.ellipse_area:.3f} | {' | '.join(sizes)}"
 
 
 def picture() -> Figure:
@@ -220,16 +216,5 @@ def _draw_area(axes: Axes, area: ContactArea, colour: str, label: str | None) ->
     axes.plot(*GEARS.place(np.hypot(x, y), z), "--", color=colour, linewidth=0.9)
 
 
-def main() -> None:
-    """Print and write the page, save the picture."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs/studies"), help="directory of the page and the picture")
-    directory = parser.parse_args().out
-    text = document()
-    print(text)
-    (directory / "miter_gear_paper.md").write_text(text)
-    picture().savefig(directory / "miter_gear_paper.png", dpi=DOTS_PER_INCH)
-
-
 if __name__ == "__main__":
-    main()
+    write_page(__doc__, lambda: Page("miter_gear_paper", document(), {"miter_gear_paper": picture()}))

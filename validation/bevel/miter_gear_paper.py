@@ -11,8 +11,6 @@ lengthwise crowning, so the profile crowning that gives the printed one follows.
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from math import degrees, nan, pi, sin
@@ -32,6 +30,7 @@ from loaded_tca.pairs.bevel import BevelMounting
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded import ContactPath, relative_curvature, trace_contact, trace_teeth
 from validation.bevel.pairs import BevelGears
+from validation.page import timed
 from validation.table import Row
 
 Array = NDArray[np.float64]
@@ -232,17 +231,8 @@ def curvatures(gears: GearPair, path: ContactPath) -> Array:
 
 def slowness() -> float:
     """Time of a path on B-spline flanks over that on exact ones; each the shortest of some runs."""
-    return _seconds(fitted_pair()) / _seconds(pair())
-
-
-def _seconds(gears: GearPair) -> float:
-    return min(_timed(lambda: path_of(gears)) for _ in range(RUNS))
-
-
-def _timed(run: Callable[[], object]) -> float:
-    begin = time.perf_counter()
-    run()
-    return time.perf_counter() - begin
+    fitted, exact = (min(timed(lambda gears=gears: path_of(gears), RUNS)[1]) for gears in (fitted_pair(), pair()))
+    return fitted / exact
 
 
 def area_at(mounting: BevelMounting | None, turn: float = 0.0) -> ContactArea:

@@ -3,10 +3,6 @@
 Run from the root of the repository: ``python -m validation.bevel.mounting_errors``.
 """
 
-import argparse
-import sys
-from pathlib import Path
-
 from loaded_tca.pairs.bevel import BevelMounting
 from loaded_tca.unloaded import trace_contact
 from validation.bevel.effects import Effect, first_order_error, spiral_effect
@@ -16,6 +12,7 @@ from validation.bevel.spiral_trends import FULL, SIGNS, STEPS, ErrorMap, error_m
 from validation.bevel.spiral_trends import trends as spiral_trends
 from validation.bevel.straight_trends import LEAD, straight_effect
 from validation.bevel.straight_trends import trends as straight_trends
+from validation.page import Page, lines, write_page
 from validation.table import Row
 from validation.unloaded.mounting_error_pairs import ARCSEC, FORMS
 from validation.unloaded.mounting_error_trends import verdicts
@@ -24,7 +21,6 @@ CASE = "reduced-TCA dissertation, bevel mounting errors"
 SMALL = 1e-4
 """Displacement [mm] at the pitch point of the first-order law: the second order is a thousandth of it."""
 ERRORS = ("aligned", "ΔE", "ΔA", "ΔG", "Δγ")
-DOTS_PER_INCH = 90
 
 
 def rows() -> list[Row]:
@@ -57,12 +53,12 @@ def _printed_amplitudes(gears: BevelGears) -> list[Row]:
     return found
 
 
-def _line(name: str, one: Effect) -> str:
+def _cells(name: str, one: Effect) -> str:
     lengthwise, height = (round(value, 2) + 0.0 for value in one.place)  # no -0.00 where rounding decides the sign
     mean, edge = round(one.mean, 1) + 0.0, "yes" if one.continuous else "no"
     return (
-        f"| {name} | {mean:.1f} | {max(one.peak_to_peak, 0.0):.1f} | {edge} | {lengthwise:+.2f} | {height:+.2f} "
-        f"| {_pressure(one)} |"
+        f"{name} | {mean:.1f} | {max(one.peak_to_peak, 0.0):.1f} | {edge} | {lengthwise:+.2f} | {height:+.2f} "
+        f"| {_pressure(one)}"
     )
 
 
@@ -73,27 +69,24 @@ def _pressure(one: Effect) -> str:
     return f"{one.largest_pressure:.0f}" + (f", on an edge for {share:.0%} of the pitch" if share else "")
 
 
-def straight_table() -> list[str]:
+def straight_table() -> str:
     """Each error, form and relief of the straight pair."""
-    return [
-        _line(
+    return lines(
+        _cells(
             f"{error} | {form} | {'both tips' if relieved == 'both' else 'none'}",
             straight_effect(error, LEAD, form, relieved),
         )
         for relieved in ("none", "both")
         for form in FORMS
         for error in ERRORS
-    ]
+    )
 
 
-def spiral_table() -> list[str]:
+def spiral_table() -> str:
     """Each amount of Delta E and of Delta H of the spiral pair."""
-    lines = [_line("aligned", spiral_effect(*FULL))]
-    for key, name in (("e", "ΔE"), ("h", "ΔH")):
-        lines += [
-            _line(f"{name} {s * step:+.2f}", spiral_effect(*FULL, **{key: s * step})) for s in SIGNS for step in STEPS
-        ]
-    return lines
+    amounts = ((key, name, sign * step) for key, name in (("e", "ΔE"), ("h", "ΔH")) for sign in SIGNS for step in STEPS)
+    changed = (_cells(f"{name} {amount:+.2f}", spiral_effect(*FULL, **{key: amount})) for key, name, amount in amounts)
+    return lines([_cells("aligned", spiral_effect(*FULL)), *changed])
 
 
 COLUMNS = (
@@ -184,9 +177,8 @@ def signs_together(errors: ErrorMap) -> dict[str, str]:
         "on_wheel": common("45", wheel, "53"),
         "with_amplitude": common("45", wheel, "51", "53"),
         "signs": " | ".join(names.values()),
-        "sign_lines": "\n".join(
-            f"| {statement} | {' | '.join('yes' if part[signs] else 'no' for signs in both)} |"
-            for statement, part in table.items()
+        "sign_lines": lines(
+            [statement, *("yes" if part[signs] else "no" for signs in both)] for statement, part in table.items()
         ),
     }
 
@@ -197,9 +189,9 @@ def document(errors: ErrorMap) -> str:
         **signs_together(errors),
         assumed=ASSUMED,
         straight_trends="\n".join(verdicts(straight_trends())),
-        straight="\n".join(straight_table()),
+        straight=straight_table(),
         spiral_trends="\n".join(verdicts(spiral_trends(errors))),
-        spiral="\n".join(spiral_table()),
+        spiral=spiral_table(),
         columns=COLUMNS,
         lead=LEAD,
         c1=FULL[0],
@@ -207,25 +199,17 @@ def document(errors: ErrorMap) -> str:
     )
 
 
-def main() -> int:
-    """Print and write the page, save the pictures; 0 in any case: a trend that does not hold is a finding."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs/studies"), help="directory of the page and the pictures")
-    directory = parser.parse_args().out
+def page() -> Page:
+    """The page with its pictures; a trend that does not hold is a finding."""
     errors = error_map()
-    text = document(errors)
-    print(text)
-    (directory / "bevel_studies.md").write_text(text)
     pictures = {
         "bevel_straight": draw_straight(),
         "bevel_straight_crowning": draw_straight_crowning(),
         "bevel_spiral": draw_spiral(),
         "bevel_error_map": draw_error_map(errors),
     }
-    for name, figure in pictures.items():
-        figure.savefig(directory / f"{name}.png", dpi=DOTS_PER_INCH)
-    return 0
+    return Page("bevel_studies", document(errors), pictures)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    write_page(__doc__, page)

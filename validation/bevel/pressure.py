@@ -11,10 +11,8 @@ Run from the root of the repository: ``python -m validation.bevel.pressure``.
 
 from __future__ import annotations
 
-import argparse
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -32,6 +30,7 @@ from loaded_tca.reference.hertz import PointContact, point_contact
 from loaded_tca.unloaded import trace_contact
 from validation.bevel.pairs import SPIRAL, STRAIGHT, BevelGears
 from validation.bevel.pictures import COLOURS, draw_flank
+from validation.page import Page, lines, write_page
 from validation.table import Row
 
 Array = NDArray[np.float64]
@@ -41,7 +40,6 @@ DRAWN = (-0.9, -0.5, 0.0, 0.5, 0.9)
 WITHIN_HERTZ = 0.01
 """Between the map and Hertz: the grid's 1e-3, and the bending of the flanks over the ellipse."""
 GRID = GridChoice(accuracy=1e-3)
-DOTS_PER_INCH = 90
 
 
 @dataclass(frozen=True)
@@ -153,17 +151,17 @@ def document() -> str:
         loads=", ".join(loads),
         assumed=";\n".join(sorted({f"{case.gears.name}, {case.assumed}" for case in CASES})),
         worst=100.0 * max(deviations),
-        lines="\n".join(_line(case, one) for case in CASES for one in solved(case)),
+        lines=lines(_cells(case, one) for case in CASES for one in solved(case)),
     )
 
 
-def _line(case: Case, one: Pressed) -> str:
+def _cells(case: Case, one: Pressed) -> str:
     along, above = _place(case, one)
     peak, hertz = one.loaded.peak_pressure, one.hertz
     axes = f"{hertz.semi_minor:.4f} x {hertz.semi_major:.3f}"
     return (
-        f"| {case.name} | {one.turn:+.2f} | {along:+.2f} | {above:+.2f} | {one.where} | {peak:.1f} "
-        f"| {hertz.max_pressure:.1f} | {peak / hertz.max_pressure:.4f} | {axes} |"
+        f"{case.name} | {one.turn:+.2f} | {along:+.2f} | {above:+.2f} | {one.where} | {peak:.1f} "
+        f"| {hertz.max_pressure:.1f} | {peak / hertz.max_pressure:.4f} | {axes}"
     )
 
 
@@ -245,16 +243,5 @@ def _holds(one: Pressed) -> bool:
     return one.holds
 
 
-def main() -> None:
-    """Print and write the page, save the picture."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs/studies"), help="directory of the page and the picture")
-    directory = parser.parse_args().out
-    text = document()
-    print(text)
-    (directory / "bevel_pressure.md").write_text(text)
-    picture().savefig(directory / "bevel_pressure.png", dpi=DOTS_PER_INCH)
-
-
 if __name__ == "__main__":
-    main()
+    write_page(__doc__, lambda: Page("bevel_pressure", document(), {"bevel_pressure": picture()}))

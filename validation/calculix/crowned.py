@@ -103,7 +103,7 @@ class Spatial:
         ]
         return np.column_stack([np.arange(self.first_element, self.last_element + 1), np.concatenate(layers)])
 
-    def numbers(self, elements: Ints, layer: int) -> Ints:
+    def formatted(self, elements: Ints, layer: int) -> Ints:
         """Numbers of the hexahedra over section elements."""
         return self.first_element + layer * len(self.bottom.elements) + elements
 

@@ -9,7 +9,6 @@ Page and picture: ``python -m validation.calculix.mesh_cycle`` from the root of 
 
 from __future__ import annotations
 
-import argparse
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
@@ -20,12 +19,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from loaded_tca.errors import AccuracyWarning
-from loaded_tca.plots import save_figure
+from loaded_tca.plots.style import DOTS_PER_INCH
 from validation.calculix import pairs_in_space
 from validation.calculix.case import FACE_WIDTH, POSITIONS, line_load, pinion_angle
 from validation.calculix.comparison import Key, Model, Position, model, read_cycles
+from validation.page import Page, lines, machine, write_page
 from validation.table import Row, render
-from validation.unloaded.random_starts import machine
 
 SOURCE = "finite elements, plane strain (CalculiX)"
 WIDE = 100.0
@@ -263,8 +262,8 @@ TORQUE_COLOURS = {20.0: "#009E73", 100.0: "#0072B2", 200.0: "#D55E00"}
 """Okabe and Ito."""
 
 
-def line_of_table(face_width: float, key: Key, pairs: Pairs) -> str:
-    """Differences of one cycle as a line of the page.
+def cells_of(face_width: float, key: Key, pairs: Pairs) -> list[str]:
+    """Differences of one cycle as cells of a line of the page.
 
     Parameters
     ----------
@@ -281,7 +280,7 @@ def line_of_table(face_width: float, key: Key, pairs: Pairs) -> str:
         _largest([quantity(ours) / quantity(kept) for kept, ours in chosen])
         for quantity, chosen in ((stiffness, whole), (peak, smooth), (pressed_peak, smooth))
     ]
-    cells = [
+    return [
         f"{face_width:g}",
         key[0].replace("_", " "),
         f"{key[1]:g}",
@@ -291,7 +290,6 @@ def line_of_table(face_width: float, key: Key, pairs: Pairs) -> str:
         peak_to_peak,
         *parts,
     ]
-    return f"| {' | '.join(cells)} |"
 
 
 def pressed_peak(position: Position) -> float:
@@ -322,18 +320,18 @@ def times_table(kept: Cycles, models: Iterable[tuple[Model, list[Position]]]) ->
         And all positions that each computed.
     """
     seconds = [position.seconds for cycle in kept.values() for position in cycle]
-    lines, ratios = [f"| CalculiX, plane strain | 0 | {np.median(seconds):.1f} | {sum(seconds):.0f} |"], []
+    rows, ratios = [f"CalculiX, plane strain | 0 | {np.median(seconds):.1f} | {sum(seconds):.0f}"], []
     for one, positions in models:
         own = [position.seconds for position in positions]
         total = one.seconds + sum(own)
         name = f"here, face {one.face_width:g} mm"
-        lines.append(f"| {name} | {one.seconds:.1f} | {np.median(own):.2f} | {total:.1f} |")
+        rows.append(f"{name} | {one.seconds:.1f} | {np.median(own):.2f} | {total:.1f}")
         ratios.append((f"{one.face_width:g} mm", sum(seconds) / total, np.median(seconds) / np.median(own)))
     said = [
         f"Face {name}: {all_in:.0f} times as quick in all, {single:.0f} times a position."
         for name, all_in, single in ratios
     ]
-    return "\n".join(lines), " ".join(said)
+    return lines(rows), " ".join(said)
 
 
 def picture(kept: Cycles, ours: Model) -> Figure:
@@ -390,26 +388,29 @@ def _in_pitches(positions: list[Position]) -> list[float]:
     return [position.place / POSITIONS - 0.5 for position in positions]
 
 
-def write(out: Path, kept: Cycles) -> None:
-    """Write page and picture.
+def page() -> Page:
+    """Page and picture, if there is anything to compare."""
+    kept = read_cycles()
+    if not kept:
+        raise SystemExit("no runs are kept: make reference-fem")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        return page_of(kept)
+
+
+def page_of(kept: Cycles) -> Page:
+    """Page and picture of kept cycles.
 
     Parameters
     ----------
-    out : Path
-        Directory.
     kept : dict
     """
     models = [model(face) for face in FACES]
     beside = [{key: _beside(one, key, cycle) for key, cycle in kept.items()} for one in models]
     computed = [[ours for pairs in by_key.values() for _, ours in pairs] for by_key in beside]
     times, factor = times_table(kept, zip(models, computed, strict=True))
-    table = [
-        line_of_table(one.face_width, key, pairs)
-        for one, by_key in zip(models, beside, strict=True)
-        for key, pairs in by_key.items()
-    ]
-    page = PAGE.format(
-        machine=machine(),
+    text = PAGE.format(
+        machine=machine(numpy=True),
         count=sum(map(len, kept.values())),
         wide=WIDE,
         narrow=FACE_WIDTH,
@@ -422,27 +423,17 @@ def write(out: Path, kept: Cycles) -> None:
         asked_error=100.0 * ERROR,
         asked_stiffness=100.0 * STIFFNESS,
         asked_pressure=100.0 * PRESSURE,
-        table="\n".join(table),
+        table=lines(
+            cells_of(one.face_width, key, pairs)
+            for one, by_key in zip(models, beside, strict=True)
+            for key, pairs in by_key.items()
+        ),
         times=times,
         factor=factor,
         rows=render([*(row for one in models for row in rows_of(kept, one)), *pairs_in_space.rows()]),
     )
-    (out / "mesh_cycle_fem.md").write_text(page)
-    save_figure(picture(kept, models[0]), out / "mesh_cycle_fem.png")
-
-
-def main() -> None:
-    """Write the page and the picture, if there is anything to compare."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs/studies"))
-    arguments = parser.parse_args()
-    kept = read_cycles()
-    if not kept:
-        parser.error("no runs are kept: make reference-fem")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", AccuracyWarning)
-        write(arguments.out, kept)
+    return Page("mesh_cycle_fem", text, {"mesh_cycle_fem": picture(kept, models[0])}, DOTS_PER_INCH)
 
 
 if __name__ == "__main__":
-    main()
+    write_page(__doc__, page)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from loaded_tca.contact import ContactSolution, solve_contact
 from loaded_tca.reference import hertz, punch
+from validation.page import table
 
 Array = NDArray[np.float64]
 E_STAR = 115e3
@@ -141,13 +142,12 @@ def other_contacts() -> Iterator[Case]:
 
 def main() -> None:
     """Print the table."""
-    print("| case | compared | iterations | convolutions | residual | error |")
-    print("|---|---|---|---|---|---|")
-    for group in (point_contacts, capped_contacts, other_contacts):
-        for name, gap, spacing, options, compared, error in group():
-            found = solve_contact(gap, spacing, E_STAR, tolerance=TOLERANCE, warn=False, **options)
-            counts = f"{found.iterations} | {found.convolutions}"
-            print(f"| {name} | {compared} | {counts} | {found.residual:.0e} | {error(found):+.0e} |")
+    rows = []
+    for name, gap, spacing, options, compared, error in (*point_contacts(), *capped_contacts(), *other_contacts()):
+        found = solve_contact(gap, spacing, E_STAR, tolerance=TOLERANCE, warn=False, **options)
+        counts = f"{found.iterations} | {found.convolutions}"
+        rows.append(f"{name} | {compared} | {counts} | {found.residual:.0e} | {error(found):+.0e}")
+    print(table("case | compared | iterations | convolutions | residual | error", rows))
 
 
 if __name__ == "__main__":

@@ -9,14 +9,11 @@ Source: Ciavarella, Hills & Monno 1998, Proc. Inst. Mech. Eng. C 212, 319-328.
 Run from the root of the repository: ``python -m validation.contact.rounded_edge``.
 """
 
-import argparse
 import math
 import statistics
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,7 +30,7 @@ from loaded_tca.contact import (
 from loaded_tca.contact.columns import EVEN, FineZone, column_borders, pressed_width
 from loaded_tca.reference.punch import RoundedPunch
 from loaded_tca.threads import one_thread
-from validation.contact.speed_against_error import machine
+from validation.page import Page, line, machine, table, timed, write_page
 from validation.table import Row
 
 Array = NDArray[np.float64]
@@ -240,45 +237,34 @@ def cases() -> tuple[Case, ...]:
 
 
 def table_of_times(runs: int) -> str:
-    """Markdown: seconds against error, one line a case and number of cells."""
-    lines = [
-        "| contact | m | cells | iterations | peak MPa | error % | estimate % | cells on d | s |",
-        "|---|---|---|---|---|---|---|---|---|",
-    ]
+    """Seconds against error, one line a case and number of cells."""
+    rows = []
     for case in cases():
         exact = case.solved(EXACT_CELLS if case.edges[0].normal[0] == 0.0 else CELLS_ON_ARC[-1])
         several = CELLS_ON_ARC if case.edges[0].normal[0] == 0.0 else CELLS_ON_ARC[:-1]
         for on_arc in several:
-            seconds = []
-            for _ in range(runs):
-                begin = time.perf_counter()
-                found = case.solved(on_arc)
-                seconds.append(time.perf_counter() - begin)
+            found, seconds = timed(lambda case=case, on_arc=on_arc: case.solved(on_arc), runs)
             cells = " x ".join(str(n) for n in found.solution.problem.cells)
             error, estimate = 100.0 * (found.pressure / exact.pressure - 1.0), 100.0 * found.error
-            lines.append(
-                f"| {case.name} | {on_arc:g} | {cells} | {found.solution.iterations} | {found.pressure:.0f} "
-                f"| {error:+.2f} | {estimate:.1f} | {found.cells_on_arc:.1f} | {statistics.median(seconds):.3f} |"
+            rows.append(
+                f"{case.name} | {on_arc:g} | {cells} | {found.solution.iterations} | {found.pressure:.0f} "
+                f"| {error:+.2f} | {estimate:.1f} | {found.cells_on_arc:.1f} | {statistics.median(seconds):.3f}"
             )
-            print(lines[-1], flush=True)
-    return "\n".join(lines)
+            print(line(rows[-1]), flush=True)
+    return table("contact | m | cells | iterations | peak MPa | error % | estimate % | cells on d | s", rows)
 
 
 def table_of_closed_form() -> str:
-    """Markdown: errors of the punch by cells on the arc, columns that begin where the rounding does and others."""
-    lines = [
-        "| cells on d | columns | peak % | peak %, columns off by half a cell | flat part, largest % |",
-        "|---|---|---|---|---|",
-    ]
-    exact = PUNCH.peak()[1]
+    """Errors of the punch by cells on the arc, columns that begin where the rounding does and others."""
+    rows, exact = [], PUNCH.peak()[1]
     for on_arc in (2, 3, 4, 5, 6, 7, 10, 14, 20, 28):
         found = [plane_punch(PUNCH, on_arc, shift=shift) for shift in (0.0, 0.5)]
         peaks = [100.0 * (top(y, one.pressure[0])[1] / exact - 1.0) for y, one in found]
         y, one = found[0]
         flat = np.abs(y) < 0.98 * PUNCH.half_width
         worst = 100.0 * float(np.abs(one.pressure[0][flat] / PUNCH.pressure(y[flat]) - 1.0).max())
-        lines.append(f"| {on_arc} | {y.size} | {peaks[0]:+.2f} | {peaks[1]:+.2f} | {worst:.2f} |")
-    return "\n".join(lines)
+        rows.append(f"{on_arc} | {y.size} | {peaks[0]:+.2f} | {peaks[1]:+.2f} | {worst:.2f}")
+    return table("cells on d | columns | peak % | peak %, columns off by half a cell | flat part, largest %", rows)
 
 
 PAGE = """# Peak pressure at rounded edges
@@ -313,26 +299,20 @@ axes, a quarter more of them than m. Its error is larger at the same m, and so i
 """
 
 
-def main() -> None:
-    """Measure, print the tables, write the page."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs/studies"))
-    parser.add_argument("--runs", type=int, default=RUNS)
-    arguments = parser.parse_args()
-    closed_form = table_of_closed_form()
-    print(closed_form)
+def page(runs: int) -> Page:
+    """Measure, each contact so many times."""
     with one_thread():
-        times = table_of_times(arguments.runs)
-    page = PAGE.format(
+        times = table_of_times(runs)
+    text = PAGE.format(
         machine=machine(),
-        closed_form=closed_form,
+        closed_form=table_of_closed_form(),
         times=times,
-        runs=arguments.runs,
+        runs=runs,
         exact=EXACT_CELLS,
         askew=CELLS_ON_ARC[-1],
     )
-    (arguments.out / "rounded_edge.md").write_text(page)
+    return Page("rounded_edge", text)
 
 
 if __name__ == "__main__":
-    main()
+    write_page(__doc__, page, runs=RUNS)

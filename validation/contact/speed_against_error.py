@@ -9,24 +9,20 @@ page has the table of ``validation.loaded.speed``.
 Run from the root of the repository: ``python -m validation.contact.speed_against_error``.
 """
 
-import argparse
-import os
-import platform
 import statistics
-import subprocess
-import sys
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from loaded_tca.contact import ContactProblem, solve_contact, solve_to_accuracy
 from loaded_tca.contact.convolution import Convolution
 from loaded_tca.reference import hertz
 from validation.loaded import speed as speed_of_mesh_cycle
+from validation.page import Page, in_a_process, line, machine, peak_memory, table, timed, write_page
 
 CYCLES = "What whole cycles of 33 positions and three torques take is in [Time of a mesh cycle](mesh_cycle_speed.md)."
 Array = NDArray[np.float64]
@@ -168,15 +164,13 @@ def judged(problem: Problem, pressure: Array) -> tuple[float, float]:
 
 def measure(code: str, problem: Problem, budget: float) -> Measurement:
     """Solve once cold, then warm until the budget [s] is spent, three times at least and nine at most."""
-    begin = time.perf_counter()
-    run = CODES[code](problem)
-    pressure, peak, iterations, convolutions = run()
-    cold = time.perf_counter() - begin
-    times: list[float] = []
-    while len(times) < 3 or (sum(times) < budget and len(times) < 9):
-        begin = time.perf_counter()
-        run()
-        times.append(time.perf_counter() - begin)
+
+    def first() -> tuple[Run, tuple[Array, float | None, int, int]]:
+        run = CODES[code](problem)
+        return run, run()
+
+    (run, (pressure, peak, iterations, convolutions)), (cold,) = timed(first)
+    _, times = timed(run, 9, least=3, budget=budget)
     residual, approach = judged(problem, pressure)
     exact = problem.hertz_pressure
     return Measurement(
@@ -208,26 +202,19 @@ def plan(largest: int, largest_of_peers: int) -> Iterator[tuple[str, Problem]]:
 
 def memory_above_imports(n: int) -> float:
     """Peak resident memory [MiB] of one solve in a process of its own, above that after the imports."""
-    code = f"import sys; sys.argv = ['']; from validation.contact import speed_against_error as s; s.print_memory({n})"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    return float(done.stdout)
+    return in_a_process(memory_of_a_solve, n)
 
 
-def print_memory(n: int) -> None:
-    """Solve the circle and print by how much the peak memory [MiB] of this process grew; the gap counts too."""
-
-    def peak() -> int:
-        lines = Path("/proc/self/status").read_text().splitlines()
-        return next(int(line.split()[1]) for line in lines if line.startswith("VmHWM"))
-
-    before = peak()
+def memory_of_a_solve(n: int) -> float:
+    """Solve the circle; by how much the peak memory [MiB] of this process grew; the gap counts too."""
+    before = peak_memory()
     ours(Problem.make("circle", n, 1e-6))()
-    print((peak() - before) / 1024.0)
+    return 1024.0 * (peak_memory() - before)
 
 
 def accuracies() -> list[str]:
     """What :func:`solve_to_accuracy` takes for the gear ellipse, one line an accuracy."""
-    case, lines = "gear 80:1", []
+    case, found = "gear 80:1", []
 
     def sample(cells: tuple[int, int]) -> ContactProblem:
         problem = Problem.make(case, cells[0], 1e-6)
@@ -235,60 +222,41 @@ def accuracies() -> list[str]:
 
     exact = Problem.make(case, 16, 1e-6).contact.max_pressure
     for accuracy in (1e-3, 1e-4):
-        times = []
-        for _ in range(101):
-            begin = time.perf_counter()
-            found = solve_to_accuracy(sample, accuracy=accuracy)
-            times.append(time.perf_counter() - begin)
-        error = abs(found.peak_pressure / exact - 1.0)
-        lines.append(
-            f"{case}, accuracy {accuracy:.0e}: {found.pressure.shape[0]} cells along an axis, error of the peak "
+        solution, times = timed(lambda accuracy=accuracy: solve_to_accuracy(sample, accuracy=accuracy), 101)
+        error = abs(solution.peak_pressure / exact - 1.0)
+        found.append(
+            f"{case}, accuracy {accuracy:.0e}: {solution.pressure.shape[0]} cells along an axis, error of the peak "
             f"{error:.0e}, {1e3 * min(times):.2g} ms at least, {1e3 * statistics.median(times):.2g} ms in the median"
         )
-    return lines
+    return found
 
 
-def machine() -> str:
-    """Processor, cores and Python of this machine."""
-    model = platform.processor()
-    if Path("/proc/cpuinfo").exists():
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-        model = next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), model)
-    return f"{model}, {os.cpu_count()} cores, Python {platform.python_version()}"
+HEAD = "case | grid | tolerance | code | warm ms | least ms | cold ms | iterations | convolutions"
+ERRORS = "residual | peak | field | approach"
 
 
-def table(found: list[Measurement]) -> str:
-    """Markdown, one line a measurement."""
-    columns = ("case", "grid", "tolerance", "code", "warm ms", "least ms", "cold ms", "iterations", "convolutions")
-    errors = ("residual", "peak", "field", "approach")
-    lines = ["| " + " | ".join((*columns, *errors)) + " |", "|" + "---|" * 13]
-    for m in found:
-        p = m.problem
-        counts = f"{m.iterations or '-'} | {m.convolutions or '-'}"
-        lines.append(
-            f"| {p.case} | {p.n} | {p.tolerance:.0e} | {m.code} | {1e3 * m.warm:.3g} | {1e3 * m.least:.3g} "
-            f"| {1e3 * m.cold:.3g} | {counts} "
-            f"| {m.residual:.1e} | {m.peak:.1e} | {m.field:.1e} | {m.approach:.1e} |"
-        )
-    return "\n".join(lines)
+def cells(m: Measurement) -> str:
+    """Line of the table of a measurement."""
+    p = m.problem
+    return (
+        f"{p.case} | {p.n} | {p.tolerance:.0e} | {m.code} | {1e3 * m.warm:.3g} | {1e3 * m.least:.3g} "
+        f"| {1e3 * m.cold:.3g} | {m.iterations or '-'} | {m.convolutions or '-'} "
+        f"| {m.residual:.1e} | {m.peak:.1e} | {m.field:.1e} | {m.approach:.1e}"
+    )
 
 
-def draw(found: list[Measurement], path: Path) -> None:
-    """Picture: time of a warm solve over the error of the pressure field, one panel a case."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    import matplotlib.pyplot as plt
-
-    figure, panels = plt.subplots(1, len(CASES), figsize=(12, 4), sharey=True, layout="constrained")
+def picture(found: list[Measurement]) -> Figure:
+    """Time of a warm solve over the error of the pressure field, one panel a case."""
+    figure = Figure(figsize=(12, 4), layout="constrained")
+    panels = figure.subplots(1, len(CASES), sharey=True)
     for panel, case in zip(panels, CASES, strict=True):
         for code in CODES:
-            line = [m for m in found if m.code == code and m.problem.case == case and m.problem.tolerance == 1e-6]
-            if line:
+            chosen = [m for m in found if m.code == code and m.problem.case == case and m.problem.tolerance == 1e-6]
+            if chosen:
                 colour, marker, beside = STYLES[code]
-                times = [1e3 * m.warm for m in line]
-                panel.loglog([m.field for m in line], times, marker=marker, color=colour, label=code)
-                for m, ms in zip(line, times, strict=True) if beside else ():
+                times = [1e3 * m.warm for m in chosen]
+                panel.loglog([m.field for m in chosen], times, marker=marker, color=colour, label=code)
+                for m, ms in zip(chosen, times, strict=True) if beside else ():
                     place = {
                         "xytext": beside,
                         "textcoords": "offset points",
@@ -300,52 +268,44 @@ def draw(found: list[Measurement], path: Path) -> None:
         panel.grid(visible=True, which="both", alpha=0.3)
     panels[0].set_ylabel("time of a warm solve [ms]")
     panels[0].legend()
-    figure.savefig(path, dpi=110)
+    return figure
 
 
-def main() -> None:
-    """Measure, print the table, write it and the picture."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs/studies"))
-    parser.add_argument("--largest", type=int, default=2048)
-    parser.add_argument("--largest-of-peers", type=int, default=512)
-    parser.add_argument("--budget", type=float, default=2.0, help="seconds of warm solves per measurement")
-    arguments = parser.parse_args()
+def page(largest: int, largest_of_peers: int, budget: float) -> Page:
+    """Measure on grids up to the largest ones; seconds of warm solves for each measurement."""
     found: list[Measurement] = []
     missing: set[str] = set()
-    for code, problem in plan(arguments.largest, arguments.largest_of_peers):
+    for code, problem in plan(largest, largest_of_peers):
         if code in missing:
             continue
         try:
-            found.append(measure(code, problem, arguments.budget))
+            found.append(measure(code, problem, budget))
         except ImportError:
             missing.add(code)
             continue
-        print(table(found[-1:]).splitlines()[-1], flush=True)
-    memory = {n: memory_above_imports(n) for n in (512, 1024) if n <= arguments.largest and Path("/proc").exists()}
+        print(line(cells(found[-1])), flush=True)
+    memory = {n: memory_above_imports(n) for n in (512, 1024) if n <= largest and Path("/proc").exists()}
     notes = [machine(), *(f"memory above the imports at {n} x {n}: {mib:.0f} MiB" for n, mib in memory.items())]
     notes += accuracies()
     notes += [f"not installed: {code}" for code in sorted(missing)]
-    print("\n".join(notes))
-    whole = speed_of_mesh_cycle.table(speed_of_mesh_cycle.measure())
-    page = [
+    text = [
         "# Time against error\n",
         "Written by `python -m validation.contact.speed_against_error`;",
         "[the page on the contact solver](contact_solver.md#speed-against-error) says what is compared and how.\n",
         *(f"- {note}" for note in notes),
         "",
-        table(found),
+        table(f"{HEAD} | {ERRORS}", map(cells, found)),
         "",
         speed_of_mesh_cycle.heading(),
         "",
-        whole,
+        speed_of_mesh_cycle.table_of(speed_of_mesh_cycle.measure()),
         "",
         CYCLES,
         "",
     ]
-    (arguments.out / "speed_against_error.md").write_text("\n".join(page))
-    draw(found, arguments.out / "speed_against_error.png")
+    pictures = {"speed_against_error": picture(found)}
+    return Page("speed_against_error", "\n".join(text), pictures, dots_per_inch=110)
 
 
 if __name__ == "__main__":
-    main()
+    write_page(__doc__, page, largest=2048, largest_of_peers=512, budget=2.0)

@@ -9,12 +9,9 @@ Run from the root of the repository: ``python -m validation.contact.stacks``.
 """
 
 import argparse
-import json
-import os
 import statistics
-import subprocess
-import sys
 import time
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +20,7 @@ import numpy as np
 import loaded_tca.contact as package
 from loaded_tca.contact import ContactProblem, solve_problem
 from loaded_tca.reference.hertz import point_contact
+from validation.page import in_a_process, table, take_turns, timed
 
 E_STAR = 113e3
 TOLERANCE = 1e-4
@@ -71,43 +69,30 @@ def measure(size: int, case: str) -> tuple[float, float]:
         starts = [found.pressure for found in solve(problems(case, size, seed=1), starts)]
     iterations = statistics.mean(found.iterations for found in solve(stack, starts))
     repeats = max(1, 64 // size)
-    begin = time.thread_time()
-    for _ in range(repeats):
-        solve(stack, starts)
-    return (time.thread_time() - begin) / (repeats * size) * 1e6, iterations
+    _, times = timed(lambda: solve(stack, starts), repeats, clock=time.thread_time)
+    return sum(times) / (repeats * size) * 1e6, iterations
 
 
-def run_in(tree: Path, size: int) -> list[tuple[float, float]]:
-    """All cases in a process of its own with the package of a checkout."""
-    command = [sys.executable, str(Path(__file__).resolve()), "--size", str(size)]
-    surroundings = os.environ | {"PYTHONPATH": str(tree), "OMP_NUM_THREADS": "1"}
-    done = subprocess.run(command, env=surroundings, capture_output=True, text=True, check=True)
-    return [tuple(case) for case in json.loads(done.stdout)]
+def every_case(size: int) -> list[tuple[float, float]]:
+    """All cases in stacks of a size."""
+    return [measure(size, case) for case in CASES]
 
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--before", type=Path, help="root of another checkout")
-    parser.add_argument("--size", type=int, help=argparse.SUPPRESS)
-    arguments = parser.parse_args()
-    if arguments.size:
-        print(json.dumps([measure(arguments.size, case) for case in CASES]))
-        return
-    here = Path(__file__).resolve().parents[2]
-    columns = {f"stack of {size}": (here, size) for size in SIZES}
-    if arguments.before:
-        columns = {"before": (arguments.before.resolve(), SIZES[-1])} | columns
-    runs = [{name: run_in(*column) for name, column in columns.items()} for _ in range(RUNS)]
-    print(f"Microseconds a problem (mean iterations); medians of {RUNS}\n")
-    print("| cells |", " | ".join(columns), "|\n|---|" + "---|" * len(columns))
+    before = parser.parse_args().before
+    columns = {f"stack of {size}": partial(in_a_process, every_case, size) for size in SIZES}
+    if before:
+        columns = {"before": partial(in_a_process, every_case, SIZES[-1], tree=before.resolve())} | columns
+    runs: dict[str, list[list[tuple[float, float]]]] = take_turns(columns, RUNS)
+    rows = []
     for k, case in enumerate(CASES):
-        found = ((statistics.median(run[name][k][0] for run in runs), runs[0][name][k][1]) for name in columns)
-        print(
-            f"| {case} |",
-            " | ".join(f"{microseconds:.0f} ({iterations:.1f})" for microseconds, iterations in found),
-            "|",
-        )
+        found = ((statistics.median(run[k][0] for run in several), several[0][k][1]) for several in runs.values())
+        rows.append([case, *(f"{microseconds:.0f} ({iterations:.1f})" for microseconds, iterations in found)])
+    print(f"Microseconds a problem (mean iterations); medians of {RUNS}\n")
+    print(table(["cells", *columns], rows))
 
 
 if __name__ == "__main__":

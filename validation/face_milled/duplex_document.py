@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
 from math import degrees
-from pathlib import Path
 from textwrap import fill
 
 import numpy as np
@@ -18,7 +16,7 @@ from loaded_tca.baselines.bidirectional import BidirectionalStart, Guess
 from loaded_tca.flank_maps import contact_pattern
 from loaded_tca.flanks.face_milled import GeneratedFlank
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.plots import save_figure
+from loaded_tca.plots.style import DOTS_PER_INCH
 from loaded_tca.unloaded import trace_contact
 from validation.face_milled.duplex_paper import (
     COMPONENTS,
@@ -32,8 +30,10 @@ from validation.face_milled.duplex_paper import (
     studies,
 )
 from validation.face_milled.pairs import DUPLEX_ASSUMED, MENDED_RADIAL, duplex_paper_gears, error_from_top
+from validation.page import Page, table, write_page
 
-PAGE, PICTURE = "bidirectional_start.md", "bidirectional_start.png"
+NAME = "bidirectional_start"
+"""Of the page and its picture."""
 COLOURS = {"forward": "#0072b2", "reverse": "#d55e00", "mean": "#009e73"}
 MARKERS = {"forward": "^", "reverse": "v", "mean": "D"}
 PARTS = tuple(np.linspace(-0.5, 0.5, 41))
@@ -126,7 +126,7 @@ def document() -> str:
         assumed=fill(f"Assumed, where the paper says nothing: {DUPLEX_ASSUMED}.", WIDTH),
         printed=_printed_pair(),
         mended=_mended_pair(),
-        picture=PICTURE,
+        picture=f"{NAME}.png",
         solvers=solvers,
         five=_range(five),
         reduced=_range(reduced),
@@ -138,12 +138,12 @@ def document() -> str:
 def _values() -> str:
     """Table of the start values."""
     values = start_values()
-    lines = ["| quantity | printed | computed | |", "|---|---|---|---|"]
+    cells = []
     for quantity, printed in PRINTED.items():
         shown, mended = MISPRINTS.get(quantity, (printed, printed))
         remark = f"misprint, read {mended}" if quantity in MISPRINTS else "given" if quantity in GIVEN else ""
-        lines.append(f"| {quantity} | {shown:.7g} | {values[quantity]:.7g} | {remark} |")
-    return "\n".join(lines)
+        cells.append(f"{quantity} | {shown:.7g} | {values[quantity]:.7g} | {remark}")
+    return table("quantity | printed | computed |", cells)
 
 
 def _printed_pair() -> str:
@@ -173,27 +173,17 @@ def _misses(study: Study) -> tuple[float, float]:
 
 def _solvers() -> tuple[str, list[int], list[int]]:
     """Table of both solvers from each start, and the steps of those that converged: five equations, reduced."""
-    heads = " | ".join(f"five, {name}" for name in COMPONENTS)
-    lines = [
-        f"| pair | start | gap [mm] | off [deg] | {heads} | reduced | the contact |",
-        "|---|---|---|---|---|---|---|---|",
-    ]
+    heads, cells = " | ".join(f"five, {name}" for name in COMPONENTS), []
     steps: tuple[list[int], list[int]] = ([], [])
     for study in studies():
         for name, out in outcomes(study).items():
             steps[0].extend(int(text.split()[0]) for text in out.conventional.values() if text.endswith("steps"))
             steps[1].extend([] if out.reduced is None else [out.reduced])
-            cells = (
-                study.name,
-                name,
-                f"{out.distance:.2f}",
-                f"{out.wheel_angle_off:+.2f}",
-                *out.conventional.values(),
-                "fails" if out.reduced is None else f"{out.reduced} steps",
-                "on an edge" if out.on_edge else "inside",
-            )
-            lines.append(f"| {' | '.join(cells)} |")
-    return "\n".join(lines), *steps
+            ended = "fails" if out.reduced is None else f"{out.reduced} steps"
+            where = "on an edge" if out.on_edge else "inside"
+            start = study.name, name, f"{out.distance:.2f}", f"{out.wheel_angle_off:+.2f}"
+            cells.append((*start, *out.conventional.values(), ended, where))
+    return table(f"pair | start | gap [mm] | off [deg] | {heads} | reduced | the contact", cells), *steps
 
 
 def _range(steps: list[int]) -> str:
@@ -248,15 +238,5 @@ def _draw_error(axes: Axes, pair: GearPair) -> None:
     axes.annotate(f"{fall[-1]:.2f}", (angles[-1], fall[-1]), textcoords="offset points", xytext=(-54, -4))
 
 
-def main() -> None:
-    """Write the page and the picture."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path("docs/studies"), help="directory of the page and the picture")
-    directory = parser.parse_args().out
-    directory.mkdir(parents=True, exist_ok=True)
-    (directory / PAGE).write_text(document(), encoding="utf-8")
-    save_figure(picture(), directory / PICTURE)
-
-
 if __name__ == "__main__":
-    main()
+    write_page(__doc__, lambda: Page(NAME, document(), {NAME: picture()}, DOTS_PER_INCH))

@@ -12,22 +12,33 @@ docs/studies/mesh_cycle_speed.md.
 
 from __future__ import annotations
 
-import argparse
 import cProfile
-import json
-import os
 import pstats
-import resource
 import statistics
-import subprocess
-import sys
 import time
 import warnings
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).resolve().parents[2]
-PAGE = ROOT / "docs" / "studies" / "mesh_cycle_speed.md"
+from loaded_tca import analyse, read_scene
+from validation.page import (
+    ROOT,
+    SCENES,
+    SPACED,
+    Page,
+    in_a_process,
+    line,
+    machine,
+    median_ratio,
+    medians,
+    peak_memory,
+    table,
+    take_turns,
+    timed,
+    write_page,
+)
+
 NAMES = ("mesh_cycle_spur", "mesh_cycle_helical", "mesh_cycle_bevel")
 SETTINGS: dict[str, dict[str, Any]] = {
     "flanks alone": {"load_sharing": True, "compliance": "contact", "free_edges": False},
@@ -49,17 +60,13 @@ Function = tuple[str, int, str]
 
 def measure(name: str, setting: str, profiled: bool) -> dict[str, Any]:
     """Processor time of an analysis [s], peak memory of the process [MiB], shares of the profiled time."""
-    from loaded_tca import analyse, read_scene
-
     changes = {f"analysis.{key}": value for key, value in SETTINGS[setting].items()}
-    scene = read_scene(ROOT / "examples" / "scenes" / f"{name}.toml").with_changes(changes)
+    scene = read_scene(SCENES / f"{name}.toml").with_changes(changes)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         analyse(scene)
-        begin = time.process_time()
-        analyse(scene)
-        seconds = time.process_time() - begin
-        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+        _, (seconds,) = timed(lambda: analyse(scene), clock=time.process_time)
+        peak = 1024.0 * peak_memory()
         profile = cProfile.Profile()
         if profiled:
             profile.runcall(analyse, scene)
@@ -93,34 +100,27 @@ def _parts_of(function: Function, stats: dict[Function, Any], depth: int = 0) ->
     return found
 
 
-def _run(tree: Path, name: str, setting: str, profiled: bool = False) -> dict[str, Any]:
-    command = [sys.executable, str(Path(__file__).resolve()), "--one", name, setting, *(["--profile"] * profiled)]
-    surroundings = os.environ | {"PYTHONPATH": str(tree), "OMP_NUM_THREADS": "1"}
-    done = subprocess.run(command, env=surroundings, capture_output=True, text=True, check=True)
-    found: dict[str, Any] = json.loads(done.stdout)
-    return found
-
-
-def page(trees: dict[str, Path]) -> str:
-    """Markdown of all measurements."""
-    from validation.contact.speed_against_error import machine
-
+def page(before: Path | None) -> Page:
+    """Measure every scene and setting, beside another checkout if there is one."""
+    trees = {"now": ROOT} if before is None else {"before": before.resolve(), "now": ROOT}
     rows = []
     for name in NAMES:
         for setting in SETTINGS:
-            runs = [{word: _run(tree, name, setting) for word, tree in trees.items()} for _ in range(RUNS)]
-            cells = [f"{statistics.median(run[word]['seconds'] for run in runs):.2f}" for word in trees]
-            if len(trees) == 2:
-                ratios = [run["now"]["seconds"] / run["before"]["seconds"] for run in runs]
-                cells.append(f"{statistics.median(ratios):.2f}")
-            last = _run(trees["now"], name, setting, profiled=True)
-            peak = statistics.median(run["now"]["peak"] for run in runs)
+            calls = {
+                word: partial(in_a_process, measure, name, setting, False, tree=tree) for word, tree in trees.items()
+            }
+            runs: dict[str, list[dict[str, Any]]] = take_turns(calls, RUNS)
+            seconds = {word: [run["seconds"] for run in several] for word, several in runs.items()}
+            cells = [f"{median:.2f}" for median in medians(seconds).values()]
+            if "before" in trees:
+                cells.append(f"{median_ratio(seconds['now'], seconds['before']):.2f}")
+            last = in_a_process(measure, name, setting, True)
+            peak = statistics.median(run["peak"] for run in runs["now"])
             cells += [f"{peak:.0f}", *(f"{100.0 * share:.0f} %" for share in last["shares"].values())]
-            rows.append(f"| {name} | {setting} | " + " | ".join(cells) + " |")
-            print(rows[-1], flush=True)
+            rows.append([name, setting, *cells])
+            print(line(rows[-1]), flush=True)
     heads = [f"{word} [s]" for word in trees] + ["ratio"] * (len(trees) == 2)
-    columns = ["scene", "setting", *heads, "peak memory [MiB]", *PARTS, REST]
-    lines = [
+    text = [
         "# Time of a mesh cycle",
         "",
         "Written by `python -m validation.loaded.cycles`. 33 positions, three torques, accuracy 1e-2: processor",
@@ -131,26 +131,10 @@ def page(trees: dict[str, Path]) -> str:
         "",
         f"{machine()}.",
         "",
-        "| " + " | ".join(columns) + " |",
-        "|" + " --- |" * len(columns),
-        *rows,
+        table(["scene", "setting", *heads, "peak memory [MiB]", *PARTS, REST], rows, SPACED),
     ]
-    return "\n".join(lines) + "\n"
-
-
-def main() -> None:
-    """Measure and write the page."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--before", type=Path, help="root of another checkout")
-    parser.add_argument("--one", nargs=2, help=argparse.SUPPRESS)
-    parser.add_argument("--profile", action="store_true", help=argparse.SUPPRESS)
-    arguments = parser.parse_args()
-    if arguments.one:
-        print(json.dumps(measure(*arguments.one, arguments.profile)))
-        return
-    before = {} if arguments.before is None else {"before": arguments.before.resolve()}
-    PAGE.write_text(page({**before, "now": ROOT}), encoding="utf-8")
+    return Page("mesh_cycle_speed", "\n".join(text) + "\n")
 
 
 if __name__ == "__main__":
-    main()
+    write_page(__doc__, page, before=Path)

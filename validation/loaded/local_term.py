@@ -32,6 +32,7 @@ from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.tooth.profile import polar
 from validation.contact.wedge import elasticity_of_waves
+from validation.page import table
 from validation.table import Row
 
 Array = NDArray[np.float64]
@@ -227,17 +228,16 @@ def rows() -> list[Row]:
 
 def main() -> None:
     """Print the table of both tooth forms."""
-    print(
-        "| teeth | part of the height | R(0) [1e-6 mm per N/mm] | a [mm] | sigma [mm] | / m_n | / mean depth | misfit |"
-    )
-    print("|---|---|---|---|---|---|---|---|")
+    rows = []
     for teeth in TEETH:
         gear = spur_gear(teeth)
         depth = mean_depth(gear)
         for one in spreads(gear):
             sigma = math.sqrt(2.0) * one.length
             cells = f"{1e6 * one.term[0]:.3f} | {one.length:.2f} | {sigma:.2f} | {sigma / MODULE:.2f}"
-            print(f"| {teeth} | {one.height:.2f} | {cells} | {sigma / depth:.2f} | {one.misfit(sigma):.3f} |")
+            rows.append(f"{teeth} | {one.height:.2f} | {cells} | {sigma / depth:.2f} | {one.misfit(sigma):.3f}")
+    head = "teeth | part of the height | R(0) [1e-6 mm per N/mm] | a [mm] | sigma [mm] | / m_n | / mean depth | misfit"
+    print(table(head, rows))
 
 
 if __name__ == "__main__":

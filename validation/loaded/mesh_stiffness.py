@@ -14,8 +14,8 @@ that bend; beside it the chord, of a power law through the torque and 0.8 of it.
 
 import math
 import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -32,6 +32,7 @@ from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.reference import iso6336
 from loaded_tca.unloaded import trace_teeth
+from validation.page import SCENES, table
 from validation.table import Row
 
 CASE, SOURCE = "mesh stiffness", "ISO 6336-1:2006, method B"
@@ -41,7 +42,7 @@ POSITIONS = 4
 LAYER = 3.75  # of elements across the face [mm]; in the default density 0.3 to 0.8 % softer at 28 deg
 TEETH, MODULE, PRESSURE_ANGLE = (23, 81), 2.5, math.radians(17.5)
 LINE_LOAD = 250e3 / 30.0  # pinion torque over the common face width [N]
-SCENES = Path(__file__).parents[2] / "examples" / "scenes"
+
 FLANKS_ALONE: dict[str, Any] = {"analysis.compliance": "contact", "analysis.free_edges": False}
 CLOSE, CHORD = np.linspace(0.94, 1.06, 9), 0.8  # parts of the torque
 FINE: dict[str, Any] = {"analysis.accuracy": None, "analysis.cells": (128, 128)}
@@ -156,24 +157,14 @@ def rows() -> list[Row]:
 
 
 def main() -> None:
-    """Print the table."""
-    print("| pair | beta | bore | b | torque [N m] | c | without torsion | ISO 6336-1 | ratio |")
-    print("|---|---|---|---|---|---|---|---|---|")
-    for torque in (50e3, 250e3, 1000e3):
-        for name, modifications in ((REAL.name, NONE), (f"{REAL.name}, crowned 4 and 2 um", CROWNED)):
-            _print(REAL, torque, modifications, name)
-    for helix in (0.0, 14.0, 28.0):
-        for bore in (0.3, 0.55, 0.8):
-            _print(Pair("like it", helix, bore=bore), LINE_LOAD * 30.0)
-    for helix in (0.0, 28.0):
-        _print(Pair("like it", helix, (60.0, 60.0)), LINE_LOAD * 60.0)
-    print("\n| mesh cycle | teeth | tangent, 128 cells | tangent, usual | chord, 128 cells |")
-    print("|---|---|---|---|---|")
+    """Print the tables."""
+    print(table("pair | beta | bore | b | torque [N m] | c | without torsion | ISO 6336-1 | ratio", _cells_of_pairs()))
+    cells = []
     for teeth, changes in (("flanks alone", FLANKS_ALONE), ("bending", {})):
         for name in ("helical", "spur", "bevel"):
             sizes = [100.0 * np.abs(part) for part in departures(name, changes)]
-            numbers = " | ".join(f"{size.mean():.2f} (at most {size.max():.2f})" for size in sizes)
-            print(f"| {name} | {teeth} | {numbers} |", flush=True)
+            cells.append([name, teeth, *(f"{size.mean():.2f} (at most {size.max():.2f})" for size in sizes)])
+    print(f"\n{table('mesh cycle | teeth | tangent, 128 cells | tangent, usual | chord, 128 cells', cells)}")
     print("\nDisplacement along the axial part of the normal force, beta 28 deg, b 30 [um per N/mm]")
     for bore in (0.55, 0.8):
         pair = cylindrical_pair(Pair("like it", 28.0, bore=bore).mesh)
@@ -181,12 +172,24 @@ def main() -> None:
         print(f"bore {bore:g}: pinion, wheel", *parts)
 
 
-def _print(pair: Pair, torque: float, modifications: FlankModifications = NONE, name: str = "") -> None:
+def _cells_of_pairs() -> Iterator[str]:
+    """Cells of the stiffness of the pair under several torques, of like pairs with other helices, bores and faces."""
+    for torque in (50e3, 250e3, 1000e3):
+        for name, modifications in ((REAL.name, NONE), (f"{REAL.name}, crowned 4 and 2 um", CROWNED)):
+            yield _cells(REAL, torque, modifications, name)
+    for helix in (0.0, 14.0, 28.0):
+        for bore in (0.3, 0.55, 0.8):
+            yield _cells(Pair("like it", helix, bore=bore), LINE_LOAD * 30.0)
+    for helix in (0.0, 28.0):
+        yield _cells(Pair("like it", helix, (60.0, 60.0)), LINE_LOAD * 60.0)
+
+
+def _cells(pair: Pair, torque: float, modifications: FlankModifications = NONE, name: str = "") -> str:
     mesh = pair.mesh
     (whole, without), iso = mean_stiffness(mesh, torque, modifications), standard(mesh)
     data = f"{pair.helix_deg:g} | {pair.bore or 0.55:g} | {pair.widths[1]:g} | {1e-3 * torque:g}"
     numbers = f"{whole:.2f} | {without:.2f} | {iso:.2f} | {without / iso:.2f}"
-    print(f"| {name or pair.name} | {data} | {numbers} |", flush=True)
+    return f"{name or pair.name} | {data} | {numbers}"
 
 
 if __name__ == "__main__":

@@ -7,15 +7,11 @@ the example scenes with today's defaults and the earlier ones. What an earlier r
 Run from the root of the repository: ``python -m validation.loaded.numbers_to_copy``; writes a page.
 """
 
-import argparse
 import os
 import statistics
 import tempfile
-import time
 import warnings
-from collections.abc import Iterable
 from functools import cache
-from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
@@ -29,10 +25,9 @@ from loaded_tca.compliance.influence import forget
 from loaded_tca.loaded.free_edges import edge_compliance
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
-from validation.contact.speed_against_error import machine
+from validation.page import SCENES, SPACED, Page, formatted, machine, table, timed, write_page
 from validation.table import Row
 
-SCENES = Path(__file__).parents[2] / "examples" / "scenes"
 EARLIER = {"load_sharing": False, "compliance": "contact", "free_edges": False}
 TODAY = {"load_sharing": True, "compliance": "contact+tooth", "free_edges": True}
 POSITIONS, GRIDS, FINEST = 13, (32, 64), 128
@@ -143,17 +138,6 @@ def a_pitch_later(name: str, torque_Nm: float) -> tuple[float, float, float]:
     return float(first), float(last), float(ratios[np.abs(ratios - 1.0).argmax()])
 
 
-def table(head: str, lines: Iterable[Iterable[object]]) -> str:
-    """Markdown; the columns of the head lie between bars."""
-    body = [" | ".join(map(str, line)) for line in lines]
-    return "\n".join(f"| {line} |" for line in [head, " | ".join(["---"] * (head.count("|") + 1)), *body])
-
-
-def texts(style: str, *values: float) -> list[str]:
-    """Numbers in one format."""
-    return [f"{value:{style}}" for value in values]
-
-
 def load_factors() -> str:
     """Load factors and peak pressure over the misalignment, on two grids."""
     grids = "32 x 32 | 64 x 64"
@@ -163,11 +147,11 @@ def load_factors() -> str:
         line = [f"{um:g}"]
         for compliance in ("contact+tooth", "contact"):
             coarse, fine = (float(misaligned(um, cells, compliance).face_load_factor[0]) for cells in GRIDS)
-            line += [*texts(".3f", coarse, fine), f"{fine / coarse - 1.0:+.1%}"]
+            line += [*formatted(".3f", coarse, fine), f"{fine / coarse - 1.0:+.1%}"]
         both = _on_grids(um)
-        across = texts(".3f", *(one.transverse_load_factor[0] for one in both))
-        lines.append([*line, *across, *texts(".0f", *map(_peak, both))])
-    return table(f"{head} | K_Halpha, {grids} | peak pressure [MPa], {grids}", lines)
+        across = formatted(".3f", *(one.transverse_load_factor[0] for one in both))
+        lines.append([*line, *across, *formatted(".0f", *map(_peak, both))])
+    return table(f"{head} | K_Halpha, {grids} | peak pressure [MPa], {grids}", lines, SPACED)
 
 
 def boxes() -> str:
@@ -175,20 +159,20 @@ def boxes() -> str:
     lines = []
     for case, before in IN_BOXES.items():
         name = f"`{case[0]}.toml`, {case[1]:g} N m, {case[2]:g} pitches"
-        numbers = in_boxes(*case, free_edges=False), in_boxes(*case), np.array(before)
-        for words, values in zip(("half-spaces", "free edges", "free edges, before"), numbers, strict=True):
-            lines.append([name, words, *texts(".3f", *values), f"{_spread(values):.2%}"])
-    return table(f"contact | | {' | '.join(f'box x {factor:g}' for factor in BOXES)} | spread", lines)
+        spaces = in_boxes(*case, free_edges=False), in_boxes(*case), np.array(before)
+        for words, values in zip(("half-spaces", "free edges", "free edges, before"), spaces, strict=True):
+            lines.append([name, words, *formatted(".3f", *values), f"{_spread(values):.2%}"])
+    return table(f"contact | | {' | '.join(f'box x {factor:g}' for factor in BOXES)} | spread", lines, SPACED)
 
 
 def repeated() -> str:
     """Rotation a pitch later and stiffness, beside those of before."""
     lines = [
-        [f"`{case[0]}.toml`, {case[1]:g} N m", *texts(".3f", *a_pitch_later(*case), *before)]
+        [f"`{case[0]}.toml`, {case[1]:g} N m", *formatted(".3f", *a_pitch_later(*case), *before)]
         for case, before in A_PITCH_LATER.items()
     ]
     head = "rotation [urad] | a pitch later | stiffness ratio"
-    return table(f"pair | {head} | before: {head}", lines)
+    return table(f"pair | {head} | before: {head}", lines, SPACED)
 
 
 def at_sharp_edges() -> str:
@@ -198,9 +182,9 @@ def at_sharp_edges() -> str:
         for cells, earlier in zip((*GRIDS, FINEST), before, strict=True):
             cycle = helical(cells) if name.startswith("34/57") else misaligned(16.0, cells)
             cell = max(float(one.pressure.max()) for row in cycle.maps[0] for one in row if one is not None)
-            lines.append([name, cells, *texts(".0f", _peak(cycle), np.nanmax(cycle.edge_pressure), cell), *earlier])
+            lines.append([name, cells, *formatted(".0f", _peak(cycle), np.nanmax(cycle.edge_pressure), cell), *earlier])
     head = "pair | cells along each axis | peak pressure [MPa] | edge pressure [MPa] | highest cell [MPa]"
-    return table(f"{head} | before: peak pressure [MPa] | highest cell [MPa]", lines)
+    return table(f"{head} | before: peak pressure [MPa] | highest cell [MPa]", lines, SPACED)
 
 
 def examples() -> tuple[str, str]:
@@ -210,29 +194,29 @@ def examples() -> tuple[str, str]:
         scene = read_scene(file)
         if any(getattr(scene.analysis, key) != value for key, value in TODAY.items()):
             continue
-        earlier, seconds = timed(scene, EARLIER)
+        earlier, seconds = timed_anew(scene, EARLIER)
         with tempfile.TemporaryDirectory() as models, patch.dict(os.environ, {FOLDER: models}):
-            _, first = timed(scene, TODAY, runs=1)
-            today, again = timed(scene, TODAY)
+            _, first = timed_anew(scene, TODAY, runs=1)
+            today, again = timed_anew(scene, TODAY)
         line = [f"`{file.name}`"]
         for (key, _), style in zip(FIGURES, (".0f", ".2f", ".1f", ".2f"), strict=True):
-            line += texts(style, *(cycle.key_figures()[-1][key] for cycle in (earlier, today)))
+            line += formatted(style, *(cycle.key_figures()[-1][key] for cycle in (earlier, today)))
         figures.append(line)
         count = f"{len(today.torque)} x {len(today.pinion_angle)}"
-        times.append([f"`{file.name}`", count, *texts(".2f", seconds, first, again)])
+        times.append([f"`{file.name}`", count, *formatted(".2f", seconds, first, again)])
     head = " | ".join(f"{name}, earlier | today" for _, name in FIGURES)
     second = "scene | torques x positions | earlier | today, models of teeth made anew | today, read from disk"
-    return table(f"scene | {head}", figures), table(second, times)
+    return table(f"scene | {head}", figures, SPACED), table(second, times, SPACED)
 
 
-def timed(scene: Scene, analysis: dict[str, Any], runs: int = RUNS) -> tuple[MeshCycle, float]:
-    """Result and median time [s] of some runs, each of which knows no models of teeth but those on disk."""
-    taken: list[float] = []
-    while len(taken) < runs and sum(taken) < SECONDS:
+def timed_anew(scene: Scene, analysis: dict[str, Any], runs: int = RUNS) -> tuple[MeshCycle, float]:
+    """Result and median time [s] of some runs, each of which takes no models of teeth but those on disk."""
+
+    def anew() -> MeshCycle:
         forget()
-        begin = time.perf_counter()
-        cycle = solved(scene, **analysis)
-        taken.append(time.perf_counter() - begin)
+        return solved(scene, **analysis)
+
+    cycle, taken = timed(anew, runs, budget=SECONDS)
     return cycle, statistics.median(taken)
 
 
@@ -328,15 +312,5 @@ more than {SECONDS:g} s together; "made anew" is one run, which also finds the k
 """
 
 
-def main() -> None:
-    """Measure, print the page and write it."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs/studies"), help="directory of the page")
-    directory = parser.parse_args().out
-    text = page()
-    print(text)
-    (directory / "numbers_to_copy.md").write_text(text)
-
-
 if __name__ == "__main__":
-    main()
+    write_page(__doc__, lambda: Page("numbers_to_copy", page()))

@@ -10,17 +10,14 @@ docs/studies/root_stress.md has all of it, and error, time and memory against th
 its own. Run from the root of the repository: ``python -m validation.loaded.root_stress``.
 """
 
-import argparse
 import math
 import multiprocessing
 import re
-import statistics
 import time
 import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from functools import cache
-from pathlib import Path
+from functools import cache, partial
 from typing import Any
 from unittest.mock import patch
 
@@ -49,11 +46,9 @@ from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.reference.iso6336_3 import RootSection, root_section
 from loaded_tca.tooth.profile import polar
-from validation.contact.speed_against_error import machine
+from validation.page import SCENES, Page, machine, medians, peak_memory, table, take_times, timed, write_page
 from validation.table import Row
 
-ROOT = Path(__file__).parents[2]
-STUDIES, SCENES = ROOT / "docs" / "studies", ROOT / "examples" / "scenes"
 CASE, SOURCE, FINER = "root stress", "plane finite elements, quadratic triangles", "finer mesh of the same elements"
 LINE_LOAD = 100.0
 """Of the reference [N/mm]."""
@@ -374,19 +369,13 @@ def told_memory(gear: Gear, density: MeshDensity) -> float:
     raise AssertionError
 
 
-def peak_memory() -> float:
-    """Most memory that this process has held so far [GiB], by the kernel of Linux; `resource` counts its parent's."""
-    status = Path("/proc/self/status").read_text()
-    return int(re.search(r"VmHWM:\s+([0-9]+) kB", status)[1]) / 2**20  # type: ignore[index]
-
-
 def measured(name: str) -> list[str]:
     """One line of the table of a mesh of ``MESHES``: errors, processor time and memory of making the model."""
     changes, density = MESHES[name]
     gear = spur_pair_gear(**changes)
-    before, start = peak_memory(), time.process_time()
-    model = model_of(gear, density)
-    seconds, memory = time.process_time() - start, peak_memory() - before
+    before = peak_memory()
+    model, (seconds,) = timed(lambda: model_of(gear, density), clock=time.process_time)
+    memory = peak_memory() - before
     told = told_memory(gear, density)
     plane = plane_curves(spur_pair_gear(), in_plane(density), loaded_radii())
     errors = [
@@ -403,45 +392,34 @@ def measured(name: str) -> list[str]:
 
 def time_of_cycle(name: str) -> list[str]:
     """Processor time of a mesh cycle with and without root stress, medians of runs that take turns; models are kept."""
-    scenes = [
+    without_stress, scene = (
         read_scene(SCENES / f"{name}.toml").with_changes({"analysis.root_stress": asked}) for asked in (False, True)
-    ]
-    times: list[list[float]] = [[], []]
+    )
+    calls = {"without": partial(analyse, without_stress), "with": partial(analyse, scene)}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
-        analyse(scenes[1])  # models are made
-        for _ in range(RUNS):
-            for scene, own in zip(scenes, times, strict=True):
-                start = time.process_time()
-                analyse(scene)
-                own.append(time.process_time() - start)
-    without, with_stress = map(statistics.median, times)
-    states = scenes[0].analysis.positions * len(scenes[0].torques)
+        analyse(scene)  # models are made
+        without, with_stress = medians(take_times(calls, RUNS, time.process_time)).values()
+    states = scene.analysis.positions * len(scene.torques)
     return [name, f"{states}", f"{without:.2f}", f"{with_stress:.2f}", f"{with_stress - without:.2f}"]
-
-
-def markdown(head: str, lines: Iterable[Iterable[str]]) -> str:
-    """A table; its head between bars."""
-    bars = "|" + "---|" * (head.count("|") - 1)
-    return "\n".join([head, bars, *(f"| {' | '.join(line)} |" for line in lines)])
 
 
 def of_rows(found: Iterable[Row]) -> str:
     """Table of rows that are compared with numbers."""
     lines = ([row.quantity, f"{row.expected:.4g}", f"{row.obtained:.4g}", f"{100 * row.error:.2f}"] for row in found)
-    return markdown("| quantity | reference | model | difference, % |", lines)
+    return table("quantity | reference | model | difference, %", lines)
 
 
 def of_convergence(found: Iterable[Row]) -> str:
     """Table of rows whose number is an error."""
     lines = ([row.quantity, f"{100 * row.obtained:.2f}"] for row in found)
-    return markdown("| quantity | error, % |", lines)
+    return table("quantity | error, %", lines)
 
 
 def of_forms() -> str:
     """Table of the forms of roots."""
-    return markdown(
-        "| z | rho_fP | tension, MPa | error of the mesh, % | ISO 6336-3, MPa | over rho 0.38 | the same by ISO |",
+    return table(
+        "z | rho_fP | tension, MPa | error of the mesh, % | ISO 6336-3, MPa | over rho 0.38 | the same by ISO",
         (
             [
                 f"{teeth}",
@@ -463,8 +441,8 @@ def page() -> str:
 
     plane = list(plane_rows())
     with multiprocessing.get_context("spawn").Pool(1, maxtasksperchild=1) as pool:
-        meshes = markdown(
-            "| mesh | tension, % | compression, % | mid-face | end | s | GiB told | GiB taken | table, MiB |",
+        meshes = table(
+            "mesh | tension, % | compression, % | mid-face | end | s | GiB told | GiB taken | table, MiB",
             pool.map(measured, MESHES, chunksize=1),
         )
     return f"""# Tooth root stress: error, time and memory
@@ -532,19 +510,9 @@ with outermost layers of a quarter.
 Scenes of `examples/scenes`, all their positions and torques, both gears, all teeth that are stressed; processor time of
 one thread with the models at hand, medians of {RUNS} runs that take turns.
 
-{markdown("| scene | states | analysis, s | with root stress, s | difference, s |", map(time_of_cycle, CYCLES))}
+{table("scene | states | analysis, s | with root stress, s | difference, s", map(time_of_cycle, CYCLES))}
 """
 
 
-def main() -> None:
-    """Measure, print the page and write it."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--out", type=Path, default=STUDIES, help="directory of the page")
-    arguments = parser.parse_args()
-    text = page()
-    print(text)
-    (arguments.out / "root_stress.md").write_text(text, encoding="utf-8")
-
-
 if __name__ == "__main__":
-    main()
+    write_page(__doc__, lambda: Page("root_stress", page()))

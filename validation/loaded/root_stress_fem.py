@@ -5,22 +5,20 @@ It repeats the comparisons of ``root_stress_cycle``, ``root_stress_space`` and `
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Iterable
-from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from loaded_tca.plots import save_figure
+from loaded_tca.plots.style import DOTS_PER_INCH
 from validation.calculix.case import pinion_angle
 from validation.calculix.ring_run import WAYS
 from validation.calculix.tables import RING_FILLETS_FILE, RINGS_FILE, ROOT_MESH_FILE, read_table
 from validation.loaded import root_face_load, root_stress_cycle, root_stress_space
 from validation.loaded.root_stress_cycle import GEARS, SIGNS, WIDE, RootCycle
 from validation.loaded.root_stress_space import SIDES, Fillets
+from validation.page import Page, formatted, lines, machine, write_page
 from validation.table import Row, render
-from validation.unloaded.random_starts import machine
 
 PAGE = """# Tooth root stress against finite elements
 
@@ -112,18 +110,18 @@ Cycles = dict[str, tuple[RootCycle, RootCycle]]
 Rings = dict[tuple[str, str], tuple[list[dict[str, float | str]], Fillets]]
 
 
-def cycle_lines(cycles: Cycles) -> Iterable[str]:
+def cycle_cells(cycles: Cycles) -> Iterable[Iterable[str]]:
     """Lines of the table of the cycles."""
     for variant, (kept, ours) in cycles.items():
         for (gear, sign), values in kept.stress.items():
             factor, found = SIGNS[sign], ours.stress[gear, sign]
             highest, own = factor * (factor * values).max(), factor * (factor * found).max()
             apart = 100.0 * np.abs(found - values).max() / abs(highest)
-            cells = (variant.replace("_", " "), gear, sign, f"{highest:.2f}", f"{own:.2f}")
-            yield f"| {' | '.join(cells)} | {100.0 * (own / highest - 1.0):+.2f} | {apart:.2f} |"
+            sizes = *formatted(".2f", highest, own), f"{100.0 * (own / highest - 1.0):+.2f}", f"{apart:.2f}"
+            yield variant.replace("_", " "), gear, sign, *sizes
 
 
-def mesh_lines() -> Iterable[str]:
+def mesh_cells() -> Iterable[Iterable[str]]:
     """Lines of the mesh study of the kept runs in plane strain."""
     table = read_table(ROOT_MESH_FILE)
     places = dict.fromkeys((row["variant"], row["position"], row["fillet_mm"]) for row in table)
@@ -132,10 +130,10 @@ def mesh_lines() -> Iterable[str]:
         own = [row for row in table if (row["variant"], row["position"], row["fillet_mm"]) == place]
         stress = [f"{float(row[f'{sign}_MPa']):.2f}" for row in own for sign in SIGNS]
         kept = ", kept" if own[0]["way"] == "standard" else ""
-        yield f"| {str(variant).replace('_', ' ')}, {position:g} | {fillet:g}{kept} | {' | '.join(stress)} |"
+        yield f"{str(variant).replace('_', ' ')}, {position:g}", f"{fillet:g}{kept}", *stress
 
 
-def ring_lines(rings: Rings) -> Iterable[str]:
+def ring_cells(rings: Rings) -> Iterable[Iterable[str]]:
     """Lines of the table of the rings."""
     coarser = root_stress_space.read_rings(RINGS_FILE, "standard")
     for (ring, load), (kept, ours) in rings.items():
@@ -145,14 +143,8 @@ def ring_lines(rings: Rings) -> Iterable[str]:
             before = sign * max(sign * float(row[f"{name}_MPa"]) for row in coarser[ring, load])
             highest, own = sign * (sign * values).max(), sign * (sign * ours.largest(side)).max()
             apart = 100.0 * np.abs(ours.at(side, heights) - values).max() / abs(highest)
-            cells = (ring, load, name, f"{highest:.2f}", f"{before:.2f}", f"{own:.2f}")
-            yield f"| {' | '.join(cells)} | {100.0 * (own / highest - 1.0):+.2f} | {apart:.2f} |"
-
-
-def ratio_lines(loads: dict[str, root_face_load.Uneven]) -> Iterable[str]:
-    """Lines of the table of uneven loads."""
-    for name, one in loads.items():
-        yield f"| {name} | {one.contact_factor:.3f} | {one.iso_factor:.3f} | {one.ratio:.3f} |"
+            sizes = formatted(".2f", highest, before, own)
+            yield ring, load, name, *sizes, f"{100.0 * (own / highest - 1.0):+.2f}", f"{apart:.2f}"
 
 
 def cycle_picture(cycles: Cycles) -> Figure:
@@ -215,8 +207,10 @@ def space_picture(rings: Rings) -> Figure:
     return figure
 
 
-def write(out: Path) -> None:
-    """Write the page and its pictures."""
+def page() -> Page:
+    """The page and its pictures, if there is anything to compare."""
+    if not (root_stress_cycle.read_roots() and root_stress_space.read_rings()):
+        raise SystemExit("no runs are kept: make reference-fem")
     model = root_stress_cycle.model(WIDE)
     cycles = {
         variant: (kept, root_stress_cycle.root_cycle(model, variant, kept.pinion_angle))
@@ -236,32 +230,23 @@ def write(out: Path) -> None:
         for name, changes in root_face_load.PAIRS.items()
     }
     rows: list[Row] = [*root_stress_cycle.rows(), *root_stress_space.rows(), *root_face_load.rows()]
-    page = PAGE.format(
-        machine=machine(),
+    text = PAGE.format(
+        machine=machine(numpy=True),
         wide=WIDE,
-        cycle="\n".join(cycle_lines(cycles)),
-        meshes="\n".join(mesh_lines()),
-        rings="\n".join(ring_lines(rings)),
+        cycle=lines(cycle_cells(cycles)),
+        meshes=lines(mesh_cells()),
+        rings=lines(ring_cells(rings)),
         coarser=WAYS["standard"].fillet,
         finer=WAYS["finer"].fillet,
-        ratios="\n".join(ratio_lines(loads)),
+        ratios=lines(
+            [name, *formatted(".3f", one.contact_factor, one.iso_factor, one.ratio)] for name, one in loads.items()
+        ),
         inside=float(np.abs(misaligned.along).max() - abs(misaligned.along[misaligned.tension.argmax()])),
         rows=render(rows),
     )
-    (out / "root_stress_fem.md").write_text(page)
-    save_figure(cycle_picture(cycles), out / "root_stress_fem_cycle.png")
-    save_figure(space_picture(rings), out / "root_stress_fem_space.png")
-
-
-def main() -> None:
-    """Write the page and its pictures, if there is anything to compare."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs/studies"))
-    arguments = parser.parse_args()
-    if not (root_stress_cycle.read_roots() and root_stress_space.read_rings()):
-        parser.error("no runs are kept: make reference-fem")
-    write(arguments.out)
+    pictures = {"root_stress_fem_cycle": cycle_picture(cycles), "root_stress_fem_space": space_picture(rings)}
+    return Page("root_stress_fem", text, pictures, DOTS_PER_INCH)
 
 
 if __name__ == "__main__":
-    main()
+    write_page(__doc__, page)

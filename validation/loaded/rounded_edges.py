@@ -11,16 +11,13 @@ A spur tip under one force has a peak that falls with a power of its radius, nea
 Run from the root of the repository: ``python -m validation.loaded.rounded_edges``; writes a page.
 """
 
-import argparse
 import math
-import statistics
 import time
 import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager, nullcontext
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
-from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
@@ -38,13 +35,12 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
 from loaded_tca.threads import one_thread
-from validation.contact.speed_against_error import machine
+from validation.page import SCENES, Page, formatted, machine, medians, table, take_times, write_page
 from validation.table import Row, render
 
 Place = tuple[int, int, int]
 
-SCENES = Path(__file__).parents[2] / "examples" / "scenes"
-PAGE = Path(__file__).parents[2] / "docs" / "studies" / "rounded_edges_of_gears.md"
+
 ASKED, LEAST_SHARE, MOST_CONTACTS = 0.03, 0.05, 4
 ON_GRIDS = 0.02
 FINENESSES = (0.6, 1.0, 1.6)
@@ -382,16 +378,11 @@ def times() -> dict[str, float]:
     scene = read_scene(SCENES / "mesh_cycle_helical.toml")
     blunt = scene.with_changes(rounded(tip=0.2))
     scenes = {"sharp": scene, "rounded": blunt, "all": blunt.with_changes({"analysis.edge_pressures": "all"})}
-    seconds: dict[str, list[float]] = {name: [] for name in scenes}
     with one_thread(), warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
         analyse(scene)  # models of the teeth are known from here on
-        for _ in range(RUNS):
-            for name, one in scenes.items():
-                begin = time.process_time()
-                analyse(one)
-                seconds[name].append(time.process_time() - begin)
-    return {name: statistics.median(values) for name, values in seconds.items()}
+        calls = {name: partial(analyse, one) for name, one in scenes.items()}
+        return medians(take_times(calls, RUNS, time.process_time))
 
 
 def rows_of_times() -> list[Row]:
@@ -410,56 +401,42 @@ def rows() -> list[Row]:
 
 
 def table_of_columns() -> str:
-    """Markdown: peaks on finer and finer columns."""
-    several = [f"x {one:g}" for one in FINENESSES]
-    head = [
-        "contact",
-        "share of the force",
-        "bound MPa",
-        *(f"{one}, MPa" for one in several),
-        "finest, MPa",
-        "analysis, MPa",
-    ]
-    lines = [_line([*head, "error %", "estimate %"]), "|---" * (len(head) + 2) + "|"]
+    """Peaks on finer and finer columns."""
+    several = " | ".join(f"x {one:g}, MPa" for one in FINENESSES)
+    lines = []
     for case in CASES:
         for one in refined(case):
-            cells = [f"{one.share:.2f}", *(f"{value:.0f}" for value in (one.bound, *one.peaks, one.found.pressure))]
-            lines.append(_line([one.case, *cells, f"{100.0 * one.error:+.2f}", f"{100.0 * one.found.error:.1f}"]))
-    return "\n".join(lines)
+            cells = [f"{one.share:.2f}", *formatted(".0f", one.bound, *one.peaks, one.found.pressure)]
+            lines.append([one.case, *cells, f"{100.0 * one.error:+.2f}", f"{100.0 * one.found.error:.1f}"])
+    head = f"contact | share of the force | bound MPa | {several} | finest, MPa | analysis, MPa | error % | estimate %"
+    return table(head, lines)
 
 
 def table_of_grids() -> str:
-    """Markdown: largest pressures over the grids."""
-    lines = [_line(["contact", *GRIDS]), "|---" * (len(GRIDS) + 1) + "|"]
-    lines += [_line([name, *(f"{one:.0f}" for one in over_grids(name).values())]) for name in ON_SEVERAL]
-    return "\n".join(lines)
+    """Largest pressures over the grids."""
+    return table(["contact", *GRIDS], ([name, *formatted(".0f", *over_grids(name).values())] for name in ON_SEVERAL))
 
 
 def table_of_radii() -> str:
-    """Markdown: pressures of a spur tip over its radius, and exponents from one radius to the next."""
-    lines = [_line(["radius mm", "in the mesh, MPa", "exponent", "under one force, MPa", "exponent"]), "|---" * 5 + "|"]
+    """Pressures of a spur tip over its radius, and exponents from one radius to the next."""
+    lines = []
     mesh, held = zip(*over_radii().values(), strict=True)
-    slopes = [["", ""], *([f"{a:.3f}", f"{b:.3f}"] for a, b in zip(exponents(mesh), exponents(held), strict=True))]
+    slopes = [["", ""], *(formatted(".3f", a, b) for a, b in zip(exponents(mesh), exponents(held), strict=True))]
     for radius, first, second, (a, b) in zip(RADII, mesh, held, slopes, strict=True):
-        lines.append(_line([f"{radius:g}", f"{first:.0f}", a, f"{second:.0f}", b]))
-    return "\n".join(lines)
+        lines.append([f"{radius:g}", f"{first:.0f}", a, f"{second:.0f}", b])
+    return table("radius mm | in the mesh, MPa | exponent | under one force, MPa | exponent", lines)
 
 
 def table_of_survey() -> str:
-    """Markdown: found pressures over their bounds."""
-    head = ["gears", "contacts", "least", "median", "largest", "largest, estimated error above 3 %"]
-    lines = [_line(head), "|---" * len(head) + "|"]
+    """Pressures over their bounds."""
+    lines = []
     for name in SURVEY:
-        numbers = np.array(survey(name)).reshape(-1, 3)
-        close = numbers[:, 1] <= rounded_edge.LARGE_ERROR
-        ratios, others = numbers[close, 0], numbers[~close, 0]
-        cells = [len(numbers), *(f"{one:.2f}" for one in (ratios.min(), np.median(ratios), ratios.max()))]
-        lines.append(_line([name, *map(str, cells), f"{others.max():.2f}" if others.size else "none"]))
-    return "\n".join(lines)
-
-
-def _line(cells: Iterable[str]) -> str:
-    return "| " + " | ".join(cells) + " |"
+        every = np.array(survey(name)).reshape(-1, 3)
+        close = every[:, 1] <= rounded_edge.LARGE_ERROR
+        ratios, others = every[close, 0], every[~close, 0]
+        cells = [len(every), *formatted(".2f", ratios.min(), np.median(ratios), ratios.max())]
+        lines.append([name, *cells, f"{others.max():.2f}" if others.size else "none"])
+    return table("gears | contacts | least | median | largest | largest, estimated error above 3 %", lines)
 
 
 TEXT = """# Pressure at rounded edges of gears
@@ -513,13 +490,10 @@ The helical mesh cycle of three torques and 33 positions, processor time: {sharp
 """
 
 
-def main() -> None:
-    """Measure, write the page."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--out", type=Path, default=PAGE)
-    arguments = parser.parse_args()
+def page() -> Page:
+    """Measure everything; print the rows, too."""
     sharp, most, every = times().values()
-    page = TEXT.format(
+    text = TEXT.format(
         machine=machine(),
         columns=table_of_columns(),
         grids=table_of_grids(),
@@ -533,10 +507,9 @@ def main() -> None:
         ratio_all=every / sharp,
         runs=RUNS,
     )
-    arguments.out.write_text(page)
-    print(page)
     print(render(rows()))
+    return Page("rounded_edges_of_gears", text)
 
 
 if __name__ == "__main__":
-    main()
+    write_page(__doc__, page)

@@ -11,21 +11,15 @@ writes docs/studies/sensitivities.md and its pictures.
 
 from __future__ import annotations
 
-import argparse
-import json
-import os
-import statistics
-import subprocess
-import sys
 import time
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from loaded_tca import AccuracyWarning, analyse, read_scene
 from loaded_tca.arrays import Array
@@ -33,12 +27,21 @@ from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
 from loaded_tca.studies import Study, process_pool, run_study
 from loaded_tca.studies.ranking import figure_values
-from validation.contact.speed_against_error import machine
+from validation.page import (
+    SCENES,
+    SPACED,
+    Page,
+    formatted,
+    in_a_process,
+    machine,
+    median_ratio,
+    medians,
+    table,
+    timed,
+    write_page,
+)
 from validation.table import Row
 
-ROOT = Path(__file__).resolve().parents[2]
-SCENES = ROOT / "examples" / "scenes"
-STUDIES = ROOT / "docs" / "studies"
 SETTINGS: dict[str, dict[str, Any]] = {
     "flanks alone": {"analysis.compliance": "contact", "analysis.free_edges": False},
     "with bending": {},
@@ -358,40 +361,24 @@ def cost(name: str, setting: str, accuracy: float) -> dict[str, float]:
     scene = read_scene(SCENES / f"{name}.toml").with_changes(
         {**SETTINGS[setting], **TWENTY[name][0], "analysis.accuracy": accuracy}
     )
-    times: list[tuple[float, float]] = []
+    times: dict[str, list[float]] = {"analysis": [], "sensitivities": []}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
         analyse(scene)
         for _ in range(RUNS):
-            begin = time.process_time()
-            result = analyse(scene)
-            middle = time.process_time()
-            found = result.sensitivities(TWENTY[name][1])
-            if not (np.isfinite(found.transmission_error).all() and np.isfinite(found.pressure_norm()).all()):
+            result, analysis = timed(lambda: analyse(scene), clock=time.process_time)
+            finite, own = timed(lambda of=result: all_finite(of, TWENTY[name][1]), clock=time.process_time)
+            if not finite:
                 raise AssertionError("a state without sensitivities")
-            times.append((middle - begin, time.process_time() - middle))
-    ratio = statistics.median(own / analysis for analysis, own in times)
-    return {
-        "analysis": statistics.median(analysis for analysis, _ in times),
-        "sensitivities": statistics.median(own for _, own in times),
-        "ratio": ratio,
-    }
+            times["analysis"] += analysis
+            times["sensitivities"] += own
+    return {**medians(times), "ratio": median_ratio(times["sensitivities"], times["analysis"])}
 
 
-def cost_in_a_process(*arguments: str) -> dict[str, float]:
-    """``cost`` in a process of its own with one thread."""
-    command = [sys.executable, "-m", "validation.loaded.sensitivities", "--cost", *arguments]
-    surroundings = os.environ | {"PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
-    done = subprocess.run(command, cwd=ROOT, env=surroundings, stdout=subprocess.PIPE, text=True, check=True)
-    found: dict[str, float] = json.loads(done.stdout)
-    return found
-
-
-def lines(head: str, cells: Iterable[Iterable[str]]) -> str:
-    """Table in Markdown; columns of the head are apart by bars."""
-    columns = head.split(" | ")
-    rule = "| " + " | ".join("---" for _ in columns) + " |"
-    return "\n".join([f"| {head} |", rule, *(f"| {' | '.join(row)} |" for row in cells)])
+def all_finite(result: MeshCycle, keys: list[str]) -> bool:
+    """Whether every state has sensitivities of the transmission error and of the pressure norm."""
+    found = result.sensitivities(keys)
+    return bool(np.isfinite(found.transmission_error).all() and np.isfinite(found.pressure_norm()).all())
 
 
 def percent(numbers: tuple[float, float]) -> str:
@@ -414,7 +401,7 @@ def of_transmission_error() -> str:
                 found.append([PAIRS[name], f"`{short(key)}`", f"{step:g}", setting, largest, *errors, f"{left_out}"])
     asked = " | ".join(f"{cells} cells, asked {100.0 * ASKED[cells]:.0f} %" for cells in GRIDS)
     head = f"pair | key | step | setting | largest slope [nm per unit] | {asked} | positions left out"
-    return lines(head, found)
+    return table(head, found, SPACED)
 
 
 def of_twist() -> str:
@@ -423,7 +410,7 @@ def of_twist() -> str:
     for setting in SETTINGS:
         every = [agreements("mesh_cycle_helical", setting, cells, TWIST)["transmission_error"] for cells in FINER]
         found.append([setting, *(percent(one.over_largest(one.steady)) for one in every)])
-    return lines(f"setting | {' | '.join(f'{cells} cells' for cells in FINER)}", found)
+    return table(f"setting | {' | '.join(f'{cells} cells' for cells in FINER)}", found, SPACED)
 
 
 def of_other_figures() -> str:
@@ -440,7 +427,7 @@ def of_other_figures() -> str:
                 one = of["face_load_factor"]
                 found.append([PAIRS[name], f"`{short(key)}`", setting, *cells, percent(one.over_largest(one.steady))])
     figures = "load share | line load | line load, at edges | peak pressure | peak pressure, at edges | K_Hbeta"
-    return lines(f"pair | key | setting | {figures}", found)
+    return table(f"pair | key | setting | {figures}", found, SPACED)
 
 
 def of_root_tension() -> str:
@@ -450,7 +437,7 @@ def of_root_tension() -> str:
         for key in keys:
             every = [agreements(name, setting, GRIDS[0], key)["root_tension"] for setting in SETTINGS]
             found.append([PAIRS[name], f"`{short(key)}`", *(percent(one.over_largest(one.steady)) for one in every)])
-    return lines(f"pair | key | {' | '.join(SETTINGS)}", found)
+    return table(f"pair | key | {' | '.join(SETTINGS)}", found, SPACED)
 
 
 def of_closed_forms() -> str:
@@ -461,7 +448,7 @@ def of_closed_forms() -> str:
             for what, (expected, values) in closed_forms(setting, cells).items():
                 ends = f"{values.min():.6f} to {values.max():.6f}"
                 found.append([what, setting, f"{cells}", f"{expected:.6f}", ends])
-    return lines("quantity | setting | cells | closed form | least and largest of the positions", found)
+    return table("quantity | setting | cells | closed form | least and largest of the positions", found, SPACED)
 
 
 def of_cost() -> str:
@@ -470,11 +457,11 @@ def of_cost() -> str:
     for name in PAIRS:
         for setting in SETTINGS:
             for accuracy in ACCURACIES:
-                one = cost_in_a_process(name, setting, f"{accuracy}")
-                times = [f"{one['analysis']:.2f}", f"{one['sensitivities']:.2f}", f"{100.0 * one['ratio']:.0f} %"]
+                one = in_a_process(cost, name, setting, accuracy)
+                times = [*formatted(".2f", one["analysis"], one["sensitivities"]), f"{100.0 * one['ratio']:.0f} %"]
                 found.append([PAIRS[name], setting, f"{accuracy:g}", *times])
                 print(*found[-1], flush=True)
-    return lines("pair | setting | accuracy | analysis [s] | sensitivities [s] | ratio", found)
+    return table("pair | setting | accuracy | analysis [s] | sensitivities [s] | ratio", found, SPACED)
 
 
 def of_studies(scenes: Mapping[float, Scattered]) -> str:
@@ -484,18 +471,14 @@ def of_studies(scenes: Mapping[float, Scattered]) -> str:
         for figure, words in OF_STUDIES.items():
             for scale in SCALES:
                 deviation = float(np.nanstd(one.studies[scale][figure], ddof=1))
-                numbers = [
-                    f"{number:.3g}" for number in (one.nominal[figure], scale * one.first_order[figure], deviation)
-                ]
+                sizes = formatted(".3g", one.nominal[figure], scale * one.first_order[figure], deviation)
                 ratio, shift = f"{one.ratio(scale, figure):.2f}", f"{one.shift(scale, figure):+.2f}"
-                found.append([OUT_OF_LINE[out_of_line], words, f"{scale:g}", *numbers, ratio, shift])
-    return lines("scene | figure | scale | nominal | first order | study | ratio | shift of the mean", found)
+                found.append([OUT_OF_LINE[out_of_line], words, f"{scale:g}", *sizes, ratio, shift])
+    return table("scene | figure | scale | nominal | first order | study | ratio | shift of the mean", found, SPACED)
 
 
-def draw_studies(scenes: Mapping[float, Scattered], path: Path) -> None:
+def picture_of_studies(scenes: Mapping[float, Scattered]) -> Figure:
     """Ratio of the standard deviations over the scale, a panel for each scene."""
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(9.0, 3.8), layout="constrained")
     panels = figure.subplots(1, len(scenes), sharey=True)
     for axes, (out_of_line, one) in zip(panels, scenes.items(), strict=True):
@@ -508,17 +491,15 @@ def draw_studies(scenes: Mapping[float, Scattered], path: Path) -> None:
         axes.minorticks_off()
     panels[0].set(ylabel="deviation of the study / first order", ylim=(0.0, None))
     panels[0].legend()
-    figure.savefig(path, dpi=110)
+    return figure
 
 
 SHOWN = ("mesh_cycle_helical", "flanks alone", 128, MISALIGNMENT)
 """Scene, setting, cells and key of the picture of analyses."""
 
 
-def draw_analyses(path: Path) -> None:
+def picture_of_analyses() -> Figure:
     """Figures of nine analyses over the key, with the derivative of that in the middle as a line."""
-    from matplotlib.figure import Figure
-
     name, setting, cells, key = SHOWN
     values, cycles = nine(*SHOWN)
     derivatives, middle = cycles[4].sensitivities([key]), cycles[4]
@@ -535,24 +516,28 @@ def draw_analyses(path: Path) -> None:
     figure = Figure(figsize=(9.0, 6.0), layout="constrained")
     for axes, (words, quantity, place, unit) in zip(figure.subplots(2, 2).flat, panels, strict=True):
         if quantity == "peak_to_peak":
-            numbers = np.array([np.ptp(one.transmission_error[0]) for one in cycles])
+            found = np.array([np.ptp(one.transmission_error[0]) for one in cycles])
         else:
-            numbers = np.array([getattr(one, quantity)[place] for one in cycles])
+            found = np.array([getattr(one, quantity)[place] for one in cycles])
         slope = float(getattr(derivatives, quantity)[(*place, 0)])
-        axes.plot(values, unit * numbers, "o", label="analyses")
-        axes.plot(values, unit * (numbers[4] + slope * (values - values[4])), label="derivative in the middle")
+        axes.plot(values, unit * found, "o", label="analyses")
+        axes.plot(values, unit * (found[4] + slope * (values - values[4])), label="derivative in the middle")
         axes.set(xlabel=short(key), ylabel=words)
         axes.ticklabel_format(useOffset=False)
     figure.axes[0].legend()
     figure.suptitle(f"{PAIRS[name]}, {setting}, {cells} x {cells} cells")
-    figure.savefig(path, dpi=110)
+    return figure
 
 
-def page(directory: Path) -> str:
-    """Measure everything, draw the pictures; the page."""
+def page() -> Page:
+    """Measure everything; text and pictures."""
     scenes = {out_of_line: scattered(out_of_line) for out_of_line in OUT_OF_LINE}
-    draw_studies(scenes, directory / "sensitivities_scatter.png")
-    draw_analyses(directory / "sensitivities_analyses.png")
+    pictures = {"sensitivities_scatter": picture_of_studies(scenes), "sensitivities_analyses": picture_of_analyses()}
+    return Page("sensitivities", text_of(scenes), pictures, dots_per_inch=110)
+
+
+def text_of(scenes: Mapping[float, Scattered]) -> str:
+    """Markdown with all tables."""
     deviations = ", ".join(f"`{short(key)}` {sigma:g}" for key, sigma in DEVIATIONS.items())
     return f"""# Sensitivities against whole analyses and Monte Carlo studies
 
@@ -658,20 +643,5 @@ turns, and of their ratios; asked below 50 %. Scenes with tip reliefs on both ge
 """
 
 
-def main() -> None:
-    """Measure, print the page and write it with its pictures."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--out", type=Path, default=STUDIES, help="directory of the page")
-    parser.add_argument("--cost", nargs=3, help=argparse.SUPPRESS)
-    arguments = parser.parse_args()
-    if arguments.cost:
-        name, setting, accuracy = arguments.cost
-        print(json.dumps(cost(name, setting, float(accuracy))))
-        return
-    text = page(arguments.out)
-    print(text)
-    (arguments.out / "sensitivities.md").write_text(text, encoding="utf-8")
-
-
 if __name__ == "__main__":
-    main()
+    write_page(__doc__, page)

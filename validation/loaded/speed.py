@@ -10,10 +10,8 @@ Run from the root of the repository: ``python -m validation.loaded.speed``; prin
 """
 
 import statistics
-import time
 import warnings
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,8 +19,8 @@ import numpy as np
 from loaded_tca import AccuracyWarning, analyse, read_scene
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import Scene
+from validation.page import SCENES, table, timed
 
-SCENES = Path(__file__).parents[2] / "examples" / "scenes"
 NAMES = ("mesh_cycle_spur", "mesh_cycle_helical", "mesh_cycle_bevel")
 POSITIONS, RUNS = 9, 3
 ACCURACIES, CELLS, FINEST = (1e-1, 1e-2, 1e-3, 1e-4), (16, 32, 64, 128), 256
@@ -46,15 +44,15 @@ def measure(names: tuple[str, ...] = NAMES, runs: int = RUNS) -> list[WholeLine]
     return [line for name in names for line in _measured(name, runs)]
 
 
-def table(found: list[WholeLine]) -> str:
-    """Markdown, one line a setting."""
-    columns = ("scene", "setting", "time s", "pressure", "load share", "TE peak to peak")
-    lines = ["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
-    lines += [
-        f"| {m.scene} | {m.setting} | {m.seconds:.2g} | {m.pressure:.1e} | {m.share:.1e} | {m.peak_to_peak:.1e} |"
-        for m in found
-    ]
-    return "\n".join(lines)
+def table_of(found: list[WholeLine]) -> str:
+    """One line a setting."""
+    return table(
+        "scene | setting | time s | pressure | load share | TE peak to peak",
+        (
+            f"{m.scene} | {m.setting} | {m.seconds:.2g} | {m.pressure:.1e} | {m.share:.1e} | {m.peak_to_peak:.1e}"
+            for m in found
+        ),
+    )
 
 
 def heading() -> str:
@@ -70,24 +68,20 @@ def _measured(name: str, runs: int) -> list[WholeLine]:
     middle = 1e-3 * float(np.median(scene.torques))
     changes = {"analysis.positions": POSITIONS, "analysis.torques_Nm": [middle]}
     scene = scene.with_changes({**FLANKS_ALONE, **changes})
-    finest, _ = _timed(scene, "cells", (FINEST, FINEST), 1)
+    finest, _ = _analysed(scene, "cells", (FINEST, FINEST), 1)
     settings: list[tuple[str, str, Any]] = [(f"accuracy {value:.0e}", "accuracy", value) for value in ACCURACIES]
     settings += [(f"{n} x {n} cells", "cells", (n, n)) for n in CELLS]
     found = []
     for words, key, value in settings:
-        cycle, seconds = _timed(scene, key, value, runs)
+        cycle, seconds = _analysed(scene, key, value, runs)
         found.append(WholeLine(name, words, seconds, *_errors(cycle, finest)))
     return found
 
 
-def _timed(scene: Scene, key: str, value: Any, runs: int) -> tuple[MeshCycle, float]:
-    times = []
+def _analysed(scene: Scene, key: str, value: Any, runs: int) -> tuple[MeshCycle, float]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
-        for _ in range(runs):
-            begin = time.perf_counter()
-            cycle = analyse(scene.with_changes({f"analysis.{key}": value}))
-            times.append(time.perf_counter() - begin)
+        cycle, times = timed(lambda: analyse(scene.with_changes({f"analysis.{key}": value})), runs)
     return cycle, statistics.median(times)
 
 
@@ -104,4 +98,4 @@ def _errors(cycle: MeshCycle, finest: MeshCycle) -> tuple[float, float, float]:
 
 if __name__ == "__main__":
     print(heading())
-    print(table(measure()))
+    print(table_of(measure()))

@@ -11,19 +11,13 @@ writes docs/studies/engine_cost.md. Needs the packages dask and distributed.
 
 from __future__ import annotations
 
-import argparse
-import json
-import os
-import resource
 import statistics
-import subprocess
-import sys
 import time
 import warnings
 from collections.abc import Callable, Mapping
 from concurrent.futures import Executor
 from contextlib import ExitStack
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -33,10 +27,22 @@ import numpy as np
 from loaded_tca import read_scene
 from loaded_tca.scene import Scene
 from loaded_tca.studies import Study, figures, process_pool, run_study
+from validation.page import (
+    SCENES,
+    SPACED,
+    Page,
+    in_a_process,
+    machine,
+    median_ratio,
+    medians,
+    peak_memory,
+    table,
+    take_times,
+    timed,
+    write_page,
+)
 
-ROOT = Path(__file__).resolve().parents[2]
-PAGE = ROOT / "docs" / "studies" / "engine_cost.md"
-SCENE = ROOT / "examples" / "scenes" / "mesh_cycle_helical.toml"
+SCENE = SCENES / "mesh_cycle_helical.toml"
 CROWNING = "pinion.modifications.lead_crowning_um"
 NINE: dict[str, Any] = {"analysis.positions": 9, "analysis.torques_Nm": None, "load.pinion_torque_Nm": 130.0}
 FLANKS: dict[str, Any] = {"analysis.compliance": "contact", "analysis.free_edges": False}
@@ -65,18 +71,12 @@ def bare(number: int) -> int:
     return number
 
 
-def seconds(call: Callable[..., Any], *arguments: Any, **named: Any) -> float:
-    """Time of a call."""
-    begin = time.perf_counter()
-    call(*arguments, **named)
-    return time.perf_counter() - begin
-
-
 def in_process() -> dict[str, float]:
     """Milliseconds of the engine for a variant."""
     run_study(study(10), figures=empty)
-    runs = [seconds(run_study, study(EMPTY), figures=empty) for _ in range(RUNS)]
-    return {"own": 1e3 * statistics.median(runs) / EMPTY}
+    variants = study(EMPTY)
+    _, seconds = timed(lambda: run_study(variants, figures=empty), RUNS)
+    return {"own": 1e3 * statistics.median(seconds) / EMPTY}
 
 
 def cluster(stack: ExitStack) -> Executor:
@@ -98,11 +98,8 @@ def on_cluster() -> dict[str, float]:
     with ExitStack() as stack:
         executor = cluster(stack)
         run_study(study(50), executor, figures=empty)
-        runs = [(seconds(tasks), seconds(run_study, study(EMPTY), executor, figures=empty)) for _ in range(RUNS)]
-    return {
-        "bare": 1e3 * statistics.median(task for task, _ in runs) / EMPTY,
-        "own": 1e3 * statistics.median(own for _, own in runs) / EMPTY,
-    }
+        seconds = take_times({"bare": tasks, "own": partial(run_study, study(EMPTY), executor, figures=empty)}, RUNS)
+    return {name: 1e3 * median / EMPTY for name, median in medians(seconds).items()}
 
 
 def two_workers() -> dict[str, float]:
@@ -115,10 +112,8 @@ def two_workers() -> dict[str, float]:
         }
         for engine in engines.values():
             run_study(study(12), engine)
-        runs = [
-            {name: seconds(run_study, study(FULL), engine) for name, engine in engines.items()} for _ in range(RUNS)
-        ]
-    return {name: statistics.median(run["one"] / run[name] for run in runs) for name in ("two", "cluster")}
+        seconds = take_times({name: partial(run_study, study(FULL), each) for name, each in engines.items()}, RUNS)
+    return {name: median_ratio(seconds["one"], seconds[name]) for name in ("two", "cluster")}
 
 
 def memory(samples: int) -> dict[str, float]:
@@ -127,7 +122,7 @@ def memory(samples: int) -> dict[str, float]:
         peaks = []
         for count in (100, samples):
             run_study(study(count), pool, Path(folder, f"{count}.nc"), figures=empty)
-            peaks.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
+            peaks.append(1024.0 * peak_memory())
     return {"all": peaks[1], "more": peaks[1] - peaks[0]}
 
 
@@ -138,7 +133,8 @@ def files(samples: int) -> dict[str, float]:
         found = run_study(study(samples), out=out, figures=empty)
         found.to_dataframe().to_csv(Path(folder, "study.csv"))
         sizes = {path.suffix[1:]: path.stat().st_size / 1e6 for path in Path(folder).iterdir()}
-        return {**sizes, "again": seconds(run_study, study(samples), out=out, figures=empty)}
+        _, (again,) = timed(lambda: run_study(study(samples), out=out, figures=empty))
+        return {**sizes, "again": again}
 
 
 def cycles() -> dict[str, float]:
@@ -146,9 +142,8 @@ def cycles() -> dict[str, float]:
     found = {}
     for name, changes in {"flanks": {**NINE, **FLANKS}, "defaults": NINE}.items():
         run_study(study(3, changes))
-        begin = time.process_time()
-        run_study(study(FULL, changes))
-        found[name] = 60.0 * FULL / (time.process_time() - begin)
+        _, (seconds,) = timed(lambda changes=changes: run_study(study(FULL, changes)), clock=time.process_time)
+        found[name] = 60.0 * FULL / seconds
     return found
 
 
@@ -164,30 +159,23 @@ MEASUREMENTS: dict[str, Callable[[], dict[str, float]]] = {
 
 
 def measured(name: str) -> dict[str, float]:
-    """Return what a process of its own finds."""
-    surroundings = os.environ | {"PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
-    code = (
-        f"from validation.studies.engine_cost import tell; tell({name!r})"  # no __main__, which workers would be sent
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=ROOT, env=surroundings, stdout=subprocess.PIPE, text=True, check=True
-    )
-    found: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
-    print(name, found, flush=True)
-    return found
-
-
-def tell(name: str) -> None:
-    """Print what a measurement finds."""
+    """A measurement without warnings."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        print(json.dumps(MEASUREMENTS[name]()))
+        return MEASUREMENTS[name]()
 
 
-def page(found: Mapping[str, Mapping[str, float]]) -> str:
+def page(one: str | None) -> Page:
+    """All measurements, each in a process of its own; a single one makes no page."""
+    found = {}
+    for name in MEASUREMENTS if one is None else [one]:
+        found[name] = in_a_process(measured, name)
+        print(name, found[name], flush=True)
+    return Page("engine_cost", text_of(found) if one is None else None)
+
+
+def text_of(found: Mapping[str, Mapping[str, float]]) -> str:
     """Markdown of all measurements."""
-    from validation.contact.speed_against_error import machine
-
     rate = 1e3 / found["on_cluster"]["bare"]
     rows = [
         ("engine in this process, a variant", f"{found['in_process']['own']:.2f} ms", "2 ms"),
@@ -201,8 +189,8 @@ def page(found: Mapping[str, Mapping[str, float]]) -> str:
         ("cycles a minute and core, defaults", f"{found['cycles']['defaults']:.0f}", "300"),
     ]
     one = found["files_1e3"]
-    sizes = f"| {one['jsonl']:.1f} | {one['nc']:.1f} | {one['csv']:.1f} | {one['again']:.1f} |"
-    lines = [
+    sizes = [f"{one[name]:.1f}" for name in ("jsonl", "nc", "csv", "again")]
+    text = [
         "# What a study costs beside its analyses",
         "",
         "Written by `python -m validation.studies.engine_cost`. The cost of the engine is that of empty analyses,",
@@ -214,30 +202,15 @@ def page(found: Mapping[str, Mapping[str, float]]) -> str:
         "",
         f"{machine()}.",
         "",
-        "| what | found | aim |",
-        "| --- | --- | --- |",
-        *(f"| {what} | {number} | {aim} |" for what, number, aim in rows),
+        table("what | found | aim", rows, SPACED),
         "",
         "Files of a study of 1000 variants of one torque without warnings, and the time of a run that finds all of",
         "them there. They grow in proportion to the variants.",
         "",
-        "| rows.jsonl [MB] | study.nc [MB] | study.csv [MB] | read again [s] |",
-        "| --- | --- | --- | --- |",
-        sizes,
+        table("rows.jsonl [MB] | study.nc [MB] | study.csv [MB] | read again [s]", [sizes], SPACED),
     ]
-    return "\n".join(lines) + "\n"
-
-
-def main() -> None:
-    """Measure and write the page."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--one", choices=MEASUREMENTS, help="only this measurement; write no page")
-    arguments = parser.parse_args()
-    if arguments.one:
-        measured(arguments.one)
-        return
-    PAGE.write_text(page({name: measured(name) for name in MEASUREMENTS}), encoding="utf-8")
+    return "\n".join(text) + "\n"
 
 
 if __name__ == "__main__":
-    main()
+    write_page(__doc__, page, one=str)

@@ -13,11 +13,10 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,12 +25,10 @@ from scipy.stats import norm
 
 from loaded_tca import read_scene
 from loaded_tca.studies.design import ACCURACY, DesignModel, DesignResult, Objective, optimise, robustness
-from validation.contact.speed_against_error import machine
+from validation.page import SCENES, SPACED, Page, formatted, lines, machine, table, timed, write_page
 from validation.table import Row
 
-ROOT = Path(__file__).parents[2]
-PAGE = ROOT / "docs" / "studies" / "robust_design.md"
-SCENE = ROOT / "examples" / "scenes" / "design_helical.toml"
+SCENE = SCENES / "design_helical.toml"
 ASKED, PROTOTYPE_START, MOST_EVALUATIONS = 0.388, 0.4406, 30
 VARIABLES = {
     "pinion.modifications.lead_crowning_um": (0.0, 15.0),
@@ -73,8 +70,8 @@ def model() -> DesignModel:
 @cache
 def by_gradients() -> tuple[DesignResult, float]:
     """The design under scatter, and the seconds that its search and the analyses of start and optimum took."""
-    begin = time.perf_counter()
-    return optimise(model(), limits=LIMITS), time.perf_counter() - begin
+    result, (seconds,) = timed(lambda: optimise(model(), limits=LIMITS))
+    return result, seconds
 
 
 @cache
@@ -195,17 +192,17 @@ def page() -> str:
         "differential evolution": Counted(1000).row(by_evolution),
     }
     searches = [
-        f"| SLSQP, exact gradients | {result.evaluations} | {seconds:.0f} | {after:.4f} |",
-        *(f"| {name} | {count} | {took:.0f} | {value:.4f} |" for name, (count, took, value) in found.items()),
+        f"SLSQP, exact gradients | {result.evaluations} | {seconds:.0f} | {after:.4f}",
+        *(f"{name} | {count} | {took:.0f} | {value:.4f}" for name, (count, took, value) in found.items()),
     ]
     designs = {"start": result.start, "one torque": one.optimum, "robust": result.optimum}
     curves = robustness(model(), designs, MULTIPLES, figure="span_um")["objective"].values
-    scattered = _table(
-        ("multiple", *designs), ((f"{m:g}", *column) for m, column in zip(MULTIPLES, curves.T, strict=True))
-    )
-    values = _table(
-        ("key", *designs), ((f"`{key}`", *(round(own[key], 3) for own in designs.values())) for key in result.optimum)
-    )
+    over_scatter = [[f"{m:g}", *formatted(".4g", *column)] for m, column in zip(MULTIPLES, curves.T, strict=True)]
+    scattered = table(["multiple", *designs], over_scatter, SPACED)
+    optima = [
+        [f"`{key}`", *formatted(".4g", *(round(own[key], 3) for own in designs.values()))] for key in result.optimum
+    ]
+    values = table(["key", *designs], optima, SPACED)
     alone = [float(span) for span in one.dataset["span_um"].values[:, 0, 0]]
     return f"""# A micro-geometry that stays quiet under scatter
 
@@ -230,7 +227,7 @@ evaluations.
 
 | search | evaluations | seconds | mean + sigma [um] |
 | --- | --- | --- | --- |
-{chr(10).join(searches)}
+{lines(searches)}
 
 The analysis of the package, on grids that it makes anew for each design, finds {analysed[0]:.4f} um before and
 {analysed[1]:.4f} um after.
@@ -250,17 +247,5 @@ make it smoother.
 """
 
 
-def _table(head: Iterable[str], lines: Iterable[Iterable[Any]]) -> str:
-    """Markdown table; numbers with four digits."""
-    head = [*head]
-    cells = [[one if isinstance(one, str) else f"{one:.4g}" for one in line] for line in lines]
-    return "\n".join("| " + " | ".join(line) + " |" for line in (head, ["---"] * len(head), *cells))
-
-
-def main() -> None:
-    """Write the page."""
-    PAGE.write_text(page(), encoding="utf-8")
-
-
 if __name__ == "__main__":
-    main()
+    write_page(__doc__, lambda: Page("robust_design", page()))

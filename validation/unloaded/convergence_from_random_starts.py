@@ -10,27 +10,24 @@ choices are shown. The draws that it does state are run as stated. A start count
 Run from the root of the repository: ``python -m validation.unloaded.convergence_from_random_starts``.
 """
 
-import argparse
 import math
-from pathlib import Path
 
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair
+from validation.page import Page, line, machine, write_page
 from validation.table import Row
 from validation.unloaded.random_starts import (
+    DOTS_PER_INCH,
     RUNS,
     SCIPY_STARTS,
     SPREADS,
     Case,
     Draw,
     conventional,
-    draw,
-    machine,
+    parts_of_page,
     reduced,
-    study,
-    table,
 )
 
 CHOICES = ("y, z", "x, z")
@@ -153,7 +150,7 @@ def stated_table() -> list[str]:
                 for components in CHOICES
                 for side in (how, how.mirrored)
             ]
-            found.append(f"| {case.name} | {how} | {printed:g} | {' | '.join(f'{share:.1f}' for share in shares)} |")
+            found.append(line((case.name, how, f"{printed:g}", *(f"{share:.1f}" for share in shares))))
     return found
 
 
@@ -226,28 +223,15 @@ linear up to the size of the flank and logarithmic beyond; what ends farther tha
 """
 
 
-def main() -> None:
-    """Run the study, print the table, write it and the pictures."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs/studies"))
-    parser.add_argument("--starts", type=int, default=5000)
-    arguments = parser.parse_args()
-    tables, pictures, assumed = [], [], []
-    for number, case in enumerate(cases(arguments.starts), 1):
-        outcomes = study(case, CHOICES)
-        tables.append(table(case, outcomes))
-        print(tables[-1], flush=True)
-        picture = f"unloaded_convergence_{number}.png"
-        draw(case, outcomes, arguments.out / picture)
-        pictures.append(f"![{case.name}: domain and range]({picture})\n")
-        assumed.append(f"- {case.name}: {case.assumed}.")
-    text = INTRODUCTION.format(machine=machine(), scipy=SCIPY_STARTS, runs=RUNS) + "\n".join(tables) + "\n"
+def page(starts: int) -> Page:
+    """Run the study from so many starts."""
+    parts = parts_of_page("unloaded_convergence_", cases(starts), CHOICES)
+    text = INTRODUCTION.format(machine=machine(numpy=True), scipy=SCIPY_STARTS, runs=RUNS) + parts.lines + "\n"
     text += DISSERTATION_NUMBERS.format(
-        assumed="\n".join(assumed), stated="\n".join(stated_table()), stated_starts=STATED_STARTS
+        assumed=parts.assumed, stated="\n".join(stated_table()), stated_starts=STATED_STARTS
     )
-    text += "\n".join(pictures)
-    (arguments.out / "unloaded_convergence.md").write_text(text)
+    return Page("unloaded_convergence", text + parts.links, parts.pictures, DOTS_PER_INCH)
 
 
 if __name__ == "__main__":
-    main()
+    write_page(__doc__, page, starts=5000)

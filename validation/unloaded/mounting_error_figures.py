@@ -96,9 +96,9 @@ def rows() -> list[Row]:
 
 
 def lines() -> list[str]:
-    """One line of a Markdown table a number."""
+    """Cells of a table, one line a number."""
     return [
-        f"| {one.figure} | {one.quantity} | {one.printed:.5g} | {one.computed:.4g} | {one.computed / one.printed:.3f} "
-        f"| {one.assumed} |"
+        f"{one.figure} | {one.quantity} | {one.printed:.5g} | {one.computed:.4g} | {one.computed / one.printed:.3f} "
+        f"| {one.assumed}"
         for one in (*areas(), *stress_ratios())
     ]

@@ -5,12 +5,9 @@ In-plane and out-of-plane errors of the helical pair 40/37, 21 x 21 of them at 2
 Run from the root of the repository: ``python -m validation.unloaded.mounting_error_map``.
 """
 
-import argparse
-import sys
 import time
 from dataclasses import dataclass, fields, replace
 from math import degrees, radians
-from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -25,6 +22,7 @@ from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import climb
 from loaded_tca.unloaded.search import FirstTouch, first_touch
 from loaded_tca.unloaded.teeth import trace_teeth
+from validation.page import Page, write_page
 from validation.table import Row
 from validation.unloaded.mounting_error_pairs import ARCSEC, CASE, HELICAL, POSITIONS, ROUNDING, hertz_pressure
 
@@ -193,17 +191,13 @@ def draw_map(errors: ErrorMap) -> Figure:
     return figure
 
 
-def main() -> int:
-    """Print the time of the map and save its picture."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs/studies"), help="directory of the picture")
-    directory = parser.parse_args().out
+def page() -> Page:
+    """Print the time of the map; its picture, for a page that is written by hand."""
     errors = error_map()
     print(f"{errors.shift.size} pairs of errors x {POSITIONS} positions: {errors.seconds:.2f} s")
     print(f"{errors.searched} of them searched anew")
-    draw_map(errors).savefig(directory / "mounting_error_map.png", dpi=90)
-    return 0
+    return Page("unloaded_contact", None, {"mounting_error_map": draw_map(errors)})
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    write_page(__doc__, page)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from math import log
 
 from loaded_tca.flanks.modification import LOGARITHMIC_STEEPNESS
+from validation.page import line
 
 ALIKE = 0.1
 """Relative difference of two heights up to which "similar" and "not significantly different" are said to hold."""
@@ -25,6 +26,5 @@ class Trend:
 def verdicts(trends: Iterable[Trend]) -> list[str]:
     """One line of a Markdown table a statement."""
     return [
-        f"| {one.figure} | {one.statement} | {'holds' if one.holds else '**does not hold**'} | {one.because} |"
-        for one in trends
+        line((one.figure, one.statement, "holds" if one.holds else "**does not hold**", one.because)) for one in trends
     ]

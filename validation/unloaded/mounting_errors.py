@@ -6,11 +6,8 @@ three forms of lead crowning, each with a verdict; the numbers it prints beside 
 Run from the root of the repository: ``python -m validation.unloaded.mounting_errors``.
 """
 
-import argparse
-import sys
 from dataclasses import dataclass
 from math import cos, degrees, radians, sin, tan
-from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -18,6 +15,7 @@ from matplotlib.figure import Figure
 from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.unloaded import trace_contact
 from loaded_tca.unloaded.teeth import trace_teeth
+from validation.page import Page, lines, write_page
 from validation.table import Row
 from validation.unloaded.helical_trends import trends as helical_trends
 from validation.unloaded.mounting_error_figures import lines as printed_lines
@@ -159,11 +157,11 @@ def draw_paths() -> Figure:
     return figure
 
 
-def _line(one: Effect) -> str:
+def _cells(one: Effect) -> str:
     continuous = "yes" if one.continuous else "no"
     return (
-        f"| {one.gears} | {one.form} | {one.error.replace('_', ' ')} | {round(one.shift, 3) + 0.0:+.3f} | "
-        f"{max(one.peak_to_peak, 0.0):.2f} | {one.pressure:.0f} | {continuous} |"
+        f"{one.gears} | {one.form} | {one.error.replace('_', ' ')} | {round(one.shift, 3) + 0.0:+.3f} | "
+        f"{max(one.peak_to_peak, 0.0):.2f} | {one.pressure:.0f} | {continuous}"
     )
 
 
@@ -222,22 +220,10 @@ def document() -> str:
         length=LARGEST[SPUR]["axial_offset"],
         trends="\n".join(verdicts([*spur_trends(), *helical_trends()])),
         p0=unmodified_pressure(),
-        printed="\n".join(printed_lines()),
-        effects="\n".join(_line(one) for one in effects()),
+        printed=lines(printed_lines()),
+        effects=lines(map(_cells, effects())),
     )
 
 
-def main() -> int:
-    """Print and write the page, save the picture; 0 in any case: a statement that does not hold is a finding."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("docs/studies"), help="directory of the page and the picture")
-    directory = parser.parse_args().out
-    text = document()
-    print(text)
-    (directory / "cylindrical_studies.md").write_text(text)
-    draw_paths().savefig(directory / "cylindrical_studies.png", dpi=90)
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    write_page(__doc__, lambda: Page("cylindrical_studies", document(), {"cylindrical_studies": draw_paths()}))

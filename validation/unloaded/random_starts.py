@@ -5,16 +5,13 @@ for the conventional one. A start counts if it ends at the contact that ``trace_
 """
 
 import math
-import os
-import platform
-import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from loaded_tca.baselines.conventional import ConventionalResult, solve_conventional, solve_with_scipy_root
@@ -23,12 +20,10 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded import ContactPoint, trace_contact
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import climb
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from validation import page
+from validation.page import Result
 
 Array = NDArray[np.float64]
-Result = TypeVar("Result")
 SAME = 1e-9
 """Wheel angle [rad], and ease-off relative to r_b2, within which an ending is the contact."""
 COMPONENTS = {"y, z": (1, 2), "x, z": (0, 2), "x, y": (0, 1)}
@@ -41,6 +36,7 @@ FAR = 1e5
 TICKS = (-1e5, -1e3, 0.0, 1e3, 1e5)
 SCIPY_STARTS = 200
 """SciPy solves one start after the other."""
+DOTS_PER_INCH = 80
 COLOURS = {"converged": "#0072b2", "not": "#d55e00", "answer": "#000000"}
 """Okabe and Ito 2008: told apart by colour-blind readers; the markers differ, too."""
 
@@ -142,11 +138,7 @@ class Outcome:
 
 def timed(run: Callable[[], Result], runs: int) -> tuple[Result, float]:
     """Result, and the shortest time of some runs [s]."""
-    seconds = []
-    for _ in range(runs):
-        begin = time.perf_counter()
-        found = run()
-        seconds.append(time.perf_counter() - begin)
+    found, seconds = page.timed(run, runs)
     return found, min(seconds)
 
 
@@ -189,34 +181,43 @@ def study(case: Case, components: Iterable[str]) -> list[Outcome]:
     return found
 
 
-def table(case: Case, outcomes: list[Outcome]) -> str:
-    """Markdown, one line a method and draw."""
-    lines = [
-        f"| {case.name} | {one.method} | {one.spread} | {len(one.good)} | {one.percentage:.2f} | {one.steps:.2f} "
-        f"| {1e3 * one.seconds:.0f} | {1e3 * one.seconds / max(1, one.good.sum()):.3g} |"
+@dataclass(frozen=True)
+class Parts:
+    """Parts of a page: lines of the table, links of the pictures, what is assumed, and the pictures by file."""
+
+    lines: str
+    links: str
+    assumed: str
+    pictures: dict[str, Figure]
+
+
+def parts_of_page(stem: str, cases: Iterable[Case], components: Iterable[str]) -> Parts:
+    """Study cases; the files of their pictures have a number behind the stem."""
+    lines, links, assumed, pictures, chosen = [], [], [], {}, tuple(components)
+    for number, case in enumerate(cases, 1):
+        outcomes = study(case, chosen)
+        lines.append(lines_of(case, outcomes))
+        print(lines[-1], flush=True)
+        pictures[f"{stem}{number}"] = picture(case, outcomes)
+        links.append(f"![{case.name}: domain and range]({stem}{number}.png)\n")
+        assumed.append(f"- {case.name}: {case.assumed}.")
+    return Parts("\n".join(lines), "\n".join(links), "\n".join(assumed), pictures)
+
+
+def lines_of(case: Case, outcomes: list[Outcome]) -> str:
+    """Lines of the table, one a method and draw."""
+    return page.lines(
+        f"{case.name} | {one.method} | {one.spread} | {len(one.good)} | {one.percentage:.2f} | {one.steps:.2f} "
+        f"| {1e3 * one.seconds:.0f} | {1e3 * one.seconds / max(1, one.good.sum()):.3g}"
         for one in outcomes
-    ]
-    return "\n".join(lines)
+    )
 
 
-def machine() -> str:
-    """Processor, cores and Python of this machine."""
-    model = platform.processor()
-    if Path("/proc/cpuinfo").exists():
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-        model = next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), model)
-    return f"{model}, {os.cpu_count()} cores, Python {platform.python_version()}, NumPy {np.__version__}"
-
-
-def draw(case: Case, outcomes: list[Outcome], path: Path) -> None:
-    """Picture: above which starts converge, below where they end, relative to the contact; one column a method."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    import matplotlib.pyplot as plt
-
+def picture(case: Case, outcomes: list[Outcome]) -> Figure:
+    """Above which starts converge, below where they end, relative to the contact; one column a method."""
     chosen = [one for one in outcomes if one.method in ("reduced", f"five, normals {case.normals}")]
-    figure, panels = plt.subplots(2, len(chosen), figsize=(11.5, 6.6), layout="constrained", squeeze=False)
+    figure = Figure(figsize=(11.5, 6.6), layout="constrained")
+    panels = figure.subplots(2, len(chosen), squeeze=False)
     along, across = case.view.names
     height, width = case.pair.pinion.flank.extent
     for (domain, ends), one in zip(panels.T, chosen, strict=True):
@@ -234,18 +235,17 @@ def draw(case: Case, outcomes: list[Outcome], path: Path) -> None:
     panels[1, 0].set_ylabel(f"range: {across} - contact [mm]")
     figure.legend(*panels[0, -1].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     figure.suptitle(f"{case.name}: {SHOWN} starts on the pinion flank, and where they end")
-    figure.savefig(path, dpi=80)
-    plt.close(figure)
+    return figure
 
 
-def _from_contact(case: Case, points: Array) -> list[Array]:
+def _from_contact(case: Case, points: Array) -> tuple[Array, Array]:
     """Lengthwise and profile coordinate (n,) of points (n, 2 or more), relative to the contact [mm]."""
     contact = case.view.coordinates(np.array(case.contact.pinion_radius), np.array(case.contact.pinion_axial))
     here = case.view.coordinates(points[:, 0], points[:, 1])
-    return [part - origin for part, origin in zip(here, contact, strict=True)]
+    return here[0] - contact[0], here[1] - contact[1]
 
 
-def _scatter(panel: "Axes", x: Array, y: Array, good: NDArray[np.bool_]) -> None:
+def _scatter(panel: Axes, x: Array, y: Array, good: NDArray[np.bool_]) -> None:
     for mask, marker, label in ((~good, "x", "not"), (good, "o", "converged")):
         rows = np.flatnonzero(mask[:SHOWN])
         where = [np.clip(part[rows], -FAR, FAR) for part in (x, y)]
