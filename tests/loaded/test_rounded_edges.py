@@ -139,7 +139,7 @@ class Tilting:
     def __init__(self, tilt):
         self.tilt = tilt
 
-    def within(self, number, grid):
+    def within(self, _, grid):
         return 2e-6 * np.exp(-0.5 * np.abs(grid.y[:, None] - grid.y))
 
     def between(self, at, under):
