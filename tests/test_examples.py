@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca import plots, trace_contact
+from loaded_tca import analyse, plots, trace_contact
 from loaded_tca.scene import read_scene
 from loaded_tca.studies import load_design, load_study, read_study
 
@@ -85,13 +85,26 @@ def test_study_on_a_cluster_follows_hertz(tmp_path, monkeypatch):
 
 
 @pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # contacts that reach an edge
-@pytest.mark.parametrize("name", ["design_helical", "design_bevel"])
-def test_designed_pair_is_quieter(name, tmp_path, monkeypatch):
-    """By the whole analysis, on average and in its scatter."""
+@pytest.mark.parametrize(("name", "quieter"), [("design_helical", 0.76), ("design_bevel", 0.67)])
+def test_designed_pair_is_quieter(name, quieter, tmp_path, monkeypatch):
+    """By the whole analysis, on average and in its scatter; bounds 3 to 4 % above what the searches end at."""
     monkeypatch.chdir(tmp_path)
-    before, after = loaded(EXAMPLES / f"{name}.py").main().objective
-    assert after < 0.85 * before
+    example = loaded(EXAMPLES / f"{name}.py")
+    result, scene = example.main(), example.SCENE
+    before, after = result.objective
     assert load_design(f"{name}.nc").objective == (before, after)
+    found = result.dataset
+    spans = 1e3 * scene.pair().base_radii[1] * np.ptp(found["transmission_error"].values[..., :-1], axis=-1)
+    by_sample = spans.mean(axis=-1)
+    plain = by_sample.mean(axis=1) + by_sample.std(axis=1)
+    # smooth spans are larger by up to 0.02 um ln 4, and scatter otherwise by half as much
+    assert ((np.array([before, after]) - plain > -0.014) & (np.array([before, after]) - plain < 0.042)).all()
+    assert after < quieter * before
+    assert plain[1] < quieter * plain[0]
+    deviation = dict(zip(example.SCATTER, found["scatter"].values[-1].tolist(), strict=True))
+    torques = {"analysis.torques_Nm": (1e-3 * found["torque"].values).tolist()}
+    error = analyse(scene.with_changes({**result.optimum, **deviation, **torques})).transmission_error
+    assert_allclose(found["transmission_error"].sel(design="optimum").values[-1], error, rtol=1e-6)
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda path: path.stem)

@@ -98,12 +98,24 @@ def test_contact_conditions_hold_on_cut_cells(cells, angle, distance, cap, ragge
     pressure, limit = solution.pressure, (np.inf if cap is None else cap * cover)
     assert_allclose(pressure.sum() * solution.cell_area, load, rtol=1e-10)
     assert ((pressure >= 0.0) & (pressure <= limit * (1.0 + ROUNDING))).all()
-    assert (solution.pressure_on_material <= (np.inf if cap is None else cap * (1.0 + ROUNDING))).all()
+    on_material = solution.pressure_on_material
+    assert_allclose((on_material * cover).sum() * solution.cell_area, load, rtol=1e-10)
+    assert (on_material <= (np.inf if cap is None else cap * (1.0 + ROUNDING))).all()
+    assert_allclose(on_material[pressure > limit * (1.0 - 1e-9)], cap or 0.0, rtol=2e-9)  # cells at their limit
     excess = (displacement_of(solution) + gap - solution.approach) / solution.approach
     between = (pressure > 0.0) & (pressure < limit * (1.0 - 1e-9))
     assert pressure[between] @ np.abs(excess[between]) <= 2.0 * TOLERANCE * pressure.sum()
     assert excess[pressure == 0.0].min(initial=0.0) >= -2.0 * TOLERANCE
     assert excess[(pressure > 0.0) & ~between].max(initial=0.0) <= 2.0 * TOLERANCE
+
+
+@pytest.mark.parametrize("part", [0.1, 0.5, 0.9])
+def test_pressure_on_the_material_of_a_cut_cell_is_near_that_of_a_whole_one(part):
+    """At the end of a strip, where pressure rises: the strip is a little shorter, and its load the same."""
+    whole, cut = (solve_problem(strip(32, (1, end)), tolerance=TOLERANCE) for end in (30.0, 29.0 + part))
+    last = 16, 29
+    assert_allclose(cut.pressure_on_material[last], whole.pressure[last], rtol=0.04)
+    assert_allclose(cut.pressure[last], part * whole.pressure[last], rtol=0.04)
 
 
 def test_influence_matrix_of_cut_cells_is_symmetric_and_positive_definite():

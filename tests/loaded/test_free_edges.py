@@ -2,14 +2,16 @@
 
 import dataclasses
 import math
+from functools import cache
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca import read_scene, sample_separation, trace_contact
-from loaded_tca.contact import quarter_space_factor, solve_contact, wedge_factor
+from loaded_tca.contact import solve_contact, wedge_factor
 from loaded_tca.errors import InputError
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, bevel_mesh
@@ -20,7 +22,7 @@ from loaded_tca.material import Material
 from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.cylindrical import cylindrical_pair
 from tests.samples.gear_pairs import gear_pair
-from validation.contact import free_block
+from validation.contact import free_block, free_edge
 
 LOAD = 2700.0
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
@@ -40,6 +42,94 @@ def added_of(pair, pitches=0.0, **options):
 def pair_of(widths=(12.0, 12.0), materials=(Material(206000.0, 0.3),) * 2):
     gears = [CylindricalGear(z, 3.0, width) for z, width in zip((34, 57), widths, strict=True)]
     return cylindrical_pair(CylindricalMesh(*gears), materials=materials)
+
+
+HELIX = math.radians(15.0), -math.radians(15.0)
+MIDDLE = 0.75 * math.pi
+"""Of teeth of module 3 below their flanks: half the thickness on the pitch circle [mm]."""
+ACROSS = 0.06
+"""What stands for the width of a contact between teeth of module 3 [mm]."""
+NARROW = 1e-3
+"""Agreement of slices 0.02 mm wide with the places in their middle, half a millimetre from an edge."""
+
+
+def displacement(depth, distance, material):
+    """Of a half-space under a unit force, by depth and distance from it [mm/N]; Boussinesq."""
+    radius, nu = np.hypot(depth, distance), material.poisson_ratio
+    whole = (depth**2 / radius**2 + 2.0 * (1.0 - nu)) / radius
+    return (1.0 + nu) / (2.0 * math.pi * material.youngs_modulus) * whole
+
+
+def image_of(angle, distances, apart, reach, material=Material(206000.0, 0.3)):
+    """What the image of a unit force in an end adds to a slice, as the documents have it [mm/N].
+
+    psi(S) = psi + 0.4 (S - 0.9) of a quarter-space, scaled with the angle of the material, less the image in the middle
+    of the tooth, where S = 1/2; both faded out between the end and its reach.
+    """
+    here, there = distances
+    square = 1.28 + 0.44 * material.poisson_ratio + 3.7 * material.poisson_ratio**2
+    radius = np.sqrt((here + there) ** 2 + apart**2 + ACROSS**2)
+    fade = math.prod(1.0 - (d / reach) ** 2 * (3.0 - 2.0 * d / reach) for d in distances)
+    surface, middle = (displacement(depth, radius, material) for depth in (0.0, MIDDLE))
+    varied = (1.0 + 0.4 / square * (place - 0.9) for place in (4.0 * here * there / radius**2, 0.5))
+    at_surface, below = varied
+    return wedge_factor(angle, material.poisson_ratio) * fade * (at_surface * surface - below * middle)
+
+
+def added_at(pair, grid, y, width=0.02):
+    """Entries of narrow slices at places along a contact [mm/N]."""
+    columns = Columns(np.array(y), np.full(len(y), width), grid.origin, grid.axes)
+    return edge_compliances(pair, [columns])[0]
+
+
+@cache
+def quarter_spaces():
+    """Of steel, one twice as large as the other: place S across the edge, and psi there."""
+    curves = []
+    for farthest, cells in ((80.0, 256), (160.0, 512)):
+        with patch.multiple(free_edge, STEP=0.3, FARTHEST=farthest, CELLS_ALONG=cells):
+            space = free_edge.quarter_space(0.3)
+        y, load, row, middle = space.y, np.zeros((space.y.size, cells)), 2, cells // 2
+        load[row, middle] = 1.0
+        added = space.displacement(load) - free_edge.convolved(space.own, load)
+        factor = (added / free_edge.convolved(space.image, load))[row:, middle]
+        place = 4.0 * y[row:] * y[row] / (y[row:] + y[row]) ** 2
+        curves.append((place[::-1], factor[::-1]))
+    return curves
+
+
+def hetenyis_factor(place):
+    """psi(S) by Hetenyi's method.
+
+    Its cells end somewhere, and its loads repeat along the edge: what both change is half as much in a box twice as
+    large, and is taken off.
+    """
+    smaller, larger = (np.interp(place, *curve) for curve in quarter_spaces())
+    return 2.0 * larger - smaller
+
+
+def test_image_counts_less_away_from_its_own_place_as_in_hetenyis_quarter_space():
+    """Pairs of places that are as far from each other's images, 2 mm, differ by S alone: from 1 to 0.23."""
+    pair, distances = pair_of((40.0, 40.0)), np.array([0.125, 0.5, 1.0, 1.5, 1.875])
+    added = added_at(pair, grid_of(pair), distances - 20.0)
+    fade = 1.0 - (distances / (3.0 * MIDDLE)) ** 2 * (3.0 - 2.0 * distances / (3.0 * MIDDLE))
+    entries = np.array([added[k, -1 - k] / (fade[k] * fade[-1 - k]) for k in (2, 1, 0)])
+    factors = entries / (2.0 * displacement(0.0, 2.0, Material(206000.0, 0.3)))  # of both gears, less what is below
+    expected = hetenyis_factor([1.0, 0.75, 4.0 * 0.125 * 1.875 / 2.0**2])
+    assert_allclose(factors[0] - factors[1:], expected[0] - expected[1:], rtol=0.1)  # a straight line for a curve
+
+
+def test_entries_beside_an_end_are_those_of_hetenyis_quarter_space():
+    """Near the end and far from it, less what they are in the middle of the tooth."""
+    pair, distances = pair_of((40.0, 40.0)), np.array([0.25, 0.5, 1.0, 2.0, 4.0])
+    added = added_at(pair, grid_of(pair), distances - 20.0)
+    steel, radius = Material(206000.0, 0.3), distances[:, None] + distances
+    place = 4.0 * distances[:, None] * distances / radius**2
+    fade = 1.0 - (distances / (3.0 * MIDDLE)) ** 2 * (3.0 - 2.0 * distances / (3.0 * MIDDLE))
+    image = hetenyis_factor(place) * displacement(0.0, radius, steel)
+    expected = image - hetenyis_factor(0.5) * displacement(MIDDLE, radius, steel)
+    error = added / (2.0 * fade[:, None] * fade) - expected
+    assert (np.abs(error) < 0.04 * image).all()  # psi of contacts, which are no points: 3.5 % less
 
 
 def test_block_with_free_ends_of_finite_elements_deforms_as_the_slices_say():
@@ -164,13 +254,20 @@ def test_toe_and_heel_of_a_straight_bevel_pair_are_ends():
     assert min(own[there[0]], own[there[-1]]) > 5.0 * own[30]
 
 
-def test_helical_end_is_sharp_on_one_gear_and_blunt_on_the_other():
-    """The factor of a right angle less the base helix angle is larger by more than the other is smaller."""
-    straight, helical = (added_of(gear_pair(width=12.0, helix_deg=h), load=LOAD)[0] for h in (0.0, 15.0))
-    turn = abs(gear_pair(width=12.0, helix_deg=15.0).pinion.flank.base_helix_angle)
-    both = sum(0.5 * wedge_factor(0.5 * math.pi + sign * turn, 0.3) for sign in (1.0, -1.0))
-    assert both > quarter_space_factor(0.3)
-    assert helical.max() > straight.max()
+@pytest.mark.parametrize("end", [-1.0, 1.0])
+@pytest.mark.parametrize("widths", [(12.0, 40.0), (40.0, 12.0), (12.0, 12.0)], ids=["pinion", "wheel", "both"])
+def test_helical_end_counts_by_the_angle_of_its_material(end, widths):
+    """Sharp on one gear where it is blunt on the other: the normal of the flank leans over an end that is sharp."""
+    gears = [CylindricalGear(z, 3.0, w, helix_angle=turn) for z, w, turn in zip((34, 57), widths, HELIX, strict=True)]
+    pair = cylindrical_pair(CylindricalMesh(*gears))
+    contact, grid, distance = trace_contact(pair, [0.0])[0], grid_of(pair), 0.5
+    lean = math.asin(contact.normal[2])  # out of the pinion, towards positive z
+    assert_allclose(abs(math.sin(lean)), math.sin(HELIX[0]) * math.cos(math.radians(20.0)), rtol=1e-6)
+    (added,) = added_at(pair, grid, [(end * (6.0 - distance) - grid.origin[2]) / grid.axes[1, 2]])[0]
+    angles = (0.5 * math.pi + end * lean, 0.5 * math.pi - end * lean)
+    ending = [angle for angle, width in zip(angles, widths, strict=True) if width == 12.0]
+    expected = sum(image_of(angle, (distance, distance), 0.0, 3.0 * MIDDLE) for angle in ending)
+    assert_allclose(added, expected, rtol=NARROW)
 
 
 def test_steepest_helix_is_not_refused():
@@ -212,17 +309,31 @@ def test_end_that_is_too_sharp_is_told_of_its_own_grid_alone(monkeypatch):
     assert isinstance(told, InputError)
 
 
-@pytest.mark.parametrize(("pitches", "member"), [(0.82, 0), (-0.86, 1)])
-def test_tip_softens_all_of_a_spur_contact_beside_it(pitches, member):
-    """Crowned and wide, so that no end of the face is in reach."""
-    pair = gear_pair(FlankModifications(lead_crowning=0.03), width=60.0)
+TIPS = [(0.75, 0), (-0.78, 1)]
+"""Pitches at which a spur contact is beside the tip of the pinion, or of the wheel."""
+
+
+def beside_a_tip(pitches, member, **modified):
+    """A wide spur pair, its contact, the distance from the tip of a member and the angle of its material there.
+
+    That is a right angle and the pressure angle, at the contact instead of at the tip itself.
+    """
+    pair = gear_pair(width=60.0, **modified)
     contact = trace_contact(pair, [pitches * pair.pitch])[0]
-    tip = (pair.pinion, pair.wheel)[member].nominal_flank.radii[1]
-    assert tip - (contact.pinion_radius, contact.wheel_radius)[member] < TIP_REACH * pair.module
-    added, _ = added_of(pair, pitches, load=100.0)
-    own = np.diagonal(added)
-    assert_allclose(own, own[0], rtol=0.05)
-    assert (own > 0.0).all()
+    base, tip = 0.5 * 3.0 * (34, 57)[member] * math.cos(math.radians(20.0)), 0.5 * 3.0 * (36, 59)[member]
+    radius = (contact.pinion_radius, contact.wheel_radius)[member]
+    return pair, contact, tip - radius, 0.5 * math.pi + math.acos(base / radius)
+
+
+@pytest.mark.parametrize(("pitches", "member"), TIPS)
+def test_tip_counts_by_the_angle_of_its_material(pitches, member):
+    """It is blunt: the land is at more than a right angle to the flank."""
+    pair, contact, distance, angle = beside_a_tip(pitches, member)
+    assert 0.2 < distance < 0.5 * TIP_REACH * pair.module
+    y = np.array([-2.0, -1.5, 0.0, 0.25])
+    added = added_at(pair, sample_separation(pair, contact, cells=(16, 16), load=LOAD), y)
+    expected = image_of(angle, (distance, distance), y[:, None] - y, 0.5 * pair.module)
+    assert_allclose(added, expected, rtol=0, atol=NARROW * expected.max())
 
 
 def test_tip_comes_into_reach_without_a_step():
@@ -244,15 +355,31 @@ def test_roots_are_no_edges():
     assert_allclose(added[1], added[0], rtol=1e-12)  # the pinion's material does not enter
 
 
-def test_tip_that_is_free_lets_the_teeth_approach():
-    """On the tip itself, crowned and wide, so that no end of the face is in reach."""
-    pair = gear_pair(FlankModifications(lead_crowning=0.03), width=60.0)
-    contact = trace_contact(pair, [0.9 * pair.pitch])[0]
+@pytest.mark.parametrize(("pitches", "member"), TIPS)
+def test_tip_that_is_free_takes_up_the_energy_of_its_slices(pitches, member):
+    """f' C f/2, between what it is for the forces f of slices on a half-space and on one that ends."""
+    pair, contact, distance, angle = beside_a_tip(pitches, member, pinion=FlankModifications(lead_crowning=0.03))
     stiff, free = (
         solve_under_load(pair, contact, 100.0, GridChoice(cells=(48, 16), free_edges=on)) for on in (False, True)
     )
-    assert free.solution.approach > 1.02 * stiff.solution.approach
     assert_allclose(free.solution.load, 100.0, rtol=1e-9)
+    y, width = stiff.separation.y, stiff.separation.spacing[1]
+    assert_allclose(free.separation.y, y, rtol=1e-9)
+    nodes, weights = np.polynomial.legendre.leggauss(9)
+    within = y + 0.5 * width * nodes[:, None]  # means over the slices, displaced and loaded
+    entries = image_of(angle, (distance, distance), within[:, None, :, None] - within[:, None], 0.5 * pair.module)
+    added = np.einsum("a,b,abij->ij", 0.5 * weights, 0.5 * weights, entries)
+    less, more = (0.5 * force @ added @ force for force in (free.slice_force, stiff.slice_force))
+    assert 0.0 < less < more < 1.05 * less
+    # the package has means over slices half a millimetre wide at three places of each
+    assert 0.99 * less < energy(free) - energy(stiff) < 1.01 * more
+
+
+def energy(loaded):
+    """Of a contact, that of the gap included, whose slope is the approach [N mm]; the elastic one is half of p' K p."""
+    solution, pressed = loaded.solution, loaded.solution.pressure > 0.0
+    closed = loaded.separation.gap[pressed] @ solution.pressure[pressed] * solution.cell_area
+    return 0.5 * (solution.approach * solution.load + closed)
 
 
 def test_lightest_contact_beside_a_tip_is_solved():

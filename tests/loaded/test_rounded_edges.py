@@ -8,11 +8,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.analysis import analyse
-from loaded_tca.contact import RoundedEdge, edge_pressures
+from loaded_tca.contact import RoundedEdge, edge_pressures, solve_contact
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.rounding import EdgeRounding
 from loaded_tca.loaded import rounded_edges
+from loaded_tca.loaded.load_sharing import share_load, tooth_pairs_at
 from loaded_tca.loaded.rounded_edges import (
     ReachedEdge,
     largest_pressure,
@@ -24,12 +25,13 @@ from loaded_tca.material import Material
 from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.reference.punch import RoundedPunch
 from loaded_tca.scene import read_scene
-from loaded_tca.unloaded import trace_contact
+from loaded_tca.separation import sample_separation
+from loaded_tca.unloaded import trace_contact, trace_teeth
 from tests.samples.gear_pairs import NONE, gear_pair
 from tests.samples.results import FLANKS_ALONE, SCENES
 
 LOAD = 3000.0
-SIDE, BOTH = EdgeRounding(side=0.2), EdgeRounding(tip=0.2, side=0.2)
+SIDE, BOTH, WIDE = EdgeRounding(side=0.2), EdgeRounding(tip=0.2, side=0.2), EdgeRounding(side=0.3)
 SKEW = {"teeth": (34, 57), "width": 25.0, "helix_deg": 15.0, "mounting": Mounting(0.0, math.radians(0.03))}
 SKEW |= {"rounding": BOTH, "pitches": 0.5}
 """A misaligned pair at a position where the contact reaches a tip and the end of a face, which cross in it."""
@@ -129,6 +131,55 @@ def test_mirror_image_has_the_same_peak():
 def test_peak_does_not_depend_on_the_grid():
     peaks = [found(*loaded(cells=cells)) for cells in ((16, 16), (32, 48), (64, 96))]
     assert_allclose([one.pressure for one in peaks], peaks[-1].pressure, rtol=0.02)
+
+
+class Tilting:
+    """Teeth that bend most under their load, and tilt their neighbours along the face."""
+
+    def __init__(self, tilt):
+        self.tilt = tilt
+
+    def within(self, _, grid):
+        return 2e-6 * np.exp(-0.5 * np.abs(grid.y[:, None] - grid.y))
+
+    def between(self, at, under):
+        return 4e-7 + self.tilt * (at[1].y[:, None] + under[1].y)
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_peak_beside_another_pair_with_bending_is_that_of_a_fine_grid(side):
+    """Teeth 6 mm wide, tilted by their neighbour: cells of 6 micrometres, the coupling as both pairs share the load."""
+    pair, bending = gear_pair(teeth=(25, 37), width=6.0).rounded(WIDE, WIDE), Tilting(side * 3e-7)
+    pairs = tooth_pairs_at(trace_teeth(pair, [0.5 * pair.pitch]), 0)
+    shares = share_load(pair, pairs, 80e3, GridChoice((24, 32), free_edges=False), bending=bending).shares
+    assert len(shares) == 2
+    for one, other in (shares, shares[::-1]):
+        number, edges = one.tooth_pair.pair, reached_edges(pair, one.loaded)
+        fine = sample_separation(pair, one.loaded.contact, cells=(32, 1024), box=(0.25, 3.05))
+        tilted = bending.between((number, fine), (other.tooth_pair.pair, other.loaded.separation))
+        displaced = tilted @ other.loaded.slice_force
+        assert np.ptp(displaced) > 1e-3  # mm, of about 10 of the approach
+        options = {"load": one.force, "slice_compliance": bending.within(number, fine), "warn": False}
+        expected = solve_contact(fine.gap + displaced, fine.spacing, pair.contact_modulus, **options)
+        assert not expected.reaches_border
+        peak = pressure_at_rounded_edge(pair, one.loaded, edges, bending, number, free_edges=False)
+        column = expected.pressure.max(axis=0).argmax()
+        assert_allclose(peak.place[1], fine.y[column], atol=0.02)
+        # one of 4096 cells along the face has 2 % more
+        assert_allclose(peak.pressure, expected.pressure.max(), rtol=peak.error + 0.025)
+        assert -side * peak.place[1] > 2.5, "at the end that the neighbour closes"
+
+
+STEEL, PLASTIC = Material(206000.0, 0.3), Material(3000.0, 0.4)
+
+
+@pytest.mark.parametrize("materials", [(STEEL, PLASTIC), (PLASTIC, STEEL), (STEEL, STEEL)])
+def test_share_of_a_gear_in_the_compliance_is_that_of_its_material(materials):
+    """(1 - nu^2)/E of the gear that ends, over the sum of both: steel on plastic hardly tilts, plastic does."""
+    pair, one = loaded(materials=materials, load=100.0)
+    compliances = [(1.0 - material.poisson_ratio**2) / material.youngs_modulus for material in materials]
+    for edge in reached_edges(pair, one):
+        assert_allclose([line.share for line in edge.lines], np.array(compliances) / sum(compliances), rtol=1e-12)
 
 
 def test_cap_is_respected():

@@ -64,6 +64,14 @@ def test_cosine_gives_back_its_amplitude_and_phase():
     assert_allclose(found.transmission_error_m.mean("mesh_phase"), -12e-6, rtol=ROUNDING)
 
 
+def test_contact_ratio_counts_the_end_of_the_pitch_once():
+    """Three of seven positions have two pairs, and the last one, which is the first again."""
+    pairs = np.array([2, 2, 1, 1, 1, 1, 2, 2])
+    whole = changed(cycle(), loaded_pairs=np.stack([pairs, pairs + 1]))
+    assert_allclose(whole.to_dynamics().loaded_contact_ratio, [10.0 / 7.0, 17.0 / 7.0], rtol=1e-14)
+    assert_allclose([one["loaded_contact_ratio"] for one in whole.key_figures()], [10.0 / 7.0, 17.0 / 7.0], rtol=1e-14)
+
+
 @pytest.mark.parametrize(("name", "unit"), CURVES)
 def test_series_with_all_orders_is_the_curve(name, unit):
     dynamics = cycle().to_dynamics()

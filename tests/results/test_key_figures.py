@@ -53,6 +53,18 @@ def test_phases_of_the_transmission_error_count_from_the_pitch_point():
     assert np.isnan(result(positions=5).harmonic_phases(1)).all()  # one pair carries all
 
 
+def test_orders_of_the_transmission_error_are_its_amplitudes_at_the_base_circle():
+    """4, 2 and 1 um of the orders 1 to 3, half their peak-to-peak: TE = mean + sum of amplitude cos(...)."""
+    cycle = result("mesh_cycle_spur", positions=9, torques=(130.0,))
+    turn = np.linspace(0.0, 2.0 * np.pi, 9)
+    curve = 4.0 * np.cos(turn + 0.3) + 2.0 * np.cos(2.0 * turn - 1.0) + np.cos(3.0 * turn)
+    wheel_base_radius = 0.5 * 57 * 3.0 * np.cos(np.radians(20.0))
+    (figures,) = changed(cycle, transmission_error=1e-3 / wheel_base_radius * (curve - 12.0)[None]).key_figures()
+    found = [figures[f"transmission_error_order_{order}_um"] for order in (1, 2, 3)]
+    assert_allclose(found, [4.0, 2.0, 1.0], rtol=1e-12)
+    assert_allclose(figures["transmission_error_mean_um"], -12.0, rtol=1e-12)
+
+
 @pytest.mark.parametrize("count", [0, 1.5, None])
 def test_count_of_phases_that_is_no_whole_number_is_refused(count):
     with pytest.raises(InputError, match="count"):

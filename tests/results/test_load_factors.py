@@ -93,11 +93,22 @@ def test_factors_are_unknown_with_one_position_and_without_load():
     assert np.isnan(several.transverse_load_factor).tolist() == [True, False]
 
 
-@pytest.mark.parametrize("name", ["mesh_cycle_bevel", "face_milled_19x62_matched"])
-def test_bevel_gears_have_a_face_load_factor_alone(name):
+@pytest.mark.parametrize(
+    ("name", "mean_cone_distance", "face"),
+    [("mesh_cycle_bevel", 8.5 * np.sqrt(2.0) - 2.4, 4.8), ("face_milled_19x62_matched", 113.91834, 36.83)],
+)
+def test_face_load_factor_of_bevel_gears_is_that_of_forces_by_their_cone_distance(name, mean_cone_distance, face):
+    """Each cell's force, in parts along the contact, counted in strips by its distance from the apex."""
     cycle = result(name, positions=3)
-    assert np.isfinite(cycle.face_load_factor).all()
-    assert (cycle.face_load_factor > 1.0).all()
+    borders, parts = mean_cone_distance + face * np.linspace(-0.5, 0.5, 31), 64
+    strips = np.zeros(30)
+    for one in (one for row in cycle.maps[0][:-1] for one in row if one is not None):
+        x, y = one.x[:, None, None], one.y[:, None] + one.spacing[1] * ((np.arange(parts) + 0.5) / parts - 0.5)
+        points = one.origin + x[..., None] * one.axes[0] + y[..., None] * one.axes[1]
+        force = np.broadcast_to(one.pressure[..., None], points.shape[:-1])
+        strips += np.histogram(np.linalg.norm(points, axis=-1), borders, weights=force * np.prod(one.spacing))[0]
+    assert_allclose(cycle.face_load_factor, strips.max() / strips.mean(), rtol=5e-3)  # contacts curve in a strip
+    assert cycle.face_load_factor > 2.0, "crowned: forces are far from even"
     assert np.isnan(cycle.transverse_load_factor).all()
 
 

@@ -8,7 +8,7 @@ from loaded_tca.output.overview import describe_scene
 from loaded_tca.output.report import positions_csv, summary_json
 from loaded_tca.scene import read_scene
 from loaded_tca.studies.ranking import MAIN_FIGURES
-from tests.samples.results import SCENES, changed
+from tests.samples.results import SCENES, changed, changed_scene
 from tests.samples.root_stress import result, scene
 
 GEARS = "pinion", "wheel"
@@ -55,6 +55,18 @@ def test_face_load_factor_is_that_of_the_result_to_the_power_of_the_tooth_height
         assert_allclose(found["root_face_load_factor_iso_6336"], factor, rtol=1e-9)
         nominal = found["wheel_nominal_root_stress_iso_6336_MPa"]
         assert_allclose(found["wheel_root_stress_iso_6336_MPa"], factor * nominal, rtol=1e-9)
+
+
+@pytest.mark.parametrize(("gear", "tip"), [("pinion", 107.0), ("wheel", 175.0)])
+def test_height_of_the_higher_teeth_counts(gear, tip):
+    """One gear has its tips cut by 0.5 or 1 mm, the other teeth of 2.25 modules; faces 27 and 30 mm wide."""
+    widths = {"pinion.face_width_mm": 30.0, "wheel.face_width_mm": 27.0}
+    cycle = changed_scene(result(), {**widths, f"{gear}.tip_diameter_mm": tip})
+    cycle = changed(cycle, face_load_factor=[1.3, 1.5])
+    ratio = 2.25 * 3.0 / 27.0
+    assert_allclose(cycle.scene.tooth_height_over_width, ratio, rtol=1e-9)
+    found = [figures["root_face_load_factor_iso_6336"] for figures in cycle.key_figures()]
+    assert_allclose(found, np.array([1.3, 1.5]) ** (1.0 / (1.0 + ratio + ratio**2)), rtol=1e-9)
 
 
 def test_nominal_stress_of_a_spur_pair_is_near_the_tension():

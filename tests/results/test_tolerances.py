@@ -74,6 +74,16 @@ def test_mean_transmission_error_follows_the_centre_distance_as_involutes_do():
     assert_allclose(1e-2 * slopes["transmission_error_span_um"], 0.0, atol=0.02)
 
 
+def test_both_ends_of_a_pitch_count_half_in_the_mean_slope():
+    """They are one place of the mesh: the mean is the integral over the pitch, by the trapezoidal rule."""
+    cycle = result("mesh_cycle_helical", positions=5, torques=(40.0, 260.0))
+    found = cycle.sensitivities(["pinion.modifications.lead_crowning_um", TORQUE])
+    slopes = 1e3 * cycle.wheel_base_radius * np.moveaxis(found.transmission_error, 1, 0)
+    ends_beside_mean = np.abs(slopes[0] / slopes.mean(axis=0) - 1.0)
+    assert (ends_beside_mean > 0.01).all(), "else the weight of the ends would not count"
+    assert_allclose(key_figure_slopes(found)["transmission_error_mean_um"], np.trapezoid(slopes, dx=0.25, axis=0))
+
+
 def test_peak_pressure_of_a_point_contact_grows_with_the_cube_root_of_the_torque():
     cycle = result(torques=(50.0, 80.0))
     figures = cycle.key_figures()

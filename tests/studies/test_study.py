@@ -43,13 +43,22 @@ def test_rows_of_a_table_are_outermost():
     assert found == [(1.0, 3.0, 0.0), (1.0, 3.0, 0.01), (2.0, 4.0, 0.0), (2.0, 4.0, 0.01)]
 
 
-def test_points_fill_every_part_of_the_distribution():
-    """Scrambled Sobol points of a power of two: one in each of so many equally probable parts, in every key."""
+@pytest.mark.parametrize(("across", "along"), [(64, 1), (16, 4), (8, 8), (2, 32), (1, 64)])
+def test_points_fill_every_part_of_the_joint_distribution(across, along):
+    """Scrambled Sobol points of two keys, 2^6: one in each of 64 equally probable rectangles, whatever their sides."""
     given = {TILT: stats.norm(1.0, 5.0), OFFSET: stats.uniform(-0.01, 0.02)}
-    study = Study(helical(), distributions=given, samples=64, seed=7)
-    for key, distribution in given.items():
-        probability = distribution.cdf([one[key] for one in all_changes(study)])
-        assert_array_equal(np.sort(np.floor(64 * probability)), np.arange(64))
+    changes = all_changes(Study(helical(), distributions=given, samples=64, seed=7))
+    probabilities = [distribution.cdf([one[key] for one in changes]) for key, distribution in given.items()]
+    column, row = (np.floor(n * probability) for n, probability in zip((across, along), probabilities, strict=True))
+    assert_array_equal(np.sort(along * column + row), np.arange(64))
+
+
+def test_keys_vary_independently():
+    """Correlation of 256 points: random ones have 1/16, the same column 1."""
+    given = dict.fromkeys((TILT, OFFSET, CROWNING, RELIEF), stats.uniform(0.0, 1.0))
+    changes = all_changes(Study(helical(), distributions=given, samples=256))
+    correlation = np.corrcoef([[one[key] for one in changes] for key in given])
+    assert_allclose(correlation, np.eye(4), rtol=0, atol=0.05)
 
 
 def test_points_depend_on_the_seed_alone():

@@ -1,0 +1,267 @@
+"""Deliberate faults of the package, each with the test that has to fail with it.
+
+Run from the root of the repository: ``python -m tests.faults [WORD ...]``, all faults or those with a word in their
+description; two to three minutes. Each is written into a copy of the package, where its test is run; one that no test
+notices, or whose text is not there any more, makes the exit code 1. ``tests/test_faults.py`` keeps the texts true.
+"""
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+ROOT = Path(__file__).parents[1]
+COPIED = ("loaded_tca", "tests", "validation", "examples", "docs/reference", "conftest.py", "pyproject.toml")
+PASSED, FAILED = 0, 1
+"""Exit codes of pytest: all tests passed, some failed. Others: it could not run them."""
+
+
+class Fault(NamedTuple):
+    """A wrong text in the place of one that stands once in a file of the package, and the test that notices it."""
+
+    what: str
+    file: str
+    text: str
+    wrong: str
+    test: str
+
+
+FREE_EDGES, ROUNDED = "loaded/test_free_edges.py", "loaded/test_rounded_edges.py"
+UNITS = "output/test_units.py::test_every_number_is_an_attribute_times_its_factor"
+FAULTS = (
+    Fault(
+        "free edges: the angle of the material is taken for that of the air",
+        "loaded/free_edges.py",
+        "np.arccos(np.clip(cosine, -1.0, 1.0))",
+        "np.arccos(np.clip(-cosine, -1.0, 1.0))",
+        f"{FREE_EDGES}::test_tip_counts_by_the_angle_of_its_material",
+    ),
+    Fault(
+        "free edges: the same at helical ends",
+        "loaded/free_edges.py",
+        "np.arccos(np.clip(cosine, -1.0, 1.0))",
+        "np.arccos(np.clip(-cosine, -1.0, 1.0))",
+        f"{FREE_EDGES}::test_helical_end_counts_by_the_angle_of_its_material",
+    ),
+    *(
+        Fault(
+            f"free edges: the image varies by {variation} over its places",
+            "loaded/free_edges.py",
+            "PLACE_BELOW = 0.4, 0.9, 0.5",
+            f"PLACE_BELOW = {variation}, 0.9, 0.5",
+            f"{FREE_EDGES}::test_image_counts_less_away_from_its_own_place_as_in_hetenyis_quarter_space",
+        )
+        for variation in (0.3, 0.5, 0.8)
+    ),
+    Fault(
+        "free edges: the middle of the tooth is not taken off",
+        "loaded/free_edges.py",
+        "(varied * surface * inverse - below * middle)",
+        "(varied * surface * inverse)",
+        f"{FREE_EDGES}::test_entries_beside_an_end_are_those_of_hetenyis_quarter_space",
+    ),
+    Fault(
+        "free edges: slices beside a tip give way half as much",
+        "loaded/free_edges.py",
+        "found[place] += mean * runs.factor",
+        "found[place] += 0.5 * mean * runs.factor",
+        f"{FREE_EDGES}::test_tip_that_is_free_takes_up_the_energy_of_its_slices",
+    ),
+    *(
+        Fault(
+            f"cut cells: the pressure on their material is the mean over the whole cell ({test})",
+            "contact/solution.py",
+            "self.pressure if cover is None else self.pressure / np.where(cover > 0.0, cover, 1.0)",
+            "self.pressure",
+            f"contact/test_cuts.py::{test}",
+        )
+        for test in (
+            "test_contact_conditions_hold_on_cut_cells",
+            "test_pressure_on_the_material_of_a_cut_cell_is_near_that_of_a_whole_one",
+        )
+    ),
+    Fault(
+        "rounded edges: what other pairs displace has the other sign",
+        "loaded/rounded_edges.py",
+        "np.asarray(heights + (displaced",
+        "np.asarray(heights - (displaced",
+        f"{ROUNDED}::test_peak_beside_another_pair_with_bending_is_that_of_a_fine_grid",
+    ),
+    Fault(
+        "rounded edges: unlike materials share the compliance evenly",
+        "loaded/rounded_edges.py",
+        "pair.contact_modulus / gear.material.plane_strain_modulus,",
+        "0.5,",
+        f"{ROUNDED}::test_share_of_a_gear_in_the_compliance_is_that_of_its_material",
+    ),
+    *(
+        Fault(
+            f"studies: all keys take the points of the first ({test})",
+            "studies/study.py",
+            "np.clip(unit, NEVER",
+            "np.clip(unit[:, [0] * unit.shape[1]], NEVER",
+            f"studies/test_study.py::{test}",
+        )
+        for test in ("test_points_fill_every_part_of_the_joint_distribution", "test_keys_vary_independently")
+    ),
+    Fault(
+        "sensitivities: a contact that moves is not bent otherwise by other pairs",
+        "results/sensitivities.py",
+        "growth[i] + by_shift.T @ forces[j]",
+        "growth[i]",
+        "results/test_sensitivities.py::"
+        "test_bending_under_the_own_load_and_that_of_other_pairs_changes_as_a_contact_moves",
+    ),
+    Fault(
+        "sensitivities: both ends of a pitch count fully",
+        "results/tolerances.py",
+        "[mean_over_a_pitch(slope) for slope",
+        "[slope.mean() for slope",
+        "results/test_tolerances.py::test_both_ends_of_a_pitch_count_half_in_the_mean_slope",
+    ),
+    Fault(
+        "root stress: h/b of the lower teeth",
+        "scene/cylindrical.py",
+        "return max(gear.tip_radius",
+        "return min(gear.tip_radius",
+        "results/test_root_figures.py::test_height_of_the_higher_teeth_counts",
+    ),
+    Fault(
+        "key figures: body torsion is added instead of taken off",
+        "results/mesh_cycle.py",
+        "1.0 / stiffness - 1e3 * self.face_width",
+        "1.0 / stiffness + 1e3 * self.face_width",
+        UNITS,
+    ),
+    Fault(
+        "key figures: half the amplitudes of the orders",
+        "results/key_figures.py",
+        "length * float(amplitude)",
+        "0.5 * length * float(amplitude)",
+        "results/test_key_figures.py::test_orders_of_the_transmission_error_are_its_amplitudes_at_the_base_circle",
+    ),
+    *(
+        Fault(
+            f"contact ratio counts both ends of the pitch ({file})",
+            file,
+            text,
+            wrong,
+            "results/test_dynamics.py::test_contact_ratio_counts_the_end_of_the_pitch_once",
+        )
+        for file, text, wrong in (
+            (
+                "results/dynamics.py",
+                '"loaded_contact_ratio": curves["loaded_pairs"][:, :-1].mean(axis=-1)',
+                '"loaded_contact_ratio": curves["loaded_pairs"].mean(axis=-1)',
+            ),
+            (
+                "results/key_figures.py",
+                '"loaded_contact_ratio": mean_over_a_pitch(pairs)',
+                '"loaded_contact_ratio": float(np.mean(pairs))',
+            ),
+        )
+    ),
+    Fault(
+        "load factors of bevel gears: strips along the axis instead of the cone",
+        "results/load_factors.py",
+        "pair.pinion.flank.lengthwise_coordinate(radius, points[..., 2]).value",
+        "0.9 * pair.pinion.flank.lengthwise_coordinate(radius, points[..., 2]).value",
+        "results/test_load_factors.py::test_face_load_factor_of_bevel_gears_is_that_of_forces_by_their_cone_distance",
+    ),
+    *(
+        Fault(f"units: {text}", file, text, wrong, UNITS)
+        for file, text, wrong in (
+            ("output/report.py", '("tooth_deflection_um", 1e3)', '("tooth_deflection_um", 1.0)'),
+            ("output/report.py", '("contact_deformation_um", 1e3)', '("contact_deformation_um", 1.0)'),
+            ("output/report.py", '("hertz_width_mm", 2.0)', '("hertz_width_mm", 1.0)'),
+            ("output/report.py", '("edge_pinion_diameter_mm", 2.0)', '("edge_pinion_diameter_mm", 1.0)'),
+            (
+                "output/report.py",
+                '("root_compression_angle_deg", math.degrees(1.0))',
+                '("root_compression_angle_deg", 1.0)',
+            ),
+            (
+                "output/report.py",
+                "path.transmission_error * result.wheel_base_radius * 1e3",
+                "path.transmission_error * result.wheel_base_radius",
+            ),
+            ("output/report.py", '"N mm": (1e-3, "Nm")', '"N mm": (1.0, "Nm")'),
+            ("output/report.py", '"rad": (ARCSEC, "arcsec")', '"rad": (60.0 * ARCSEC, "arcsec")'),
+            (
+                "results/key_figures.py",
+                '"pinion_diameter_at_edge_mm": 2.0 * at',
+                '"pinion_diameter_at_edge_mm": at',
+            ),
+            (
+                "results/key_figures.py",
+                '"contact_point_diameter_at_peak_mm": 2.0 * contact_point',
+                '"contact_point_diameter_at_peak_mm": contact_point',
+            ),
+            ("results/key_figures.py", 'f"{name}_span_um": span * length', 'f"{name}_span_um": span'),
+            (
+                "results/root_figures.py",
+                'math.degrees(there("_angle"))',
+                'there("_angle")',
+            ),
+            ("results/dynamics.py", "stiffness = 1e6 * result.face_width", "stiffness = 1e3 * result.face_width"),
+            (
+                "results/tolerances.py",
+                '"transmission_error_span_um": length * found.peak_to_peak',
+                '"transmission_error_span_um": found.peak_to_peak',
+            ),
+        )
+    ),
+)
+
+
+def copy_to(folder: Path) -> None:
+    """Copy what tests need."""
+    for name in COPIED:
+        if (ROOT / name).is_dir():
+            shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            shutil.copy(ROOT / name, folder / name)
+
+
+def tested(folder: Path, tests: list[str]) -> int:
+    """Exit code of pytest for tests of a copy."""
+    command = [sys.executable, "-m", "pytest", "--quiet", "--exitfirst", "--tb=no", "-p", "no:cacheprovider"]
+    environment = {**os.environ, "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
+    paths = [f"tests/{test}" for test in tests]
+    return subprocess.run([*command, *paths], cwd=folder, env=environment, capture_output=True, check=False).returncode
+
+
+def main(words: list[str]) -> int:
+    """Try the faults with any of the words in their description; without words, all."""
+    faults = [fault for fault in FAULTS if not words or any(word in fault.what for word in words)]
+    missed = 0
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        copy_to(folder)
+        if tested(folder, sorted({fault.test for fault in faults})) != PASSED:
+            print("the tests fail without any fault")
+            return 1
+        for fault in faults:
+            path = folder / "loaded_tca" / fault.file
+            sound = path.read_text(encoding="utf-8")
+            if sound.count(fault.text) == 1:
+                path.write_text(sound.replace(fault.text, fault.wrong), encoding="utf-8")
+                code = tested(folder, [fault.test])
+                path.write_text(sound, encoding="utf-8")
+                verdict = {FAILED: "noticed", PASSED: "NOT NOTICED"}.get(code, f"pytest ends with {code}")
+            else:
+                verdict = "ITS TEXT IS NOT THERE ONCE"
+            missed += verdict != "noticed"
+            print(f"{verdict}: {fault.what}", flush=True)
+    print(f"{len(faults)} faults, {missed} of them not noticed")
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description="Deliberate faults of the package, and the tests that notice them.")
+    parser.add_argument("words", nargs="*", help="those faults alone with one of these words in their description")
+    sys.exit(main(parser.parse_args().words))
