@@ -10,8 +10,8 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import analyse, load_result, read_scene, sample_separation, trace_contact
 from loaded_tca.errors import AccuracyWarning, InputError
-from tests.refusals import refusals
 from loaded_tca.results.sensitivities import _add_shifted_bending
+from tests.refusals import refusals
 from tests.samples.gear_pairs import gear_pair
 from tests.samples.results import FLANKS_ALONE, ONE_PAIR, SCENES, result
 
