@@ -5,7 +5,7 @@ solution, k = 1, holds every strip along the edge and, summed up over k, every s
 with the same elements beside the loaded face, so that errors of the mesh cancel in the difference.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -181,10 +181,18 @@ def _across(energies: Array) -> float:
     return float(np.sum((j1(width) / width) ** 2 * growth / waves))
 
 
-def rows() -> list[Row]:
-    """Displacement weighted with the pressure, over that of a half-space: with the factor, and of the half-space."""
+def short_rows() -> list[Row]:
+    """Rows of the middle one of the angles."""
+    return rows({105.0: ANGLES[105.0]})
+
+
+def rows(angles: Mapping[float, float] = ANGLES) -> list[Row]:
+    """Displacement weighted with the pressure, over that of a half-space: with the factor, and of the half-space.
+
+    Angles [deg] with the tolerance of each.
+    """
     flat, table = half_space_energies(POISSON_RATIO), []
-    for degrees, tolerance in ANGLES.items():
+    for degrees, tolerance in angles.items():
         factor = wedge_factor(np.radians(degrees), POISSON_RATIO)
         for strip in compared(np.radians(degrees), POISSON_RATIO, flat):
             case = f"free edge of {degrees:.0f} deg, {strip.load}"
