@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from loaded_tca import cli
+from loaded_tca.plots import style
 
 matplotlib.use("Agg")
 hypothesis.settings.register_profile("suite", deadline=None, max_examples=100, derandomize=True)
@@ -15,10 +16,31 @@ hypothesis.settings.register_profile("nightly", deadline=None, max_examples=2000
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "suite"))
 
 
+FIRST = (
+    "test_site_builds_without_a_warning",
+    "test_page_of_pictures_has_every_kind",
+    "test_designed_pair_is_quieter",
+    "test_installed_wheel_runs_the_demo",
+    "test_transmission_error_of_real_pairs_changes_as_whole_analyses_do",
+    "test_root_stress_follows_modifications_as_analyses_do",
+)
+"""Tests of many seconds: begun first, none of them is left to one process while the others have ended."""
+
+
+def pytest_collection_modifyitems(items):
+    items.sort(key=lambda item: not item.name.startswith(FIRST))
+
+
 @pytest.fixture(autouse=True)
 def _nan_stops():
     with np.errstate(all="raise", under="ignore"):
         yield
+
+
+@pytest.fixture
+def _undrawn(monkeypatch):
+    """Pictures are made and written, but not drawn, which takes most of their time: for tests that look at names."""
+    monkeypatch.setattr(style, "png_of", lambda _: b"\x89PNG")
 
 
 @pytest.fixture

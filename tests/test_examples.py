@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 from loaded_tca import plots, trace_contact
 from loaded_tca.scene import read_scene
 from loaded_tca.studies import load_design, load_study, read_study
+from tests.samples.root_stress import coarsely
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 
@@ -48,6 +49,14 @@ def loaded(path):
     return module
 
 
+@pytest.fixture
+def _coarse_roots():
+    """Models of root stress are coarse: a pitch further they are the same, and every kind of picture is drawn."""
+    with coarsely():
+        yield
+
+
+@pytest.mark.usefixtures("_coarse_roots")
 @pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # some show contacts that reach an edge
 @pytest.mark.parametrize("name", EXPECTED)
 def test_example_gives_its_number_and_its_picture(name, tmp_path, monkeypatch):
@@ -66,6 +75,7 @@ def test_second_order_of_the_tooth_mesh_has_its_resonance_at_half_the_speed(tmp_
     assert sorted(path.name for path in tmp_path.iterdir()) == names
 
 
+@pytest.mark.usefixtures("_coarse_roots")
 @pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # contacts that reach an edge
 def test_page_of_pictures_has_every_kind(tmp_path, monkeypatch):
     """Those of studies have the name of their figure behind their own."""

@@ -167,6 +167,8 @@ def main() -> int:
     parser.add_argument("--compare", metavar="FILE", type=Path, help="list the rows that differ from kept ones")
     parser.add_argument("--processes", metavar="N", type=int, default=2, help="cases that run at a time (default: 2)")
     options = parser.parse_args()
+    if options.processes < 1:
+        parser.error(f"--processes: {options.processes} is not positive")
     start = time.perf_counter()
     outcomes = run_cases((*LONG, *CASES), options.processes)
     rows = [row for case in (*CASES, *LONG) for row in outcomes[case].rows]
