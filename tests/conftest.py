@@ -7,7 +7,7 @@ import matplotlib
 import numpy as np
 import pytest
 
-from loaded_tca import cli
+from loaded_tca import cli, plots
 from loaded_tca.plots import style
 
 matplotlib.use("Agg")
@@ -40,7 +40,8 @@ def _nan_stops():
 @pytest.fixture
 def _undrawn(monkeypatch):
     """Pictures are made and written, but not drawn, which takes most of their time: for tests that look at names."""
-    monkeypatch.setattr(style, "png_of", lambda _: b"\x89PNG")
+    for module in (plots, style):
+        monkeypatch.setattr(module, "png_of", lambda _: b"\x89PNG")
 
 
 @pytest.fixture
