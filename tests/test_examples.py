@@ -75,10 +75,10 @@ def test_second_order_of_the_tooth_mesh_has_its_resonance_at_half_the_speed(tmp_
     assert sorted(path.name for path in tmp_path.iterdir()) == names
 
 
-@pytest.mark.usefixtures("_coarse_roots")
+@pytest.mark.usefixtures("_coarse_roots", "_undrawn")
 @pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # contacts that reach an edge
 def test_page_of_pictures_has_every_kind(tmp_path, monkeypatch):
-    """Those of studies have the name of their figure behind their own."""
+    """Those of studies have the name of their figure behind their own. The tests of each kind draw it."""
     monkeypatch.chdir(tmp_path)
     loaded(EXAMPLES / "plot_all_pictures.py").main()
     drawn = {re.sub("^(study_.*?)_(peak_pressure|transmission_error).*", r"\1", path.stem) for path in Path().iterdir()}
