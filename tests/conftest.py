@@ -1,5 +1,6 @@
 """What every test shares: NaN stops at once, pictures go to no screen, random numbers are seeded."""
 
+import itertools
 import os
 
 import hypothesis
@@ -7,8 +8,7 @@ import matplotlib
 import numpy as np
 import pytest
 
-from loaded_tca import cli, plots
-from loaded_tca.plots import style
+from loaded_tca import cli
 
 matplotlib.use("Agg")
 hypothesis.settings.register_profile("suite", deadline=None, max_examples=100, derandomize=True)
@@ -38,16 +38,30 @@ def _nan_stops():
 
 
 @pytest.fixture
-def _undrawn(monkeypatch):
-    """Pictures are made and written, but not drawn, which takes most of their time: for tests that look at names."""
-    for module in (plots, style):
-        monkeypatch.setattr(module, "png_of", lambda _: b"\x89PNG")
-
-
-@pytest.fixture
 def rng():
     """A seeded generator of random numbers."""
     return np.random.default_rng(20240607)
+
+
+@pytest.fixture
+def blank_pictures(monkeypatch):
+    """Figures are made and files written, but nothing is drawn: each picture is of one grey of its own.
+
+    For tests of which files there are; what pictures show is judged where they are drawn.
+    """
+    greys = itertools.cycle(range(256))
+
+    class Blank:
+        def __init__(self, _):
+            self.cells = np.full((8, 8, 4), next(greys), dtype=np.uint8)
+
+        def draw(self):
+            pass
+
+        def buffer_rgba(self):
+            return self.cells
+
+    monkeypatch.setattr("loaded_tca.plots.style.FigureCanvasAgg", Blank)
 
 
 @pytest.fixture

@@ -75,7 +75,7 @@ def test_second_order_of_the_tooth_mesh_has_its_resonance_at_half_the_speed(tmp_
     assert sorted(path.name for path in tmp_path.iterdir()) == names
 
 
-@pytest.mark.usefixtures("_coarse_roots", "_undrawn")
+@pytest.mark.usefixtures("_coarse_roots", "blank_pictures")
 @pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # contacts that reach an edge
 def test_page_of_pictures_has_every_kind(tmp_path, monkeypatch):
     """Those of studies have the name of their figure behind their own. The tests of each kind draw it."""
