@@ -22,7 +22,7 @@ def test_site_builds_without_a_warning(tmp_path):
     shutil.copytree(ROOT / "docs", tmp_path / "docs", ignore=BUILT)
     for name in ("examples", "loaded_tca", "validation", "README.md", "CONTRIBUTING.md", "CHANGELOG.md"):
         (tmp_path / name).symlink_to(ROOT / name)
-    options = ["-b", "dummy", "-W", "--keep-going", "-q", "-D", "plot_gallery=0"]
+    options = ["-b", "dummy", "-W", "--keep-going", "-q", "-D", "plot_gallery=0", "-D", "smartquotes=0"]
     built = subprocess.run(
         [sys.executable, "-c", SPHINX, *options, "docs", "built"], cwd=tmp_path, capture_output=True, text=True
     )

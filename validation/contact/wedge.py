@@ -182,11 +182,16 @@ def _across(energies: Array) -> float:
 
 
 def short_rows() -> list[Row]:
-    """Rows of the middle one of the angles."""
-    return rows({105.0: ANGLES[105.0]})
+    """Displacements at the middle one of the angles."""
+    return displacements({105.0: ANGLES[105.0]})
 
 
-def rows(angles: Mapping[float, float] = ANGLES) -> list[Row]:
+def rows() -> list[Row]:
+    """Displacements at all angles, and turns of the face."""
+    return displacements(ANGLES) + tilts()
+
+
+def displacements(angles: Mapping[float, float]) -> list[Row]:
     """Displacement weighted with the pressure, over that of a half-space: with the factor, and of the half-space.
 
     Angles [deg] with the tolerance of each.
@@ -201,7 +206,7 @@ def rows(angles: Mapping[float, float] = ANGLES) -> list[Row]:
                 Row(case, SOURCE, f"displacement, factor {factor:.3f}", exact, 1.0 + factor * strip.image, tolerance),
                 Row(case, SOURCE, "displacement, half-space", exact, 1.0, None),
             ]
-    return table + tilts()
+    return table
 
 
 def tilts() -> list[Row]:
