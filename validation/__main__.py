@@ -101,7 +101,7 @@ def run_case(case: str, short: bool = False) -> Outcome:
     start = time.perf_counter()
     try:
         module = import_module(f"validation.{case}")
-        rows = (getattr(module, "short_rows", module.rows) if short else module.rows)()
+        rows = list((getattr(module, "short_rows", module.rows) if short else module.rows)())
     except Exception as error:  # whatever a case raises is a result of that case
         return _failed(case, error, time.perf_counter() - start)
     return Outcome(rows, time.perf_counter() - start)

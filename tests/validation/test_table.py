@@ -41,8 +41,20 @@ def test_tests_take_the_short_rows_where_a_case_has_them(monkeypatch):
     long, plain = SimpleNamespace(rows=lambda: all_rows, short_rows=lambda: few), SimpleNamespace(rows=lambda: all_rows)
     for name, module in (("long", long), ("plain", plain)):
         monkeypatch.setitem(sys.modules, f"validation.{name}", module)
-    assert run_case("long", short=True).rows is few
-    assert run_case("plain", short=True).rows is run_case("long").rows is all_rows
+    assert run_case("long", short=True).rows == few
+    assert run_case("plain", short=True).rows == run_case("long").rows == all_rows
+
+
+def test_case_that_raises_among_its_rows_has_failed(monkeypatch):
+    """Some cases make their rows one by one."""
+
+    def rows():
+        yield Row("case", "source", "angle", 1.0, 1.0, None)
+        raise ValueError("no second row")
+
+    monkeypatch.setitem(sys.modules, "validation.one_by_one", SimpleNamespace(rows=rows))
+    (row,) = run_case("one_by_one").rows
+    assert row.quantity == "raised ValueError: no second row"
 
 
 def test_validation_table_has_a_line_for_every_row():
