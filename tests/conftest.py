@@ -1,11 +1,13 @@
 """What every test shares: NaN stops at once, pictures go to no screen, random numbers are seeded."""
 
+import itertools
 import os
 
 import hypothesis
 import matplotlib
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from loaded_tca import cli
 
@@ -25,6 +27,24 @@ def _nan_stops():
 def rng():
     """A seeded generator of random numbers."""
     return np.random.default_rng(20240607)
+
+
+@pytest.fixture
+def blank_pictures(monkeypatch):
+    """Figures are made and files written, but nothing is drawn: each picture is of one grey of its own.
+
+    For tests of which files there are; what pictures show is judged where they are drawn.
+    """
+    greys = itertools.cycle(range(256))
+
+    class Blank(FigureCanvasAgg):
+        def draw(self):
+            pass
+
+        def buffer_rgba(self):
+            return np.full((8, 8, 4), next(greys), dtype=np.uint8)
+
+    monkeypatch.setattr("loaded_tca.plots.style.FigureCanvasAgg", Blank)
 
 
 @pytest.fixture
