@@ -7,6 +7,7 @@ import hypothesis
 import matplotlib
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from loaded_tca import cli
 
@@ -14,21 +15,6 @@ matplotlib.use("Agg")
 hypothesis.settings.register_profile("suite", deadline=None, max_examples=100, derandomize=True)
 hypothesis.settings.register_profile("nightly", deadline=None, max_examples=2000)
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "suite"))
-
-
-FIRST = (
-    "test_site_builds_without_a_warning",
-    "test_page_of_pictures_has_every_kind",
-    "test_designed_pair_is_quieter",
-    "test_installed_wheel_runs_the_demo",
-    "test_transmission_error_of_real_pairs_changes_as_whole_analyses_do",
-    "test_root_stress_follows_modifications_as_analyses_do",
-)
-"""Tests of many seconds: begun first, none of them is left to one process while the others have ended."""
-
-
-def pytest_collection_modifyitems(items):
-    items.sort(key=lambda item: not item.name.startswith(FIRST))
 
 
 @pytest.fixture(autouse=True)
@@ -51,15 +37,12 @@ def blank_pictures(monkeypatch):
     """
     greys = itertools.cycle(range(256))
 
-    class Blank:
-        def __init__(self, _):
-            self.cells = np.full((8, 8, 4), next(greys), dtype=np.uint8)
-
+    class Blank(FigureCanvasAgg):
         def draw(self):
             pass
 
         def buffer_rgba(self):
-            return self.cells
+            return np.full((8, 8, 4), next(greys), dtype=np.uint8)
 
     monkeypatch.setattr("loaded_tca.plots.style.FigureCanvasAgg", Blank)
 
@@ -74,3 +57,18 @@ def run(capsys):
         return code, captured.out, captured.err.splitlines()
 
     return run
+
+
+FIRST = (
+    "test_site_builds_without_a_warning",
+    "test_page_of_pictures_has_every_kind",
+    "test_designed_pair_is_quieter",
+    "test_installed_wheel_runs_the_demo",
+    "test_transmission_error_of_real_pairs_changes_as_whole_analyses_do",
+    "test_root_stress_follows_modifications_as_analyses_do",
+)
+"""Tests of many seconds: begun first, none of them is left to one process while the others have ended."""
+
+
+def pytest_collection_modifyitems(items):
+    items.sort(key=lambda item: not item.name.startswith(FIRST))
