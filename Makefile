@@ -2,7 +2,14 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: demo test tests validate docs reference-fem lint lint-together clean
+# Solvers, finite elements and what is derived of them, a few of each: as long as half a minute on two cores.
+KERNEL_TESTS := tests/contact tests/separation tests/loaded/test_balance.py tests/loaded/test_free_edges.py \
+	tests/loaded/test_load_sharing.py tests/loaded/test_cut_contacts.py tests/compliance/test_dissection.py \
+	tests/compliance/test_influence.py tests/compliance/test_finite_elements.py tests/results/test_dynamics.py \
+	tests/results/test_figure_slopes.py tests/results/test_mesh_cycle.py tests/flanks/test_tensor_spline.py \
+	tests/unloaded/test_path.py --ignore=tests/contact/test_rounded_edge.py
+
+.PHONY: demo test tests test-kernel validate docs reference-fem lint lint-together clean
 
 .venv/installed: pyproject.toml
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
@@ -28,6 +35,11 @@ lint-together:
 tests: .venv/installed
 	$(BIN)/python -m pytest -n auto --dist worksteal
 
+# With a kernel of OpenBLAS that this machine does not take by itself: rounding differs.
+test-kernel: .venv/installed
+	OPENBLAS_CORETYPE=$$($(BIN)/python tests/machines.py --other-kernel) \
+		$(BIN)/python -m pytest -n auto --dist worksteal $(KERNEL_TESTS)
+
 validate: .venv/installed
 	$(BIN)/python -m validation
 
@@ -42,4 +54,4 @@ reference-fem: .venv/installed
 
 clean:
 	rm -rf docs/_build docs/gallery docs/reference/api docs/reference/generated
-	rm -rf .venv loaded-tca-demo .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf .machines .venv loaded-tca-demo .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -2,6 +2,7 @@
 
 import itertools
 import os
+import signal
 
 import hypothesis
 import matplotlib
@@ -15,6 +16,11 @@ matplotlib.use("Agg")
 hypothesis.settings.register_profile("suite", deadline=None, max_examples=100, derandomize=True)
 hypothesis.settings.register_profile("nightly", deadline=None, max_examples=2000)
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "suite"))
+
+
+def pytest_configure():
+    """Let SIGINT interrupt as at a terminal: jobs that a shell starts in the background inherit that it is ignored."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(autouse=True)

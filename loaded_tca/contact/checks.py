@@ -3,6 +3,7 @@
 import functools
 import math
 import os
+import sys
 from typing import Any
 
 import numpy as np
@@ -150,7 +151,9 @@ def memory_problem(shape: tuple[int, ...], available: float | None = None) -> st
 @functools.cache
 def machine_memory() -> float:
     """Return the physical memory [bytes], infinity where the system does not tell."""
+    if sys.platform == "win32":
+        return math.inf
     try:
         return float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE")
-    except (AttributeError, ValueError, OSError):
+    except (ValueError, OSError):
         return math.inf

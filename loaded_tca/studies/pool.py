@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
@@ -72,7 +73,7 @@ def _end_with_parent() -> None:
 @contextmanager
 def _interrupts_held_back() -> Iterator[None]:
     """Processes that are started inside inherit it, from their first instruction on; this one is interrupted after."""
-    if not hasattr(signal, "pthread_sigmask"):  # there, interrupts while workers start show their tracebacks
+    if sys.platform == "win32":  # no masks: interrupts while workers start show their tracebacks
         yield
         return
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})

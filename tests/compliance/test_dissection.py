@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.linalg import spsolve
 
@@ -96,6 +96,29 @@ def test_a_body_that_is_not_held_is_refused():
     free = np.ones(2 * len(mesh.points), dtype=bool)
     with pytest.raises(GeometryError, match="not held"):
         factorise(mesh.stiffness(Material()), mesh.dofs, mesh.lowest // 2, free)
+
+
+def two_springs(ground):
+    """Stiffness of a spring between two points, and of one from the second to the ground, of a power of two.
+
+    Every number on the way through Cholesky's factor is a float: it is exact with any BLAS.
+    """
+    return np.array([[[1.0, -1.0], [-1.0, 1.0 + ground]]]), np.array([[0, 1]]), np.array([[0]]), np.ones(2, dtype=bool)
+
+
+@pytest.mark.parametrize("ground", [2.0**-50, 2.0**-40])
+def test_a_body_that_is_held_by_rounding_alone_is_refused(ground):
+    matrices, *rest = two_springs(ground)
+    assert np.linalg.cholesky(matrices[0])[1, 1] ** 2 == ground  # positive: Cholesky itself does not refuse it
+    with pytest.raises(GeometryError, match="not held"):
+        factorise(matrices, *rest)
+
+
+def test_a_body_that_is_held_by_little_is_solved():
+    """Under a unit force on the first point both move by 1 / ground, and the first by 1 more."""
+    ground = 2.0**-24
+    displacement = factorise(*two_springs(ground)).solve(np.array([[1.0], [0.0]]))
+    assert_array_equal(displacement, [[1.0 / ground + 1.0], [1.0 / ground]])
 
 
 def test_flexibility_is_the_same_for_loads_one_by_one(rng, monkeypatch):
