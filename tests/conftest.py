@@ -1,5 +1,6 @@
 """What every test shares: NaN stops at once, pictures go to no screen, random numbers are seeded."""
 
+import itertools
 import os
 import signal
 
@@ -7,6 +8,7 @@ import hypothesis
 import matplotlib
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from loaded_tca import cli
 
@@ -34,6 +36,24 @@ def rng():
 
 
 @pytest.fixture
+def blank_pictures(monkeypatch):
+    """Figures are made and files written, but nothing is drawn: each picture is of one grey of its own.
+
+    For tests of which files there are; what pictures show is judged where they are drawn.
+    """
+    greys = itertools.cycle(range(256))
+
+    class Blank(FigureCanvasAgg):
+        def draw(self):
+            pass
+
+        def buffer_rgba(self):
+            return np.full((8, 8, 4), next(greys), dtype=np.uint8)
+
+    monkeypatch.setattr("loaded_tca.plots.style.FigureCanvasAgg", Blank)
+
+
+@pytest.fixture
 def run(capsys):
     """Run the command; returns exit code, stdout and the lines of stderr."""
 
@@ -57,3 +77,18 @@ def refused(run):
         return message
 
     return refused
+
+
+FIRST = (
+    "test_site_builds_without_a_warning",
+    "test_page_of_pictures_has_every_kind",
+    "test_designed_pair_is_quieter",
+    "test_installed_wheel_runs_the_demo",
+    "test_transmission_error_of_real_pairs_changes_as_whole_analyses_do",
+    "test_root_stress_follows_modifications_as_analyses_do",
+)
+"""Tests of many seconds: begun first, none of them is left to one process while the others have ended."""
+
+
+def pytest_collection_modifyitems(items):
+    items.sort(key=lambda item: not item.name.startswith(FIRST))

@@ -50,6 +50,7 @@ def fail_with(monkeypatch, error):
     monkeypatch.setattr(loaded_tca.analysis, "analyse", analyse)
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_demo_needs_no_file_and_tells_what_to_try_next(run):
     code, out, _ = run("demo")
     assert code == 0
@@ -59,6 +60,7 @@ def test_demo_needs_no_file_and_tells_what_to_try_next(run):
     assert run("demo")[0] == 0
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_demo_goes_where_it_is_told(run):
     code, out, _ = run("demo", "--out", "else/where")
     assert code == 0
@@ -88,6 +90,7 @@ def test_run_writes_report_and_pictures_and_shows_the_summary(run):
     assert "Written to new/place: result.nc" in out
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_run_takes_single_changes_of_the_scene(run):
     """The result keeps the changed scene, as it is checked and computed."""
     wanted = {"pinion.modifications.lead_crowning_um": "6", "pinion.hand": "left", "analysis.cells": "[8, 16]"}
@@ -128,6 +131,7 @@ def test_a_change_without_key_or_value_is_refused(refused, change):
     assert told in refused("check", scene(), "--set", change)
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_plot_draws_a_result_again(run):
     run("run", scene(), "--out", "out")
     for picture in PICTURES:
@@ -138,6 +142,7 @@ def test_plot_draws_a_result_again(run):
     assert set(os.listdir("elsewhere")) == PICTURES
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_run_leaves_no_picture_of_an_earlier_scene(run):
     Path("out").mkdir()
     Path("out", "pressure_map_hertz.png").write_bytes(b"old")
@@ -317,6 +322,7 @@ def test_traceback_is_shown_when_asked_for(run, monkeypatch, arguments):
     assert err[-1] == "loaded-tca: not converged"
 
 
+@pytest.mark.usefixtures("blank_pictures")
 @pytest.mark.parametrize(
     ("failure", "code"), [(KeyboardInterrupt(), 130), (MemoryError(), 2), (OSError(28, "No space left on device"), 2)]
 )
@@ -343,6 +349,7 @@ def test_failure_while_drawing_leaves_the_numbers_without_old_pictures(run, monk
     assert set(os.listdir("out")) == REPORT | PICTURES
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_failure_while_drawing_again_keeps_the_pictures(run, monkeypatch):
     run("run", scene(), "--out", "out")
     before = {name: Path("out", name).read_bytes() for name in os.listdir("out")}
@@ -352,6 +359,7 @@ def test_failure_while_drawing_again_keeps_the_pictures(run, monkeypatch):
         assert {name: Path("out", name).read_bytes() for name in os.listdir("out")} == before
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_parts_of_a_result_do_not_replace_the_files_of_the_whole(run):
     run("run", scene(), "--out", "out")
     assert run("subsurface", "out")[0] == run("tooth", "out")[0] == 0
@@ -376,6 +384,7 @@ class Terminal(io.StringIO):
         return True
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_progress_is_shown_on_a_terminal_only(run, monkeypatch):
     assert run("run", scene(), "--out", "out")[2] == []
     terminal = Terminal()
@@ -398,6 +407,7 @@ def test_progress_counts_torques_and_positions(monkeypatch):
     assert "6/6" in shown
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_estimate_is_told_on_a_terminal_and_where_an_analysis_is_long(run, monkeypatch):
     assert run("run", scene(), "--out", "out")[2] == []
     monkeypatch.setattr(cli.terminal, "WORTH_TELLING", 0.0)

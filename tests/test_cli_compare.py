@@ -38,6 +38,7 @@ def test_compare_writes_table_and_pictures_and_tells_the_differences(run):
     assert compared()["titles"].keys() == {"plain", "crowned"}
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_compare_names_results_by_what_differs_in_their_paths_or_as_told(run):
     paths = [saved(f"{first}/{second}") for first in ("old", "new") for second in ("a", "b")]
     Path("new", "b", "result.nc").rename("new/c.nc")
@@ -61,6 +62,7 @@ def test_compare_draws_another_torque_and_position(run):
     assert Path("out", "comparison.csv").read_bytes() == Path("else", "comparison.csv").read_bytes()
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_compare_tells_torques_that_are_left_out(run):
     saved("a")
     saved("b", result("mesh_cycle_spur", positions=5, torques=(130.0,)))

@@ -47,6 +47,7 @@ def test_every_modification_and_mounting_error_is_looked_at(run, out):
     assert found == 2 * list(default_tolerances(cycle().scene).items())
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_keys_have_the_tolerances_given_or_the_usual_ones(run, out):
     code, text, _ = run("sensitivities", out, "--keys", f"{OFFSET}=0.05", CROWNING, "--torque", 40, "--out", "there")
     assert code == 0
@@ -57,6 +58,7 @@ def test_keys_have_the_tolerances_given_or_the_usual_ones(run, out):
     assert float(found[0]["peak_pressure_MPa_per_tolerance"]) == pytest.approx(0.05 * slope, rel=1e-6)
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_those_of_a_torque_go_to_a_directory_of_their_own(run, out):
     assert run("sensitivities", out, "--keys", CROWNING, "--torque", 40)[0] == 0
     assert sorted(os.listdir(out)) == ["result.nc", "torque_40_Nm"]
@@ -100,6 +102,7 @@ def test_torque_without_load_has_no_sensitivities(refused, tmp_path):
     assert os.listdir(tmp_path) == ["result.nc"]
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_file_of_sensitivities_is_no_result(run, refused, out):
     run("sensitivities", out, "--keys", CROWNING)
     assert refused("plot", "out/sensitivities.nc").startswith("out/sensitivities.nc: not the result of a mesh cycle")

@@ -55,6 +55,7 @@ def test_study_writes_figures_table_and_summary(study, capsys):
     assert load_result("out/study_maps/2.nc").scene.pinion.modifications.lead_crowning_um == 6.0
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_workers_find_what_one_process_finds(study):
     name = study([2.0, 4.0, 6.0])
     assert cli.main(["study", name, "--out", "alone"]) == 0
@@ -78,6 +79,7 @@ def test_wrong_options_are_bad_input(study, capsys, arguments, told):
     assert not os.path.exists("out/study.csv")
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_unknown_figure_is_told_once_all_is_written(study, capsys):
     assert cli.main(["study", study([2.0, 6.0]), "--out", "out", "--rank-by", "peak_pressure"]) == 2
     assert "--rank-by peak_pressure: not in study.csv; ranked by the default figure" in capsys.readouterr().err
@@ -105,6 +107,7 @@ def test_scene_and_study_are_told_apart(study, capsys):
     ]
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_study_is_no_result(study, capsys):
     assert cli.main(["study", study([2.0]), "--out", "out"]) == 0
     capsys.readouterr()
@@ -136,6 +139,7 @@ def test_wrong_study_is_told_before_anything_is_written(study, capsys):
     assert not os.path.exists("out")
 
 
+@pytest.mark.usefixtures("blank_pictures")
 @pytest.mark.parametrize("workers", [[], ["--workers", "2"]])
 def test_interrupt_keeps_what_is_done_and_the_same_command_goes_on(study, workers):
     name = study("{ from = 0.0, to = 10.0, count = 1001 }")

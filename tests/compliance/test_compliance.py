@@ -108,7 +108,7 @@ def test_compliance_knows_which_tooth_comes_next(make):
 
 def test_compliance_of_face_milled_gears_is_converged():
     """On a mesh of about half as many elements more in every direction of the section; its fillets are sharp."""
-    densities = MeshDensity(lengthwise=8), MeshDensity(6, 8, 3, 5, 6, 8, 1)
+    densities = MeshDensity(lengthwise=6), MeshDensity(6, 8, 3, 5, 6, 6, 1)
     coarse, fine = (made_of_face_milled(density) for density in densities)
     found = [one.within(0, grids(one, 0.0)[0]).mean() for one in (coarse, fine)]
     assert_allclose(found[0], found[1], rtol=CONVERGED)

@@ -57,3 +57,7 @@ def test_every_index_that_the_result_does_not_have_is_told_at_once():
 
 def test_index_of_numpy_is_one():
     assert told(drawn_with("plot_contact_path")(torque=np.int64(0)))
+
+
+def test_scatter_to_first_order_is_drawn():
+    assert plots.png_of(drawn_with("plot_first_order_scatter")())

@@ -75,6 +75,7 @@ def test_every_case_gives_every_picture(case, tmp_path):
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in paths)
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_map_with_the_ellipse_is_drawn_too_where_the_highest_pressure_has_none(tmp_path):
     hertz = result().hertz_pressure.copy()
     hertz[0][result().peak_contact(0)] = np.nan
@@ -82,6 +83,7 @@ def test_map_with_the_ellipse_is_drawn_too_where_the_highest_pressure_has_none(t
     assert "pressure_map_hertz" not in {path.stem for path in plot_all(result(positions=1), tmp_path)}
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_pictures_of_an_earlier_result_do_not_stay(tmp_path):
     for name in ("pressure_map_hertz.png", "pressure_map_edge.png", "mine.png"):
         (tmp_path / name).write_bytes(b"old")
@@ -89,6 +91,7 @@ def test_pictures_of_an_earlier_result_do_not_stay(tmp_path):
     assert sorted(os.listdir(tmp_path)) == sorted(["mine.png", *(path.name for path in paths)])
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_peak_at_a_edge_has_a_map_of_its_own(tmp_path):
     cycle = result()
     relief_start = np.zeros((1, 5, 1), dtype=bool)
@@ -110,11 +113,13 @@ def test_map_at_an_edge_tells_the_pressure_there_and_why_cells_have_less(rounded
     assert "pressure at" not in told(plot_pressure_map(cycle, *at[:1])).partition("contact pressure")[2]
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_map_and_flanks_of_one_torque_and_position(tmp_path):
     paths = plot_all(result(torques=(20.0, 80.0)), tmp_path, torque=0, position=3)
     assert {path.stem for path in paths} == {"contact_path", "transmission_error", "peak_pressure", "pressure_map"}
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_nothing_touching_gives_all_but_the_pressure_map(tmp_path):
     assert "pressure_map" not in {path.stem for path in plot_all(nothing_touches(), tmp_path)}
 

@@ -17,6 +17,7 @@ from loaded_tca import analyse, cli, load_result, read_scene
 from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.plots import plot_transmission_error
 from loaded_tca.plots.labels import label_of
+from loaded_tca.reports import page as report_page
 from loaded_tca.reports import result_page, write_html_report
 from loaded_tca.reports.page import Table, parts_of, tables_of
 from loaded_tca.results.explanations import EXPLANATIONS, explanation_of
@@ -89,9 +90,23 @@ def page(path):
     return Page(path)
 
 
+DRAWN = {}
+"""Drawings of the one picture by its title."""
+
+
 @pytest.fixture
 def with_one_picture(monkeypatch):
-    """Of a result: most of the time goes into pictures."""
+    """Of a result, drawn once for all tests: most of the time goes into pictures."""
+    draw = report_page.svg_of
+
+    def drawn(figure, prefix, title):
+        if prefix != "transmission-error":
+            return draw(figure, prefix, title)
+        if title not in DRAWN:
+            DRAWN[title] = draw(figure, prefix, title)
+        return DRAWN[title]
+
+    monkeypatch.setattr(report_page, "svg_of", drawn)
     monkeypatch.setattr(
         result_page, "result_figures", lambda result, **_: {"transmission_error": plot_transmission_error(result)}
     )

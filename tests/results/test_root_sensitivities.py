@@ -35,12 +35,13 @@ def test_root_stress_follows_modifications_as_analyses_do(key, step, bends):
     changes = HELICAL | ({"analysis.compliance": "contact+tooth", "analysis.free_edges": True} if bends else {})
     middle = result("mesh_cycle_helical", **changes)
     crowned = middle.scene.pinion.modifications.lead_crowning_um if key == CROWNING else 0.0
-    steps = np.linspace(-step, step, 9)
+    count = 9 if key == CROWNING else 5  # the extreme leaves its place for another within these steps
+    steps = np.linspace(-step, step, count)
     cycles = [analysed(scene("mesh_cycle_helical", **changes, **{key: crowned + by})) for by in steps]
     for name, found in zip(("root_tension", "root_compression"), sensitivities(middle, [key])[1:], strict=True):
         values, places = (np.array([getattr(one, full)[0] for one in cycles]) for full in (name, f"{name}_place"))
-        slopes = np.polyfit(steps, values.reshape(9, -1), 3)[-2].reshape(values.shape[1:])
-        steady = (places[..., :2] == places[4, ..., :2]).all(axis=(0, 3))  # one side of one tooth
+        slopes = np.polyfit(steps, values.reshape(count, -1), 3)[-2].reshape(values.shape[1:])
+        steady = (places[..., :2] == places[count // 2, ..., :2]).all(axis=(0, 3))  # one side of one tooth
         assert steady.sum() >= 6
         assert_allclose(found[0, ..., 0][steady], slopes[steady], rtol=0, atol=REAL_PAIRS * np.abs(slopes).max())
 

@@ -44,11 +44,11 @@ def value_of(scene, key):
 
 
 def slope_through_analyses(name, bends, key, step, quantity="transmission_error"):
-    """Slope of the cubic through nine analyses."""
+    """Slope of the cubic through five analyses."""
     middle = value_of(analysed(name, bends).scene, key)
-    steps = np.linspace(-step, step, 9)
+    steps = np.linspace(-step, step, 5)
     values = np.array([getattr(analysed(name, bends, ((key, middle + by),)), quantity)[0] for by in steps])
-    return np.polyfit(steps, values.reshape(9, -1), 3)[-2].reshape(values.shape[1:])
+    return np.polyfit(steps, values.reshape(5, -1), 3)[-2].reshape(values.shape[1:])
 
 
 REAL = [

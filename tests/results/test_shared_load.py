@@ -277,11 +277,12 @@ def test_numbers_of_every_pair_have_the_axes_torque_position_pair():
 
 @pytest.mark.parametrize("make", [cycle, helical])
 def test_every_picture_of_a_shared_load_is_drawn(make, tmp_path):
-    drawn = {path.stem for path in plot_all(make(), tmp_path)}
+    drawn = {path.stem for path in plot_all(make(), tmp_path, more=True)}
     on_request = {name for name in PICTURES if name.startswith("root_stress")}
     assert drawn >= set(PICTURES) - on_request - {"pressure_map_edge", "pressure_map_hertz"}
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_more_pictures_are_drawn_on_request_and_go_without(tmp_path):
     drawn = {path.stem for path in plot_all(cycle(), tmp_path, more=True)}
     assert drawn >= set(MORE_PICTURES)
@@ -290,6 +291,7 @@ def test_more_pictures_are_drawn_on_request_and_go_without(tmp_path):
     assert not {path.stem for path in tmp_path.iterdir()} & set(MORE_PICTURES)
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_pictures_of_a_shared_load_go_where_one_pair_carries_all(tmp_path):
     (tmp_path / "load_share.png").write_bytes(b"")
     plot_all(cycle(positions=1, torques=(40.0,)), tmp_path)

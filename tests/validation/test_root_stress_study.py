@@ -10,13 +10,6 @@ from validation.face_milled.pairs import duplex_blank
 from validation.loaded import root_stress, root_stress_families
 
 
-@pytest.mark.parametrize("rows", [root_stress.plane_rows, root_stress.nine_rows, root_stress.form_rows])
-def test_root_stress_in_the_plane_is_that_of_the_reference(rows):
-    found = list(rows())
-    assert len(found) >= 18
-    assert not [row.quantity for row in found if not row.holds]
-
-
 def test_finer_mesh_is_finer_everywhere():
     fine, density = root_stress.finer(root_stress.SECTION), root_stress.SECTION
     for name in ("through", "flank", "fillet", "land", "rim", "lengthwise"):

@@ -51,6 +51,13 @@ def rows() -> list[Row]:
     return both + pairs_in_space.rows()
 
 
+def short_rows() -> list[Row]:
+    """Rows of the wide face at the largest torque of either variant, and of the pairs in space."""
+    kept = read_cycles()
+    torque = max((torque for _, torque in kept), default=0.0)
+    return rows_of({key: kept[key] for key in kept if key[1] == torque}, model(WIDE)) + pairs_in_space.rows()
+
+
 def rows_of(kept: Cycles, ours: Model) -> list[Row]:
     """Rows of every cycle that is given.
 

@@ -12,6 +12,8 @@ of a scene; the teeth do not bend.
 
 from __future__ import annotations
 
+from collections.abc import Container
+
 import numpy as np
 
 from loaded_tca.arrays import Array
@@ -36,10 +38,17 @@ TOLERANCE = 1e-7  # of the solver: a thousandth of the scatter, and less
 NAMES = ("rotation", "mesh stiffness", "load share")
 
 
-def rows() -> list[Row]:
-    """Largest departures over all positions."""
+def short_rows() -> list[Row]:
+    """Rows of the pair whose contacts lie off the middle of the face."""
+    return rows(("off the middle",))
+
+
+def rows(names: Container[str] | None = None) -> list[Row]:
+    """Largest departures over all positions, of all pairs by default."""
     found = []
     for name, (pair, torque) in _pairs().items():
+        if names is not None and name not in names:
+            continue
         case = f"contacts cut by edges, {name}"
         by_cells = _numbers(pair, [(torque, cells) for cells in GRIDS])
         by_torque = _numbers(pair, [(part * torque, 32) for part in CLOSE])

@@ -13,7 +13,8 @@ these for two tooth forms.
 """
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,23 +66,26 @@ class Spread:
     height : float
         Part of the flank's height.
     term : array [mm per N/mm]
-        At ``WAVES``.
+        At the waves.
+    waves : array [1/mm]
+        Wave numbers, ``WAVES`` by default.
     """
 
     height: float
     term: Array
+    waves: Array = field(default_factory=lambda: WAVES)
 
     @property
     def length(self) -> float:
         """a of R(kappa) = R(0) exp(-(kappa a)^2), by least squares of the logarithm [mm]."""
         used = self.term > FITTED * self.term[0]
-        slope, _ = np.polyfit(WAVES[used] ** 2, np.log(self.term[used]), 1)
+        slope, _ = np.polyfit(self.waves[used] ** 2, np.log(self.term[used]), 1)
         return math.sqrt(-slope)
 
     def misfit(self, deviation: float) -> float:
         """Largest difference from the transform of a normal distribution, over the term in the plane."""
-        plane = self.term[0] * math.exp(0.5 * (WAVES[0] * deviation) ** 2)
-        return float(np.abs(self.term / plane - np.exp(-0.5 * (WAVES * deviation) ** 2)).max())
+        plane = self.term[0] * math.exp(0.5 * (self.waves[0] * deviation) ** 2)
+        return float(np.abs(self.term / plane - np.exp(-0.5 * (self.waves * deviation) ** 2)).max())
 
 
 def spur_gear(teeth: int) -> Gear:
@@ -95,15 +99,15 @@ def mean_depth(gear: Gear) -> float:
     return float(grid_of_places(ToothFrame(gear, gear_nodes(gear, MeshDensity())))[-1].depth.mean())
 
 
-def spreads(gear: Gear) -> list[Spread]:
+def spreads(gear: Gear, waves: Array = WAVES) -> list[Spread]:
     """Local term at the heights of ``FACETS``."""
     section = _Section.of(gear)
-    amplitudes = np.array([section.amplitudes(wave) for wave in WAVES])  # (waves, facets, 2)
+    amplitudes = np.array([section.amplitudes(wave) for wave in waves])  # (waves, facets, 2)
     found = []
     for n, (facet, depth) in enumerate(zip(FACETS, section.depths, strict=True)):
         surface, middle = amplitudes[:, n].T
-        half_space = np.array([surface_under_wave(wave) - below_wave(depth, wave) for wave in WAVES])
-        found.append(Spread((facet + 0.5) / DENSITY.flank, surface - middle - half_space))
+        half_space = np.array([surface_under_wave(wave) - below_wave(depth, wave) for wave in waves])
+        found.append(Spread((facet + 0.5) / DENSITY.flank, surface - middle - half_space, waves))
     return found
 
 
@@ -207,12 +211,17 @@ def below_wave(depth: float, wave: float) -> float:
     return float((1.0 + nu) / (math.pi * STEEL.youngs_modulus) * (kt * k1(kt) + 2.0 * (1.0 - nu) * k0(kt)))
 
 
-def rows() -> list[Row]:
+def short_rows() -> list[Row]:
+    """Rows of one tooth form, of every other wave."""
+    return rows(TEETH[:1], WAVES[::2])
+
+
+def rows(forms: Sequence[int] = TEETH, waves: Array = WAVES) -> list[Row]:
     """Transform of the normal distribution that the package takes, and its limit in the plane, for both tooth forms."""
     found = []
-    for teeth in TEETH:
+    for teeth in forms:
         gear = spur_gear(teeth)
-        depth, (heights, plane), at_heights = mean_depth(gear), local_flexibility(gear), spreads(gear)
+        depth, (heights, plane), at_heights = mean_depth(gear), local_flexibility(gear), spreads(gear, waves)
         deviation = float(np.mean([math.sqrt(2.0) * one.length for one in at_heights]))
         quantity = f"z {teeth}: standard deviation over the mean depth"
         found.append(Row(CASE, SOURCE, quantity, deviation / depth, SPREAD, DEVIATION))

@@ -14,7 +14,7 @@ that bend; beside it the chord, of a power law through the torque and 0.8 of it.
 
 import math
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -144,10 +144,15 @@ def departures(name: str, changes: dict[str, Any]) -> list[Array]:
     return [found / slope - 1.0 for found in (fine.mesh_stiffness[middle], usual.mesh_stiffness[0], chord)]
 
 
-def rows() -> list[Row]:
+def short_rows() -> list[Row]:
+    """The pair itself."""
+    return rows((REAL,))
+
+
+def rows(pairs: Iterable[Pair] = (REAL, STRAIGHT, WIDE)) -> list[Row]:
     """The pair itself, straight teeth, and a face twice as wide."""
     found = []
-    for pair in (REAL, STRAIGHT, WIDE):
+    for pair in pairs:
         mesh = pair.mesh
         _, without = mean_stiffness(mesh, LINE_LOAD * mesh.common_face_width)
         quantity = f"{pair.name}, beta {pair.helix_deg:g} deg, b {pair.widths[1]:g}: c_gamma_alpha [N/(mm um)]"

@@ -7,7 +7,7 @@ rising from nothing at one end to twice that at the other.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -100,12 +100,18 @@ def fillets_under(ring: str, load: str) -> Fillets:
     )
 
 
-def rows() -> list[Row]:
-    """Rows of every kept ring and load."""
+def short_rows() -> list[Row]:
+    """Rows of the helical ring under either load; ``root_face_load`` has the spur one."""
+    return rows(("helical",))
+
+
+def rows(rings: Container[str] = tuple(HELICES)) -> list[Row]:
+    """Rows of kept rings under every load."""
     curves = read_table(RING_FILLETS_FILE) if RING_FILLETS_FILE.exists() else []
     return [
         row
         for (ring, load), kept in read_rings().items()
+        if ring in rings
         for row in rows_of(
             f"{ring} pinion in space, {load} load",
             kept,
