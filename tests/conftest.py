@@ -17,6 +17,14 @@ hypothesis.settings.register_profile("suite", deadline=None, max_examples=100, d
 hypothesis.settings.register_profile("nightly", deadline=None, max_examples=2000)
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "suite"))
 
+LONG = ("tests/test_site.py", "tests/test_examples.py", "tests/test_release.py", "tests/results/test_sensitivities.py")
+"""Files with tests of several seconds."""
+
+
+def pytest_collection_modifyitems(items):
+    """Put long tests first: none is the last, for which other workers wait."""
+    items.sort(key=lambda item: not item.nodeid.startswith(LONG))
+
 
 def pytest_configure():
     """Let SIGINT interrupt as at a terminal: jobs that a shell starts in the background inherit that it is ignored."""

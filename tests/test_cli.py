@@ -21,6 +21,8 @@ SCENES = Path(__file__).parents[1] / "examples" / "scenes"
 HELICAL = str(SCENES / "helical.toml")
 REPORT = {"result.nc", "summary.json", "positions.csv"}
 LONG = 300 * "a"
+HANGS = 600
+"""Seconds after which a process is taken to hang: beside others it is slow."""
 ONE_PAIR = '\nload_sharing = false\ncompliance = "contact"\nfree_edges = false\n'
 PICTURES = {"contact_path.png", "transmission_error.png", "peak_pressure.png", "pressure_map.png"}
 
@@ -464,7 +466,7 @@ def command(*arguments, **environment):
         capture_output=True,
         env={**os.environ, **environment},
         check=False,
-        timeout=60,
+        timeout=HANGS,
     )
 
 
@@ -485,7 +487,7 @@ def in_a_shell(redirected, *arguments):
     """Exit code and lines of standard error of the command with its streams redirected by a shell."""
     text = f'"$@" {redirected}'
     command = ["sh", "-c", text, "sh", sys.executable, "-m", "loaded_tca", *map(str, arguments)]
-    done = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False, timeout=60)
+    done = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False, timeout=HANGS)
     return done.returncode, done.stderr.splitlines()
 
 

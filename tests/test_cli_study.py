@@ -149,7 +149,7 @@ def test_interrupt_keeps_what_is_done_and_the_same_command_goes_on(study, worker
         while process.poll() is None and not (os.path.exists(rows) and os.path.getsize(rows) > 5000):
             time.sleep(0.05)
         process.send_signal(signal.SIGINT)
-        _, told = process.communicate(timeout=60)
+        _, told = process.communicate(timeout=600)
     assert process.returncode in (130, -signal.SIGINT)
     assert "variants are kept in out/study.rows.jsonl: the same study goes on from there" in told
     kept = Path(rows).read_text().splitlines()
