@@ -85,18 +85,3 @@ def refused(run):
         return message
 
     return refused
-
-
-FIRST = (
-    "test_site_builds_without_a_warning",
-    "test_page_of_pictures_has_every_kind",
-    "test_designed_pair_is_quieter",
-    "test_installed_wheel_runs_the_demo",
-    "test_transmission_error_of_real_pairs_changes_as_whole_analyses_do",
-    "test_root_stress_follows_modifications_as_analyses_do",
-)
-"""Tests of many seconds: begun first, none of them is left to one process while the others have ended."""
-
-
-def pytest_collection_modifyitems(items):
-    items.sort(key=lambda item: not item.name.startswith(FIRST))
