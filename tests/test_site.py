@@ -13,8 +13,14 @@ ROOT = Path(__file__).parents[1]
 BUILT = shutil.ignore_patterns("_build", "gallery", "generated", "api")
 
 
-SPHINX = "import gc, sys; gc.disable(); from sphinx.cmd.build import main; sys.exit(main(sys.argv[1:]))"
-"""The garbage collector finds nothing, and takes a fifth of the time."""
+SPHINX = """
+import gc, os, sys
+from sphinx.cmd.build import main
+gc.disable()  # it finds nothing, and takes a fifth of the time; so does taking down all objects at the end
+code = main(sys.argv[1:])
+sys.stderr.flush()
+os._exit(code)
+"""
 
 
 def test_site_builds_without_a_warning(tmp_path):
