@@ -10,6 +10,7 @@ Nothing here is imported by the package, and the geometry is written down once m
 - ``grading``, ``section``, ``model``, ``deck``: from a position to the mesh and the input deck; ``crowned`` in space;
 - ``run``, ``evaluate``, ``campaign``, ``crowned_run``, ``mesh_study``: the runs and what is read from them;
 - ``fillet``, ``roots``, ``root_campaign``: root stress over the mesh in plane strain; ``ring``, ``ring_run``: in space
-  under line loads;
+  under line loads; ``plane_ring``, ``ring_solved``: one gear in plane strain under unit
+  loads, and in space under loads of any course, solved without the program;
 - ``keep``, ``tables``: the tables in ``data/``.
 """

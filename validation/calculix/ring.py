@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from io import StringIO
 from itertools import pairwise
@@ -91,15 +91,18 @@ class LoadedRing:
     form: ToothForm
     ring: Ring
 
-    def forces(self, rolls: tuple[float, float], line_loads: tuple[float, float]) -> dict[int, Array]:
+    def forces(
+        self, rolls: tuple[float, float], line_loads: tuple[float, float] | Callable[[float], float]
+    ) -> dict[int, Array]:
         """Nodal forces [N] of a line load on the flank at the larger angle of tooth 0.
 
         Parameters
         ----------
         rolls : (float, float)
             Roll length at mid-face [mm], and its change per length of face.
-        line_loads : (float, float)
-            Normal force per length of face at mid-face [N/mm], and its relative change from there to its end.
+        line_loads : (float, float), or callable
+            Normal force per length of face at mid-face [N/mm], and its relative change from there to its end; or the
+            force per length over the height from mid-face [mm].
         """
         ring, levels = self.ring, self.ring.levels
         coordinates = ring.coordinates()[:, 1:]
@@ -112,7 +115,12 @@ class LoadedRing:
             for part, weight in zip(places, weights, strict=True):
                 height = 0.5 * (low + high) + 0.5 * part * (high - low)
                 radius = math.hypot(self.form.base_radius, rolls[0] + rolls[1] * height)
-                load = line_loads[0] * (1.0 + line_loads[1] * height / levels[-1]) * 0.5 * weight * (high - low)
+                line_load = (
+                    line_loads(height)
+                    if callable(line_loads)
+                    else line_loads[0] * (1.0 + line_loads[1] * height / levels[-1])
+                )
+                load = line_load * 0.5 * weight * (high - low)
                 element, along = self._place(chosen, radius)
                 nodes = hexahedra[layer * len(ring.bottom.elements) + element]
                 nodes = nodes[[0, 1, 5, 4, 8, 17, 12, 16]]  # first side of the section, drawn out

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -47,7 +47,7 @@ SETTINGS: dict[str, dict[str, Any]] = {
     "with bending": {},
 }
 CASE, ANALYSES = "sensitivities", "nine analyses"
-GRIDS, POSITIONS, ASKED = (64, 128), 6, {64: 0.03, 128: 0.01}
+GRIDS, POSITIONS, ASKED = (64, 128), 6, {64: 0.03, 128: 0.01, 256: 0.01}
 PINION, WHEEL = "pinion.modifications.", "wheel.modifications."
 MISALIGNMENT, CROWNING, SLOPE = "mounting.misalignment_um", f"{PINION}lead_crowning_um", f"{PINION}helix_slope_um"
 TWIST, FINER = f"{PINION}twist_um", (*GRIDS, 192, 256)
@@ -81,6 +81,21 @@ IN_ROWS = {
     "mesh_cycle_bevel": ("mounting.offset_mm", SLOPE),
 }
 """Keys of ``rows``; the last of each pair on the finer grid too."""
+OF_TWIST = (GRIDS[0], FINER[-1])
+"""Grids of the twist in ``rows``: it moves the transmission error by 7 to 19 nm/um, so that what the cells leave, 0.1
+to 0.2 nm/um on 128, is 1.2 % of it, and below 1 % from 256 on."""
+PROMISED = {"load_share": 0.08, "line_load": 0.05, "peak_pressure": 0.05, "root_tension": ASKED[GRIDS[0]]}
+"""Errors over the largest slope that the page states: where pairs stay, of pressures and line loads away from edges."""
+KNOWN = {
+    ("peak_pressure", "mesh_cycle_spur", "with bending", f"{PINION}tip_relief_um"): 0.17,
+    ("peak_pressure", "mesh_cycle_helical", "flanks alone", MISALIGNMENT): 0.14,
+}
+"""Larger ones that the page states."""
+OVER_VALUE = {"line_load": 0.01, "peak_pressure": 0.015, "face_load_factor": 0.025}
+"""Errors times the step of the key, over the largest value of the figure, that the page states: at edges, and of
+K_Hbeta, whose slope is that to one side of a kink."""
+WITHOUT_KINK, OF_FACTOR = (CROWNING, f"{PINION}tip_relief_um"), 0.03
+"""Keys that move K_Hbeta without a kink, and its error over the slope."""
 PAIRS = {
     "mesh_cycle_helical": "helical 34/57",
     "mesh_cycle_spur": "spur 34/57",
@@ -191,6 +206,8 @@ class Agreement:
     scatter: Array
     steady: Array
     edge: Array
+    scale: float
+    """Step of the key over the largest value of the figure."""
 
     @property
     def smooth(self) -> Array:
@@ -204,6 +221,13 @@ class Agreement:
         largest = np.abs(self.slopes[self.steady]).max()
         errors = np.abs(self.found - self.slopes)[where].max(), self.scatter[where].max()
         return float(errors[0] / largest), float(errors[1] / largest)
+
+    def over_value(self, where: Array) -> tuple[float, float]:
+        """Largest difference and largest standard error at chosen places times the step, over the largest value."""
+        if not where.any():
+            return float("nan"), float("nan")
+        errors = np.abs(self.found - self.slopes)[where].max(), self.scatter[where].max()
+        return float(errors[0] * self.scale), float(errors[1] * self.scale)
 
 
 def nine(name: str, setting: str, cells: int, key: str) -> tuple[Array, list[MeshCycle]]:
@@ -234,7 +258,8 @@ def agreements(name: str, setting: str, cells: int, key: str) -> dict[str, Agree
         numbers = np.array([getattr(one, figure)[0] for one in cycles])
         slopes, scatter = cubic(values - values[4], numbers)
         own = getattr(derivatives, figure)[0, ..., 0]
-        found[figure] = Agreement(own, slopes, scatter, *where.get(figure, (steady[:, None] & loaded[4], rough)))
+        scale = STEPS[name][key] / float(np.nanmax(np.abs(numbers[4])))
+        found[figure] = Agreement(own, slopes, scatter, *where.get(figure, (steady[:, None] & loaded[4], rough)), scale)
     return found
 
 
@@ -263,7 +288,7 @@ def closed_forms(setting: str, cells: int) -> dict[str, tuple[float, Array]]:
 
 
 def rows() -> list[Row]:
-    """Closed forms, and derivatives against analyses; those of other figures than the transmission error are shown."""
+    """Closed forms, and derivatives of all figures against analyses."""
     found = []
     for setting in SETTINGS:
         for what, (expected, values) in closed_forms(setting, GRIDS[0]).items():
@@ -273,17 +298,36 @@ def rows() -> list[Row]:
     for name, cells, key in [
         *((name, GRIDS[0], key) for name, keys in IN_ROWS.items() for key in keys),
         *((name, GRIDS[1], keys[-1]) for name, keys in IN_ROWS.items()),
+        *(("mesh_cycle_helical", cells, TWIST) for cells in OF_TWIST),
     ]:
         for setting in SETTINGS:
-            for figure, one in agreements(name, setting, cells, key).items():
-                quantity = (
-                    f"d {FIGURES[figure]}/d {short(key)} of {PAIRS[name]}, {setting}, {cells} cells: error/largest"
-                )
-                worst, scatter = one.over_largest(one.steady)
-                tolerance = {"transmission_error": ASKED[cells], "root_tension": ASKED[GRIDS[0]]}.get(figure)
-                note = f"standard error of the slope {scatter:.1e}"
-                found.append(Row(CASE, ANALYSES, quantity, 0.0, worst, tolerance, note=note))
+            found += rows_of(name, setting, cells, key)
     return found
+
+
+def rows_of(name: str, setting: str, cells: int, key: str) -> Iterator[Row]:
+    """Every figure by one key: over the largest slope; at edges and kinks over the value of the figure."""
+    for figure, one in agreements(name, setting, cells, key).items():
+        words = f"d {FIGURES[figure]}/d {short(key)} of {PAIRS[name]}, {setting}, {cells} cells"
+        largest, value = "error/largest", "error times step/value"
+        promised = KNOWN.get((figure, name, setting, key), PROMISED.get(figure))
+        if figure == "transmission_error":
+            judged = [(largest, one.over_largest(one.steady), ASKED[cells])]
+        elif figure == "face_load_factor" and key in WITHOUT_KINK:
+            judged = [(largest, one.over_largest(one.steady), OF_FACTOR)]
+        elif figure == "face_load_factor":
+            judged = [(value, one.over_value(one.steady), OVER_VALUE[figure])]
+        elif figure in OVER_VALUE:
+            judged = [
+                (largest, one.over_largest(one.smooth), promised),
+                (f"{value}, at edges", one.over_value(one.steady & one.edge), OVER_VALUE[figure]),
+            ]
+        else:
+            judged = [(largest, one.over_largest(one.steady), promised)]
+        for quantity, (worst, scatter), allowed in judged:
+            if not np.isnan(worst):  # there are such places
+                note = f"standard error of the slope {scatter:.1e}"
+                yield Row(CASE, ANALYSES, f"{words}: {quantity}", 0.0, worst, allowed, note=note)
 
 
 def short(key: str) -> str:
@@ -576,6 +620,12 @@ of a linear relief in one of the nine analyses; errors of both kinds are over th
 
 {of_other_figures()}
 
+Where tooth pairs stay and contacts reach no edge, the derivatives of line loads and peak pressures are within 5 % of
+the largest slope but for those named below, those of load shares within 8 % everywhere. At edges, and for
+K_Hbeta, slopes themselves are small or jump: there the error times the step of the key is at most 1 % of the largest
+line load, 1.5 % of the largest peak pressure and 2.5 % of K_Hbeta. K_Hbeta over the lead crowning and the tip relief,
+which move it without a kink, is within 3 % of the slope.
+
 Three figures have larger errors than the transmission error, and finer grids do not reduce them:
 
 - **Corners.** A tip corner carries a few percent of the load on a few cells at a sharp edge. Its line load and pressure
@@ -583,8 +633,9 @@ Three figures have larger errors than the transmission error, and finer grids do
 - **K_Hbeta** is a maximum over 30 strips. Where two strips have the same force, as in an aligned pair under a
   misalignment, it has a kink: there the derivative is that to one side, and the cubic has the mean of both. Away from
   kinks its slopes through analyses scatter (the numbers in brackets), since cells come and go in a strip.
-- **Peak pressures in a tip relief with bending.** Line loads agree there, the peaks of the spur pair are 10 to 14 % of
-  the largest slope off: 0.8 MPa/um of 440 to 540 MPa. With flanks alone they agree. Why is not known.
+- **Peak pressures in a tip relief with bending.** Line loads agree there, the peaks of the spur pair are 10 to 16 % of
+  the largest slope off: 0.8 MPa/um of 440 to 540 MPa. With flanks alone they agree. Why is not known. Those of the
+  helical pair over the misalignment, flanks alone, are 13 % off on 64 cells and 6 % on 128.
 
 ![Figures of the helical pair over its misalignment: nine analyses and the derivative](sensitivities_analyses.png)
 
