@@ -55,6 +55,8 @@ LEFT_BY_CELLS = 0.05
 """Relative error of a peak times the cells on the pressed part of its rounding, at the most: what all cells of the
 columns leave together, those away from the edge, on which teeth bend, too. Of 38 contacts of mesh cycles none is above
 this, and eight are above what the change from coarser columns says (``docs/studies/rounded_edges_of_gears.md``)."""
+LEFT_BESIDE_CROSSING = 0.12
+"""The same where two edges cross: one of them lies across the columns of the other."""
 PARALLEL = 0.1
 """Sine of the angle between two edges below which they are those of both gears at one end."""
 
@@ -257,7 +259,8 @@ def pressure_at_rounded_edge(
 
     def highest(lines: list[RoundedEdge]) -> PeakAtEdge:
         contact = _ContactAlongEdge(pair, loaded, lines[0], bending, number, free_edges)
-        peaks = [contact.turned_back(one) for one in contact.solved(lines, max(at_least, _by_pressure(best)))]
+        left = LEFT_BESIDE_CROSSING if crossing.issuperset(lines) else LEFT_BY_CELLS
+        peaks = [contact.turned_back(one, left) for one in contact.solved(lines, max(at_least, _by_pressure(best)))]
         top = max(peaks, key=_by_pressure)  # beside a crossing the columns of both edges tell it
         return replace(top, error=max((one.error for one in peaks if one.place == top.place), default=top.error))
 
@@ -348,12 +351,12 @@ class _ContactAlongEdge:
         along, across = (self.turn @ place).tolist()
         return along, across
 
-    def turned_back(self, found: EdgePressure) -> PeakAtEdge:
-        """A peak, its place across and along the contact."""
+    def turned_back(self, found: EdgePressure, left: float) -> PeakAtEdge:
+        """A peak, its place across and along the contact, and its error: at least ``left`` over its cells."""
         if math.isnan(found.pressure):
             return NOT_REACHED
         across, along = (np.array(found.place) @ self.turn).tolist()
-        return PeakAtEdge(found.pressure, (across, along), max(found.error, LEFT_BY_CELLS / found.cells_on_arc))
+        return PeakAtEdge(found.pressure, (across, along), max(found.error, left / found.cells_on_arc))
 
     def solved(self, edges: list[RoundedEdge], at_least: float) -> list[EdgePressure]:
         """Pressures at edges, in a box that holds the contact."""
