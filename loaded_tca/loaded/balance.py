@@ -124,7 +124,8 @@ def _newton_step(
     """Forces (k,) after one step for the pairs under load, and those that come under load or part.
 
     No force falls below a tenth at once. The deformation grows without end over a force that vanishes (or not at all),
-    so that a pair parts once its force is little and the rotation less the coupling does not close it.
+    so that a pair parts once its force is little and the rotation that the heaviest pair asks for, less the coupling,
+    does not close it: that of the step counts on forces below zero.
     """
     load, deformation, exponent = given
     loaded = forces.nonzero()[0]
@@ -138,8 +139,13 @@ def _newton_step(
     target = forces.copy()
     wanted = carried + rotation * by_rotation + by_rest
     target[loaded] = np.minimum(np.maximum(wanted, LARGEST_FALL * carried), torque / lever)
-    deflection = levers[1] * (rotation - separations) - compliance @ target + compliance.diagonal() * target
-    target[(target < LITTLE * target.max()) & (deflection <= 0.0)] = 0.0
+    displaced, heaviest = compliance @ target, int(target.argmax())
+    pressed = deformation[heaviest] * (target[heaviest] / load[heaviest]) ** exponent[heaviest]
+    asked = separations[heaviest] + (pressed + displaced[heaviest]) / levers[1, heaviest]
+    by_others = displaced - compliance.diagonal() * target
+    closed = levers[1] * (asked - separations) > by_others
+    target[(target < LITTLE * target.max()) & ~closed] = 0.0
+    deflection = levers[1] * (rotation - separations) - by_others
     comes = (forces == 0.0) & (deflection > 0.0)
     if comes.any():
         given_force = load[comes] * (deflection[comes] / deformation[comes]) ** (1.0 / exponent[comes])

@@ -50,9 +50,12 @@ def test_no_force_where_nothing_is_closed():
     st.floats(0.0, 1e-6),
 )
 def test_balance_fulfils_torque_and_compatibility(parts, torque, coupling):
-    """Loaded pairs ask for one rotation, those apart for a larger one."""
+    """Loaded pairs ask for one rotation, those apart for a larger one.
+
+    The levers of both gears have one ratio, as on parallel axes: with any others there may be no balance.
+    """
     laws, separations = [part[0] for part in parts], np.array([part[1] for part in parts])
-    levers = np.array([np.linspace(40.0, 60.0, len(laws)), np.linspace(90.0, 80.0, len(laws))])
+    levers = np.outer([1.0, 1.7], np.linspace(40.0, 60.0, len(laws)))
     compliance = np.diag([part[2] for part in parts]) + coupling
     forces = balance(laws, separations, levers, torque, compliance)
     assert (forces >= 0.0).all()
@@ -62,6 +65,15 @@ def test_balance_fulfils_torque_and_compatibility(parts, torque, coupling):
     rotation = asked[forces > 0.0].mean()
     assert_allclose(asked[forces > 0.0], rotation, rtol=1e-6)
     assert (asked[forces == 0.0] >= rotation * (1.0 - 1e-6)).all()
+
+
+def test_pair_that_stays_apart_carries_nothing():
+    """Its force once fell to a tenth in every step and was never zero: the rotation of a step counts it as negative."""
+    laws = [PowerLaw(11.13, 4.645e-4, 0.6995), PowerLaw(5102.9, 1.384e-4, 0.9556)]
+    levers, compliance = np.outer([1.0, 1.7], [40.0, 60.0]), np.array([[0.0, 7.518e-7], [7.518e-7, 9.270e-7]])
+    forces = balance(laws, np.array([7.31e-8, 4.35e-5]), levers, 31.92, compliance)
+    assert forces[1] == 0.0
+    assert_allclose(forces[0], 31.92 / 40.0, rtol=ROUNDING)
 
 
 def test_stiff_neighbour_takes_the_load_of_a_soft_tooth():
