@@ -2,9 +2,11 @@
 
 import importlib
 import pkgutil
+import subprocess
 import sys
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,12 +15,14 @@ import pytest
 import validation
 from loaded_tca.flanks import modification
 from validation import __main__ as programme
-from validation.__main__ import Outcome, run_case, run_cases, times
+from validation import cases
+from validation.cases import Outcome, run_case, run_cases, times
 from validation.face_milled import duplex_paper
 from validation.loaded import limits
 from validation.table import Row, moved, render
 from validation.unloaded import reduced_tca_tables
 
+ROOT = Path(__file__).parents[2]
 # The dissertation's crownings are as thick as a tooth.
 pytestmark = pytest.mark.filterwarnings("ignore:.*is more than 1 mm:loaded_tca.errors.AccuracyWarning")
 
@@ -97,6 +101,21 @@ def test_cases_in_two_processes_have_the_rows_of_one(capsys):
     assert "Traceback" in told
 
 
+def test_command_runs_the_named_cases_in_two_processes():
+    names = ["cylindrical.fzg_c14_geometry", "cylindrical.fzg_c14_root_stress"]
+    done = subprocess.run([sys.executable, "-m", "validation", *names], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert ", 0 beyond the tolerance; " in done.stdout.splitlines()[-1]
+    assert all(f"  {name}\n" in done.stdout for name in names)
+
+
+def test_unknown_case_is_refused(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["validation", "contact.spheres"])
+    with pytest.raises(SystemExit, match="2"):
+        programme.main()
+    assert "no case contact.spheres; there are contact.sphere, " in capsys.readouterr().err
+
+
 class Dying:
     """A pool whose processes die."""
 
@@ -119,7 +138,7 @@ class Dying:
 
 
 def test_case_whose_process_dies_has_failed(monkeypatch):
-    monkeypatch.setattr(programme, "ProcessPoolExecutor", Dying)
+    monkeypatch.setattr(cases, "ProcessPoolExecutor", Dying)
     outcomes = run_cases(["contact.sphere", "cylindrical.sam_paper"], processes=2)
     assert [[row.holds for row in outcome.rows] for outcome in outcomes.values()] == [[False], [False]]
     assert "raised BrokenProcessPool: A process was terminated" in outcomes["contact.sphere"].rows[0].quantity
