@@ -47,6 +47,10 @@ class ContactGrid(Protocol):
     def axes(self) -> Array:
         """Directions across, along and normal to the contact (3, 3), in rows, in the fixed frame."""
 
+    @property
+    def force_line(self) -> Array:
+        """Where across the contact the force of every slice acts (ny,) [mm], from the contact point."""
+
 
 _LINES: WeakKeyDictionary[ContactGrid, dict[int, tuple[FlankLine, FlankLine]]] = WeakKeyDictionary()
 """Lines of the grids, by the numbers of the tooth pairs, on pinion and wheel."""
@@ -92,7 +96,7 @@ class ToothCompliance:
         (ny, ny) array [mm/N]
             Symmetric.
         """
-        distance = np.abs(grid.y[:, None] - grid.y)
+        distance = np.hypot(grid.y[:, None] - grid.y, grid.force_line[:, None] - grid.force_line)
         on_pinion, on_wheel = self.lines(number, grid)
         return self.pinion.within(on_pinion, distance) + self.wheel.within(on_wheel, distance)
 
@@ -139,7 +143,7 @@ def flank_lines(pair: GearPair, number: int, grid: ContactGrid) -> tuple[FlankLi
     grid : Separation or PressureMap
         In the angles of its own tooth: as if it were pair 0.
     """
-    points = grid.origin + grid.y[:, None] * grid.axes[1]
+    points = grid.origin + grid.force_line[:, None] * grid.axes[0] + grid.y[:, None] * grid.axes[1]
     radius, _, axial = pair.to_wheel(points)
     tooth = pair.sense * number
     on_pinion = FlankLine(-tooth, np.hypot(points[:, 0], points[:, 1]), points[:, 2])
