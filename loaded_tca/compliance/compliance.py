@@ -122,7 +122,7 @@ class ToothCompliance:
         return self.pinion.between(there[0], here[0]) + self.wheel.between(there[1], here[1])
 
     def lines(self, number: int, grid: ContactGrid) -> tuple[FlankLine, FlankLine]:
-        """Middles of the slices of a grid on the flanks of pinion and wheel; kept as long as the grid is.
+        """Places of the forces of a grid's slices on the flanks of pinion and wheel; kept as long as the grid is.
 
         Parameters are those of :meth:`within`. Normal forces of the slices at these lines load the roots of the teeth.
         """
@@ -133,7 +133,7 @@ class ToothCompliance:
 
 
 def flank_lines(pair: GearPair, number: int, grid: ContactGrid) -> tuple[FlankLine, FlankLine]:
-    """Middles of the slices of a contact's grid on the flanks of pinion and wheel.
+    """Places on the flanks of pinion and wheel where the forces of the slices of a contact's grid act.
 
     Parameters
     ----------
