@@ -42,6 +42,7 @@ CASES = (
     "loaded.limits",
     "loaded.cut_contacts",
     "loaded.mesh_stiffness",
+    "loaded.bending_line",
     "loaded.local_term",
     "loaded.root_stress",
     "loaded.root_stress_cycle",

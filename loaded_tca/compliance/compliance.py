@@ -47,6 +47,10 @@ class ContactGrid(Protocol):
     def axes(self) -> Array:
         """Directions across, along and normal to the contact (3, 3), in rows, in the fixed frame."""
 
+    @property
+    def force_line(self) -> Array:
+        """Where across the contact the force of every slice acts (ny,) [mm], from the contact point."""
+
 
 _LINES: WeakKeyDictionary[ContactGrid, dict[int, tuple[FlankLine, FlankLine]]] = WeakKeyDictionary()
 """Lines of the grids, by the numbers of the tooth pairs, on pinion and wheel."""
@@ -92,7 +96,7 @@ class ToothCompliance:
         (ny, ny) array [mm/N]
             Symmetric.
         """
-        distance = np.abs(grid.y[:, None] - grid.y)
+        distance = np.hypot(grid.y[:, None] - grid.y, grid.force_line[:, None] - grid.force_line)
         on_pinion, on_wheel = self.lines(number, grid)
         return self.pinion.within(on_pinion, distance) + self.wheel.within(on_wheel, distance)
 
@@ -118,7 +122,7 @@ class ToothCompliance:
         return self.pinion.between(there[0], here[0]) + self.wheel.between(there[1], here[1])
 
     def lines(self, number: int, grid: ContactGrid) -> tuple[FlankLine, FlankLine]:
-        """Middles of the slices of a grid on the flanks of pinion and wheel; kept as long as the grid is.
+        """Places of the forces of a grid's slices on the flanks of pinion and wheel; kept as long as the grid is.
 
         Parameters are those of :meth:`within`. Normal forces of the slices at these lines load the roots of the teeth.
         """
@@ -129,7 +133,7 @@ class ToothCompliance:
 
 
 def flank_lines(pair: GearPair, number: int, grid: ContactGrid) -> tuple[FlankLine, FlankLine]:
-    """Middles of the slices of a contact's grid on the flanks of pinion and wheel.
+    """Places on the flanks of pinion and wheel where the forces of the slices of a contact's grid act.
 
     Parameters
     ----------
@@ -139,7 +143,7 @@ def flank_lines(pair: GearPair, number: int, grid: ContactGrid) -> tuple[FlankLi
     grid : Separation or PressureMap
         In the angles of its own tooth: as if it were pair 0.
     """
-    points = grid.origin + grid.y[:, None] * grid.axes[1]
+    points = grid.origin + grid.force_line[:, None] * grid.axes[0] + grid.y[:, None] * grid.axes[1]
     radius, _, axial = pair.to_wheel(points)
     tooth = pair.sense * number
     on_pinion = FlankLine(-tooth, np.hypot(points[:, 0], points[:, 1]), points[:, 2])

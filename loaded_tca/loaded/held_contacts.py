@@ -110,23 +110,17 @@ def held(
     cells: tuple[int, int],
     boxes: Sequence[tuple[float, float]],
     middles: Sequence[tuple[float, float]],
-    *,
-    free_edges: bool,
 ) -> list[HeldContact]:
-    """Sample contacts in boxes about middles, and meet the flanks there."""
+    """Sample contacts in boxes about middles, and meet the flanks there; ends of teeth are left out."""
     contacts = [one.contact for one in tooth_pairs]
     count = len(contacts)
-    separations, ends = [], []
+    separations = []
     for one in sample_separations(
         pair, contacts, cells=[cells] * count, loads=[None] * count, boxes=boxes, middles=middles
     ):
         if not isinstance(one, Separation):
             raise one
         separations.append(one)
-    for matrix in edge_compliances(pair, separations) if free_edges else [None] * count:
-        if isinstance(matrix, InputError):
-            raise matrix
-        ends.append(matrix)
     found, size = [], max(1, TOGETHER // math.prod(cells))
     for first in range(0, len(contacts), size):
         some = slice(first, first + size)
@@ -136,7 +130,7 @@ def held(
         for k, separation in enumerate(separations[some]):
             there = np.isfinite(separation.cut_gap)
             pinion, wheel = (MetPoints(one.rho[k][there], one.z[k][there], one.steepness[k][there]) for one in points)
-            found.append(HeldContact(tooth_pairs[first + k], separation, there, pinion, wheel, ends[first + k]))
+            found.append(HeldContact(tooth_pairs[first + k], separation, there, pinion, wheel, None))
     return found
 
 
@@ -241,9 +235,10 @@ class HeldContacts:
         """Hold a contact in a larger box from now on."""
         one = self._held[contact]
         middle = float(one.separation.x.mean()), float(one.separation.y.mean())
-        edges = self.scene.analysis.free_edges
-        (larger,) = held(self.pair, [one.tooth_pair], self._cells, [half_lengths], [middle], free_edges=edges)
-        self._held[contact] = larger
+        (larger,) = held(self.pair, [one.tooth_pair], self._cells, [half_lengths], [middle])
+        grid = larger.separation
+        line = np.interp(grid.y, one.separation.y, one.separation.force_line)
+        self._held[contact] = self._on_lines([larger], [replace(grid, force_line=line)])[0]
         if self._slopes is not None:
             self._slopes |= self._slopes_at(self.start, [contact])
 
@@ -264,12 +259,11 @@ class HeldContacts:
         tooth_pairs, pair = tooth_pairs_at(self.mesh, position), self.pair
         heights = (flank.extent[0] for flank in (pair.pinion.flank, pair.wheel.flank))
         box, count = (PROBE_ACROSS * pair.module, math.hypot(pair.face_width, *heights)), len(tooth_pairs)
-        probes = held(pair, tooth_pairs, PROBE, [box] * count, [(0.0, 0.0)] * count, free_edges=False)
+        probes = held(pair, tooth_pairs, PROBE, [box] * count, [(0.0, 0.0)] * count)
         closed = np.zeros((count, *PROBE), dtype=bool)
         for shape in shapes:
-            closed |= self._closed(
-                probes, np.array([one.separation.cut_gap + one.growth(pair, shape) for one in probes])
-            )
+            gaps = np.array([one.separation.cut_gap + one.growth(pair, shape) for one in probes])
+            closed |= self._overlap(probes, gaps) > 0.0
         kept, boxes, middles = [], [], []
         for probe, mask in zip(probes, closed, strict=True):
             if not mask.any():
@@ -283,13 +277,30 @@ class HeldContacts:
             kept.append(probe.tooth_pair)
             boxes.append((float(half[0]), float(0.5 * (top - bottom))))
             middles.append((float(middle[0]), float(0.5 * (top + bottom))))
-        found = held(pair, kept, self._cells, boxes, middles, free_edges=self.scene.analysis.free_edges)
-        return [one for one in found if one.there.any()]  # less than a cell at a corner is none
+        # less than a cell at a corner is none
+        contacts = [one for one in held(pair, kept, self._cells, boxes, middles) if one.there.any()]
+        if not contacts:
+            return []
+        overlaps = self._overlap(contacts, np.array([one.separation.cut_gap for one in contacts]))
+        lines = [one.separation.loaded_by(np.sqrt(part)) for one, part in zip(contacts, overlaps, strict=True)]
+        return self._on_lines(contacts, lines)
 
-    def _closed(self, probes: Sequence[HeldContact], gaps: Array) -> Mask:
-        """Cells (pairs, nx, ny) in contact if strips across carry line loads in proportion to how far they are closed.
+    def _on_lines(self, contacts: Sequence[HeldContact], grids: Sequence[Separation]) -> list[HeldContact]:
+        """The same contacts on the same grids, whose forces act along their lines; with the ends of the teeth there."""
+        ends = edge_compliances(self.pair, grids) if self.scene.analysis.free_edges else [None] * len(grids)
+        for matrix in ends:
+            if isinstance(matrix, InputError):
+                raise matrix
+        return [
+            replace(one, separation=grid, ends=matrix)
+            for one, grid, matrix in zip(contacts, grids, ends, strict=True)
+        ]
 
-        All pairs share the torque. One that only nearly carries load is told as if it did.
+    def _overlap(self, probes: Sequence[HeldContact], gaps: Array) -> Array:
+        """Depth (pairs, nx, ny) [mm] of cells below the edge of the contact, zero beyond it.
+
+        Strips across carry line loads in proportion to how far they are closed, and all pairs share the torque. One that
+        only nearly carries load counts as if it did.
         """
         contacts = [one.tooth_pair.contact for one in probes]
         levers, wheel_levers = np.array([(one.pinion_lever, one.wheel_lever) for one in contacts]).T
@@ -307,7 +318,7 @@ class HeldContacts:
         closing = np.maximum(np.where(carries, level, nearly) - floors, 0.0)
         rise = closing / SLENDER
         depth = gaps - np.where(np.isfinite(lowest), lowest, 0.0)[:, None]
-        return np.asarray((depth <= rise[:, None]) & (closing > 0.0)[:, None])
+        return np.where((closing > 0.0)[:, None], np.maximum(rise[:, None] - depth, 0.0), 0.0)
 
 
 class ShapedContacts:

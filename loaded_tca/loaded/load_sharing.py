@@ -300,8 +300,7 @@ class _Balance:
         self.first_grids = [separation for _, separation in lines]
         found = np.diag([own @ bending.within(*line) @ own for line, own in zip(lines, shares, strict=True)])
         for (i, one), (j, other) in combinations(enumerate(lines), 2):
-            if self._neighbours(i, j):
-                found[i, j] = found[j, i] = shares[i] @ bending.between(one, other) @ shares[j]
+            found[i, j] = found[j, i] = shares[i] @ bending.between(one, other) @ shares[j]
         return found
 
     def _solve(self, index: int, forces: Array) -> Steps[None]:
@@ -379,10 +378,6 @@ class _Balance:
                 found += self._between((index, separation), (n, other.separation)) @ (forces[n] * other.slice_shares)
         return found
 
-    def _neighbours(self, index: int, other: int) -> bool:
-        """Whether two pairs follow each other; farther ones may be neither loaded nor in the model of the teeth."""
-        return abs(self.tooth_pairs[index].pair - self.tooth_pairs[other].pair) == 1
-
     def _between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
         """Deflection (m, n) [mm/N] of the slices of a pair's grid under those of another; one way is the other's."""
         assert self.between is not None
@@ -407,7 +402,6 @@ class _Balance:
             bent = {
                 other: self._between((index, separation), (other, two.separation)) @ two.slice_shares
                 for other, two in loaded_pairs.items()
-                if self._neighbours(index, other)
             }
             distance = separation.cut_gap.min(axis=0)
             for other, displaced in bent.items():

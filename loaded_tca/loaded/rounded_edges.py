@@ -110,12 +110,15 @@ class Columns:
         The contact point in the fixed frame.
     axes : (3, 3) array
         Rows: across, along and normal to the contact.
+    force_line : (ny,) array [mm]
+        Where across the contact the forces act, from the contact point.
     """
 
     y: Array
     widths: Array
     origin: Array
     axes: Array
+    force_line: Array
 
     @property
     def with_material(self) -> Mask:
@@ -407,7 +410,9 @@ class _ContactAlongEdge:
     def slice_compliance(self, middles: Array, widths: Array) -> Array:
         """Deflection of slices under a unit force on each [mm/N], teeth and free edges together."""
         grid = self.loaded.separation
-        slices = Columns(middles / self.along, widths / abs(self.along), grid.origin, grid.axes)
+        along = middles / self.along
+        forces = np.interp(along, grid.y, grid.force_line)
+        slices = Columns(along, widths / abs(self.along), grid.origin, grid.axes, forces)
         found = np.zeros((middles.size, middles.size))
         if self.bending is not None:
             found += self.bending.within(self.number, slices)

@@ -48,7 +48,8 @@ class GridChoice:
     """How finely a contact is resolved: on ``cells`` as given, or on as many as ``accuracy`` needs.
 
     ``free_edges``: whether the tips and faces of the teeth are softer than a half-space. ``agreement``: to which the
-    rotations of the tooth pairs agree, relative; None: as the cells or the accuracy ask for.
+    rotations of the tooth pairs agree, relative; None: as the cells or the accuracy ask for. ``lines_held``: whether
+    the forces of slices bend the teeth where their grid says, instead of at the centres of the pressure.
     """
 
     cells: tuple[int, int] | None = None
@@ -56,6 +57,7 @@ class GridChoice:
     tolerance: float = 1e-6
     free_edges: bool = False
     agreement: float | None = None
+    lines_held: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -337,6 +339,8 @@ def _solve_in_box(
         separation = first
         if first.gap.shape != cells:
             separation = yield Gap(contact, cells, box=first.half_lengths)
+        if start is not None and not grid.lines_held:
+            separation = separation.loaded_by(start)
         displaced = None if coupling is None else coupling(separation)
         bent = None if bending is None else bending.within(number, separation)
         ends = (yield Ends(separation)) if grid.free_edges else None
@@ -345,6 +349,8 @@ def _solve_in_box(
     if grid.cells is not None:
         tolerance = grid.tolerance
         solution = yield from solved(grid.cells, tolerance)
+        if (bending is not None or grid.free_edges) and not grid.lines_held:  # the centres of the slices are known
+            solution = yield from solved(grid.cells, tolerance, solution.pressure)
     else:
         tolerance, expected = min(grid.tolerance, TOLERANCE_SHARE * grid.accuracy), expected_pressure(first)
         across_relief_start = _crosses_relief_start(pair, contact, first, expected)

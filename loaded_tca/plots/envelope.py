@@ -16,7 +16,8 @@ from loaded_tca.plots import style
 from loaded_tca.plots.flanks import ToPicture, both_flanks, colour_scale, loaded_maps
 from loaded_tca.plots.style import COLOURS, chosen_torque, load, range_of_positions
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.results.pressure_map import PressureMap, slice_middles
+from loaded_tca.results.pressure_map import PressureMap
+from loaded_tca.separation import slice_middles
 
 FIELDS = 240
 """Fields of the picture of a flank in each direction, each coloured by the highest pressure in it."""

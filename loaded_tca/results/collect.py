@@ -115,7 +115,7 @@ def mesh_cycle(
 def _pressure_map(loaded: LoadedContact) -> PressureMap:
     grid, solution = loaded.separation, loaded.solution
     gap = np.where(np.isfinite(grid.gap), solution.gap, np.inf)
-    return PressureMap(grid.x, grid.y, grid.spacing, solution.pressure, gap, grid.origin, grid.axes)
+    return PressureMap(grid.x, grid.y, grid.spacing, solution.pressure, gap, grid.origin, grid.axes, grid.force_line)
 
 
 def _is_rough(loaded: LoadedContact) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -89,8 +90,8 @@ def _separations(pair: GearPair, contacts: Sequence[ContactPoint], maps: Sequenc
     for one, bend, cut in zip(maps, bends, ends, strict=True):
         whole, principal = np.ones(one.gap.shape), (bend.across, bend.along)
         place = one.x, one.y, one.spacing, one.origin, one.axes, principal
-        made = next(sampled) if cut else Separation(one.gap, *place, whole, one.gap)
+        made = next(sampled) if cut else Separation(one.gap, *place, whole, one.gap, one.force_line)
         if not isinstance(made, Separation):
             raise made
-        found.append(made)
+        found.append(replace(made, force_line=one.force_line))
     return found

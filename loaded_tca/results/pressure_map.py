@@ -15,24 +15,6 @@ from loaded_tca.arrays import Array, Mask
 from loaded_tca.results.files import Part
 
 
-def slice_middles(x: Array, pressure: Array) -> tuple[Array, Array]:
-    """Slices of a grid that carry load, and where across the contact the middle of their pressure lies.
-
-    Parameters
-    ----------
-    x : (nx,) array [mm]
-        Cell centres across.
-    pressure : (nx, ny) array [MPa]
-
-    Returns
-    -------
-    (n,) array of int, (n,) array [mm]
-    """
-    carrying = np.flatnonzero(pressure.any(axis=0))
-    loaded = pressure[:, carrying]
-    return carrying, x @ loaded / loaded.sum(axis=0)
-
-
 @dataclass(frozen=True, eq=False)
 class PressureMap:
     """Pressure and gap of one tooth pair at one position on its grid.
@@ -51,6 +33,8 @@ class PressureMap:
         The contact point in the fixed frame.
     axes : (3, 3) array
         x, y and the normal out of the pinion, in rows, in the fixed frame.
+    force_line : (ny,) array [mm]
+        Where across the contact the force of every slice bends the teeth: the centre of its pressure.
     """
 
     x: Array
@@ -60,6 +44,7 @@ class PressureMap:
     gap: Array
     origin: Array
     axes: Array
+    force_line: Array
 
     @property
     def borders(self) -> tuple[Array, Array]:
@@ -133,6 +118,7 @@ MAP_PARTS: dict[str, Part] = {
         "deformed gap, infinite where a flank ends before the middle of the cell, NaN beyond the grid",
     ),
     "origin": (("vector",), "mm", "contact point in the fixed frame"),
+    "force_line": (("along",), "mm", "place of the force of each slice across the contact, from the contact point"),
     "axes": (("row", "vector"), "1", "directions across, along and normal out of the pinion, in rows"),
 }
 """Parts of a pressure map; in a file each has the dimensions torque, position and pair before its own."""

@@ -402,8 +402,8 @@ def _shifted(separation: Separation) -> tuple[Separation, float]:
 def _add_shifted_bending(gaps: Array, shifts: Array, tangents: Tangents, bending: BendingModel) -> None:
     """Add to the gaps what teeth bend more under the forces as they are, as contact points move.
 
-    The teeth bend under a contact as under forces on the line through its contact point, which moves across the
-    contact while the grid of the half-spaces is held.
+    The teeth bend under forces at the centres of pressure of the slices, which move across with the contact point while
+    the grid of the half-spaces is held.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 
 import numpy as np
@@ -42,6 +42,24 @@ LOAD_OF_UNLOADED_BOX = 1e-6
 """Load [N] that sizes the box of an unloaded contact: small enough for its smallest gap to be rounding."""
 SLIVER = 0.01
 """Part of a cell that does not count: below it a cell has no material, and one that lacks no more is whole."""
+
+
+def slice_middles(x: Array, pressure: Array) -> tuple[Array, Array]:
+    """Slices of a grid that carry load, and where across the contact the middle of their pressure lies.
+
+    Parameters
+    ----------
+    x : (nx,) array [mm]
+        Cell centres across.
+    pressure : (nx, ny) array [MPa]
+
+    Returns
+    -------
+    (n,) array of int, (n,) array [mm]
+    """
+    carrying = np.flatnonzero(pressure.any(axis=0))
+    loaded = pressure[:, carrying]
+    return carrying, x @ loaded / loaded.sum(axis=0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +85,9 @@ class Separation:
     cut_gap : (nx, ny) array [mm]
         The gap of all cells with some material, +inf in the others: that of the flanks continued to the middle of a
         cell where they end before it.
+    force_line : (ny,) array [mm]
+        Where across the contact the force of every slice acts, from the contact point: the centre of its pressure, as
+        far as one is known; else zero, or the middle of the box.
     """
 
     gap: Array
@@ -78,6 +99,7 @@ class Separation:
     curvatures: tuple[float, float]
     cover: Array
     cut_gap: Array
+    force_line: Array
 
     @property
     def points(self) -> Array:
@@ -103,6 +125,16 @@ class Separation:
     def half_lengths(self) -> tuple[float, float]:
         """Half lengths of the box across and along [mm]."""
         return 0.5 * self.gap.shape[0] * self.spacing[0], 0.5 * self.gap.shape[1] * self.spacing[1]
+
+    def loaded_by(self, pressure: Array) -> Separation:
+        """Return the same grid, its forces at the centres of a pressure (nx, ny); as it is where there is none.
+
+        Slices without pressure take the place of the nearest ones between or beside which they lie.
+        """
+        carrying, middles = slice_middles(self.x, pressure)
+        if not carrying.size:
+            return self
+        return replace(self, force_line=np.interp(self.y, self.y[carrying], middles))
 
     def __repr__(self) -> str:
         nx, ny = self.gap.shape
@@ -251,7 +283,8 @@ def _sampled(
     for k, (contact, curvature, (dx, dy)) in enumerate(zip(contacts, curvatures, spacings.tolist(), strict=True)):
         principal = curvature.across, curvature.along
         grid, origin = (whole[k].copy(), x[k], y[k], (dx, dy)), contact.point.copy()
-        yield Separation(*grid, origin, curvature.axes, principal, covers[k].copy(), cut[k].copy())
+        line = np.full(y.shape[1], middles[k, 0])
+        yield Separation(*grid, origin, curvature.axes, principal, covers[k].copy(), cut[k].copy(), line)
 
 
 def _covers(distances: list[Array], spacings: Array) -> Array:

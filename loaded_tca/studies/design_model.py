@@ -209,6 +209,7 @@ class DesignModel:
             tolerance=self.tolerance,
             free_edges=self.scene.analysis.free_edges,
             agreement=AGREEMENT * self.tolerance,
+            lines_held=True,
         )
         states = list(np.ndindex(len(self.held), self.torques.size, self.positions))
         found: dict[tuple[int, ...], tuple[float, SharedLoad]] = {}
@@ -494,7 +495,7 @@ def root_tension_norm(tension: Array) -> float:
 
 def _map_of(grid: LoadedGrid) -> PressureMap:
     one = grid.separation
-    return PressureMap(one.x, one.y, one.spacing, grid.pressure, one.gap, one.origin, one.axes)
+    return PressureMap(one.x, one.y, one.spacing, grid.pressure, one.gap, one.origin, one.axes, one.force_line)
 
 
 def mean_pressure_norm(positions: Sequence[Sequence[PressureMap]], *, at_edges: bool) -> tuple[float, list[Array]]:

@@ -76,6 +76,22 @@ def matrix(compliance, grids_by_pair):
     )
 
 
+def test_bending_does_not_depend_on_the_axes_of_the_grid():
+    """The same forces at the same places, on a grid whose slices lie along them and on one turned by ten degrees."""
+    compliance, turn = made(20.0), math.radians(10.0)
+    (straight,) = grids(compliance, 0.0)
+    turned_axes = straight.axes.copy()
+    turned_axes[0] = math.cos(turn) * straight.axes[0] - math.sin(turn) * straight.axes[1]
+    turned_axes[1] = math.sin(turn) * straight.axes[0] + math.cos(turn) * straight.axes[1]
+    askew = replace(
+        straight, axes=turned_axes, y=straight.y * math.cos(turn), force_line=-straight.y * math.sin(turn)
+    )
+    assert_allclose(compliance.within(0, askew), compliance.within(0, straight), rtol=ROUNDING)
+    (next_pair,) = grids(compliance, 0.5)
+    one, other = (compliance.between((0, grid), (1, next_pair)) for grid in (askew, straight))
+    assert_allclose(one, other, rtol=ROUNDING)
+
+
 def test_stiffness_of_a_tooth_pair_is_that_of_the_standard():
     """ISO 6336-1: 0.8 c'_th in single contact, N/(mm um)."""
     compliance = made()
