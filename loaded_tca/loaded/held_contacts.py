@@ -292,8 +292,7 @@ class HeldContacts:
             if isinstance(matrix, InputError):
                 raise matrix
         return [
-            replace(one, separation=grid, ends=matrix)
-            for one, grid, matrix in zip(contacts, grids, ends, strict=True)
+            replace(one, separation=grid, ends=matrix) for one, grid, matrix in zip(contacts, grids, ends, strict=True)
         ]
 
     def _overlap(self, probes: Sequence[HeldContact], gaps: Array) -> Array:

@@ -33,8 +33,8 @@ from loaded_tca.plots.style import (
 )
 from loaded_tca.results.load_factors import strip_borders, strip_forces
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.separation import slice_middles
 from loaded_tca.results.summary import signed
+from loaded_tca.separation import slice_middles
 from loaded_tca.unloaded.contact_span import contact_span, path_letters, roll_lengths_of_flanks
 
 WHAT_LETTERS_ARE = {

@@ -25,8 +25,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.separation import slice_middles
-from loaded_tca.separation import Separation
+from loaded_tca.separation import Separation, slice_middles
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import ContactPoint
 

@@ -83,9 +83,7 @@ def test_bending_does_not_depend_on_the_axes_of_the_grid():
     turned_axes = straight.axes.copy()
     turned_axes[0] = math.cos(turn) * straight.axes[0] - math.sin(turn) * straight.axes[1]
     turned_axes[1] = math.sin(turn) * straight.axes[0] + math.cos(turn) * straight.axes[1]
-    askew = replace(
-        straight, axes=turned_axes, y=straight.y * math.cos(turn), force_line=-straight.y * math.sin(turn)
-    )
+    askew = replace(straight, axes=turned_axes, y=straight.y * math.cos(turn), force_line=-straight.y * math.sin(turn))
     assert_allclose(compliance.within(0, askew), compliance.within(0, straight), rtol=ROUNDING)
     (next_pair,) = grids(compliance, 0.5)
     one, other = (compliance.between((0, grid), (1, next_pair)) for grid in (askew, straight))

@@ -78,7 +78,7 @@ def image_of(angle, distances, apart, reach, material=Material(206000.0, 0.3)):
 
 def added_at(pair, grid, y, width=0.02):
     """Entries of narrow slices at places along a contact [mm/N]."""
-    columns = Columns(np.array(y), np.full(len(y), width), grid.origin, grid.axes)
+    columns = Columns(np.array(y), np.full(len(y), width), grid.origin, grid.axes, np.zeros(len(y)))
     return edge_compliances(pair, [columns])[0]
 
 
@@ -155,8 +155,8 @@ def test_ends_of_equal_faces_soften_both_ends_alike():
 def test_slices_may_be_listed_towards_either_end():
     pair = pair_of()
     grid = grid_of(pair, box=(0.3, 6.375))
-    turned = Columns(grid.y[::-1], grid.widths[::-1], grid.origin, grid.axes)
-    forth = Columns(grid.y, grid.widths, grid.origin, grid.axes)
+    turned = Columns(grid.y[::-1], grid.widths[::-1], grid.origin, grid.axes, grid.force_line[::-1])
+    forth = Columns(grid.y, grid.widths, grid.origin, grid.axes, grid.force_line)
     added, back = (edge_compliances(pair, [one])[0] for one in (forth, turned))
     assert added.any()
     assert_allclose(back[::-1, ::-1], added, rtol=1e-9, atol=1e-12 * added.max())  # atol: slices far from the end

@@ -284,6 +284,30 @@ def test_pair_comes_under_load_where_its_neighbour_bends_it_towards_the_mate(par
     assert len(found.shares) == carrying
 
 
+class Recorded(Springs):
+    """Springs that keep of which pairs they were asked."""
+
+    def __init__(self, own, coupling):
+        super().__init__(own, coupling)
+        self.numbers = []
+
+    def within(self, number, separation, edges=()):
+        self.numbers.append(number)
+        return super().within(number, separation, edges)
+
+
+def test_pair_two_pitches_away_is_kept_apart_by_what_all_pairs_share():
+    """The bodies turn under any pair's load by as much below the others, so that the far pair is never closed."""
+    pair, own = spur(), 1e-5
+    first, second = sorted(tooth_pairs_at(trace_teeth(pair, [-0.9 * CENTRE]), 0), key=lambda one: one.pair)
+    first = replace(first, initial_separation=0.0)
+    turn = own * (TORQUE / first.contact.pinion_lever) / first.contact.wheel_lever
+    far, bending = replace(second, pair=first.pair + 2, initial_separation=0.5 * turn), Recorded(own, own)
+    found = share_load(pair, (first, far), TORQUE, GRID, bending=bending)
+    assert [share.tooth_pair.pair for share in found.shares] == [first.pair]
+    assert bending.numbers.count(far.pair) == 1  # of the first compliance; it was never solved
+
+
 class Restless:
     """Teeth that are softer or stiffer every time they are asked."""
 

@@ -15,7 +15,7 @@ from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.material import Material
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.reference import hertz
-from loaded_tca.separation import sample_separation
+from loaded_tca.separation import sample_separation, slice_middles
 from loaded_tca.unloaded import trace_teeth
 from tests.samples.gear_pairs import SAM_PAPER_TORQUE, cylindrical_mesh, gear_pair, sam_paper
 from tests.samples.tangents import stiffness
@@ -23,6 +23,8 @@ from tests.samples.tangents import stiffness
 BALANCE = 1e-10
 HERTZ = 5e-3  # the flanks are no paraboloids over an ellipse as long as the face
 GRID = GridChoice(cells=(32, 32))
+ROUNDING = 1e-12  # the same few products again
+CENTRED = 0.02  # of the box: half a cell of the grid before the last one
 
 
 def solved(pair, load, turn=0.0, grid=GRID):
@@ -269,3 +271,51 @@ def test_central_pressure_is_the_peak_of_a_smooth_contact():
 def test_edge_contact_has_its_peak_at_the_edge():
     loaded = solved(CASES["edge"](), 2700.0)
     assert_allclose(loaded.peak_place[1], 12.5, atol=2.0 * loaded.separation.spacing[1])
+
+
+class Arm:
+    """Teeth that are softer the farther across the contact a force acts, as they are towards their tips."""
+
+    softness, arm = 1e-6, 2.0
+
+    def within(self, number, grid):
+        assert number == 0
+        height = 1.0 + grid.force_line / self.arm
+        return self.softness * np.outer(height, height)
+
+    def between(self, at, under):
+        raise AssertionError("there is one pair")
+
+
+@pytest.mark.parametrize("grid", [GRID, GridChoice(accuracy=1e-2), GridChoice(cells=(32, 32), free_edges=True)])
+def test_forces_of_slices_bend_the_tooth_at_the_centres_of_their_pressure(grid):
+    """The contact point stands on the start of a relief: the pressure lies on one side of it, and askew on its grid."""
+    relieved = FlankModifications(tip_relief=0.02, tip_relief_start=106.0, helix_slope=0.004, lead_crowning=0.005)
+    pair = gear_pair(relieved, teeth=(34, 57), helix_deg=15.0)
+    path = trace_contact(pair, np.linspace(-0.5, 0.5, 9) * pair.pitch)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        solved_contacts = [solve_under_load(pair, path[n], 2700.0, grid, Arm()) for n in range(len(path))]
+    offsets = []
+    for loaded in solved_contacts:
+        carrying, centres = slice_middles(loaded.separation.x, loaded.solution.pressure)
+        force, width = loaded.slice_force[carrying], np.ptp(loaded.separation.x)
+        beside = np.abs(loaded.separation.force_line[carrying] - centres)
+        assert force @ beside / force.sum() < CENTRED * width
+        offsets.append(np.abs(centres).max() / width)
+        assert_allclose(loaded.bending, Arm().within(0, loaded.separation), rtol=ROUNDING)
+    assert max(offsets) > 0.1, "else it would not matter where the forces act"
+
+
+def test_slices_without_pressure_have_the_place_of_those_beside_them():
+    separation = solved(sam_paper(), 2700.0).separation
+    pressure = np.zeros(separation.gap.shape)
+    pressure[3, 10], pressure[[5, 7], 14] = 100.0, (100.0, 300.0)
+    line = separation.loaded_by(pressure).force_line
+    x = separation.x
+    assert_allclose(
+        line[[0, 10, 12, 14, -1]],
+        [x[3], x[3], 0.5 * (x[3] + x[6] + 0.5 * (x[7] - x[6])), x[6] + 0.5 * (x[7] - x[6]), x[6] + 0.5 * (x[7] - x[6])],
+        rtol=ROUNDING,
+    )
+    assert separation.loaded_by(np.zeros(pressure.shape)) is separation
