@@ -205,7 +205,6 @@ def test_check_of_a_spur_pair_names_no_hand(run):
 @pytest.mark.usefixtures("blank_pictures")
 def test_edge_contact_warns_once_and_exits_0(run):
     text = (SCENES / "misaligned.toml").read_text(encoding="utf-8").replace("positions = 21", "positions = 3")
-    text = text.replace("accuracy = 1e-3", "accuracy = 1e-2")
     Path("edge.toml").write_text(text, encoding="utf-8")
     code, out, err = run("run", "edge.toml", "--out", "out")
     assert code == 0
