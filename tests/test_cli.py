@@ -70,7 +70,9 @@ def test_demo_goes_where_it_is_told(run):
     assert out.rstrip().endswith("loaded-tca run else/where/scene.toml --out my-pair")
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_demo_has_nothing_to_warn_of(run):
+    """With its pictures, too: tests/test_release.py."""
     _, out, err = run("demo")
     assert err == []
     assert "note:" not in out

@@ -109,7 +109,7 @@ def test_study_on_a_cluster_follows_hertz(tmp_path, monkeypatch):
 @pytest.mark.filterwarnings("ignore::loaded_tca.errors.AccuracyWarning")  # contacts that reach an edge
 @pytest.mark.parametrize(("name", "quieter"), [("design_helical", 0.76), ("design_bevel", 0.67)])
 def test_designed_pair_is_quieter(name, quieter, tmp_path, monkeypatch):
-    """By the whole analysis, on average and in its scatter; bounds 2 to 4 % above what 20 steps of the searches find."""
+    """By the whole analysis, on average and in its scatter; bounds 2 to 4 % above what 20 steps end at."""
     monkeypatch.setattr("loaded_tca.studies.design.MOST_ITERATIONS", 20)
     monkeypatch.chdir(tmp_path)
     example = loaded(EXAMPLES / f"{name}.py")
