@@ -491,11 +491,13 @@ def test_process_ends_with_the_exit_code():
 
 WITHOUT_PICTURES = """
 import sys
-import loaded_tca.plots
+from types import SimpleNamespace
 from loaded_tca.__main__ import main
-loaded_tca.plots.plot_all = lambda *_, **__: ()
+nothing = SimpleNamespace(PICTURES=(), MORE_PICTURES=(), plot_all=lambda *_, **__: ())
+sys.modules["loaded_tca.plots"] = nothing
 sys.exit(main())
 """
+"""A process that imports nothing to draw with."""
 
 
 def command_of(*arguments):
