@@ -1,5 +1,6 @@
 """What every test shares: NaN stops at once, pictures go to no screen, random numbers are seeded."""
 
+import gc
 import itertools
 import os
 import signal
@@ -24,6 +25,13 @@ LONG = ("tests/test_site.py", "tests/test_examples.py", "tests/test_release.py",
 def pytest_collection_modifyitems(items):
     """Put long tests first: none is the last, for which other workers wait."""
     items.sort(key=lambda item: not item.nodeid.startswith(LONG))
+
+
+def pytest_collection_finish():
+    """Look for garbage seldom, and only in what tests make: modules stay."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(50_000, 20, 50)
 
 
 def pytest_configure():

@@ -70,7 +70,9 @@ def test_demo_goes_where_it_is_told(run):
     assert out.rstrip().endswith("loaded-tca run else/where/scene.toml --out my-pair")
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_demo_has_nothing_to_warn_of(run):
+    """With its pictures, too: tests/test_release.py."""
     _, out, err = run("demo")
     assert err == []
     assert "note:" not in out
@@ -152,7 +154,7 @@ def test_run_leaves_no_picture_of_an_earlier_scene(run):
     assert set(os.listdir("out")) == REPORT | PICTURES
 
 
-def test_plot_draws_another_torque_and_position(run, refused):
+def test_plot_draws_another_torque_and_position(run, refused, request):
     changes = {"positions = 21": "positions = 3\ntorques_Nm = [20.0, 40.0]"}
     run("run", scene(**changes), "--out", "out")
     before = Path("out", "pressure_map.png").read_bytes()
@@ -160,6 +162,7 @@ def test_plot_draws_another_torque_and_position(run, refused):
     own = {"torque_20_Nm_position_2", "torque_20_Nm", "position_2"}
     for options in (("--torque", 20, "--position", 2), ("--torque", 20), ("--position", 2)):
         assert run("plot", "out", *options)[0] == 0
+        request.getfixturevalue("blank_pictures")  # of the others only the names are asked for
     assert set(os.listdir("out")) == REPORT | PICTURES | own | {"pressure_map_edge.png"}
     assert Path("out", "pressure_map.png").read_bytes() == before
     assert Path("out", "torque_20_Nm_position_2", "pressure_map.png").read_bytes() != before
@@ -185,13 +188,14 @@ def test_check_tells_teeth_that_overlap(run):
 
 
 @pytest.mark.parametrize("name", ["straight_bevel", "spiral_bevel"])
-def test_bevel_scene_is_run_and_drawn_as_any_other(run, name):
+def test_bevel_scene_is_run_and_drawn_as_any_other(run, name, request):
     text = (SCENES / f"{name}.toml").read_text(encoding="utf-8")
     text = text.replace("positions = 21", f"positions = 2\ncells = [16, 16]{ONE_PAIR}")
     Path("quick.toml").write_text(text, encoding="utf-8")
     code, _, err = run("run", "quick.toml", "--out", "out")
     assert (code, err) == (0, [])
     assert set(os.listdir("out")) == REPORT | PICTURES
+    request.getfixturevalue("blank_pictures")
     assert run("plot", "out", "--position", 1, "--out", "again")[0] == 0
     assert set(os.listdir("again")) == PICTURES
 
@@ -200,6 +204,7 @@ def test_check_of_a_spur_pair_names_no_hand(run):
     assert "none          none" in run("check", SCENES / "spur.toml")[1]
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_edge_contact_warns_once_and_exits_0(run):
     text = (SCENES / "misaligned.toml").read_text(encoding="utf-8").replace("positions = 21", "positions = 3")
     Path("edge.toml").write_text(text, encoding="utf-8")
@@ -211,6 +216,7 @@ def test_edge_contact_warns_once_and_exits_0(run):
     assert "note: at 3 of 3 positions the contact reaches an edge" in out
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_no_load_exits_0(run):
     changes = {"pinion_torque_Nm = 130.0": "pinion_torque_Nm = 0.0"}
     assert run("run", scene(**changes), "--out", "out")[0] == 0
@@ -483,10 +489,26 @@ def test_process_ends_with_the_exit_code():
     assert done.stderr.count(b"\n") == 1
 
 
+WITHOUT_PICTURES = """
+import sys
+from types import SimpleNamespace
+from loaded_tca.__main__ import main
+nothing = SimpleNamespace(PICTURES=(), MORE_PICTURES=(), plot_all=lambda *_, **__: ())
+sys.modules["loaded_tca.plots"] = nothing
+sys.exit(main())
+"""
+"""A process that imports nothing to draw with."""
+
+
+def command_of(*arguments):
+    """The command; where it would draw, without the pictures, which take the most time."""
+    start = ["-c", WITHOUT_PICTURES] if "run" in arguments else ["-m", "loaded_tca"]
+    return [sys.executable, *start, *map(str, arguments)]
+
+
 def in_a_shell(redirected, *arguments):
     """Exit code and lines of standard error of the command with its streams redirected by a shell."""
-    text = f'"$@" {redirected}'
-    command = ["sh", "-c", text, "sh", sys.executable, "-m", "loaded_tca", *map(str, arguments)]
+    command = ["sh", "-c", f'"$@" {redirected}', "sh", *command_of(*arguments)]
     done = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False, timeout=HANGS)
     return done.returncode, done.stderr.splitlines()
 
@@ -514,8 +536,7 @@ def test_standard_error_that_cannot_be_written_leaves_the_exit_code(redirected):
 @pytest.mark.parametrize("arguments", [["check", HELICAL], ["run", "quick.toml", "--out", "out"]])
 def test_closed_pipe_is_no_fault(arguments):
     scene()
-    command = [sys.executable, "-m", "loaded_tca", *arguments]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen(command_of(*arguments), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         process.stdout.close()
         assert process.stderr.read() == ""
         assert process.wait() == 0

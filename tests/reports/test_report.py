@@ -91,20 +91,18 @@ def page(path):
 
 
 DRAWN = {}
-"""Drawings of the one picture by its title."""
+"""Drawings of pictures by their names and titles."""
 
 
 @pytest.fixture
 def with_one_picture(monkeypatch):
-    """Of a result, drawn once for all tests: most of the time goes into pictures."""
+    """Of a result; each of the same name and title is drawn once for all tests: most of the time goes into pictures."""
     draw = report_page.svg_of
 
     def drawn(figure, prefix, title):
-        if prefix != "transmission-error":
-            return draw(figure, prefix, title)
-        if title not in DRAWN:
-            DRAWN[title] = draw(figure, prefix, title)
-        return DRAWN[title]
+        if (prefix, title) not in DRAWN:
+            DRAWN[prefix, title] = draw(figure, prefix, title)
+        return DRAWN[prefix, title]
 
     monkeypatch.setattr(report_page, "svg_of", drawn)
     monkeypatch.setattr(
@@ -334,9 +332,9 @@ def test_pictures_do_not_use_each_other_s_parts(page):
     assert used <= set(ids)
 
 
-def test_equal_images_of_a_picture_have_no_common_id(written):
+def test_equal_images_of_a_picture_have_no_common_id(tmp_path):
     """Heat maps under two torques have the same colour bar."""
-    page = written(grid(torques=(40.0, 80.0)))
+    page = Page(write_html_report(grid(torques=(40.0, 80.0)), tmp_path / "report.html"))
     ids = [value for _, name, value in page.attributes if name == "id"]
     assert len(ids) > 100
     assert len(ids) == len(set(ids))
@@ -646,6 +644,7 @@ def test_command_takes_a_file_and_a_place(kept, capsys):
     assert [path.name for path in (kept / "elsewhere").iterdir()] == ["mine.html"]
 
 
+@pytest.mark.usefixtures("with_one_picture")
 def test_command_takes_studies_and_designs(tmp_path, monkeypatch):
     from loaded_tca.results.files import write_dataset
 

@@ -4,6 +4,7 @@ import pickle
 import re
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -28,6 +29,8 @@ SCENE = read_scene(SCENES / "mesh_cycle_helical.toml").with_changes(
 )
 CROWNING, SLOPE = "pinion.modifications.lead_crowning_um", "wheel.modifications.helix_slope_um"
 RELIEF = "pinion.modifications.tip_relief_um"
+COARSE = SCENE.with_changes({"analysis.positions": 4})
+"""For searches of which the way is judged, not the design: on few cells."""
 VARIABLES = {CROWNING: (1.0, 12.0), SLOPE: (-10.0, 10.0), RELIEF: (0.0, 30.0)}
 MISALIGNMENT = "mounting.misalignment_um"
 SCATTER = {MISALIGNMENT: [-6.0, 6.0]}
@@ -53,7 +56,8 @@ def beside():
 def found():
     """A design under a limit that holds at the optimum, too."""
     told = []
-    result = optimise(model(), limits={"face_load_factor": {130e3: 1.9}}, progress=lambda *one: told.append(one))
+    with patch.object(designs, "MOST_ITERATIONS", 12):
+        result = optimise(model(), limits={"face_load_factor": {130e3: 1.9}}, progress=lambda *one: told.append(one))
     return result, told
 
 
@@ -239,7 +243,7 @@ def test_starts_and_analyses_on_an_executor(found):
 
     To 2 %: each search grows grids of its own.
     """
-    with ThreadPoolExecutor(2) as executor:
+    with ThreadPoolExecutor(2) as executor, patch.object(designs, "MOST_ITERATIONS", 12):
         result = optimise(model(), limits={"face_load_factor": {130e3: 1.9}}, starts=2, executor=executor)
     assert result.held_objective[1] <= found[0].held_objective[1] * 1.02
     assert result.evaluations > found[0].evaluations
@@ -342,9 +346,10 @@ test_a_search_that_cannot_be_is_refused = refusals(
 )
 
 
-def test_a_limit_that_no_design_meets_is_told():
+def test_a_limit_that_no_design_meets_is_told(monkeypatch):
     """Hertz's pressure of a line is above 500 MPa."""
-    one = model(variables={CROWNING: (1.0, 12.0)}, scatter=None)
+    monkeypatch.setattr(designs, "MOST_ITERATIONS", 8)
+    one = model(variables={CROWNING: (1.0, 12.0)}, scatter=None, cells=(8, 12), scene=COARSE)
     with pytest.raises(
         InputError, match=r"pressure_MPa: no design found meets 300; at the best one it is \d+.*lead_crow"
     ):
@@ -353,7 +358,7 @@ def test_a_limit_that_no_design_meets_is_told():
 
 def test_an_optimum_that_the_analysis_does_not_confirm_is_an_error(monkeypatch):
     """An analysis that finds the same for all designs confirms none."""
-    one = model(variables={CROWNING: (1.0, 12.0)}, scatter=None)
+    one = model(variables={CROWNING: (1.0, 12.0)}, scatter=None, cells=(8, 12), scene=COARSE)
     start = designs._analysed(one.scenes(one.start)[0])
     monkeypatch.setattr(designs, "_analysed", lambda _: dict(start))
     with pytest.raises(
