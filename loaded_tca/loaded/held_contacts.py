@@ -298,8 +298,8 @@ class HeldContacts:
     def _overlap(self, probes: Sequence[HeldContact], gaps: Array) -> Array:
         """Depth (pairs, nx, ny) [mm] of cells below the edge of the contact, zero beyond it.
 
-        Strips across carry line loads in proportion to how far they are closed, and all pairs share the torque. One that
-        only nearly carries load counts as if it did.
+        Strips across carry line loads in proportion to how far they are closed, and all pairs share the torque. A pair
+        that only nearly carries load counts as if it did.
         """
         contacts = [one.tooth_pair.contact for one in probes]
         levers, wheel_levers = np.array([(one.pinion_lever, one.wheel_lever) for one in contacts]).T

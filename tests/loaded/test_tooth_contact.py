@@ -283,9 +283,6 @@ class Arm:
         height = 1.0 + grid.force_line / self.arm
         return self.softness * np.outer(height, height)
 
-    def between(self, at, under):
-        raise AssertionError("there is one pair")
-
 
 @pytest.mark.parametrize("grid", [GRID, GridChoice(accuracy=1e-2), GridChoice(cells=(32, 32), free_edges=True)])
 def test_forces_of_slices_bend_the_tooth_at_the_centres_of_their_pressure(grid):

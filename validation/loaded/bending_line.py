@@ -42,7 +42,7 @@ def _rows(cells: tuple[int, int], tolerance: float, of_orders: float) -> list[Ro
         result = analyse(scene)
     radius = 1e3 * scene.pair().base_radii[1]
     error, amplitudes = radius * result.transmission_error[0], radius * result.harmonics(3)[0]
-    grid = f"{cells[0]} x {cells[1]} cells"
+    grid, step = f"{cells[0]} x {cells[1]} cells", float(abs(np.diff(error)).max())
     rows = [
         Row(CASE, SOURCE, f"peak to peak of TE, {grid} [um]", PEAK_TO_PEAK, float(np.ptp(error)), tolerance),
         Row(
