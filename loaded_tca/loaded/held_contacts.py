@@ -288,12 +288,12 @@ class HeldContacts:
     def _on_lines(self, contacts: Sequence[HeldContact], grids: Sequence[Separation]) -> list[HeldContact]:
         """The same contacts on the same grids, whose forces act along their lines; with the ends of the teeth there."""
         ends = edge_compliances(self.pair, grids) if self.scene.analysis.free_edges else [None] * len(grids)
-        for matrix in ends:
+        on_lines = []
+        for contact, grid, matrix in zip(contacts, grids, ends, strict=True):
             if isinstance(matrix, InputError):
                 raise matrix
-        return [
-            replace(one, separation=grid, ends=matrix) for one, grid, matrix in zip(contacts, grids, ends, strict=True)
-        ]
+            on_lines.append(replace(contact, separation=grid, ends=matrix))
+        return on_lines
 
     def _overlap(self, probes: Sequence[HeldContact], gaps: Array) -> Array:
         """Depth (pairs, nx, ny) [mm] of cells below the edge of the contact, zero beyond it.
