@@ -41,6 +41,20 @@ FAULTS = (
         f"{FREE_EDGES}::test_tip_counts_by_the_angle_of_its_material",
     ),
     Fault(
+        "bending: forces act on the axis of the grid",
+        "separation/sample.py",
+        "return replace(self, force_line=np.interp(self.y, self.y[carrying], middles))",
+        "return self",
+        "loaded/test_tooth_contact.py::test_forces_of_slices_bend_the_tooth_at_the_centres_of_their_pressure",
+    ),
+    Fault(
+        "bending: the distance of places counts along the axis of the grid alone",
+        "compliance/compliance.py",
+        "np.hypot(grid.y[:, None] - grid.y, grid.force_line[:, None] - grid.force_line)",
+        "np.abs(grid.y[:, None] - grid.y)",
+        "compliance/test_compliance.py::test_bending_does_not_depend_on_the_axes_of_the_grid",
+    ),
+    Fault(
         "free edges: the same at helical ends",
         "loaded/free_edges.py",
         "np.arccos(np.clip(cosine, -1.0, 1.0))",
