@@ -71,6 +71,11 @@ class ToothCompliance:
     wheel: GearCompliance
 
     @property
+    def neighbours(self) -> int:
+        """How many pitches two loaded tooth pairs may be apart."""
+        return min(self.pinion.neighbours, self.wheel.neighbours)
+
+    @property
     def body_torsion(self) -> tuple[float, float]:
         """Twist of the gear body between bore and root of pinion and wheel [mm/N].
 

@@ -104,9 +104,7 @@ class Slices(ContactGrid, Protocol):
 
 def edge_compliances(pair: GearPair, grids: Sequence[Slices]) -> list[Array | InputError | None]:
     """Return :func:`edge_compliance` of many grids, found together; an error stands in the place of what raises it."""
-    points = np.concatenate(
-        [one.origin + one.force_line[:, None] * one.axes[0] + one.y[:, None] * one.axes[1] for one in grids]
-    )
+    points = np.concatenate([one.origin + one.y[:, None] * one.axes[1] for one in grids])
     there = np.concatenate([one.with_material for one in grids])
     slices, problems = _Slices.of(grids), dict[int, InputError]()
     radius, _, axial = pair.to_wheel(points)

@@ -139,6 +139,7 @@ class _HeldBending:
 
     def __init__(self, model: BendingModel) -> None:
         self._model = model
+        self.neighbours = model.neighbours
         self._known: dict[tuple[int, ...], tuple[tuple[Array, ...], Array]] = {}
 
     def within(self, number: int, grid: ContactGrid) -> Array:

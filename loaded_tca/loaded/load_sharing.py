@@ -300,7 +300,8 @@ class _Balance:
         self.first_grids = [separation for _, separation in lines]
         found = np.diag([own @ bending.within(*line) @ own for line, own in zip(lines, shares, strict=True)])
         for (i, one), (j, other) in combinations(enumerate(lines), 2):
-            found[i, j] = found[j, i] = shares[i] @ bending.between(one, other) @ shares[j]
+            if self._coupled(i, j):
+                found[i, j] = found[j, i] = shares[i] @ bending.between(one, other) @ shares[j]
         return found
 
     def _solve(self, index: int, forces: Array) -> Steps[None]:
@@ -378,6 +379,11 @@ class _Balance:
                 found += self._between((index, separation), (n, other.separation)) @ (forces[n] * other.slice_shares)
         return found
 
+    def _coupled(self, index: int, other: int) -> bool:
+        """Whether both pairs are in the model of the teeth; of those that are not, one may be loaded."""
+        apart = abs(self.tooth_pairs[index].pair - self.tooth_pairs[other].pair)
+        return self.bending is not None and apart <= self.bending.neighbours
+
     def _between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
         """Deflection (m, n) [mm/N] of the slices of a pair's grid under those of another; one way is the other's."""
         assert self.between is not None
@@ -402,6 +408,7 @@ class _Balance:
             bent = {
                 other: self._between((index, separation), (other, two.separation)) @ two.slice_shares
                 for other, two in loaded_pairs.items()
+                if self._coupled(index, other)
             }
             distance = separation.cut_gap.min(axis=0)
             for other, displaced in bent.items():

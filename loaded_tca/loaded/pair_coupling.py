@@ -18,6 +18,10 @@ class BendingModel(Protocol):
     are cells of one place along the contact.
     """
 
+    @property
+    def neighbours(self) -> int:
+        """How many pitches two loaded tooth pairs may be apart."""
+
     def within(self, number: int, grid: ContactGrid) -> Array:
         """Deflection of every slice under a unit force on each, (ny, ny) [mm/N], symmetric.
 

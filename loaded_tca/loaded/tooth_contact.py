@@ -349,7 +349,7 @@ def _solve_in_box(
     if grid.cells is not None:
         tolerance = grid.tolerance
         solution = yield from solved(grid.cells, tolerance)
-        if (bending is not None or grid.free_edges) and not grid.lines_held:  # the centres of the slices are known
+        if bending is not None and not grid.lines_held:  # once more, now that the centres of the slices are known
             solution = yield from solved(grid.cells, tolerance, solution.pressure)
     else:
         tolerance, expected = min(grid.tolerance, TOLERANCE_SHARE * grid.accuracy), expected_pressure(first)
@@ -359,6 +359,8 @@ def _solve_in_box(
             return not (across_relief_start or _reaches_arc(pair, separation, solution.pressure_on_material))
 
         solution, _ = yield from refinement(solved, grid.accuracy, grid.tolerance, smooth, FIRST_CELLS, expected)
+    if bending is None:
+        separation = separation.loaded_by(solution.pressure)
     at_relief_start = _crosses_relief_start(pair, contact, separation, solution.pressure_on_material)
     at_arc = _reaches_arc(pair, separation, solution.pressure_on_material)
     return LoadedContact(contact, separation, solution, at_relief_start, at_arc, tolerance, displaced, bent)

@@ -221,6 +221,8 @@ def test_pairs_at_their_cap_share_the_torque(cap, bending):
 class Springs:
     """Every pair deflects by some amount more, and a little by the load of the others."""
 
+    neighbours = 2
+
     def __init__(self, own, coupling=0.0):
         self.own, self.coupling = own, coupling
 
@@ -310,6 +312,8 @@ def test_pair_two_pitches_away_is_kept_apart_by_what_all_pairs_share():
 
 class Restless:
     """Teeth that are softer or stiffer every time they are asked."""
+
+    neighbours = 2
 
     def __init__(self):
         self.compliances = itertools.cycle([1e-6, 3e-6, 2e-6])

@@ -136,6 +136,8 @@ def test_peak_does_not_depend_on_the_grid():
 class Tilting:
     """Teeth that bend most under their load, and tilt their neighbours along the face."""
 
+    neighbours = 1
+
     def __init__(self, tilt):
         self.tilt = tilt
 
