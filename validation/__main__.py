@@ -42,7 +42,6 @@ CASES = (
     "loaded.limits",
     "loaded.cut_contacts",
     "loaded.mesh_stiffness",
-    "loaded.bending_line",
     "loaded.local_term",
     "loaded.root_stress",
     "loaded.root_stress_cycle",
@@ -63,6 +62,7 @@ LONG = (
     "studies.robust_design",
     "loaded.rounded_edges",
     "loaded.root_stress_families",
+    "loaded.bending_line",
     "unloaded.rounded_edges",
 )
 """Cases of minutes, which the tests leave out; the longest first.

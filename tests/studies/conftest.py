@@ -1,10 +1,10 @@
-"""A cluster, which takes seconds to start: one for all tests."""
+"""A cluster for a test: kept for others, its processes would be at work all the time in between."""
 
 import pytest
 from distributed import Client, LocalCluster
 
 
-@pytest.fixture(scope="package")
+@pytest.fixture
 def cluster():
     """A client of a scheduler with two workers, each a process."""
     with (

@@ -27,12 +27,7 @@ FINE, COARSE = (64, 64), (32, 32)
 
 def rows() -> list[Row]:
     """Rows on 64 x 64 and on 32 x 32 cells."""
-    return [*_rows(FINE, 0.02, 0.002), *short_rows()]
-
-
-def short_rows() -> list[Row]:
-    """Rows on 32 x 32 cells."""
-    return _rows(COARSE, 0.03, 0.01)
+    return [*_rows(FINE, 0.02, 0.002), *_rows(COARSE, 0.03, 0.01)]
 
 
 def _rows(cells: tuple[int, int], tolerance: float, of_orders: float) -> list[Row]:
