@@ -164,7 +164,7 @@ def interpreter(name: str, folder: Path, log, renew: bool = False) -> Path:
     uv, base = _uv(folder, log), _python(configuration.python)
     versions = ["--resolution", configuration.resolution]
     for line in (
-        [uv, "venv", "--clear", "--python", base, str(place)],
+        [uv, "venv", "--seed", "--clear", "--python", base, str(place)],
         [uv, "pip", "install", "--python", str(python), *versions, "--editable", f"{ROOT}[dev]"],
         [uv, "pip", "list", "--python", str(python)],
     ):

@@ -92,7 +92,7 @@ def test_environments_are_made_once_and_again_for_other_requirements(runs, tmp_p
     place.mkdir()  # as uv would
     python = str(place / "bin" / "python")
     made = [
-        ["uv", "venv", "--clear", "--python", "python3.11", str(place)],
+        ["uv", "venv", "--seed", "--clear", "--python", "python3.11", str(place)],
         ["uv", "pip", "install", "--python", python, "--resolution", "lowest-direct", "--editable", f"{root}[dev]"],
         ["uv", "pip", "list", "--python", python],
     ]

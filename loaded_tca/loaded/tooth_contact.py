@@ -201,6 +201,23 @@ class LoadedContact:
             return deflection
         return float(deflection - self.coupling_deflection @ force / force.sum())
 
+    def bent_by(self, bending: BendingModel, number: int) -> LoadedContact:
+        """Return the contact as it is, to be solved next with teeth that bend at the centres of its pressure."""
+        separation = self.separation.loaded_by(self.solution.pressure)
+        bent, compliance = bending.within(number, separation), self.solution.problem.slice_compliance
+        assert compliance is not None
+        assert self.bending is not None
+        ends = compliance - self.bending
+        problem = replace(self.solution.problem, slice_compliance=bent + ends if ends.any() else bent)
+        return replace(self, separation=separation, bending=bent, solution=replace(self.solution, problem=problem))
+
+    @property
+    def line_error(self) -> float:
+        """How far the forces that bend the teeth are from the centres of the pressure, the mean over the force [mm]."""
+        force, centred = self.slice_force, self.separation.loaded_by(self.solution.pressure)
+        moved = np.abs(centred.force_line - self.separation.force_line)
+        return float(force @ moved / force.sum()) if force.any() else 0.0
+
     def under(self, load: float, coupling: Array | None = None) -> Steps[LoadedContact]:
         """Return the contact under another load > 0 [N] near this one, on the same grid and as closely solved.
 
@@ -349,8 +366,6 @@ def _solve_in_box(
     if grid.cells is not None:
         tolerance = grid.tolerance
         solution = yield from solved(grid.cells, tolerance)
-        if bending is not None and not grid.lines_held:  # once more, now that the centres of the slices are known
-            solution = yield from solved(grid.cells, tolerance, solution.pressure)
     else:
         tolerance, expected = min(grid.tolerance, TOLERANCE_SHARE * grid.accuracy), expected_pressure(first)
         across_relief_start = _crosses_relief_start(pair, contact, first, expected)
@@ -359,8 +374,14 @@ def _solve_in_box(
             return not (across_relief_start or _reaches_arc(pair, separation, solution.pressure_on_material))
 
         solution, _ = yield from refinement(solved, grid.accuracy, grid.tolerance, smooth, FIRST_CELLS, expected)
-    if bending is None:
+    if bending is None and not grid.lines_held:
         separation = separation.loaded_by(solution.pressure)
+    elif load > 0.0 and not (grid.lines_held or solution.reaches_border):  # once more, with the lines of its pressure
+        before, cells = solution, (solution.pressure.shape[0], solution.pressure.shape[1])
+        solution = yield from solved(cells, tolerance, before.pressure)
+        if before.coarser is not None:  # of the grids, not of the lines
+            approach = before.coarser.approach + solution.approach - before.approach
+            solution = replace(solution, coarser=replace(before.coarser, approach=approach))
     at_relief_start = _crosses_relief_start(pair, contact, separation, solution.pressure_on_material)
     at_arc = _reaches_arc(pair, separation, solution.pressure_on_material)
     return LoadedContact(contact, separation, solution, at_relief_start, at_arc, tolerance, displaced, bent)

@@ -68,7 +68,7 @@ def test_extremes_are_those_of_the_sum_over_the_pairs_at_all_teeth_of_the_gear(n
     loads = {0: [], 1: []}
     for number, one in zip(cycle.pair.tolist(), cycle.maps[t][n], strict=True):
         if one is not None:
-            x, y, z = (one.origin + np.outer(one.y, one.axes[1])).T
+            x, y, z = (one.origin + np.outer(one.force_line, one.axes[0]) + np.outer(one.y, one.axes[1])).T
             force = one.pressure.sum(axis=0) * one.spacing[0] * one.spacing[1]
             on_wheel = (np.column_stack([x, y, z]) - pair.wheel_origin) @ pair.wheel_axes.T
             loads[0].append((FlankLine(-number, np.hypot(x, y), z), force))

@@ -130,7 +130,8 @@ def _peak_pressures(field: EaseOff, rho: Array, z: Array) -> Array:
     lever = 1.0 / np.sqrt(jet.rho**2 + 1.0 / station.wheel_rho**2 + jet.z**2)
     metric = station.tangents @ np.swapaxes(station.tangents, -1, -2)
     bend = -field.hessian(station) * (lever / pair.base_radii[1])[:, None, None]
-    curvatures = np.linalg.eigvals(np.linalg.solve(metric, bend))
+    to_length = np.linalg.inv(np.linalg.cholesky(metric))
+    curvatures = np.linalg.eigvalsh(to_length @ bend @ np.swapaxes(to_length, -1, -2))
     _, edges = field.heights(np.zeros(len(rho)), rho, z)
     inside = edges.min(axis=-1) > ROUNDING
     modulus = pair.contact_modulus
