@@ -28,9 +28,8 @@ def pytest_collection_modifyitems(items):
 
 
 def pytest_collection_finish():
-    """Look for garbage seldom, and only in what tests make: modules stay."""
+    """Look for garbage seldom: what modules and tests hold stays."""
     gc.collect()
-    gc.freeze()
     gc.set_threshold(50_000, 20, 50)
 
 
