@@ -39,8 +39,8 @@ def solve_to_accuracy(
     """Refine the grid until the estimated error is below the accuracy.
 
     Each grid has twice the cells of the one before along both axes and starts from its pressure. The accuracy is
-    that of the peak pressure; where the grid or the material ends the contact it is that of the approach, with at
-    most 64 cells along an axis.
+    that of the peak pressure; where the grid or the material ends the contact on the two finest grids it is that of the
+    approach, with at most 64 cells along the axis that has fewer.
 
     Parameters
     ----------
@@ -131,17 +131,19 @@ def refinement(
     needs; ``smooth(solution)`` tells whether its peak is one of the surfaces, not of the grid. For the other parameters
     see :func:`solve_to_accuracy`.
     """
-    closely, refined = TOLERANCE_SHARE * accuracy, max(first_cells) < MOST_CELLS_AT_A_BORDER
+    closely, refined = TOLERANCE_SHARE * accuracy, min(first_cells) < MOST_CELLS_AT_A_BORDER
     tolerance, first = min(closely, tolerance), closely if refined else min(closely, tolerance)
-    cells = first_cells
+    cells, ended_before = first_cells, True
     solution = yield from solved(cells, first, initial_pressure)
     while True:
-        # What ends a contact inside the box makes the peak grow with the grid without end.
-        peaked, estimate = not solution.bounded and smooth(solution), solution.error_estimate
-        error = estimate.peak_pressure if peaked else estimate.approach
-        if error <= accuracy or max(cells) >= (MOST_CELLS if peaked else MOST_CELLS_AT_A_BORDER):
+        # What ends a contact inside the box makes the peak grow with the grid without end. A coarse grid alone does not
+        # show it: where only one of two does, the peak has to agree as well.
+        ended, estimate = solution.bounded or not smooth(solution), solution.error_estimate
+        error = estimate.approach if ended and ended_before else estimate.peak_pressure
+        finest = min(cells) >= MOST_CELLS_AT_A_BORDER if ended else max(cells) >= MOST_CELLS
+        if error <= accuracy or finest:
             return solution, error
-        coarse, cells = solution, (2 * cells[0], 2 * cells[1])
+        ended_before, coarse, cells = ended, solution, (2 * cells[0], 2 * cells[1])
         solution = yield from solved(cells, tolerance, prolong(coarse.pressure, cells, (2, 2)))
         if coarse.pressure.any():
             solution = replace(solution, coarser=CoarserGrid(float(coarse.pressure.max()), coarse.approach))

@@ -37,6 +37,7 @@ from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import Scene
 from loaded_tca.separation import Separation
+from loaded_tca.separation.box import Box
 from loaded_tca.separation.gap_change import pair_changes, value_at
 from loaded_tca.separation.normal_gap import TOGETHER, NormalGap
 from loaded_tca.separation.sample import sample_separations
@@ -105,19 +106,13 @@ class HeldContact:
 
 
 def held(
-    pair: GearPair,
-    tooth_pairs: Sequence[ToothPair],
-    cells: tuple[int, int],
-    boxes: Sequence[tuple[float, float]],
-    middles: Sequence[tuple[float, float]],
+    pair: GearPair, tooth_pairs: Sequence[ToothPair], cells: tuple[int, int], boxes: Sequence[Box | tuple[float, float]]
 ) -> list[HeldContact]:
-    """Sample contacts in boxes about middles, and meet the flanks there; ends of teeth are left out."""
+    """Sample contacts in boxes, and meet the flanks there; ends of teeth are left out."""
     contacts = [one.contact for one in tooth_pairs]
     count = len(contacts)
     separations = []
-    for one in sample_separations(
-        pair, contacts, cells=[cells] * count, loads=[None] * count, boxes=boxes, middles=middles
-    ):
+    for one in sample_separations(pair, contacts, cells=[cells] * count, loads=[None] * count, boxes=boxes):
         if not isinstance(one, Separation):
             raise one
         separations.append(one)
@@ -232,11 +227,10 @@ class HeldContacts:
         loaded = [share.loaded for share in shared.shares]
         return all(one.separation.y is self._held[one.contact].separation.y for one in loaded)
 
-    def grow(self, contact: ContactPoint, half_lengths: tuple[float, float]) -> None:
+    def grow(self, contact: ContactPoint, box: Box) -> None:
         """Hold a contact in a larger box from now on."""
         one = self._held[contact]
-        middle = float(one.separation.x.mean()), float(one.separation.y.mean())
-        (larger,) = held(self.pair, [one.tooth_pair], self._cells, [half_lengths], [middle])
+        (larger,) = held(self.pair, [one.tooth_pair], self._cells, [box])
         grid = larger.separation
         line = np.interp(grid.y, one.separation.y, one.separation.force_line)
         self._held[contact] = self._on_lines([larger], [replace(grid, force_line=line)])[0]
@@ -260,12 +254,12 @@ class HeldContacts:
         tooth_pairs, pair = tooth_pairs_at(self.mesh, position), self.pair
         heights = (flank.extent[0] for flank in (pair.pinion.flank, pair.wheel.flank))
         box, count = (PROBE_ACROSS * pair.module, math.hypot(pair.face_width, *heights)), len(tooth_pairs)
-        probes = held(pair, tooth_pairs, PROBE, [box] * count, [(0.0, 0.0)] * count)
+        probes = held(pair, tooth_pairs, PROBE, [box] * count)
         closed = np.zeros((count, *PROBE), dtype=bool)
         for shape in shapes:
             gaps = np.array([one.separation.cut_gap + one.growth(pair, shape) for one in probes])
             closed |= self._overlap(probes, gaps) > 0.0
-        kept, boxes, middles = [], [], []
+        kept, boxes = [], []
         for probe, mask in zip(probes, closed, strict=True):
             if not mask.any():
                 continue
@@ -276,10 +270,10 @@ class HeldContacts:
             beyond = 2.0 * half[1] / self._cells[1]  # a cell without material, where the flank ends
             bottom, top = max(middle[1] - half[1], first - beyond), min(middle[1] + half[1], last + beyond)
             kept.append(probe.tooth_pair)
-            boxes.append((float(half[0]), float(0.5 * (top - bottom))))
-            middles.append((float(middle[0]), float(0.5 * (top + bottom))))
+            half_lengths, place = (float(half[0]), float(0.5 * (top - bottom))), 0.5 * (top + bottom)
+            boxes.append(Box(half_lengths, grid.axes, (float(middle[0]), float(place))))
         # less than a cell at a corner is none
-        contacts = [one for one in held(pair, kept, self._cells, boxes, middles) if one.there.any()]
+        contacts = [one for one in held(pair, kept, self._cells, boxes) if one.there.any()]
         if not contacts:
             return []
         overlaps = self._overlap(contacts, np.array([one.separation.cut_gap for one in contacts]))
@@ -379,7 +373,7 @@ class ShapedContacts:
     def _grid(self, request: Gap) -> Separation:
         """The held grid of a contact, or a larger one where it has outgrown that."""
         contact, grid = request.contact, self._separations[request.contact]
-        if request.box is None or all(np.less_equal(request.box, grid.half_lengths)):
+        if request.box is None or grid.box.holds(request.box):
             return grid
         self._contacts.grow(contact, request.box)
         return self._keep(contact, self._contacts.gaps(self._values, [contact])[contact])

@@ -21,6 +21,7 @@ from loaded_tca.errors import LoadedTCAError
 from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
+from loaded_tca.separation.box import Box
 from loaded_tca.separation.sample import sample_separations
 from loaded_tca.unloaded import ContactPoint
 
@@ -35,7 +36,7 @@ class Gap(NamedTuple):
     contact: ContactPoint
     cells: tuple[int, int]
     load: float | None = None
-    box: tuple[float, float] | None = None
+    box: Box | None = None
 
 
 class Task(NamedTuple):

@@ -24,8 +24,9 @@ from loaded_tca.separation import Separation
 from loaded_tca.unloaded import ContactPoint
 from loaded_tca.unloaded.arcs import arcs_at
 
-FIRST_CELLS = (16, 16)
-"""Grid from which an accuracy is approached, doubled as often as needed."""
+FIRST_CELLS, FIRST_CELLS_AT_ENDS = (16, 16), (16, 32)
+"""Grids from which an accuracy is approached, doubled as often as needed. Where flanks end in the box, edges cut the
+contact obliquely, and the load changes along it within a part of its length."""
 EXACT = 1e-9
 """Tolerance of the solver where the approach is given: forces then balance a torque to that."""
 MARGIN_LEFT = 0.8
@@ -39,6 +40,8 @@ EQUAL = 1e-3
 LARGEST_MISFIT = 0.3
 """Of a gap from its paraboloid, where Hertz's pressure is still told: it differs by up to a tenth then; where a relief
 begins in the ellipse the misfit is above 1."""
+BESIDE = 0.5 + 1e-6
+"""Distance over a cell along both axes within which cells lie beside the contact point."""
 GROWTH = 1.5
 MOST_BOXES = 8
 
@@ -105,8 +108,10 @@ class LoadedContact:
     @property
     def central_pressure(self) -> float:
         """Pressure beside the contact point [MPa]: what is left of the peak where that sits at an edge."""
-        middle = tuple(slice((n - 1) // 2, n // 2 + 1) for n in self.solution.pressure.shape)
-        there = np.isfinite(self.separation.cut_gap[middle])
+        grid = self.separation
+        beside = (np.abs(places) <= BESIDE * step for places, step in zip((grid.x, grid.y), grid.spacing, strict=True))
+        middle = np.ix_(*beside)
+        there = np.isfinite(grid.cut_gap[middle])
         return float(self.solution.pressure_on_material[middle][there].mean()) if there.any() else 0.0
 
     @property
@@ -137,7 +142,7 @@ class LoadedContact:
         if not smooth or self.solution.load <= 0.0:
             return None
         ellipse = point_contact(self.solution.load, (across, along), self.solution.problem.contact_modulus)
-        if ellipse.semi_major >= self.separation.half_lengths[1] or self._misfit(ellipse) > LARGEST_MISFIT:
+        if ellipse.semi_major >= self.separation.box.half_lengths[1] or self._misfit(ellipse) > LARGEST_MISFIT:
             return None
         return ellipse
 
@@ -174,6 +179,12 @@ class LoadedContact:
             for axis, place in enumerate([*np.indices(pressure.shape)])
         )
         return across, along
+
+    @property
+    def filled_ends(self) -> tuple[tuple[bool, bool], tuple[bool, bool]]:
+        """Whether pressure reaches the lower and the upper end of the box, across and along."""
+        across, along = (self.solution.pressure.any(axis=axis) for axis in (1, 0))
+        return (bool(across[0]), bool(across[-1])), (bool(along[0]), bool(along[-1]))
 
     @cached_property
     def slice_force(self) -> Array:
@@ -308,15 +319,14 @@ def contact_under_load(
         raise InputError(f"cells: {problem}")
     load = 0.0 if 0.0 < load <= SMALLEST_LOAD * pair.contact_modulus * pair.module**2 else load
     separation = yield from _box_for_cap(pair, contact, load, (yield Gap(contact, cells, load=load)))
+    if grid.cells is None and separation.cover.min() < 1.0:
+        cells = FIRST_CELLS_AT_ENDS
+        separation = yield Gap(contact, cells, box=separation.box)
     for _ in range(MOST_BOXES):
         loaded = yield from _solve_in_box(pair, contact, load, grid, separation, bending, number, coupling)
         if not loaded.solution.reaches_border:
             break
-        pressure = loaded.solution.pressure
-        filled = [bool((np.take(pressure, [0, -1], axis=axis) > 0.0).any()) for axis in (0, 1)]
-        lengths = zip(loaded.separation.half_lengths, filled, strict=True)
-        across, along = (length * (GROWTH if grow else 1.0) for length, grow in lengths)
-        separation = yield Gap(contact, cells, box=(across, along))
+        separation = yield Gap(contact, cells, box=loaded.separation.box.grown(loaded.filled_ends, GROWTH))
     return loaded
 
 
@@ -324,8 +334,8 @@ def _box_for_cap(pair: GearPair, contact: ContactPoint, load: float, separation:
     """A box whose material carries the load at the cap on the pressure, if the flank has so much."""
     cap = math.inf if pair.max_pressure is None else pair.max_pressure
     while load > CAP_USE * separation.material_area * cap:
-        across, along = separation.half_lengths
-        box = (GROWTH * across, min(GROWTH * along, pair.face_width))
+        along = separation.box.half_lengths[1] < pair.face_width
+        box = separation.box.grown(((True, True), (along, along)), GROWTH)
         wider = yield Gap(contact, (separation.gap.shape[0], separation.gap.shape[1]), box=box)
         if wider.material_area <= separation.material_area:
             most = CAP_USE * separation.material_area * cap
@@ -355,7 +365,7 @@ def _solve_in_box(
         nonlocal separation, displaced, bent  # of the grid solved last
         separation = first
         if first.gap.shape != cells:
-            separation = yield Gap(contact, cells, box=first.half_lengths)
+            separation = yield Gap(contact, cells, box=first.box)
         if start is not None and not grid.lines_held:
             separation = separation.loaded_by(start)
         displaced = None if coupling is None else coupling(separation)
@@ -373,7 +383,7 @@ def _solve_in_box(
         def smooth(solution: ContactSolution) -> bool:
             return not (across_relief_start or _reaches_arc(pair, separation, solution.pressure_on_material))
 
-        solution, _ = yield from refinement(solved, grid.accuracy, grid.tolerance, smooth, FIRST_CELLS, expected)
+        solution, _ = yield from refinement(solved, grid.accuracy, grid.tolerance, smooth, first.gap.shape, expected)
     if bending is None and not grid.lines_held:
         separation = separation.loaded_by(solution.pressure)
     elif load > 0.0 and not (grid.lines_held or solution.reaches_border):  # once more, with the lines of its pressure
@@ -440,6 +450,7 @@ def _reaches_arc(pair: GearPair, separation: Separation, pressure: Array) -> boo
 
 def expected_pressure(separation: Separation) -> Array:
     """Pressure over the ellipse that the contact is expected to fill, (nx, ny), the highest one 1."""
-    across, along = (MARGIN_LEFT * length for length in separation.half_lengths)
-    square = 1.0 - (separation.x[:, None] / across) ** 2 - (separation.y / along) ** 2
+    box = separation.box
+    (across, along), (x, y) = (MARGIN_LEFT * np.array(box.half_lengths), box.middle)
+    square = 1.0 - ((separation.x[:, None] - x) / across) ** 2 - ((separation.y - y) / along) ** 2
     return np.sqrt(np.maximum(square, 0.0)) * separation.cover

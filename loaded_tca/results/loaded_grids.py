@@ -18,6 +18,7 @@ from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_state
 from loaded_tca.loaded.tooth_contact import contact_problem
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.pressure_map import PressureMap
+from loaded_tca.separation.box import Box
 from loaded_tca.separation.sample import Separation, sample_separations
 from loaded_tca.unloaded import ContactPoint, trace_contact, trace_teeth
 from loaded_tca.unloaded.curvature import relative_curvatures
@@ -75,21 +76,20 @@ def _separations(pair: GearPair, contacts: Sequence[ContactPoint], maps: Sequenc
     """Grids of maps; where the flanks do not end the gap is that under load, which is of no account here."""
     bends = relative_curvatures(pair, contacts)
     ends = [bool(np.isinf(one.gap).any()) for one in maps]
-    shapes = [one.pressure.shape for one, cut in zip(maps, ends, strict=True) if cut]
-    spacings = [one.spacing for one, cut in zip(maps, ends, strict=True) if cut]
+    cut_maps = [one for one, cut in zip(maps, ends, strict=True) if cut]
     sampled = iter(
         sample_separations(
             pair,
             [contact for contact, cut in zip(contacts, ends, strict=True) if cut],
-            cells=shapes,
-            loads=[None] * len(shapes),
-            boxes=[(0.5 * nx * dx, 0.5 * ny * dy) for (nx, ny), (dx, dy) in zip(shapes, spacings, strict=True)],
+            cells=[one.pressure.shape for one in cut_maps],
+            loads=[None] * len(cut_maps),
+            boxes=[Box.of(one) for one in cut_maps],
         )
     )
     found = []
     for one, bend, cut in zip(maps, bends, ends, strict=True):
-        whole, principal = np.ones(one.gap.shape), (bend.across, bend.along)
-        place = one.x, one.y, one.spacing, one.origin, one.axes, principal
+        whole = np.ones(one.gap.shape)
+        place = one.x, one.y, one.spacing, one.origin, one.axes, bend.along_axes(one.axes)
         made = next(sampled) if cut else Separation(one.gap, *place, whole, one.gap, one.force_line)
         if not isinstance(made, Separation):
             raise made

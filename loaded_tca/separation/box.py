@@ -1,9 +1,11 @@
-"""How large a box each of several contacts needs under its load."""
+"""Where the grid of each of several contacts lies: how large a box it needs under its load, and along which axes."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol, Self
 
 import numpy as np
 
@@ -32,13 +34,78 @@ ROOM = 1.5
 MOST_PROBES = 16
 LEAST_GROWTH, MOST_GROWTH = 2.0, 100.0
 """Of a probe that a contact fills."""
-END_OF_MATERIAL = 1e-6
+END_ALONG, END_ACROSS = 1e-6, 1e-3
 """Accuracy of the end of the material, over the half length of the box."""
-STRAIGHT_CHORD = 5e-5
-"""Change of the fall of the room from row to row, relative, below which its chord ends where the material does: to
-an eighth of that, of the distance of the rows."""
-SIDES = np.array([-1, 1])
-"""Of a contact, along it."""
+STRAIGHT_CHORD = 50.0
+"""Change of the fall of the room from row to row, relative and over that accuracy, below which its chord ends where
+the material does: to an eighth of that, of the distance of the rows."""
+STEEPEST = 2.0
+"""Most that the distance to an edge falls along the tangent plane, over the way."""
+ASKEW = 0.25
+"""How far the centres of the strips may be from the axis along a contact at its ends, over the half width across."""
+SLENDER = 2.0
+"""Length over width from which strips across tell the axis of a contact."""
+MOST_TURNS = 4
+
+
+class Grid(Protocol):
+    """Cells in the tangent plane of a contact point."""
+
+    @property
+    def x(self) -> Array:
+        """Cell centres across (nx,) [mm]."""
+
+    @property
+    def y(self) -> Array:
+        """Cell centres along (ny,) [mm]."""
+
+    @property
+    def spacing(self) -> tuple[float, float]:
+        """Cell sizes [mm]."""
+
+    @property
+    def axes(self) -> Array:
+        """Rows: the directions across and along, and the normal out of the pinion (3, 3)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """Rectangle in the tangent plane of a contact point.
+
+    Attributes
+    ----------
+    half_lengths : (float, float) [mm]
+        Across and along.
+    axes : (3, 3) array
+        Rows: the directions across and along, and the normal out of the pinion.
+    middle : (float, float) [mm]
+        Place of its middle, across and along, from the contact point.
+    """
+
+    half_lengths: tuple[float, float]
+    axes: Array
+    middle: tuple[float, float] = (0.0, 0.0)
+
+    @classmethod
+    def of(cls, grid: Grid) -> Self:
+        """Box of a grid."""
+        x, y, (dx, dy) = grid.x, grid.y, grid.spacing
+        middle = 0.5 * float(x[0] + x[-1]), 0.5 * float(y[0] + y[-1])
+        return cls((0.5 * x.size * dx, 0.5 * y.size * dy), grid.axes, middle)
+
+    def holds(self, other: Box) -> bool:
+        """Whether it covers another box with the same axes."""
+        ends = zip(self.half_lengths, self.middle, other.half_lengths, other.middle, strict=True)
+        return all(abs(middle - place) <= half - length for half, middle, length, place in ends)
+
+    def grown(self, ends: Sequence[tuple[bool, bool]], growth: float) -> Self:
+        """Return it ``growth`` times as long where it grows: ``ends`` are the lower and upper one, across and along."""
+        half_lengths, middle = [], []
+        for length, place, (low, high) in zip(self.half_lengths, self.middle, ends, strict=True):
+            added = length * (growth - 1.0)
+            half_lengths.append(length + 0.5 * added * (low + high))
+            middle.append(place + 0.5 * added * (float(high) - float(low)))
+        return replace(self, half_lengths=(half_lengths[0], half_lengths[1]), middle=(middle[0], middle[1]))
 
 
 def estimate_boxes(
@@ -46,56 +113,146 @@ def estimate_boxes(
     contacts: Sequence[ContactPoint],
     loads: Sequence[float],
     guesses: Sequence[tuple[float, float] | None],
-    cells: Sequence[int],
-) -> list[tuple[float, float] | GeometryError]:
-    """Half lengths across and along [mm] of boxes that hold n contacts, each under its load > 0 [N].
+    cells: Sequence[tuple[int, int]],
+) -> list[Box | GeometryError]:
+    """Boxes that hold n contacts, each under its load > 0 [N].
 
-    Where the material ends inside a box, the box ends a cell beyond it (one of its ``cells`` along), so that whole
-    cells end there. A contact off the flanks gets an error instead.
+    Their axes are the principal directions of the relative curvature, turned where the contact under load lies
+    askew on them, as where the contact point stands on the start of a relief: a contact is cut into strips across, and
+    the axis runs along the centres of their pressure. Where the material ends inside a box, the box ends a cell (one of
+    its ``cells``) beyond it, so that whole cells end there. A contact off the flanks gets an error instead.
     """
-    curvatures, modulus = relative_curvatures(pair, contacts), pair.contact_modulus
-    gap = NormalGap(pair, contacts, np.array([curvature.axes for curvature in curvatures]))
-    longest = math.hypot(pair.face_width, *(flank.extent[0] for flank in (pair.pinion.flank, pair.wheel.flank)))
-    windows, forces = _first_windows(curvatures, np.asarray(loads), pair), np.asarray(loads)
+    curvatures = relative_curvatures(pair, contacts)
+    axes, count, forces = np.array([curvature.axes for curvature in curvatures]), len(contacts), np.asarray(loads)
+    windows = _first_windows(curvatures, forces, pair)
     on_edge = np.array([contact.on_edge for contact in contacts])
     for row, guess in enumerate(guesses):
         if guess is not None and on_edge[row]:  # a window that a contact with this box fills to two thirds
             windows[row] = ROOM / EDGE_MARGIN * guess[0], ROOM / MARGIN * guess[1]
-    windows[:, 1] = np.minimum(windows[:, 1], longest)
-    count, rows = len(contacts), np.arange(len(contacts))
-    x, y, room = np.empty((count, PROBE[0])), np.empty((count, PROBE[1])), np.empty((count, *PROBE))
-    needed, end = np.empty((count, 2)), np.empty(count)
-    for _ in range(MOST_PROBES):
-        have = windows[rows]
-        # Symmetric to the bit: which end of a contact is the farther one is no matter of rounding.
-        x[rows], y[rows] = (half[:, None] * np.linspace(-1.0, 1.0, n) for half, n in zip(have.T, PROBE, strict=True))
-        fall, room[rows] = gap.of(rows).at(x[rows][:, :, None], y[rows][:, None])
-        bare = room[rows].max(axis=(1, 2)) < 0.0
-        there = (room[rows] >= 0.0) | bare[:, None, None]  # what is found of the bare ones is not used
-        needed[rows], end[rows], growth = _strip_extents(
-            np.where(there, fall, np.inf), x[rows], y[rows], forces[rows], modulus
-        )
-        need = needed[rows]
-        fits = (0.4 * have <= need) & (need <= have / MARGIN)
-        fits[:, 1] |= (need[:, 1] > have[:, 1] / MARGIN) & (have[:, 1] == longest)
-        on = bare | ~fits.all(axis=1)
-        resized = np.where(bare[:, None], 2.0 * have, _resized(need, have, growth[:, None]))
-        windows[rows] = np.minimum(resized, [np.inf, longest])
-        rows = rows[on]
+    probes = _Probes(pair, contacts, axes, forces, windows)
+    rows = np.arange(count)
+    probes.fit(rows)
+    for _ in range(MOST_TURNS):
+        rows = rows[probes.turn(rows)]
         if not rows.size:
             break
-    held, along = np.flatnonzero(room.max(axis=(1, 2)) >= 0.0), MARGIN * needed[:, 1]
-    material = along.copy()
-    material[held] = _material_lengths(gap.of(held), room[held], x[held], y[held], along[held])
-    margin = np.where(on_edge, EDGE_MARGIN, np.where(end > CERTAINLY_INSIDE * material, SPIKE_MARGIN, MARGIN))
-    beyond = material * [n / (n - 2) if n > 2 else 1.0 for n in cells]
-    boxes = np.full((count, 2), np.nan)
-    boxes[held] = np.stack([margin * needed[:, 0], np.where(material < along, beyond, along)], axis=1)[held]
+        probes.fit(rows)
+    half_lengths, middles = probes.boxes(on_edge, np.array(cells))
     missing = "no flank around the contact point at pinion angle {:.6g} rad"
     return [
-        GeometryError(missing.format(contact.pinion_angle)) if math.isnan(across) else (across, along)
-        for contact, (across, along) in zip(contacts, boxes.tolist(), strict=True)
+        GeometryError(missing.format(contact.pinion_angle)) if math.isnan(across) else Box((across, along), own, (x, y))
+        for contact, (across, along), own, (x, y) in zip(
+            contacts, half_lengths.tolist(), probes.axes, middles.tolist(), strict=True
+        )
     ]
+
+
+class _Probes:
+    """Coarse grids about n contact points, fitted to the contacts that strips across give."""
+
+    def __init__(
+        self, pair: GearPair, contacts: Sequence[ContactPoint], axes: Array, forces: Array, windows: Array
+    ) -> None:
+        self.pair, self.contacts, self.axes, self.forces = pair, contacts, axes, forces
+        self.longest = math.hypot(
+            pair.face_width, *(flank.extent[0] for flank in (pair.pinion.flank, pair.wheel.flank))
+        )
+        self.windows = windows  # half lengths (n, 2) across and along
+        self.windows[:, 1] = np.minimum(windows[:, 1], self.longest)
+        count = len(contacts)
+        self.gap = NormalGap(pair, contacts, axes)
+        self.x, self.y, self.room = np.empty((count, PROBE[0])), np.empty((count, PROBE[1])), np.empty((count, *PROBE))
+        self.needed, self.end, self.slope = np.empty((count, 2)), np.empty(count), np.empty(count)
+
+    def fit(self, rows: Indices) -> None:
+        """Fit the windows of some contacts."""
+        for _ in range(MOST_PROBES):
+            have, longest = self.windows[rows], self.longest
+            # Symmetric to the bit: which end of a contact is the farther one is no matter of rounding.
+            self.x[rows], self.y[rows] = (
+                half[:, None] * np.linspace(-1.0, 1.0, n) for half, n in zip(have.T, PROBE, strict=True)
+            )
+            x, y = self.x[rows], self.y[rows]
+            fall, room = self.gap.of(rows).at(x[:, :, None], y[:, None])
+            self.room[rows] = room
+            bare = room.max(axis=(1, 2)) < 0.0
+            there = (room >= 0.0) | bare[:, None, None]  # what is found of the bare ones is not used
+            need, self.end[rows], growth, self.slope[rows] = _strip_extents(
+                np.where(there, fall, np.inf), x, y, self.forces[rows], self.pair.contact_modulus
+            )
+            self.needed[rows] = need
+            fits = (0.4 * have <= need) & (need <= have / MARGIN)
+            fits[:, 1] |= (need[:, 1] > have[:, 1] / MARGIN) & (have[:, 1] == longest)
+            on = bare | ~fits.all(axis=1)
+            resized = np.where(bare[:, None], 2.0 * have, _resized(need, have, growth[:, None]))
+            self.windows[rows] = np.minimum(resized, [np.inf, longest])
+            rows = rows[on]
+            if not rows.size:
+                break
+
+    def turn(self, rows: Indices) -> Mask:
+        """Turn the axes of some contacts along the centres of their strips; which of them lay askew."""
+        slope = self.slope[rows]
+        askew = np.abs(slope) * self.needed[rows, 1] > ASKEW * self.needed[rows, 0]
+        askew &= (self.needed[rows, 1] > SLENDER * self.needed[rows, 0]) & (self.room[rows].max(axis=(1, 2)) >= 0.0)
+        turned, slope = rows[askew], slope[askew, None]
+        across, along = self.axes[turned, 0], self.axes[turned, 1]
+        self.axes[turned, 0] = (across - slope * along) / np.hypot(1.0, slope)
+        self.axes[turned, 1] = (along + slope * across) / np.hypot(1.0, slope)
+        if turned.size:
+            self.gap = NormalGap(self.pair, self.contacts, self.axes)
+        return askew
+
+    def boxes(self, on_edge: Mask, cells: Array) -> tuple[Array, Array]:
+        """Half lengths and middles of boxes, (n, 2) across and along [mm]; NaN where there is no material."""
+        count, held = len(self.needed), np.flatnonzero(self.room.max(axis=(1, 2)) >= 0.0)
+        half_lengths, middles = np.full((count, 2), np.nan), np.full((count, 2), np.nan)
+        if not held.size:
+            return half_lengths, middles
+        needed, cells = self.needed[held], cells[held]
+        along = MARGIN * needed[:, 1]
+        ends = self._ends(held, along, END_ALONG, 1)
+        on_its_own = self.end[held] <= CERTAINLY_INSIDE * ends.max(axis=1)
+        across = needed[:, 0] * np.where(on_edge[held], EDGE_MARGIN, np.where(on_its_own, MARGIN, SPIKE_MARGIN))
+        reach = np.stack([across, along], axis=1)
+        ends = np.stack([self._ends(held, across, END_ACROSS, 0), ends], axis=1)  # (held, axes, sides)
+        cut = ends < reach[..., None]
+        inside = cells - cut.sum(axis=2)
+        beyond = np.where(inside > 0, ends.sum(axis=2) / np.maximum(inside, 1), 0.0)
+        sides = ends + cut * beyond[..., None]
+        half_lengths[held], middles[held] = 0.5 * sides.sum(axis=2), 0.5 * np.diff(sides, axis=2)[..., 0]
+        return half_lengths, middles
+
+    def _ends(self, rows: Indices, reach: Array, accuracy: float, axis: int) -> Array:
+        """Distances (rows, 2) to the ends of the material either way along an axis, at most ``reach``.
+
+        Looked for over the whole of the other axis of the probes: in a corner of a flank there is no material straight
+        ahead.
+        """
+        across = axis == 0
+
+        def room_at(which: Indices, places: Array) -> Array:
+            """Largest distance to the edges (which, places) at places along the axis."""
+            own = rows[which]
+            if across:
+                room = self.gap.of(own).at(places[:, :, None], self.y[own, None, ::4])[1]
+            else:
+                room = self.gap.of(own).at(self.x[own, :, None], places[:, None])[1]
+            return np.asarray(room.max(axis=2 if across else 1))
+
+        places, found = self.y[rows], np.repeat(reach[:, None], 2, axis=1)
+        if across:
+            places = reach[:, None] * np.linspace(-1.0, 1.0, PROBE[0])
+            near = self.room[rows].min(axis=(1, 2)) < STEEPEST * np.maximum(reach - self.x[rows, -1], 0.0)
+            if near.any():
+                kept = np.flatnonzero(near)
+                best = room_at(kept, places[kept])
+                found[kept] = _ends_of_material(
+                    best, places[kept], reach[kept], accuracy, lambda of, at: room_at(kept[of], at[:, None])[:, 0]
+                )
+            return found
+        best = self.room[rows].max(axis=1)
+        return _ends_of_material(best, places, reach, accuracy, lambda of, at: room_at(of, at[:, None])[:, 0])
 
 
 def _first_windows(curvatures: Sequence[RelativeCurvature], loads: Array, pair: GearPair) -> Array:
@@ -119,12 +276,13 @@ def _resized(needed: Array, window: Array, growth: Array) -> Array:
     return np.where(needed < 0.85 * window, fitting, growth * window)
 
 
-def _strip_extents(gap: Array, x: Array, y: Array, loads: Array, modulus: float) -> tuple[Array, Array, Array]:
+def _strip_extents(gap: Array, x: Array, y: Array, loads: Array, modulus: float) -> tuple[Array, Array, Array, Array]:
     """Half lengths across and along (n, 2) [mm] of contacts that the strip model gives on coarse gaps (n, nx, ny).
 
     They are rounded up to half a cell. The second (n,) is where the contact ends if its penetration falls as a
     parabola. The third (n,) is how much larger a window should be that the contact fills: the cube root of the
-    penetration over the gap in it, as of point contacts, between two bounds.
+    penetration over the gap in it, as of point contacts, between two bounds. The fourth (n,) is the slope dx/dy of a
+    line through the centres of the strips, weighted with their loads.
     """
     floor = gap.min(axis=1)
     depth = gap - np.where(np.isfinite(floor), floor, 0.0)[:, None]
@@ -145,7 +303,19 @@ def _strip_extents(gap: Array, x: Array, y: Array, loads: Array, modulus: float)
     rise = np.where(np.isfinite(gap), gap, -np.inf).max(axis=(1, 2)) - ordered[:, 0]
     growth = np.cbrt(np.divide(deepest, rise, out=np.zeros(rise.shape), where=rise > 0.0))
     ends = _ends_of_parabolas(reach, penetration, closed)
-    return np.stack([width, length], axis=1), ends, np.clip(growth, LEAST_GROWTH, MOST_GROWTH)
+    slope = _slope_of_centres(np.sqrt(np.maximum(lifted[:, None] - depth, 0.0)), x, y, np.maximum(penetration, 0.0))
+    return np.stack([width, length], axis=1), ends, np.clip(growth, LEAST_GROWTH, MOST_GROWTH), slope
+
+
+def _slope_of_centres(pressure: Array, x: Array, y: Array, load: Array) -> Array:
+    """Slopes dx/dy (n,) of lines through the centres of the pressure (n, nx, ny) of strips under loads (n, ny)."""
+    total = pressure.sum(axis=1)
+    load = np.where(total > 0.0, load, 0.0)
+    centre = np.divide((pressure * x[:, :, None]).sum(axis=1), total, out=np.zeros(total.shape), where=total > 0.0)
+    share = load / load.sum(axis=1, keepdims=True)
+    offset = y - (share * y).sum(axis=1, keepdims=True)
+    scatter = (share * offset**2).sum(axis=1)
+    return np.divide((share * offset * centre).sum(axis=1), scatter, out=np.zeros(len(x)), where=scatter > 0.0)
 
 
 def _farthest(distance: Array, there: Mask) -> Array:
@@ -172,51 +342,52 @@ def _water_level(ordered: Array, sums: Array, total: Array) -> Array:
     return np.take_along_axis(levels, (levels <= above).argmax(axis=1)[:, None], axis=1)
 
 
-def _material_lengths(gap: NormalGap, room: Array, x: Array, y: Array, reach: Array) -> Array:
-    """Distances (n,) along y to the farthest ends of the material within ``reach``, to 1e-6 of it.
+def _ends_of_material(
+    best: Array, places: Array, reach: Array, accuracy: float, room_at: Callable[[Indices, Array], Array]
+) -> Array:
+    """Distances (n, 2) to the ends of the material below and above the contact point, at most ``reach`` (n,).
 
-    Looked for over the whole width of the probes, whose distances to the edges are ``room`` (n, nx, ny): in a corner of
-    a flank there is none straight ahead.
+    ``best`` (n, m) is the room at ``places`` (n, m), an odd number about zero; ``room_at(rows, places)`` that at one
+    place of each of some rows. The ends are right to ``accuracy`` times the reach.
     """
-    lengths, middle = reach.copy(), y.shape[1] // 2
-    lowest = 4.0 * (y[:, 0] - y[:, 1])
-    room = np.maximum(room.max(axis=1), lowest[:, None])
-    last = _farthest(np.abs(np.arange(y.shape[1]) - middle), room >= 0.0).astype(int)
-    rows = np.flatnonzero((last < middle) & (y[np.arange(len(y)), middle + last] < reach))
+    middle, lengths = places.shape[1] // 2, np.repeat(reach[:, None], 2, axis=1)
+    lowest = 4.0 * (places[:, 0] - places[:, 1])
+    best = np.maximum(best, lowest[:, None])
+    outwards = np.stack([best[:, middle::-1], best[:, middle:]], axis=1)
+    last = np.where(outwards >= 0.0, np.arange(middle + 1), 0).max(axis=2)  # with material, (n, 2)
+    ends_within = np.take_along_axis(places, middle + last, axis=1) < reach[:, None]
+    rows, side = np.nonzero((last < middle) & ends_within)
     if not rows.size:
         return lengths
-    # ends of the material on either side, (rows, 2): between the rows of cells ``inner`` and ``outer``
-    columns = [np.clip(middle + (last[rows, None] + step) * SIDES, 0, 2 * middle) for step in (-1, 0, 1, 2)]
-    before, inner, outer, beyond = (room[rows[:, None], column] for column in columns)
-    start, stop = (y[rows[:, None], column] for column in columns[1:3])
+    last, sign = last[rows, side], 2 * side - 1
+    # the end lies between the places ``start`` and ``stop``, where there is room ``inner`` and ``outer``
+    columns = [np.clip(middle + (last + step) * sign, 0, 2 * middle) for step in (-1, 0, 1, 2)]
+    before, inner, outer, beyond = (best[rows, column] for column in columns)
+    start, stop = places[rows, middle + last], places[rows, middle + last + 1]
     there, fall = inner >= 0.0, inner - outer
-    straight = ((np.abs(before - inner - fall) <= STRAIGHT_CHORD * fall) | ~there).all(axis=1)
+    straight = (np.abs(before - inner - fall) <= STRAIGHT_CHORD * accuracy * fall) | ~there
     ends = start + np.divide(inner, fall, out=np.zeros(fall.shape), where=there) * (stop - start)
-    tolerance = END_OF_MATERIAL * reach[rows, None]
+    tolerance = accuracy * reach[rows]
 
-    def room_at(of: Indices, places: Array) -> Array:
-        found = gap.of(rows[of]).at(x[rows[of], :, None], places[:, None])[1].max(axis=1)
-        return np.maximum(found, lowest[rows[of], None])
+    def room_of(of: Indices, distance: Array) -> Array:
+        return np.maximum(room_at(rows[of], sign[of] * distance), lowest[rows[of]])
 
-    known, corners = straight, np.flatnonzero(~straight & (last[rows] + 2 <= middle))
+    known, corners = straight, np.flatnonzero(~straight & (last + 2 <= middle))
     if corners.size:  # where the other edge rules inside, but seldom outside
         steep = (outer - beyond)[corners]
-        past = outer[corners] / np.where(steep > 0.0, steep, np.inf) * (stop - start)[corners]
-        end = stop[corners] + past
-        around = 0.5 * tolerance[corners] * SIDES
-        inside, outside = (room_at(corners, end + sign * around) for sign in (-1.0, 1.0))
-        met = (((inside >= 0.0) & (outside < 0.0)) | ~there[corners]).all(axis=1)
+        end = stop[corners] + outer[corners] / np.where(steep > 0.0, steep, np.inf) * (stop - start)[corners]
+        around = 0.5 * tolerance[corners]
+        met = (room_of(corners, end - around) >= 0.0) & (room_of(corners, end + around) < 0.0)
         ends[corners[met]], known[corners[met]] = end[met], True
-    unknown, side = np.nonzero(there & ~known[:, None])
+    unknown = np.flatnonzero(~known)
     if unknown.size:
         scale = reach[rows[unknown]]
-        brackets, values = (np.stack([a[unknown, side], b[unknown, side]]) for a, b in ((start, stop), (inner, outer)))
-        found = find_roots(
-            lambda part, which: room_at(unknown[which], (part * scale[which])[:, None])[:, 0],
-            brackets / scale,
-            values,
-            END_OF_MATERIAL,
+        roots = find_roots(
+            lambda part, which: room_of(unknown[which], part * scale[which]),
+            np.stack([start, stop])[:, unknown] / scale,
+            np.stack([inner, outer])[:, unknown],
+            accuracy,
         )
-        ends[unknown, side] = found * scale
-    lengths[rows] = np.minimum(_farthest(np.abs(ends), there), reach[rows])
+        ends[unknown] = roots * scale
+    lengths[rows, side] = np.minimum(ends, reach[rows])
     return lengths

@@ -1,9 +1,10 @@
 r"""The separation matrix: the gap between the flanks on a small grid in the tangent plane of a contact point.
 
 The grid lies along the principal relative curvatures, x across (largest curvature), y along, centred on the contact
-point, which falls between the middle cells of even grids. The gap is the distance of the two flanks along the
-common normal; it is +inf where a flank ends. Edges of the flanks run where they run: of every cell the part is told
-that has material, so that a contact that ends there does not jump by whole cells.
+point, which falls between the middle cells of even grids. Where the contact under load lies askew on these axes, the
+grid lies along the contact; where a flank ends in the box, the box ends a cell beyond it. The gap is the distance of
+the two flanks along the common normal; it is +inf where a flank ends. Edges of the flanks run where they run: of every
+cell the part that has material is known, so that a contact that ends there does not jump by whole cells.
 
 How large a box does a contact need? The contact is cut into strips across; a strip of gap g_j carries the line load
 
@@ -30,7 +31,7 @@ from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact.checks import memory_problem
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.separation.box import MARGIN, estimate_boxes
+from loaded_tca.separation.box import MARGIN, Box, estimate_boxes
 from loaded_tca.separation.normal_gap import TOGETHER, NormalGap
 from loaded_tca.unloaded.curvature import relative_curvatures
 from loaded_tca.unloaded.path import ContactPoint, require_contact
@@ -79,7 +80,7 @@ class Separation:
     axes : (3, 3) array
         Rows: x, y, and the normal out of the pinion.
     curvatures : (float, float) [1/mm]
-        Principal relative curvatures, across and along.
+        Relative curvatures at the contact point, across and along: the principal ones where the grid lies along these.
     cover : (nx, ny) array
         Part of every cell that has material, from 0 to 1.
     cut_gap : (nx, ny) array [mm]
@@ -87,7 +88,7 @@ class Separation:
         cell where they end before it.
     force_line : (ny,) array [mm]
         Where across the contact the force of every slice acts, from the contact point: the centre of its pressure, as
-        far as one is known; else zero, or the middle of the box.
+        far as one is known; else zero.
     """
 
     gap: Array
@@ -122,9 +123,9 @@ class Separation:
         return float(self.cover.sum()) * self.spacing[0] * self.spacing[1]
 
     @property
-    def half_lengths(self) -> tuple[float, float]:
-        """Half lengths of the box across and along [mm]."""
-        return 0.5 * self.gap.shape[0] * self.spacing[0], 0.5 * self.gap.shape[1] * self.spacing[1]
+    def box(self) -> Box:
+        """Where the grid lies in the tangent plane."""
+        return Box.of(self)
 
     def loaded_by(self, pressure: Array) -> Separation:
         """Return the same grid, its forces at the centres of a pressure (nx, ny); as it is where there is none.
@@ -170,7 +171,8 @@ def sample_separation(
     accuracy : float
         Relative error of the peak pressure of a smooth contact that chooses the cells.
     box : (float, float) [mm], optional
-        Half lengths across and along, instead of the estimated ones.
+        Half lengths across and along, instead of the estimated ones, about the contact point and along the principal
+        directions of the relative curvature.
     guess : (float, float) [mm], optional
         Half lengths to start the estimate of the box from: those of the same contact under a load near this one. It
         saves time on edges, whose boxes the curvatures do not tell; elsewhere it is not needed, and not used.
@@ -212,9 +214,8 @@ def sample_separations(
     *,
     cells: Sequence[tuple[int, int] | None],
     loads: Sequence[float | None],
-    boxes: Sequence[tuple[float, float] | None],
+    boxes: Sequence[Box | tuple[float, float] | None],
     guesses: Sequence[tuple[float, float] | None] | None = None,
-    middles: Sequence[tuple[float, float]] | None = None,
     accuracy: float = 1e-3,
 ) -> list[Separation | InputError | GeometryError]:
     """Gaps of n contacts: of each what :func:`sample_separation` returns or raises, whatever stands beside it.
@@ -224,9 +225,7 @@ def sample_separations(
     pair : GearPair
     contacts : sequence of n ContactPoint
     cells, loads, boxes, guesses : sequences of n
-        For each contact, as of :func:`sample_separation`.
-    middles : sequence of n (float, float), optional [mm]
-        Where the middles of the boxes lie, from the contact points across and along; default: there.
+        For each contact, as of :func:`sample_separation`; a :class:`Box` may lie anywhere in the tangent plane.
     accuracy : float
         Of all contacts whose cells are None.
     """
@@ -238,53 +237,55 @@ def sample_separations(
     ):
         try:
             require_contact(contact)
-            _check(shape, load, accuracy, {"box": box, "guess": guess})
+            lengths = box.half_lengths if isinstance(box, Box) else box
+            _check(shape, load, accuracy, {"box": lengths, "guess": guess})
         except (InputError, GeometryError) as error:
             found[index] = error
         else:
             across, along = shape if shape is not None else (cells_for_accuracy(accuracy),) * 2
             shapes[index] = int(across), int(along)
-    relative_curvatures(pair, [contacts[index] for index in shapes])  # kept
-    half_lengths = {index: box for index in shapes if (box := boxes[index]) is not None}
-    to_size = [index for index in shapes if index not in half_lengths]
+    principal = dict(zip(shapes, relative_curvatures(pair, [contacts[index] for index in shapes]), strict=True))
+    placed: dict[int, Box] = {}
+    for index in shapes:
+        if (box := boxes[index]) is not None:
+            placed[index] = box if isinstance(box, Box) else Box(box, principal[index].axes)
+    to_size = [index for index in shapes if index not in placed]
     if to_size:
         forces = [loads[index] or LOAD_OF_UNLOADED_BOX for index in to_size]
-        starts, lengthwise = [guesses[index] for index in to_size], [shapes[index][1] for index in to_size]
-        fitting = estimate_boxes(pair, [contacts[index] for index in to_size], forces, starts, lengthwise)
-        for index, one in zip(to_size, fitting, strict=True):
-            if isinstance(one, GeometryError):
-                found[index] = one
+        starts, numbers = [guesses[index] for index in to_size], [shapes[index] for index in to_size]
+        fitting = estimate_boxes(pair, [contacts[index] for index in to_size], forces, starts, numbers)
+        for index, box_or_error in zip(to_size, fitting, strict=True):
+            if isinstance(box_or_error, GeometryError):
+                found[index] = box_or_error
             else:
-                half_lengths[index] = one
+                placed[index] = box_or_error
     for shape in dict.fromkeys(shapes.values()):
-        sized = [(index, box) for index, box in half_lengths.items() if shapes[index] == shape]
+        sized = [(index, box) for index, box in placed.items() if shapes[index] == shape]
         size = max(1, TOGETHER // math.prod(shape))
         for part in (dict(sized[first : first + size]) for first in range(0, len(sized), size)):
-            places = np.zeros((len(part), 2)) if middles is None else np.array([middles[index] for index in part])
-            gaps = _sampled(pair, [contacts[index] for index in part], np.array([*part.values()]), places, shape)
+            gaps = _sampled(pair, [contacts[index] for index in part], [*part.values()], shape)
             found.update(zip(part, gaps, strict=True))
     return [found[index] for index in range(len(contacts))]
 
 
 def _sampled(
-    pair: GearPair, contacts: Sequence[ContactPoint], boxes: Array, middles: Array, shape: tuple[int, int]
+    pair: GearPair, contacts: Sequence[ContactPoint], boxes: Sequence[Box], shape: tuple[int, int]
 ) -> Iterator[Separation]:
-    """Gaps of n contacts in boxes of half lengths and about middles (n, 2), on grids of one shape."""
-    curvatures = relative_curvatures(pair, contacts)
-    spacings = 2.0 * boxes / shape
+    """Gaps of n contacts in their boxes, on grids of one shape."""
+    curvatures, axes = relative_curvatures(pair, contacts), np.array([box.axes for box in boxes])
+    spacings = 2.0 * np.array([box.half_lengths for box in boxes]) / shape
     x, y = (
         middle[:, None] + (np.arange(n) - 0.5 * (n - 1)) * step[:, None]
-        for n, step, middle in zip(shape, spacings.T, middles.T, strict=True)
+        for n, step, middle in zip(shape, spacings.T, np.array([box.middle for box in boxes]).T, strict=True)
     )
-    gap = NormalGap(pair, contacts, np.array([curvature.axes for curvature in curvatures]))
+    gap = NormalGap(pair, contacts, axes)
     heights, distances = gap.with_edges(x[:, :, None], y[:, None])
     covers = _covers(distances, spacings)
     whole, cut = (np.where(there, heights, np.inf) for there in (reduce(np.minimum, distances) >= 0.0, covers > 0.0))
     for k, (contact, curvature, (dx, dy)) in enumerate(zip(contacts, curvatures, spacings.tolist(), strict=True)):
-        principal = curvature.across, curvature.along
         grid, origin = (whole[k].copy(), x[k], y[k], (dx, dy)), contact.point.copy()
-        line = np.full(y.shape[1], middles[k, 0])
-        yield Separation(*grid, origin, curvature.axes, principal, covers[k].copy(), cut[k].copy(), line)
+        along_axes, line = curvature.along_axes(axes[k]), np.zeros(y.shape[1])
+        yield Separation(*grid, origin, axes[k], along_axes, covers[k].copy(), cut[k].copy(), line)
 
 
 def _covers(distances: list[Array], spacings: Array) -> Array:

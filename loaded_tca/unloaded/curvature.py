@@ -41,6 +41,13 @@ class RelativeCurvature:
     along: float
     axes: Array
 
+    def along_axes(self, axes: Array) -> tuple[float, float]:
+        """Relative curvatures [1/mm] along the first two of other axes (rows) in the same plane."""
+        if axes is self.axes or np.array_equal(axes, self.axes):
+            return self.across, self.along
+        first, second = (axes[:2] @ self.axes[:2].T) ** 2 @ np.array([self.across, self.along])
+        return float(first), float(second)
+
 
 _KEPT: WeakKeyDictionary[ContactPoint, tuple[ReferenceType[GearPair], RelativeCurvature]] = WeakKeyDictionary()
 """Curvatures of the contact points in use: every grid of a contact asks for them again."""

@@ -250,8 +250,10 @@ def _contact(pair: GearPair, field: EaseOff, station: Station, held: Mask, round
         )
     )
     edges = held[:, ~field.edge_is_relief_start()] | rounded
-    ends = (_ends(field, station, held, gear) | on.any(axis=-1) for gear, on in enumerate(np.split(rounded, 2, axis=1)))
-    use_wheel = next(ends) & ~next(ends)
+    pinion_kinks, wheel_kinks = (
+        _kinks(field, station, held, gear) + on.any(axis=-1) for gear, on in enumerate(np.split(rounded, 2, axis=1))
+    )
+    use_wheel = pinion_kinks > wheel_kinks
     normal = np.where(use_wheel[:, None], -out_of_wheel, out_of_pinion)
     arm = station.point - pair.wheel_origin
     return {
@@ -267,13 +269,17 @@ def _contact(pair: GearPair, field: EaseOff, station: Station, held: Mask, round
     }
 
 
-def _ends(field: EaseOff, station: Station, held: Mask, member: int) -> Array:
-    """Whether the flank of one gear ends, or has its relief start, at the contact."""
+def _kinks(field: EaseOff, station: Station, held: Mask, member: int) -> Array:
+    """Weight of what leaves the normal of one gear open at the contact: an end of its flank 1, its relief start 2.
+
+    Where both flanks end, as at faces of one width, the one that has no relief start there is smooth along the edge.
+    """
     own, relief_start = field.edge_owner() == member, field.edge_is_relief_start()
     distances, _ = field.edges(station)
     near = distances <= FEASIBLE * field.pair.pinion.flank.extent[0]
     on_edge = held[:, ~relief_start].any(axis=-1) & (near & own & ~relief_start).any(axis=-1)
-    return on_edge | (held & own).any(axis=-1)
+    ends = on_edge | (held & own & ~relief_start).any(axis=-1)
+    return np.asarray(ends + 2 * (held & own & relief_start).any(axis=-1))
 
 
 def _residual(field: EaseOff, station: Station, normals: tuple[Array, Array], held: Mask) -> Array:

@@ -152,7 +152,7 @@ def test_box_of_a_corner_holds_its_contact():
             first = sample_separation(pair, contact, cells=(32, 32), load=load)
             loaded = solve_under_load(pair, contact, load, GridChoice(cells=(32, 32)))
             assert np.isfinite(first.gap).any()
-            assert loaded.separation.half_lengths[0] < 3.0 * first.half_lengths[0]
+            assert loaded.separation.box.half_lengths[0] < 3.0 * first.box.half_lengths[0]
             assert not loaded.solution.reaches_border
 
 

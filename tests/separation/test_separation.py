@@ -208,10 +208,10 @@ def test_box_hardly_depends_on_the_guess_it_starts_from(name, factor):
     make, turn = CONTACTS[name]
     pair = make()
     contact, separation = separation_of(pair, turn, load=100.0, cells=(16, 16))
-    guess = (factor * separation.half_lengths[0], factor * separation.half_lengths[1])
+    guess = (factor * separation.box.half_lengths[0], factor * separation.box.half_lengths[1])
     guessed = sample_separation(pair, contact, load=100.0, cells=(16, 16), guess=guess)
     # lengths are rounded up to half a cell of a coarse grid, which a contact fills to between 0.4 and 0.8
-    assert_allclose(guessed.half_lengths, separation.half_lengths, rtol=0.25)
+    assert_allclose(guessed.box.half_lengths, separation.box.half_lengths, rtol=0.25)
 
 
 @pytest.mark.parametrize(
@@ -223,7 +223,10 @@ def test_box_ends_one_cell_beyond_the_end_of_the_material(name, load):
     pair = make()
     contact, separation = separation_of(pair, turn, load=load, cells=(16, 16))
     gap = NormalGap(pair, contact, separation.axes)
-    x, end = np.linspace(-1.0, 1.0, 65)[:, None] * separation.half_lengths[0], 14.0 / 16.0 * separation.half_lengths[1]
+    x, end = (
+        np.linspace(-1.0, 1.0, 65)[:, None] * separation.box.half_lengths[0],
+        14.0 / 16.0 * separation.box.half_lengths[1],
+    )
     before, beyond = (gap.at(x, np.array([-end, end]) * (1.0 + shift))[1].max() for shift in (-1e-3, 1e-3))
     assert before >= 0.0 > beyond
     assert np.isinf(separation.gap[:, [0, -1]]).all()
@@ -235,13 +238,13 @@ def test_box_does_not_change_with_the_rounding_of_the_load():
     pair = read_scene(SCENES / "mesh_cycle_helical.toml").pair()
     contact = trace_contact(pair, [-0.71875 * pair.pitch])[0]
     loads = 1975.78 * (1.0 + np.finfo(float).eps * np.arange(-12, 13))
-    boxes = [sample_separation(pair, contact, cells=(16, 16), load=load).half_lengths for load in loads.tolist()]
+    boxes = [sample_separation(pair, contact, cells=(16, 16), load=load).box.half_lengths for load in loads.tolist()]
     assert_allclose(boxes, np.broadcast_to(boxes[0], (len(boxes), 2)), rtol=1e-9)  # far above rounding, below a cell
 
 
 def test_end_of_the_material_of_a_spur_pair_is_that_of_the_face():
     _, separation = separation_of(gear_pair(), load=1e3, cells=(16, 16))
-    assert_allclose(separation.half_lengths[1] * 14.0 / 16.0, 12.5, rtol=2e-6)  # looked for to 1e-6 of the box
+    assert_allclose(separation.box.half_lengths[1] * 14.0 / 16.0, 12.5, rtol=2e-6)  # looked for to 1e-6 of the box
 
 
 def test_cells_for_accuracy_are_even_and_grow_with_the_root_of_the_accuracy():
@@ -319,7 +322,7 @@ def test_cover_is_the_part_of_the_cell_within_the_edges(name):
     make, turn = CONTACTS[name]
     pair = make()
     contact, fitting = separation_of(pair, turn, load=9e3, cells=(16, 16))
-    across, along = fitting.half_lengths
+    across, along = fitting.box.half_lengths
     separation = sample_separation(pair, contact, cells=(16, 16), box=(across, 1.07 * along))
     gap, fine = NormalGap(pair, contact, separation.axes), (np.arange(40) + 0.5) / 40.0 - 0.5
     x, y = (

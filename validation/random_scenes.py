@@ -1,0 +1,127 @@
+"""Random scenes of all families: gear pairs that nobody has tried, for what must hold of every one.
+
+A scene is known by its seed. Sizes, teeth, angles, modifications, mounting errors and torques are drawn from ranges of
+ordinary gears; the torque is that of a line load drawn for the size of the teeth. Draws that make no gears are drawn again.
+"""
+
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from loaded_tca import AccuracyWarning, parse_scene, read_scene
+from loaded_tca.errors import LoadedTCAError
+from loaded_tca.scene import Scene
+
+SCENES = Path(__file__).parents[1] / "examples" / "scenes"
+FAMILIES = (
+    "helical",
+    "helical",
+    "helical",
+    "spur",
+    "helical",
+    "straight_bevel",
+    "helical",
+    "spiral_bevel",
+    "face_milled",
+)
+"""By seed, in turn: most gears are helical, and have most kinds of edges and reliefs."""
+MOST_DRAWS = 100
+Section = dict[str, Any]
+
+
+def random_scene(seed: int, **analysis: Any) -> Scene:
+    """Scene of a seed, with these keys of its section [analysis]."""
+    rng, family = np.random.default_rng(seed), FAMILIES[seed % len(FAMILIES)]
+    for _ in range(MOST_DRAWS):
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", AccuracyWarning)
+                scene = _DRAWS[family](rng).with_changes({f"analysis.{key}": value for key, value in analysis.items()})
+                scene.pair()
+        except LoadedTCAError:
+            continue
+        return scene
+    raise RuntimeError(f"seed {seed}: no {family} pair in {MOST_DRAWS} draws")
+
+
+def _cylindrical(rng: np.random.Generator, helix_angle: float) -> Scene:
+    """A spur or helical pair at its standard centre distance, with reliefs and crownings as engineers choose them."""
+    module, teeth = rng.choice([1.5, 2.0, 2.5, 3.0, 4.0]), (int(rng.integers(18, 40)), int(rng.integers(30, 90)))
+    face, shift = float(module * rng.uniform(6.0, 14.0)), float(rng.uniform(0.0, 0.4))
+    line_load = module * rng.uniform(40.0, 130.0)  # N/mm
+    radius = 0.5 * module * teeth[0] / np.cos(np.radians(helix_angle))
+    table: dict[str, Section] = {
+        "pair": {"type": "cylindrical", "normal_module_mm": module, "helix_angle_deg": helix_angle},
+        "pinion": {"teeth": teeth[0], "face_width_mm": face + rng.choice([0.0, 2.0]), "profile_shift": shift},
+        "wheel": {"teeth": teeth[1], "face_width_mm": face, "profile_shift": -shift},
+        "mounting": {"misalignment_um": rng.choice([0.0, rng.uniform(-20.0, 20.0)])},
+        "load": {"pinion_torque_Nm": 1e-3 * line_load * face * radius},
+    }
+    if helix_angle:
+        table["pinion"]["hand"] = str(rng.choice(["left", "right"]))
+    scene = parse_scene(_toml(_steel(table)))
+    mesh = scene.mesh()
+    changes: Section = {"pinion.modifications.lead_crowning_um": rng.uniform(0.0, 8.0)}
+    changes["pinion.modifications.helix_slope_um"] = rng.choice([0.0, rng.uniform(-8.0, 8.0)])
+    changes["pinion.modifications.profile_crowning_um"] = rng.choice([0.0, rng.uniform(0.0, 4.0)])
+    form = str(rng.choice(["parabolic", "linear"]))
+    for gear, tip in (("pinion", 2.0 * mesh.pinion.tip_radius), ("wheel", 2.0 * mesh.wheel.tip_radius)):
+        if rng.random() < 0.7:
+            changes[f"{gear}.modifications.tip_relief_um"] = rng.uniform(5.0, 30.0)
+            changes[f"{gear}.modifications.tip_relief_start_mm"] = tip - module * rng.uniform(0.4, 1.6)
+            changes[f"{gear}.modifications.tip_relief_form"] = form
+    return scene.with_changes(changes)
+
+
+def _bevel(rng: np.random.Generator, kind: str) -> Scene:
+    """A straight or spiral bevel pair with crownings and mounting errors."""
+    module, teeth = rng.choice([1.0, 2.0, 3.0]), (int(rng.integers(16, 25)), int(rng.integers(25, 45)))
+    cone_distance = 0.5 * module * float(np.hypot(*teeth))
+    face = float(rng.uniform(0.2, 0.3)) * cone_distance
+    table: dict[str, Section] = {
+        "pair": {"type": kind, "outer_module_mm": module, "shaft_angle_deg": 90.0, "pressure_angle_deg": 20.0},
+        "pinion": {"teeth": teeth[0], "face_width_mm": face},
+        "wheel": {"teeth": teeth[1], "face_width_mm": face},
+        "mounting": {name: 0.01 * module * rng.normal() for name in ("offset_mm", "pinion_axial_mm")},
+        "load": {"pinion_torque_Nm": 1e-3 * module * rng.uniform(20.0, 60.0) * face * 0.4 * module * teeth[0]},
+    }
+    table["pinion.modifications"] = {
+        "lead_crowning_um": rng.uniform(4.0, 15.0),
+        "profile_crowning_um": rng.uniform(2.0, 8.0),
+    }
+    if kind == "spiral_bevel":
+        table["pair"] |= {"spiral_angle_deg": rng.uniform(25.0, 38.0), "pinion_flank": "concave"}
+        table["pinion"]["hand"] = "left"
+    return parse_scene(_toml(_steel(table)))
+
+
+def _face_milled(rng: np.random.Generator) -> Scene:
+    """The matched pair 19/62 with mounting errors, under some torque."""
+    errors = {f"mounting.{name}": 0.04 * rng.normal() for name in ("offset_mm", "pinion_axial_mm", "wheel_axial_mm")}
+    torque = {"load.pinion_torque_Nm": float(rng.uniform(50.0, 400.0))}
+    return read_scene(SCENES / "face_milled_19x62_matched.toml").with_changes(errors | torque)
+
+
+_DRAWS = {
+    "spur": lambda rng: _cylindrical(rng, 0.0),
+    "helical": lambda rng: _cylindrical(rng, float(rng.uniform(10.0, 32.0))),
+    "straight_bevel": lambda rng: _bevel(rng, "straight_bevel"),
+    "spiral_bevel": lambda rng: _bevel(rng, "spiral_bevel"),
+    "face_milled": _face_milled,
+}
+
+
+def _steel(table: dict[str, Section]) -> dict[str, Section]:
+    return table | {"material": {"youngs_modulus_MPa": 206000.0, "poisson_ratio": 0.3}}
+
+
+def _toml(table: dict[str, Section]) -> str:
+    """Text of a scene file."""
+    lines = []
+    for section, keys in table.items():
+        lines.append(f"[{section}]")
+        for name, value in keys.items():
+            lines.append(f'{name} = "{value}"' if isinstance(value, str) else f"{name} = {value}")
+    return "\n".join(lines) + "\n"
