@@ -121,6 +121,21 @@ def ends_at_material(pressure: Array, void: Mask) -> bool:
     return False
 
 
+def widths(pressure: Array, cover: Array) -> Array:
+    """Width (ny,) of the contact on each line of cells across, in cells, its ends found as in ``values_at_ends``.
+
+    Zero where a line has no pressure. The outermost cells of the grid carry none.
+    """
+    square, parts = continue_outside(pressure**2).T, cover.T
+    pressed, lines, found = square > 0.0, np.arange(len(square)), np.zeros(len(square))
+    for step, end in ((-1, pressed.argmax(axis=1)), (1, square.shape[1] - 1 - pressed[:, ::-1].argmax(axis=1))):
+        end = np.where(pressed.any(axis=1), end, 1)
+        inside, beyond = square[lines, end], square[lines, end + step]
+        farthest = np.where(parts[lines, end + step] > 0.0, 1.0, parts[lines, end] - 0.5)
+        found += step * end + np.minimum(inside / np.where(pressed.any(axis=1), inside - beyond, 1.0), farthest)
+    return np.where(pressed.any(axis=1), found, 0.0)
+
+
 def values_at_ends(pressure: Array, values: Array, cover: Array, axes: tuple[int, ...] = (0, 1)) -> Array:
     """Values (n,), known at the centres of the cells, at the ends of the contact between these centres.
 

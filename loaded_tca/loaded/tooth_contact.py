@@ -13,9 +13,10 @@ from loaded_tca.contact import ContactProblem, ContactSolution, solve_problem
 from loaded_tca.contact.adaptive import TOLERANCE_SHARE, refinement
 from loaded_tca.contact.checks import memory_problem
 from loaded_tca.contact.levels import under_other_load
-from loaded_tca.contact.patch import ends_at_material, values_at_ends
+from loaded_tca.contact.patch import ends_at_material, values_at_ends, widths
 from loaded_tca.contact.solution import CoarserGrid
 from loaded_tca.errors import InputError
+from loaded_tca.loaded.line_load import SliceLoads
 from loaded_tca.loaded.pair_coupling import BendingModel, Coupling
 from loaded_tca.loaded.together import Ends, Gap, Steps, Task, found_alone
 from loaded_tca.pairs.gear_pair import GearPair
@@ -42,6 +43,9 @@ LARGEST_MISFIT = 0.3
 begins in the ellipse the misfit is above 1."""
 BESIDE = 0.5 + 1e-6
 """Distance over a cell along both axes within which cells lie beside the contact point."""
+LEAST_ERROR_OF_SLICES = 2.0
+"""Error of the largest pressure of slices times the square of the cells across the contact, at the most where two grids
+agree by chance (``validation/loaded/error_estimates.py``)."""
 GROWTH = 1.5
 MOST_BOXES = 8
 
@@ -83,6 +87,9 @@ class LoadedContact:
         Displacement of the slices under the load of other tooth pairs, if there are any.
     bending : (ny, ny) array or None [mm/N]
         Slice compliance of the teeth, without that of free edges.
+    line_load_error : float
+        Estimated relative error of the largest line load, averaged as of ``line_load.SliceLoads``, from the two finest
+        grids; NaN where there was one.
     """
 
     contact: ContactPoint
@@ -93,6 +100,22 @@ class LoadedContact:
     tolerance: float = 1e-6
     coupling_deflection: Array | None = None
     bending: Array | None = None
+    line_load_error: float = math.nan
+
+    @property
+    def is_rough(self) -> bool:
+        """Whether its largest cell is no mesh-independent peak: at an edge or a relief start."""
+        return self.at_edge or self.at_relief_start
+
+    @property
+    def peak_error(self) -> float:
+        """Estimated relative error of its peak, or where it is rough of the pressure of its slices, by the grid.
+
+        NaN where there was one grid alone.
+        """
+        if not self.is_rough:
+            return self.solution.error_estimate.peak_pressure
+        return max(LEAST_ERROR_OF_SLICES / min(self.solution.cells_across) ** 2, self.line_load_error)
 
     @property
     def at_edge(self) -> bool:
@@ -102,8 +125,7 @@ class LoadedContact:
     @property
     def peak_pressure(self) -> float:
         """Peak pressure [MPa]; that of the largest cell where the contact reaches an edge or a relief start."""
-        rough = self.at_edge or self.at_relief_start
-        return float(self.solution.pressure_on_material.max()) if rough else self.solution.peak_pressure
+        return float(self.solution.pressure_on_material.max()) if self.is_rough else self.solution.peak_pressure
 
     @property
     def central_pressure(self) -> float:
@@ -138,7 +160,7 @@ class LoadedContact:
         relief begins in the ellipse the gap leaves the paraboloid.
         """
         across, along = self.separation.curvatures
-        smooth = along > 0.0 and not (self.at_edge or self.at_relief_start or self.contact.on_line)
+        smooth = along > 0.0 and not (self.is_rough or self.contact.on_line)
         if not smooth or self.solution.load <= 0.0:
             return None
         ellipse = point_contact(self.solution.load, (across, along), self.solution.problem.contact_modulus)
@@ -165,7 +187,10 @@ class LoadedContact:
 
     @cached_property
     def extent(self) -> tuple[float, float]:
-        """Width across and length along [mm]: of the contact ellipse; at an edge between its ends, within the cells."""
+        """Width across and length along [mm]: of the contact ellipse; at an edge between its ends, within the cells.
+
+        The width is that of the widest slice, so that a contact which leaves the axis of its grid is not the wider.
+        """
         if not self.at_edge:
             minor, major = self.solution.semi_axes
             return 2.0 * minor, 2.0 * major
@@ -174,17 +199,17 @@ class LoadedContact:
             return 0.0, 0.0
         if self.solution.reaches_border:  # nothing lies beyond
             pressure, cover = np.pad(pressure, 1), np.pad(cover, 1)
-        across, along = (
-            float(np.ptp(values_at_ends(pressure, place, cover, (axis,)))) * self.separation.spacing[axis]
-            for axis, place in enumerate([*np.indices(pressure.shape)])
-        )
-        return across, along
+        dx, dy = self.separation.spacing
+        places = np.broadcast_to(np.arange(pressure.shape[1], dtype=np.float64), pressure.shape)
+        length = float(np.ptp(values_at_ends(pressure, places, cover, (1,))))
+        return float(widths(pressure, cover).max()) * dx, length * dy
 
     @property
     def filled_ends(self) -> tuple[tuple[bool, bool], tuple[bool, bool]]:
         """Whether pressure reaches the lower and the upper end of the box, across and along."""
-        across, along = (self.solution.pressure.any(axis=axis) for axis in (1, 0))
-        return (bool(across[0]), bool(across[-1])), (bool(along[0]), bool(along[-1]))
+        pressure = self.solution.pressure
+        low, high = (bool(row.any()) for row in pressure[[0, -1]])
+        return (low, high), (bool(pressure[:, 0].any()), bool(pressure[:, -1].any()))
 
     @cached_property
     def slice_force(self) -> Array:
@@ -323,7 +348,7 @@ def contact_under_load(
         cells = FIRST_CELLS_AT_ENDS
         separation = yield Gap(contact, cells, box=separation.box)
     for _ in range(MOST_BOXES):
-        loaded = yield from _solve_in_box(pair, contact, load, grid, separation, bending, number, coupling)
+        loaded = yield from _InBox(pair, contact, load, grid, separation, bending, number, coupling).steps()
         if not loaded.solution.reaches_border:
             break
         separation = yield Gap(contact, cells, box=loaded.separation.box.grown(loaded.filled_ends, GROWTH))
@@ -346,55 +371,91 @@ def _box_for_cap(pair: GearPair, contact: ContactPoint, load: float, separation:
     return separation
 
 
-def _solve_in_box(
-    pair: GearPair,
-    contact: ContactPoint,
-    load: float,
-    grid: GridChoice,
-    first: Separation,
-    bending: BendingModel | None,
-    number: int,
-    coupling: Coupling | None,
-) -> Steps[LoadedContact]:
-    """Solve in the box of ``first``, on its grid if cells were given, else on finer and finer ones."""
-    separation = first
-    displaced: Array | None = None
-    bent: Array | None = None
+class _InBox:
+    """A contact solved in one box: on the cells that were given, else on finer and finer ones.
 
-    def solved(cells: tuple[int, int], tolerance: float, start: Array | None = None) -> Steps[ContactSolution]:
-        nonlocal separation, displaced, bent  # of the grid solved last
-        separation = first
-        if first.gap.shape != cells:
-            separation = yield Gap(contact, cells, box=first.box)
-        if start is not None and not grid.lines_held:
+    Parameters are those of :func:`contact_under_load`; ``first`` is the first grid.
+    """
+
+    def __init__(
+        self,
+        pair: GearPair,
+        contact: ContactPoint,
+        load: float,
+        grid: GridChoice,
+        first: Separation,
+        bending: BendingModel | None,
+        number: int,
+        coupling: Coupling | None,
+    ) -> None:
+        self.pair, self.contact, self.load, self.grid, self.first = pair, contact, load, grid, first
+        self.bending, self.number, self.coupling = bending, number, coupling
+        self.tolerance = grid.tolerance if grid.cells else min(grid.tolerance, TOLERANCE_SHARE * grid.accuracy)
+        # of the grid solved last, and the largest line loads on all of them
+        self.separation = first
+        self.displaced: Array | None = None
+        self.bent: Array | None = None
+        self.line_loads: list[float] = []
+
+    def steps(self) -> Steps[LoadedContact]:
+        loaded = yield from self._refined()
+        if self.grid.lines_held or self.load == 0.0 or loaded.solution.reaches_border:
+            return loaded
+        if self.bending is None:
+            return replace(loaded, separation=loaded.separation.loaded_by(loaded.solution.pressure))
+        loaded = loaded.bent_by(self.bending, self.number)
+        coupling = None if self.coupling is None else self.coupling(loaded.separation)
+        return (yield from loaded.under(self.load, coupling))
+
+    def _refined(self) -> Steps[LoadedContact]:
+        """Solve with teeth that bend at the centres of the pressure on the grid before."""
+        pair, contact, grid = self.pair, self.contact, self.grid
+        if grid.cells is not None:
+            solution = yield from self._solved(grid.cells, self.tolerance)
+        else:
+            expected, cells = expected_pressure(self.first), (self.first.x.size, self.first.y.size)
+            across_start = _crosses_relief_start(pair, contact, self.first, expected)
+
+            def smooth(solution: ContactSolution) -> bool:
+                return not (across_start or _reaches_arc(pair, self.separation, solution.pressure_on_material))
+
+            solution, _ = yield from refinement(self._solved, grid.accuracy, grid.tolerance, smooth, cells, expected)
+        on_material = solution.pressure_on_material
+        return LoadedContact(
+            contact,
+            self.separation,
+            solution,
+            at_relief_start=_crosses_relief_start(pair, contact, self.separation, on_material),
+            at_arc=_reaches_arc(pair, self.separation, on_material),
+            tolerance=self.tolerance,
+            coupling_deflection=self.displaced,
+            bending=self.bent,
+            line_load_error=self._line_load_error(),
+        )
+
+    def _solved(self, cells: tuple[int, int], tolerance: float, start: Array | None = None) -> Steps[ContactSolution]:
+        """Solve on a grid of the box."""
+        separation = self.first
+        if separation.gap.shape != cells:
+            separation = yield Gap(self.contact, cells, box=self.first.box)
+        if start is not None and not self.grid.lines_held:
             separation = separation.loaded_by(start)
-        displaced = None if coupling is None else coupling(separation)
-        bent = None if bending is None else bending.within(number, separation)
-        ends = (yield Ends(separation)) if grid.free_edges else None
-        return (yield Task(contact_problem(pair, separation, load, bent, ends, displaced), tolerance, start))
+        self.separation = separation
+        self.displaced = None if self.coupling is None else self.coupling(separation)
+        self.bent = None if self.bending is None else self.bending.within(self.number, separation)
+        ends = (yield Ends(separation)) if self.grid.free_edges else None
+        problem = contact_problem(self.pair, separation, self.load, self.bent, ends, self.displaced)
+        solution: ContactSolution = yield Task(problem, tolerance, start)
+        if self.load > 0.0:
+            self.line_loads.append(float(SliceLoads(self.pair.module, separation, solution.pressure).line_load.max()))
+        return solution
 
-    if grid.cells is not None:
-        tolerance = grid.tolerance
-        solution = yield from solved(grid.cells, tolerance)
-    else:
-        tolerance, expected = min(grid.tolerance, TOLERANCE_SHARE * grid.accuracy), expected_pressure(first)
-        across_relief_start = _crosses_relief_start(pair, contact, first, expected)
-
-        def smooth(solution: ContactSolution) -> bool:
-            return not (across_relief_start or _reaches_arc(pair, separation, solution.pressure_on_material))
-
-        solution, _ = yield from refinement(solved, grid.accuracy, grid.tolerance, smooth, first.gap.shape, expected)
-    if bending is None and not grid.lines_held:
-        separation = separation.loaded_by(solution.pressure)
-    elif load > 0.0 and not (grid.lines_held or solution.reaches_border):  # once more, with the lines of its pressure
-        before, cells = solution, (solution.pressure.shape[0], solution.pressure.shape[1])
-        solution = yield from solved(cells, tolerance, before.pressure)
-        if before.coarser is not None:  # of the grids, not of the lines
-            approach = before.coarser.approach + solution.approach - before.approach
-            solution = replace(solution, coarser=replace(before.coarser, approach=approach))
-    at_relief_start = _crosses_relief_start(pair, contact, separation, solution.pressure_on_material)
-    at_arc = _reaches_arc(pair, separation, solution.pressure_on_material)
-    return LoadedContact(contact, separation, solution, at_relief_start, at_arc, tolerance, displaced, bent)
+    def _line_load_error(self) -> float:
+        """Estimate of the relative error of the largest averaged line load: its change from the coarser grid."""
+        if len(self.line_loads) < 2:
+            return math.nan
+        coarse, fine = self.line_loads[-2:]
+        return abs(fine - coarse) / fine
 
 
 def contact_problem(

@@ -58,7 +58,11 @@ def mesh_cycle(
     contacts = {(t, n, k): carried.contacts[t][n][order[k]] for t, n, k in np.ndindex(share.shape)}
     numbers: dict[str, Array] = {}
     maps: dict[tuple[int, ...], PressureMap | None] = dict.fromkeys(contacts)
-    rough = {place: loaded for place, loaded in contacts.items() if loaded is not None and _is_rough(loaded)}
+    rough = {
+        place: loaded
+        for place, loaded in contacts.items()
+        if loaded is not None and loaded.solution.load > 0.0 and loaded.is_rough
+    }
     under = [(one.contact, one.separation, one.solution.pressure) for one in rough.values()]
     peaks = dict(zip(rough, largest_slice_pressures(pair, under), strict=True)) if rough else {}
     for place, loaded in contacts.items():
@@ -118,11 +122,6 @@ def _pressure_map(loaded: LoadedContact) -> PressureMap:
     return PressureMap(grid.x, grid.y, grid.spacing, solution.pressure, gap, grid.origin, grid.axes, grid.force_line)
 
 
-def _is_rough(loaded: LoadedContact) -> bool:
-    """Whether the largest cell of a contact is no mesh-independent peak."""
-    return loaded.solution.load > 0.0 and (loaded.at_edge or loaded.at_relief_start)
-
-
 def _numbers(
     pair: GearPair, loaded: LoadedContact, one: PressureMap, of_slices: SlicePeak | None
 ) -> dict[str, float | bool | int]:
@@ -136,7 +135,6 @@ def _numbers(
     slope = abs(float(loaded.separation.axes[1] @ heelwards(pair, loaded.contact)))
     longest = pair.face_width / slope if slope > 0.0 else math.inf  # what of the contact's direction the face holds
     length = min(length, longest)
-    smooth = of_slices is None and solution.load > 0.0
     hertz = _hertz(pair, loaded, length)
     return {
         "normal_force": solution.load,
@@ -156,7 +154,7 @@ def _numbers(
         "on_relief_start": loaded.at_relief_start,
         "cells_across": solution.pressure.shape[0],
         "cells_along": solution.pressure.shape[1],
-        "discretisation_error": solution.error_estimate.peak_pressure if smooth else math.nan,
+        "discretisation_error": loaded.peak_error if solution.load > 0.0 else math.nan,
         "iterations": solution.iterations,
         "residual": solution.residual,
     }

@@ -87,8 +87,8 @@ QUANTITIES: dict[str, Part] = {
     "discretisation_error": (
         PAIRS,
         "1",
-        "estimated relative error of the peak pressure by the grid, from the two finest; NaN where cells are given, at "
-        "edges and relief starts, without load",
+        "estimated relative error of the peak pressure by the grid, from the two finest; NaN where cells are given, "
+        "and without load",
     ),
     "iterations": (PAIRS, "1", "iterations of the contact solver"),
     "residual": (PAIRS, "1", "residual of the contact solver"),

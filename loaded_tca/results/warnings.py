@@ -99,9 +99,10 @@ def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[st
         found.append(
             "the contact lies across the start of a linear relief, where the pressure of the map is mesh-dependent"
         )
-    smooth = not (loaded.at_edge or loaded.at_relief_start)
-    if grid.cells is None and smooth and solution.error_estimate.peak_pressure > grid.accuracy:
-        found.append(f"the estimated error stays above the accuracy of {grid.accuracy:g}")
+    # where a contact is rough its grid is refined for the approach
+    allowed = max(LARGE_ERROR, grid.accuracy) if loaded.is_rough else grid.accuracy
+    if grid.cells is None and loaded.peak_error > allowed:
+        found.append(f"the estimated error of the peak pressure stays above {allowed:g}")
     if solution.reaches_border:
         found.append("the contact reaches the box of its grid")
     if solution.load > 0.0 and solution.cells_across[0] < 8:

@@ -21,7 +21,7 @@ Johnson 1985, Contact Mechanics, eqs. 4.24 to 4.28 (slender ellipse), 4.45 (line
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 
@@ -244,21 +244,12 @@ def sample_separations(
         else:
             across, along = shape if shape is not None else (cells_for_accuracy(accuracy),) * 2
             shapes[index] = int(across), int(along)
-    principal = dict(zip(shapes, relative_curvatures(pair, [contacts[index] for index in shapes]), strict=True))
     placed: dict[int, Box] = {}
-    for index in shapes:
-        if (box := boxes[index]) is not None:
-            placed[index] = box if isinstance(box, Box) else Box(box, principal[index].axes)
-    to_size = [index for index in shapes if index not in placed]
-    if to_size:
-        forces = [loads[index] or LOAD_OF_UNLOADED_BOX for index in to_size]
-        starts, numbers = [guesses[index] for index in to_size], [shapes[index] for index in to_size]
-        fitting = estimate_boxes(pair, [contacts[index] for index in to_size], forces, starts, numbers)
-        for index, box_or_error in zip(to_size, fitting, strict=True):
-            if isinstance(box_or_error, GeometryError):
-                found[index] = box_or_error
-            else:
-                placed[index] = box_or_error
+    for index, box_or_error in zip(shapes, _placed(pair, contacts, shapes, loads, boxes, guesses), strict=True):
+        if isinstance(box_or_error, Box):
+            placed[index] = box_or_error
+        else:
+            found[index] = box_or_error
     for shape in dict.fromkeys(shapes.values()):
         sized = [(index, box) for index, box in placed.items() if shapes[index] == shape]
         size = max(1, TOGETHER // math.prod(shape))
@@ -266,6 +257,27 @@ def sample_separations(
             gaps = _sampled(pair, [contacts[index] for index in part], [*part.values()], shape)
             found.update(zip(part, gaps, strict=True))
     return [found[index] for index in range(len(contacts))]
+
+
+def _placed(
+    pair: GearPair,
+    contacts: Sequence[ContactPoint],
+    shapes: Mapping[int, tuple[int, int]],
+    loads: Sequence[float | None],
+    boxes: Sequence[Box | tuple[float, float] | None],
+    guesses: Sequence[tuple[float, float] | None],
+) -> list[Box | GeometryError]:
+    """Box of each contact that has a shape of its grid: the given one, or one that holds it under its load."""
+    principal = dict(zip(shapes, relative_curvatures(pair, [contacts[index] for index in shapes]), strict=True))
+    to_size = [index for index in shapes if boxes[index] is None]
+    forces = [loads[index] or LOAD_OF_UNLOADED_BOX for index in to_size]
+    starts, cells = [guesses[index] for index in to_size], [shapes[index] for index in to_size]
+    sized = estimate_boxes(pair, [contacts[index] for index in to_size], forces, starts, cells) if to_size else []
+    found = dict(zip(to_size, sized, strict=True))
+    for index in shapes:
+        if (box := boxes[index]) is not None:
+            found[index] = box if isinstance(box, Box) else Box(box, principal[index].axes)
+    return [found[index] for index in shapes]
 
 
 def _sampled(

@@ -9,9 +9,10 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca import AccuracyWarning, analyse, read_scene
+from loaded_tca.loaded.line_load import averaged_line_load
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.reference.hertz import point_contact
-from loaded_tca.results.slice_pressure import averaged_line_load, largest_slice_pressures
+from loaded_tca.results.slice_pressure import largest_slice_pressures
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import trace_contact
 from tests.samples.gear_pairs import sam_paper

@@ -223,12 +223,14 @@ def test_box_ends_one_cell_beyond_the_end_of_the_material(name, load):
     pair = make()
     contact, separation = separation_of(pair, turn, load=load, cells=(16, 16))
     gap = NormalGap(pair, contact, separation.axes)
-    x, end = (
-        np.linspace(-1.0, 1.0, 65)[:, None] * separation.box.half_lengths[0],
-        14.0 / 16.0 * separation.box.half_lengths[1],
-    )
-    before, beyond = (gap.at(x, np.array([-end, end]) * (1.0 + shift))[1].max() for shift in (-1e-3, 1e-3))
-    assert before >= 0.0 > beyond
+    box = separation.box
+    x = box.middle[0] + np.linspace(-1.0, 1.0, 65)[:, None] * box.half_lengths[0]
+    for sign in (-1.0, 1.0):
+        end = box.middle[1] + sign * (14.0 / 16.0) * box.half_lengths[1]
+        before, beyond = (
+            gap.at(x, np.array([box.middle[1] * -shift + end * (1.0 + shift)]))[1].max() for shift in (-1e-3, 1e-3)
+        )
+        assert before >= 0.0 > beyond
     assert np.isinf(separation.gap[:, [0, -1]]).all()
     assert np.isfinite(separation.gap[:, [1, -2]]).any()
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from loaded_tca import AccuracyWarning, GeometryError, InputError, read_scene, sample_separation, trace_contact
-from loaded_tca.separation.box import PROBE
+from loaded_tca.separation.box import PROBE, Box
 from loaded_tca.separation.normal_gap import TOGETHER, NormalGap
 from loaded_tca.separation.sample import Separation, sample_separations
 from loaded_tca.unloaded import relative_curvature
@@ -136,7 +136,8 @@ def test_nothing_asked_for_is_nothing_found():
 def test_box_beside_the_contact_point_is_a_part_of_a_larger_one():
     pair = sam_paper()
     contact = trace_contact(pair, [0.0])[0]
-    given = {"cells": [(8, 12)], "loads": [None], "boxes": [(0.2, 3.0)], "middles": [(0.1, -2.0)]}
+    box = Box((0.2, 3.0), relative_curvature(pair, contact).axes, (0.1, -2.0))
+    given = {"cells": [(8, 12)], "loads": [None], "boxes": [box]}
     (beside,) = sample_separations(pair, [contact], **given)
     whole = sample_separation(pair, contact, cells=(12, 20), box=(0.3, 5.0))
     for part, axis in (("x", slice(4, 12)), ("y", slice(0, 12))):

@@ -14,7 +14,7 @@ from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.gears import CylindricalMesh
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
-from loaded_tca.unloaded import ContactPath, ContactPoint
+from loaded_tca.unloaded import ContactPath, ContactPoint, trace_teeth
 from tests.samples.gear_pairs import (
     NONE,
     cylindrical_mesh,
@@ -432,3 +432,27 @@ def test_one_position_has_the_fields_of_the_path_without_their_first_axis():
     assert contact.point.shape == (3,)
     assert contact.line_ends.shape == (2, 3)
     assert contact.edges.shape == (8,)
+
+
+def test_levers_are_continuous_where_a_contact_leaves_a_relief_start_at_a_common_face_end():
+    """Both flanks end there; the normal is that of the wheel, which is smooth along the edge."""
+    relief = {"tip_relief_form": "linear"}
+    pair = gear_pair(
+        FlankModifications(
+            lead_crowning=0.0025, profile_crowning=0.0017, tip_relief=0.0228, tip_relief_start=82.7087, **relief
+        ),
+        FlankModifications(tip_relief=0.016, tip_relief_start=111.3107, **relief),
+        teeth=(38, 52),
+        module=2.0,
+        width=12.96,
+        helix_deg=19.248,
+        shifts=(0.1242, -0.1242),
+    )
+    mesh = trace_teeth(pair, np.linspace(-0.19, -0.09, 25) * pair.pitch)
+    path = mesh.paths[mesh.pairs.tolist().index(-1)]
+    assert path.on_edge.any()
+    assert path.on_relief_start[path.on_edge].any()
+    assert not path.on_relief_start[path.on_edge].all()
+    steps = np.abs(np.diff(path.pinion_lever))
+    # the angle of the relief, 2 degrees, goes by in a dozen steps; with the pinion's normal it is a single one
+    assert steps.max() < 0.15 * np.ptp(path.pinion_lever)

@@ -1,0 +1,108 @@
+"""Line load of a contact, averaged over a length along it: what of its slices does not depend on the grid."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.separation import Separation, slice_middles
+
+AVERAGED_OVER = 0.25
+"""Length along the contact over which a line load is averaged, over the normal module."""
+
+
+def averaged_line_load(force: Array, borders: Array, length: float) -> tuple[Array, Array]:
+    """Line load averaged over a length along the contact, where it may be largest.
+
+    Parameters
+    ----------
+    force : (ny,) array [N]
+        Of the slices.
+    borders : (ny + 1,) array [mm]
+        Of the slices along the contact, ascending.
+    length : float [mm]
+        Over which the line load is averaged: beyond the slices there is none.
+
+    Returns
+    -------
+    places, line_load : (2 ny + 2,) array [mm], [N/mm]
+        Middles of the stretches that begin or end at a border, and their line loads; between them it changes linearly.
+
+    Examples
+    --------
+    >>> places, line_load = averaged_line_load(np.array([1.0, 3.0]), np.array([0.0, 1.0, 2.0]), 1.0)
+    >>> places, line_load
+    (array([-0.5,  0.5,  0.5,  1.5,  1.5,  2.5]), array([0., 1., 1., 3., 3., 0.]))
+    """
+    places = np.sort(np.concatenate([borders - 0.5 * length, borders + 0.5 * length]))
+    return places, (stretch_parts(borders, places, length) * force).sum(axis=1) / length
+
+
+def stretch_parts(borders: Array, places: Array, length: float) -> Array:
+    """Part (m, ny) of each slice that lies within a length [mm] about each of m places.
+
+    Examples
+    --------
+    >>> stretch_parts(np.array([0.0, 1.0, 2.0]), np.array([1.0, 2.0]), 1.0)
+    array([[0.5, 0.5],
+           [0. , 0.5]])
+    """
+    low, high = places[:, None] - 0.5 * length, places[:, None] + 0.5 * length
+    within = np.minimum(borders[1:], high) - np.maximum(borders[:-1], low)
+    return np.asarray(np.maximum(within, 0.0) / np.diff(borders))
+
+
+def loaded_length(force: Array, borders: Array) -> float:
+    """Length of an even line load with the scatter of the given one, at most that of the slices that carry it [mm].
+
+    Examples
+    --------
+    >>> round(loaded_length(np.array([0.0, 2.0, 2.0, 2.0]), np.arange(5.0)), 12)
+    3.0
+    """
+    middles, widths = 0.5 * (borders[:-1] + borders[1:]), np.diff(borders)
+    share = force / force.sum()
+    scatter = share @ ((middles - share @ middles) ** 2 + widths**2 / 12.0)
+    carrying = np.flatnonzero(force)
+    return min(math.sqrt(12.0 * float(scatter)), float(borders[carrying[-1] + 1] - borders[carrying[0]]))
+
+
+class SliceLoads:
+    """Slices of a contact under pressure, and their line load averaged over a length that no grid has a part in.
+
+    Parameters
+    ----------
+    module : float [mm]
+    separation : Separation
+    pressure : (nx, ny) array [MPa]
+
+    Attributes
+    ----------
+    force, borders : (ny,) array [N], (ny + 1,) array [mm]
+        The last slices end where their material does.
+    ends : (float, float) [mm]
+        Of the slices that carry load.
+    length : float [mm]
+        Of the average.
+    x, y : (2 ny + 2,) array [mm]
+        Where the averaged line load may be largest.
+    line_load : (2 ny + 2,) array [N/mm]
+        There.
+    """
+
+    def __init__(self, module: float, separation: Separation, pressure: Array) -> None:
+        (dx, dy), (carrying, middles) = separation.spacing, slice_middles(separation.x, pressure)
+        self.force = pressure.sum(axis=0) * (dx * dy)
+        self.borders = borders = np.append(separation.y, separation.y[-1] + dy) - 0.5 * dy
+        if carrying.size > 1:  # the last slices end where their material does
+            first, last = carrying[[0, -1]]
+            part = np.where(pressure > 0.0, separation.cover, 0.0).max(axis=0)
+            borders[first], borders[last + 1] = borders[first + 1] - part[first] * dy, borders[last] + part[last] * dy
+        self.ends = borders[carrying[0]], borders[carrying[-1] + 1]
+        self.length = min(AVERAGED_OVER * module, loaded_length(self.force, borders))
+        places, self.line_load = averaged_line_load(self.force, borders, self.length)
+        self.y = np.clip(places, *self.ends)
+        self.x = np.interp(self.y, separation.y[carrying], middles)
+        self.step = dy
