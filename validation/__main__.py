@@ -62,6 +62,8 @@ LONG = (
     "studies.robust_design",
     "loaded.rounded_edges",
     "loaded.root_stress_families",
+    "loaded.jumps",
+    "loaded.error_estimates",
     "loaded.bending_line",
     "unloaded.rounded_edges",
 )

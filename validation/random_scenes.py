@@ -1,7 +1,7 @@
 """Random scenes of all families: gear pairs that nobody has tried, for what must hold of every one.
 
 A scene is known by its seed. Sizes, teeth, angles, modifications, mounting errors and torques are drawn from ranges of
-ordinary gears; the torque is that of a line load drawn for the size of the teeth. Draws that make no gears are drawn again.
+ordinary gears; the torque is that of a line load drawn for the size of the teeth. What makes no gears is drawn again.
 """
 
 import warnings

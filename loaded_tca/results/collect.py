@@ -58,11 +58,8 @@ def mesh_cycle(
     contacts = {(t, n, k): carried.contacts[t][n][order[k]] for t, n, k in np.ndindex(share.shape)}
     numbers: dict[str, Array] = {}
     maps: dict[tuple[int, ...], PressureMap | None] = dict.fromkeys(contacts)
-    rough = {
-        place: loaded
-        for place, loaded in contacts.items()
-        if loaded is not None and loaded.solution.load > 0.0 and loaded.is_rough
-    }
+    under_load = {place: one for place, one in contacts.items() if one is not None and one.solution.load > 0.0}
+    rough = {place: loaded for place, loaded in under_load.items() if loaded.is_rough}
     under = [(one.contact, one.separation, one.solution.pressure) for one in rough.values()]
     peaks = dict(zip(rough, largest_slice_pressures(pair, under), strict=True)) if rough else {}
     for place, loaded in contacts.items():

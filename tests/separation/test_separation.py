@@ -227,9 +227,8 @@ def test_box_ends_one_cell_beyond_the_end_of_the_material(name, load):
     x = box.middle[0] + np.linspace(-1.0, 1.0, 65)[:, None] * box.half_lengths[0]
     for sign in (-1.0, 1.0):
         end = box.middle[1] + sign * (14.0 / 16.0) * box.half_lengths[1]
-        before, beyond = (
-            gap.at(x, np.array([box.middle[1] * -shift + end * (1.0 + shift)]))[1].max() for shift in (-1e-3, 1e-3)
-        )
+        ends = (np.array([end + sign * shift * box.half_lengths[1]]) for shift in (-1e-3, 1e-3))
+        before, beyond = (gap.at(x, place)[1].max() for place in ends)
         assert before >= 0.0 > beyond
     assert np.isinf(separation.gap[:, [0, -1]]).all()
     assert np.isfinite(separation.gap[:, [1, -2]]).any()

@@ -4,6 +4,8 @@
 - ``cut_contacts``: scatter of contacts that end at faces and tips;
 - ``mesh_stiffness``: beside ISO 6336-1, over helix angle, bore, face width, torque and crowning;
 - ``bending_line``: a helical pair whose pressure leaves the axis of its grid, beside repeated analyses;
+- ``jumps``, ``error_estimates``: what grids do to the transmission error, and what estimates of peak pressures are
+  worth, over random scenes of all families, in minutes;
 - ``local_term``: how far the local term of a tooth reaches along the face;
 - ``root_stress``: tooth root stress beside a plane reference, convergence, time and memory of its model;
 - ``root_stress_families``: that of helical, bevel and face-milled gears beside finer meshes, in minutes;
