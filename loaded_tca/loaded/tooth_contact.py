@@ -115,7 +115,8 @@ class LoadedContact:
         """
         if not self.is_rough:
             return self.solution.error_estimate.peak_pressure
-        return max(LEAST_ERROR_OF_SLICES / min(self.solution.cells_across) ** 2, self.line_load_error)
+        least = LEAST_ERROR_OF_SLICES / min(self.solution.cells_across) ** 2
+        return float(np.maximum(self.line_load_error, least))
 
     @property
     def at_edge(self) -> bool:

@@ -209,50 +209,66 @@ class _Probes:
         half_lengths, middles = np.full((count, 2), np.nan), np.full((count, 2), np.nan)
         if not held.size:
             return half_lengths, middles
-        needed, cells = self.needed[held], cells[held]
-        along = MARGIN * needed[:, 1]
-        ends = self._ends(held, along, END_ALONG, 1)
-        on_its_own = self.end[held] <= CERTAINLY_INSIDE * ends.max(axis=1)
-        across = needed[:, 0] * np.where(on_edge[held], EDGE_MARGIN, np.where(on_its_own, MARGIN, SPIKE_MARGIN))
+        needed, cells, edged = self.needed[held], cells[held], on_edge[held]
+        along, widest = MARGIN * needed[:, 1], np.where(edged, EDGE_MARGIN, SPIKE_MARGIN) * needed[:, 0]
+        ends = self._ends(held, along, widest, END_ALONG, 1)
+        on_its_own = ~edged & (self.end[held] <= CERTAINLY_INSIDE * ends.max(axis=1))
+        across = np.where(on_its_own, MARGIN * needed[:, 0], widest)
         reach = np.stack([across, along], axis=1)
-        ends = np.stack([self._ends(held, across, END_ACROSS, 0), ends], axis=1)  # (held, axes, sides)
-        cut = ends < reach[..., None]
-        inside = cells - cut.sum(axis=2)
-        beyond = np.where(inside > 0, ends.sum(axis=2) / np.maximum(inside, 1), 0.0)
-        sides = ends + cut * beyond[..., None]
-        half_lengths[held], middles[held] = 0.5 * sides.sum(axis=2), 0.5 * np.diff(sides, axis=2)[..., 0]
+        ends = np.stack([self._ends(held, across, along, END_ACROSS, 0), ends], axis=1)  # (held, axes, sides)
+        # a contact that ends of itself has a box as long either way: its ends lie alike in their cells
+        lengths = np.stack([needed[:, 0], np.minimum(self.end[held], needed[:, 1])], axis=1)
+        reached = (lengths[..., None] > CERTAINLY_INSIDE * ends).any(axis=2, keepdims=True)
+        ends = np.where(reached, ends, ends.max(axis=2, keepdims=True))
+        for row, ends_of, reach_of, counts in zip(held.tolist(), ends, reach, cells.tolist(), strict=True):
+            for axis, number in enumerate(counts):
+                spacing, below = _cells_to_ends(ends_of[axis], ends_of[axis] < reach_of[axis], number)
+                half_lengths[row, axis], middles[row, axis] = 0.5 * number * spacing, (0.5 * number - below) * spacing
         return half_lengths, middles
 
-    def _ends(self, rows: Indices, reach: Array, accuracy: float, axis: int) -> Array:
-        """Distances (rows, 2) to the ends of the material either way along an axis, at most ``reach``.
+    def _ends(self, rows: Indices, reach: Array, beside: Array, accuracy: float, axis: int) -> Array:
+        """Distances (rows, 2) to the ends of the material either way along an axis, at most ``reach`` (rows,).
 
-        Looked for over the whole of the other axis of the probes: in a corner of a flank there is no material straight
-        ahead.
+        Looked for as far as ``beside`` (rows,) along the other axis: in a corner of a flank there is no material
+        straight ahead.
         """
-        across = axis == 0
+        ends = np.repeat(reach[:, None], 2, axis=1)
+        farther = np.hypot(reach, beside) - np.hypot(self.x[rows, -1], self.y[rows, -1])
+        near = self.room[rows].min(axis=(1, 2)) < STEEPEST * np.maximum(farther, 0.0)
+        rows, reach, beside = rows[near], reach[near], beside[near]
+        if not rows.size:
+            return ends
+        lines = np.linspace(-1.0, 1.0, PROBE[1 - axis])
+        gap = self.gap.of(rows)
 
-        def room_at(which: Indices, places: Array) -> Array:
-            """Largest distance to the edges (which, places) at places along the axis."""
-            own = rows[which]
-            if across:
-                room = self.gap.of(own).at(places[:, :, None], self.y[own, None, ::4])[1]
-            else:
-                room = self.gap.of(own).at(self.x[own, :, None], places[:, None])[1]
-            return np.asarray(room.max(axis=2 if across else 1))
+        def room_at(of: Indices, places: Array) -> Array:
+            """Largest distance to the edges (of, places) at places along the axis."""
+            on, aside = places[:, :, None], beside[of, None, None] * lines
+            return np.asarray(gap.of(of).at(*((aside, on) if axis else (on, aside)))[1].max(axis=2))
 
-        places, found = self.y[rows], np.repeat(reach[:, None], 2, axis=1)
-        if across:
-            places = reach[:, None] * np.linspace(-1.0, 1.0, PROBE[0])
-            near = self.room[rows].min(axis=(1, 2)) < STEEPEST * np.maximum(reach - self.x[rows, -1], 0.0)
-            if near.any():
-                kept = np.flatnonzero(near)
-                best = room_at(kept, places[kept])
-                found[kept] = _ends_of_material(
-                    best, places[kept], reach[kept], accuracy, lambda of, at: room_at(kept[of], at[:, None])[:, 0]
-                )
-            return found
-        best = self.room[rows].max(axis=1)
-        return _ends_of_material(best, places, reach, accuracy, lambda of, at: room_at(of, at[:, None])[:, 0])
+        places = reach[:, None] * np.linspace(-1.0, 1.0, PROBE[axis])
+        best = room_at(np.arange(rows.size), places)
+        ends[near] = _ends_of_material(best, places, reach, accuracy, lambda of, at: room_at(of, at[:, None])[:, 0])
+        return ends
+
+
+def _cells_to_ends(ends: Array, cut: Mask, number: int) -> tuple[float, float]:
+    """Width [mm] of a number of cells that reach two ends, and how many of them lie below the contact point.
+
+    Where the material ends, a cell lies beyond. The contact point stays on a border of cells, or in the middle of one
+    if their number is odd, since an error of the grid that is even about it has no part in derivatives.
+    """
+    if not cut.any():  # as far either way
+        return 2.0 * float(ends[0]) / number, 0.5 * number
+    below = 0.5 * number + np.arange(-(number // 2), number // 2 + 1)
+    inside = np.stack([below, number - below], axis=1) - cut
+    needed = np.divide(ends, inside, out=np.where(ends > 0.0, np.inf, np.zeros(inside.shape)), where=inside > 0.0)
+    needed[inside < 0.0] = np.inf
+    spacing = needed.max(axis=1)
+    best = int(spacing.argmin())
+    if not 0.0 < spacing[best] < math.inf:  # too few cells for one beyond
+        return 2.0 * float(ends.max()) / number, 0.5 * number
+    return float(spacing[best]), float(below[best])
 
 
 def _first_windows(curvatures: Sequence[RelativeCurvature], loads: Array, pair: GearPair) -> Array:

@@ -40,6 +40,7 @@ from loaded_tca.scene.section import Section, contents
 from loaded_tca.separation.normal_gap import TOGETHER, FlankPoints, NormalGap
 from loaded_tca.separation.sample import Separation
 from loaded_tca.unloaded import ContactPoint
+from loaded_tca.unloaded.curvature import relative_curvatures
 
 STEPS = {"um": 1.0, "deg": 1e-4, "mm": 1e-4}
 """Step of a key by the unit at its end. Amounts enter linearly; with the others the difference is wrong by less than
@@ -207,7 +208,7 @@ def contact_changes(
     ContactChanges
     """
     gap = NormalGap(pair, contacts, np.array([one.axes for one in separations]))
-    steep, at_contact, levers, shifts = _at_contact_points(pair, contacts, separations, gap, changes)
+    steep, at_contact, levers, shifts = _at_contact_points(pair, contacts, separations, changes)
     places = [
         (grid.x[across], grid.y[along])
         for grid, (across, along) in zip(separations, (np.nonzero(one) for one in cells), strict=True)
@@ -227,11 +228,11 @@ def _at_contact_points(
     pair: GearPair,
     contacts: Sequence[ContactPoint],
     separations: Sequence[Separation],
-    gap: NormalGap,
     changes: Sequence[PairChange],
 ) -> tuple[Array, Array, Array, Array]:
     """Steepness of the wheel's flank (contacts,), and ``at_contact``, ``levers`` and ``shifts`` of the changes."""
-    beside = BESIDE * pair.module
+    curvatures, beside = relative_curvatures(pair, contacts), BESIDE * pair.module
+    gap = NormalGap(pair, contacts, np.array([one.axes for one in curvatures]))
     x, y = (beside * np.tile(part, (len(contacts), 1)) for part in ([0.0, -1.0, 1.0, 0.0, 0.0], [0.0, 0, 0, -1.0, 1.0]))
     pinion, wheel = gap.flank_points(x, y)
     grown = _grown(pair, changes, pinion, wheel)
@@ -243,14 +244,14 @@ def _at_contact_points(
         low, high = (values.take([first, first + 2], axis=axis) for first in (1, 2))
         return np.asarray((high - low) / (2.0 * beside))
 
-    bends = np.array([one.curvatures for one in separations])
+    bends = np.array([(one.across, one.along) for one in curvatures])
     free = np.array([not (one.on_edge or one.on_relief_start) for one in contacts])
     bent = free[:, None] & (bends > 0.0)
     bent[:, 1] &= [not one.on_line for one in contacts]
     shift = np.where(bent, -slope(left) / np.where(bent, bends, 1.0), 0.0)  # (keys, contacts, 2)
     normal = pinion.gradient / np.linalg.norm(pinion.gradient, axis=-1, keepdims=True)
     normal *= np.sign(pinion.steepness)[..., None]
-    plane = np.array([one.axes[:2] for one in separations])  # (contacts, 2, 3)
+    plane = np.array([one.axes[:2] for one in curvatures])  # (contacts, 2, 3)
     turned = np.einsum("kcs,csi->kci", shift, slope(normal, axis=1)) - np.einsum("kcs,csi->kci", slope(grown[0]), plane)
     moved = np.einsum("kcs,csi->kci", shift, plane)
     point, out = np.array([one.point for one in contacts]), np.array([one.axes[2] for one in separations])
@@ -265,7 +266,8 @@ def _at_contact_points(
             shifted, tilted = change.moved_wheel
             levers[gear, key] += np.cross(arm, out) @ tilted[2] - np.cross(shifted, out) @ axis
         levers[gear] *= np.where(free, sense, 0.0)
-    return steep, at_contact, levers, shift[..., 0]
+    shifts = np.einsum("kci,ci->kc", moved, np.array([one.axes[0] for one in separations]))
+    return steep, at_contact, levers, shifts
 
 
 def _grown(pair: GearPair, changes: Sequence[PairChange], pinion: FlankPoints, wheel: FlankPoints) -> Array:

@@ -154,7 +154,7 @@ def sample_separation(
     cells: tuple[int, int] | None = None,
     load: float | None = None,
     accuracy: float = 1e-3,
-    box: tuple[float, float] | None = None,
+    box: Box | tuple[float, float] | None = None,
     guess: tuple[float, float] | None = None,
 ) -> Separation:
     """Gap between the flanks on a grid that just holds the contact.
@@ -170,9 +170,9 @@ def sample_separation(
         Normal force that the box must hold; not needed if ``box`` is given. A load of zero gets the box of 1e-6 N.
     accuracy : float
         Relative error of the peak pressure of a smooth contact that chooses the cells.
-    box : (float, float) [mm], optional
+    box : (float, float) [mm] or Box, optional
         Half lengths across and along, instead of the estimated ones, about the contact point and along the principal
-        directions of the relative curvature.
+        directions of the relative curvature; or the box of another grid in this tangent plane.
     guess : (float, float) [mm], optional
         Half lengths to start the estimate of the box from: those of the same contact under a load near this one. It
         saves time on edges, whose boxes the curvatures do not tell; elsewhere it is not needed, and not used.

@@ -22,6 +22,7 @@ from loaded_tca.results.load_factors import load_factors
 from loaded_tca.results.slice_pressure import largest_slice_pressures
 from loaded_tca.scene import read_scene
 from loaded_tca.separation import sample_separation
+from loaded_tca.separation.box import Box
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import trace_contact
 from tests.samples.gear_pairs import gear_pair
@@ -70,8 +71,7 @@ def tilting(pressure):
 
 def under_pressure(pair, contact, one):
     """The map of a result at a contact of its pair, on a grid made again."""
-    box = tuple(0.5 * count * step for count, step in zip(one.pressure.shape, one.spacing, strict=True))
-    return contact, sample_separation(pair, contact, cells=one.pressure.shape, box=box), one.pressure
+    return contact, sample_separation(pair, contact, cells=one.pressure.shape, box=Box.of(one)), one.pressure
 
 
 def of_result(name, position=0):
