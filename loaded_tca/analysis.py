@@ -22,7 +22,7 @@ from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.collect import mesh_cycle
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.results.warnings import warn_of_accuracy
+from loaded_tca.results.warnings import warn_of_accuracy, warn_of_gears
 from loaded_tca.scene import Scene
 from loaded_tca.threads import one_blas_thread
 from loaded_tca.unloaded import trace_contact, trace_teeth
@@ -48,22 +48,23 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
     Raises
     ------
     InputError, GeometryError
-        If the scene's parts do not fit each other, the flanks are never in contact, or the grids or models of root
-        stress that it asks for exceed the memory of the machine.
+        If the scene's parts do not fit each other, whole gears cannot turn, the flanks are never in contact, or the
+        grids or models of root stress that it asks for exceed the memory of the machine.
     ConvergenceError
         If a contact, or the balance of the tooth pairs, is not solved to the tolerance.
 
     Warns
     -----
     AccuracyWarning
-        If the contact reaches an edge of a flank, modifications leave a pointed tooth, or the model is at another
-        limit.
+        If whole gears jam, a tooth is pointed, a rim is thin, the contact reaches an edge of a flank, or the model is
+        at another limit.
     """
     # products of small matrices: on several threads of BLAS they take longer, and on some processors round otherwise
     with one_blas_thread():
         with noted_accuracy_warnings() as told:
             pair, wanted, effort = scene.pair(), scene.analysis, expected_effort(scene)
             require((not effort.is_refused, f"analysis.cells: {wanted.cells}: {effort}"))
+            warn_of_gears(scene, pair)
             count, torques = wanted.positions, np.asarray(scene.torques)
             angles = np.linspace(-0.5 * pair.pitch, 0.5 * pair.pitch, count) if count > 1 else np.zeros(1)
             grid = GridChoice(

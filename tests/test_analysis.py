@@ -283,8 +283,9 @@ def test_line_contact_of_a_straight_bevel_pair_is_as_long_as_the_face(teeth):
             "analysis.cells": (16, 24),
         }
     )
-    with pytest.warns(AccuracyWarning, match="reaches an edge"):
+    with pytest.warns(AccuracyWarning) as caught:  # of tips below form circles, too
         result = analyse(scene)
+    assert any("reaches an edge" in str(one.message) for one in caught)
     assert_allclose(result.contact_length, scene.pinion.face_width_mm, rtol=1e-6)
 
 

@@ -184,7 +184,7 @@ def test_check_shows_the_geometry_and_writes_nothing(run):
 
 def test_check_tells_teeth_that_overlap(run):
     changes = {"helix_angle_deg = 15.0": "helix_angle_deg = 15.0\ncentre_distance_mm = 141.3"}
-    assert "note: teeth overlap by 0.01" in run("check", scene(**changes))[1]
+    assert "(at the centre distance of 141.3000 mm by 0.01" in run("check", scene(**changes))[1]
 
 
 @pytest.mark.parametrize("name", ["straight_bevel", "spiral_bevel"])

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
         flank_lines,
         require_teeth,
         tooth_compliance,
+        warn_of_teeth,
         way_out_told,
     )
     from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_compliance
@@ -31,5 +32,6 @@ __all__ = [
     "require_teeth",
     "root_stress_model",
     "tooth_compliance",
+    "warn_of_teeth",
     "way_out_told",
 ]

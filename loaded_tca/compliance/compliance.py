@@ -188,19 +188,47 @@ def require_teeth(pair: GearPair, way_out: str = TEETH_DO_NOT_BEND) -> None:
     AccuracyWarning
         If a tooth is so with its modifications alone: it bends as the one without them.
     """
-    gears = (("pinion", pair.pinion), ("wheel", pair.wheel))
     with way_out_told(way_out):
-        for name, gear in gears:
+        for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
             with named(name):
                 _require_tooth(gear.geometry.unmodified)
         _ = pair.rigid_bores
-    for name, gear in gears:
-        if gear.sharp.flank is not gear.nominal_flank:
-            try:
-                build_tooth((sharp(gear.flanks[0]), sharp(gear.flanks[1])), gear.form, CHECKED)
-            except GeometryError as error:
-                sentence = f"{name}, with its modifications: {error}; it bends like the tooth without them"
-                give_accuracy_warning(sentence, stacklevel=3)
+    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+        if gear.sharp.flank is not gear.nominal_flank and (fault := _fault_of(gear)):
+            sentence = f"{name}, with its modifications: {fault}; it bends like the tooth without them"
+            give_accuracy_warning(sentence, stacklevel=3)
+
+
+def warn_of_teeth(pair: GearPair) -> None:
+    """Warn of teeth that cannot exist, though nothing but their flanks in contact is computed.
+
+    Parameters
+    ----------
+    pair : GearPair
+
+    Warns
+    -----
+    AccuracyWarning
+        If a tooth is pointed or cut off, or its back cannot be cut; one whose cutter has no blade for its back is not
+        looked at.
+    """
+    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+        if fault := _fault_of(gear):
+            give_accuracy_warning(f"{name}: {fault}; its flank in contact is analysed all the same", stacklevel=3)
+
+
+def _fault_of(gear: Gear) -> GeometryError | None:
+    """Why the teeth of a gear cannot exist with their modifications; None: they do, or have no back."""
+    try:
+        if gear.sharp.flank is gear.nominal_flank:
+            _require_tooth(gear.geometry.unmodified)
+        else:
+            build_tooth((sharp(gear.flanks[0]), sharp(gear.flanks[1])), gear.form, CHECKED)
+    except GeometryError as error:
+        return error
+    except InputError:
+        return None
+    return None
 
 
 @lru_cache(maxsize=MOST_IN_MEMORY)

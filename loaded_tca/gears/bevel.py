@@ -20,6 +20,7 @@ from loaded_tca.gears.checks import (
     spiral_check,
     teeth_checks,
 )
+from loaded_tca.gears.interference import Room
 
 _EQUAL = 1e-9
 _DEDENDUM = 1.25
@@ -338,6 +339,22 @@ class BevelMesh:
         spaces = (pi / gear.teeth - 2.0 * gear.half_thickness_angle for gear in gears)
         radii = (gear.mean_cone_distance * sin(gear.pitch_angle) for gear in gears)
         return sum(radius * space for radius, space in zip(radii, spaces, strict=True))
+
+    @property
+    def room(self) -> Room:
+        """Room that the whole gears leave each other: at mid-face, above the roots at the toe."""
+        pinion, wheel = (self.pinion.mean_cone_distance * (tip - form) for tip, form in self._tip_and_form_arcs)
+        return Room(self.backlash, (pinion, wheel), self._tip_clearances)
+
+    @property
+    def _tip_clearances(self) -> tuple[float, float]:
+        """Clearance between the roots of both gears and the mating gear's tip at the toe, across the cones [mm]."""
+        both_ways = (self.pinion, self.wheel), (self.wheel, self.pinion)
+        pinion, wheel = (
+            gear.inner_cone_distance * (self.shaft_angle - gear.root_cone_angle - mating.tip_angle)
+            for gear, mating in both_ways
+        )
+        return pinion, wheel
 
     @property
     def transverse_contact_ratio(self) -> float:

@@ -12,6 +12,7 @@ from math import atan, ceil, cos, inf, pi, sin, sqrt, tan
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.checks import pair_checks
 from loaded_tca.gears.cylindrical import CylindricalGear, inverse_involute, involute
+from loaded_tca.gears.interference import Room
 
 # In modules: a shorter piece of undercut flank is below what gear making can hold (0.3 um at module 3).
 _NEGLIGIBLE_UNDERCUT = 1e-4
@@ -215,9 +216,32 @@ class CylindricalMesh:
     @property
     def backlash(self) -> float:
         """Circumferential backlash j_wt at the working circles; negative where the teeth overlap [mm]."""
-        pitch = 2.0 * pi * self.pinion_working_radius / self.pinion.teeth
-        first = self.pinion.tooth_thickness_at(self.pinion_working_radius)
-        return pitch - first - self.wheel.tooth_thickness_at(self.wheel_working_radius)
+        return self.backlash_at(self.working_centre_distance)
+
+    def backlash_at(self, centre_distance: float) -> float:
+        """Backlash at another centre distance, above the sum of the base radii [mm]."""
+        pinion_radius = centre_distance / (1.0 + self.gear_ratio)
+        pitch = 2.0 * pi * pinion_radius / self.pinion.teeth
+        first = self.pinion.tooth_thickness_at(pinion_radius)
+        return pitch - first - self.wheel.tooth_thickness_at(centre_distance - pinion_radius)
+
+    @property
+    def room(self) -> Room:
+        """Room that the whole gears leave each other."""
+        both_ways = (self.pinion, self.wheel), (self.wheel, self.pinion)
+        pinion, wheel = (
+            self._roll_length_at_tip_of(mating) - gear.roll_length(gear.form_radius) for gear, mating in both_ways
+        )
+        return Room(self.backlash, (pinion, wheel), self.tip_clearances)
+
+    @property
+    def tip_clearances(self) -> tuple[float, float]:
+        """Radial clearance between the roots of pinion and wheel and the mating gear's tip c [mm]."""
+        distance = self.working_centre_distance
+        return (
+            distance - self.pinion.root_radius - self.wheel.tip_radius,
+            distance - self.wheel.root_radius - self.pinion.tip_radius,
+        )
 
     @property
     def pinion_active_profile(self) -> ActiveProfile:

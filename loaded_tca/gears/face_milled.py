@@ -79,3 +79,13 @@ class FaceMilledMesh:
     def gears(self) -> tuple[FaceMilledGear, FaceMilledGear]:
         """Pinion and wheel."""
         return self.pinion, self.wheel
+
+    @property
+    def tip_clearances(self) -> tuple[float, float]:
+        """Smallest clearance between the roots of pinion and wheel and the mating gear's tip, toe or heel [mm]."""
+        both_ways = (self.pinion.blank, self.wheel.blank), (self.wheel.blank, self.pinion.blank)
+        pinion, wheel = (
+            min(-own.root_height(distance) - mating.tip_height(distance) for distance in own.cone_distances)
+            for own, mating in both_ways
+        )
+        return pinion, wheel

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import inf, isfinite, pi
+from math import cos, inf, isfinite, pi, sin
 from typing import Literal, get_args
 
 from loaded_tca.errors import require
@@ -147,6 +147,18 @@ class FaceMilledBlank:
     def cone_distances(self) -> tuple[float, float]:
         """Toe and heel [mm]."""
         return self.outer_cone_distance - self.face_width, self.outer_cone_distance
+
+    def tip_height(self, distance: float) -> float:
+        """Height of the face cone above the pitch cone, across it at a cone distance [mm]."""
+        return self._height(self.face_angle, self.face_apex, distance)
+
+    def root_height(self, distance: float) -> float:
+        """Height of the root cone above the pitch cone, negative for a dedendum [mm]."""
+        return self._height(self.root_angle, self.root_apex, distance)
+
+    def _height(self, angle: float, apex: float, distance: float) -> float:
+        above = angle - self.pitch_angle
+        return (distance * sin(above) + apex * sin(angle)) / cos(above)
 
 
 def _finite_checks(values: MachineSettings | FaceMilledBlank) -> Iterator[tuple[bool, str]]:

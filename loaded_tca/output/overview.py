@@ -6,10 +6,14 @@ import math
 from collections.abc import Iterator
 from itertools import chain
 
-from loaded_tca.compliance import require_teeth
+from loaded_tca.errors import noted_accuracy_warnings
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
 from loaded_tca.loaded.effort import expected_effort, rounded
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.iso_figures import STIFFNESS_ROW, STRESS, STRESS_ROWS, iso_figures, reasons_beside
+from loaded_tca.results.root_figures import rim_factor
+from loaded_tca.results.summary import RIM_LABEL, shown
+from loaded_tca.results.warnings import warn_of_gears
 from loaded_tca.scene import Scene
 from loaded_tca.scene.model import Row
 from loaded_tca.scene.section import Section, contents
@@ -21,19 +25,24 @@ LABEL = 44
 
 
 def describe_scene(scene: Scene) -> str:
-    """Return the geometry and the load of a scene, a line each, with notes on what the analysis leaves out.
+    """Return the geometry and the load of a scene, a line each, with the warnings that concern whole gears.
 
     Raises
     ------
     InputError, GeometryError
-        If the gears of the scene cannot exist or cannot mesh, or their teeth cannot be built though they bend.
+        If the gears of the scene cannot exist, mesh or turn, or their teeth cannot be built though they bend.
     """
+    with noted_accuracy_warnings(given=False) as sentences:
+        warn_of_gears(scene, scene.pair())
+        sections = scene_sections(scene)
     effort = expected_effort(scene)
     spent = ("analysis, roughly: time [s], memory [GiB]", rounded(effort.seconds), rounded(effort.gibibytes))
-    rows = [*chain.from_iterable(scene_sections(scene).values()), spent]
+    rows = [*chain.from_iterable(sections.values()), spent]
     lines = [f"{label:<{LABEL}}" + "".join(f"{cell:>14}" for cell in cells) for label, *cells in rows]
-    notes = [*scene.notes(), *([] if effort.fits else [f"{effort}"])]
-    return "\n".join([scene.title or "Scene", *lines, *(f"note: {note}" for note in notes)])
+    beside = [f"ISO 6336: {reason}" for reason in reasons_beside(iso_figures(scene, max(scene.torques)))]
+    warned = [f"warning: {sentence}" for sentence in dict.fromkeys(sentences)]
+    notes = [] if effort.fits else [f"note: {effort}"]
+    return "\n".join([scene.title or "Scene", *lines, *beside, *warned, *notes])
 
 
 def scene_sections(scene: Scene) -> dict[str, list[Row]]:
@@ -46,6 +55,7 @@ def scene_sections(scene: Scene) -> dict[str, list[Row]]:
         "geometry": [*scene.geometry_rows()],
         "path of contact": [*_path_rows(scene, pair)],
         "load and analysis": [*_asked_rows(scene, pair)],
+        "ISO 6336": [*_standard_rows(scene, pair)],
         "mounting errors, edges and modifications": [*_departures(scene)],
         "flanks described by points": [*_spline_rows(scene, pair)],
     }
@@ -67,9 +77,8 @@ def _path_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
 
 def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     """The load, what the analysis is asked to do, and the bores or journals that it holds where teeth bend."""
-    torques, label, wanted = scene.torques, "pinion torque [N m]", scene.analysis
-    if len(torques) > MOST_TORQUES:
-        torques, label = (min(torques), max(torques)), f"{len(torques)} pinion torques from, to [N m]"
+    torques, wanted, count = _shown_torques(scene), scene.analysis, len(scene.torques)
+    label = "pinion torque [N m]" if len(torques) == count else f"{count} pinion torques from, to [N m]"
     yield label, *(f"{1e-3 * torque:g}" for torque in torques)
     yield from scene.force_rows(torques)
     if pair.max_pressure is not None:
@@ -81,12 +90,32 @@ def _asked_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
     yield "positions, torques", f"{wanted.positions}", f"{len(scene.torques)}"
     if wanted.root_stress:
         yield "root stress", "on"
-        for name, nominal in zip(("pinion", "wheel"), scene.nominal_root_stress, strict=True):
-            if math.isfinite(nominal):
-                yield f"nominal root stress, ISO, {name} [MPa]", *(f"{nominal * torque:.4g}" for torque in torques)
     if wanted.without_bodies:
-        require_teeth(pair, wanted.without_bodies)
         yield "bores or journals held rigid, diameter [mm]", *(f"{bore:.4f}" for bore in pair.rigid_bores)
+
+
+def _shown_torques(scene: Scene) -> tuple[float, ...]:
+    """Torques that have a column each: all, or the least and the largest of many."""
+    torques = scene.torques
+    return torques if len(torques) <= MOST_TORQUES else (min(torques), max(torques))
+
+
+def _standard_rows(scene: Scene, pair: GearPair) -> Iterator[Row]:
+    """What ISO 6336 gives for a cylindrical pair from its geometry and load, to be read beside computed numbers."""
+    torques = _shown_torques(scene)
+    figures = [iso_figures(scene, torque) for torque in torques]
+    for label, names in (*STRESS_ROWS, STIFFNESS_ROW):
+        by_torque = figures if names == (STRESS,) else figures[:1]
+        values = [(entry[name], name) for entry in by_torque for name in names]
+        if any(math.isfinite(value) for value, _ in values):
+            yield label.strip(), *(shown(value, name) for value, name in values)
+    if not scene.analysis.root_stress:
+        return
+    for name, nominal in zip(("pinion", "wheel"), scene.nominal_root_stress, strict=True):
+        if math.isfinite(nominal):
+            yield f"nominal root stress, ISO, {name} [MPa]", *(f"{nominal * torque:.4g}" for torque in torques)
+    if math.isfinite(scene.tooth_height_over_width):
+        yield RIM_LABEL.strip(), *(shown(rim_factor(gear), "") for gear in (pair.pinion, pair.wheel))
 
 
 def _departures(scene: Scene) -> Iterator[Row]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -139,6 +140,26 @@ class Gear:
                 + (thin if diameter < smallest * SMALLEST_BORE else "no rim is left below the teeth")
             )
         return np.full_like(root, 0.5 * self.bore_diameter)
+
+    @property
+    def rim_over_height(self) -> float:
+        """Thickness of the rim below the roots over the height of the teeth, s_R/h_t; the smallest one of a cone.
+
+        inf for a solid gear.
+
+        Raises
+        ------
+        InputError
+            If the bore leaves no rim.
+        """
+        if self.is_solid:
+            return math.inf
+        sections = self.form.sections
+        rho, z = self.nominal_flank.grid(2, 2)
+        ends = sections.coordinate(rho[-1], z[-1])
+        root, _ = sections.point(self.form.root_radius(ends), ends)
+        height = rho[-1] - root  # both lengths across the axis: they lie in one direction
+        return float(((root - self.bore_radius(ends)) / height).min()) if (height > 0.0).all() else math.inf
 
     @property
     def smallest_bore(self) -> float:

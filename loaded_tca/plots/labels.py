@@ -36,6 +36,16 @@ NAMES = {
     "unloaded_transmission_error_span": "peak-to-peak unloaded transmission error",
     "face_load_factor": "face load factor K_Hβ",
     "transverse_load_factor": "transverse load factor K_Hα",
+    "nominal_contact_stress_iso_6336": "nominal contact stress σ_H0, ISO 6336",
+    "pinion_single_contact_factor_iso_6336": "single contact factor Z_B, ISO 6336",
+    "wheel_single_contact_factor_iso_6336": "single contact factor Z_D, ISO 6336",
+    "contact_ratio_factor_iso_6336": "contact ratio factor Z_ε, ISO 6336",
+    "contact_helix_angle_factor_iso_6336": "helix angle factor Z_β, ISO 6336",
+    "single_stiffness_iso_6336": "single stiffness c', ISO 6336",
+    "mesh_stiffness_iso_6336": "mean mesh stiffness c_γα, ISO 6336",
+    "largest_transverse_load_factor_iso_6336": "upper bound of K_Hα, lower 1, ISO 6336",
+    "pinion_rim_thickness_factor_iso_6336": "pinion rim thickness factor Y_B, ISO 6336",
+    "wheel_rim_thickness_factor_iso_6336": "wheel rim thickness factor Y_B, ISO 6336",
 }
 """Keys and figures whose words alone do not name them."""
 PROPER = {"hertz": "Hertz", "iso": "ISO"}

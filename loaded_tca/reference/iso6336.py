@@ -1,15 +1,16 @@
-"""Closed forms of ISO 6336 for external cylindrical gears: contact stress at the pitch point, mesh stiffness.
+"""Closed forms of ISO 6336 for external cylindrical gears: contact stress, mesh stiffness, bounds of load factors.
 
 Plain numbers in, plain numbers out: lengths in mm, angles in rad, forces in N, moduli and stresses in MPa,
 stiffnesses in N/(mm um), that is N/um per mm of face width. Formulas as in the editions from 2006 on;
 the examples are the numbers of ISO/TR 6336-30:2017, example 1.
 """
 
-from math import asin, cos, degrees, pi, radians, sin, sqrt
+from math import asin, cos, degrees, inf, pi, radians, sin, sqrt, tan
 
-from loaded_tca.errors import InputError, require_positive
+from loaded_tca.errors import InputError, require, require_positive
 
 _STEEL = 206000.0
+_WORKING_ANGLE = "working_pressure_angle: {} rad is not between 0 and 90 deg"
 _THEORETICAL_TO_REAL = 0.8  # C_M: measured single stiffness over the theoretical one, for solid discs
 
 
@@ -34,7 +35,7 @@ def zone_factor(transverse_pressure_angle: float, working_pressure_angle: float,
     2.39533
     """
     if not 0.0 < working_pressure_angle < 0.5 * pi:
-        raise InputError(f"working_pressure_angle: {working_pressure_angle} rad is not between 0 and 90 deg")
+        raise InputError(_WORKING_ANGLE.format(working_pressure_angle))
     curvature = cos(base_helix_angle) * cos(working_pressure_angle) / sin(working_pressure_angle)
     return sqrt(2.0 * curvature) / cos(transverse_pressure_angle)
 
@@ -84,6 +85,7 @@ def contact_ratio_factor(transverse_contact_ratio: float, overlap_ratio: float) 
     if not 0.0 <= overlap_ratio < float("inf"):
         raise InputError(f"overlap_ratio: {overlap_ratio} is negative or not finite")
     overlap = min(1.0, overlap_ratio)
+    require((transverse_contact_ratio < 4.0, f"transverse_contact_ratio: {transverse_contact_ratio} is not below 4"))
     return sqrt((4.0 - transverse_contact_ratio) / 3.0 * (1.0 - overlap) + overlap / transverse_contact_ratio)
 
 
@@ -102,6 +104,100 @@ def helix_angle_factor(helix_angle: float) -> float:
     1.01944
     """
     return 1.0 / sqrt(cos(helix_angle))
+
+
+def single_contact_factors(
+    teeth: tuple[int, int],
+    tip_over_base: tuple[float, float],
+    working_pressure_angle: float,
+    transverse_contact_ratio: float,
+    overlap_ratio: float,
+) -> tuple[float, float]:
+    r"""Single pair contact factors Z_B of the pinion and Z_D of the wheel.
+
+    .. math::
+        M_1 = \frac{\tan\alpha_{wt}}{\sqrt{
+        \left(\sqrt{d_{a1}^2/d_{b1}^2 - 1} - 2\pi/z_1\right)
+        \left(\sqrt{d_{a2}^2/d_{b2}^2 - 1} - (\varepsilon_\alpha - 1)\,2\pi/z_2\right)}}
+
+    and M_2 with the gears exchanged: the root of the relative curvature at the inner point of single contact, B of the
+    pinion and D of the wheel, over that at the pitch point. :math:`Z_B = \max(1, M_1)` of spur gears, 1 from an overlap
+    ratio of 1 on, and :math:`\max(1, M_1 - \varepsilon_\beta (M_1 - 1))` in between; Z_D likewise.
+
+    Parameters
+    ----------
+    teeth : (int, int)
+        z of pinion and wheel.
+    tip_over_base : (float, float)
+        d_a/d_b, to where the flanks are in contact.
+    working_pressure_angle : float [rad]
+        alpha_wt.
+    transverse_contact_ratio, overlap_ratio : float
+        eps_alpha, above 1; eps_beta.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or the path of contact reaches beyond the base circles; every one is named.
+
+    References
+    ----------
+    ISO 6336-2:2006, single pair tooth contact factors.
+
+    Examples
+    --------
+    >>> ratios = 41.318 / 33.8289, 59.272 / 50.7434  # FZG C14
+    >>> [round(factor, 3) for factor in single_contact_factors((16, 24), ratios, radians(22.43934), 1.4626, 0.0)]
+    [1.07, 1.0]
+    """
+    require(
+        *((count >= 1, f"teeth: {count} is below 1") for count in teeth),
+        *((1.0 <= ratio < inf, f"tip_over_base: {ratio} is not in [1, inf)") for ratio in tip_over_base),
+        (0.0 < working_pressure_angle < 0.5 * pi, _WORKING_ANGLE.format(working_pressure_angle)),
+        (1.0 < transverse_contact_ratio < inf, f"transverse_contact_ratio: {transverse_contact_ratio} is not above 1"),
+        (0.0 <= overlap_ratio < inf, f"overlap_ratio: {overlap_ratio} is negative or not finite"),
+    )
+    own, other = (
+        [sqrt(ratio**2 - 1.0) - pitches * 2.0 * pi / count for count, ratio in zip(teeth, tip_over_base, strict=True)]
+        for pitches in (1.0, transverse_contact_ratio - 1.0)
+    )
+    tangents = own[0] * other[1], own[1] * other[0]
+    require(
+        (
+            min(*own, *other) > 0.0,
+            f"transverse_contact_ratio: {transverse_contact_ratio} reaches beyond a base circle",
+        )
+    )
+    smooth = 1.0 - min(1.0, overlap_ratio)
+    first, second = (1.0 + smooth * (tan(working_pressure_angle) / sqrt(one) - 1.0) for one in tangents)
+    return max(1.0, first), max(1.0, second)
+
+
+def largest_transverse_load_factor(transverse_contact_ratio: float, overlap_ratio: float) -> float:
+    r"""Upper bound of the transverse load factor K_Halpha; the lower one is 1.
+
+    .. math:: K_{H\alpha} \le \frac{\varepsilon_\gamma}{\varepsilon_\alpha Z_\varepsilon^2},\qquad
+        \varepsilon_\gamma = \varepsilon_\alpha + \varepsilon_\beta
+
+    Where it holds, one tooth pair carries the whole load.
+
+    Parameters
+    ----------
+    transverse_contact_ratio, overlap_ratio : float
+        eps_alpha, eps_beta.
+
+    References
+    ----------
+    ISO 6336-1:2006, limiting conditions for K_Halpha.
+
+    Examples
+    --------
+    >>> round(largest_transverse_load_factor(1.549090, 1.083369), 3)
+    2.632
+    """
+    total = transverse_contact_ratio + overlap_ratio
+    factor = contact_ratio_factor(transverse_contact_ratio, overlap_ratio)
+    return total / (transverse_contact_ratio * factor**2)
 
 
 def nominal_contact_stress(

@@ -1,13 +1,13 @@
 """Closed forms of ISO 6336-3, method B, for external cylindrical gears: nominal tooth root stress.
 
 Load at the outer point of single contact, bending of the section where tangents of 30 degrees touch both fillets, and a
-factor for the notch. Left out, since a scene has no such data: K_A, K_V, K_Falpha, life, notch sensitivity, surface and
-size factors, rim thickness (Y_B) and deep teeth (Y_DT), and with these permissible stress and safety. Formulas of the
-edition of 2006; the examples are FZG C14 gears of GEARpie.
+factor for the notch; a factor of its own for thin rims. Left out, since a scene has no such data: K_A, K_V, K_Falpha,
+life, notch sensitivity, surface and size factors, deep teeth (Y_DT), and with these permissible stress and safety.
+Formulas of the edition of 2006; the examples are FZG C14 gears of GEARpie.
 """
 
 from dataclasses import dataclass
-from math import acos, cos, degrees, hypot, inf, pi, radians, sin, sqrt, tan
+from math import acos, cos, degrees, hypot, inf, log, pi, radians, sin, sqrt, tan
 
 from scipy.optimize import brentq
 
@@ -17,6 +17,9 @@ from loaded_tca.reference.iso6336 import virtual_teeth
 _HELIX_ANGLE_LIMIT = radians(30.0)
 _TANGENT = pi / 3.0  # 60 degrees: the tangents of 30 degrees of external gears
 _LARGEST_HEIGHT_OVER_WIDTH = 1.0 / 3.0
+THIN_RIM, THINNEST_RIM = 1.2, 0.5
+"""Thickness of a rim over the height of its teeth, s_R/h_t, below which it raises root stress; down to which the
+standard knows by how much."""
 
 
 @dataclass(frozen=True)
@@ -220,6 +223,35 @@ def helix_angle_factor(helix_angle: float, overlap_ratio: float) -> float:
     return 1.0 - min(1.0, overlap_ratio) * degrees(min(abs(helix_angle), _HELIX_ANGLE_LIMIT)) / 120.0
 
 
+def rim_thickness_factor(rim_over_height: float) -> float:
+    r"""Rim thickness factor Y_B of an external gear.
+
+    .. math:: Y_B = 1 \quad (s_R/h_t \ge 1.2),\qquad
+        Y_B = 1.6 \ln\left(2.242\,\frac{h_t}{s_R}\right) \quad (0.5 < s_R/h_t < 1.2)
+
+    Parameters
+    ----------
+    rim_over_height : float
+        Thickness of the rim below the roots over the height of the teeth, s_R/h_t; inf: a solid gear.
+
+    Raises
+    ------
+    InputError
+        If the rim is no thicker than half the teeth are high, which the standard tells to avoid.
+
+    References
+    ----------
+    ISO 6336-3:2006, rim thickness factor.
+
+    Examples
+    --------
+    >>> rim_thickness_factor(1.5), round(rim_thickness_factor(0.8), 3)
+    (1.0, 1.649)
+    """
+    require((rim_over_height > THINNEST_RIM, f"rim_over_height: {rim_over_height} is not above {THINNEST_RIM}"))
+    return 1.0 if rim_over_height >= THIN_RIM else 1.6 * log(2.242 / rim_over_height)
+
+
 def nominal_root_stress(tangential_force: float, face_width: float, normal_module: float, factors: float) -> float:
     r"""Nominal tooth root stress sigma_F0 [MPa].
 
@@ -232,7 +264,7 @@ def nominal_root_stress(tangential_force: float, face_width: float, normal_modul
     face_width, normal_module : float [mm]
         b, m_n.
     factors : float
-        Product of Y_F, Y_S and Y_beta.
+        Product of Y_F, Y_S and Y_beta, and Y_B of a thin rim.
 
     References
     ----------

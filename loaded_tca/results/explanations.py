@@ -89,6 +89,24 @@ EXPLANATIONS = (
         "tip diameters, profile shifts, or the cutter; `check` tells the diameters",
     ),
     Explanation(
+        "negative backlash",
+        "both flanks of a tooth touch, and the load of the back adds to that of the flank in contact; no number of the "
+        "result contains it",
+        "a smaller sum of profile shifts, or a larger centre distance: `check` has the sum that leaves no backlash; of "
+        "bevel gears thinner teeth",
+    ),
+    Explanation(
+        "its flank in contact is analysed all the same",
+        "pressure on half-spaces needs no tooth behind the flank; a gear would have none",
+        "profile shift, tip diameter, cutter, or smaller amounts of the modifications",
+    ),
+    Explanation(
+        "the rim below its teeth is",
+        "a real rim bends, and root stress on it rises by Y_B of ISO 6336-3; the bore of the model takes that strain",
+        "multiply by Y_B, or finite elements of the whole gear; of a pinion in one piece with its shaft "
+        "`bore_diameter_mm = 0`",
+    ),
+    Explanation(
         "of the flank uncovered",
         "measured points do not reach the edges",
         "results near these edges rest on no measurement",

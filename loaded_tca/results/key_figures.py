@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loaded_tca.arrays import Array
+from loaded_tca.results.iso_figures import iso_figures
 from loaded_tca.results.root_figures import root_figures
 
 if TYPE_CHECKING:
@@ -111,6 +112,7 @@ def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
         "secant_stiffness_mean_N_per_mm_um": mean_over_a_pitch(result.secant_stiffness[torque]),
         "face_load_factor": float(result.face_load_factor[torque]),
         "transverse_load_factor": float(result.transverse_load_factor[torque]),
+        **iso_figures(result.scene, float(result.torque[torque]), float(result.transverse_load_factor[torque])),
         "loaded_contact_ratio": mean_over_a_pitch(pairs),
         "fewest_loaded_pairs": _reduced(np.min, pairs),
         "most_loaded_pairs": _reduced(np.max, pairs),

@@ -416,8 +416,8 @@ class MeshCycle:
         return tuple(key_figures(self, torque) for torque in range(len(self.torque)))
 
     def summary(self) -> str:
-        """Return the key figures in the engineer's units: about 20 lines, one column per torque."""
-        return summary_text(self.scene.title, self.scope, self.key_figures())
+        """Return the key figures in the engineer's units, one column per torque, and the warnings of the analysis."""
+        return summary_text(self.scene.title, self.scope, self.key_figures(), self.warnings or ())
 
     @property
     def scope(self) -> str:

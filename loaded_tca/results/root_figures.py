@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loaded_tca.reference.iso6336_3 import face_load_factor
+from loaded_tca.pairs.gear import Gear
+from loaded_tca.reference.iso6336_3 import THINNEST_RIM, face_load_factor, rim_thickness_factor
 from loaded_tca.results.root_stress import GEARS, PLACE
 from loaded_tca.results.summary import FACTORS
 
@@ -29,7 +30,9 @@ def root_figures(result: MeshCycle, torque: int) -> dict[str, float]:
     nominal = [float(result.torque[torque]) * per_torque for per_torque in result.scene.nominal_root_stress]
     ratio, factor = result.scene.tooth_height_over_width, float(result.face_load_factor[torque])
     of_roots = math.nan if math.isnan(ratio + factor) else face_load_factor(max(1.0, factor), ratio)
+    gears = result.gear_pair.pinion, result.gear_pair.wheel
     for gear, name in enumerate(GEARS):
+        found[f"{name}_rim_thickness_factor_iso_6336"] = math.nan if math.isnan(ratio) else rim_factor(gears[gear])
         found |= _extreme(result, torque, gear, "root_tension") | _extreme(result, torque, gear, "root_compression")
         found[f"{name}_root_stress_ratio"] = float(result.root_stress_ratio[torque, gear])
         found[f"{name}_nominal_root_stress_iso_6336_MPa"] = nominal[gear]
@@ -37,6 +40,12 @@ def root_figures(result: MeshCycle, torque: int) -> dict[str, float]:
         found |= {f"{name}_{what}_factor_iso_6336": value for what, value in factors}
         found[f"{name}_root_stress_iso_6336_MPa"] = nominal[gear] * of_roots
     return found | {"root_face_load_factor_iso_6336": of_roots}
+
+
+def rim_factor(gear: Gear) -> float:
+    """Rim thickness factor Y_B of a gear with a bore, given or by default; NaN for a rim too thin for the standard."""
+    rim = gear.rim_over_height
+    return rim_thickness_factor(rim) if rim > THINNEST_RIM else math.nan
 
 
 def _extreme(result: MeshCycle, torque: int, gear: int, name: str) -> dict[str, float]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 
+from loaded_tca.results.iso_figures import LOAD_ROW, STIFFNESS_ROW, STRESS_ROWS, reasons_beside
+
 Figures = Mapping[str, float]
 """Name with its unit -> number, for one torque."""
 
@@ -17,6 +19,7 @@ MOST_TORQUES = 6
 
 FACTORS = "form", "stress_correction", "helix_angle"
 """Of ISO 6336-3, as their key figures are named."""
+RIM_LABEL = "    Y_B of thin rims, not in it: pinion | wheel"
 ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("pinion torque [N m]", ("pinion_torque_Nm",)),
     ("peak pressure [MPa] | pinion angle [deg]", ("peak_pressure_MPa", "pinion_angle_at_peak_deg")),
@@ -26,6 +29,7 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("{edge} [MPa] | its force [N]", ("edge_pressure_MPa", "normal_force_at_edge_N")),
     ("  estimated error [%]", ("edge_pressure_error",)),
     ("  pinion diameter | axial position [mm]", ("pinion_diameter_at_edge_mm", "pinion_axial_at_edge_mm")),
+    *STRESS_ROWS,
     ("highest where Hertz holds | Hertz [MPa]", ("peak_pressure_where_hertz_holds_MPa", "hertz_pressure_there_MPa")),
     ("  length | width after Hertz [mm]", ("hertz_length_there_mm", "hertz_width_there_mm")),
     ("transmission error, mean [arcsec | um]", ("transmission_error_mean_arcsec", "transmission_error_mean_um")),
@@ -43,7 +47,9 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
         "  tangent, without body torsion [N/(mm um)]",
         ("mesh_stiffness_without_body_torsion_mean_N_per_mm_um",),
     ),
+    STIFFNESS_ROW,
     ("load factors K_Hbeta | K_Halpha", ("face_load_factor", "transverse_load_factor")),
+    LOAD_ROW,
     (
         "line load under the largest force; mesh-dependent at sharp ends [N/mm]",
         ("line_load_at_largest_force_N_per_mm",),
@@ -72,6 +78,7 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
         (f"    its Y_F | Y_S | Y_beta of the {gear}", tuple(f"{gear}_{name}_factor_iso_6336" for name in FACTORS))
         for gear in ("pinion", "wheel")
     ),
+    (RIM_LABEL, tuple(f"{gear}_rim_thickness_factor_iso_6336" for gear in ("pinion", "wheel"))),
     ("root compression of pinion | wheel [MPa]", ("pinion_root_compression_MPa", "wheel_root_compression_MPa")),
     ("most cells across | along, worst residual", ("most_cells_across", "most_cells_along", "worst_solver_residual")),
 )
@@ -87,7 +94,7 @@ ONLY_IF_KNOWN = (
     "_where_hertz_holds_",
     "_there_",
     "_root_",
-    "_factor_iso_6336",
+    "_iso_6336",
 )
 """Figures whose line is left out where no torque has them."""
 
@@ -103,8 +110,8 @@ BESIDE_ISO = "no safety, K_A, K_V, life or material factors are in root stress, 
 """What stands beside stress by the standard."""
 
 
-def summary_text(title: str, scope: str, figures: Sequence[Figures]) -> str:
-    """Return the summary: title, scope, one line per figure with a column per torque, notes.
+def summary_text(title: str, scope: str, figures: Sequence[Figures], warnings: Sequence[str] = ()) -> str:
+    """Return the summary: title, scope, one line per figure with a column per torque, notes, warnings.
 
     Parameters
     ----------
@@ -112,6 +119,8 @@ def summary_text(title: str, scope: str, figures: Sequence[Figures]) -> str:
         First two lines.
     figures : sequence of mapping
         Of each torque, as ``MeshCycle.key_figures`` gives them.
+    warnings : sequence of str
+        Accuracy warnings of the analysis.
     """
     edge = kind_of_edge([entry for entry in figures if not math.isnan(entry.get("edge_pressure_MPa", math.nan))])
     rows = [
@@ -124,8 +133,10 @@ def summary_text(title: str, scope: str, figures: Sequence[Figures]) -> str:
     width = 2 + max(len(cell) for _, cells in rows for cell in cells)
     labels = max(len(label) for label, _ in rows)
     table = [f"{label:<{labels}}" + "".join(f"{cell:>{width}}" for cell in cells) for label, cells in rows]
+    beside = [f"ISO 6336: {reason}" for reason in reasons_beside(*figures)]
     notes = [f"note: {sentence}" for sentence in limits_of(figures)]
-    return "\n".join([title or "Loaded tooth contact", scope, *table, *notes])
+    warned = [f"warning: {sentence}" for sentence in warnings]
+    return "\n".join([title or "Loaded tooth contact", scope, *table, *beside, *notes, *warned])
 
 
 def known_rows(figures: Sequence[Figures]) -> list[tuple[str, tuple[str, ...]]]:

@@ -1,4 +1,4 @@
-"""Accuracy warnings: where an analysis is at a limit of its model or its grid."""
+"""Accuracy warnings: gears that jam or are no gears, and where an analysis is at a limit of its model or its grid."""
 
 from __future__ import annotations
 
@@ -7,12 +7,15 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from loaded_tca.compliance import require_teeth, warn_of_teeth
 from loaded_tca.contact.rounded_edge import LARGE_ERROR
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.loaded.cycle import Carried
 from loaded_tca.loaded.rounded_edges import PeakAtEdge
 from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.reference.iso6336_3 import THIN_RIM
+from loaded_tca.scene import Scene
 from loaded_tca.unloaded.tooth_cycle import REACH
 
 THICKEST_CONTACT = 0.25
@@ -82,6 +85,35 @@ def warn_of_accuracy(
         )
     for sentence in told:
         give_accuracy_warning(sentence, stacklevel=3)
+
+
+def warn_of_gears(scene: Scene, pair: GearPair) -> None:
+    """Give one AccuracyWarning for each reason why whole gears are not what the contact of two flanks says of them.
+
+    Parameters
+    ----------
+    scene : Scene
+    pair : GearPair
+        Of the scene.
+
+    Raises
+    ------
+    InputError, GeometryError
+        If nothing can turn, or gear bodies that the scene asks for cannot be built.
+    """
+    for sentence in scene.interferences():
+        give_accuracy_warning(sentence, stacklevel=3)
+    if scene.analysis.without_bodies:
+        require_teeth(pair, scene.analysis.without_bodies)
+    else:
+        warn_of_teeth(pair)
+    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+        if scene.analysis.root_stress and (rim := gear.rim_over_height) < THIN_RIM:
+            give_accuracy_warning(
+                f"root stress of the {name}: the rim below its teeth is {rim:.2g} tooth heights thick, less than "
+                f"{THIN_RIM:g}: on a bore that is held rigid stress falls as the rim thins, on a real one it rises",
+                stacklevel=3,
+            )
 
 
 def without_place(sentence: str) -> str:

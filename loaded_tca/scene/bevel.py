@@ -10,6 +10,7 @@ from typing import ClassVar, Literal
 
 from loaded_tca.gears.bevel import BevelGear, BevelMesh, pitch_angles
 from loaded_tca.gears.checks import LARGEST_PRESSURE_ANGLE
+from loaded_tca.gears.interference import AT_MID_FACE, interferences
 from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene import spiral
@@ -218,6 +219,11 @@ class BevelScene(SpiralScene, BlankScene):
             ("flank in contact", *self.contact_sides),
             *_cone_rows(mesh),
         ]
+
+    def interferences(self) -> Sequence[str]:
+        """Return how the whole gears interfere without mounting errors."""
+        mesh = self.mesh()
+        return interferences(mesh.room, mesh.pinion.mean_normal_module, AT_MID_FACE)
 
     def force_rows(self, torques: Sequence[float]) -> Sequence[Row]:
         """Return the forces under pinion torques [N mm]."""

@@ -9,11 +9,13 @@ from typing import ClassVar, Literal
 
 from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
+from loaded_tca.gears.interference import Room, interferences
 from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, common_face_width, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.reference import iso6336_3
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
+from loaded_tca.scene.iso6336 import ContactStandard, contact_standard
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row, family
 from loaded_tca.scene.section import Rule, Section, subsection
@@ -183,6 +185,13 @@ class CylindricalScene(BlankScene):
         return mesh.working_pressure_angle, mesh.pinion.base_helix_angle
 
     @property
+    def contact_standard(self) -> ContactStandard:
+        """Contact factors and stiffnesses of ISO 6336-1 and -2 over the common face."""
+        mesh = self.mesh()
+        width = common_face_width(mesh, self.mounting.axial_offset_mm)
+        return contact_standard(mesh, width, build_materials(self.materials))
+
+    @property
     def nominal_root_stress(self) -> tuple[float, float]:
         """Nominal root stress sigma_F0 after ISO 6336-3, method B, over the common face, per torque [MPa/(N mm)].
 
@@ -235,17 +244,21 @@ class CylindricalScene(BlankScene):
             ("normal force F_bn [N]", *(f"{mesh.normal_force(torque):.1f}" for torque in torques)),
         ]
 
-    def notes(self) -> Sequence[str]:
-        """Return sentences on teeth that overlap, at the nominal centre distance and with an error of it."""
-        mesh = self.mesh()
-        notes = _overlap(mesh, "centre distance")
-        distance = mesh.working_centre_distance + self.mounting.centre_distance_error_mm
-        if distance == mesh.working_centre_distance:
-            return notes
+    def interferences(self) -> Sequence[str]:
+        """Return how the whole gears interfere at their centre distance, its error included."""
+        mesh, error = self.mesh(), self.mounting.centre_distance_error_mm
+        distance = mesh.working_centre_distance + error
+        place = f"at the {'mounted ' if error else ''}centre distance of {distance:.4f} mm"
+        module = mesh.pinion.normal_module
         try:
-            return notes + _overlap(replace(mesh, centre_distance=distance), "mounted centre distance")
+            mounted = replace(mesh, centre_distance=distance) if error else mesh
         except GeometryError as problem:
-            return [*notes, f"at the mounted centre distance of {distance:.4f} mm: {problem}"]
+            if error > 0.0 or distance <= mesh.pinion.base_radius + mesh.wheel.base_radius:
+                raise GeometryError(f"{place}: {problem}") from None
+            pinion, wheel = (clearance + error for clearance in mesh.tip_clearances)
+            room = Room(mesh.backlash_at(distance), (0.0, 0.0), (pinion, wheel))
+            return [*interferences(room, module, place), f"fillet interference: {problem} ({place})"]  # an undercut
+        return interferences(mounted.room, module, place)
 
 
 def _root_factors(mesh: CylindricalMesh, gear: CylindricalGear) -> tuple[float, float, float]:
@@ -276,14 +289,6 @@ def _profile_shift_sums(mesh: CylindricalMesh) -> tuple[float, float]:
     """x1 + x2 as given, and what the centre distance needs for no backlash; no minus before a zero."""
     given = mesh.pinion.profile_shift + mesh.wheel.profile_shift
     return round(given, 4) + 0.0, round(mesh.profile_shift_sum_without_backlash, 4) + 0.0
-
-
-def _overlap(mesh: CylindricalMesh, which: str) -> list[str]:
-    backlash = _backlash(mesh)
-    if backlash >= 0.0:
-        return []
-    overlap = f"teeth overlap by {-backlash:.4f} mm at the {which} of {mesh.working_centre_distance:.4f} mm"
-    return [f"{overlap}: backlash is not part of the analysis"]
 
 
 def _diameter_rows(mesh: CylindricalMesh) -> list[Row]:

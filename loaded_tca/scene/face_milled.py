@@ -13,6 +13,7 @@ from loaded_tca.errors import require
 from loaded_tca.gears import cutter
 from loaded_tca.gears.bevel import pitch_angles
 from loaded_tca.gears.face_milled import FaceMilledGear, FaceMilledMesh
+from loaded_tca.gears.interference import AT_MID_FACE, interferences
 from loaded_tca.gears.machine_settings import FaceMilledBlank, MachineSettings
 from loaded_tca.pairs.bevel import BevelMounting
 from loaded_tca.pairs.face_milled import face_milled_pair
@@ -283,16 +284,10 @@ class FaceMilledScene(SpiralScene):
         flanks, points = face_milled_rows.flanks_and_points(self.mesh(), self.sides(self.sense))
         return spiral.force_rows(flanks, points, torques)
 
-    def notes(self) -> Sequence[str]:
-        """Return what is wrong with the tooth thicknesses, which the analysis does not need."""
-        flanks, _ = face_milled_rows.flanks_and_points(self.mesh(), self.sides(self.sense))
-        backlash = face_milled_rows.mean_backlash(flanks)
-        if not backlash < 0.0:
-            return ()
-        return (
-            f"at mid-face the teeth are {-backlash:.3f} mm thicker than the spaces, so that whole gears would jam; "
-            "backlash does not enter the analysis",
-        )
+    def interferences(self) -> Sequence[str]:
+        """Return how the whole gears interfere without mounting errors; tips below form lines are those of the path."""
+        mesh, sides = self.mesh(), self.sides(self.sense)
+        return interferences(*face_milled_rows.room_and_module(mesh, sides), AT_MID_FACE)
 
 
 def _gear(own: GearSection, name: str, pitch_angle: float) -> FaceMilledGear:

@@ -9,6 +9,7 @@ import numpy as np
 
 from loaded_tca.flanks.face_milled import GeneratedFlank, tooth_angle
 from loaded_tca.gears.face_milled import FaceMilledGear, FaceMilledMesh
+from loaded_tca.gears.interference import Room
 from loaded_tca.scene.model import Row
 from loaded_tca.scene.spiral import Point, Side, pitch_point
 
@@ -94,6 +95,14 @@ def _flank_rows(mesh: FaceMilledMesh, flanks: tuple[GeneratedFlank, GeneratedFla
 def mean_backlash(flanks: tuple[GeneratedFlank, GeneratedFlank]) -> float:
     """Normal pitch less both tooth thicknesses on the pitch cones at mid-face [mm]; NaN: a flank is not cut."""
     return sum(_normal_arc(flank, pi / flank.gear.teeth) - _thickness(flank) for flank in flanks)
+
+
+def room_and_module(mesh: FaceMilledMesh, sides: Sides) -> tuple[Room, float]:
+    """Room that whole gears leave each other, and the normal module at mid-face [mm]; a tooth of one flank jams not."""
+    flanks, _ = flanks_and_points(mesh, sides)
+    backlash = mean_backlash(flanks)
+    module = _normal_arc(flanks[0], 2.0 / mesh.pinion.teeth)
+    return Room(0.0 if isnan(backlash) else backlash, (0.0, 0.0), mesh.tip_clearances), module
 
 
 def _thickness(flank: GeneratedFlank) -> float:

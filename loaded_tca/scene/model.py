@@ -12,6 +12,7 @@ from loaded_tca.errors import InputError, require
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene.build import build_rounding, described_gear, in_base_units
+from loaded_tca.scene.iso6336 import ContactStandard
 from loaded_tca.scene.keys import Choice, Line, key
 from loaded_tca.scene.section import (
     Rule,
@@ -199,6 +200,11 @@ class Scene(Section, ABC):
         return math.nan, math.nan
 
     @property
+    def contact_standard(self) -> ContactStandard:
+        """Contact factors and stiffnesses of ISO 6336; all NaN for gears outside the standard."""
+        return ContactStandard()
+
+    @property
     def root_factors(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """Y_F, Y_S, Y_beta of pinion and wheel after ISO 6336-3; NaN for gears outside the standard."""
         unknown = (math.nan, math.nan, math.nan)
@@ -213,9 +219,15 @@ class Scene(Section, ABC):
     def force_rows(self, torques: Sequence[float]) -> Sequence[Row]:
         """Return the forces under pinion torques [N mm], a cell for each."""
 
-    def notes(self) -> Sequence[str]:
-        """Return sentences on what the analysis leaves out."""
-        return ()
+    @abstractmethod
+    def interferences(self) -> Sequence[str]:
+        """Return sentences on what jams the whole gears, which the contact of one flank of each does not notice.
+
+        Raises
+        ------
+        GeometryError
+            If nothing can turn.
+        """
 
     @property
     def flank_names(self) -> tuple[str, str]:

@@ -22,7 +22,7 @@ def cells(text, label):
 
 
 def notes(text):
-    return [line for line in text.splitlines() if line.startswith("note: ")]
+    return [line for line in text.splitlines() if line.startswith(("note: ", "warning: "))]
 
 
 def test_single_contact_lies_between_the_points_b_and_d():
@@ -40,7 +40,8 @@ def test_single_contact_lies_between_the_points_b_and_d():
 
 
 def test_no_single_contact_where_two_pairs_touch_always():
-    text = described("spur", pair__pressure_angle_deg=14.0, pinion__tip_diameter_mm=110.0, wheel__tip_diameter_mm=179.0)
+    tips = {"pinion__tip_diameter_mm": 109.8, "wheel__tip_diameter_mm": 178.8, "pair__dedendum_coefficient": 1.31}
+    text = described("spur", pair__pressure_angle_deg=14.0, **tips)
     assert float(cells(text, "transverse contact ratio")[0]) > 2.0
     assert "single tooth contact" not in text
 
@@ -103,23 +104,19 @@ def test_profile_shift_sum_that_a_centre_distance_needs_is_shown_beside_the_give
     assert cells(described("helical"), "profile shift sum") == ["0.0000", "0.0000"]
 
 
-def test_overlap_is_told_at_both_centre_distances():
-    nominal, mounted = notes(described(pair__centre_distance_mm=141.3, mounting__centre_distance_error_mm=-0.05))
-    assert "teeth overlap by 0.0" in nominal
-    assert "at the centre distance of 141.3000 mm: backlash is not part of the analysis" in nominal
-    assert "at the mounted centre distance of 141.2500 mm" in mounted
+def test_overlap_is_that_of_the_mounted_gears():
+    """Of a pair without backlash at 141.3153 mm, which an error brings nearer or mends."""
+    (nominal,) = notes(described(pair__centre_distance_mm=141.3))
+    assert "negative backlash" in nominal
+    assert "(at the centre distance of 141.3000 mm by 0.0114 mm)" in nominal
+    (mounted,) = notes(described(pair__centre_distance_mm=141.3, mounting__centre_distance_error_mm=-0.05))
+    assert "(at the mounted centre distance of 141.2500 mm by" in mounted
+    assert notes(described(pair__centre_distance_mm=141.3, mounting__centre_distance_error_mm=0.1)) == []
 
 
-def test_overlap_that_the_mounting_makes_or_mends_is_told():
-    (only,) = notes(described(mounting__centre_distance_error_mm=-0.05))
-    assert "mounted centre distance" in only
-    assert len(notes(described(pair__centre_distance_mm=141.3, mounting__centre_distance_error_mm=0.1))) == 1
-
-
-def test_mounting_that_parts_the_gears_is_a_note():
-    (only,) = notes(described(mounting__centre_distance_error_mm=30.0))
-    assert "at the mounted centre distance of 171.3" in only
-    assert "no common flank" in only
+def test_mounting_that_parts_the_gears_is_refused():
+    with pytest.raises(GeometryError, match=r"at the mounted centre distance of 171\.3.* no common flank"):
+        described(mounting__centre_distance_error_mm=30.0)
 
 
 def test_gears_that_cannot_mesh_are_an_error():
@@ -148,8 +145,14 @@ def test_active_profile_of_a_bevel_pair_starts_between_root_and_pitch_cone():
 
 
 def test_bevel_pair_whose_flank_ends_too_high_says_so():
-    text = described("straight_bevel", pinion__root_angle_deg=50.2)
+    cones = {f"{gear}__{cone}_angle_deg": None for gear in ("pinion", "wheel") for cone in ("face", "root")}
+    text = described("straight_bevel", pinion__teeth=14, wheel__teeth=39, **cones)
     assert cells(text, "mating tip reaches below the form cone") == ["yes", "no"]
+    assert any("the tip of the wheel reaches below the form circle of the pinion" in note for note in notes(text))
+    with pytest.raises(
+        GeometryError, match=r"cannot turn at mid-face .*: the tip of the wheel reaches .* into the root"
+    ):
+        described("straight_bevel", pinion__root_angle_deg=50.2)
 
 
 def test_spiral_pair_shows_hands_flanks_and_what_departs_from_nominal():
@@ -211,7 +214,7 @@ def test_analysis_is_shown_as_it_is_asked_for():
     assert "bores" in text
     text = described("spur")
     assert cells(text, "load sharing, free edges, compliance") == ["off", "off", "contact"]
-    assert "bores" not in text  # nothing is held where the flanks alone yield
+    assert "bores or journals" not in text  # nothing is held where the flanks alone yield
 
 
 def test_bores_are_shown_where_teeth_bend():

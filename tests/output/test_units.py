@@ -286,7 +286,31 @@ def expected_figures(cycle, t):
     found["line_positions"] = np.any([path.on_line for path in cycle.paths], axis=0).sum()
     highest = np.maximum(cycle.peak_pressure, cycle.edge_pressure)[t]
     found["capped_positions"] = np.count_nonzero((highest >= cycle.max_pressure).any(axis=-1))
-    return {**found, **expected_root_figures(cycle, t)}
+    return {**found, **expected_iso_figures(cycle.torque[t]), **expected_root_figures(cycle, t)}
+
+
+def expected_iso_figures(torque):
+    """Key figures of ISO 6336-1 and -2: Hertz at the pitch point, and curvatures at B and D."""
+    sine, cosine = math.sin(math.radians(20.0)), math.cos(math.radians(20.0))
+    pitch, whole = 3.0 * math.pi * cosine, BASE_RADII.sum() * sine / cosine
+    tips = np.sqrt((1.5 * np.array([34, 57]) + 3.0) ** 2 - BASE_RADII**2)
+    ratio = (tips.sum() - whole) / pitch
+    radii = BASE_RADII * sine / cosine
+    single = [math.sqrt(radii.prod() / ((tip - pitch) * (whole - tip + pitch))) for tip in tips]
+    length = math.sqrt((4.0 - ratio) / 3.0)
+    modulus = 206000.0 / (2.0 * (1.0 - 0.3**2))
+    hertz = math.sqrt(torque / BASE_RADII[0] / FACE * modulus / math.pi * (1.0 / radii).sum())
+    stiffness = 0.8 * (1.0 - 0.5 * 0.05) / (0.04723 + 0.15551 / 34 + 0.25791 / 57)
+    return {
+        "nominal_contact_stress_iso_6336_MPa": length * hertz,
+        "pinion_single_contact_factor_iso_6336": max(1.0, single[0]),
+        "wheel_single_contact_factor_iso_6336": max(1.0, single[1]),
+        "contact_ratio_factor_iso_6336": length,
+        "contact_helix_angle_factor_iso_6336": 1.0,
+        "single_stiffness_iso_6336_N_per_mm_um": stiffness,
+        "mesh_stiffness_iso_6336_N_per_mm_um": stiffness * (0.75 * ratio + 0.25),
+        "largest_transverse_load_factor_iso_6336": 1.0 / length**2,
+    }
 
 
 def expected_root_figures(cycle, t):
@@ -302,6 +326,7 @@ def expected_root_figures(cycle, t):
                 found[name.format(gear=gear, root=root)] = value
             found[f"pinion_angle_at_{gear}_{root}_deg"] = DEGREES * cycle.pinion_angle[position]
             found[f"{gear}_{root}_on_back"] = getattr(cycle, f"{root}_place")[t, position, k, 1] == 1
+        found[f"{gear}_rim_thickness_factor_iso_6336"] = 1.0  # rims of 0.45 root radii are 3 and 5 heights thick
         found[f"{gear}_root_stress_ratio"] = cycle.root_stress_ratio[t, k]
         names, factors = ("form", "stress_correction", "helix_angle"), cycle.scene.root_factors[k]
         found |= {f"{gear}_{name}_factor_iso_6336": one for name, one in zip(names, factors, strict=True)}

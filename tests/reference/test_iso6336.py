@@ -91,7 +91,47 @@ def test_mesh_stiffness_of_one_pair_is_the_single_stiffness():
     assert iso6336.mesh_stiffness(14.0, 1.0) == 14.0
 
 
+def single_contact(teeth=(16, 24), tips=(41.318 / 33.8289, 59.272 / 50.7434), ratio=1.4626, overlap=0.0):
+    """Factors of the FZG C14 pair: r_b 33.8289 and 50.7434, r_a 41.318 and 59.272 mm as GEARpie prints them."""
+    return iso6336.single_contact_factors(teeth, tips, radians(22.43934), ratio, overlap)
+
+
+def test_single_contact_factor_of_fzg_c14_is_hertz_at_the_printed_point_b():
+    """T1T2 34.93, AE 19.43, AB 6.14 mm, E at the pinion's tip: radii at B and C on the line of action."""
+    to_e = sqrt(41.318**2 - 33.8289**2)
+    b, c = to_e - 19.43 + 6.14, 33.8289 * sqrt(1.0 / cos(radians(22.43934)) ** 2 - 1.0)
+    expected = [line_contact(100.0, 1.0 / radius + 1.0 / (34.93 - radius), STEEL).max_pressure for radius in (b, c)]
+    factor, other = single_contact()
+    assert_allclose(factor, expected[0] / expected[1], rtol=1e-3)  # lengths are printed to 0.005 mm
+    assert factor > other == 1.0
+
+
+def test_single_contact_factor_goes_to_1_with_the_overlap():
+    spur, helical = single_contact(overlap=0.0)[0], single_contact(overlap=0.25)[0]
+    assert_allclose(helical - 1.0, 0.75 * (spur - 1.0), rtol=1e-9)  # differences of numbers about 1
+    assert single_contact(overlap=1.0) == single_contact(overlap=3.0) == (1.0, 1.0)
+
+
+def test_gears_exchanged_exchange_their_factors():
+    tips = (1.22, 1.17)
+    assert single_contact(tips=tips) == single_contact((24, 16), tips[::-1])[::-1]
+
+
+@given(st.floats(1.0, 2.5))
+def test_transverse_load_factor_is_bounded_by_one_pair_that_carries_all(ratio):
+    """Over the length b/Z_eps^2 that sigma_H0 has: of spur gears b carries, of an overlap of 1 a mean line."""
+    assert_allclose(iso6336.largest_transverse_load_factor(ratio, 0.0), 3.0 / (4.0 - ratio), rtol=ROUNDING)
+    assert_allclose(iso6336.largest_transverse_load_factor(ratio, 1.2), ratio + 1.2, rtol=ROUNDING)
+
+
 test_iso6336_refuses = refused_calls(
+    (
+        lambda: single_contact(teeth=(0, 24), tips=(0.9, 1.2), ratio=1.0, overlap=-1.0),
+        ("^teeth: 0 is below 1", "^tip_over_base: 0.9 is not", "^transverse_contact_ratio: 1.0 is", "^overlap_ratio:"),
+    ),
+    (lambda: single_contact(ratio=3.5), "transverse_contact_ratio: 3.5 reaches beyond a base circle"),
+    (lambda: iso6336.contact_ratio_factor(4.0, 0.0), "transverse_contact_ratio: 4.0 is not below 4"),
+    (lambda: iso6336.largest_transverse_load_factor(4.5, 0.0), "transverse_contact_ratio: 4.5 is not below 4"),
     (
         lambda angle: iso6336.zone_factor(radians(20), angle, 0.0),
         r"working_pressure_angle: .* rad is not between 0 and 90 deg",

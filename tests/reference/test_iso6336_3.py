@@ -9,7 +9,13 @@ from numpy.testing import assert_allclose
 from loaded_tca.errors import GeometryError
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.gears.cylindrical import involute
-from loaded_tca.reference.iso6336_3 import face_load_factor, helix_angle_factor, nominal_root_stress, root_section
+from loaded_tca.reference.iso6336_3 import (
+    face_load_factor,
+    helix_angle_factor,
+    nominal_root_stress,
+    rim_thickness_factor,
+    root_section,
+)
 from tests.refusals import refusals, refused_calls
 
 ROUNDING = 1e-12  # a few dozen floating point operations
@@ -86,6 +92,13 @@ def test_face_load_factor_lies_between_1_and_that_of_contact(contact, ratio):
     assert_allclose(face_load_factor(contact, 5.0), contact ** (9.0 / 13.0), rtol=ROUNDING)
 
 
+def test_thin_rims_raise_root_stress_and_thick_ones_do_not():
+    """1.6 ln(2.242/0.8) and 1.6 ln(2.242/0.6) by hand; from 1.2 on 1, where the curve arrives at 1.0001."""
+    assert_allclose([rim_thickness_factor(rim) for rim in (0.8, 0.6)], [1.64882, 2.10911], atol=5e-6)
+    assert rim_thickness_factor(1.2) == rim_thickness_factor(inf) == 1.0
+    assert_allclose(rim_thickness_factor(1.2 - 1e-9), 1.0, atol=1e-4)
+
+
 test_section_tells_what_is_out_of_range = refusals(
     lambda change: root_section(**{**USUAL, **change}),
     ({"teeth": 2}, "teeth: 2 is below 3"),
@@ -109,6 +122,7 @@ test_gears_without_a_section_are_refused = refusals(
 
 
 test_iso6336_3_refuses = refused_calls(
+    (rim_thickness_factor, "rim_over_height: .* is not above 0.5", [0.5, 0.0, nan]),
     (lambda: root_section(2, 3.0, -1.0, 1.6), ("^teeth:", "^profile_shift:", "^tip_diameter:")),
     (lambda: face_load_factor(0.9, 0.2), r"contact_face_load_factor: 0.9 is below 1"),
     (lambda: face_load_factor(1.2, 0.0), r"height_over_width: 0.0 is not positive"),

@@ -23,6 +23,7 @@ def unmodified(helix_deg=0.0, positions=9):
         "analysis.compliance": "contact",
         "analysis.free_edges": False,
         "pair.helix_angle_deg": helix_deg,
+        "pair.centre_distance_mm": None,
     }
     scene = read_scene(SCENES / "fzg_c14.toml").with_changes(changes)
     with warnings.catch_warnings():

@@ -512,19 +512,19 @@ def test_tooth_and_space_fill_the_pitch(scene):
     assert_allclose(backlash[1] - backlash[0], first - second, atol=2e-4)
 
 
-def test_teeth_that_would_jam_are_noted(scene):
+def test_teeth_that_would_jam_are_warned_of(scene):
     tight = scene.with_changes({"pinion.cutter.convex.point_radius_mm": 92.1})
-    (note,) = tight.notes()
+    (note,) = tight.interferences()
     assert "thicker than the spaces" in note
     assert note in describe_scene(tight)
-    assert scene.notes() == ()
+    assert scene.interferences() == []
 
 
 def test_one_blade_is_enough_for_contact_and_told_in_the_overview(scene):
     single = scene.with_changes({"pinion.cutter.convex": None, "analysis.compliance": "contact"})
     assert told(single)["mean normal tooth thickness s_mn"][0] == "one flank"
     assert told(single)["mean normal backlash"] == ("one flank",)
-    assert single.notes() == ()
+    assert single.interferences() == []
     assert "pinion: fit between them, largest" in describe_scene(single)  # the B-spline of the exact flank
     with pytest.raises(InputError, match=r"pinion\.cutter\.convex: missing"):
         single.pair("positive")

@@ -1,0 +1,138 @@
+"""Gears that jam or are no gears: one list of warnings, which every output shows; refused where nothing can turn."""
+
+import json
+import math
+
+import pytest
+
+from loaded_tca import GeometryError, analyse, read_scene
+from loaded_tca.errors import noted_accuracy_warnings
+from loaded_tca.output.overview import describe_scene
+from loaded_tca.output.report import summary_json
+from loaded_tca.reports.result_page import result_content
+from loaded_tca.results.explanations import explanation_of
+from loaded_tca.results.warnings import warn_of_gears
+from loaded_tca.studies import Study, run_study, study_summary
+from tests.samples.results import SCENES
+
+QUICK = {
+    "analysis.positions": 1,
+    "analysis.accuracy": None,
+    "analysis.cells": (12, 16),
+    "analysis.compliance": "contact",
+    "analysis.free_edges": False,
+    "analysis.torques_Nm": (20.0,),
+}
+NEAR, TOO_NEAR = {"pair.centre_distance_mm": 136.45}, {"pair.centre_distance_mm": 135.7}
+"""Of a pair 34/57 of module 3: 0.036 mm of overlap; tips 0.05 mm below roots."""
+PLAIN = {"pinion.modifications": {}, "wheel.modifications": {}}
+
+
+def spur(**changes):
+    return read_scene(SCENES / "mesh_cycle_spur.toml").with_changes(QUICK | changes)
+
+
+def sentences(scene):
+    with noted_accuracy_warnings(given=False) as found:
+        warn_of_gears(scene, scene.pair())
+    return found
+
+
+def test_sound_gears_are_not_warned_of():
+    for name in ("mesh_cycle_spur", "mesh_cycle_helical", "mesh_cycle_bevel", "face_milled_19x62_matched", "fzg_c14"):
+        assert sentences(read_scene(SCENES / f"{name}.toml")) == []
+
+
+def test_gears_that_jam_are_warned_of_in_every_output(monkeypatch):
+    scene = spur(**NEAR)
+    (sentence,) = sentences(scene)
+    with noted_accuracy_warnings(given=False):
+        result = analyse(scene)
+    assert sentence in result.warnings
+    assert f"warning: {sentence}" in result.summary().splitlines()
+    assert sentence in json.loads(summary_json(result))["accuracy_warnings"]
+    assert f"warning: {sentence}" in describe_scene(scene).splitlines()
+    monkeypatch.setattr("loaded_tca.reports.result_page.result_figures", lambda *_, **__: {})
+    explained = {told: known for group, known in result_content(result)["warnings"] for told in group}
+    assert explained[sentence] == explanation_of(sentence)
+    assert "both flanks of a tooth touch" in explained[sentence].meaning
+
+
+def test_variants_that_jam_are_warned_of_and_those_that_cannot_turn_refused():
+    distances = [136.5, 136.45, 135.7]
+    found = run_study(Study(spur(), {"pair.centre_distance_mm": distances}))
+    assert found["status"].values.tolist() == ["ok", "ok", "refused"]
+    assert ["negative backlash" in told for told in found["warnings"].values.tolist()] == [False, True, False]
+    assert "cannot turn at the centre distance of 135.7000 mm" in found["reason"].values[2]
+    assert "warning: negative backlash: teeth are thicker" in study_summary(found)
+
+
+def test_gears_that_cannot_turn_are_not_analysed():
+    with pytest.raises(
+        GeometryError, match=r"cannot turn .*135\.7.*: the tip of the wheel reaches 0\.05 mm into the root"
+    ):
+        analyse(spur(**TOO_NEAR))
+
+
+@pytest.mark.parametrize("error", [-0.05, 0.05])
+def test_an_error_of_the_centre_distance_counts(error):
+    """Before it the gears have no backlash."""
+    found = sentences(spur(**{"mounting.centre_distance_error_mm": error}))
+    assert [sentence.startswith("negative backlash") for sentence in found] == [True] * (error < 0.0)
+
+
+def test_mounting_that_brings_a_tip_into_an_undercut_is_warned_of():
+    """At 103.5 mm the tip of the wheel ends just above the undercut of a pinion of 12 teeth."""
+    undercut = {**PLAIN, "pinion.teeth": 12, "wheel.tip_diameter_mm": 174.6}
+    assert sentences(spur(**undercut)) == []
+    backlash, tip = sentences(spur(**undercut, **{"mounting.centre_distance_error_mm": -0.2}))
+    assert backlash.startswith("negative backlash: ")
+    assert tip.startswith("fillet interference: pinion: undercut up to diameter")
+
+
+@pytest.mark.parametrize(
+    ("error", "words"), [(15.0, "no common flank"), (-9.0, "is not above .*, the sum of the base")]
+)
+def test_mounting_without_a_mesh_is_refused(error, words):
+    with pytest.raises(GeometryError, match=f"^at the mounted centre distance of .* mm: .*{words}"):
+        sentences(spur(**{"mounting.centre_distance_error_mm": error}))
+
+
+def test_tip_below_the_form_circle_of_the_mate_is_warned_of():
+    (sentence,) = sentences(spur(**PLAIN, **{"wheel.tip_diameter_mm": 178.0, "pinion.teeth": 20}))
+    assert sentence.startswith("fillet interference: the tip of the wheel reaches below the form circle of the pinion")
+
+
+def test_missing_tooth_is_warned_of_where_nothing_but_its_flank_is_computed():
+    """3 mm off either flank of a tooth 4.7 mm thick; as long as the teeth bend, by what they bend like."""
+    changes = {"pinion.modifications.polynomial_mm": [3.0, 0.0, 0.0, 0.0, 0.0, 0.0]}
+    for compliance, words in (("contact", "analysed all the same"), ("contact+tooth", "bends like the tooth without")):
+        found = sentences(spur(**changes, **{"analysis.compliance": compliance}))
+        assert ["pointed tooth" in sentence and words in sentence for sentence in found if "unit" not in sentence] == [
+            True
+        ]
+
+
+def test_one_blade_alone_makes_no_missing_tooth():
+    scene = read_scene(SCENES / "face_milled_19x62_matched.toml")
+    assert sentences(scene.with_changes({"pinion.cutter.convex": None, "analysis.compliance": "contact"})) == []
+
+
+@pytest.mark.parametrize(("bore", "warned"), [(78.3, False), (78.4, True), (0.0, False), (None, False)])
+def test_thin_rims_are_warned_of_where_root_stress_is_asked_for(bore, warned):
+    """Root radius 47.25, height 6.75 mm: a rim of 1.2 heights is left by a bore of 78.3 mm. A solid gear has no rim."""
+    changes = {"pinion.bore_diameter_mm": bore}
+    found = sentences(spur(**changes, **{"analysis.root_stress": True}))
+    assert ["rim below its teeth is 1.2 tooth heights thick" in sentence for sentence in found] == [True] * warned
+    assert sentences(spur(**changes)) == []
+
+
+@pytest.mark.parametrize("name", ["mesh_cycle_spur", "mesh_cycle_bevel", "face_milled_19x62_matched"])
+def test_rim_is_what_a_bore_leaves_of_the_body_and_none_of_a_solid_gear(name):
+    scene = read_scene(SCENES / f"{name}.toml")
+    thin, thick = (
+        scene.with_changes({"pinion.bore_diameter_mm": part * scene.pair().rigid_bores[0]}).pair().pinion
+        for part in (1.0, 0.5)
+    )
+    assert 0.0 < thin.rim_over_height < thick.rim_over_height < math.inf
+    assert scene.with_changes({"pinion.bore_diameter_mm": 0.0}).pair().pinion.rim_over_height == math.inf
