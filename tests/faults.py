@@ -30,6 +30,7 @@ class Fault(NamedTuple):
     test: str
 
 
+ROWS = "studies/test_rows.py::test_malformed_row_costs_its_own_variant_and_no_other"
 FREE_EDGES, ROUNDED = "loaded/test_free_edges.py", "loaded/test_rounded_edges.py"
 UNITS = "output/test_units.py::test_every_number_is_an_attribute_times_its_factor"
 FAULTS = (
@@ -53,6 +54,27 @@ FAULTS = (
         "np.hypot(grid.y[:, None] - grid.y, grid.force_line[:, None] - grid.force_line)",
         "np.abs(grid.y[:, None] - grid.y)",
         "compliance/test_compliance.py::test_bending_does_not_depend_on_the_axes_of_the_grid",
+    ),
+    Fault(
+        "rows of a study: figures are not looked at",
+        "studies/rows.py",
+        "or {*map(type, values)} != {float}",
+        "",
+        ROWS,
+    ),
+    Fault(
+        "rows of a study: the checksum is not looked at",
+        "studies/rows.py",
+        "if separator and end != _checksum(content) + END:",
+        "if False:",
+        "studies/test_rows.py::test_changed_row_is_found_by_its_checksum",
+    ),
+    Fault(
+        "files: a pipe is read",
+        "input_files.py",
+        "other = os.path.exists(path) and not (os.path.isfile(path) or os.path.isdir(path))",
+        "other = False",
+        "test_input_files.py::test_what_is_no_regular_file_is_refused_unopened",
     ),
     Fault(
         "free edges: the same at helical ends",
