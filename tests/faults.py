@@ -55,6 +55,39 @@ FAULTS = (
         "np.abs(grid.y[:, None] - grid.y)",
         "compliance/test_compliance.py::test_bending_does_not_depend_on_the_axes_of_the_grid",
     ),
+    *(
+        Fault(f"rounded edges: {what}", file, text, wrong, test)
+        for what, file, text, wrong, test in (
+            (
+                "a sharp edge that ends one sets no limit aside",
+                "loaded/rounded_edges.py",
+                "return math.inf if self.ends_sharp else self.bound",
+                "return self.bound",
+                "results/test_rounded_edges.py::test_largest_edge_pressure_and_its_warnings_do_not_depend_on_whether_all_are_asked_for",
+            ),
+            (
+                "one that crosses another is solved alone where the other has less",
+                "loaded/rounded_edges.py",
+                "crossing = _crossing_within(loaded, [line for edge in edges for line in edge.lines])",
+                "crossing = _crossing_within(loaded, [line for e in edges if e.bound >= at_least for line in e.lines])",
+                f"{ROUNDED}::test_edges_that_cross_are_solved_together_whatever_one_of_them_can_come_to",
+            ),
+            (
+                "the cell at a sharp edge counts where the rounding was left out",
+                "results/collect.py",
+                "cell > (1.0 + EQUAL) * peak.bound",
+                "cell > (1.0 + EQUAL) * np.nan_to_num(pressure)",
+                "results/test_rounded_edges.py::test_largest_edge_pressure_and_its_warnings_do_not_depend_on_whether_all_are_asked_for",
+            ),
+            (
+                "a corner with a sharp edge counts as rounded",
+                "results/collect.py",
+                '"edge_is_rounded": at_arc and not peak.ends_sharp',
+                '"edge_is_rounded": at_arc',
+                "results/test_rounded_edges.py::test_corner_of_a_rounded_and_a_sharp_edge_is_sharp",
+            ),
+        )
+    ),
     Fault(
         "rows of a study: figures are not looked at",
         "studies/rows.py",
