@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from loaded_tca.errors import (
         AccuracyWarning,
         ConvergenceError,
+        DamageWarning,
         GeometryError,
         InputError,
         LoadedTCAError,
@@ -25,6 +26,7 @@ else:
 __all__ = [
     "AccuracyWarning",
     "ConvergenceError",
+    "DamageWarning",
     "GeometryError",
     "InputError",
     "LoadedTCAError",

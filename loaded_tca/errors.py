@@ -1,6 +1,5 @@
 """Every error and warning of the package, in one place."""
 
-import os
 import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -70,29 +69,6 @@ def reason_of(error: Exception) -> str:
     return getattr(error, "strerror", None) or str(error)
 
 
-def read_text(path: str | os.PathLike[str], largest: int, kind: str = "scene and no flank") -> str:
-    """Text of a file in UTF-8 of no more than so many bytes.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, is longer, or is no such text.
-    """
-    name = os.fspath(path)
-    try:
-        with open(path, "rb") as file:
-            content = file.read(largest + 1)
-    except (OSError, ValueError) as error:
-        raise InputError(f"{name}: cannot be read: {reason_of(error)}") from None
-    if len(content) > largest:
-        raise InputError(f"{name}: more than {largest} bytes; no {kind} is so long")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
-        raise InputError(f"{name}: not a text file in UTF-8 (line {line})") from None
-
-
 class NotAskedError(InputError, AttributeError):
     """A number that a result has only where its scene asks for it; says by which key."""
 
@@ -137,6 +113,10 @@ class ExecutorError(LoadedTCAError, RuntimeError):
 
 class AccuracyWarning(UserWarning):
     """A converged result that is less exact than asked for, or beyond the limits of the model."""
+
+
+class DamageWarning(UserWarning):
+    """A file of which a part is damaged: that part counts as missing."""
 
 
 _noted: ContextVar[tuple[tuple[list[str], bool], ...]] = ContextVar("_noted", default=())

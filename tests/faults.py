@@ -30,6 +30,7 @@ class Fault(NamedTuple):
     test: str
 
 
+ROWS = "studies/test_rows.py::test_malformed_row_costs_its_own_variant_and_no_other"
 FREE_EDGES, ROUNDED = "loaded/test_free_edges.py", "loaded/test_rounded_edges.py"
 UNITS = "output/test_units.py::test_every_number_is_an_attribute_times_its_factor"
 FAULTS = (
@@ -53,6 +54,60 @@ FAULTS = (
         "np.hypot(grid.y[:, None] - grid.y, grid.force_line[:, None] - grid.force_line)",
         "np.abs(grid.y[:, None] - grid.y)",
         "compliance/test_compliance.py::test_bending_does_not_depend_on_the_axes_of_the_grid",
+    ),
+    *(
+        Fault(f"rounded edges: {what}", file, text, wrong, test)
+        for what, file, text, wrong, test in (
+            (
+                "a sharp edge that ends one sets no limit aside",
+                "loaded/rounded_edges.py",
+                "return math.inf if self.ends_sharp else self.bound",
+                "return self.bound",
+                "results/test_rounded_edges.py::test_largest_edge_pressure_and_its_warnings_do_not_depend_on_whether_all_are_asked_for",
+            ),
+            (
+                "one that crosses another is solved alone where the other has less",
+                "loaded/rounded_edges.py",
+                "crossing = _crossing_within(loaded, [line for edge in edges for line in edge.lines])",
+                "crossing = _crossing_within(loaded, [line for e in edges if e.bound >= at_least for line in e.lines])",
+                f"{ROUNDED}::test_edges_that_cross_are_solved_together_whatever_one_of_them_can_come_to",
+            ),
+            (
+                "the cell at a sharp edge counts where the rounding was left out",
+                "results/collect.py",
+                "cell > (1.0 + EQUAL) * peak.bound",
+                "cell > (1.0 + EQUAL) * np.nan_to_num(pressure)",
+                "results/test_rounded_edges.py::test_largest_edge_pressure_and_its_warnings_do_not_depend_on_whether_all_are_asked_for",
+            ),
+            (
+                "a corner with a sharp edge counts as rounded",
+                "results/collect.py",
+                '"edge_is_rounded": at_arc and not peak.ends_sharp',
+                '"edge_is_rounded": at_arc',
+                "results/test_rounded_edges.py::test_corner_of_a_rounded_and_a_sharp_edge_is_sharp",
+            ),
+        )
+    ),
+    Fault(
+        "rows of a study: figures are not looked at",
+        "studies/rows.py",
+        "or {*map(type, values)} != {float}",
+        "",
+        ROWS,
+    ),
+    Fault(
+        "rows of a study: the checksum is not looked at",
+        "studies/rows.py",
+        "if separator and end != _checksum(content) + END:",
+        "if False:",
+        "studies/test_rows.py::test_changed_row_is_found_by_its_checksum",
+    ),
+    Fault(
+        "files: a pipe is read",
+        "input_files.py",
+        "other = os.path.exists(path) and not (os.path.isfile(path) or os.path.isdir(path))",
+        "other = False",
+        "test_input_files.py::test_what_is_no_regular_file_is_refused_unopened",
     ),
     Fault(
         "free edges: the same at helical ends",

@@ -14,6 +14,7 @@ import xarray
 
 from loaded_tca import cli, load_result
 from loaded_tca.cli import DEMO_SCENE
+from loaded_tca.errors import ConvergenceError, GeometryError
 from loaded_tca.results.files import write_dataset
 from loaded_tca.studies import load_study
 from tests.samples.studies import helical
@@ -95,6 +96,41 @@ def test_study_without_an_analysis_fails(study, capsys):
         "loaded-tca: --keep-maps 1: no maps, the variant is refused",
     ]
     assert os.path.exists("out/study.csv")
+
+
+@pytest.mark.usefixtures("blank_pictures")
+@pytest.mark.parametrize(
+    ("error", "status"),
+    [
+        (ZeroDivisionError("by zero"), "fault"),
+        (ConvergenceError("swings"), "not converged"),
+        (GeometryError("pointed"), "refused"),
+    ],
+)
+def test_study_fails_whatever_its_variants_fail_of(study, capsys, monkeypatch, error, status):
+    """Also where a single analysis would end with another exit code."""
+    name = study([1.0, 2.0])
+
+    def fail(_):
+        raise error
+
+    monkeypatch.setattr(sys.modules["loaded_tca.studies.figures"], "analyse", fail)
+    assert cli.main(["study", name, "--out", "out"]) == 2
+    out, err = capsys.readouterr()
+    assert out.startswith(f"2 variants: 2 {status}\n{status}: {error} (2 variants)\n")
+    assert err == "loaded-tca: no variant was analysed; the summary says why\n"
+
+
+@pytest.mark.usefixtures("blank_pictures")
+def test_damaged_row_is_one_line_of_the_command(study, capsys):
+    name, rows = study([2.0, 6.0]), Path("out/study.rows.jsonl")
+    assert cli.main(["study", name, "--out", "out"]) == 0
+    first, second = rows.read_bytes().splitlines(keepends=True)
+    rows.write_bytes(first + second.replace(b'"ok"', b"null"))
+    capsys.readouterr()
+    assert cli.main(["study", name, "--out", "out"]) == 0
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"warning: {rows}: rows that cannot be used, their variants are analysed again: row 2: ")
 
 
 def test_scene_and_study_are_told_apart(study, capsys):

@@ -32,12 +32,14 @@ DEMO_SCENE = Path(__file__).parents[1] / "demo.toml"
 
 def demo(options: argparse.Namespace) -> None:
     """Write the scene file of the demo and run it."""
+    from loaded_tca.input_files import read_bytes
     from loaded_tca.results.files import replace_together
+    from loaded_tca.scene.parse import LARGEST_FILE
 
     directory = options.out
     check_place(directory)
     scene, content = directory / "scene.toml", DEMO_SCENE.read_bytes()
-    if scene.exists() and scene.read_bytes() != content:
+    if scene.exists() and read_bytes(scene, LARGEST_FILE, "scene") != content:
         again = f"'loaded-tca run {scene} --out {directory}'"
         raise InputError(f"{scene}: has been changed, and the demo would replace it; rename it, or use {again}")
     replace_together(directory, {scene.name: content})

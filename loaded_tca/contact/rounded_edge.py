@@ -115,6 +115,8 @@ class EdgePressure:
         Estimated relative error of the discretisation: the change from coarser cells, and at least what the number of
         cells is known to leave; infinite where the end of the box is what bounds the contact, and where the pressure
         along the edge rises to a sharp end of the material: finer rows find more and more.
+    ends_sharp : bool
+        Whether it does the latter: the corner is as sharp as that end.
     pressed_width : float [mm]
         How far the contact reaches onto the rounding, across the edge.
     cells_on_arc : float
@@ -128,6 +130,7 @@ class EdgePressure:
     pressure: float
     place: tuple[float, float]
     error: float
+    ends_sharp: bool
     pressed_width: float
     cells_on_arc: float
     rows_on_arc: int
@@ -337,7 +340,7 @@ class _Arc:
         width = float(reached.max()) if reached.size else 0.0
         near = np.where(beyond > -width, pressure, 0.0) if width > 0.0 else np.zeros(pressure.shape)
         if not near.any():
-            return EdgePressure(math.nan, (math.nan, math.nan), 0.0, 0.0, 0.0, 0, solution)
+            return EdgePressure(math.nan, (math.nan, math.nan), 0.0, False, 0.0, 0.0, 0, solution)
         row, column = (int(k) for k in np.unravel_index(int(near.argmax()), near.shape))
         sizes = np.array([problem.spacing, problem.widths[column]])
         across = np.abs(self.normal) > ALIGNED
@@ -348,10 +351,11 @@ class _Arc:
         y_top, in_y = _top(y, pressure[row], column)
         top = largest * in_x * in_y if problem.max_pressure is None else largest
         error = (ASKEW_ERROR if across[0] else ALIGNED_ERROR) / on_arc**2
-        if row in (0, x.size - 1) or column in (0, y.size - 1) or _rises_to_sharp_end(solution, row, column, error):
+        ends_sharp = _rises_to_sharp_end(solution, row, column, error)
+        if row in (0, x.size - 1) or column in (0, y.size - 1) or ends_sharp:
             error = math.inf
         rows = np.count_nonzero(((beyond + along > 0.0) & (pressure > 0.0)).any(axis=1))
-        return EdgePressure(top, (x_top, y_top), error, width, on_arc, int(rows), solution)
+        return EdgePressure(top, (x_top, y_top), error, ends_sharp, width, on_arc, int(rows), solution)
 
     def after(self, found: EdgePressure) -> _Arc:
         """What is known once a solution is."""

@@ -25,8 +25,9 @@ import re
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import InputError, named, read_text
+from loaded_tca.errors import InputError, named
 from loaded_tca.flanks.topography import MeasuredDeviations, MeasuredPoints, Topography
+from loaded_tca.input_files import read_text
 
 LARGEST_FILE = 2**23
 """Bytes of a topography file; a point takes about 60."""

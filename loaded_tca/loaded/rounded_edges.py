@@ -12,7 +12,8 @@ turns that into
 
 the limit of small d of a flat punch with rounded ends (Ciavarella, Hills & Monno 1998). That is :math:`0.90\, p
 \sqrt{h/d}`; :math:`0.90\, p \sqrt{h/d + 1.5}` is a bound that holds on fine cells, too
-(``validation/loaded/rounded_edges.py``). It tells which contacts can hold the largest pressure of a mesh cycle.
+(``validation/loaded/rounded_edges.py``). It tells which contacts can hold the largest pressure of a mesh cycle. There
+is no bound where a sharp edge ends a rounded one within the contact.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ from loaded_tca.loaded.tooth_contact import LoadedContact
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation.normal_gap import NormalGap
-from loaded_tca.unloaded.arcs import lengths_past_tangents
+from loaded_tca.unloaded.arcs import edge_distances, lengths_past_tangents
 
 PEAK_OF_ROUNDING = 1.80
 """Of the pressure at a rounded edge, over K/sqrt(d)."""
@@ -57,6 +58,8 @@ columns leave together, those away from the edge, on which teeth bend, too. Of 3
 this, and eight are above what the change from coarser columns says (``docs/studies/rounded_edges_of_gears.md``)."""
 LEFT_BESIDE_CROSSING = 0.12
 """The same where two edges cross: one of them lies across the columns of the other."""
+SIDES = {EDGE_NAMES.index("lower side"), EDGE_NAMES.index("upper side")}
+"""Numbers of the ends of the face among the edges of a gear."""
 PARALLEL = 0.1
 """Sine of the angle between two edges below which they are those of both gears at one end."""
 
@@ -68,19 +71,26 @@ class PeakAtEdge:
     Attributes
     ----------
     pressure : float [MPa]
-        NaN where the contact ends before every rounding.
+        NaN where the contact ends before every rounding, and where only the bound is known.
     place : (float, float) [mm]
         Across and along the contact, from the contact point.
     error : float
-        Estimated relative error of the discretisation.
+        Estimated relative error of the discretisation; infinite where any rounded edge of the contact ends at a sharp
+        one that is pressed, too.
+    bound : float [MPa]
+        What no rounded edge of the contact exceeds: the pressure, where that is known, zero where none is reached.
+    ends_sharp : bool
+        Whether the place is a corner with a sharp edge, where the pressure has no limit.
     """
 
     pressure: float
     place: tuple[float, float]
     error: float
+    bound: float
+    ends_sharp: bool = False
 
 
-NOT_REACHED = PeakAtEdge(math.nan, (math.nan, math.nan), math.nan)
+NOT_REACHED = PeakAtEdge(math.nan, (math.nan, math.nan), math.nan, 0.0)
 
 
 class ReachedEdge(NamedTuple):
@@ -91,11 +101,28 @@ class ReachedEdge(NamedTuple):
     lines : tuple of RoundedEdge
         One, or those of both gears, whose arcs begin within a cell of each other.
     bound : float [MPa]
-        Of the pressure there.
+        Of the pressure there, away from sharp edges.
+    ends_sharp : bool
+        Whether a sharp edge ends it within a cell of the contact.
     """
 
     lines: tuple[RoundedEdge, ...]
     bound: float
+    ends_sharp: bool = False
+
+    @property
+    def limit(self) -> float:
+        """Of the pressure there, up to the ends of the edge [MPa]."""
+        return math.inf if self.ends_sharp else self.bound
+
+
+class _BesideCell(NamedTuple):
+    """A rounded edge, the pressure of the cell beside it [MPa], its width [mm], and whether a sharp edge ends it."""
+
+    line: RoundedEdge
+    pressure: float
+    width: float
+    ends_sharp: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,12 +168,13 @@ def pressures_at_rounded_edges(
         Whether the ends of the teeth are softer than a half-space.
     every : bool
         Whether all contacts that reach a rounding are solved once more; else those alone that can hold the largest
-        pressure at a rounding under their torque.
+        pressure at a rounding under their torque, or one without a limit.
 
     Returns
     -------
     dict
-        By the indices of torque, position and tooth pair: of those that were solved once more.
+        By the indices of torque, position and tooth pair: of all that reach a rounding. Of those that were not solved
+        once more, and those whose pressure is below ``SURELY_LESS`` of the largest one, a bound.
 
     Raises
     ------
@@ -161,18 +189,23 @@ def pressures_at_rounded_edges(
             for k, loaded in enumerate(row)
             if loaded is not None and loaded.at_arc and (edges := reached_edges(pair, loaded))
         }
-        largest = 0.0
-        for place in sorted(reached, key=lambda at: -reached[at][1][0].bound):
+        limits = {place: max(edge.limit for edge in edges) for place, (_, edges) in reached.items()}
+        peaks, largest = dict[tuple[int, int, int], PeakAtEdge](), 0.0
+        for place in sorted(reached, key=lambda at: -limits[at]):
             loaded, edges = reached[place]
-            if not every and edges[0].bound < largest:
+            if not every and limits[place] < largest:
                 break
             number = int(carried.pairs[place[2]])
             with told_where(float(carried.torque[t]), float(carried.path.pinion_angle[place[1]])):
-                peak = pressure_at_rounded_edge(
+                peaks[place] = pressure_at_rounded_edge(
                     pair, loaded, edges, bending, number, free_edges=free_edges, at_least=0.0 if every else largest
                 )
-            if every or peak.pressure >= SURELY_LESS * largest:
-                found[place], largest = peak, max(largest, peak.pressure)  # which stays where the other one is NaN
+            largest = max(largest, _by_pressure(peaks[place]))
+        for place, (_, edges) in reached.items():
+            peak = peaks.get(place, NOT_REACHED)
+            can_be_largest = _by_pressure(peak) >= SURELY_LESS * largest or peak.error == math.inf
+            below = replace(NOT_REACHED, bound=min(edges[0].bound, largest))
+            found[place] = peak if every or can_be_largest else below
     return found
 
 
@@ -181,10 +214,11 @@ def reached_edges(pair: GearPair, loaded: LoadedContact) -> list[ReachedEdge]:
 
     An edge is a straight line beside the cell there with the largest pressure.
     """
-    grid = loaded.separation
+    grid, arcs = loaded.separation, _arcs(pair)
     lengths, (dx, dy) = lengths_past_tangents(pair, grid.points), grid.spacing
-    groups: list[list[tuple[RoundedEdge, float, float]]] = []  # line, pressure of the cell beside it, its width
-    for edge, (gear, arc) in _arcs(pair).items():
+    distances, pressed = edge_distances(pair, grid.points), _dilated(loaded.solution.pressure_on_material > 0.0, 1)
+    groups: list[list[_BesideCell]] = []
+    for edge, (gear, arc) in arcs.items():
         pressure = np.where(lengths[..., edge] > -math.hypot(dx, dy), loaded.solution.pressure_on_material, 0.0)
         if not pressure.any():
             continue
@@ -202,11 +236,19 @@ def reached_edges(pair: GearPair, loaded: LoadedContact) -> list[ReachedEdge]:
             pair.contact_modulus / gear.material.plane_strain_modulus,
         )
         width = float(np.abs(slope) @ (dx, dy)) / math.hypot(*slope)
-        group = next((one for one in groups if _is_beside(one[0][0], line, width)), None)
+        group = next((one for one in groups if _is_beside(one[0].line, line, width)), None)
         if group is None:
             groups.append(group := [])
-        group.append((line, float(pressure.max()), width))
+        beyond_sharp = (distances[..., [other for other in _ends_of(edge) if other not in arcs]] < 0.0).any(axis=-1)
+        at_end = pressed & _dilated(lengths[..., edge] > 0.0, 1) & _dilated(np.asarray(beyond_sharp), 1)
+        group.append(_BesideCell(line, float(pressure.max()), width, bool(at_end.any())))
     return sorted((_joined(group, pair.contact_modulus) for group in groups), key=lambda one: -one.bound)
+
+
+def _ends_of(edge: int) -> list[int]:
+    """Edges of both gears that can cross an edge: sides a tip or a root, tips and roots a side."""
+    count = len(EDGE_NAMES)
+    return [other for other in range(2 * count) if (other % count in SIDES) != (edge % count in SIDES)]
 
 
 def _is_beside(line: RoundedEdge, other: RoundedEdge, distance: float) -> bool:
@@ -218,11 +260,16 @@ def _is_beside(line: RoundedEdge, other: RoundedEdge, distance: float) -> bool:
     )
 
 
-def _joined(group: list[tuple[RoundedEdge, float, float]], contact_modulus: float) -> ReachedEdge:
+def _joined(group: list[_BesideCell], contact_modulus: float) -> ReachedEdge:
     """An edge of the lines that lie beside each other: the gap opens as fast as with one radius, 1/r = sum 1/r_k."""
-    lines, pressures, widths = zip(*group, strict=True)
+    lines, pressures, widths, ends_sharp = zip(*group, strict=True)
     radius = 1.0 / sum(1.0 / line.radius for line in lines)
-    return ReachedEdge(lines, largest_pressure(max(pressures), max(widths), radius, contact_modulus))
+    return ReachedEdge(lines, largest_pressure(max(pressures), max(widths), radius, contact_modulus), any(ends_sharp))
+
+
+def _dilated(cells: Array, steps: int) -> Array:
+    """Some cells (nx, ny) of a grid, and those so many steps away from one of them."""
+    return np.asarray(binary_dilation(cells, np.ones((3, 3), dtype=bool), steps))
 
 
 def largest_pressure(mean: float, width: float, radius: float, contact_modulus: float) -> float:
@@ -244,7 +291,8 @@ def pressure_at_rounded_edge(
 ) -> PeakAtEdge:
     """Peak pressure of a contact at its rounded edges.
 
-    Columns are made for one edge after the other, and for those together that cross each other in the contact.
+    Columns are made for one edge after the other, and for those together that cross each other in the contact. Which
+    ones cross does not depend on what the others can come to: beside a crossing both edges make the pressure.
 
     Parameters
     ----------
@@ -257,24 +305,30 @@ def pressure_at_rounded_edge(
         Of the tooth pair, as the bending model counts.
     free_edges : bool
     at_least : float [MPa]
-        Pressures that are surely less need not be found closely.
+        Pressures that are surely less need not be found closely, but for those without a limit.
     """
-
-    def highest(lines: list[RoundedEdge]) -> PeakAtEdge:
+    crossing = _crossing_within(loaded, [line for edge in edges for line in edge.lines])
+    together = [(edge.limit, [*edge.lines]) for edge in edges if not crossing.issuperset(edge.lines)]
+    if crossing:  # the first one is crossed by the fewest rows
+        limit = max(edge.limit for edge in edges if not crossing.isdisjoint(edge.lines))
+        together.append((limit, sorted(crossing, key=lambda line: -abs(line.normal[1]))))
+    best, error = NOT_REACHED, 0.0
+    for limit, lines in sorted(together, key=lambda each: -each[0]):
+        if limit < max(SURELY_LESS * at_least, _by_pressure(best)):
+            break
         contact = _ContactAlongEdge(pair, loaded, lines[0], bending, number, free_edges)
         left = LEFT_BESIDE_CROSSING if crossing.issuperset(lines) else LEFT_BY_CELLS
-        peaks = [contact.turned_back(one, left) for one in contact.solved(lines, max(at_least, _by_pressure(best)))]
-        top = max(peaks, key=_by_pressure)  # beside a crossing the columns of both edges tell it
-        return replace(top, error=max((one.error for one in peaks if one.place == top.place), default=top.error))
+        enough = 0.0 if limit == math.inf else max(at_least, _by_pressure(best))
+        peak = _largest([contact.turned_back(one, left) for one in contact.solved(lines, enough)])
+        best, error = max(best, peak, key=_by_pressure), math.inf if peak.ends_sharp else error
+    return replace(best, error=max(best.error, error))
 
-    able, best = [one for one in edges if one.bound >= at_least], NOT_REACHED
-    crossing = _crossing_within(loaded, [line for lines, _ in able for line in lines])
-    for lines, bound in able:
-        if bound >= _by_pressure(best) and not crossing.issuperset(lines):
-            best = max(best, highest(list(lines)), key=_by_pressure)
-    if crossing:  # the first one is crossed by the fewest rows
-        best = max(best, highest(sorted(crossing, key=lambda line: -abs(line.normal[1]))), key=_by_pressure)
-    return best
+
+def _largest(peaks: list[PeakAtEdge]) -> PeakAtEdge:
+    """The largest of some peaks; beside a crossing the columns of both edges have it, the larger error counts."""
+    top = max(peaks, key=_by_pressure)
+    same = [peak for peak in peaks if peak.place == top.place] or [top]
+    return replace(top, error=max(peak.error for peak in same), ends_sharp=any(peak.ends_sharp for peak in same))
 
 
 def _by_pressure(one: PeakAtEdge) -> float:
@@ -285,7 +339,7 @@ def _by_pressure(one: PeakAtEdge) -> float:
 def _crossing_within(loaded: LoadedContact, lines: list[RoundedEdge]) -> set[RoundedEdge]:
     """Those of some edges that cross another one within two cells of the pressure of a contact."""
     grid, found = loaded.separation, set[RoundedEdge]()
-    pressed = binary_dilation(loaded.solution.pressure > 0.0, np.ones((5, 5), dtype=bool))
+    pressed = _dilated(loaded.solution.pressure > 0.0, 2)
     for pair in combinations(lines, 2):
         normals = np.array([line.direction for line in pair])
         if abs(np.linalg.det(normals)) < PARALLEL:
@@ -359,7 +413,8 @@ class _ContactAlongEdge:
         if math.isnan(found.pressure):
             return NOT_REACHED
         across, along = (np.array(found.place) @ self.turn).tolist()
-        return PeakAtEdge(found.pressure, (across, along), max(found.error, left / found.cells_on_arc))
+        error = max(found.error, left / found.cells_on_arc)
+        return PeakAtEdge(found.pressure, (across, along), error, found.pressure, found.ends_sharp)
 
     def solved(self, edges: list[RoundedEdge], at_least: float) -> list[EdgePressure]:
         """Pressures at edges, in a box that holds the contact."""

@@ -12,7 +12,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import RootStress
 from loaded_tca.loaded.cycle import Carried
-from loaded_tca.loaded.rounded_edges import PeakAtEdge
+from loaded_tca.loaded.rounded_edges import NOT_REACHED, PeakAtEdge
 from loaded_tca.loaded.tooth_contact import EQUAL, LoadedContact
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import line_contact
@@ -160,21 +160,20 @@ def _numbers(
 def _at_edge(
     pair: GearPair, loaded: LoadedContact, one: PressureMap, rounded: PeakAtEdge | None
 ) -> dict[str, float | bool]:
-    """Pressure of a loaded contact at an edge: the larger one of a sharp edge and of the rounded ones, if found."""
-    pressure, place, error = math.nan, (math.nan, math.nan), math.nan
-    if rounded is not None:
-        pressure, place, error = rounded.pressure, rounded.place, rounded.error
+    """Pressure of a loaded contact at an edge: that of a sharp one only where no rounded one can have a larger one."""
+    peak = rounded or NOT_REACHED
+    pressure, place, error = peak.pressure, peak.place, peak.error
     of_material, at_arc = replace(one, pressure=loaded.solution.pressure_on_material), loaded.at_arc
     if loaded.at_edge:
         across, along = sharp_edge_cell(pair, of_material)
         cell = float(of_material.pressure[across, along])
-        if not at_arc or cell > (1.0 + EQUAL) * np.nan_to_num(pressure):  # both are equal at the cap
+        if not at_arc or cell > (1.0 + EQUAL) * peak.bound:  # both are equal at the cap
             place = place_on_material(pair, one, (across, along))
             pressure, error, at_arc = cell, math.nan, False
     radius, axial = one.place(*place)
     return {
         "edge_pressure": pressure,
-        "edge_is_rounded": at_arc,
+        "edge_is_rounded": at_arc and not peak.ends_sharp,
         "edge_pressure_error": error,
         "edge_radius": radius,
         "edge_axial": axial,

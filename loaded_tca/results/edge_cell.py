@@ -1,24 +1,14 @@
-"""Edges in a pressure map: distances to them, cells beside the end of a flank or on the arc of a rounded edge."""
+"""Edges in a pressure map: cells beside the end of a flank or on the arc of a rounded edge."""
 
 from __future__ import annotations
 
 import numpy as np
 from scipy.ndimage import binary_dilation
 
-from loaded_tca.arrays import Array, Mask
+from loaded_tca.arrays import Mask
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.unloaded.arcs import arcs_at
-
-
-def edge_distances(pair: GearPair, points: Array) -> Array:
-    """Distances (n, 8) [mm] of points (n, 3) of the fixed frame to the edges of both flanks, negative beyond them."""
-    radius, _, axial = pair.to_wheel(points)
-    edges = [
-        *pair.pinion.flank.edges(np.hypot(points[:, 0], points[:, 1]), points[:, 2]),
-        *pair.wheel.flank.edges(radius, axial),
-    ]
-    return np.stack([np.broadcast_to(edge.value, len(points)) for edge in edges], axis=-1)
+from loaded_tca.unloaded.arcs import arcs_at, edge_distances
 
 
 def arc_cells(pair: GearPair, one: PressureMap) -> Mask:

@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loaded_tca.arrays import Array
+from loaded_tca.contact.checks import machine_memory
 from loaded_tca.errors import InputError, reason_of, require
+from loaded_tca.input_files import read_bytes, require_regular
 
 if TYPE_CHECKING:  # xarray takes a third of a second to import: only what makes or reads a result needs it
     import xarray
@@ -153,17 +155,14 @@ def read_dataset(path: FilePath) -> xarray.Dataset:
     Raises
     ------
     InputError
-        If the file cannot be read, has changed since it was written, is no NetCDF-3 file, not of this package, or of
-        another format.
+        If the file cannot be read, is no regular one or larger than the memory, has changed since it was written, is no
+        NetCDF-3 file, not of this package, or of another format.
     """
     import xarray
 
-    try:
-        content = Path(path).read_bytes()
-    except IsADirectoryError:
-        raise InputError(f"{path}: a directory; name the result file in it, as {Path(path, 'result.nc')}") from None
-    except (OSError, ValueError) as error:
-        raise InputError(f"{path}: cannot be read: {reason_of(error)}") from error
+    if os.path.isdir(path):
+        raise InputError(f"{path}: a directory; name the result file in it, as {Path(path, 'result.nc')}")
+    content = read_bytes(path, machine_memory(), "result that this machine can hold")
     place = _place_of_digest(content)
     if content[place] and content[place] != _digest(content, place):
         raise InputError(f"{path}: damaged: its bytes are not those that loaded_tca wrote; run the scene again")
@@ -224,8 +223,8 @@ def require_replaceable(path: FilePath, inputs: Iterable[FilePath] = ()) -> None
     """Refuse to replace a directory, a device or anything else that is no regular file, and files that are read."""
     if not os.path.exists(path):
         return
-    what = "a directory" if os.path.isdir(path) else "not a regular file"
-    require((os.path.isfile(path), f"{path}: cannot be written: {what}; give the name of a file"))
+    require_regular(path, "written")
+    require((not os.path.isdir(path), f"{path}: cannot be written: a directory; give the name of a file"))
     read = [one for one in inputs if os.path.exists(one) and os.path.samefile(path, one)]
     require((not read, f"{path}: would replace the input; give another name"))
 

@@ -21,6 +21,8 @@ from loaded_tca.unloaded.tooth_cycle import REACH
 THICKEST_CONTACT = 0.25
 """Half width of a contact, over the module, above which a tooth is no half-space: it is 1.6 modules thick."""
 
+ROUNDING = 1e-9
+"""Relative, of an estimated error: four cells beside a crossing leave 3 % exactly."""
 MOST_TORSION = 0.5
 """Part of the deflection from which the twist of the bodies about their bores is told."""
 
@@ -50,7 +52,8 @@ def warn_of_accuracy(
     """
     places: dict[str, list[str]] = {}
     solved, told = 0, []
-    large = {place: peak.error for place, peak in at_rounded_edges.items() if peak.error > LARGE_ERROR}
+    limit = LARGE_ERROR * (1.0 + ROUNDING)
+    large = {place: peak.error for place, peak in at_rounded_edges.items() if peak.error > limit}
     worst = max(large.values(), default=0.0)
     size = "without a limit" if worst == math.inf else f"{worst:.0%} at the most"
     mesh_error = f"the pressure at a rounded edge has an estimated error above {LARGE_ERROR:.0%}, {size}"

@@ -9,7 +9,8 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from loaded_tca.errors import InputError, read_text
+from loaded_tca.errors import InputError
+from loaded_tca.input_files import read_text
 from loaded_tca.scene.model import Scene, scene_from_table
 from loaded_tca.scene.text import shown, shown_key
 

@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from loaded_tca.errors import InputError, named, read_text
+from loaded_tca.errors import InputError, named
+from loaded_tca.input_files import read_text
 from loaded_tca.scene import Scene, read_scene
 from loaded_tca.scene.keys import did_you_mean, nearest
 from loaded_tca.scene.parse import LARGEST_FILE, toml_table

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import re
 import time
+import warnings
 from collections.abc import Callable, Collection, Generator, Iterator, Mapping
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from contextlib import ExitStack, closing, contextmanager
@@ -19,6 +19,7 @@ import numpy as np
 from loaded_tca.analysis import analyse
 from loaded_tca.errors import (
     ConvergenceError,
+    DamageWarning,
     ExecutorError,
     InputError,
     LoadedTCAError,
@@ -29,7 +30,8 @@ from loaded_tca.results.files import FilePath, make_directory, read_dataset, rem
 from loaded_tca.scene import Scene
 from loaded_tca.studies.figures import figures as key_figures
 from loaded_tca.studies.figures import figures_of
-from loaded_tca.studies.store import Row, Rows, dataset_of
+from loaded_tca.studies.rows import Row, Rows, problem_of_figures
+from loaded_tca.studies.store import dataset_of
 from loaded_tca.studies.study import Study
 from loaded_tca.threads import one_thread
 
@@ -40,9 +42,6 @@ AHEAD = 1000
 """Variants under way: enough for hundreds of workers, and little memory."""
 
 GONE = "as when a scheduler goes away"
-
-OTHERS = ("sample", "torque", "status", "reason", "warnings", "seconds")
-"""What else stands beside figures in the result."""
 
 Figures = Callable[[Scene], Mapping[str, Any]]
 Progress = Callable[[int, int, int], None]
@@ -89,6 +88,11 @@ def run_study(
     ExecutorError
         If the executor gives up, as when a worker is killed.
 
+    Warns
+    -----
+    DamageWarning
+        Which rows beside ``out`` cannot be used, and why, if anything is missing: their variants are analysed again.
+
     Examples
     --------
     >>> from loaded_tca import parse_scene
@@ -121,6 +125,8 @@ def run_study(
                 kept.append(variant)
             else:
                 missing.setdefault(digest, []).append(variant)
+        if missing and rows.damaged:
+            warnings.warn(rows.damage, DamageWarning, stacklevel=2)
         done, failed = len(kept), sum(row["status"] != "ok" for row in rows.of(digests[variant] for variant in kept))
         tell = progress or (lambda *_: None)
         if kept:
@@ -206,25 +212,30 @@ def _analysed(scene: Scene, changes: dict[str, Any], digest: str, figures: Figur
                 result = analyse(variant)
                 whole = bytes(result.to_netcdf())
             values = figures_of(result) if keep and figures is key_figures else figures(variant)
-            found = {_named(name): _over_torques(name, value) for name, value in values.items()}
+            found = _checked({name: _over_torques(name, value) for name, value in values.items()})
         except Exception as error:  # a variant that fails is a row; what it is of the program's fault, too
-            status, reason = _status_of(error), str(error).encode(errors="replace").decode() or type(error).__name__
+            status, reason = _status_of(error), _storable(str(error)) or type(error).__name__
     row = {
         "digest": digest,
         "status": status,
         "reason": reason,
-        "warnings": [*dict.fromkeys(told)],
+        "warnings": [*dict.fromkeys(map(_storable, told))],
         "seconds": time.perf_counter() - begin,
         "figures": found,
     }
     return row, whole
 
 
-def _named(name: Any) -> str:
-    """The name of a figure, which is that of a variable in a file, too, and of a picture."""
-    if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or name in OTHERS:
-        raise ValueError(f"figures: name {name!r:.60}; allowed letters, digits and _, but not {', '.join(OTHERS)}")
-    return name
+def _storable(text: str) -> str:
+    """A text without halves of surrogate pairs, which no file can hold."""
+    return text.encode(errors="replace").decode()
+
+
+def _checked(figures: dict[str, list[float]]) -> dict[str, list[float]]:
+    """The figures, if they fit into a row."""
+    if problem := problem_of_figures(figures):
+        raise ValueError(f"figures: {problem}")
+    return figures
 
 
 def _over_torques(name: str, value: Any) -> list[float]:

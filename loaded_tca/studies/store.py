@@ -1,111 +1,23 @@
-"""Rows of a study on disk: each is there once its variant is done, whatever happens to the others."""
+"""The result of a study: the rows of its variants as a dataset, and the file that holds it."""
 
 from __future__ import annotations
 
-import json
-import os
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import suppress
-from pathlib import Path
-from types import TracebackType
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import InputError, reason_of
-from loaded_tca.results.files import FilePath, make_directory, read_dataset
+from loaded_tca.errors import InputError
+from loaded_tca.results.files import FilePath, read_dataset
 from loaded_tca.scene.text import literal
+from loaded_tca.studies.rows import Row
 from loaded_tca.studies.study import Study, told_distribution
 
 if TYPE_CHECKING:
     import xarray
 
-STATUSES = ("ok", "refused", "not converged", "fault")
-"""Of a variant: analysed; its scene or geometry refused; not converged; any other error, a fault of the program."""
 KIND = "study"
-Row = dict[str, Any]
-PARTS_OF_A_ROW = {"digest", "status", "reason", "warnings", "seconds", "figures"}
-"""As JSON holds them; figures: name -> values over the torques."""
-
-
-class Rows:
-    """A file with one line for every variant that is done, in the order in which they were.
-
-    Parameters
-    ----------
-    path : str or path
-        Made if it does not exist. A line that was not written to its end is cut off.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read or written.
-    """
-
-    def __init__(self, path: FilePath) -> None:
-        self.path = Path(path)
-        make_directory(self.path.parent)
-        self._places: dict[str, int] = {}
-        try:
-            self._file = os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
-            os.ftruncate(self._file, self._read())
-        except OSError as error:
-            raise InputError(f"{self.path}: cannot be written: {reason_of(error)}") from error
-
-    def __enter__(self) -> Rows:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        os.close(self._file)
-
-    def __contains__(self, digest: str) -> bool:
-        return digest in self._places
-
-    def __len__(self) -> int:
-        return len(self._places)
-
-    def append(self, rows: Sequence[Row]) -> None:
-        """Write rows down; where there is no room for all, those that fit, and an InputError."""
-        lines = [json.dumps(row).encode() + b"\n" for row in rows]
-        content, written = b"".join(lines), 0
-        try:
-            while written < len(content):
-                written += os.write(self._file, content[written:])
-        except OSError as error:
-            raise InputError(f"{self.path}: cannot be written: {reason_of(error)}") from error
-        finally:  # the file itself says where they are: another run of the study may have written in between
-            end = os.lseek(self._file, 0, os.SEEK_CUR)
-            place = end - written
-            for row, line in zip(rows, lines, strict=True):
-                if place + len(line) > end:
-                    os.ftruncate(self._file, place)
-                    break
-                self._places[row["digest"]] = place
-                place += len(line)
-
-    def of(self, digests: Iterable[str]) -> Iterator[Row]:
-        """Rows in the order asked for, read one by one."""
-        with open(self.path, "rb") as file:
-            for digest in digests:
-                file.seek(self._places[digest])
-                yield json.loads(file.readline())
-
-    def _read(self) -> int:
-        """Find the rows of the file; bytes up to the end of its last whole line."""
-        place = 0
-        with open(self.path, "rb") as file:
-            for line in file:
-                if not line.endswith(b"\n"):
-                    break
-                with suppress(ValueError):  # a damaged line costs its own variant, no other
-                    row = json.loads(line)
-                    if isinstance(row, dict) and set(row) >= PARTS_OF_A_ROW:
-                        self._places[row["digest"]] = place
-                place += len(line)
-        return place
 
 
 def dataset_of(study: Study, rows: Iterable[Row], attributes: dict[str, Any]) -> xarray.Dataset:

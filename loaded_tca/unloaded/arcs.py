@@ -1,4 +1,4 @@
-"""Points of the pinion flank beside rounded edges: which arcs they lie on, and where on these a contact is likely."""
+"""Points beside the edges of both flanks: how far from them, on which arcs, and where on these a contact is likely."""
 
 from __future__ import annotations
 
@@ -15,6 +15,14 @@ ALIKE = 0.7
 
 FLATTEST = 0.1
 """Ratio of singular values below which two edges that are left count as one."""
+
+
+def edge_distances(pair: GearPair, points: Array) -> Array:
+    """Distances (..., 8) [mm] of points (..., 3) of the fixed frame to the edges of both flanks, negative beyond."""
+    radius, _, axial = pair.to_wheel(points)
+    pinion = pair.pinion.flank.edges(np.hypot(points[..., 0], points[..., 1]), points[..., 2])
+    edges = [*pinion, *pair.wheel.flank.edges(radius, axial)]
+    return np.stack([np.broadcast_to(edge.value, points.shape[:-1]) for edge in edges], axis=-1)
 
 
 def past_tangents(station: Station) -> Array:

@@ -201,6 +201,30 @@ def test_contact_that_ends_before_the_arc_has_no_peak():
     assert math.isnan(found(pair, one, [beyond]).error)
 
 
+@pytest.mark.parametrize(("rounding", "sharp"), [(EdgeRounding(tip=0.2), True), (BOTH, False)])
+def test_tip_between_sharp_face_ends_has_no_bound(rounding, sharp):
+    """Nor has it where the bound of the tip alone is too low: it is looked at whatever other contacts have."""
+    pair, one = loaded(rounding, pitches=0.8, pinion=NONE)
+    tips = [edge for edge in reached_edges(pair, one) if abs(edge.lines[0].direction[0]) > 0.5]
+    assert [edge.ends_sharp for edge in tips] == [sharp]
+    assert (tips[0].limit == math.inf) == sharp
+    if sharp:
+        peak = pressure_at_rounded_edge(pair, one, tips, None, 0, free_edges=False, at_least=1e6)
+        assert peak == found(pair, one, tips)
+        assert (peak.error, peak.ends_sharp) == (math.inf, True)
+
+
+def test_edges_that_cross_are_solved_together_whatever_one_of_them_can_come_to():
+    """Alone, on columns of its own, an edge beside a crossing has another pressure."""
+    pair, one = loaded(**SKEW)
+    edges = reached_edges(pair, one)
+    peak = found(pair, one, edges)
+    low = [edges[0], *(edge._replace(bound=1.0) for edge in edges[1:])]  # MPa, next to nothing
+    again = pressure_at_rounded_edge(pair, one, low, None, 0, free_edges=False, at_least=0.99 * peak.pressure)
+    assert_allclose(again.pressure, peak.pressure, rtol=1e-9)
+    assert again.error == peak.error
+
+
 def test_bound_is_that_of_a_narrow_rounding_on_coarse_cells():
     """Of a flat punch, whose pressure beside a sharp end is P/(pi sqrt(2 a s)); 1.80 is the limit of small radii."""
     punch = RoundedPunch(0.1, 0.02, 0.1005, 113187.0)

@@ -5,6 +5,7 @@ import warnings
 from functools import cache
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.analysis import analyse
@@ -98,6 +99,7 @@ def test_rounded_tip_between_sharp_face_ends_is_told_to_have_no_limit():
     tips = rounded(0.2, [key for key in EDGES if "tip" in key])
     line, told = analysed("fzg_c14", tips, load_sharing=True)
     assert line.edge_pressure_error[0][line.edge_contact(0)] == np.inf
+    assert not line.edge_is_rounded[0][line.edge_contact(0)]
     assert any("above 3%, without a limit" in one for one in told)
     assert re.search(r"^  estimated error \[%\] +inf$", line.summary(), re.MULTILINE)
     crowned, told = analysed("fzg_c14", (*tips, ("pinion.modifications.lead_crowning_um", 8.0)), load_sharing=True)
@@ -139,6 +141,57 @@ def test_the_largest_edge_pressure_is_the_same_whether_all_are_asked_for():
     # exact, also below: the same contact, alone or in a stack
     assert_array_equal(largest.edge_pressure[found], every.edge_pressure[found])
     assert np.nanmax(largest.edge_pressure) == np.nanmax(every.edge_pressure)
+
+
+SOFT = (("pinion.material.youngs_modulus_MPa", 3000.0), ("pinion.material.poisson_ratio", 0.4))
+"""A pinion whose contacts are so wide that they reach roundings, their crossings, and roots, which are sharp."""
+OF_EDGES = ("edge_pressure", "edge_pressure_error", "edge_is_rounded")
+
+
+def softly(kind, which, positions, cells=(16, 24)):
+    """A helical pair whose edges of a kind are rounded, and what is told of the pressure there."""
+    radii = rounded(0.2, [key for key in EDGES if kind in key])
+    changes = {"load_sharing": True, "positions": positions, "cells": cells, "edge_pressures": which}
+    cycle, told = analysed("helical", (*radii, *SOFT), **changes)
+    return cycle, {one.split(" (at ")[0] for one in told if "at a rounded edge" in one}
+
+
+@pytest.mark.parametrize(("kind", "positions"), [("tip", 3), ("side", 3)])
+def test_largest_edge_pressure_and_its_warnings_do_not_depend_on_whether_all_are_asked_for(kind, positions):
+    """Neither where a rounded edge ends at a sharp one nor where a sharp one is reached, too, whose cell has less."""
+    (largest, told), (every, told_of_all) = (softly(kind, which, positions) for which in ("largest", "all"))
+    assert told == told_of_all
+    assert any("without a limit" in one for one in told)
+    found = ~np.isnan(largest.edge_pressure)
+    for name in OF_EDGES:
+        # exact: the same contact, alone or in a stack
+        assert_array_equal(getattr(largest, name)[found], getattr(every, name)[found])
+    assert np.nanmax(largest.edge_pressure) == np.nanmax(every.edge_pressure)
+    assert largest.edge_contact(0) == every.edge_contact(0)
+
+
+def test_pressures_at_rounded_edges_are_the_same_a_pitch_later():
+    """Pair 0 at the first position is in the place of pair 1 at the last one."""
+    cycle, _ = softly("", "largest", 2, cells=(16, 16))
+    pairs = cycle.dataset["pair"].values.tolist()
+    first = [pairs.index(pair) for pair in pairs if pair + 1 in pairs]
+    last = [pairs.index(pairs[column] + 1) for column in first]
+    pressure, error, is_rounded = (
+        (getattr(cycle, name)[0, 0, first], getattr(cycle, name)[0, -1, last]) for name in OF_EDGES
+    )
+    assert np.isfinite(pressure[0]).any()
+    assert_array_equal(*map(np.isnan, pressure))
+    assert (np.nan_to_num(abs(pressure[1] - pressure[0])) <= np.nan_to_num(sum(error) * pressure[0])).all()
+    assert_array_equal(*is_rounded)
+
+
+def test_corner_of_a_rounded_and_a_sharp_edge_is_sharp():
+    """Rounded face ends over sharp roots: with no limit where both are pressed."""
+    cycle, _ = softly("side", "all", 2)
+    corner = cycle.edge_pressure_error == np.inf
+    assert corner.any()
+    assert not cycle.edge_is_rounded[corner].any()
+    assert cycle.edge_is_rounded[cycle.edge_pressure_error < 1.0].all()
 
 
 def test_slice_pressure_sees_the_curvature_of_the_sharp_flank():

@@ -19,9 +19,9 @@ import pytest
 from distributed import Client
 from numpy.testing import assert_array_equal
 
-from loaded_tca.errors import ExecutorError, InputError
+from loaded_tca.errors import DamageWarning, ExecutorError, InputError
 from loaded_tca.studies import process_pool, run_study
-from loaded_tca.studies.store import Rows
+from loaded_tca.studies.rows import Rows, line_of
 from tests.samples.figures import asked, endless, killing, lines
 from tests.samples.studies import in_folder
 
@@ -194,7 +194,7 @@ def test_rows_of_a_batch_that_fit_stay(tmp_path, monkeypatch):
     rows = [
         {"digest": str(n), "status": "ok", "reason": "", "warnings": [], "seconds": 0.0, "figures": {}} for n in "abc"
     ]
-    written, size = os.write, len(json.dumps(rows[0])) + 1
+    written, size = os.write, len(line_of(rows[0]))
 
     def write(file, content, room=[2 * size + 10]):  # noqa: B006  (what is left of it)
         if room[0] == 0:
@@ -219,7 +219,8 @@ def test_damaged_row_costs_its_own_variant(tmp_path):
     rows = tmp_path / "study.rows.jsonl"
     first, second, third = rows.read_bytes().splitlines(keepends=True)
     rows.write_bytes(first + b"\0" + second[1:] + b'{"digest": "half"}\n' + third)
-    found = run_study(study, None, out, figures=asked)
+    with pytest.warns(DamageWarning, match=r"study\.rows\.jsonl: rows that cannot be used, .*: row 2: .*; row 3: "):
+        found = run_study(study, None, out, figures=asked)
     assert_array_equal(found["crowning_um"][:, 0], [1.0, 2.0, 3.0])
     assert calls_in(tmp_path) == [1.0, 2.0, 2.0, 3.0]
 
