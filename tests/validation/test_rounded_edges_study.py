@@ -32,9 +32,7 @@ def test_pressure_at_a_sharp_corner_has_no_estimate_and_grows_with_the_rows():
     ("name", "change"), [("above its estimate", {"error": 1e-4}), ("without an estimate", {"error": math.inf})]
 )
 def test_rows_fail_for_estimates_that_are_too_small_or_missing(monkeypatch, name, change):
-    contacts = [
-        dataclasses.replace(one, found=dataclasses.replace(one.found, **change)) for one in refined(SPUR_TIP)
-    ]
+    contacts = [dataclasses.replace(one, found=dataclasses.replace(one.found, **change)) for one in refined(SPUR_TIP)]
     monkeypatch.setattr(rounded_edges, "CASES", (SPUR_TIP,))
     monkeypatch.setattr(rounded_edges, "refined", lambda _: contacts)
     monkeypatch.setattr(rounded_edges, "row_of_corner", lambda: None)
