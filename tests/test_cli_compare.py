@@ -3,6 +3,7 @@ from pathlib import Path
 
 import pytest
 
+from loaded_tca import plots
 from tests.samples.results import changed_scene, result
 
 FILES = {"comparison.csv", "comparison.json", "comparison.png", "compared_maps.png"}
@@ -98,7 +99,16 @@ def test_place_that_cannot_be_written_is_told_before_anything_is_read(refused):
     assert "is a file; give a directory" in refused("compare", "absent", "other", "--out", "out")
 
 
-def test_plot_draws_more_pictures_on_request(run):
+def test_plot_draws_more_pictures_on_request(run, monkeypatch):
+    """These alone: the others are drawn without the request, too."""
+    figures = plots.result_figures
+    monkeypatch.setattr(
+        plots,
+        "result_figures",
+        lambda *given, **options: {
+            name: figure for name, figure in figures(*given, **options).items() if name in plots.MORE_PICTURES
+        },
+    )
     saved("a")
     assert run("plot", "a", "--all")[0] == 0
     assert {"contact_patterns.png", "full_mesh.png"} <= {path.name for path in Path("a").iterdir()}

@@ -52,7 +52,8 @@ def test_contact_solver_loads_no_gears(package):
     below = {"loaded_tca", *(f"loaded_tca.{module}" for module in ("lazy", "arrays", "errors", "threads"))}
     assert own(loaded) <= below | {name for name in loaded if name.startswith("loaded_tca.contact")}
     assert not {"loaded_tca.contact.subsurface", "loaded_tca.contact.adaptive"} & loaded
-    assert not {"scipy.optimize", "scipy.sparse", "matplotlib", "xarray", "skfem"} & loaded
+    transforms = modules_after("import scipy.fft")  # SciPy 1.16 loads scipy.sparse with it, 1.17 does not
+    assert not {"scipy.linalg", "scipy.optimize", "scipy.sparse", "matplotlib", "xarray", "skfem"} & loaded - transforms
 
 
 def test_reading_a_scene_loads_no_analysis():

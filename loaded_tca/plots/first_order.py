@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from scipy.stats import norm
 
 from loaded_tca.errors import require
 from loaded_tca.plots import style
@@ -53,6 +52,8 @@ def plot_first_order_scatter(found: Sensitivities, study: xarray.Dataset, torque
     InputError
         If the result has no such torque, or the study varies another key, or has other torques, or none of the figures.
     """
+    from scipy.stats import norm  # half a second, which other pictures do not need
+
     result, keys = found.result, varied_keys(study)
     torque = chosen_torque(result, torque)
     torques = figure_values(study, TORQUE)

@@ -417,6 +417,7 @@ def test_pictures_of_factors_under_scatter_show_both():
     assert names(study) == ["lines_peak_pressure_MPa", "histogram_peak_pressure_MPa", "ranking"]
 
 
+@pytest.mark.usefixtures("blank_pictures")
 def test_table_of_repeated_values_is_a_grid_and_of_others_a_cloud(rng):
     study = grid()
     for key in study.coords:

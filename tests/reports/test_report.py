@@ -15,7 +15,7 @@ import xarray
 
 from loaded_tca import analyse, cli, load_result, read_scene
 from loaded_tca.errors import AccuracyWarning, InputError
-from loaded_tca.plots import plot_transmission_error
+from loaded_tca.plots import plot_pressure_map, plot_transmission_error
 from loaded_tca.plots.labels import label_of
 from loaded_tca.reports import page as report_page
 from loaded_tca.reports import result_page, write_html_report
@@ -373,9 +373,16 @@ def test_text_of_a_scene_stays_text(written):
     assert title in page.words
 
 
-def test_report_of_the_same_result_is_the_same_file_but_for_its_date(path, tmp_path):
-    again = write_html_report(cycle(), tmp_path / "again.html", date="2027-01-01")
-    first, second = (one.read_text(encoding="utf-8") for one in (path, again))
+def test_report_of_the_same_result_is_the_same_file_but_for_its_date(tmp_path, monkeypatch):
+    """Each time it is drawn anew: of its pictures one of curves, and one with an image."""
+    few = {"transmission_error": plot_transmission_error, "pressure_map": plot_pressure_map}
+    monkeypatch.setattr(
+        result_page, "result_figures", lambda result, **_: {name: plot(result) for name, plot in few.items()}
+    )
+    first, second = (
+        write_html_report(cycle(), tmp_path / "report.html", date=date).read_text(encoding="utf-8")
+        for date in (WHEN, "2027-01-01")
+    )
     assert first != second
     assert first.replace("2026-03-04 05:06 UTC", "X") == second.replace("2027-01-01 00:00", "X")
 

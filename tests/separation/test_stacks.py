@@ -3,6 +3,7 @@
 import math
 import warnings
 from dataclasses import fields, replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -35,12 +36,16 @@ PAIRS = {
 }
 
 
-def contacts_of(pair):
-    """New contact points at every call, so that nothing is kept of earlier ones."""
+@cache
+def traced(pair):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)  # edge contacts are wanted here
-        path = trace_contact(pair, [turn * pair.pitch for turn in TURNS])
-    return [path[row] for row in range(len(path))]
+        return trace_contact(pair, [turn * pair.pitch for turn in TURNS])
+
+
+def contacts_of(pair):
+    """New contact points at every call, so that nothing is kept of earlier ones."""
+    return [traced(pair)[row] for row in range(len(TURNS))]
 
 
 def requests(pair):

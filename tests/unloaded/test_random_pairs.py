@@ -1,6 +1,6 @@
 """Random external pairs, far beyond the usual: every position is a certified contact or an error that says why.
 
-200 pairs here; 2000 with HYPOTHESIS_PROFILE=nightly.
+60 pairs here; 2000 with HYPOTHESIS_PROFILE=nightly.
 """
 
 import math
@@ -16,7 +16,7 @@ from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.unloaded import trace_contact
 from tests.samples.gear_pairs import TURNS, assert_certified_or_refused, reliefs
 
-PAIRS = 2000 if os.environ.get("HYPOTHESIS_PROFILE") == "nightly" else 200
+PAIRS = 2000 if os.environ.get("HYPOTHESIS_PROFILE") == "nightly" else 60
 
 
 @st.composite

@@ -176,7 +176,7 @@ def test_contact_ratio_of_parabolas_follows_from_their_coefficient():
 
 
 @given(pairs(), st.sampled_from([0.0, 1e-6, 1e-3, 2e-2]))
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=3, deadline=None)
 def test_contact_ratio_is_never_below_one_and_does_not_depend_on_the_positions(pair, tolerance):
     ratios = [trace_teeth(pair, angles).contact_ratio(tolerance) for angles in ([0.0], pitch(pair, 3, -0.3))]
     assert ratios[0] == ratios[1] >= 1.0
@@ -344,7 +344,7 @@ CASES = [
 @pytest.mark.parametrize("case", CASES)
 def test_peak_to_peak_does_not_depend_on_the_positions(case, driving):
     pair = gear_pair(driving=driving, **case)
-    found = [trace_teeth(pair, pitch(pair, count)).peak_to_peak for count in (2, 5, 21, 200)]
+    found = [trace_teeth(pair, pitch(pair, count)).peak_to_peak for count in (2, 5, 36)]
     assert_allclose(found, found[0], rtol=1e-9)
 
 

@@ -100,7 +100,9 @@ def helical(cells: int) -> MeshCycle:
 
 
 @cache
-def misaligned(misalignment_um: float, cells: int, compliance: str = "contact+tooth") -> MeshCycle:
+def misaligned(
+    misalignment_um: float, cells: int, compliance: str = "contact+tooth", positions: int = POSITIONS
+) -> MeshCycle:
     """The helical pair 23/81 without modifications out of line, 250 N m."""
     gears: dict[str, Any] = {
         "pair.normal_module_mm": 2.5,
@@ -113,7 +115,7 @@ def misaligned(misalignment_um: float, cells: int, compliance: str = "contact+to
     scene = read_scene(SCENES / "helical.toml").with_changes(
         gears | {"mounting.misalignment_um": misalignment_um, "analysis.accuracy": None}
     )
-    return solved(scene, **{**TODAY, "compliance": compliance}, positions=POSITIONS, cells=(cells, cells))
+    return solved(scene, **{**TODAY, "compliance": compliance}, positions=positions, cells=(cells, cells))
 
 
 def in_boxes(name: str, torque_Nm: float, pitches: float, free_edges: bool = True) -> Array:
@@ -250,8 +252,9 @@ def load_factor_rows() -> Iterator[Row]:
     yield _row_of_standard()
 
 
-def _row_of_standard() -> Row:
-    ends = [misaligned(um, GRIDS[0]).face_load_factor[0] for um in (MISALIGNMENTS[0], MISALIGNMENTS[-1])]
+def _row_of_standard(positions: int = POSITIONS) -> Row:
+    loaded = (misaligned(um, GRIDS[0], positions=positions) for um in (MISALIGNMENTS[0], MISALIGNMENTS[-1]))
+    ends = [float(one.face_load_factor[0]) for one in loaded]
     quantity = "K_Hbeta of 23/81, mean of 16 um out of line to either side"
     standard = standard_face_load_factor(MISALIGNMENTS[-1])
     return Row(CASE, "ISO 6336-1, c_gamma_beta", quantity, standard, float(np.mean(ends)), OF_STANDARD)
@@ -278,8 +281,8 @@ def rows() -> list[Row]:
 
 
 def short_rows() -> list[Row]:
-    """Load factor far out of line, contact deformation over the box of one contact."""
-    return [_row_of_standard(), _row_of_boxes(("misaligned", 130.0, 0.0))]
+    """Load factor far out of line at few positions, contact deformation over the box of one contact."""
+    return [_row_of_standard(5), _row_of_boxes(("misaligned", 130.0, 0.0))]
 
 
 def _row_of_boxes(contact: tuple[str, float, float]) -> Row:

@@ -146,7 +146,12 @@ def of_the_pair(changes: dict[str, object]) -> Uneven:
 
 def rows() -> list[Row]:
     """Ratios and factors of all loads."""
-    found = list(rows_of_pairs())
+    return [*rows_of_pairs(), *short_rows()]
+
+
+def short_rows() -> list[Row]:
+    """Those with a verdict: ratios and factors under the kept line loads."""
+    found: list[Row] = []
     for name, one in (("crowned", of_the_crowned_pair()), ("misaligned", of_a_misaligned_pair())):
         if one is not None:
             found += rows_of(name, one)
