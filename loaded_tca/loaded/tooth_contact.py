@@ -104,8 +104,20 @@ class LoadedContact:
 
     @property
     def is_rough(self) -> bool:
-        """Whether its largest cell is no mesh-independent peak: at an edge or a relief start."""
-        return self.at_edge or self.at_relief_start
+        """Whether its largest cell is no mesh-independent peak: at an edge or a relief start.
+
+        Also where the contact is told to end of itself within the last cell, but has its peak there: which of both a
+        grid tells is a matter of its cells.
+        """
+        return self.at_edge or self.at_relief_start or self._peaks_beside_end
+
+    @cached_property
+    def _peaks_beside_end(self) -> bool:
+        """Whether the cell of the largest pressure lies beside the end of the material."""
+        pressure = self.solution.pressure_on_material
+        across, along = np.unravel_index(int(pressure.argmax()), pressure.shape)
+        beside = tuple(slice(max(0, k - 1), k + 2) for k in (across, along))
+        return bool(pressure[across, along] > 0.0 and np.isinf(self.separation.gap[beside]).any())
 
     @property
     def peak_error(self) -> float:

@@ -46,9 +46,10 @@ EXPLANATIONS = (
         '`tip_relief_form = "parabolic"`, or read `peak_pressure`, not the cells of the map',
     ),
     Explanation(
-        "the estimated error stays above the accuracy",
-        "the finest grid allowed is too coarse for the accuracy asked for",
-        "a larger `accuracy`, or `cells`",
+        "the estimated error of the peak pressure stays above",
+        "the finest grid allowed is too coarse for the accuracy asked for; at edges and relief starts, where grids are "
+        "refined until the approach agrees, the largest line load still moves by more than that",
+        "a larger `accuracy`, or `cells`; at edges a smaller `accuracy`",
     ),
     Explanation(
         "the contact reaches the box of its grid",

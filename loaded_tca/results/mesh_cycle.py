@@ -64,7 +64,11 @@ QUANTITIES: dict[str, Part] = {
     "edge_pressure_error": (PAIRS, "1", "estimated relative error of the pressure at a rounded edge by its columns"),
     "edge_radius": (PAIRS, "mm", "radius on the pinion of the edge pressure"),
     "edge_axial": (PAIRS, "mm", "axial coordinate on the pinion of the edge pressure"),
-    "central_pressure": (PAIRS, "MPa", "contact pressure beside the unloaded contact point"),
+    "central_pressure": (
+        PAIRS,
+        "MPa",
+        "contact pressure beside the unloaded contact point, mesh-dependent where that is on a sharp edge",
+    ),
     "peak_radius": (PAIRS, "mm", "radius on the pinion of the peak pressure"),
     "peak_axial": (PAIRS, "mm", "axial coordinate on the pinion of the peak pressure"),
     "hertz_pressure": (

@@ -1,10 +1,15 @@
 """The choice of the grid: errors kept, no finer than needed, borders, and every refusal."""
 
+import math
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.contact import ContactProblem, solve_problem, solve_to_accuracy
+from loaded_tca.contact.adaptive import refinement
+from loaded_tca.contact.solution import CoarserGrid, ErrorEstimate
 from loaded_tca.errors import AccuracyWarning
 from loaded_tca.reference import hertz
 from tests.refusals import refusals
@@ -102,3 +107,39 @@ def test_first_grid_of_any_number_of_cells_leads_to_the_same_answer(first_cells)
     sample, contact = paraboloid((0.1, 0.1))
     solution = solve_to_accuracy(sample, accuracy=1e-3, first_cells=first_cells)
     assert_allclose(solution.peak_pressure, contact.max_pressure, rtol=1e-3)
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What refinement reads of a solution: whether an edge ends the contact, and the errors of peak and approach."""
+
+    bounded: bool
+    error_estimate: ErrorEstimate
+    pressure: np.ndarray
+    approach: float = 1.0
+    coarser: CoarserGrid | None = None
+
+
+@pytest.mark.parametrize(
+    ("ended", "peak_errors", "grids"),
+    [
+        ((True, True), (math.nan, 0.5), 2),  # the approach alone, as long as two grids have an end
+        ((True, False, False), (math.nan, 0.5, 0.001), 3),  # a coarse grid alone had one
+        ((False, True, True), (math.nan, 0.5, 0.5), 3),  # the coarse one had none
+        ((False, False, False), (math.nan, 0.5, 0.001), 3),
+    ],
+)
+def test_edge_ends_a_contact_where_two_grids_agree_that_it_does(ended, peak_errors, grids):
+    solved = []
+
+    def solve(cells, _tolerance, _start):
+        number = len(solved)
+        estimate = ErrorEstimate(peak_errors[number], 1e-4 if number else math.nan)
+        solved.append(Solution(ended[number], estimate, np.ones(cells)))
+        return solved[-1]
+        yield
+
+    with pytest.raises(StopIteration) as end:
+        next(refinement(solve, 1e-2, 1e-6, lambda _: True, (16, 16), None))
+    assert len(solved) == grids
+    assert end.value.value[0].pressure.shape == (16 * 2 ** (grids - 1),) * 2

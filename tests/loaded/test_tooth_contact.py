@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca import AccuracyWarning, InputError, trace_contact
+from loaded_tca.contact.patch import widths
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.loaded.together import found_alone
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
@@ -316,3 +317,37 @@ def test_slices_without_pressure_have_the_place_of_those_beside_them():
         rtol=ROUNDING,
     )
     assert separation.loaded_by(np.zeros(pressure.shape)) is separation
+
+
+def test_peak_beside_the_end_of_the_material_is_that_of_slices():
+    """Whether a contact ends of itself within its last cell, a grid may tell wrongly; where its peak is, it cannot."""
+    loaded = solved(sam_paper(), 2700.0)
+    assert not loaded.is_rough
+    across, along = np.unravel_index(loaded.solution.pressure.argmax(), loaded.solution.pressure.shape)
+    gap = loaded.separation.gap.copy()
+    gap[across + 1 :] = math.inf
+    assert replace(loaded, separation=replace(loaded.separation, gap=gap)).is_rough
+    gap = np.where(np.arange(gap.shape[1]) > along + 2, math.inf, loaded.separation.gap)
+    assert not replace(loaded, separation=replace(loaded.separation, gap=gap)).is_rough
+
+
+def test_peak_error_is_that_of_the_peak_or_of_the_line_load():
+    smooth = solved(sam_paper(), 2700.0, grid=GridChoice(accuracy=1e-2))
+    assert smooth.peak_error == smooth.solution.error_estimate.peak_pressure
+    rough = solved(gear_pair(), 2700.0, grid=GridChoice(accuracy=1e-2))
+    assert rough.is_rough
+    assert replace(rough, line_load_error=0.5).peak_error == 0.5
+    least = replace(rough, line_load_error=0.0).peak_error
+    assert 0.0 < least < 0.02
+    assert np.isnan(replace(rough, line_load_error=math.nan).peak_error)
+
+
+def test_width_of_a_contact_that_leaves_the_axis_of_its_grid_is_that_of_its_slices():
+    loaded = solved(gear_pair(), 2700.0)
+    assert loaded.at_edge
+    pressure, cells = loaded.solution.pressure, np.arange(loaded.solution.pressure.shape[1])
+    wide = np.pad(pressure, ((0, len(cells)), (0, 0)))
+    askew = np.stack([np.roll(column, shift) for column, shift in zip(wide.T, cells // 2, strict=True)], axis=1)
+    straight = float(widths(pressure, np.ones(pressure.shape)).max())
+    assert_allclose(widths(askew, np.ones(askew.shape)).max(), straight, rtol=0.02)  # ends move within their cells
+    assert_allclose(straight * loaded.separation.spacing[0], loaded.extent[0], rtol=0.02)

@@ -123,7 +123,8 @@ def in_boxes(name: str, torque_Nm: float, pitches: float, free_edges: bool = Tru
     pair, found = read_scene(SCENES / f"{name}.toml").pair(), []
     contact = trace_contact(pair, [pitches * pair.pitch], warn=False)[0]
     load = 1e3 * torque_Nm / contact.pinion_lever
-    across, along = sample_separation(pair, contact, cells=(CELLS, CELLS), load=load).box.half_lengths
+    fitting = sample_separation(pair, contact, cells=(CELLS, CELLS), load=load).box
+    across, along = (half + abs(place) for half, place in zip(fitting.half_lengths, fitting.middle, strict=True))
     for factor in BOXES:
         box, count = (factor * across, factor * along), round(factor * CELLS)
         grid = sample_separation(pair, contact, cells=(count, count), box=box)
