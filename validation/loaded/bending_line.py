@@ -7,7 +7,8 @@ error had a step of 0.43 um between two positions, and a peak to peak of 1.18 um
 Expected are the numbers of an independent repetition of the whole analysis, in which the lines of the forces were taken
 from the pressure of the run before until nothing moved (64 x 64 cells, 25 positions): it shares the contact solver and
 the finite elements with the package, not the way in which the lines enter the balance. The
-tolerances are twice what 32 cells instead of 64 change in it.
+tolerances are twice what 32 cells instead of 64 change in it, 2.7 % of the largest step. On 48 x 160 and on 64 x 256 cells the peak to peak is
+0.857 um and the largest step 0.137 um.
 """
 
 import warnings
@@ -22,15 +23,16 @@ CASE, SOURCE = "forces at the centres of pressure", "whole analyses repeated on 
 SCENE = Path(__file__).with_name("ev_stage.toml")
 PEAK_TO_PEAK, LARGEST_STEP, ORDERS = 0.855, 0.136, (0.431, 0.048, 0.004)
 """Of the transmission error at the base radius of the wheel [um]."""
-FINE, COARSE = (64, 64), (32, 32)
+FINE, COARSE = (64, 128), (32, 64)
+"""As defaults have them where edges cut a contact, twice as many along: the lines of pressure end askew."""
 
 
 def rows() -> list[Row]:
-    """Rows on 64 x 64 and on 32 x 32 cells."""
-    return [*_rows(FINE, 0.02, 0.002), *_rows(COARSE, 0.03, 0.01)]
+    """Rows on fine and on coarse cells."""
+    return [*_rows(FINE, 0.02, 0.02, 0.002), *_rows(COARSE, 0.03, 0.055, 0.01)]
 
 
-def _rows(cells: tuple[int, int], tolerance: float, of_orders: float) -> list[Row]:
+def _rows(cells: tuple[int, int], tolerance: float, of_step: float, of_orders: float) -> list[Row]:
     scene = read_scene(SCENE).with_changes({"analysis.cells": list(cells)})
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)
@@ -40,7 +42,7 @@ def _rows(cells: tuple[int, int], tolerance: float, of_orders: float) -> list[Ro
     grid, step = f"{cells[0]} x {cells[1]} cells", float(abs(np.diff(error)).max())
     rows = [
         Row(CASE, SOURCE, f"peak to peak of TE, {grid} [um]", PEAK_TO_PEAK, float(np.ptp(error)), tolerance),
-        Row(CASE, SOURCE, f"largest step of TE, {grid} [um]", LARGEST_STEP, step, tolerance),
+        Row(CASE, SOURCE, f"largest step of TE, {grid} [um]", LARGEST_STEP, step, of_step),
     ]
     for order, (expected, amplitude) in enumerate(zip(ORDERS, amplitudes.tolist(), strict=True), 1):
         name = f"order {order} of TE, {grid}: beyond the expected one [um]"
