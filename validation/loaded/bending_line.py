@@ -7,8 +7,8 @@ error had a step of 0.43 um between two positions, and a peak to peak of 1.18 um
 Expected are the numbers of an independent repetition of the whole analysis, in which the lines of the forces were taken
 from the pressure of the run before until nothing moved (64 x 64 cells, 25 positions): it shares the contact solver and
 the finite elements with the package, not the way in which the lines enter the balance. The
-tolerances are twice what 32 cells instead of 64 change in it, 2.7 % of the largest step. On 48 x 160 and on 64 x 256 cells the peak to peak is
-0.857 um and the largest step 0.137 um.
+tolerances are twice what 32 cells instead of 64 change in it, 2.7 % of the largest step. On 48 x 160 and on 64 x 256
+cells the peak to peak is 0.857 um and the largest step 0.137 um.
 """
 
 import warnings
