@@ -31,6 +31,7 @@ class Fault(NamedTuple):
 
 
 ROWS = "studies/test_rows.py::test_malformed_row_costs_its_own_variant_and_no_other"
+BOXES = "separation/test_box.py"
 FREE_EDGES, ROUNDED = "loaded/test_free_edges.py", "loaded/test_rounded_edges.py"
 UNITS = "output/test_units.py::test_every_number_is_an_attribute_times_its_factor"
 FAULTS = (
@@ -54,6 +55,47 @@ FAULTS = (
         "np.hypot(grid.y[:, None] - grid.y, grid.force_line[:, None] - grid.force_line)",
         "np.abs(grid.y[:, None] - grid.y)",
         "compliance/test_compliance.py::test_bending_does_not_depend_on_the_axes_of_the_grid",
+    ),
+    *(
+        Fault(f"grids: {what}", file, text, wrong, test)
+        for what, file, text, wrong, test in (
+            (
+                "they lie along the curvatures of the contact point",
+                "separation/box.py",
+                "MOST_TURNS = 4",
+                "MOST_TURNS = 0",
+                f"{BOXES}::test_grid_lies_along_a_contact_that_is_askew_on_the_curvatures",
+            ),
+            (
+                "the contact point lies anywhere between the cells of a cut box",
+                "separation/box.py",
+                "(0.5 * number - below) * spacing",
+                "(0.5 * number - below + 0.3) * spacing",
+                f"{BOXES}::test_contact_point_lies_on_a_border_of_cells",
+            ),
+            (
+                "an edge that ends the contact on one of two grids ends it",
+                "contact/adaptive.py",
+                "if ended and ended_before else",
+                "if ended else",
+                "contact/test_adaptive.py::test_edge_ends_a_contact_where_two_grids_agree_that_it_does",
+            ),
+            (
+                "a peak beside the end of the material counts as smooth",
+                "loaded/tooth_contact.py",
+                " or self._peaks_beside_end",
+                "",
+                "loaded/test_tooth_contact.py::test_peak_beside_the_end_of_the_material_is_that_of_slices",
+            ),
+            (
+                "relief starts at face ends have the pinion's normal",
+                "unloaded/path.py",
+                "np.asarray(ends + 2 * ",
+                "np.asarray(ends + 0 * ",
+                "unloaded/test_path.py::"
+                "test_levers_are_continuous_where_a_contact_leaves_a_relief_start_at_a_common_face_end",
+            ),
+        )
     ),
     *(
         Fault(f"rounded edges: {what}", file, text, wrong, test)

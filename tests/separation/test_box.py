@@ -123,3 +123,14 @@ def test_box_of_a_grid_is_the_box_it_was_made_in():
     found = in_box(pair, contact, (6, 10), box).box
     assert_allclose(found.half_lengths, box.half_lengths)
     assert_allclose(found.middle, box.middle)
+
+
+@pytest.mark.parametrize("load", [100.0, 1000.0, 4000.0])
+@pytest.mark.parametrize("cells", [(16, 16), (16, 32), (24, 17)])
+def test_contact_point_lies_on_a_border_of_cells(cells, load):
+    """Or in the middle of one, if their number is odd."""
+    pair, contact, _ = short_relief()
+    separation = sample_separation(pair, contact, cells=cells, load=load)
+    for places, step, number in zip((separation.x, separation.y), separation.spacing, cells, strict=True):
+        borders = places[0] / step - 0.5 * ((number + 1) % 2)
+        assert_allclose(borders, np.round(borders), atol=1e-9)  # cells: places are sums of a hundred of them
