@@ -106,11 +106,10 @@ def balance(laws: Sequence[PowerLaw], separations: Array, levers: Array, torque:
     """
     if not (levers > 0.0).all():
         raise ConvergenceError(f"load sharing: no rotation gives a torque of {torque:.6g} N mm", last=levers)
-    given = np.array([(law.load, law.deformation, law.exponent) for law in laws]).T
     separations = separations - separations.min()
     forces, change = np.full(len(laws), torque / float(levers[0].sum())), math.inf
     for _ in range(MOST_STEPS):
-        target = _newton_step(given, separations, levers, torque, compliance, forces)
+        target = _newton_step(laws, separations, levers, torque, compliance, forces)
         before, change = change, float(np.abs(target - forces).max() / target.max())
         forces = target
         if change <= STEP_TOLERANCE or before <= change <= STALLED:
@@ -119,7 +118,7 @@ def balance(laws: Sequence[PowerLaw], separations: Array, levers: Array, torque:
 
 
 def _newton_step(
-    given: Array, separations: Array, levers: Array, torque: float, compliance: Array, forces: Array
+    laws: Sequence[PowerLaw], separations: Array, levers: Array, torque: float, compliance: Array, forces: Array
 ) -> Array:
     """Forces (k,) after one step for the pairs under load, and those that come under load or part.
 
@@ -127,27 +126,24 @@ def _newton_step(
     so that a pair parts once its force is little and the rotation that the heaviest pair asks for, less the coupling,
     does not close it: that of the step counts on forces below zero.
     """
-    load, deformation, exponent = given
-    loaded = forces.nonzero()[0]
+    loaded = np.flatnonzero(forces).tolist()
     carried, lever, wheel_lever = forces[loaded], levers[0, loaded], levers[1, loaded]
     tangent = compliance[loaded][:, loaded]
-    own = deformation[loaded] * (carried / load[loaded]) ** exponent[loaded]
-    missing = -own - tangent @ carried - wheel_lever * separations[loaded]
-    tangent.flat[:: loaded.size + 1] += exponent[loaded] * own / carried
+    pressed = np.array([laws[n].deformation_under(forces[n]) for n in loaded])
+    missing = -pressed - tangent @ carried - wheel_lever * separations[loaded]
+    tangent.flat[:: len(loaded) + 1] += np.array([laws[n].exponent for n in loaded]) * pressed / carried
     by_rotation, by_rest = np.linalg.solve(tangent, np.array([wheel_lever, missing]).T).T
     rotation = (torque - lever @ (carried + by_rest)) / (lever @ by_rotation)
     target = forces.copy()
     wanted = carried + rotation * by_rotation + by_rest
     target[loaded] = np.minimum(np.maximum(wanted, LARGEST_FALL * carried), torque / lever)
     displaced, heaviest = compliance @ target, int(target.argmax())
-    pressed = deformation[heaviest] * (target[heaviest] / load[heaviest]) ** exponent[heaviest]
-    asked = separations[heaviest] + (pressed + displaced[heaviest]) / levers[1, heaviest]
+    deflected = laws[heaviest].deformation_under(target[heaviest]) + displaced[heaviest]
+    asked = separations[heaviest] + deflected / levers[1, heaviest]
     by_others = displaced - compliance.diagonal() * target
     closed = levers[1] * (asked - separations) > by_others
     target[(target < LITTLE * target.max()) & ~closed] = 0.0
     deflection = levers[1] * (rotation - separations) - by_others
-    comes = (forces == 0.0) & (deflection > 0.0)
-    if comes.any():
-        given_force = load[comes] * (deflection[comes] / deformation[comes]) ** (1.0 / exponent[comes])
-        target[comes] = np.minimum(given_force, target.max())
+    for n in np.flatnonzero((forces == 0.0) & (deflection > 0.0)).tolist():
+        target[n] = min(laws[n].force_at(deflection[n]), target.max())
     return target

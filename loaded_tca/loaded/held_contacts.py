@@ -106,9 +106,13 @@ class HeldContact:
 
 
 def held(
-    pair: GearPair, tooth_pairs: Sequence[ToothPair], cells: tuple[int, int], boxes: Sequence[Box | tuple[float, float]]
+    pair: GearPair,
+    tooth_pairs: Sequence[ToothPair],
+    cells: tuple[int, int],
+    boxes: Sequence[Box | tuple[float, float]],
+    free_edges: bool = False,
 ) -> list[HeldContact]:
-    """Sample contacts in boxes, and meet the flanks there; ends of teeth are left out."""
+    """Sample contacts in boxes, and meet the flanks there; with the compliance of free edges where asked for."""
     contacts = [one.contact for one in tooth_pairs]
     count = len(contacts)
     separations = []
@@ -116,16 +120,19 @@ def held(
         if not isinstance(one, Separation):
             raise one
         separations.append(one)
+    ends = edge_compliances(pair, separations) if free_edges and count else [None] * count
     found, size = [], max(1, TOGETHER // math.prod(cells))
     for first in range(0, len(contacts), size):
         some = slice(first, first + size)
         axes = np.array([one.axes for one in separations[some]])
         x, y = (np.array([getattr(one, name) for one in separations[some]]) for name in ("x", "y"))
         points = NormalGap(pair, contacts[some], axes).flank_points(x[:, :, None], y[:, None])
-        for k, separation in enumerate(separations[some]):
+        for k, (separation, matrix) in enumerate(zip(separations[some], ends[some], strict=True)):
+            if isinstance(matrix, InputError):
+                raise matrix
             there = np.isfinite(separation.cut_gap)
             pinion, wheel = (MetPoints(one.rho[k][there], one.z[k][there], one.steepness[k][there]) for one in points)
-            found.append(HeldContact(tooth_pairs[first + k], separation, there, pinion, wheel, None))
+            found.append(HeldContact(tooth_pairs[first + k], separation, there, pinion, wheel, matrix))
     return found
 
 
@@ -230,10 +237,9 @@ class HeldContacts:
     def grow(self, contact: ContactPoint, box: Box) -> None:
         """Hold a contact in a larger box from now on."""
         one = self._held[contact]
-        (larger,) = held(self.pair, [one.tooth_pair], self._cells, [box])
-        grid = larger.separation
-        line = np.interp(grid.y, one.separation.y, one.separation.force_line)
-        self._held[contact] = self._on_lines([larger], [replace(grid, force_line=line)])[0]
+        (larger,) = self._in_boxes([one.tooth_pair], [box])
+        line = np.interp(larger.separation.y, one.separation.y, one.separation.force_line)
+        self._held[contact] = replace(larger, separation=replace(larger.separation, force_line=line))
         if self._slopes is not None:
             self._slopes |= self._slopes_at(self.start, [contact])
 
@@ -273,22 +279,16 @@ class HeldContacts:
             half_lengths, place = (float(half[0]), float(0.5 * (top - bottom))), 0.5 * (top + bottom)
             boxes.append(Box(half_lengths, grid.axes, (float(middle[0]), float(place))))
         # less than a cell at a corner is none
-        contacts = [one for one in held(pair, kept, self._cells, boxes) if one.there.any()]
+        contacts = [one for one in self._in_boxes(kept, boxes) if one.there.any()]
         if not contacts:
             return []
         overlaps = self._overlap(contacts, np.array([one.separation.cut_gap for one in contacts]))
-        lines = [one.separation.loaded_by(np.sqrt(part)) for one, part in zip(contacts, overlaps, strict=True)]
-        return self._on_lines(contacts, lines)
+        depths = zip(contacts, np.sqrt(overlaps), strict=True)
+        return [replace(one, separation=one.separation.loaded_by(depth, pair.module)) for one, depth in depths]
 
-    def _on_lines(self, contacts: Sequence[HeldContact], grids: Sequence[Separation]) -> list[HeldContact]:
-        """The same contacts on the same grids, whose forces act along their lines; with the ends of the teeth there."""
-        ends = edge_compliances(self.pair, grids) if self.scene.analysis.free_edges else [None] * len(grids)
-        on_lines = []
-        for contact, grid, matrix in zip(contacts, grids, ends, strict=True):
-            if isinstance(matrix, InputError):
-                raise matrix
-            on_lines.append(replace(contact, separation=grid, ends=matrix))
-        return on_lines
+    def _in_boxes(self, tooth_pairs: Sequence[ToothPair], boxes: Sequence[Box]) -> list[HeldContact]:
+        """Contacts of the pair at first, with free edges as the scene asks for."""
+        return held(self.pair, tooth_pairs, self._cells, boxes, self.scene.analysis.free_edges)
 
     def _overlap(self, probes: Sequence[HeldContact], gaps: Array) -> Array:
         """Depth (pairs, nx, ny) [mm] of cells below the edge of the contact, zero beyond it.

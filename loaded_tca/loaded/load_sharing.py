@@ -318,7 +318,7 @@ class _Balance:
                 least, most = (factor * before.solution.load for factor in SAME_BOX)
                 if least <= force <= most:
                     if self.bending is not None and not self.lines_held:
-                        before = before.bent_by(self.bending, tooth_pair.pair)
+                        before = before.bent_by(self.bending, tooth_pair.pair, self.pair.module)
                     loaded = yield from before.under(force, coupling(before.separation))
             if loaded is None or loaded.solution.reaches_border:
                 contact, number = tooth_pair.contact, tooth_pair.pair
@@ -439,7 +439,7 @@ class _Balance:
                 moved = (now - loaded.coupling_deflection)[loaded.slice_force > 0.0]
                 if np.ptp(moved) > SETTLED * allowed[index]:
                     return False
-                if not self.lines_held and loaded.line_error > LINE_ERROR * self.pair.module:
+                if not self.lines_held and loaded.line_error(self.pair.module) > LINE_ERROR * self.pair.module:
                     return False
         return True
 

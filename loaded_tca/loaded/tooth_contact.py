@@ -85,11 +85,14 @@ class LoadedContact:
         To which the solver kept the contact conditions.
     coupling_deflection : (ny,) array or None [mm]
         Displacement of the slices under the load of other tooth pairs, if there are any.
-    bending : (ny, ny) array or None [mm/N]
-        Slice compliance of the teeth, without that of free edges.
+    bending, ends : (ny, ny) array or None [mm/N]
+        Slice compliance of the teeth, and of their free edges.
     line_load_error : float
         Estimated relative error of the largest line load, averaged as of ``line_load.SliceLoads``, from the two finest
         grids; NaN where there was one.
+    judged : (float, float) or None [MPa], [N]
+        Largest pressure and load of the solution that the errors were estimated of: lines of forces and other pairs may
+        have moved the pressure since. None: it is that.
     """
 
     contact: ContactPoint
@@ -100,7 +103,9 @@ class LoadedContact:
     tolerance: float = 1e-6
     coupling_deflection: Array | None = None
     bending: Array | None = None
+    ends: Array | None = None
     line_load_error: float = math.nan
+    judged: tuple[float, float] | None = None
 
     @property
     def is_rough(self) -> bool:
@@ -123,12 +128,25 @@ class LoadedContact:
     def peak_error(self) -> float:
         """Estimated relative error of its peak, or where it is rough of the pressure of its slices, by the grid.
 
-        NaN where there was one grid alone.
+        No less than :attr:`peak_change`. NaN where there was one grid alone.
         """
         if not self.is_rough:
-            return self.solution.error_estimate.peak_pressure
+            return float(np.maximum(self.solution.error_estimate.peak_pressure, self.peak_change))
         least = LEAST_ERROR_OF_SLICES / min(self.solution.cells_across) ** 2
         return float(np.maximum(self.line_load_error, least))
+
+    @property
+    def peak_change(self) -> float:
+        """Relative change of the largest pressure since its error was estimated, beyond that of the load.
+
+        A peak grows less than its load. One that changes by more is another one than was judged: lines of forces that
+        scatter move it. None is told where it is rough: what the other pairs carry moves the load to and from an edge.
+        """
+        if self.judged is None or self.solution.load == 0.0 or self.is_rough:
+            return 0.0
+        largest, load = self.judged
+        changed = abs(math.log(float(self.solution.pressure.max()) / largest))
+        return max(0.0, math.expm1(changed - abs(math.log(self.solution.load / load))))
 
     @property
     def at_edge(self) -> bool:
@@ -250,20 +268,16 @@ class LoadedContact:
             return deflection
         return float(deflection - self.coupling_deflection @ force / force.sum())
 
-    def bent_by(self, bending: BendingModel, number: int) -> LoadedContact:
+    def bent_by(self, bending: BendingModel, number: int, module: float) -> LoadedContact:
         """Return the contact as it is, to be solved next with teeth that bend at the centres of its pressure."""
-        separation = self.separation.loaded_by(self.solution.pressure)
-        bent, compliance = bending.within(number, separation), self.solution.problem.slice_compliance
-        assert compliance is not None
-        assert self.bending is not None
-        ends = compliance - self.bending
-        problem = replace(self.solution.problem, slice_compliance=bent + ends if ends.any() else bent)
+        separation = self.separation.loaded_by(self.solution.pressure, module)
+        bent = bending.within(number, separation)
+        problem = replace(self.solution.problem, slice_compliance=bent if self.ends is None else bent + self.ends)
         return replace(self, separation=separation, bending=bent, solution=replace(self.solution, problem=problem))
 
-    @property
-    def line_error(self) -> float:
+    def line_error(self, module: float) -> float:
         """How far the forces that bend the teeth are from the centres of the pressure, the mean over the force [mm]."""
-        force, centred = self.slice_force, self.separation.loaded_by(self.solution.pressure)
+        force, centred = self.slice_force, self.separation.loaded_by(self.solution.pressure, module)
         moved = np.abs(centred.force_line - self.separation.force_line)
         return float(force @ moved / force.sum()) if force.any() else 0.0
 
@@ -408,6 +422,7 @@ class _InBox:
         self.separation = first
         self.displaced: Array | None = None
         self.bent: Array | None = None
+        self.ends: Array | None = None
         self.line_loads: list[float] = []
 
     def steps(self) -> Steps[LoadedContact]:
@@ -415,10 +430,14 @@ class _InBox:
         if self.grid.lines_held or self.load == 0.0 or loaded.solution.reaches_border:
             return loaded
         if self.bending is None:
-            return replace(loaded, separation=loaded.separation.loaded_by(loaded.solution.pressure))
-        loaded = loaded.bent_by(self.bending, self.number)
-        coupling = None if self.coupling is None else self.coupling(loaded.separation)
-        return (yield from loaded.under(self.load, coupling))
+            return replace(loaded, separation=loaded.separation.loaded_by(loaded.solution.pressure, self.pair.module))
+        bent = loaded.bent_by(self.bending, self.number, self.pair.module)
+        coupling = None if self.coupling is None else self.coupling(bent.separation)
+        bent = yield from bent.under(self.load, coupling)
+        judged = (
+            loaded if self.grid.cells is None else bent
+        )  # on cells as given the first lines are the axis of the grid
+        return replace(bent, judged=(float(judged.solution.pressure.max()), self.load))
 
     def _refined(self) -> Steps[LoadedContact]:
         """Solve with teeth that bend at the centres of the pressure on the grid before."""
@@ -443,6 +462,7 @@ class _InBox:
             tolerance=self.tolerance,
             coupling_deflection=self.displaced,
             bending=self.bent,
+            ends=self.ends,
             line_load_error=self._line_load_error(),
         )
 
@@ -452,12 +472,12 @@ class _InBox:
         if separation.gap.shape != cells:
             separation = yield Gap(self.contact, cells, box=self.first.box)
         if start is not None and not self.grid.lines_held:
-            separation = separation.loaded_by(start)
+            separation = separation.loaded_by(start, self.pair.module)
         self.separation = separation
         self.displaced = None if self.coupling is None else self.coupling(separation)
         self.bent = None if self.bending is None else self.bending.within(self.number, separation)
-        ends = (yield Ends(separation)) if self.grid.free_edges else None
-        problem = contact_problem(self.pair, separation, self.load, self.bent, ends, self.displaced)
+        self.ends = (yield Ends(separation)) if self.grid.free_edges else None
+        problem = contact_problem(self.pair, separation, self.load, self.bent, self.ends, self.displaced)
         solution: ContactSolution = yield Task(problem, tolerance, start)
         if self.load > 0.0:
             self.line_loads.append(float(SliceLoads(self.pair.module, separation, solution.pressure).line_load.max()))

@@ -53,6 +53,12 @@ EXPLANATIONS = (
         "a larger `accuracy`, or `cells`; at edges a smaller `accuracy`",
     ),
     Explanation(
+        "the peak pressure moves by more than",
+        "the forces of the slices bend the teeth otherwise than when the grid was chosen, and the peak changed by more "
+        "than its load: its error is as large",
+        "fewer `cells` along the contact, or a larger `accuracy`; compare the same position a pitch later",
+    ),
+    Explanation(
         "the contact reaches the box of its grid",
         "the grid ends before the contact does, after it was made larger eight times: the pressure at its border is "
         "that of a body ending there",

@@ -138,6 +138,8 @@ def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[st
     allowed = max(LARGE_ERROR, grid.accuracy) if loaded.is_rough else grid.accuracy
     if grid.cells is None and loaded.peak_error > allowed:
         found.append(f"the estimated error of the peak pressure stays above {allowed:g}")
+    if loaded.peak_change > LARGE_ERROR:
+        found.append(f"the peak pressure moves by more than {LARGE_ERROR:.0%} as the teeth bend beneath it")
     if solution.reaches_border:
         found.append("the contact reaches the box of its grid")
     if solution.load > 0.0 and solution.cells_across[0] < 8:
