@@ -11,6 +11,8 @@ from loaded_tca.separation import Separation, slice_middles
 
 AVERAGED_OVER = 0.25
 """Length along the contact over which a line load is averaged, over the normal module."""
+LARGE = 0.85
+"""Part of the largest line load from which on its place may be that of the largest pressure."""
 
 
 def averaged_line_load(force: Array, borders: Array, length: float) -> tuple[Array, Array]:
@@ -86,8 +88,10 @@ class SliceLoads:
         Of the slices that carry load.
     length : float [mm]
         Of the average.
+    places : (2 ny + 2,) array [mm]
+        Along the contact, middles of the stretches over which is averaged; between them the line load is linear.
     x, y : (2 ny + 2,) array [mm]
-        Where the averaged line load may be largest.
+        The same on the slices that carry load: where the averaged line load may be largest.
     line_load : (2 ny + 2,) array [N/mm]
         There.
     """
@@ -102,7 +106,14 @@ class SliceLoads:
             borders[first], borders[last + 1] = borders[first + 1] - part[first] * dy, borders[last] + part[last] * dy
         self.ends = borders[carrying[0]], borders[carrying[-1] + 1]
         self.length = min(AVERAGED_OVER * module, loaded_length(self.force, borders))
-        places, self.line_load = averaged_line_load(self.force, borders, self.length)
-        self.y = np.clip(places, *self.ends)
+        self.places, self.line_load = averaged_line_load(self.force, borders, self.length)
+        self.y = np.clip(self.places, *self.ends)
         self.x = np.interp(self.y, separation.y[carrying], middles)
         self.step = dy
+
+    def largest_change(self, other: SliceLoads) -> float:
+        """Largest change from the line load of the same contact on another grid, where this one is large, over it."""
+        places = np.union1d(self.places, other.places)
+        line_load, others = (np.interp(places, each.places, each.line_load) for each in (self, other))
+        large = line_load > LARGE * line_load.max()
+        return float(np.abs(line_load - others)[large].max() / line_load.max())
