@@ -97,7 +97,7 @@ FAULTS = (
             (
                 "estimates of slices see the largest line load alone",
                 "loaded/tooth_contact.py",
-                "max(change, 0.5 * fine.largest_change(coarse))",
+                "max(change, fine.error_of_largest(coarse))",
                 "change",
                 "loaded/test_tooth_contact.py::test_estimate_of_slices_sees_a_change_beside_the_largest_line_load",
             ),

@@ -11,8 +11,8 @@ from loaded_tca.separation import Separation, slice_middles
 
 AVERAGED_OVER = 0.25
 """Length along the contact over which a line load is averaged, over the normal module."""
-LARGE = 0.85
-"""Part of the largest line load from which on its place may be that of the largest pressure."""
+LEFT_OF_CHANGE = 0.5
+"""Error of the line load at a place over its change from a grid half as fine, where it falls with the cell."""
 
 
 def averaged_line_load(force: Array, borders: Array, length: float) -> tuple[Array, Array]:
@@ -111,9 +111,9 @@ class SliceLoads:
         self.x = np.interp(self.y, separation.y[carrying], middles)
         self.step = dy
 
-    def largest_change(self, other: SliceLoads) -> float:
-        """Largest change from the line load of the same contact on another grid, where this one is large, over it."""
-        places = np.union1d(self.places, other.places)
-        line_load, others = (np.interp(places, each.places, each.line_load) for each in (self, other))
-        large = line_load > LARGE * line_load.max()
-        return float(np.abs(line_load - others)[large].max() / line_load.max())
+    def error_of_largest(self, coarser: SliceLoads) -> float:
+        """Relative error that the largest line load may have: where two maxima compete more than its change tells."""
+        places = np.union1d(self.places, coarser.places)
+        line_load, before = (np.interp(places, each.places, each.line_load) for each in (self, coarser))
+        errors, largest = LEFT_OF_CHANGE * np.abs(line_load - before), float(line_load.max())
+        return max(float((line_load + errors).max()) / largest - 1.0, 1.0 - float((line_load - errors).max()) / largest)

@@ -458,15 +458,15 @@ class _InBox:
         return solution
 
     def _line_load_error(self) -> float:
-        """Change of the largest line load from the coarser grid, or half of the largest change where it is large.
+        """Change of the largest line load from the coarser grid, or what competing maxima leave of theirs.
 
-        Half, since a pressure grows with the root of its line load.
+        Pressures grow with the root of the line load: their error is half as large.
         """
         if len(self.line_loads) < 2:
             return math.nan
         coarse, fine = self.line_loads[-2:]
         change = abs(float(coarse.line_load.max() / fine.line_load.max()) - 1.0)
-        return max(change, 0.5 * fine.largest_change(coarse))
+        return max(change, fine.error_of_largest(coarse))
 
 
 def contact_problem(

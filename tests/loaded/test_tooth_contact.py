@@ -351,10 +351,12 @@ def test_estimate_of_slices_sees_a_change_beside_the_largest_line_load():
         grid = SimpleNamespace(x=np.arange(3.0), y=np.arange(8.0), spacing=(1.0, 1.0), cover=np.ones((3, 8)))
         return SliceLoads(4.0, grid, np.array(line_load) * np.array([[0.0], [1.0], [0.0]]))  # averaged over a slice
 
-    coarse, fine = loads([5, 10, 5, 5, 5, 9.6, 5, 5]), loads([5, 10, 5, 5, 5, 9, 5, 5])
-    solved = SimpleNamespace(line_loads=[coarse, fine])
-    assert _InBox._line_load_error(solved) == pytest.approx(0.5 * 0.06, rel=ROUNDING)
-    assert fine.largest_change(loads([3, 10, 5, 5, 5, 9, 5, 5])) == 0.0, "where it is small"
+    def error(coarse, fine):
+        return _InBox._line_load_error(SimpleNamespace(line_loads=[loads(coarse), loads(fine)]))
+
+    assert error([5, 10, 5, 5, 5, 9.2, 5, 5], [5, 10, 5, 5, 5, 9.8, 5, 5]) == pytest.approx(0.01, abs=ROUNDING)
+    assert error([5, 10, 5, 5, 5, 9.2, 5, 5], [5, 9.8, 5, 5, 5, 10, 5, 5]) == pytest.approx(0.04, abs=ROUNDING)
+    assert error([3, 10, 5, 5, 5, 9.2, 5, 5], [5, 10, 5, 5, 5, 9.2, 5, 5]) == 0.0, "where it is small"
 
 
 def test_width_of_a_contact_that_leaves_the_axis_of_its_grid_is_that_of_its_slices():
