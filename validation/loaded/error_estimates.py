@@ -60,8 +60,8 @@ def rows() -> list[Row]:
 
 
 def short_rows() -> list[Row]:
-    """The same of the first contacts of two scenes."""
-    return _rows([*islice(estimates_of(5), 2), *islice(estimates_of(0), 2), *islice(estimates_at_roundings(0), 2)])
+    """The same of the first contacts of three scenes."""
+    return _rows([*islice(estimates_of(5), 1), *islice(estimates_of(0), 1), *islice(estimates_at_roundings(0), 1)])
 
 
 def _rows(estimates: list[Estimate]) -> list[Row]:
