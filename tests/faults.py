@@ -90,9 +90,30 @@ FAULTS = (
             (
                 "an edge that ends the contact on one of two grids ends it",
                 "contact/adaptive.py",
-                "if ended and ended_before else",
-                "if ended else",
+                "if ended and ended_before:",
+                "if ended:",
                 "contact/test_adaptive.py::test_edge_ends_a_contact_where_two_grids_agree_that_it_does",
+            ),
+            (
+                "estimates of a peak leave out the change beside it",
+                "contact/solution.py",
+                "MOST_OF_CHANGE_BESIDE * beside, ",
+                "",
+                "contact/test_solution.py::test_estimate_sees_a_change_beside_a_peak_that_stays",
+            ),
+            (
+                "a ridge has its peak above its largest cell",
+                "contact/patch.py",
+                "LIKE_BENDS * bends.min() > bends.max()",
+                "bends.max() > 0.0",
+                "contact/test_patch.py::test_peak_of_other_shapes_is_their_largest_cell",
+            ),
+            (
+                "estimates of slices see the largest line load alone",
+                "loaded/tooth_contact.py",
+                "max(change, fine.error_of_largest(coarse))",
+                "change",
+                "loaded/test_tooth_contact.py::test_estimate_of_slices_sees_a_change_beside_the_largest_line_load",
             ),
             (
                 "a peak beside the end of the material counts as smooth",

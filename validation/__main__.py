@@ -19,6 +19,7 @@ from validation.cases import run_cases, times
 from validation.table import Row, moved, render
 
 CASES = (
+    "loaded.error_estimates",
     "contact.sphere",
     "cylindrical.sam_paper",
     "unloaded.reduced_tca_misalignment",
@@ -63,7 +64,6 @@ LONG = (
     "loaded.rounded_edges",
     "loaded.root_stress_families",
     "loaded.jumps",
-    "loaded.error_estimates",
     "loaded.bending_line",
     "unloaded.rounded_edges",
 )

@@ -10,9 +10,11 @@ from numpy.typing import NDArray
 from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.contact.levels import continue_outside, split, window_around
 
-# The fit is that of a quadratic if it leaves this part of the squared peak unexplained (root mean square);
-# a peak of another shape is taken from its cell.
+# The fit is that of a quadratic if it leaves this part of the squared peak unexplained (root mean square).
 GOOD_FIT = 2e-3
+# Along a line of cells the top is that of a parabola if p^2 bends at the largest cell and at those beside it alike, to
+# this factor: not on a ridge, where the curvature of the gap jumps.
+LIKE_BENDS = 2.0
 # Twice as many cells as the quadratic has coefficients.
 FEWEST = 12
 # Cells on a line, or on another conic, tell no quadratic; rounding leaves this part of the largest eigenvalue.
@@ -24,7 +26,10 @@ HALVINGS = 2
 
 
 def peak_pressure(pressure: Array) -> float:
-    """Largest pressure: the top of a quadratic through p^2 over p > p_max/2, or the largest cell where none fits."""
+    """Largest pressure: the top of a quadratic through p^2 over p > p_max/2, or of parabolas, or the largest cell.
+
+    Where no quadratic fits, parabolas along both axes run through the largest cell and those beside it.
+    """
     largest = float(pressure.max())
     if largest == 0.0:
         return 0.0
@@ -38,28 +43,63 @@ def peak_weights(pressure: Array) -> Array:
     The peak does not change with the place of the top, where its quadratic is level: its derivative by the pressures is
     w p over the peak, as long as the cells of the fit stay the same.
     """
-    largest, weights = float(pressure.max()), np.zeros(pressure.shape)
-    weights[np.unravel_index(int(pressure.argmax()), pressure.shape)] = 1.0
-    if largest == 0.0:
-        return weights
-    square, x, y, cells = _upper_part(pressure / largest)
+    largest = float(pressure.max())
+    part = pressure / largest if largest > 0.0 else pressure
+    weights = _weights_of_quadratic(part)
+    return _weights_of_parabolas(part**2) if weights is None else weights
+
+
+def top_weights(values: Array) -> Array:
+    """Weights (3,) of three values at even distances, the middle one the largest, in the top of their parabola.
+
+    They are its derivative by the values too: at its top a parabola is level.
+
+    Examples
+    --------
+    >>> top_weights(np.array([1.0, 3.0, 3.0]))
+    array([-0.125,  0.75 ,  0.375])
+    """
+    before, after = values[1] - values[0], values[1] - values[2]
+    place = 0.5 * (before - after) / (before + after) if before + after > 0.0 else 0.0
+    return np.array([0.5 * place * (place - 1.0), 1.0 - place**2, 0.5 * place * (place + 1.0)])
+
+
+def _weights_of_parabolas(square: Array) -> Array:
+    """Weights (nx, ny) of squared pressures in what parabolas along both axes add to the largest of them.
+
+    Nothing along an axis on which the top is none of a parabola.
+    """
+    weights = np.zeros(square.shape)
+    row, column = np.unravel_index(int(square.argmax()), square.shape)
+    weights[row, column] = 1.0
+    for line, own, k in ((square[:, column], weights[:, column], row), (square[row], weights[row], column)):
+        near = line[max(0, k - 2) : k + 3]
+        bends = 2.0 * near[1:-1] - near[:-2] - near[2:]
+        if k >= 2 and near.size == 5 and near.min() > 0.0 and LIKE_BENDS * bends.min() > bends.max():
+            own[k - 1 : k + 2] += top_weights(near[1:4]) - (0.0, 1.0, 0.0)
+    return weights
+
+
+def _weights_of_quadratic(pressure: Array) -> Array | None:
+    """Weights (nx, ny) of a quadratic through the squares of pressures, the largest of them 1; None if none fits."""
+    square, x, y, cells = _upper_part(pressure)
     if square.size < FEWEST:
-        return weights
+        return None
     terms = np.stack((np.ones_like(x), x, y, 0.5 * x * x, x * y, 0.5 * y * y))
     # Not by BLAS: its threads wait for each other on a busy machine.
     scales, modes = np.linalg.eigh(np.einsum("ik,jk->ij", terms, terms))
     if scales[0] <= RANK * scales[-1]:
-        return weights
+        return None
     fitted = modes @ (modes.T @ np.einsum("ik,k->i", terms, square) / scales)
     misfit = float(np.sqrt(np.mean((np.einsum("i,ik->k", fitted, terms) - square) ** 2)))
     hessian = np.array([[fitted[3], fitted[4]], [fitted[4], fitted[5]]])
     if misfit > GOOD_FIT or np.linalg.eigvalsh(hessian)[1] >= 0.0:
-        return weights
+        return None
     x_top, y_top = -np.linalg.solve(hessian, fitted[1:3])
     if max(abs(x_top), abs(y_top)) > 1.0:
-        return weights
+        return None
     at_top = np.array([1.0, x_top, y_top, 0.5 * x_top**2, x_top * y_top, 0.5 * y_top**2])
-    weights[:] = 0.0
+    weights = np.zeros(pressure.shape)
     weights[cells] = np.einsum("i,ik->k", modes @ (modes.T @ at_top / scales), terms)
     return weights
 

@@ -136,10 +136,16 @@ class EdgePressure:
     rows_on_arc: int
     solution: GradedSolution
 
-    def compared_with(self, other: EdgePressure) -> EdgePressure:
-        """Return this pressure with an error of at least its change from another solution."""
-        change = abs(self.pressure - other.pressure) / self.pressure  # NaN if one of them is not reached
-        return self if math.isnan(self.pressure) else replace(self, error=max(self.error, change))
+    def compared_with(self, coarser: EdgePressure) -> EdgePressure:
+        """Return this pressure with an error of at least its change from one on coarser cells.
+
+        Two solutions may agree by chance: the error is no less than what finer cells leave of the coarser one.
+        """
+        if math.isnan(self.pressure) or math.isnan(coarser.pressure):
+            return self
+        change = abs(self.pressure - coarser.pressure) / self.pressure
+        left = coarser.error * min(1.0, coarser.cells_on_arc / self.cells_on_arc) ** 2
+        return replace(self, error=max(self.error, change, left if math.isfinite(left) else 0.0))
 
 
 def edge_pressures(

@@ -30,7 +30,7 @@ from loaded_tca.arrays import Array, numbers
 from loaded_tca.contact import checks
 from loaded_tca.contact.descent import Descent, judge
 from loaded_tca.contact.edges import FreeEdge
-from loaded_tca.contact.grid import AT_BOUND, CELLS, LARGEST_WHOLE, OUT_OF_REACH, Grids, each
+from loaded_tca.contact.grid import AT_BOUND, LARGEST_WHOLE, OUT_OF_REACH, Grids, each
 from loaded_tca.contact.levels import coarsening, prolong, window_around
 from loaded_tca.contact.problem import ContactProblem, Spacing
 from loaded_tca.contact.solution import CoarserGrid, ContactSolution, ContactStatus
@@ -342,15 +342,15 @@ def _solve_stack(
 ) -> list[ContactSolution]:
     """Solve problems on grids of one shape: from the pressures given, or from the solutions on coarser grids."""
     grids = Grids.of(problems)
-    coarser: list[CoarserGrid | None] = [None] * len(problems)
+    coarser: list[tuple[Array, float] | None] = [None] * len(problems)
     given = [start * _unit(problem) for start, problem in zip(starts, problems, strict=True) if start is not None]
     if given:
         pressure = grids.fitted(np.stack(given))
     else:
         pressure, found = _start_from_coarser(grids, tolerance, threads)
-        for k, (largest, approach) in enumerate(found.tolist()):
-            if largest > 0.0:
-                coarser[k] = CoarserGrid(largest / _unit(problems[k]), problems[k].first_contact + approach)
+        for k, (own, approach) in enumerate(found):
+            if own.any():
+                coarser[k] = own / _unit(problems[k]), approach
     solutions = []
     for rows in _together(grids):
         some = problems[rows], grids.select(rows), tolerance[rows], pressure[rows], coarser[rows]
@@ -365,14 +365,14 @@ def _together(grids: Grids) -> list[slice]:
     return [slice(k, k + 1) for k in range(len(grids))]
 
 
-def _start_from_coarser(grids: Grids, tolerance: Array, threads: int) -> tuple[Array, Array]:
+def _start_from_coarser(grids: Grids, tolerance: Array, threads: int) -> tuple[Array, list[tuple[Array, float]]]:
     """Start for grids from the solutions on the next coarser ones, solved in the same way.
 
-    Also returns what was found there, (count, 2): the largest pressure and the approach; (0, 2) without coarser ones.
+    Also returns their pressures and approaches from first contact on; none without coarser ones.
     """
     merge = coarsening(grids.shape)
     if merge == (1, 1):
-        return grids.guess(), np.empty((0, 2))
+        return grids.guess(), []
     coarse = grids.coarser(merge)
     tolerance = np.maximum(tolerance, np.minimum(COARSE_TOLERANCE, COARSE_FACTOR * tolerance))
     start, _ = _start_from_coarser(coarse, tolerance, threads)
@@ -383,7 +383,8 @@ def _start_from_coarser(grids: Grids, tolerance: Array, threads: int) -> tuple[A
         descent = Descent(some.part(window), own[:, *window], threads=threads, exact=False)
         descent.run(tolerance[rows], np.full(len(own), MOST_ITERATIONS))
         approach[rows], pressure[rows, *window] = descent.approach, descent.pressure / merge[0]
-    return grids.fitted(prolong(pressure, grids.shape, merge)), np.stack((pressure.max(axis=CELLS), approach), axis=1)
+    start = grids.fitted(prolong(pressure, grids.shape, merge))
+    return start, list(zip(pressure, approach.tolist(), strict=True))
 
 
 def _solve_on_finest(
@@ -391,7 +392,7 @@ def _solve_on_finest(
     grids: Grids,
     tolerance: Array,
     start: Array,
-    coarser: Sequence[CoarserGrid | None],
+    coarser: Sequence[tuple[Array, float] | None],
     threads: int,
 ) -> list[ContactSolution]:
     """Solve in a window around the contact, check on the whole grid, widen the window where the check says so."""
@@ -417,6 +418,8 @@ def _solve_on_finest(
             problem, own = problems[rows[k]], pressure[k] / _unit(problems[rows[k]])
             if problem.max_pressure is not None:  # what is at the cap but for rounding is exactly at it from here on
                 own = np.where((own > 0.0) & (own >= (1.0 - AT_BOUND) * problem.cap), problem.cap, own)
+            before = coarser[rows[k]]
+            change = math.nan if before is None else abs(1.0 - before[1] / float(approach[k]))
             found[rows[k]] = ContactSolution(
                 pressure=own,
                 gap=displacement[k] + grids.gap[k] - approach[k],
@@ -427,7 +430,7 @@ def _solve_on_finest(
                 residual=float(residual[k]),
                 status=ContactStatus.CONVERGED if residual[k] <= tolerance[rows[k]] else ContactStatus.NOT_CONVERGED,
                 problem=problem,
-                coarser=coarser[rows[k]],
+                coarser=None if before is None else CoarserGrid(before[0], own, change),
             )
         left = np.flatnonzero(~ended)
         if not left.size:

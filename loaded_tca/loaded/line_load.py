@@ -11,6 +11,8 @@ from loaded_tca.separation import Separation, slice_middles
 
 AVERAGED_OVER = 0.25
 """Length along the contact over which a line load is averaged, over the normal module."""
+LEFT_OF_CHANGE = 0.5
+"""Error of the line load at a place over its change from a grid half as fine, where it falls with the cell."""
 
 
 def averaged_line_load(force: Array, borders: Array, length: float) -> tuple[Array, Array]:
@@ -86,8 +88,10 @@ class SliceLoads:
         Of the slices that carry load.
     length : float [mm]
         Of the average.
+    places : (2 ny + 2,) array [mm]
+        Along the contact, middles of the stretches over which is averaged; between them the line load is linear.
     x, y : (2 ny + 2,) array [mm]
-        Where the averaged line load may be largest.
+        The same on the slices that carry load: where the averaged line load may be largest.
     line_load : (2 ny + 2,) array [N/mm]
         There.
     """
@@ -102,7 +106,14 @@ class SliceLoads:
             borders[first], borders[last + 1] = borders[first + 1] - part[first] * dy, borders[last] + part[last] * dy
         self.ends = borders[carrying[0]], borders[carrying[-1] + 1]
         self.length = min(AVERAGED_OVER * module, loaded_length(self.force, borders))
-        places, self.line_load = averaged_line_load(self.force, borders, self.length)
-        self.y = np.clip(places, *self.ends)
+        self.places, self.line_load = averaged_line_load(self.force, borders, self.length)
+        self.y = np.clip(self.places, *self.ends)
         self.x = np.interp(self.y, separation.y[carrying], middles)
         self.step = dy
+
+    def error_of_largest(self, coarser: SliceLoads) -> float:
+        """Relative error that the largest line load may have: where two maxima compete more than its change tells."""
+        places = np.union1d(self.places, coarser.places)
+        line_load, before = (np.interp(places, each.places, each.line_load) for each in (self, coarser))
+        errors, largest = LEFT_OF_CHANGE * np.abs(line_load - before), float(line_load.max())
+        return max(float((line_load + errors).max()) / largest - 1.0, 1.0 - float((line_load - errors).max()) / largest)

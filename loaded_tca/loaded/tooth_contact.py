@@ -14,7 +14,6 @@ from loaded_tca.contact.adaptive import TOLERANCE_SHARE, refinement
 from loaded_tca.contact.checks import memory_problem
 from loaded_tca.contact.levels import under_other_load
 from loaded_tca.contact.patch import ends_at_material, values_at_ends, widths
-from loaded_tca.contact.solution import CoarserGrid
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.line_load import SliceLoads
 from loaded_tca.loaded.pair_coupling import BendingModel, Coupling
@@ -88,8 +87,8 @@ class LoadedContact:
     bending, ends : (ny, ny) array or None [mm/N]
         Slice compliance of the teeth, and of their free edges.
     line_load_error : float
-        Estimated relative error of the largest line load, averaged as of ``line_load.SliceLoads``, from the two finest
-        grids; NaN where there was one.
+        Estimated relative error of the pressure of slices by that of their line load, from the two finest grids; NaN
+        where there was one.
     judged : (float, float) or None [MPa], [N]
         Largest pressure and load of the solution that the errors were estimated of: lines of forces and other pairs may
         have moved the pressure since. None: it is that.
@@ -291,12 +290,7 @@ class LoadedContact:
         gap, before = self.separation.cut_gap, self.solution
         problem = replace(before.problem, load=load, gap=gap if coupling is None else gap + coupling)
         start = under_other_load(before.pressure, load / before.load)
-        solution, coarser = (yield Task(problem, self.tolerance, start)), before.coarser
-        if coarser is not None:
-            first, higher = before.problem.first_contact, float(solution.pressure.max() / before.pressure.max())
-            deeper = solution.approach_under_load / before.approach_under_load
-            approach = problem.first_contact + deeper * (coarser.approach - first)
-            solution = replace(solution, coarser=CoarserGrid(higher * coarser.largest, approach))
+        solution = replace((yield Task(problem, self.tolerance, start)), coarser=before.coarser)
         return replace(self, solution=solution, coupling_deflection=coupling)
 
     def at(self, approach: float, coupling: Array | None = None) -> LoadedContact:
@@ -418,12 +412,12 @@ class _InBox:
         self.pair, self.contact, self.load, self.grid, self.first = pair, contact, load, grid, first
         self.bending, self.number, self.coupling = bending, number, coupling
         self.tolerance = grid.tolerance if grid.cells else min(grid.tolerance, TOLERANCE_SHARE * grid.accuracy)
-        # of the grid solved last, and the largest line loads on all of them
+        # of the grid solved last, and the line loads on all of them
         self.separation = first
         self.displaced: Array | None = None
         self.bent: Array | None = None
         self.ends: Array | None = None
-        self.line_loads: list[float] = []
+        self.line_loads: list[SliceLoads] = []
 
     def steps(self) -> Steps[LoadedContact]:
         loaded = yield from self._refined()
@@ -480,15 +474,19 @@ class _InBox:
         problem = contact_problem(self.pair, separation, self.load, self.bent, self.ends, self.displaced)
         solution: ContactSolution = yield Task(problem, tolerance, start)
         if self.load > 0.0:
-            self.line_loads.append(float(SliceLoads(self.pair.module, separation, solution.pressure).line_load.max()))
+            self.line_loads.append(SliceLoads(self.pair.module, separation, solution.pressure))
         return solution
 
     def _line_load_error(self) -> float:
-        """Estimate of the relative error of the largest averaged line load: its change from the coarser grid."""
+        """Change of the largest line load from the coarser grid, or what competing maxima leave of theirs.
+
+        Pressures grow with the root of the line load: their error is half as large.
+        """
         if len(self.line_loads) < 2:
             return math.nan
         coarse, fine = self.line_loads[-2:]
-        return abs(fine - coarse) / fine
+        change = abs(float(coarse.line_load.max() / fine.line_load.max()) - 1.0)
+        return max(change, fine.error_of_largest(coarse))
 
 
 def contact_problem(

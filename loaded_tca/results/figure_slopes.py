@@ -12,12 +12,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.contact.patch import peak_weights, reaches_border
+from loaded_tca.contact.patch import peak_weights, reaches_border, top_weights
 from loaded_tca.errors import require
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.load_factors import STRIPS, strip_borders, strip_forces, strip_shares
 from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.results.slice_pressure import UnderPressure, largest_slice_pressures, top_weights
+from loaded_tca.results.slice_pressure import UnderPressure, largest_slice_pressures
 from loaded_tca.unloaded import ContactPath
 
 EXPONENT = 12.0

@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance import FlankLine, RootStress, flank_lines
+from loaded_tca.contact.patch import top_weights
 from loaded_tca.errors import NotAskedError
 from loaded_tca.loaded.sensitivity import LoadedGrid
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.files import Part
 from loaded_tca.results.pressure_map import Maps, PressureMap
-from loaded_tca.results.slice_pressure import top_weights
 from loaded_tca.threads import one_blas_thread
 
 if TYPE_CHECKING:

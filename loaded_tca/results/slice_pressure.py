@@ -24,6 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from loaded_tca.arrays import Array
+from loaded_tca.contact.patch import top_weights
 from loaded_tca.loaded.line_load import SliceLoads, stretch_parts
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
@@ -32,21 +33,6 @@ from loaded_tca.unloaded import ContactPoint
 
 UnderPressure = tuple[ContactPoint, Separation, Array]
 """A contact under load: its contact point, its grid and the pressure (nx, ny) [MPa] there."""
-
-
-def top_weights(values: Array) -> Array:
-    """Weights (3,) of three values at even distances, the middle one the largest, in the top of their parabola.
-
-    They are its derivative by the values too: at its top a parabola is level.
-
-    Examples
-    --------
-    >>> top_weights(np.array([1.0, 3.0, 3.0]))
-    array([-0.125,  0.75 ,  0.375])
-    """
-    before, after = values[1] - values[0], values[1] - values[2]
-    place = 0.5 * (before - after) / (before + after) if before + after > 0.0 else 0.0
-    return np.array([0.5 * place * (place - 1.0), 1.0 - place**2, 0.5 * place * (place + 1.0)])
 
 
 @dataclass(frozen=True, eq=False)

@@ -134,8 +134,9 @@ def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[st
         found.append(
             "the contact lies across the start of a linear relief, where the pressure of the map is mesh-dependent"
         )
-    # where a contact is rough its grid is refined for the approach
-    allowed = max(LARGE_ERROR, grid.accuracy) if loaded.is_rough else grid.accuracy
+    # a grid is not refined for this estimate where a contact is rough, nor where the curvature of its gap jumps
+    refined = loaded.is_rough or solution.error_estimate.second_order <= grid.accuracy
+    allowed = max(LARGE_ERROR, grid.accuracy) if refined else grid.accuracy
     if grid.cells is None and loaded.peak_error > allowed:
         found.append(f"the estimated error of the peak pressure stays above {allowed:g}")
     if loaded.peak_change > LARGE_ERROR:

@@ -34,9 +34,24 @@ def test_peak_of_an_ellipse_is_exact_wherever_it_lies(offset, axes, angle):
 
 def test_peak_of_other_shapes_is_their_largest_cell():
     rng = np.random.default_rng(3)
-    two = ellipse((60, 60), (15.0, 30.0), (9.0, 9.0)) + 0.9 * ellipse((60, 60), (42.0, 30.0), (9.0, 9.0))
-    for pressure in (rng.random((30, 30)), two, np.eye(20), np.ones((20, 20)), np.ones((1, 1)), np.zeros((4, 4))):
+    ridge = 1.0 - 0.03 * np.abs(np.arange(20)[:, None] - 9.7) - 0.01 * np.abs(np.arange(20) - 11.2)
+    for pressure in (rng.random((30, 30)), ridge, np.eye(20), np.ones((20, 20)), np.ones((1, 1)), np.zeros((4, 4))):
         assert patch.peak_pressure(pressure) == pressure.max()
+
+
+@given(offset=st.tuples(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5)))
+def test_peak_where_no_quadratic_fits_is_that_of_parabolas_through_its_cells(offset):
+    """Two ellipses: the squares near the top of the higher one are those of a parabola along each axis."""
+    two = ellipse((60, 60), (15.0 + offset[0], 30.0 + offset[1]), (9.0, 9.0))
+    two = two + 0.9 * ellipse((60, 60), (42.0, 30.0), (9.0, 9.0))
+    assert_allclose(patch.peak_pressure(two), 1.0, rtol=ROUNDING)
+
+
+@given(offset=st.floats(-0.5, 0.5))
+def test_peak_on_a_ridge_is_that_of_a_parabola_along_it(offset):
+    along, across = np.arange(30) - 14.0 - offset, np.abs(np.arange(40)[:, None] - 20.0)
+    square = np.maximum(1.0 - 0.05 * across - (along / 12.0) ** 2, 0.0)
+    assert_allclose(patch.peak_pressure(np.sqrt(square)), 1.0, rtol=ROUNDING)
 
 
 def test_peak_of_many_cells_is_thinned_without_loss():

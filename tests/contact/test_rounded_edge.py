@@ -1,12 +1,14 @@
 """Peak pressure at rounded edges: closed form, fine uniform grids, several and oblique edges, estimate, failures."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.contact import RoundedEdge, edge_pressures, solve_contact
+from loaded_tca.contact.rounded_edge import EdgePressure
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.reference.punch import RoundedPunch
 from tests.refusals import refusals
@@ -287,3 +289,12 @@ def test_failure_of_the_solver_is_told(monkeypatch):
     with pytest.raises(ConvergenceError, match=r"^contact on graded columns not converged") as caught:
         peak()
     assert caught.value.last.pressure.max() > 0.0
+
+
+def test_error_at_an_edge_is_no_less_than_what_finer_cells_leave_of_the_coarser_one():
+    """Two solutions agree by chance, of which the coarser one was far from one coarser still."""
+    coarser = EdgePressure(100.0, (0.0, 0.0), 0.064, False, 0.01, 5.0, 9, None)
+    finer = replace(coarser, pressure=100.1, error=0.002, cells_on_arc=8.0)
+    assert finer.compared_with(coarser).error == pytest.approx(0.064 * (5.0 / 8.0) ** 2, rel=1e-12)
+    assert replace(finer, pressure=110.0).compared_with(coarser).error == pytest.approx(1.0 / 11.0, rel=1e-12)
+    assert finer.compared_with(replace(coarser, error=math.inf)).error == 0.002

@@ -62,15 +62,46 @@ def test_accuracy_warnings_name_both_reasons():
     assert "3 cells across" in narrow.accuracy_warnings[1]
 
 
+def with_coarser(solution, factor):
+    """The solution beside one on a grid half as fine with so many times its pressures, and the same approach."""
+    pairs = solution.pressure.reshape(solution.pressure.shape[0] // 2, 2, -1, 2)
+    return dataclasses.replace(solution, coarser=CoarserGrid(factor * pairs.mean(axis=(1, 3)), solution.pressure, 0.0))
+
+
 def test_estimate_grows_to_first_order_at_a_border():
     wide = ball(load=5e4)
-    largest = wide.pressure.max()
-    estimate = dataclasses.replace(wide, coarser=CoarserGrid(0.9 * largest, wide.approach)).error_estimate
-    assert estimate.peak_pressure == pytest.approx(0.1)
-    assert estimate.approach == 0.0
+    assert wide.bounded
+    coarser = CoarserGrid(0.9 * wide.pressure[::2, ::2], 0.9 * wide.pressure / wide.pressure[::2, ::2].max(), 0.25)
+    estimate = dataclasses.replace(wide, coarser=coarser).error_estimate
+    change = wide.pressure.max() / wide.pressure[::2, ::2].max() ** 2 - 1.0
+    assert estimate.peak_pressure == estimate.second_order == pytest.approx(abs(change))
+    assert estimate.approach == 0.25
+
+
+def test_estimates_of_a_smooth_peak_are_parts_of_its_change():
+    """All pressures are a tenth lower on the coarser grid: half and a third of that."""
+    estimate = with_coarser(ball(), 0.9).error_estimate
+    # of 40 x 40 cells, on which the top of a circle is level to 1 %
+    assert estimate.peak_pressure == pytest.approx(0.05, abs=0.005)
+    assert estimate.second_order == pytest.approx(0.1 / 3.0, abs=0.003)
+
+
+def test_estimate_sees_a_change_beside_a_peak_that_stays():
     inside = ball()
-    coarser = CoarserGrid(0.9 * inside.pressure.max(), inside.approach)
-    assert dataclasses.replace(inside, coarser=coarser).error_estimate.peak_pressure == pytest.approx(0.1 / 6.0)
+    level = with_coarser(inside, 1.0)
+    row = int(inside.pressure.max(axis=1).argmax()) // 2
+    tilted = level.coarser.pressure.copy()
+    tilted[row - 1] *= 0.8
+    estimate = dataclasses.replace(inside, coarser=dataclasses.replace(level.coarser, pressure=tilted)).error_estimate
+    # five parts in 32 of the square of that row are in the cells beside the peak
+    assert estimate.peak_pressure == pytest.approx(0.5 * 0.5 * (1.0 - 0.8**2) * 5.0 / 32.0, rel=0.1)
+    assert estimate.second_order < 0.4 * estimate.peak_pressure
+
+
+def test_peak_at_the_cap_has_the_least_error():
+    capped = ball(max_pressure=500.0)
+    estimate = with_coarser(capped, 1.0).error_estimate
+    assert estimate.peak_pressure == 0.6 / min(capped.cells_across) ** 2
 
 
 def test_solution_cannot_be_changed():

@@ -3,6 +3,7 @@
 import math
 import warnings
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,8 +12,9 @@ from numpy.testing import assert_allclose
 from loaded_tca import AccuracyWarning, InputError, trace_contact
 from loaded_tca.contact.patch import widths
 from loaded_tca.flanks import FlankModifications
+from loaded_tca.loaded.line_load import SliceLoads
 from loaded_tca.loaded.together import found_alone
-from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
+from loaded_tca.loaded.tooth_contact import GridChoice, _InBox, solve_under_load
 from loaded_tca.material import Material
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.reference import hertz
@@ -390,6 +392,21 @@ def test_peak_error_is_that_of_the_peak_or_of_the_line_load():
     least = replace(rough, line_load_error=0.0).peak_error
     assert 0.0 < least < 0.02
     assert np.isnan(replace(rough, line_load_error=math.nan).peak_error)
+
+
+def test_estimate_of_slices_sees_a_change_beside_the_largest_line_load():
+    """Where two maxima compete the largest one of two grids may stay, and the other one move."""
+
+    def loads(line_load):
+        grid = SimpleNamespace(x=np.arange(3.0), y=np.arange(8.0), spacing=(1.0, 1.0), cover=np.ones((3, 8)))
+        return SliceLoads(4.0, grid, np.array(line_load) * np.array([[0.0], [1.0], [0.0]]))  # averaged over a slice
+
+    def error(coarse, fine):
+        return _InBox._line_load_error(SimpleNamespace(line_loads=[loads(coarse), loads(fine)]))
+
+    assert error([5, 10, 5, 5, 5, 9.2, 5, 5], [5, 10, 5, 5, 5, 9.8, 5, 5]) == pytest.approx(0.01, abs=ROUNDING)
+    assert error([5, 10, 5, 5, 5, 9.2, 5, 5], [5, 9.8, 5, 5, 5, 10, 5, 5]) == pytest.approx(0.04, abs=ROUNDING)
+    assert error([3, 10, 5, 5, 5, 9.2, 5, 5], [5, 10, 5, 5, 5, 9.2, 5, 5]) == 0.0, "where it is small"
 
 
 def test_width_of_a_contact_that_leaves_the_axis_of_its_grid_is_that_of_its_slices():
