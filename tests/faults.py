@@ -43,6 +43,13 @@ FAULTS = (
         f"{FREE_EDGES}::test_tip_counts_by_the_angle_of_its_material",
     ),
     Fault(
+        "load sharing: contact laws count from the zero of the gaps",
+        "loaded/load_sharing.py",
+        "deformation = loaded.contact_deformation - self.first_gaps[index]",
+        "deformation = loaded.contact_deformation",
+        "loaded/test_load_sharing.py::test_zero_from_which_gaps_count_moves_no_force",
+    ),
+    Fault(
         "bending: forces act on the axis of the grid",
         "separation/sample.py",
         "return replace(self, force_line=np.interp(self.y, self.y[carrying], middles))",
