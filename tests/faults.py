@@ -43,6 +43,27 @@ FAULTS = (
         f"{FREE_EDGES}::test_tip_counts_by_the_angle_of_its_material",
     ),
     Fault(
+        "load sharing: contact laws count from the zero of the gaps",
+        "loaded/load_sharing.py",
+        "deformation = loaded.contact_deformation - self.first_gaps[index]",
+        "deformation = loaded.contact_deformation",
+        "loaded/test_load_sharing.py::test_zero_from_which_gaps_count_moves_no_force",
+    ),
+    Fault(
+        "jamming: nominal teeth without backlash jam at any error of the centre distance",
+        "scene/cylindrical.py",
+        "nominal = abs(mesh.backlash) <= ROUNDING * module",
+        "nominal = False",
+        "results/test_gear_warnings.py::test_an_error_of_the_centre_distance_jams_gears_whose_backlash_is_given",
+    ),
+    Fault(
+        "jamming: errors of the centre distance jam nothing",
+        "scene/cylindrical.py",
+        "nominal = abs(mesh.backlash) <= ROUNDING * module",
+        "nominal = True",
+        "results/test_gear_warnings.py::test_an_error_of_the_centre_distance_jams_gears_whose_backlash_is_given",
+    ),
+    Fault(
         "bending: forces act on the axis of the grid",
         "separation/sample.py",
         "return replace(self, force_line=np.interp(self.y, places, line))",

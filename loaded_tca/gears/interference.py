@@ -35,7 +35,7 @@ class Room(NamedTuple):
     below_root: tuple[float, float]
 
 
-def interferences(room: Room, module: float, place: str) -> Sequence[str]:
+def interferences(room: Room, module: float, place: str, *, nominal: bool = False) -> Sequence[str]:
     """Sentences on what jams gears that turn all the same where their teeth give way; none of sound gears.
 
     Parameters
@@ -45,6 +45,9 @@ def interferences(room: Room, module: float, place: str) -> Sequence[str]:
         Normal module.
     place : str
         Where the room is that of the gears, for instance a centre distance.
+    nominal : bool
+        Whether the teeth are nominal ones that fill each other's spaces, so that nothing is known of the backlash of
+        gears that are made after them: their teeth are thinner by tolerances of the tooth thickness.
 
     Raises
     ------
@@ -58,12 +61,12 @@ def interferences(room: Room, module: float, place: str) -> Sequence[str]:
     """
     if problems := [*_what_stops(room, module)]:
         raise GeometryError(f"the gears cannot turn {place}: {'; '.join(problems)}")
-    return [f"{sentence} ({place} by {told})" for sentence, told in _what_jams(room, module)]
+    return [f"{sentence} ({place} by {told})" for sentence, told in _what_jams(room, module, nominal)]
 
 
-def _what_jams(room: Room, module: float) -> Iterator[tuple[str, str]]:
+def _what_jams(room: Room, module: float, nominal: bool) -> Iterator[tuple[str, str]]:
     """What interferes, and by how much."""
-    if room.backlash < -ROUNDING * module:
+    if room.backlash < -ROUNDING * module and not nominal:
         yield (
             "negative backlash: teeth are thicker than the spaces of the mating gear, so that whole gears jam, while "
             "the analysis has the contact of one flank of each",

@@ -9,11 +9,12 @@ deformation and the tooth deflection under all forces:
 
 A pair that is not in contact carries nothing. The torque grows with the rotation, so that there is one answer.
 
-The contact law delta_k(F) is known from solved contacts alone. Between them it is a power of the force, 2/3 for points
-and nearly 1 for lines, at first after Hertz, its exponent later that between two solutions that lie far enough apart:
-balance the powers, solve every pair under its force, correct the powers, until the deformations agree
-and the rotation closes no pair that was left apart. The forces of the last solutions fulfil the balance of the torque
-to rounding; what is left is a difference in the rotation that each pair asks for, ``residual``.
+The contact law delta_k(F) is known from solved contacts alone. It counts from where the grid of the pair touches
+first, which lies below the zero of its gaps where the grid has grown, or above where it is coarse. Between solutions
+it is a power of the force, 2/3 for points and nearly 1 for lines, at first after Hertz, its exponent later that
+between two that lie far enough apart: balance the powers, solve every pair under its force, correct the powers, until
+the deformations agree and the rotation closes no pair that was left apart. The forces of the last solutions fulfil the
+balance of the torque to rounding; what is left is a difference in the rotation that each pair asks for, ``residual``.
 
 The lever is that of the contact point for the whole contact. It is the same at every point of two involute helicoids
 (its own normal given); on bevel gears it grows with the cone distance, and the force is taken at the contact point.
@@ -242,6 +243,7 @@ class _Balance:
         self.bending, self.lines_held = bending, grid.lines_held
         self.between = None if bending is None else cache(bending.between)  # for grids that stay the same
         self.separations = np.array([tooth_pair.initial_separation for tooth_pair in tooth_pairs])
+        self.first_gaps = np.zeros(len(tooth_pairs))  # [mm], where the grid of a pair touches first: it grows, is cut
         contacts = [tooth_pair.contact for tooth_pair in tooth_pairs]
         self.levers = np.array([(contact.pinion_lever, contact.wheel_lever) for contact in contacts]).T
         self.laws = [self._first_law(contact) for contact in contacts]
@@ -273,7 +275,7 @@ class _Balance:
                 forces = yield from self._solve_at_common_rotation(shared)
             else:  # also now and then there, since pairs that are apart may come under load
                 before = forces
-                forces = balance(self.laws, self.separations, self.levers, self.torque, self.compliance)
+                forces = balance(self.laws, self._first_rotations, self.levers, self.torque, self.compliance)
                 if count > SWINGING and not capped:
                     forces = 0.5 * (before + forces)
                 for index in np.flatnonzero(forces).tolist():
@@ -328,8 +330,8 @@ class _Balance:
                     )
         except ConvergenceError as error:
             raise ConvergenceError(f"tooth pair {tooth_pair.pair:+d}: {error}", error.last) from error
-        self.solved[index] = loaded
-        deformation = loaded.contact_deformation
+        self.solved[index], self.first_gaps[index] = loaded, loaded.separation.cut_gap.min()
+        deformation = loaded.contact_deformation - self.first_gaps[index]
         if loaded.solution.load > 0.0 and deformation > 0.0:
             first = replace(law, load=force, deformation=deformation)
             self.laws[index] = first if before is None else law.through(force, deformation)
@@ -367,6 +369,11 @@ class _Balance:
             if loaded.solution.reaches_border:
                 yield from self._solve(index, forces)  # in a larger box
         return forces
+
+    @property
+    def _first_rotations(self) -> Array:
+        """Rotations (k,) [rad] at which the grids of the pairs touch; contact laws count from there."""
+        return np.asarray(self.separations + self.first_gaps / self.levers[1])
 
     def _loaded(self) -> Iterator[tuple[int, LoadedContact]]:
         """Place and contact of the pairs that were solved under a load."""
@@ -429,7 +436,7 @@ class _Balance:
 
         A constant on top of all slices of a pair is of no account: it moves no force about.
         """
-        deflection = self.levers[1] * (rotation - self.separations) - self.compliance @ forces
+        deflection = self.levers[1] * (rotation - self._first_rotations) - self.compliance @ forces
         allowed = self.agreement * rotation * self.levers[1]
         if not (deflection <= allowed)[forces == 0.0].all():
             return False

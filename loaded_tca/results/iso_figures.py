@@ -38,6 +38,8 @@ REASONS: Mapping[str, str] = {
     "eps_alpha b/cos(beta_b), that of ISO 6336-1 over b/(Z_eps^2 cos(beta_b)), and the load along a line is uneven",
 }
 """Key figure -> why the computed number beside it differs; that of Z_B holds for Z_D, too."""
+WHERE_REASONS_ARE = "ISO 6336: computed numbers differ from the standard's, loaded-tca check and the report say why"
+"""The line of a summary that has numbers of the standard."""
 
 
 def iso_figures(scene: Scene, torque: float, transverse_load_factor: float = math.nan) -> dict[str, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 
-from loaded_tca.results.iso_figures import LOAD_ROW, STIFFNESS_ROW, STRESS_ROWS, reasons_beside
+from loaded_tca.results.iso_figures import LOAD_ROW, STIFFNESS_ROW, STRESS_ROWS, WHERE_REASONS_ARE, reasons_beside
 
 Figures = Mapping[str, float]
 """Name with its unit -> number, for one torque."""
@@ -133,7 +133,7 @@ def summary_text(title: str, scope: str, figures: Sequence[Figures], warnings: S
     width = 2 + max(len(cell) for _, cells in rows for cell in cells)
     labels = max(len(label) for label, _ in rows)
     table = [f"{label:<{labels}}" + "".join(f"{cell:>{width}}" for cell in cells) for label, cells in rows]
-    beside = [f"ISO 6336: {reason}" for reason in reasons_beside(*figures)]
+    beside = [WHERE_REASONS_ARE] if any(reasons_beside(*figures)) else []
     notes = [f"note: {sentence}" for sentence in limits_of(figures)]
     warned = [f"warning: {sentence}" for sentence in warnings]
     return "\n".join([title or "Loaded tooth contact", scope, *table, *beside, *notes, *warned])

@@ -9,7 +9,7 @@ from typing import ClassVar, Literal
 
 from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.gears.interference import Room, interferences
+from loaded_tca.gears.interference import ROUNDING, Room, interferences
 from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, common_face_width, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.reference import iso6336_3
@@ -245,11 +245,16 @@ class CylindricalScene(BlankScene):
         ]
 
     def interferences(self) -> Sequence[str]:
-        """Return how the whole gears interfere at their centre distance, its error included."""
+        """Return how the whole gears interfere at their centre distance, its error included.
+
+        An error takes away backlash only where the centre distance and the profile shifts give some. Without, as by
+        default, the teeth are nominal: the tolerances that thin them are not in the scene.
+        """
         mesh, error = self.mesh(), self.mounting.centre_distance_error_mm
         distance = mesh.working_centre_distance + error
         place = f"at the {'mounted ' if error else ''}centre distance of {distance:.4f} mm"
         module = mesh.pinion.normal_module
+        nominal = abs(mesh.backlash) <= ROUNDING * module
         try:
             mounted = replace(mesh, centre_distance=distance) if error else mesh
         except GeometryError as problem:
@@ -257,8 +262,9 @@ class CylindricalScene(BlankScene):
                 raise GeometryError(f"{place}: {problem}") from None
             pinion, wheel = (clearance + error for clearance in mesh.tip_clearances)
             room = Room(mesh.backlash_at(distance), (0.0, 0.0), (pinion, wheel))
-            return [*interferences(room, module, place), f"fillet interference: {problem} ({place})"]  # an undercut
-        return interferences(mounted.room, module, place)
+            told = interferences(room, module, place, nominal=nominal)
+            return [*told, f"fillet interference: {problem} ({place})"]  # an undercut
+        return interferences(mounted.room, module, place, nominal=nominal)
 
 
 def _root_factors(mesh: CylindricalMesh, gear: CylindricalGear) -> tuple[float, float, float]:

@@ -11,10 +11,12 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.flanks import FlankModifications
+from loaded_tca.loaded import together
 from loaded_tca.loaded.load_sharing import ToothPair, share_load, tooth_pairs_at
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.material import Material
 from loaded_tca.separation import sample_separation
+from loaded_tca.separation.sample import sample_separations
 from loaded_tca.unloaded import trace_teeth
 from tests.refusals import refused_calls
 from tests.samples.gear_pairs import NONE, gear_pair, sam_paper
@@ -128,6 +130,24 @@ def test_torque_is_the_derivative_of_the_elastic_energy_along_the_rotation():
     low, high = (share_load(pair, tooth_pairs, (1.0 + sign * step) * TORQUE, grid) for sign in (-1, 1))
     slope = (elastic_energy(high) - elastic_energy(low)) / (high.rotation - low.rotation)
     assert_allclose(slope, TORQUE / pair.ratio, rtol=5e-3)  # grids of two loads differ by about 1e-3
+
+
+@pytest.mark.parametrize("raised", [-0.004, 0.02])
+def test_zero_from_which_gaps_count_moves_no_force(raised, monkeypatch):
+    """A distance [mm] between the initial separation and the gaps of a pair: grids that grow touch below their zero."""
+    pair = spur()
+    first, *others = tooth_pairs_at(trace_teeth(pair, [0.8 * CENTRE]), 0)
+    moved = replace(first, initial_separation=first.initial_separation - raised / first.contact.wheel_lever)
+
+    def sampled(pair_of, contacts, **options):
+        for contact, grid in zip(contacts, sample_separations(pair_of, contacts, **options), strict=True):
+            by = raised if contact is first.contact else 0.0
+            yield replace(grid, gap=grid.gap + by, cut_gap=grid.cut_gap + by)
+
+    monkeypatch.setattr(together, "sample_separations", lambda *given, **options: list(sampled(*given, **options)))
+    forces = [share.force for share in share_load(pair, [moved, *others], TORQUE, GRID).shares]
+    assert len(forces) == 2
+    assert_allclose(forces, [share.force for share in shared(spur, 0.8 * CENTRE).shares], rtol=10.0 * COMPATIBLE)
 
 
 def test_small_torque_tends_to_the_unloaded_contact():

@@ -74,19 +74,30 @@ def test_gears_that_cannot_turn_are_not_analysed():
         analyse(spur(**TOO_NEAR))
 
 
-@pytest.mark.parametrize("error", [-0.05, 0.05])
-def test_an_error_of_the_centre_distance_counts(error):
-    """Before it the gears have no backlash."""
-    found = sentences(spur(**{"mounting.centre_distance_error_mm": error}))
-    assert [sentence.startswith("negative backlash") for sentence in found] == [True] * (error < 0.0)
+@pytest.mark.parametrize(
+    ("distance", "errors"), [(None, ()), (136.5, ()), (136.53, (-0.05,)), (136.49, (-0.05, 0.0, 0.005))]
+)
+def test_an_error_of_the_centre_distance_jams_gears_whose_backlash_is_given(distance, errors):
+    """Without backlash at 136.5 mm, given or not, the teeth are nominal: nothing is known of their tolerances."""
+    given = {} if distance is None else {"pair.centre_distance_mm": distance}
+    for error in (-0.05, 0.0, 0.005, 0.05):
+        found = sentences(spur(**given, **{"mounting.centre_distance_error_mm": error}))
+        assert [sentence.startswith("negative backlash") for sentence in found] == [True] * (error in errors)
+
+
+def test_study_of_mounting_errors_of_nominal_gears_is_without_warnings_and_counts_those_of_given_backlash():
+    errors = {"mounting.centre_distance_error_mm": [-0.04, -0.02, 0.0, 0.02]}
+    for distance, count in ((None, 0), (136.51, 2)):
+        found = run_study(Study(spur(**{"pair.centre_distance_mm": distance}), errors))
+        assert sum("negative backlash" in told for told in found["warnings"].values.tolist()) == count
+        assert study_summary(found).count("negative backlash") == (count > 0)
 
 
 def test_mounting_that_brings_a_tip_into_an_undercut_is_warned_of():
     """At 103.5 mm the tip of the wheel ends just above the undercut of a pinion of 12 teeth."""
     undercut = {**PLAIN, "pinion.teeth": 12, "wheel.tip_diameter_mm": 174.6}
     assert sentences(spur(**undercut)) == []
-    backlash, tip = sentences(spur(**undercut, **{"mounting.centre_distance_error_mm": -0.2}))
-    assert backlash.startswith("negative backlash: ")
+    (tip,) = sentences(spur(**undercut, **{"mounting.centre_distance_error_mm": -0.2}))
     assert tip.startswith("fillet interference: pinion: undercut up to diameter")
 
 

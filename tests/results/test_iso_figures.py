@@ -1,6 +1,7 @@
 """Contact factors and stiffnesses of ISO 6336 beside computed numbers."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,10 +11,11 @@ from loaded_tca import read_scene
 from loaded_tca.output.overview import describe_scene
 from loaded_tca.plots.labels import label_of
 from loaded_tca.reports.result_page import result_content
-from loaded_tca.results.iso_figures import REASONS, iso_figures
+from loaded_tca.results.iso_figures import REASONS, WHERE_REASONS_ARE, iso_figures
 from loaded_tca.results.root_figures import rim_factor
 from tests.samples.results import SCENES, changed, changed_scene, result
 
+KEY_FIGURES = Path(__file__).parents[2] / "docs" / "reference" / "key_figures.md"
 NAMES = [*REASONS, "wheel_single_contact_factor_iso_6336"]
 
 
@@ -97,15 +99,17 @@ def test_bound_of_the_transverse_load_factor_stands_beside_it_alone():
     assert math.isnan(alone["largest_transverse_load_factor_iso_6336"])
 
 
-def test_reasons_stand_in_summary_overview_and_report(monkeypatch):
+def test_reasons_stand_in_overview_report_and_reference_and_the_summary_says_where(monkeypatch):
     monkeypatch.setattr("loaded_tca.reports.result_page.result_figures", lambda *_, **__: {})
     cycle = result("mesh_cycle_spur")
     lines, overview = cycle.summary().splitlines(), describe_scene(cycle.scene).splitlines()
+    reference = " ".join(KEY_FIGURES.read_text(encoding="utf-8").split())
     notes = {row[0].strip(): row[-1] for table in result_content(cycle)["key_figures"] for row in table.rows}
     for name, reason in REASONS.items():
-        assert f"ISO 6336: {reason}" in lines
+        assert reason in reference
         assert notes[label_of(name)] == reason
         assert (f"ISO 6336: {reason}" in overview) == (name != "largest_transverse_load_factor_iso_6336")
+    assert [line for line in lines if line.startswith("ISO 6336: ")] == [WHERE_REASONS_ARE]
     rows = [line for line in lines if line.lstrip().startswith("ISO 6336-")]
     assert [row.split(":")[0] for row in rows] == ["ISO 6336-2", "  ISO 6336-1", "  ISO 6336-1"]
 
