@@ -428,9 +428,7 @@ class _InBox:
         bent = loaded.bent_by(self.bending, self.number, self.pair.module)
         coupling = None if self.coupling is None else self.coupling(bent.separation)
         bent = yield from bent.under(self.load, coupling)
-        judged = (
-            loaded if self.grid.cells is None else bent
-        )  # on cells as given the first lines are the axis of the grid
+        judged = loaded if self.grid.cells is None else bent  # the first lines on given cells are the axis of the grid
         return replace(bent, judged=(float(judged.solution.pressure.max()), self.load))
 
     def _refined(self) -> Steps[LoadedContact]:

@@ -49,7 +49,8 @@ EXPLANATIONS = (
     Explanation(
         "the estimated error of the peak pressure stays above",
         "the finest grid allowed is too coarse for the accuracy asked for; at edges and relief starts, where grids are "
-        "refined until the approach agrees, the largest line load still moves by more than that",
+        "refined until the approach agrees, the line load still moves by more than that; where the curvature of the "
+        "gap jumps, the pressure beside the peak",
         "a larger `accuracy`, or `cells`; at edges a smaller `accuracy`",
     ),
     Explanation(
