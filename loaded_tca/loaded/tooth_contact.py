@@ -42,7 +42,7 @@ LARGEST_MISFIT = 0.3
 begins in the ellipse the misfit is above 1."""
 BESIDE = 0.5 + 1e-6
 """Distance over a cell along both axes within which cells lie beside the contact point."""
-LEAST_ERROR_OF_SLICES = 2.0
+LEAST_ERROR_OF_SLICES = 3.0
 """Error of the largest pressure of slices times the square of the cells across the contact, at the most where two grids
 agree by chance (``validation/loaded/error_estimates.py``)."""
 GROWTH = 1.5

@@ -52,8 +52,12 @@ def assert_same(one, other):
     """To the last bit, and found in the same way."""
     assert_array_equal(one.pressure, other.pressure)
     assert_array_equal(one.gap, other.gap)
-    for name in ("approach", "load", "residual", "iterations", "convolutions", "status", "problem", "coarser"):
+    for name in ("approach", "load", "residual", "iterations", "convolutions", "status", "problem"):
         assert getattr(one, name) == getattr(other, name), name
+    assert (one.coarser is None) == (other.coarser is None)
+    if one.coarser is not None:
+        assert_array_equal(one.coarser.pressure, other.coarser.pressure)
+        assert one.coarser.approach_change == other.coarser.approach_change
 
 
 @settings(max_examples=15, deadline=None)
