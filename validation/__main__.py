@@ -48,6 +48,7 @@ CASES = (
     "loaded.root_stress_space",
     "loaded.root_face_load",
     "loaded.numbers_to_copy",
+    "loaded.face_ends",
     "calculix.mesh_cycle",
     "contact.subsurface",
     "contact.free_edge",
