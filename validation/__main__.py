@@ -48,7 +48,6 @@ CASES = (
     "loaded.root_stress_space",
     "loaded.root_face_load",
     "loaded.numbers_to_copy",
-    "loaded.face_ends",
     "calculix.mesh_cycle",
     "contact.subsurface",
     "contact.free_edge",
@@ -66,6 +65,7 @@ LONG = (
     "loaded.jumps",
     "loaded.error_estimates",
     "loaded.bending_line",
+    "loaded.face_ends",
     "unloaded.rounded_edges",
 )
 """Cases of minutes, which the tests leave out; the longest first.

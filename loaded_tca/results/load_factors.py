@@ -32,7 +32,7 @@ from loaded_tca.unloaded import ContactPath
 STRIPS = 30
 MISSING_AT_END = 0.15
 """Part of K_Hbeta that half-spaces lack at a sharp end on cells as long as a strip, at the most; on shorter ones less
-in proportion: 0.08 to 0.15 in 16 pairs (``validation/loaded/face_ends.py``)."""
+in proportion: 0.07 to 0.15 in 15 pairs (``validation/loaded/face_ends.py``)."""
 ROUNDING = 1e-12
 """Extent of a cell, over the width of a strip, that is none: the cell lies beyond the face."""
 
