@@ -50,6 +50,13 @@ FAULTS = (
         "loaded/test_load_sharing.py::test_zero_from_which_gaps_count_moves_no_force",
     ),
     Fault(
+        "K_Hbeta: what cells lack at a sharp end does not depend on their length",
+        "results/load_factors.py",
+        "float(force[largest]) * one.spacing[1] / length",
+        "float(force[largest]) * 0.05",
+        "results/test_load_factors.py::test_face_load_factor_at_sharp_ends_misses_what_is_estimated_on_any_cells",
+    ),
+    Fault(
         "jamming: nominal teeth without backlash jam at any error of the centre distance",
         "scene/cylindrical.py",
         "nominal = abs(mesh.backlash) <= ROUNDING * module",

@@ -65,6 +65,7 @@ LONG = (
     "loaded.root_stress_families",
     "loaded.jumps",
     "loaded.bending_line",
+    "loaded.face_ends",
     "unloaded.rounded_edges",
 )
 """Cases of minutes, which the tests leave out; the longest first.

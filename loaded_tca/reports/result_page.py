@@ -15,7 +15,7 @@ from loaded_tca.reports.page import Table, parts_of, pictures_of, tables_of
 from loaded_tca.results.explanations import Explanation, explanation_of
 from loaded_tca.results.iso_figures import REASONS
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.results.summary import Figures, known_rows, limits_of, shown
+from loaded_tca.results.summary import IN_PERCENT, Figures, known_rows, limits_of, shown
 from loaded_tca.scene import Scene
 
 MOST_TORQUES = 5
@@ -158,7 +158,7 @@ def _key_figures(result: MeshCycle, part: slice, figures: Sequence[Figures]) -> 
         for name in names if label != TORQUE else ():
             indent = "  " if label.startswith(" ") else ""
             values = (_value(one, name) for one in figures)
-            unit = " [%]" if name == "edge_pressure_error" else ""  # as summaries show it
+            unit = " [%]" if name in IN_PERCENT else ""  # as summaries show it
             rows.append((indent + label_of(name) + unit, *values, _note(name, result, part, figures)))
     return Table(tuple(rows), ("key figure", *_under(figures), "accuracy"))
 

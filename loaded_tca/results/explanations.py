@@ -24,8 +24,7 @@ EXPLANATIONS = (
     Explanation(
         "the free edge is left out (analysis.free_edges)",
         "a tip or face end ends the contact; theory has an infinite pressure at a sharp edge, and the half-space goes "
-        "on beyond it, which is too stiff there: K_Hbeta grows with the cells, by up to 5 % from 32 to 64 along the "
-        "contact",
+        "on beyond it, which is too stiff there: K_Hbeta grows with the cells, by `face_load_factor_error` at the most",
         "`free_edges = true`; read `peak_pressure`, not `edge_pressure` or the cells of the map; more crowning, end or "
         "tip relief on the gears",
     ),

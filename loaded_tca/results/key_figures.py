@@ -9,6 +9,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.results.iso_figures import iso_figures
+from loaded_tca.results.load_factors import face_load_factor_error
 from loaded_tca.results.root_figures import root_figures
 
 if TYPE_CHECKING:
@@ -111,6 +112,7 @@ def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
         ),
         "secant_stiffness_mean_N_per_mm_um": mean_over_a_pitch(result.secant_stiffness[torque]),
         "face_load_factor": float(result.face_load_factor[torque]),
+        "face_load_factor_error": _face_load_factor_error(result, torque),
         "transverse_load_factor": float(result.transverse_load_factor[torque]),
         **iso_figures(result.scene, float(result.torque[torque]), float(result.transverse_load_factor[torque])),
         "loaded_contact_ratio": mean_over_a_pitch(pairs),
@@ -137,6 +139,13 @@ def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
         "capped_positions": count(highest >= CAPPED * result.max_pressure),
         **(root_figures(result, torque) if result.has_root_stress else {}),
     }
+
+
+def _face_load_factor_error(result: MeshCycle, torque: int) -> float:
+    """By how much half-spaces without free edges have K_Hbeta too low; NaN where free edges soften the face ends."""
+    if result.scene.analysis.free_edges:
+        return math.nan
+    return face_load_factor_error(result.gear_pair, result.path, result.maps[torque])
 
 
 def _error_figures(name: str, error: Array, length: float) -> dict[str, float]:

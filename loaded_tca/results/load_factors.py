@@ -8,7 +8,9 @@ pair in a strip at one position over the length of the contact line across the s
           K_{H\alpha} = \frac{\max w}{K_{H\beta}} \frac{\varepsilon_\alpha b}{\cos\beta_b\, F_n} .
 
 The last position is the first one a pitch later and does not count. The factors depend on the number of strips;
-on the grid, which shares out the force of its cells, by some per cent where the load crowds at an end.
+on the grid by some per cent where the load crowds at a sharp end. There half-spaces have a line load that grows without
+end, and pressures that are constant on cells carry what an end 0.2 cells farther out would have: a strip of the width w
+at the end lacks force in proportion to the length h of a cell, which ``face_load_factor_error`` estimates.
 
 References
 ----------
@@ -18,6 +20,7 @@ ISO 6336-1:2019, Calculation of load capacity of spur and helical gears - Part 1
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -27,6 +30,9 @@ from loaded_tca.results.pressure_map import Maps, PressureMap
 from loaded_tca.unloaded import ContactPath
 
 STRIPS = 30
+MISSING_AT_END = 0.15
+"""Part of K_Hbeta that half-spaces lack at a sharp end on cells as long as a strip, at the most; on shorter ones less
+in proportion: 0.07 to 0.15 in 15 pairs (``validation/loaded/face_ends.py``)."""
 ROUNDING = 1e-12
 """Extent of a cell, over the width of a strip, that is none: the cell lies beyond the face."""
 
@@ -61,6 +67,40 @@ def load_factors(pair: GearPair, path: ContactPath, maps: Maps, mean_length: flo
             face = strips.max() / strips.mean()
             factors[:, torque] = face, largest / face * mean_length * (len(positions) - 1) / strips.sum()
     return factors[0], factors[1]
+
+
+def face_load_factor_error(
+    pair: GearPair, path: ContactPath, positions: Sequence[Sequence[PressureMap | None]]
+) -> float:
+    """Estimated relative error of K_Hbeta under one torque by the cells, of half-spaces that end at sharp face ends.
+
+    Parameters
+    ----------
+    pair : GearPair
+    path : ContactPath
+        Unloaded contact, of n positions.
+    positions : sequence of sequences
+        Pressure maps by n positions and tooth pairs, solved without free edges.
+
+    Returns
+    -------
+    float
+        By how much K_Hbeta is too low at the most; NaN where the strip with the largest force is not the last one at an
+        end of the face, or no contact ends there by an edge.
+    """
+    borders = strip_borders(pair, path)
+    loaded = [one for row in positions[:-1] for one in row if one is not None]
+    strips = [strip_forces(pair, one, borders) for one in loaded]
+    forces = np.sum([np.zeros(STRIPS), *(force for force, _ in strips)], axis=0)
+    largest = int(forces.argmax())
+    if largest not in (0, STRIPS - 1) or not forces.any():
+        return math.nan
+    cells = sum(
+        float(force[largest]) * one.spacing[1] / length
+        for one, (force, length) in zip(loaded, strips, strict=True)
+        if one.pressure[one.beside_end].any()
+    )
+    return MISSING_AT_END * cells / float(forces[largest]) if cells else math.nan
 
 
 def strip_forces(pair: GearPair, one: PressureMap, borders: Array) -> tuple[Array, float]:

@@ -49,6 +49,7 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ),
     STIFFNESS_ROW,
     ("load factors K_Hbeta | K_Halpha", ("face_load_factor", "transverse_load_factor")),
+    ("  K_Hbeta too low by its cells, at the most [%]", ("face_load_factor_error",)),
     LOAD_ROW,
     (
         "line load under the largest force; mesh-dependent at sharp ends [N/mm]",
@@ -84,6 +85,7 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
 )
 """Label and key figures of each line of the summary; {edge} stands for what ``kind_of_edge`` says."""
 
+IN_PERCENT = "edge_pressure_error", "face_load_factor_error"
 ONLY_IF_KNOWN = (
     "_without_body_torsion_",
     "_at_edge_",
@@ -171,14 +173,14 @@ def without_rounding(value: float, name: str) -> float:
 def shown(value: float, name: str) -> str:
     """Return a figure as summaries show it: four digits, all those before the point; a dash for what is not known.
 
-    The error of the edge pressure is shown in %.
+    Errors of the edge pressure and of K_Hbeta are shown in %.
     """
     value = without_rounding(value, name)
     if math.isnan(value):
         return "-"
     if "residual" in name:
         return f"{value:.1e}"
-    if name == "edge_pressure_error":
+    if name in IN_PERCENT:
         return f"{100.0 * value:.2g}"
     return f"{value:.0f}" if abs(value) >= FOUR_DIGITS else f"{value:.4g}"
 

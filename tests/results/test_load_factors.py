@@ -169,6 +169,32 @@ def test_face_load_factor_does_not_depend_on_the_grid(error):
     assert abs(fine / coarse - 1.0) < 0.03
 
 
+def without_crowning(cells, **changes):
+    """FZG C14 as half-spaces on cells of so many along the contact, with sharp face ends in one plane."""
+    flanks = {"positions": 3, "compliance": "contact", "free_edges": False, "accuracy": None, "cells": (16, cells)}
+    scene = read_scene(SCENES / "fzg_c14.toml").with_changes({f"analysis.{key}": one for key, one in flanks.items()})
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        return analyse(scene.with_changes(changes))
+
+
+def test_face_load_factor_at_sharp_ends_misses_what_is_estimated_on_any_cells():
+    """Strips hold: what is missing falls with the cells, here against cells that lack a hundredth themselves."""
+    *coarse, fine = (without_crowning(cells) for cells in (32, 64, 256))
+    missing = [fine.face_load_factor.item() / one.face_load_factor.item() - 1.0 for one in coarse]
+    errors = [one.key_figures()[0]["face_load_factor_error"] for one in coarse]
+    assert all(0.4 * error < true < error for true, error in zip(missing, errors, strict=True))
+    assert missing[1] < 0.65 * missing[0]
+    (line,) = [line for line in coarse[0].summary().splitlines() if "K_Hbeta too low by its cells" in line]
+    assert line.split()[-1] == f"{100.0 * errors[0]:.2g}"
+
+
+def test_face_load_factor_has_no_estimate_where_no_sharp_end_carries_most():
+    assert np.isnan(crowned(0.0).key_figures()[0]["face_load_factor_error"])
+    softer = without_crowning(32, **{"analysis.free_edges": True})
+    assert np.isnan(softer.key_figures()[0]["face_load_factor_error"])
+
+
 def test_face_load_factor_of_a_crowned_pair_is_that_of_its_mean_parabola():
     """Hertz's ellipse has the line load 1 - (y/a)^2: its strip in the middle over the mean of the face, weighted."""
     cycle = crowned(0.0, 64)

@@ -6,6 +6,7 @@
 - ``bending_line``: a helical pair whose pressure leaves the axis of its grid, beside repeated analyses;
 - ``jumps``, ``error_estimates``: what grids do to the transmission error, and what estimates of peak pressures are
   worth, over random scenes of all families, in minutes;
+- ``face_ends``: K_Hbeta of half-spaces at sharp face ends, beside fine cells, in minutes;
 - ``local_term``: how far the local term of a tooth reaches along the face;
 - ``root_stress``: tooth root stress beside a plane reference, convergence, time and memory of its model;
 - ``root_stress_families``: that of helical, bevel and face-milled gears beside finer meshes, in minutes;
