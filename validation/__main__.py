@@ -50,6 +50,7 @@ CASES = (
     "loaded.root_face_load",
     "loaded.numbers_to_copy",
     "calculix.mesh_cycle",
+    "calculix.helical_relief",
     "contact.subsurface",
     "contact.free_edge",
     "contact.free_block",

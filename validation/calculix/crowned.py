@@ -82,7 +82,7 @@ class Spatial:
         """Numbers of the nodes on the bore."""
         between = np.flatnonzero(np.isin(self.corners, self.bottom.bore))
         levels = [self.plane(level)[self.bottom.bore] for level in range(self.layers + 1)]
-        return np.concatenate([*levels, *(self._between(layer)[between] for layer in range(self.layers))])
+        return np.concatenate([*levels, *(self.between(layer)[between] for layer in range(self.layers))])
 
     def coordinates(self) -> Array:
         """Number, x, y, z of all nodes: the planes, then the corners halfway between them."""
@@ -97,7 +97,7 @@ class Spatial:
         corners, middles = self.bottom.elements[:, :4], self.bottom.elements[:, 4:]
         upright = np.searchsorted(self.corners, corners)
         layers = [
-            np.hstack([low[corners], high[corners], low[middles], high[middles], self._between(layer)[upright]])
+            np.hstack([low[corners], high[corners], low[middles], high[middles], self.between(layer)[upright]])
             for layer in range(self.layers)
             for low, high in [(self.plane(layer), self.plane(layer + 1))]
         ]
@@ -107,7 +107,7 @@ class Spatial:
         """Numbers of the hexahedra over section elements."""
         return self.first_element + layer * len(self.bottom.elements) + elements
 
-    def _between(self, layer: int) -> Ints:
+    def between(self, layer: int) -> Ints:
         """Numbers of the corner nodes in the middle of a layer."""
         planes = len(self.bottom.nodes) * (self.layers + 1)
         return self.first_node + planes + self.corners.size * layer + np.arange(self.corners.size)

@@ -23,11 +23,13 @@ def graded(
     growth: float,
     coarsest: float,
     ends: tuple[float, float] = (math.inf, math.inf),
+    elements: int | None = None,
 ) -> Array:
     """Nodes from 0 to ``length``, fine about one place and growing away from it.
 
     The size is ``finest`` within ``core`` of the place and grows by ``growth`` per length beyond, up to ``coarsest``;
-    both ends may have sizes of their own that are smaller. The elements share the integral of its inverse evenly.
+    both ends may have sizes of their own that are smaller. The elements share the integral of its inverse evenly; there
+    are as many as the sizes ask for, or a given number of them.
 
     Returns
     -------
@@ -41,7 +43,7 @@ def graded(
         size = np.minimum(size, end + GROWTH_FROM_ENDS * away)
     density = 1.0 / size
     count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(line))])
-    elements = max(1, math.ceil(count[-1]))
+    elements = elements or max(1, math.ceil(count[-1]))
     return with_midpoints(np.interp(np.linspace(0.0, count[-1], elements + 1), count, line))
 
 

@@ -69,11 +69,11 @@ class Ring(Spatial):
 
     def _at(self, height: float) -> Array:
         """Nodes of the section at a height, (n, 3)."""
-        turned = self.bottom.nodes @ _turn(self.twist * height)
+        turned = self.bottom.nodes @ turn(self.twist * height)
         return np.column_stack([turned, np.full(len(turned), height)])
 
 
-def _turn(angle: float) -> Array:
+def turn(angle: float) -> Array:
     """Matrix that turns row vectors."""
     return np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
 
@@ -124,7 +124,7 @@ class LoadedRing:
                 element, along = self._place(chosen, radius)
                 nodes = hexahedra[layer * len(ring.bottom.elements) + element]
                 nodes = nodes[[0, 1, 5, 4, 8, 17, 12, 16]]  # first side of the section, drawn out
-                shares, slopes = _serendipity(along, part)
+                shares, slopes = serendipity(along, part)
                 normal = np.cross(*(slopes.T @ coordinates[nodes]))
                 normal /= np.linalg.norm(normal)
                 middle = shares @ coordinates[nodes]
@@ -184,7 +184,7 @@ class LoadedRing:
             across = _units(across - np.einsum("nk,nk->n", across, along)[:, None] * along)
             columns = []
             for level, height in enumerate(ring.levels):
-                turned = np.column_stack([across[:, :2] @ _turn(ring.twist * height), across[:, 2]])
+                turned = np.column_stack([across[:, :2] @ turn(ring.twist * height), across[:, 2]])
                 nodes = ring.plane(level)[fillet.nodes] - ring.first_node
                 tensor = nodal[nodes][:, [0, 3, 5, 3, 1, 4, 5, 4, 2]].reshape(-1, 3, 3)
                 columns.append(np.einsum("nj,njk,nk->n", turned, tensor, turned))
@@ -230,7 +230,7 @@ def _even(radius: float, size: float) -> Fineness:
     return Fineness(radius, size, 0.0, 0.0, 0.0, size)
 
 
-def _serendipity(u: float, v: float) -> tuple[Array, Array]:
+def serendipity(u: float, v: float) -> tuple[Array, Array]:
     """Shape functions (8,) of a quadratic face and their slopes (8, 2)."""
     a, b = AROUND.T
     one, other = 1.0 + a * u, 1.0 + b * v

@@ -15,13 +15,14 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
-from scipy.sparse import coo_matrix, diags_array
+from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import cg
 
 from validation.calculix.case import FACE_WIDTH
 from validation.calculix.pairs_in_space import read_in_space
 from validation.calculix.ring import LoadedRing, RingMeshing, loaded_ring
 from validation.calculix.ring_run import LINE_LOAD, loaded_line, pinion
+from validation.calculix.section import Ints
 from validation.calculix.steel import POISSON_RATIO, YOUNGS_MODULUS
 from validation.calculix.tables import CROWNED_FILE, DATA, provenance, read_table, write_table
 from validation.calculix.tooth_form import Array
@@ -71,10 +72,8 @@ def elasticity() -> Array:
     return factor * matrix
 
 
-def nodal_stresses(loaded: LoadedRing, forces: Mapping[str, Mapping[int, Array]]) -> dict[str, Array]:
-    """Stress of all nodes (n, 6) [MPa] by load: xx, yy, zz, xy, yz, zx; the bore is held."""
-    ring = loaded.ring
-    points, elements = ring.coordinates()[:, 1:], ring.hexahedra()[:, 1:] - ring.first_node
+def assembled(points: Array, elements: Ints) -> tuple[csr_array, list[Array]]:
+    """Stiffness (3 n, 3 n) of hexahedra without supports, and their strains (m, 6, 60) at each point of integration."""
     matrix, count, size = elasticity(), len(elements), 3 * len(points)
     stiffness, strains, gauss = np.zeros((count, 60, 60)), [], np.array(CORNERS) / math.sqrt(3.0)
     for place in gauss:
@@ -87,10 +86,25 @@ def nodal_stresses(loaded: LoadedRing, forces: Mapping[str, Mapping[int, Array]]
         strain[:, 2, 2::3] = strain[:, 4, 1::3] = strain[:, 5, 0::3] = z
         stiffness += np.linalg.det(jacobian)[:, None, None] * (strain.transpose(0, 2, 1) @ matrix @ strain)
         strains.append(strain)
-    freedoms = (3 * elements[:, :, None] + np.arange(3)).reshape(count, 60)
+    freedoms = freedoms_of(elements)
     rows, columns = np.repeat(freedoms, 60, axis=1), np.tile(freedoms, (1, 60))
-    whole = coo_matrix((stiffness.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size)).tocsr()
-    held = (3 * (np.asarray(ring.bore()) - ring.first_node)[:, None] + np.arange(3)).ravel()
+    whole = coo_array((stiffness.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size)).tocsr()
+    return whole, strains
+
+
+def freedoms_of(nodes: Ints) -> Ints:
+    """Numbers (m, 3 k) of the displacements of nodes (m, k)."""
+    return (3 * nodes[..., None] + np.arange(3)).reshape(*nodes.shape[:-1], -1)
+
+
+def nodal_stresses(loaded: LoadedRing, forces: Mapping[str, Mapping[int, Array]]) -> dict[str, Array]:
+    """Stress of all nodes (n, 6) [MPa] by load: xx, yy, zz, xy, yz, zx; the bore is held."""
+    ring = loaded.ring
+    points, elements = ring.coordinates()[:, 1:], ring.hexahedra()[:, 1:] - ring.first_node
+    matrix, size = elasticity(), 3 * len(points)
+    whole, strains = assembled(points, elements)
+    freedoms = freedoms_of(elements)
+    held = freedoms_of(ring.bore() - ring.first_node)
     free = np.setdiff1d(np.arange(size), held)
     inner = whole[free][:, free]
     scale = diags_array(1.0 / inner.diagonal())

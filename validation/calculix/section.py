@@ -41,6 +41,9 @@ class Fineness:
     coarsest : float [mm]
     fillet : float [mm]
         Largest element along both fillets and below them, if less.
+    elements : pair of int, or None
+        Along the side of the tooth and through it, where sizes are not to decide: sections of one gear with the same
+        numbers have the same topology.
     """
 
     radius: float
@@ -50,6 +53,7 @@ class Fineness:
     growth: float
     coarsest: float
     fillet: float = math.inf
+    elements: tuple[int, int] | None = None
 
 
 @dataclass(frozen=True)
@@ -115,7 +119,8 @@ def side_radii(form: ToothForm, fine: Fineness) -> Array:
     steps = np.hypot(np.diff(radius), radius[1:] * np.diff(form.half_angle(radius)))
     arc = np.concatenate([[0.0], np.cumsum(steps)])
     place = np.interp(-fine.radius, -radius, arc)
-    along = graded(arc[-1], place, fine.core, fine.finest, fine.growth, fine.coarsest, (math.inf, fine.fillet))
+    ends, elements = (math.inf, fine.fillet), fine.elements[0] if fine.elements else None
+    along = graded(arc[-1], place, fine.core, fine.finest, fine.growth, fine.coarsest, ends, elements)
     return np.interp(along, arc, radius)
 
 
@@ -124,7 +129,8 @@ def _sector(form: ToothForm, fine: Fineness, layers: Array) -> dict[str, tuple[A
     radius = side_radii(form, fine)
     half = form.half_angle(radius)
     width = 2.0 * fine.radius * float(form.half_angle(fine.radius))
-    across = graded(width, 0.0, fine.depth, fine.finest, fine.growth, fine.coarsest, (fine.fillet, fine.fillet))
+    ends, elements = (fine.fillet, fine.fillet), fine.elements[1] if fine.elements else None
+    across = graded(width, 0.0, fine.depth, fine.finest, fine.growth, fine.coarsest, ends, elements)
     across /= width
     x = np.multiply.outer(radius * np.cos(half), np.ones_like(across))
     y = np.multiply.outer(radius * np.sin(half), 1.0 - 2.0 * across)
