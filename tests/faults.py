@@ -86,7 +86,7 @@ FAULTS = (
     ),
     Fault(
         "bending: a peak that its lines of forces move keeps the error of the grid",
-        "loaded/tooth_contact.py",
+        "loaded/loaded_contact.py",
         "np.maximum(self.solution.error_estimate.peak_pressure, self.peak_change)",
         "self.solution.error_estimate.peak_pressure",
         "loaded/test_tooth_contact.py::test_peak_that_moves_by_more_than_its_load_has_no_smaller_error",
@@ -145,7 +145,7 @@ FAULTS = (
             ),
             (
                 "a peak beside the end of the material counts as smooth",
-                "loaded/tooth_contact.py",
+                "loaded/loaded_contact.py",
                 " or self._peaks_beside_end",
                 "",
                 "loaded/test_tooth_contact.py::test_peak_beside_the_end_of_the_material_is_that_of_slices",

@@ -34,8 +34,8 @@ from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.flanks.rounding import Arc, RoundedFlank, material_cosines
 from loaded_tca.loaded.cycle import Carried, told_where
 from loaded_tca.loaded.free_edges import edge_compliances
+from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.pair_coupling import BendingModel
-from loaded_tca.loaded.tooth_contact import LoadedContact
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation.normal_gap import NormalGap

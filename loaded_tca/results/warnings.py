@@ -11,8 +11,9 @@ from loaded_tca.compliance import require_teeth, warn_of_teeth
 from loaded_tca.contact.rounded_edge import LARGE_ERROR
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.loaded.cycle import Carried
+from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.loaded.rounded_edges import PeakAtEdge
-from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact
+from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.iso6336_3 import THIN_RIM
 from loaded_tca.scene import Scene

@@ -23,7 +23,8 @@ from matplotlib.ticker import LogFormatter
 from numpy.typing import NDArray
 
 from loaded_tca.flanks import FlankModifications
-from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact, solve_under_load
+from loaded_tca.loaded.loaded_contact import LoadedContact
+from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.pairs.bevel import BevelMounting
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import PointContact, point_contact

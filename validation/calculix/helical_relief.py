@@ -24,7 +24,8 @@ import numpy as np
 from loaded_tca import AccuracyWarning, read_scene
 from loaded_tca.compliance import tooth_compliance
 from loaded_tca.loaded.cycle import carried_by_one
-from loaded_tca.loaded.tooth_contact import GridChoice, LoadedContact
+from loaded_tca.loaded.loaded_contact import LoadedContact
+from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.unloaded import trace_contact
 from validation.calculix.helical_contact import FILE, LINES_FILE, POSITIONS, TOUCHING, UNDER_LOAD, pinion_angle
 from validation.calculix.tables import read_table

@@ -19,7 +19,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.compliance.root_stress import DENSITY
 from loaded_tca.errors import AccuracyWarning
 from loaded_tca.loaded.cycle import carried_by_all
-from loaded_tca.loaded.tooth_contact import LoadedContact
+from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded import trace_teeth
