@@ -11,7 +11,7 @@ from validation.calculix.case import VARIANTS, line_load, position
 from validation.calculix.fillet import LEAST_ANGLE, fillets
 from validation.calculix.grading import graded
 from validation.calculix.model import Meshing, plane_deck
-from validation.calculix.ring import RingMeshing, _serendipity, loaded_ring
+from validation.calculix.ring import RingMeshing, serendipity, loaded_ring
 from validation.calculix.ring_run import LINE_LOAD, loaded_line, pinion
 from validation.calculix.roots import root_stress
 from validation.calculix.run import nodal_stresses
@@ -98,7 +98,7 @@ def test_nodal_stresses_are_read_by_step(tmp_path):
 
 
 def test_shape_functions_are_those_of_a_quadratic_face():
-    value, slope = _serendipity(0.3, -0.6)
+    value, slope = serendipity(0.3, -0.6)
     around = [(-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (1, 0), (0, 1), (-1, 0)]
     u, v = np.array(around, dtype=float).T
     for field, expected, along in ((u * 0 + 1, 1.0, (0, 0)), (u * v, -0.18, (-0.6, 0.3)), (u**2, 0.09, (0.6, 0.0))):

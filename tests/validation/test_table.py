@@ -116,7 +116,7 @@ def test_unknown_case_is_refused(monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["validation", "contact.spheres"])
     with pytest.raises(SystemExit, match="2"):
         programme.main()
-    assert "no case contact.spheres; there are contact.sphere, " in capsys.readouterr().err
+    assert f"no case contact.spheres; there are {programme.CASES[0]}, " in capsys.readouterr().err
 
 
 class Dying:
