@@ -11,7 +11,7 @@ from validation.calculix.case import VARIANTS, line_load, position
 from validation.calculix.fillet import LEAST_ANGLE, fillets
 from validation.calculix.grading import graded
 from validation.calculix.model import Meshing, plane_deck
-from validation.calculix.ring import RingMeshing, serendipity, loaded_ring
+from validation.calculix.ring import RingMeshing, loaded_ring, serendipity
 from validation.calculix.ring_run import LINE_LOAD, loaded_line, pinion
 from validation.calculix.roots import root_stress
 from validation.calculix.run import nodal_stresses
