@@ -29,6 +29,7 @@ from loaded_tca.errors import require
 from loaded_tca.plots import style
 from loaded_tca.plots.style import DISTINCT_COLOURS, MARKERS
 from loaded_tca.results.key_figures import mean_over_a_pitch
+from loaded_tca.results.summary import shown_torque
 from loaded_tca.scene import Scene, parse_scene
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ def plot_before_and_after(design: xarray.Dataset | DesignResult, torque: int | N
     figure = Figure(figsize=(11.0, 8.0), layout="constrained")
     (error, pressure), (factor, span) = figure.subplots(2, 2)
     angle = np.degrees(pair.pitch) * np.linspace(-0.5, 0.5, design.sizes["position"])
-    length, under = 1e3 * pair.base_radii[1], f"{torques[torque]:.4g} N m"
+    length, under = 1e3 * pair.base_radii[1], shown_torque(1e3 * torques[torque])
     _draw(error, design, "transmission_error", angle, lambda values: _less_mean(length * values[:, torque]))
     _draw(pressure, design, "peak_pressure", angle, lambda values: values[:, torque])
     _draw(factor, design, "face_load_factor", torques)

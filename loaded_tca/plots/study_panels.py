@@ -20,6 +20,7 @@ from loaded_tca.errors import InputError
 from loaded_tca.plots import style
 from loaded_tca.plots.labels import label_of
 from loaded_tca.plots.style import ACCENT, COLOURS, MARKERS, MOST_LABELS
+from loaded_tca.results.summary import shown_torque
 from loaded_tca.scene.parse import parse_scene, toml_table
 from loaded_tca.studies.ranking import figure_values, varied_keys
 
@@ -95,7 +96,7 @@ def torque_labels(study: xarray.Dataset) -> list[str]:
     columns = (np.unique(column[np.isfinite(column)]) for column in torques.T)
     numbered = [f"torque {k + 1} of {count}" if count > 1 else "" for k in range(count)]
     return [
-        f"pinion torque {one[0]:.4g} N m" if len(one) == 1 else number
+        f"pinion torque {shown_torque(1e3 * one[0])}" if len(one) == 1 else number
         for one, number in zip(columns, numbered, strict=True)
     ]
 

@@ -23,7 +23,7 @@ from loaded_tca.errors import require
 from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.results.files import FilePath, replacing
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.results.summary import signed
+from loaded_tca.results.summary import shown_torque, signed
 
 COLOURS = "viridis"
 """Even in lightness, and told apart by colour-blind readers and in grey."""
@@ -148,7 +148,7 @@ def torques_with_panels(result: MeshCycle) -> list[int]:
 
 def torque_label(result: MeshCycle, torque: int) -> str:
     """Return what legends and panels say of one torque."""
-    return f"pinion torque {1e-3 * result.torque[torque]:.4g} N m"
+    return f"pinion torque {shown_torque(result.torque[torque])}"
 
 
 def load(result: MeshCycle, torque: int) -> str:
@@ -160,8 +160,8 @@ def load(result: MeshCycle, torque: int) -> str:
 
 def loads(result: MeshCycle) -> str:
     """Return what a title says of all torques."""
-    low, high = 1e-3 * result.torque.min(), 1e-3 * result.torque.max()
-    return load(result, 0) if len(result.torque) == 1 else f"pinion torques {low:.4g} to {high:.4g} N m"
+    low, high = shown_torque(result.torque.min()).split()[0], shown_torque(result.torque.max())
+    return load(result, 0) if len(result.torque) == 1 else f"pinion torques {low} to {high}"
 
 
 def position_label(result: MeshCycle, position: int, column: int | None = None) -> str:

@@ -12,7 +12,7 @@ from loaded_tca.plots import plot_study
 from loaded_tca.plots.labels import label_of
 from loaded_tca.reports.page import Table, pictures_of
 from loaded_tca.reports.result_page import explained, scene_content
-from loaded_tca.results.summary import shown
+from loaded_tca.results.summary import shown, shown_torque
 from loaded_tca.results.warnings import without_place
 from loaded_tca.scene import parse_scene
 from loaded_tca.studies.ranking import (
@@ -125,7 +125,7 @@ def _scatter(study: xarray.Dataset, by: str | None) -> Iterator[Table]:
             if values.size:
                 at = np.percentile(values, [*PERCENTILES.values()]).tolist()
                 rows.append((label_of(name), *(shown(value, name) for value in at)))
-        under = "" if torque is None else f"under {1e-3 * torque:.4g} N m"
+        under = "" if torque is None else f"under {shown_torque(torque)}"
         if rows:
             yield Table(tuple(rows), (under, *PERCENTILES))
 

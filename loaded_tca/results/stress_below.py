@@ -15,6 +15,7 @@ from loaded_tca.errors import InputError, require
 from loaded_tca.reference.hertz import LineContact, PointContact
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.pressure_map import PressureMap
+from loaded_tca.results.summary import shown_torque
 
 GearName = Literal["pinion", "wheel"]
 GEARS: tuple[GearName, GearName] = ("pinion", "wheel")
@@ -189,7 +190,7 @@ class StressBelow:
         across = "" if self.beside_spike is None else " across the contact point"
         angle = round(math.degrees(result.pinion_angle[self.position]), 3) + 0.0
         return (
-            f"pinion torque {1e-3 * result.torque[self.torque]:.4g} N m, position {self.position + 1} of "
+            f"pinion torque {shown_torque(result.torque[self.torque])}, position {self.position + 1} of "
             f"{len(result.path)}, tooth pair {self.pair}, pinion angle {angle:.4g} deg",
             f"flank of the {self.gear}, Poisson's ratio {self.stress.poisson_ratio:g}: "
             f"highest pressure{across} {peak:.4g} MPa, half width b {self.half_width:.4g} mm",
@@ -283,7 +284,7 @@ def stress_below(
     if one is None or not one.pressure.any():
         raise InputError(
             f"no stress: tooth pair {result.pair[column]} carries no load at position {position + 1} under "
-            f"{1e-3 * result.torque[torque]:.4g} N m"
+            f"{shown_torque(result.torque[torque])}"
         )
     half_width = 0.5 * float(result.contact_width[torque, position, column])
     material = result.scene.materials[GEARS.index(gear)]

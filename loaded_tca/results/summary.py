@@ -185,6 +185,11 @@ def shown(value: float, name: str) -> str:
     return f"{value:.0f}" if abs(value) >= FOUR_DIGITS else f"{value:.4g}"
 
 
+def shown_torque(torque: float) -> str:
+    """Return a torque [N mm] as summaries show it, with its unit, N m."""
+    return f"{shown(1e-3 * torque, 'pinion_torque_Nm')} N m"
+
+
 def limits_of(figures: Sequence[Figures]) -> Iterator[str]:
     """Yield sentences on what limits the figures; none for an ordinary point contact."""
     apart = [entry["positions"] - entry["positions_in_contact"] for entry in figures]
