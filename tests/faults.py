@@ -171,6 +171,13 @@ FAULTS = (
                 "results/test_rounded_edges.py::test_largest_edge_pressure_and_its_warnings_do_not_depend_on_whether_all_are_asked_for",
             ),
             (
+                "a relief start that crosses one sets no limit aside",
+                "loaded/lines_of_edges.py",
+                "self.ends_sharp or self.at_relief_start else",
+                "self.ends_sharp else",
+                f"{ROUNDED}::test_edge_that_a_relief_start_crosses_has_no_bound",
+            ),
+            (
                 "they are looked for in the tangent plane, not on the flanks",
                 "loaded/lines_of_edges.py",
                 "place = place - length / (slope @ slope) * slope",

@@ -206,6 +206,15 @@ def test_edges_of_bent_flanks_are_where_the_gap_begins_to_open():
         assert_allclose(beyond, 1e-6 / 0.2, rtol=0.15)  # along a slant of up to 20 deg
 
 
+def test_edge_that_a_relief_start_crosses_has_no_bound():
+    """Of the face ends that a contact reaches one lies above the start of the pinion's relief, which crosses the other."""
+    relief = FlankModifications(tip_relief=0.03, tip_relief_start=106.0, tip_relief_form="linear")
+    helical = {"teeth": (34, 57), "width": 25.0, "helix_deg": 15.0}
+    edges = reached_edges(*loaded(pitches=-0.3, pinion=relief, **helical))
+    assert [edge.at_relief_start for edge in edges] == [True, False]
+    assert [edge.limit == math.inf for edge in edges] == [True, False]
+
+
 def test_contact_that_ends_before_the_arc_has_no_peak():
     pair, one = loaded(load=100.0, pinion=FlankModifications(lead_crowning=0.02))
     assert reached_edges(pair, one) == []
