@@ -207,7 +207,7 @@ def test_edges_of_bent_flanks_are_where_the_gap_begins_to_open():
 
 
 def test_edge_that_a_relief_start_crosses_has_no_bound():
-    """Of the face ends that a contact reaches one lies above the start of the pinion's relief, which crosses the other."""
+    """The start of the relief of a helical pinion crosses one of the two face ends that a contact reaches."""
     relief = FlankModifications(tip_relief=0.03, tip_relief_start=106.0, tip_relief_form="linear")
     helical = {"teeth": (34, 57), "width": 25.0, "helix_deg": 15.0}
     edges = reached_edges(*loaded(pitches=-0.3, pinion=relief, **helical))
