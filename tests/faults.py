@@ -165,10 +165,38 @@ FAULTS = (
         for what, file, text, wrong, test in (
             (
                 "a sharp edge that ends one sets no limit aside",
-                "loaded/rounded_edges.py",
-                "return math.inf if self.ends_sharp else self.bound",
+                "loaded/lines_of_edges.py",
+                "return math.inf if self.ends_sharp or self.at_relief_start else self.bound",
                 "return self.bound",
                 "results/test_rounded_edges.py::test_largest_edge_pressure_and_its_warnings_do_not_depend_on_whether_all_are_asked_for",
+            ),
+            (
+                "a relief start that crosses one sets no limit aside",
+                "loaded/lines_of_edges.py",
+                "self.ends_sharp or self.at_relief_start else",
+                "self.ends_sharp else",
+                f"{ROUNDED}::test_edge_that_a_relief_start_crosses_has_no_bound",
+            ),
+            (
+                "they are looked for in the tangent plane, not on the flanks",
+                "loaded/lines_of_edges.py",
+                "place = place - length / (slope @ slope) * slope",
+                "place = place - (length - 0.05) / (slope @ slope) * slope",
+                f"{ROUNDED}::test_edges_of_bent_flanks_are_where_the_gap_begins_to_open",
+            ),
+            (
+                "the start of a relief that crosses one is not seen",
+                "contact/rounded_edge.py",
+                "if growth <= MOST_GROWTH else math.inf",
+                "if growth < math.inf else math.inf",
+                "contact/test_rounded_edge.py::test_edge_crossed_by_a_jump_of_the_slope_has_no_limit",
+            ),
+            (
+                "where an arc begins the slope of the gap is said to jump",
+                "contact/samples.py",
+                "np.maximum(bends[:-3], bends[3:])",
+                "np.minimum(bends[:-3], bends[3:])",
+                "contact/test_samples.py::test_curvature_that_jumps_is_no_jump_of_the_slope",
             ),
             (
                 "one that crosses another is solved alone where the other has less",
@@ -267,7 +295,7 @@ FAULTS = (
     ),
     Fault(
         "rounded edges: unlike materials share the compliance evenly",
-        "loaded/rounded_edges.py",
+        "loaded/lines_of_edges.py",
         "pair.contact_modulus / gear.material.plane_strain_modulus,",
         "0.5,",
         f"{ROUNDED}::test_share_of_a_gear_in_the_compliance_is_that_of_its_material",

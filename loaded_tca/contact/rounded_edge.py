@@ -13,6 +13,7 @@ from loaded_tca.arrays import Array, count_problems, numbers, real
 from loaded_tca.contact.columns import EVEN, FineZone, column_borders, pressed_width
 from loaded_tca.contact.edges import SHARPEST, FreeEdge, extra_displacement
 from loaded_tca.contact.graded import GradedProblem, GradedSolution, solve_graded
+from loaded_tca.contact.samples import slope_jump, top
 from loaded_tca.errors import require
 
 Gap = Callable[[Array, Array], Array]
@@ -57,6 +58,10 @@ MOST_FINE = 80
 """Finest columns beside an oblique edge, which lies across them."""
 SURELY_LESS = 0.92
 """Part of a pressure below which coarser cells tell that finer ones will not reach it."""
+MOST_GROWTH = 0.01
+"""Of a peak on cells of half the size, where the slope of the gap jumps: from there on it is said to have no limit."""
+MARGIN_OF_GROWTH = 2.0
+"""The error over a smaller one: what a cell has there depends on where in it the line lies, too."""
 TOLERANCE = 1e-5
 
 
@@ -113,8 +118,9 @@ class EdgePressure:
         Of the peak.
     error : float
         Estimated relative error of the discretisation: the change from coarser cells, and at least what the number of
-        cells is known to leave; infinite where the end of the box is what bounds the contact, and where the pressure
-        along the edge rises to a sharp end of the material: finer rows find more and more.
+        cells is known to leave; infinite where the end of the box is what bounds the contact, where the pressure
+        along the edge rises to a sharp end of the material, and where the slope of the gap jumps at the peak, as at the
+        start of a linear relief: there finer rows find more and more.
     ends_sharp : bool
         Whether it does the latter: the corner is as sharp as that end.
     pressed_width : float [mm]
@@ -353,15 +359,17 @@ class _Arc:
         on_arc = float((width / (np.abs(self.normal) * sizes)[across]).min())
         largest = float(pressure[row, column])
         beside = pressure[max(0, row - 1) : row + 2, column]
-        x_top, in_x = _top(x, pressure[:, column], row) if beside.all() else (float(x[row]), 1.0)
-        y_top, in_y = _top(y, pressure[row], column)
-        top = largest * in_x * in_y if problem.max_pressure is None else largest
+        x_top, in_x = top(x, pressure[:, column], row) if beside.all() else (float(x[row]), 1.0)
+        y_top, in_y = top(y, pressure[row], column)
+        peak = largest * in_x * in_y if problem.max_pressure is None else largest
         error = (ASKEW_ERROR if across[0] else ALIGNED_ERROR) / on_arc**2
         ends_sharp = _rises_to_sharp_end(solution, row, column, error)
+        growth = _growth_at_slope_jump(problem, row, column) / largest
+        error = max(error, MARGIN_OF_GROWTH * growth) if growth <= MOST_GROWTH else math.inf
         if row in (0, x.size - 1) or column in (0, y.size - 1) or ends_sharp:
             error = math.inf
         rows = np.count_nonzero(((beyond + along > 0.0) & (pressure > 0.0)).any(axis=1))
-        return EdgePressure(top, (x_top, y_top), error, ends_sharp, width, on_arc, int(rows), solution)
+        return EdgePressure(peak, (x_top, y_top), error, ends_sharp, width, on_arc, int(rows), solution)
 
     def after(self, found: EdgePressure) -> _Arc:
         """What is known once a solution is."""
@@ -385,17 +393,14 @@ def _rises_to_sharp_end(solution: GradedSolution, row: int, column: int, error: 
     return bool(np.isinf(solution.problem.gap[near]).any()) and bool(np.ptp(pressed) > error * pressed.max())
 
 
-def _top(places: Array, values: Array, k: int) -> tuple[float, float]:
-    """Top of the parabola through the squares of three pressures: its place, and its root over the middle one."""
-    if not 0 < k < values.size - 1:
-        return float(places[k]), 1.0
-    s, square = places[k - 1 : k + 2] - places[k], (values[k - 1 : k + 2] / values[k]) ** 2
-    before, after = (square[0] - 1.0) / s[0], (square[2] - 1.0) / s[2]
-    bend = (after - before) / (s[2] - s[0])
-    slope = before - bend * s[0]
-    if bend >= 0.0:
-        return float(places[k]), 1.0
-    return float(places[k] - 0.5 * slope / bend), math.sqrt(1.0 - 0.25 * slope**2 / bend)
+def _growth_at_slope_jump(problem: GradedProblem, row: int, column: int) -> float:
+    """Pressure [MPa] by which a peak grows whenever cells are halved, where the slope of the gap jumps beside it.
+
+    Beside a line on which the slope jumps by J a half-space has the pressure E* J/(2 pi) ln(1/s), which has no limit.
+    """
+    x = problem.spacing * np.arange(problem.cells[0])
+    jump = math.hypot(slope_jump(x, problem.gap[:, column], row), slope_jump(problem.middles, problem.gap[row], column))
+    return problem.contact_modulus * jump * math.log(2.0) / (2.0 * math.pi)
 
 
 def _load_centre(solution: GradedSolution) -> float:

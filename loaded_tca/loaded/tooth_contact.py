@@ -20,7 +20,7 @@ from loaded_tca.loaded.together import Ends, Gap, Steps, Task, found_alone
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
 from loaded_tca.unloaded import ContactPoint
-from loaded_tca.unloaded.arcs import arcs_at
+from loaded_tca.unloaded.arcs import arcs_at, relief_start_distances
 
 FIRST_CELLS, FIRST_CELLS_AT_ENDS = (16, 16), (16, 32)
 """Grids from which an accuracy is approached, doubled as often as needed. Where flanks end in the box, edges cut the
@@ -257,15 +257,8 @@ def _crosses_relief_start(pair: GearPair, contact: ContactPoint, separation: Sep
     """Whether the start of a linear relief, of either flank, runs through the contact, whose ends lie within cells."""
     if contact.on_relief_start:
         return True
-    places = (contact.pinion_radius, contact.pinion_axial), (contact.wheel_radius, contact.wheel_axial)
-    flanks = pair.pinion.flank, pair.wheel.flank
-    if not any(flank.relief_starts(*map(np.array, place)) for flank, place in zip(flanks, places, strict=True)):
-        return False  # neither flank has one
-    x, y, z = np.moveaxis(separation.points, -1, 0)
-    radius, _, axial = pair.to_wheel(separation.points)
-    jets = (*pair.pinion.flank.relief_starts(np.hypot(x, y), z), *pair.wheel.flank.relief_starts(radius, axial))
-    for jet in jets if pressure.any() else ():
-        beyond = np.broadcast_to(jet.value, pressure.shape)
+    distances = relief_start_distances(pair, separation.points)
+    for beyond in np.moveaxis(distances, -1, 0) if pressure.any() else ():
         values = np.concatenate([beyond[pressure > 0.0], values_at_ends(pressure, beyond, separation.cover)])
         if values.min() < 0.0 < values.max():
             return True

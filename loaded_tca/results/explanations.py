@@ -37,8 +37,8 @@ EXPLANATIONS = (
     Explanation(
         "the pressure at a rounded edge has an estimated error",
         "two edges that meet askew, or a rounding much smaller than the contact, need more columns than are made; "
-        "where a rounded edge meets a sharp one, the pressure has no limit",
-        "read `edge_pressure` with its error; a larger radius, or one for the sharp edge, too",
+        "where a rounded edge meets a sharp one or the start of a linear relief, the pressure has no limit",
+        "read `edge_pressure` with its error; a larger radius, or one for the sharp edge, too; a parabolic relief",
     ),
     Explanation(
         "the contact lies across the start of a linear relief",

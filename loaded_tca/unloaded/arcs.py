@@ -25,25 +25,28 @@ def edge_distances(pair: GearPair, points: Array) -> Array:
     return np.stack([np.broadcast_to(edge.value, points.shape[:-1]) for edge in edges], axis=-1)
 
 
+def relief_start_distances(pair: GearPair, points: Array) -> Array:
+    """Distances (..., n) [mm] of points (..., 3) of the fixed frame to the relief starts of both flanks, beyond > 0."""
+    radius, _, axial = pair.to_wheel(points)
+    pinion = pair.pinion.flank.relief_starts(np.hypot(points[..., 0], points[..., 1]), points[..., 2])
+    values = [jet.value for jet in (*pinion, *pair.wheel.flank.relief_starts(radius, axial))]
+    return np.stack(np.broadcast_arrays(*values, axial)[:-1], axis=-1) if values else np.zeros((*axial.shape, 0))
+
+
 def past_tangents(station: Station) -> Array:
     """Lengths (n, 8) [mm] from where the arcs of all edges begin, the pinion's first; -inf at sharp edges."""
-    return _past_tangents(station.pair, (station.rho, station.z), (station.wheel_rho, station.wheel_z))
-
-
-def lengths_past_tangents(pair: GearPair, points: Array) -> Array:
-    """The same (..., 8) [mm] of points (..., 3) of the fixed frame [mm], seen along the edges' surfaces."""
-    radius, _, axial = pair.to_wheel(points)
-    pinion = np.hypot(points[..., 0], points[..., 1]), points[..., 2]
-    return _past_tangents(pair, pinion, (radius, axial))
+    return lengths_past_tangents(station.pair, (station.rho, station.z), (station.wheel_rho, station.wheel_z))
 
 
 def arcs_at(pair: GearPair, points: Array) -> Mask:
     """Edges (..., 8) on whose arcs points (..., 3) of the fixed frame [mm] lie, seen along the edges' surfaces."""
-    return np.asarray(lengths_past_tangents(pair, points) > 0.0)
+    radius, _, axial = pair.to_wheel(points)
+    pinion = np.hypot(points[..., 0], points[..., 1]), points[..., 2]
+    return np.asarray(lengths_past_tangents(pair, pinion, (radius, axial)) > 0.0)
 
 
-def _past_tangents(pair: GearPair, *places: tuple[Array, ...]) -> Array:
-    """Lengths (..., 8) of places (rho, z) on both flanks from where the arcs begin."""
+def lengths_past_tangents(pair: GearPair, *places: tuple[Array, ...]) -> Array:
+    """The same (..., 8) [mm] of places (rho, z) [mm] of pinion and wheel, seen along the edges' surfaces."""
     found: list[Array] = []
     for gear, (rho, z) in zip((pair.pinion, pair.wheel), places, strict=True):
         flank, none = gear.flank, [np.full(rho.shape, -np.inf)] * len(EDGE_NAMES)

@@ -60,6 +60,22 @@ def test_flat_punch_with_rounded_ends():
         assert one.cells_on_arc > 3.5
 
 
+def test_edge_crossed_by_a_jump_of_the_slope_has_no_limit():
+    """A roof along the cylinder: the wedge has the pressure E* J/(2 pi) ln(1/s) at its ridge, more on finer rows.
+
+    Halves of rows add E* J ln 2/(2 pi), 125 MPa with J = 0.01: at a peak of 4 GPa that is above 1 %, a tenth of it not.
+    """
+
+    def roof(jump):
+        return lambda x, y: face_end(x, y) + 0.5 * jump * np.abs(x)[:, None]
+
+    coarse, fine = (peak(roof(0.01), cells=(cells, 32), accuracy=1.0) for cells in (41, 123))
+    assert coarse.error == fine.error == math.inf
+    assert_allclose(fine.pressure - coarse.pressure, E_STAR * 0.01 / (2.0 * math.pi) * math.log(3.0), rtol=0.25)
+    slight, none = (peak(roof(jump)) for jump in (0.001, 0.0))
+    assert none.error < slight.error < 0.02
+
+
 def test_edge_that_meets_a_sharp_end_has_no_limit():
     """A cylinder on a rounded edge along its axis, with sharp ends; with a crown the contact ends before them."""
     edge, box = RoundedEdge((0.0, 0.02), (0.0, 1.0), RADIUS), ((-2.5, 2.5), (-0.2, 0.1))

@@ -13,19 +13,16 @@ from loaded_tca.errors import ConvergenceError
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.rounding import EdgeRounding
 from loaded_tca.loaded import rounded_edges
+from loaded_tca.loaded.lines_of_edges import ReachedEdge, largest_pressure, reached_edges
 from loaded_tca.loaded.load_sharing import share_load, tooth_pairs_at
-from loaded_tca.loaded.rounded_edges import (
-    ReachedEdge,
-    largest_pressure,
-    pressure_at_rounded_edge,
-    reached_edges,
-)
+from loaded_tca.loaded.rounded_edges import pressure_at_rounded_edge
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.material import Material
 from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.reference.punch import RoundedPunch
 from loaded_tca.scene import read_scene
 from loaded_tca.separation import sample_separation
+from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import trace_contact, trace_teeth
 from tests.samples.gear_pairs import NONE, gear_pair
 from tests.samples.results import FLANKS_ALONE, SCENES
@@ -190,6 +187,32 @@ def test_cap_is_respected():
     peak = found(pair, one)
     assert_allclose(peak.pressure, cap, rtol=1e-12)  # clipped at the cap
     assert found(*loaded()).pressure > cap, "without it"
+
+
+def test_edges_of_bent_flanks_are_where_the_gap_begins_to_open():
+    """Flanks of a spiral bevel pair leave the tangent plane: there the edge lay 0.05 mm beside the beginning."""
+    names = [f"{gear}.{edge}_rounding_mm" for gear in ("pinion", "wheel") for edge in ("tip", "side")]
+    both = read_scene(SCENES / "mesh_cycle_bevel.toml").with_changes(dict.fromkeys(names, 0.1)).pair()
+    contact = trace_contact(both, [-0.9 * both.pitch], warn=False)[0]
+    one = solve_under_load(both, contact, 3000.0, GridChoice((24, 32)))
+    edges = reached_edges(both, one)
+    assert len(edges) == 2
+    for (line,) in (edge.lines for edge in edges):
+        x, y = np.array(line.place)[:, None] + line.direction[:, None] * [-1e-3, 1e-3]
+        gaps = [NormalGap(pair, contact, one.separation.axes) for pair in (both, both.sharp)]
+        opened, sharp = (gap.at(x[None], y[None])[0][0] for gap in gaps)
+        before, beyond = (opened - sharp).tolist()
+        assert abs(before) < 1e-12
+        assert_allclose(beyond, 1e-6 / 0.2, rtol=0.15)  # along a slant of up to 20 deg
+
+
+def test_edge_that_a_relief_start_crosses_has_no_bound():
+    """The start of the relief of a helical pinion crosses one of the two face ends that a contact reaches."""
+    relief = FlankModifications(tip_relief=0.03, tip_relief_start=106.0, tip_relief_form="linear")
+    helical = {"teeth": (34, 57), "width": 25.0, "helix_deg": 15.0}
+    edges = reached_edges(*loaded(pitches=-0.3, pinion=relief, **helical))
+    assert [edge.at_relief_start for edge in edges] == [True, False]
+    assert [edge.limit == math.inf for edge in edges] == [True, False]
 
 
 def test_contact_that_ends_before_the_arc_has_no_peak():
