@@ -64,7 +64,7 @@ ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("  axial position on the gear [mm]", ("pinion_root_tension_axial_mm", "wheel_root_tension_axial_mm")),
     ("  stress ratio R there", ("pinion_root_stress_ratio", "wheel_root_stress_ratio")),
     (
-        "  ISO 6336-3, sigma_F0 K_Fbeta [MPa]",
+        "  ISO 6336-3:2006, sigma_F0 K_Fbeta [MPa]",
         ("pinion_root_stress_iso_6336_MPa", "wheel_root_stress_iso_6336_MPa"),
     ),
     (
@@ -108,7 +108,9 @@ NOTES = (
 """Key figure that counts positions, and what holds at these."""
 ON_BACK = ("pinion_root_tension_on_back", "wheel_root_tension_on_back")
 """Key figures that say on which side of the tooth the root tension lies."""
-BESIDE_ISO = "no safety, K_A, K_V, life or material factors are in root stress, neither computed nor after ISO 6336-3"
+BESIDE_ISO = (
+    "no safety, K_A, K_V, life or material factors are in root stress, neither computed nor after ISO 6336-3:2006"
+)
 """What stands beside stress by the standard."""
 
 

@@ -109,7 +109,7 @@ def test_summary_tells_root_stress_only_where_it_is_asked_for():
         "root tension of pinion | wheel [MPa]",
         "root compression of pinion | wheel [MPa]",
         "  stress ratio R there",
-        "  ISO 6336-3, sigma_F0 K_Fbeta [MPa]",
+        "  ISO 6336-3:2006, sigma_F0 K_Fbeta [MPa]",
         "    its sigma_F0 of pinion | wheel [MPa], K_Fbeta",
         "    its Y_F | Y_S | Y_beta of the pinion",
         "    its Y_F | Y_S | Y_beta of the wheel",
