@@ -16,7 +16,8 @@ from loaded_tca.loaded.cycle import carried_by_one
 from loaded_tca.loaded.load_sharing import share_load, tooth_pairs_at
 from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents, loaded_states
 from loaded_tca.loaded.tooth_contact import GridChoice
-from loaded_tca.separation.gap_change import contact_changes, pair_changes
+from loaded_tca.separation.gap_change import contact_changes
+from loaded_tca.separation.pair_change import pair_changes
 from loaded_tca.unloaded import trace_contact, trace_teeth
 from tests.samples.results import SCENES
 
@@ -275,7 +276,7 @@ def test_helical_pair_turns_with_centre_distance_and_axial_offset_by_closed_form
     tangent = Tangents([grids])
     changes = pair_changes(scene, ["mounting.centre_distance_error_mm", "mounting.axial_offset_mm"])
     contacts, separations = [grid.contact for grid in grids], [grid.separation for grid in grids]
-    grown = contact_changes(pair, contacts, separations, [grid.active for grid in grids], changes).gaps
+    grown = contact_changes(pair, contacts, separations, [grid.active for grid in grids], changes).held_gaps
     found = -pair.driving * tangent.rotation_change(grown)[:, 0] * pair.base_radii[1]
     closed = [-np.sin(scene.mesh().working_pressure_angle), np.tan(abs(gear.base_helix_angle))]
     assert_allclose(found, closed, rtol=1e-3)
