@@ -41,8 +41,6 @@ class GapGrowth:
     ----------
     gaps : (keys, n) array [mm per unit]
         At the active cells, with what the forces as they are displace more.
-    sides : (keys, n) array [mm per unit]
-        By how much more or less they grow one way or the other, where edges of both flanks lie at one place.
     lever_torques : (keys, grids) array [N mm per unit]
         Growth of the torque of each pair by that of its lever.
     motions : (keys, grids, 6) array
@@ -52,7 +50,6 @@ class GapGrowth:
     """
 
     gaps: Array
-    sides: Array
     lever_torques: Array
     motions: Array
     turns: Array
@@ -61,7 +58,7 @@ class GapGrowth:
         """The same of some of the grids, without gaps."""
         some = list(grids)
         none = np.zeros((len(self.turns), 0))
-        return GapGrowth(none, none, self.lever_torques[:, some], self.motions[:, some], self.turns[:, some])
+        return GapGrowth(none, self.lever_torques[:, some], self.motions[:, some], self.turns[:, some])
 
     def at_keys(self, at: Sequence[int], count: int) -> GapGrowth:
         """The same as rows ``at`` of so many keys, of which the others change nothing."""
@@ -104,13 +101,11 @@ def gap_growth(
     turned = pair.driving * (touching - result.transmission_error[places[:2]])
     wheel_levers = np.array([grid.contact.wheel_lever for grid in grids])
     gaps = found.gaps + (points.turns * wheel_levers - turned * points.levers[1])[:, tangents.grid]
-    sides = np.zeros(gaps.shape)
     for i, (first, last) in enumerate(pairwise([0, *tangents.ends.tolist()])):
-        for covers, out in ((found.covers, gaps), (found.sides, sides)):
-            if (own := covers[:, first:last]).any():
-                out[:, first:last] += _released(grids[i], own)
+        if (own := found.covers[:, first:last]).any():
+            gaps[:, first:last] += _released(grids[i], own)
     _add_moved_lines(tangents, bending, changes, found.motions, gaps, free_edges=result.scene.analysis.free_edges)
-    return GapGrowth(gaps, sides, result.normal_force[places] * points.levers[0], found.motions, points.turns)
+    return GapGrowth(gaps, result.normal_force[places] * points.levers[0], found.motions, points.turns)
 
 
 def _released(grid: LoadedGrid, covers: Array) -> Array:

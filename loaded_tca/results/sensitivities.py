@@ -12,7 +12,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array, Indices, real
 from loaded_tca.compliance import FlankLine, flank_lines, root_stress_model
-from loaded_tca.errors import give_accuracy_warning, require
+from loaded_tca.errors import require
 from loaded_tca.loaded.force_lines import bending_by_shift
 from loaded_tca.loaded.sensitivity import Tangents
 from loaded_tca.results.curvature_growth import curvature_growth
@@ -42,8 +42,6 @@ STEP = 1e-2
 """By which a line of forces is shifted to see how the root stress changes, over the width of its grid."""
 NEWTON_MILLIMETRES = 1e3
 """Of a newton metre."""
-NOTEWORTHY = 1e-5
-"""Part of the largest derivative of the transmission error, by which those one way and the other may differ untold."""
 LINEAR = 1e-6
 """Tolerance of the linear systems, which are known to the grid's percent."""
 
@@ -130,19 +128,6 @@ class Sensitivities:
         found = np.full((*self.result.transmission_error.shape, len(self.keys)), np.nan)
         change = self.tangents.rotation_change(self.growth.gaps, self.torques)
         found[*self.places] = -self.result.gear_pair.driving * change.T
-        return found
-
-    @cached_property
-    def one_sided(self) -> Array:
-        """How much larger and smaller the derivatives of the transmission error are one way and the other.
-
-        (torque, position, key) [rad per unit of the key]: where edges of both flanks end a contact at one place, as
-        those of faces of one width do, the pinion's rules for values on one side and the wheel's on the other, and
-        derivatives are the mean. NaN where nothing is loaded.
-        """
-        found = np.full((*self.result.transmission_error.shape, len(self.keys)), np.nan)
-        change = self.tangents.rotation_change(self.growth.sides) if self.growth.sides.any() else 0.0
-        found[*self.places] = np.abs(np.broadcast_to(change, (len(self.keys), self.places.shape[1]))).T
         return found
 
     @cached_property
@@ -420,15 +405,4 @@ def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
     found = gap_growth(result, tangents, loaded.bending, (*places[:, tangents.state], columns), changes)
     by_key = dict(zip(named, changes, strict=True))
     every = tuple(by_key.get(key) for key in keys)
-    made = Sensitivities(tuple(keys), result, tangents, places, columns, found.at_keys(at, len(keys)), every)
-    for number in np.flatnonzero(made.growth.sides.any(axis=1)).tolist():
-        apart, told = (float(np.nanmax(np.abs(one[..., number]))) for one in (made.one_sided, made.transmission_error))
-        size = 1e3 * result.gear_pair.base_radii[1] * apart
-        if apart < NOTEWORTHY * told:
-            continue
-        give_accuracy_warning(
-            f"{keys[number]}: edges of both flanks end contacts at one place; derivatives are the mean of those one "
-            f"way and the other, which differ from it by up to {size:.2g} um of transmission error per unit",
-            stacklevel=4,
-        )
-    return made
+    return Sensitivities(tuple(keys), result, tangents, places, columns, found.at_keys(at, len(keys)), every)

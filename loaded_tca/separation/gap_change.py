@@ -99,9 +99,7 @@ class ContactChanges:
             gaps += plane[:, self.contact, motion] * self.slopes[:, motion]
         by_motion = (plane[:, of_border] * border.slopes).sum(axis=-1)
         covers[np.ix_(edges, border.cell)] = (border.rates + by_motion)[edges]
-        sides = np.zeros(gaps.shape)
-        sides[np.ix_(edges, border.cell)] = border.sides[edges]
-        return MovedContacts(gaps, covers, sides, motions)
+        return MovedContacts(gaps, covers, motions)
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,8 +112,6 @@ class MovedContacts:
         Growth of the gaps, the wheel turned back into contact.
     covers : (keys, n) array [1 per unit of the key]
         Growth of the parts of the cells that have material.
-    sides : (keys, n) array [1 per unit of the key]
-        By how much more or less these grow for larger or smaller values, where edges of both flanks lie at one place.
     motions : (keys, contacts, 6) array [mm, mm, rad, rad, rad, mm per unit of the key]
         Of the grids along their x and y, their turn from x to y, the growth of their normal along x and y, their motion
         along the normal.
@@ -123,7 +119,6 @@ class MovedContacts:
 
     gaps: Array
     covers: Array
-    sides: Array
     motions: Array
 
 

@@ -36,8 +36,6 @@ from loaded_tca.separation.sample import SLIVER
 
 Distance = Callable[[GearPair, FlankPoints], Jet]
 """To an edge or a relief start of one flank of a pair [mm], at points of it."""
-TIE = 1e-9
-"""Difference of the parts of a cell that two edges leave, with which both rule."""
 MOTIONS = 3
 """Of a grid in its plane: along x, along y, its turn from x to y."""
 OPEN = 1e-3
@@ -157,19 +155,17 @@ class BorderCells:
         Growth of their parts with material on grids that are held, the wheel turned back into contact.
     slopes : (m, 3) array [1/mm, 1/mm, 1/rad]
         The same by the motion of the grid along x and y and by its turn from x to y.
-    sides : (keys, m) array [1 per unit of the key]
-        Half the difference of the rates of two edges that lie at one place, of which one rules for a larger value of
-        the key and the other for a smaller one; zero where one rules alone.
     """
 
     cell: Indices
     rates: Array
     slopes: Array
-    sides: Array
 
     @classmethod
     def of(cls, pair: GearPair, places: Places, cell: Indices, changes: Sequence[PairChange]) -> BorderCells:
         """Those of some cells in which an edge runs, as of :func:`loaded_tca.separation.sample._covers`.
+
+        Where several do, that which leaves the smallest part rules.
 
         Parameters
         ----------
@@ -186,28 +182,22 @@ class BorderCells:
         steps = distances[:, 1:] - distances[:, :1]
         widths = np.abs(steps).sum(axis=1)
         parts = 0.5 + distances[:, 0] / widths
-        part = parts.min(axis=0)
-        ruling = parts <= part + TIE
-        shares = ruling / ruling.sum(axis=0)
+        part, ruling = parts.min(axis=0), parts.argmin(axis=0)
         kept = (part >= SLIVER) & (part <= 1.0 + SLIVER)
         rates, slopes = np.zeros((len(changes), cell.size)), np.zeros((cell.size, MOTIONS))
-        least, most = np.full((2, *rates.shape), np.inf) * [[[1.0]], [[-1.0]]]
-        for number in np.flatnonzero((ruling & kept).any(axis=1)).tolist():
-            own, edge = kept & ruling[number], edges[number]
+        for number in np.unique(ruling[kept]).tolist():
+            own, (gear, distance) = kept & (ruling == number), edges[number]
             signs = np.sign(steps[number][:, own])
-            by_keys = places.growth(pair, *edge, changes).reshape(-1, 3, cell.size)[..., own]
-            by_motion = places.slopes_of(pair, *edge).T.reshape(MOTIONS, 3, cell.size)[..., own]
+            by_keys = places.growth(pair, gear, distance, changes).reshape(-1, 3, cell.size)[..., own]
+            by_motion = places.slopes_of(pair, gear, distance).T.reshape(MOTIONS, 3, cell.size)[..., own]
             for grown, found in ((by_keys, rates), (by_motion, slopes.T)):
                 wider = ((grown[:, 1:] - grown[:, :1]) * signs).sum(axis=1)
-                by_edge = (grown[:, 0] - (part[own] - 0.5) * wider) / widths[number, own]
-                found[:, own] += shares[number, own] * by_edge
-                if found is rates:
-                    least[:, own], most[:, own] = np.minimum(least[:, own], by_edge), np.maximum(most[:, own], by_edge)
-        return cls(cell[kept], rates[:, kept], slopes[kept], 0.5 * (most[:, kept] - least[:, kept]))
+                found[:, own] = (grown[:, 0] - (part[own] - 0.5) * wider) / widths[number, own]
+        return cls(cell[kept], rates[:, kept], slopes[kept])
 
     def of_keys(self, keys: Indices) -> BorderCells:
         """The same with some of the keys."""
-        return replace(self, rates=self.rates[keys], sides=self.sides[keys])
+        return replace(self, rates=self.rates[keys])
 
 
 def edge_distance(gear: int, number: int) -> Distance:
