@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Indices, real
+from loaded_tca.arrays import Array, Indices, Mask, real
 from loaded_tca.compliance import FlankLine, flank_lines, root_stress_model
 from loaded_tca.errors import require
 from loaded_tca.loaded.force_lines import bending_by_shift
@@ -29,6 +29,7 @@ from loaded_tca.results.load_factors import common_face
 from loaded_tca.results.loaded_grids import states_of_maps
 from loaded_tca.results.root_stress import stress_at_extreme
 from loaded_tca.results.slice_pressure import largest_slice_pressures
+from loaded_tca.results.warnings import warn_of_contacts
 from loaded_tca.separation.pair_change import PairChange, pair_changes
 from loaded_tca.unloaded.harmonics import harmonic_coefficients
 
@@ -142,8 +143,39 @@ class Sensitivities:
         return found
 
     @cached_property
+    def on_cut_slices(self) -> Mask:
+        """Whether an edge cuts the slices with the largest line load, (torque, position, pair).
+
+        Their line load has no derivative by keys that move edges: an AccuracyWarning says so where it is read.
+        """
+        found = np.zeros(self.result.load_share.shape, dtype=bool)
+        for place, grid in zip(self._grids.T.tolist(), self.tangents.grids, strict=True):
+            top = line_load_slopes(grid.pressure, grid.problem.spacing) > 0.0
+            found[tuple(place)] = (grid.separation.cover < 1.0)[top & (grid.pressure > 0.0)].any()
+        return found
+
+    @cached_property
+    def across_relief_starts(self) -> Mask:
+        """Whether the start of a linear relief runs through a contact beside its point, (torque, position, pair).
+
+        Derivatives by keys that move contacts or starts depend on the grid by 15 to 25 % there (AccuracyWarning).
+        """
+        found = np.zeros(self.result.load_share.shape, dtype=bool)
+        across = self.result.on_relief_start[*self._grids] > 0
+        found[*self._grids] = across & [not grid.contact.on_relief_start for grid in self.tangents.grids]
+        return found
+
+    @property
+    def _moves_lines(self) -> bool:
+        """Whether a key moves contacts across edges or relief starts."""
+        return any(change is not None and not change.holds_lines for change in self.changes)
+
+    @cached_property
     def line_load(self) -> Array:
         """Derivatives of the line load of each contact, (torque, position, pair, key) [N/mm per unit]."""
+        if self._moves_lines:
+            reason = "an edge cuts the slices of the largest line load, which has no derivative by keys that move edges"
+            warn_of_contacts(self.result, reason, self.on_cut_slices, stacklevel=3)
         slopes = self.tangents.gathered(
             line_load_slopes(grid.pressure, grid.problem.spacing) for grid in self.tangents.grids
         )
@@ -405,4 +437,8 @@ def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
     found = gap_growth(result, tangents, loaded.bending, (*places[:, tangents.state], columns), changes)
     by_key = dict(zip(named, changes, strict=True))
     every = tuple(by_key.get(key) for key in keys)
-    return Sensitivities(tuple(keys), result, tangents, places, columns, found.at_keys(at, len(keys)), every)
+    made = Sensitivities(tuple(keys), result, tangents, places, columns, found.at_keys(at, len(keys)), every)
+    if made._moves_lines:
+        reason = "a linear relief starts in the contact beside its point: derivatives depend on the grid by up to 25 %"
+        warn_of_contacts(result, reason, made.across_relief_starts, stacklevel=4)
+    return made

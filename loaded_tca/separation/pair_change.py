@@ -55,6 +55,11 @@ class PairChange:
         return self.of_mounting or (self.of_modifications and self.key.endswith("_um"))
 
     @property
+    def holds_lines(self) -> bool:
+        """Whether contacts keep their places at the edges of the flanks and at the starts of reliefs."""
+        return self.of_modifications and self.holds_edges
+
+    @property
     def of_mounting(self) -> bool:
         """Whether the wheel stands elsewhere."""
         return self.key.startswith("mounting.")

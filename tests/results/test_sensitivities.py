@@ -123,6 +123,7 @@ def test_tooth_pair_that_carries_all_has_sensitivities_too():
     assert_allclose(found.load_share, 0.0, atol=SOLVED)
 
 
+@pytest.mark.filterwarnings("ignore:an edge cuts the slices")
 def test_sensitivities_of_a_result_from_a_file_are_those_of_the_analysis(tmp_path):
     one = result("mesh_cycle_helical")
     one.save(tmp_path / "result.nc")
