@@ -14,7 +14,7 @@ the axes of pinion and wheel. As long as no cell becomes active or ceases to be,
 a change dh of the gaps and dT of the torque change the rotation and any number J(f) by
 
 .. math:: d\Lambda = \frac{v \cdot dh + dT}{c}, \qquad
-          dJ = \frac{J_f \cdot u}{c} (v \cdot dh + dT) - w \cdot dh .
+          dJ = \frac{J_f \cdot u}{c} (v \cdot dh + dT) - w \cdot dh, \qquad J_f \cdot u = l_2 \cdot w .
 
 One solution for v serves all changes of the gaps, one more for w all of them again for another number. Nothing is
 lost where cells do change sides: their forces start at zero.
@@ -127,7 +127,7 @@ class Tangents:
         That each cell belongs to.
     pinion_levers, wheel_levers : (n,) array [mm]
     by_rotation : (n,) array [N/rad]
-        u.
+        u, the force lines held.
     stiffness : (states,) array [N mm/rad]
         c, the tangent dT/d rotation.
     by_shift : (slices, slices) sparse array or None
@@ -170,8 +170,7 @@ class Tangents:
         found.__dict__.pop("weights", None)
         found.by_shift, columns = by_shift, np.concatenate([grid.active.nonzero()[1] for grid in self.grids])
         found._arms = found._lengths_over_forces(columns)
-        found.by_rotation = found.solved(self.wheel_levers, self.by_rotation)
-        found.stiffness = found.summed(self.pinion_levers * found.by_rotation)
+        found.stiffness = found.summed(self.wheel_levers * found.weights)
         return found
 
     @cached_property
@@ -211,11 +210,6 @@ class Tangents:
         """DLambda (..., states) [rad] by changes (..., n) of the gaps [mm] and (..., states) of the torques [N mm]."""
         return np.asarray((self.summed(gaps * self.weights) + torques) / self.stiffness)
 
-    @property
-    def force_by_torque(self) -> Array:
-        """df/dT (n,) [1/mm]."""
-        return np.asarray(self.by_rotation / self.spread(self.stiffness))
-
     def functional_change(self, slopes: Array, gaps: Array, torques: Array | float = 0.0) -> Array:
         """Changes (..., states) of a number J(f) of each state.
 
@@ -228,9 +222,9 @@ class Tangents:
         torques : (..., states) array [N mm]
             Changes of the torques beside them.
         """
-        by_torque = self.summed(slopes * self.force_by_torque)
-        answer = self.spread(by_torque) * self.weights - self.solved(slopes, transposed=True)
-        return np.asarray(self.summed(gaps * answer) + by_torque * torques)
+        adjoint = self.solved(slopes, transposed=True)
+        by_torque = self.summed(self.wheel_levers * adjoint) / self.stiffness
+        return np.asarray(self.summed(gaps * (self.spread(by_torque) * self.weights - adjoint)) + by_torque * torques)
 
     def displaced(self, forces: Array) -> Array:
         """K f (n,) [mm] of forces (n,) [N]."""

@@ -180,7 +180,12 @@ def test_forces_change_with_gaps_and_torque_as_in_the_dense_problem(pairs):
     assert_allclose(force_change(tangent, change[active]), expected, rtol=0, atol=OTHERS * np.abs(expected).max())
     steeper = [pairs.solve(TORQUE + sign * 0.5)[0][active] for sign in (-1.0, 1.0)]
     by_torque = steeper[1] - steeper[0]
-    assert_allclose(tangent.force_by_torque, by_torque, rtol=0, atol=OTHERS * np.abs(by_torque).max())
+    assert_allclose(
+        tangent.by_rotation / tangent.spread(tangent.stiffness),
+        by_torque,
+        rtol=0,
+        atol=OTHERS * np.abs(by_torque).max(),
+    )
 
 
 def test_numbers_of_the_forces_change_by_their_adjoint_as_by_the_forces(pairs):
@@ -191,7 +196,7 @@ def test_numbers_of_the_forces_change_by_their_adjoint_as_by_the_forces(pairs):
     expected = slopes @ ((above[0] - below[0]) / step)[active]
     gaps = np.stack([change[active], 0.0 * change[active]])
     found = tangent.functional_change(slopes, gaps, np.array([[0.0], [1.0]]))
-    assert_allclose(found[:, 0], [expected, slopes @ tangent.force_by_torque], rtol=OTHERS)
+    assert_allclose(found[:, 0], [expected, slopes @ tangent.by_rotation / tangent.stiffness[0]], rtol=OTHERS)
 
 
 def test_share_of_a_pair_changes_as_the_dense_problem_solved_anew(pairs):
