@@ -33,6 +33,7 @@ class Fault(NamedTuple):
 ROWS = "studies/test_rows.py::test_malformed_row_costs_its_own_variant_and_no_other"
 BOXES = "separation/test_box.py"
 FREE_EDGES, ROUNDED = "loaded/test_free_edges.py", "loaded/test_rounded_edges.py"
+AT_EDGES = "results/test_sensitivities_at_edges.py::"
 UNITS = "output/test_units.py::test_every_number_is_an_attribute_times_its_factor"
 FAULTS = (
     Fault(
@@ -312,11 +313,58 @@ FAULTS = (
     ),
     Fault(
         "sensitivities: a contact that moves is not bent otherwise by other pairs",
-        "results/sensitivities.py",
-        "growth[i] + by_shift.T @ forces[j]",
-        "growth[i]",
-        "results/test_sensitivities.py::"
-        "test_bending_under_the_own_load_and_that_of_other_pairs_changes_as_a_contact_moves",
+        "loaded/force_lines.py",
+        "own += between @ forces[j] / step",
+        "own += 0.0",
+        "loaded/test_force_lines.py::"
+        "test_slices_bend_by_shifts_of_the_forces_under_their_own_load_and_that_of_other_pairs",
+    ),
+    *(
+        Fault(f"sensitivities at edges: {what}", file, text, wrong, f"{AT_EDGES}{test}")
+        for what, file, text, wrong, test in (
+            (
+                "the parts of cut cells are held",
+                "results/gap_growth.py",
+                "gaps[:, first:last] += _released(grids[i], own)",
+                "pass",
+                "test_helical_flanks_and_centre_distance_as_by_whole_analyses",
+            ),
+            (
+                "the wheel is not turned back into contact below its edges",
+                "separation/gap_change.py",
+                "growth[1] -= self.at_points.gaps[:, contact] * levers",
+                "growth[1] -= 0.0 * levers",
+                "test_helical_flanks_and_centre_distance_as_by_whole_analyses",
+            ),
+            (
+                "grids stay where they are",
+                "separation/gap_change.py",
+                "plane[edges] = following(border.of_keys(edges), of_border, parts, plane[edges], scales)",
+                "plane[edges] = 0.0",
+                "test_helical_flanks_and_centre_distance_as_by_whole_analyses",
+            ),
+            (
+                "teeth bend below the wheel that has not moved",
+                "results/gap_growth.py",
+                "bending.mounted(side) if isinstance",
+                "bending if isinstance",
+                "test_spur_teeth_that_bend_and_centre_distance_as_by_whole_analyses",
+            ),
+            (
+                "the ends of the common face are held",
+                "results/sensitivities.py",
+                "found[key] = (high - low) / other.difference",
+                "found[key] = 0.0",
+                "test_ends_of_the_common_face_move_with_the_wheel",
+            ),
+            (
+                "line loads of cut slices are not warned of",
+                "results/sensitivities.py",
+                "return any(change is not None and not change.holds_lines",
+                "return any(change is not None and change.holds_lines",
+                "test_line_loads_of_cut_slices_are_warned_of_with_keys_that_move_edges_alone",
+            ),
+        )
     ),
     Fault(
         "sensitivities: both ends of a pitch count fully",

@@ -8,6 +8,7 @@ import pytest
 from loaded_tca.results import default_tolerances, key_figure_slopes
 from tests.samples.results import result
 
+pytestmark = pytest.mark.filterwarnings("ignore:an edge cuts the slices")  # contacts reach edges, and all is read
 CROWNING, OFFSET = "pinion.modifications.lead_crowning_um", "mounting.axial_offset_mm"
 FILES = [
     "sensitivities.nc",
@@ -39,7 +40,10 @@ def rows(path):
 
 def test_every_modification_and_mounting_error_is_looked_at(run, out):
     code, text, errors = run("sensitivities", out)
-    assert (code, errors) == (0, [])
+    assert code == 0
+    assert [error.partition(",")[0] for error in errors] == [
+        "warning: an edge cuts the slices of the largest line load"
+    ]
     assert text.splitlines()[1].startswith("pinion torque 260 N m")
     assert text.splitlines()[-1] == f"Written to out: {', '.join(FILES)}"
     assert sorted(os.listdir(out)) == sorted(["result.nc", *FILES])

@@ -65,6 +65,7 @@ LONG = (
     "loaded.rounded_edges",
     "loaded.root_stress_families",
     "loaded.jumps",
+    "loaded.moving_edges",
     "loaded.bending_line",
     "loaded.face_ends",
     "unloaded.rounded_edges",

@@ -84,6 +84,10 @@ class ToothCompliance:
         """
         return body_torsion(self.pair)
 
+    def mounted(self, pair: GearPair) -> ToothCompliance:
+        """The same teeth in a pair whose wheel stands elsewhere."""
+        return replace(self, pair=pair)
+
     def within(self, number: int, grid: ContactGrid) -> Array:
         """Deflection of every slice of a contact's grid per force on each, both gears together.
 

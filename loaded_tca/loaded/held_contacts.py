@@ -38,8 +38,8 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import Scene
 from loaded_tca.separation import Separation
 from loaded_tca.separation.box import Box
-from loaded_tca.separation.gap_change import pair_changes, value_at
 from loaded_tca.separation.normal_gap import TOGETHER, NormalGap
+from loaded_tca.separation.pair_change import pair_changes, value_at
 from loaded_tca.separation.sample import sample_separations
 from loaded_tca.unloaded import ContactPoint, MeshPath
 

@@ -14,7 +14,7 @@ the axes of pinion and wheel. As long as no cell becomes active or ceases to be,
 a change dh of the gaps and dT of the torque change the rotation and any number J(f) by
 
 .. math:: d\Lambda = \frac{v \cdot dh + dT}{c}, \qquad
-          dJ = \frac{J_f \cdot u}{c} (v \cdot dh + dT) - w \cdot dh .
+          dJ = \frac{J_f \cdot u}{c} (v \cdot dh + dT) - w \cdot dh, \qquad J_f \cdot u = l_2 \cdot w .
 
 One solution for v serves all changes of the gaps, one more for w all of them again for another number. Nothing is
 lost where cells do change sides: their forces start at zero.
@@ -28,6 +28,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations, groupby
@@ -50,6 +51,8 @@ TOLERANCE = 1e-10
 RATE_TOLERANCE = 1e-6
 """The same where c alone is wanted, which then errs by at most as much."""
 MOST_ITERATIONS = 500
+MOST_CORRECTIONS, CORRECTION = 50, 1e-2
+"""Of what the motion of the force lines adds to a linear system, and how closely each is solved."""
 CELLS_TOGETHER = 2**15
 """Of the states whose answers :func:`loaded_states` finds together, about: more take more memory and save no time."""
 
@@ -110,7 +113,7 @@ class Tangents:
     tolerance : float
         Of the linear systems, relative.
     by_rotation : (n,) array, optional [N/rad]
-        u, if it is known.
+        u where no force line moves, if it is known.
 
     Attributes
     ----------
@@ -124,9 +127,12 @@ class Tangents:
         That each cell belongs to.
     pinion_levers, wheel_levers : (n,) array [mm]
     by_rotation : (n,) array [N/rad]
-        u.
+        u, the force lines held.
     stiffness : (states,) array [N mm/rad]
         c, the tangent dT/d rotation.
+    by_shift : (slices, slices) sparse array or None
+        How shifts of the force lines displace the slices of all grids (:func:`loaded_tca.loaded.force_lines.
+        bending_by_shift`), if these lines follow the forces; None: they are held.
 
     Raises
     ------
@@ -153,14 +159,26 @@ class Tangents:
         self._coupling = None if bending is None else _coupling(states, bending)
         levers = [(grid.contact.pinion_lever, grid.contact.wheel_lever) for grid in self.grids]
         self.pinion_levers, self.wheel_levers = np.array(levers).reshape(-1, 2).T[:, self.grid]
-        self.by_rotation = self.solved(self.wheel_levers) if by_rotation is None else by_rotation
+        self.by_shift: csr_array | None = None
+        self._arms = np.zeros(0)
+        self.by_rotation = self.solved(self.wheel_levers, by_rotation)
         self.stiffness = self.summed(self.pinion_levers * self.by_rotation)
+
+    def with_lines(self, by_shift: csr_array) -> Tangents:
+        """The same, the force lines following the forces: ``by_shift`` as of the class."""
+        found = copy(self)
+        found.__dict__.pop("weights", None)
+        found.by_shift, columns = by_shift, np.concatenate([grid.active.nonzero()[1] for grid in self.grids])
+        found._arms = found._lengths_over_forces(columns)
+        found.stiffness = found.summed(self.wheel_levers * found.weights)
+        return found
 
     @cached_property
     def weights(self) -> Array:
         """Of the cells (n,) [N/rad]: v; v/c is the rotation by a unit of material removed there."""
         # on parallel axes both levers have one ratio, but for the slopes of modifications: nothing is left to solve
-        return self.solved(self.pinion_levers, self.pinion_levers / self.wheel_levers * self.by_rotation)
+        start = self.pinion_levers / self.wheel_levers * self.by_rotation
+        return self.solved(self.pinion_levers, start, transposed=True)
 
     def gathered(self, values: Iterable[Array]) -> Array:
         """Values (..., nx, ny) of each grid at the active cells, in one row (..., n)."""
@@ -192,11 +210,6 @@ class Tangents:
         """DLambda (..., states) [rad] by changes (..., n) of the gaps [mm] and (..., states) of the torques [N mm]."""
         return np.asarray((self.summed(gaps * self.weights) + torques) / self.stiffness)
 
-    @property
-    def force_by_torque(self) -> Array:
-        """df/dT (n,) [1/mm]."""
-        return np.asarray(self.by_rotation / self.spread(self.stiffness))
-
     def functional_change(self, slopes: Array, gaps: Array, torques: Array | float = 0.0) -> Array:
         """Changes (..., states) of a number J(f) of each state.
 
@@ -209,9 +222,9 @@ class Tangents:
         torques : (..., states) array [N mm]
             Changes of the torques beside them.
         """
-        by_torque = self.summed(slopes * self.force_by_torque)
-        answer = self.spread(by_torque) * self.weights - self.solved(slopes)
-        return np.asarray(self.summed(gaps * answer) + by_torque * torques)
+        adjoint = self.solved(slopes, transposed=True)
+        by_torque = self.summed(self.wheel_levers * adjoint) / self.stiffness
+        return np.asarray(self.summed(gaps * (self.spread(by_torque) * self.weights - adjoint)) + by_torque * torques)
 
     def displaced(self, forces: Array) -> Array:
         """K f (n,) [mm] of forces (n,) [N]."""
@@ -222,15 +235,38 @@ class Tangents:
             moved += (self._coupling @ np.bincount(self._slice, forces, self._slices))[self._slice]
         return moved
 
-    def solved(self, displacement: Array, start: Array | None = None) -> Array:
-        """Forces (n,) [N] that displace the active cells by as much [mm]: K^-1, by conjugate gradients.
+    def solved(self, displacement: Array, start: Array | None = None, *, transposed: bool = False) -> Array:
+        """Forces (n,) [N] that displace the active cells by as much [mm].
 
-        ``start``: forces to start from; default: none.
+        Parameters
+        ----------
+        displacement : (n,) array [mm]
+        start : (n,) array, optional [N]
+            Forces to start from; default: none.
+        transposed : bool
+            Whether the transposed system is meant; they are the same where force lines are held.
         """
-        forces = np.zeros(displacement.size) if start is None else start
-        residual = displacement.copy() if start is None else displacement - self.displaced(start)
         goal = self._tolerance**2 * self.summed(displacement**2)
-        direction, before = np.zeros(displacement.size), np.ones(goal.size)
+        forces = np.zeros(displacement.size) if start is None else start
+        left = displacement - self.displaced(forces) if start is not None else displacement.copy()
+        if self.by_shift is None:
+            return forces + self._symmetric(left, goal)
+        # what the lines of the forces do is small: it is corrected for, in a few steps
+        if start is not None:
+            left -= self._by_lines(forces, transposed=transposed)
+        for _ in range(MOST_CORRECTIONS):
+            size = self.summed(left**2)
+            if not (size > goal).any():
+                return forces
+            step = self._symmetric(left, np.maximum(goal, CORRECTION**2 * size))
+            forces = forces + step
+            left = left - self.displaced(step) - self._by_lines(step, transposed=transposed)
+        raise self._unsolved(displacement.size, MOST_CORRECTIONS, forces)
+
+    def _symmetric(self, residual: Array, goal: Array) -> Array:
+        """K^-1 of displacements (n,), to the squares ``goal`` (states,) of what is left, by conjugate gradients."""
+        forces, residual = np.zeros(residual.size), residual.copy()
+        direction, before = np.zeros(residual.size), np.ones(goal.size)
         for _ in range(MOST_ITERATIONS):
             left = self.summed(residual**2) > goal
             if not left.any():
@@ -243,11 +279,29 @@ class Tangents:
             forces = forces + self.spread(step) * direction
             residual -= self.spread(step) * moved
             before = np.where(left, product, 1.0)
-        raise ConvergenceError(
-            f"tangents: a linear system of {displacement.size} cells is not solved to {self._tolerance:.0e} in "
-            f"{MOST_ITERATIONS} iterations",
+        raise self._unsolved(residual.size, MOST_ITERATIONS, forces)
+
+    def _unsolved(self, cells: int, iterations: int, forces: Array) -> ConvergenceError:
+        return ConvergenceError(
+            f"tangents: a linear system of {cells} cells is not solved to {self._tolerance:.0e} in {iterations} "
+            "iterations",
             last=forces,
         )
+
+    def _lengths_over_forces(self, columns: Indices) -> Array:
+        """Shift of the force line of its slice by the force of each cell (n,) [mm/N]."""
+        offset = self.gathered(grid.separation.x[:, None] - grid.separation.force_line for grid in self.grids)
+        force = [grid.slice_force[own] for grid, own in zip(self.grids, np.split(columns, self.ends[:-1]), strict=True)]
+        return np.asarray(offset / np.concatenate(force))
+
+    def _by_lines(self, forces: Array, *, transposed: bool) -> Array:
+        """Displacement (n,) [mm] by the motion of the force lines under forces (n,), or its transpose."""
+        assert self.by_shift is not None
+        if transposed:
+            moments = self.by_shift.T @ np.bincount(self._slice, forces, self._slices)
+            return np.asarray(self._arms * moments[self._slice])
+        shifts = np.bincount(self._slice, self._arms * forces, self._slices)
+        return np.asarray((self.by_shift @ shifts)[self._slice])
 
     def _preconditioned(self, residual: Array) -> Array:
         """Approximate inverse of the half-spaces; of cut cells, which are more compliant, by the root of their part."""

@@ -15,7 +15,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.contact.patch import peak_weights, reaches_border, top_weights
 from loaded_tca.errors import require
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.results.load_factors import STRIPS, strip_borders, strip_forces, strip_shares
+from loaded_tca.results.load_factors import STRIPS, strip_borders, strip_forces, strip_motions, strip_shares
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.slice_pressure import UnderPressure, largest_slice_pressures
 from loaded_tca.unloaded import ContactPath
@@ -182,4 +182,34 @@ def face_load_factor_slopes(
                 shares = strip_shares(pair, one, borders)[0][largest]
                 slopes[one.pressure > 0.0] = (STRIPS * shares - factor) / total
                 found[n][k] = slopes
+    return found
+
+
+def face_load_factor_motions(
+    pair: GearPair, path: ContactPath, positions: Sequence[Sequence[PressureMap | None]]
+) -> list[list[Array | None]]:
+    """Derivatives of K_Hbeta under one torque by the motions of the grids and of the common face, the forces held.
+
+    Parameters
+    ----------
+    pair, path, positions
+        As of :func:`face_load_factor_slopes`.
+
+    Returns
+    -------
+    list of lists of (8,) arrays
+        By the motions of the grid as of :class:`loaded_tca.separation.gap_change.MovedContacts`, and by those of the
+        lower and the upper end of the common face [1/mm]. None as there.
+    """
+    borders = strip_borders(pair, path)
+    loaded = [one for row in positions[:-1] for one in row if one is not None]
+    forces = np.sum([np.zeros(STRIPS), *(strip_forces(pair, one, borders)[0] for one in loaded)], axis=0)
+    found: list[list[Array | None]] = [[None] * len(row) for row in positions]
+    if not forces.any():
+        return found
+    largest, total = int(forces.argmax()), float(forces.sum())
+    for n, row in enumerate(positions[:-1]):
+        found[n] = [
+            None if one is None else strip_motions(pair, one, borders, largest) * (STRIPS / total) for one in row
+        ]
     return found

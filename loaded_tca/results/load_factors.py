@@ -149,12 +149,63 @@ def strip_shares(pair: GearPair, one: PressureMap, borders: Array) -> tuple[Arra
     return np.diff(below, axis=0, prepend=0.0, append=1.0), width / slope if slope else math.inf
 
 
+def strip_motions(pair: GearPair, one: PressureMap, borders: Array, strip: int) -> Array:
+    """Growth of the force in one strip as the grid of a pressure map and the ends of the face move, forces held.
+
+    What passes a border is the line load there, which changes linearly from the middle of a slice to that of the next.
+
+    Parameters
+    ----------
+    pair : GearPair
+    one : PressureMap
+    borders : (n + 1,) array [mm]
+    strip : int
+        Which of the n.
+
+    Returns
+    -------
+    (8,) array [N/mm, N/rad]
+        By the motions of the grid as of :class:`loaded_tca.separation.gap_change.MovedContacts`, by those of the
+        lower and the upper end of the face.
+    """
+    across, along = np.nonzero(one.pressure)
+    force = one.pressure[across, along] * math.prod(one.spacing)
+    ends, rates = [], []
+    for side in (-0.5, 0.5):
+        x, y = one.x[across], one.y[along] + side * one.spacing[1]
+        point = one.origin + x[:, None] * one.axes[0] + y[:, None] * one.axes[1]
+        radius = np.hypot(point[:, 0], point[:, 1])
+        jet = pair.pinion.flank.lengthwise_coordinate(radius, point[:, 2])
+        slope = np.stack(np.broadcast_arrays(jet.rho * point[:, 0] / radius, jet.rho * point[:, 1] / radius, jet.z), -1)
+        by_x, by_y, by_z = (slope @ one.axes.T).T
+        place = np.asarray(jet.value)
+        inside = (place > borders[0]) & (place < borders[-1])
+        of_face = [place <= borders[0], place >= borders[-1]]
+        motions = [by_x, by_y, x * by_y - y * by_x, -x * by_z, -y * by_z, by_z]
+        rates.append(np.stack([*(inside * part for part in motions), *of_face]))
+        ends.append(np.clip(place, borders[0], borders[-1]))
+    swap = ends[1] < ends[0]
+    (low, high), (lower, higher) = (
+        (np.where(swap, second, first), np.where(swap, first, second)) for first, second in (ends, rates)
+    )
+    width = np.maximum(high - low, ROUNDING * (borders[1] - borders[0]))
+    found = np.zeros(8)
+    for border, sign in ((strip, -1.0), (strip + 1, 1.0)):
+        if 0 < border < len(borders) - 1:
+            part, share = (borders[border] - low) / width, border / (len(borders) - 1)
+            own = np.zeros(8)
+            own[6:] = 1.0 - share, share
+            passed = (own[:, None] - 0.5 * (lower + higher)) / width
+            found += sign * (passed * (force * np.maximum(1.0 - np.abs(part - 0.5), 0.0))).sum(axis=1)
+    return found
+
+
 def strip_borders(pair: GearPair, path: ContactPath) -> Array:
     """Borders of the strips along the pinion's lengthwise coordinate, (STRIPS + 1,) [mm]."""
-    return np.linspace(*_common_face(pair, path), STRIPS + 1)
+    return np.linspace(*common_face(pair, path), STRIPS + 1)
 
 
-def _common_face(pair: GearPair, path: ContactPath) -> tuple[float, float]:
+def common_face(pair: GearPair, path: ContactPath) -> tuple[float, float]:
     """Ends of the part of the face that both gears cover, along the pinion's lengthwise coordinate [mm]."""
     points = path.point[path.in_contact]
     radius, _, axial = pair.to_wheel(points)

@@ -3,30 +3,34 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loaded_tca.arrays import Array, Indices, real
+from loaded_tca.arrays import Array, Indices, Mask, real
 from loaded_tca.compliance import FlankLine, flank_lines, root_stress_model
 from loaded_tca.errors import require
-from loaded_tca.loaded.pair_coupling import BendingModel
+from loaded_tca.loaded.force_lines import bending_by_shift
 from loaded_tca.loaded.sensitivity import Tangents
+from loaded_tca.results.curvature_growth import curvature_growth
 from loaded_tca.results.figure_slopes import (
     EXPONENT,
+    face_load_factor_motions,
     face_load_factor_slopes,
     line_load_slopes,
     peak_pressure_slopes,
     pressure_norm,
 )
+from loaded_tca.results.gap_growth import GapGrowth, gap_growth, moved
+from loaded_tca.results.load_factors import common_face
 from loaded_tca.results.loaded_grids import states_of_maps
 from loaded_tca.results.root_stress import stress_at_extreme
-from loaded_tca.separation import Separation
-from loaded_tca.separation.gap_change import PairChange, contact_changes, pair_changes
+from loaded_tca.results.slice_pressure import largest_slice_pressures
+from loaded_tca.results.warnings import warn_of_contacts
+from loaded_tca.separation.pair_change import PairChange, pair_changes
 from loaded_tca.unloaded.harmonics import harmonic_coefficients
 
 if TYPE_CHECKING:
@@ -35,10 +39,10 @@ if TYPE_CHECKING:
     from loaded_tca.results.mesh_cycle import MeshCycle
 
 TORQUE = "load.pinion_torque_Nm"
+STEP = 1e-2
+"""By which a line of forces is shifted to see how the root stress changes, over the width of its grid."""
 NEWTON_MILLIMETRES = 1e3
 """Of a newton metre."""
-STEP = 1e-2
-"""By which a contact point is shifted to see how the bending changes, over the width of its grid."""
 LINEAR = 1e-6
 """Tolerance of the linear systems, which are known to the grid's percent."""
 
@@ -62,13 +66,8 @@ class Sensitivities:
         Torque and position of each state, by index.
     pairs : (grids,) int array
         Tooth pair of each grid of the tangents, by index.
-    gaps : (keys, n) array [mm per unit]
-        Growth of the gaps at the active cells.
-    lever_torques : (keys, grids) array [N mm per unit]
-        Growth of the torque of each pair by that of its lever: levers are those of the unloaded contact points, which
-        move.
-    shifts : (keys, grids) array [mm per unit]
-        By which they move across their contacts, and with them the lines along which contacts load the teeth.
+    growth : GapGrowth
+        Of the gaps, of the torques of the pairs by that of their levers, motions of the grids.
     changes : tuple of PairChange or None
         Pairs of gears that differ in each key; none of the torque.
     """
@@ -78,9 +77,7 @@ class Sensitivities:
     tangents: Tangents
     places: Indices
     pairs: Indices
-    gaps: Array
-    lever_torques: Array
-    shifts: Array
+    growth: GapGrowth
     changes: tuple[PairChange | None, ...]
 
     def __reduce__(self) -> tuple[Callable[..., Sensitivities], tuple[MeshCycle, tuple[str, ...]]]:
@@ -94,7 +91,7 @@ class Sensitivities:
     def torques(self) -> Array:
         """Growth of the torques that the forces balance with the levers as they are, (keys, states) [N mm per unit]."""
         first = np.searchsorted(self.tangents.state, np.arange(self.places.shape[1]))
-        return self._raised - np.add.reduceat(self.lever_torques, first, axis=1)
+        return self._raised - np.add.reduceat(self.growth.lever_torques, first, axis=1)
 
     @property
     def _raised(self) -> Array:
@@ -118,7 +115,7 @@ class Sensitivities:
         found, place = np.zeros((len(self.keys), state.size)), np.arange(state.size) - np.searchsorted(state, state)
         for number in range(place.max() + 1):
             own = place == number
-            change = self.tangents.functional_change(np.where(own[grid], slopes, 0.0), self.gaps, self.torques)
+            change = self.tangents.functional_change(np.where(own[grid], slopes, 0.0), self.growth.gaps, self.torques)
             found[:, own] = change[:, state[own]]
         return found
 
@@ -126,10 +123,11 @@ class Sensitivities:
     def transmission_error(self) -> Array:
         """Derivatives of the loaded, absolute transmission error, (torque, position, key) [rad per unit of the key].
 
-        That by the torque is one over ``MeshCycle.mesh_stiffness``, as an angle.
+        That by the torque is one over ``MeshCycle.mesh_stiffness``, as an angle, which holds the places at which forces
+        bend the teeth: that is 1e-4 of it.
         """
         found = np.full((*self.result.transmission_error.shape, len(self.keys)), np.nan)
-        change = self.tangents.rotation_change(self.gaps, self.torques)
+        change = self.tangents.rotation_change(self.growth.gaps, self.torques)
         found[*self.places] = -self.result.gear_pair.driving * change.T
         return found
 
@@ -138,15 +136,46 @@ class Sensitivities:
         """Derivatives of the load shares, (torque, position, pair, key) [1 per unit]; zero where nothing is carried."""
         state = self.tangents.state
         torque, share = self.result.torque[self.places[0]][state], self.result.load_share[*self._grids]
-        own = self._of_each_pair(self.tangents.pinion_levers) + self.lever_torques
+        own = self._of_each_pair(self.tangents.pinion_levers) + self.growth.lever_torques
         found = self._by_pair((own - share * self._raised) / torque)
         shared = ~np.isnan(self.result.load_share) & np.isfinite(self.transmission_error).any(axis=-1, keepdims=True)
         found[shared & np.isnan(found).all(axis=-1)] = 0.0
         return found
 
     @cached_property
+    def on_cut_slices(self) -> Mask:
+        """Whether an edge cuts the slices with the largest line load, (torque, position, pair).
+
+        Their line load has no derivative by keys that move edges: an AccuracyWarning says so where it is read.
+        """
+        found = np.zeros(self.result.load_share.shape, dtype=bool)
+        for place, grid in zip(self._grids.T.tolist(), self.tangents.grids, strict=True):
+            top = line_load_slopes(grid.pressure, grid.problem.spacing) > 0.0
+            found[tuple(place)] = (grid.separation.cover < 1.0)[top & (grid.pressure > 0.0)].any()
+        return found
+
+    @cached_property
+    def across_relief_starts(self) -> Mask:
+        """Whether the start of a linear relief runs through a contact beside its point, (torque, position, pair).
+
+        Derivatives by keys that move contacts or starts depend on the grid by 15 to 25 % there (AccuracyWarning).
+        """
+        found = np.zeros(self.result.load_share.shape, dtype=bool)
+        across = self.result.on_relief_start[*self._grids] > 0
+        found[*self._grids] = across & [not grid.contact.on_relief_start for grid in self.tangents.grids]
+        return found
+
+    @property
+    def _moves_lines(self) -> bool:
+        """Whether a key moves contacts across edges or relief starts."""
+        return any(change is not None and not change.holds_lines for change in self.changes)
+
+    @cached_property
     def line_load(self) -> Array:
         """Derivatives of the line load of each contact, (torque, position, pair, key) [N/mm per unit]."""
+        if self._moves_lines:
+            reason = "an edge cuts the slices of the largest line load, which has no derivative by keys that move edges"
+            warn_of_contacts(self.result, reason, self.on_cut_slices, stacklevel=3)
         slopes = self.tangents.gathered(
             line_load_slopes(grid.pressure, grid.problem.spacing) for grid in self.tangents.grids
         )
@@ -156,13 +185,23 @@ class Sensitivities:
     def peak_pressure(self) -> Array:
         """Derivatives of the peak pressure of each contact, (torque, position, pair, key) [MPa per unit].
 
-        Of a contact at an edge or a relief start that of its largest slice pressure, with the curvature held.
+        Of a contact at an edge or a relief start that of its largest slice pressure.
         """
         result, grids = self.result, self.tangents.grids
-        rough = ((result.on_edge > 0) | (result.on_relief_start > 0))[*self._grids]
+        rough = ((result.on_edge > 0) | (result.on_relief_start > 0))[*self._grids].tolist()
         contacts = [(grid.contact, grid.separation, grid.pressure) for grid in grids]
-        slopes = peak_pressure_slopes(result.gear_pair, contacts, rough.tolist())
-        return self._by_pair(self._of_each_pair(self.tangents.gathered(slopes)))
+        slopes = peak_pressure_slopes(result.gear_pair, contacts, rough)
+        found = self._of_each_pair(self.tangents.gathered(slopes))
+        if any(rough):
+            found[:, rough] += self._by_curvature(np.flatnonzero(rough).tolist())
+        return self._by_pair(found)
+
+    def _by_curvature(self, rough: Sequence[int]) -> Array:
+        """Growth (keys, grids) of the largest slice pressures of some grids by the curvatures at their places."""
+        pair, grids = self.result.gear_pair, [self.tangents.grids[i] for i in rough]
+        peaks = largest_slice_pressures(pair, [(grid.contact, grid.separation, grid.pressure) for grid in grids])
+        grown = curvature_growth(pair, grids, [peak.place for peak in peaks], self.changes, self.growth.of_grids(rough))
+        return grown * [0.5 * peak.pressure if peak.slopes.any() else 0.0 for peak in peaks]
 
     def pressure_norm(self, exponent: float = EXPONENT) -> Array:
         r"""Derivatives of the norm of the pressure over a position, (torque, position, key) [MPa per unit].
@@ -183,7 +222,7 @@ class Sensitivities:
         weights = (parts / whole ** (1.0 / exponent)) ** (exponent - 1.0)
         row = self.tangents.gathered(slopes) * weights[self.tangents.grid]
         found = np.full((*self.result.transmission_error.shape, len(self.keys)), np.nan)
-        found[*self.places] = self.tangents.functional_change(row, self.gaps, self.torques).T
+        found[*self.places] = self.tangents.functional_change(row, self.growth.gaps, self.torques).T
         return found
 
     @cached_property
@@ -195,9 +234,22 @@ class Sensitivities:
             np.zeros(grid.active.shape) if (own := of_maps[t][n][k]) is None else own
             for (t, n, k), grid in zip(self._grids.T.tolist(), self.tangents.grids, strict=True)
         ]
-        change = self.tangents.functional_change(self.tangents.gathered(slopes), self.gaps, self.torques)
+        change = self.tangents.functional_change(self.tangents.gathered(slopes), self.growth.gaps, self.torques)
+        of_motions = [face_load_factor_motions(result.gear_pair, result.path, rows) for rows in result.maps]
         for t in np.flatnonzero(np.isfinite(result.face_load_factor)).tolist():
             found[t] = change[:, self.places[0] == t].sum(axis=1)
+        for i, (t, n, k) in enumerate(self._grids.T.tolist()):
+            if (own := of_motions[t][n][k]) is not None:
+                found[t] += self.growth.motions[:, i] @ own[:6] + self._face_ends @ own[6:]
+        return found
+
+    @cached_property
+    def _face_ends(self) -> Array:
+        """Growth of the places of both ends of the common face (keys, 2) [mm per unit]."""
+        found = np.zeros((len(self.keys), 2))
+        for key, other in self._of_the_wheel:
+            low, high = (np.array(common_face(side, self.result.path)) for side in (other.below, other.above))
+            found[key] = (high - low) / other.difference
         return found
 
     @cached_property
@@ -228,37 +280,45 @@ class Sensitivities:
         """
         pair, grids = self.result.gear_pair, self.tangents.grids
         model = root_stress_model((pair.pinion, pair.wheel)[gear])
-        by_force, moved = [], np.zeros((len(self.keys), len(places)))
+        by_force, moved_lines = [], np.zeros((len(self.keys), len(places)))
         in_states = np.split(np.arange(len(grids)), np.flatnonzero(np.diff(self.tangents.state)) + 1)
         for state, (numbers, place) in enumerate(zip(in_states, places, strict=True)):
             loads, per_force = stress_at_extreme(pair, gear, model, [grids[i] for i in numbers], place)
             for i, (line, forces) in zip(numbers, loads, strict=True):
-                stress = per_force(line)
-                by_force.append(np.broadcast_to(stress, grids[i].active.shape))
-                for keys, change in self._by_moved_line(gear, i, per_force, stress, forces):
-                    moved[keys, state] += change
-        return self.tangents.functional_change(self.tangents.gathered(by_force), self.gaps, self.torques) + moved
+                grid, stress = grids[i].separation, per_force(line)
+                step = STEP * grid.spacing[0] * len(grid.x)
+                shifted = replace(grid, force_line=grid.force_line + step)
+                across = (per_force(flank_lines(pair, grids[i].number, shifted)[gear]) - stress) / step
+                by_force.append(stress + across * (grid.x[:, None] - grid.force_line))
+                for key, change in enumerate(self.changes):
+                    if change is not None:
+                        moved_lines[key, state] += self._by_moved_line(gear, key, i, per_force, across) @ forces
+        return (
+            self.tangents.functional_change(self.tangents.gathered(by_force), self.growth.gaps, self.torques)
+            + moved_lines
+        )
 
     def _by_moved_line(
-        self, gear: int, i: int, per_force: Callable[[FlankLine], Array], stress: Array, forces: Array
-    ) -> Iterator[tuple[slice | int, Any]]:
-        """Keys that move the line of a grid on its flank, and the changes of the stress by that [MPa per unit]."""
-        pair, grid = self.result.gear_pair, self.tangents.grids[i]
-        if self.shifts[:, i].any():
-            beyond, step = _shifted(grid.separation)
-            further = per_force(flank_lines(pair, grid.number, beyond)[gear])
-            yield slice(None), self.shifts[:, i] * ((further - stress) / step @ forces)
-        for key, other in self._of_the_wheel if gear == 1 else ():  # it moves below the line
-            low, high = (
-                per_force(flank_lines(side, grid.number, grid.separation)[gear]) @ forces
-                for side in (other.below, other.above)
-            )
-            yield key, (high - low) / other.difference
+        self, gear: int, key: int, i: int, per_force: Callable[[FlankLine], Array], across: Array
+    ) -> Array:
+        """Growth of the stress per force of the slices (ny,) [MPa/N per unit], as the line of a grid moves.
+
+        ``across``: that by its shift along x.
+        """
+        change, grid, motion = self.changes[key], self.tangents.grids[i], self.growth.motions[key, i]
+        assert change is not None
+        if change.of_modifications:
+            return across * motion[0]
+        low, high = (
+            per_force(flank_lines(side, grid.number, moved(grid.separation, part * change.difference * motion))[gear])
+            for side, part in ((change.below, -0.5), (change.above, 0.5))
+        )
+        return np.asarray((high - low) / change.difference)
 
     @property
     def _of_the_wheel(self) -> list[tuple[int, PairChange]]:
         """Numbers of the keys that move the wheel, and their changes."""
-        return [(k, one) for k, one in enumerate(self.changes) if one is not None and one.key.startswith("mounting.")]
+        return [(k, one) for k, one in enumerate(self.changes) if one is not None and one.of_mounting]
 
     @cached_property
     def weight_maps(self) -> tuple[tuple[tuple[Array | None, ...], ...], ...]:
@@ -362,72 +422,23 @@ def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
         *((isinstance(key, str), f"keys: {key!r:.60} is no text; allowed are keys of the scene") for key in keys),
         *((keys.count(key) < 2, f"keys: {key} is given twice") for key in dict.fromkeys(map(str, keys))),
     )
-    pair, named = result.gear_pair, [key for key in keys if key != TORQUE]
+    named = [key for key in keys if key != TORQUE]
     changes, at = pair_changes(result.scene, named), [keys.index(key) for key in named]
     solved, states = result.states or (None, None)
     loaded = states if states is not None and solved == result.scene else states_of_maps(result)
     count = [len(state) for state in loaded.grids]
     require((any(count), "sensitivities: no tooth pair of the result carries load"))
     tangents = loaded.tangents(LINEAR)
-    grids, pairs = tangents.grids, result.pair.tolist()
-    places = np.array(np.unravel_index(np.flatnonzero(count), result.transmission_error.shape))
-    columns = np.array([pairs.index(grid.number) for grid in grids])
-    at_grids = (*places[:, tangents.state], columns)
-    contacts, separations = [grid.contact for grid in grids], [grid.separation for grid in grids]
-    found = contact_changes(pair, contacts, separations, [grid.active for grid in grids], changes)
-    # the gears of a pair are turned back into contact first, then closed under load
-    touching = np.array([path.transmission_error for path in result.paths])[columns, at_grids[1]]
-    turned = pair.driving * (touching - result.transmission_error[at_grids[:2]])
-    beyond = found.at_contact - turned * found.levers[1]
-    gaps = np.zeros((len(keys), tangents.grid.size))
-    for row, grown, held, further in zip(at, found.gaps, found.at_contact, beyond, strict=True):  # rows fit a cache
-        gaps[row] = grown - held[tangents.grid] * found.lever_parts + further[tangents.grid]
-    lever_torques = np.zeros((len(keys), len(grids)))
-    lever_torques[at] = result.normal_force[at_grids] * found.levers[0]
-    shifts = np.zeros(lever_torques.shape)
-    shifts[at] = found.shifts
     if loaded.bending is not None:
-        _add_shifted_bending(gaps, shifts, tangents, loaded.bending)
+        tangents = tangents.with_lines(bending_by_shift(tangents.grids, tangents.state, loaded.bending))
+    pairs = result.pair.tolist()
+    places = np.array(np.unravel_index(np.flatnonzero(count), result.transmission_error.shape))
+    columns = np.array([pairs.index(grid.number) for grid in tangents.grids])
+    found = gap_growth(result, tangents, loaded.bending, (*places[:, tangents.state], columns), changes)
     by_key = dict(zip(named, changes, strict=True))
     every = tuple(by_key.get(key) for key in keys)
-    return Sensitivities(tuple(keys), result, tangents, places, columns, gaps, lever_torques, shifts, every)
-
-
-def _shifted(separation: Separation) -> tuple[Separation, float]:
-    """A grid moved across its contact, and how far [mm]."""
-    step = STEP * separation.spacing[0] * len(separation.x)
-    return replace(separation, origin=separation.origin + step * separation.axes[0]), step
-
-
-def _add_shifted_bending(gaps: Array, shifts: Array, tangents: Tangents, bending: BendingModel) -> None:
-    """Add to the gaps what teeth bend more under the forces as they are, as contact points move.
-
-    The teeth bend under forces at the centres of pressure of the slices, which move across with the contact point while
-    the grid of the half-spaces is held.
-
-    Parameters
-    ----------
-    gaps : (keys, n) array [mm per unit]
-        Changed in place.
-    shifts : (keys, grids) array [mm per unit]
-        Of the contact points along x.
-    tangents : Tangents
-    bending : BendingModel
-    """
-    parts = [slice(*ends) for ends in pairwise([0, *tangents.ends.tolist()])]
-    slices = [grid.active.nonzero()[1] for grid in tangents.grids]
-    forces = [grid.slice_force for grid in tangents.grids]
-    for i in np.flatnonzero(shifts.any(axis=0)).tolist():
-        number, separation = tangents.grids[i].number, tangents.grids[i].separation
-        moved, step = _shifted(separation)
-        by_shift = (bending.within(number, moved) - tangents.grids[i].bending) / step
-        growth = {i: by_shift @ forces[i]}
-        for j in np.flatnonzero(tangents.state == tangents.state[i]).tolist():
-            if j != i:
-                other = tangents.grids[j].number, tangents.grids[j].separation
-                by_shift = (
-                    bending.between(other, (number, moved)) - bending.between(other, (number, separation))
-                ) / step
-                growth[j], growth[i] = by_shift @ forces[i], growth[i] + by_shift.T @ forces[j]
-        for j, grown in growth.items():
-            gaps[:, parts[j]] += shifts[:, i, None] * grown[slices[j]]
+    made = Sensitivities(tuple(keys), result, tangents, places, columns, found.at_keys(at, len(keys)), every)
+    if made._moves_lines:
+        reason = "a linear relief starts in the contact beside its point: derivatives depend on the grid by up to 25 %"
+        warn_of_contacts(result, reason, made.across_relief_starts, stacklevel=4)
+    return made

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from loaded_tca.arrays import Mask
 from loaded_tca.compliance import require_teeth, warn_of_teeth
 from loaded_tca.contact.rounded_edge import LARGE_ERROR
 from loaded_tca.errors import give_accuracy_warning
@@ -18,6 +20,9 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.iso6336_3 import THIN_RIM
 from loaded_tca.scene import Scene
 from loaded_tca.unloaded.tooth_cycle import REACH
+
+if TYPE_CHECKING:
+    from loaded_tca.results.mesh_cycle import MeshCycle
 
 THICKEST_CONTACT = 0.25
 """Half width of a contact, over the module, above which a tooth is no half-space: it is 1.6 modules thick."""
@@ -68,11 +73,11 @@ def warn_of_accuracy(
             for k, (number, loaded) in enumerate(zip(carried.pairs.tolist(), row, strict=True)):
                 if loaded is not None:
                     solved += 1
-                    place = f"{1e-3 * torque:g} N m, pinion angle {math.degrees(angle):.4g} deg, tooth pair {number:+d}"
+                    place = _place(torque, angle, number)
                     at_rounding = [mesh_error] if (t, n, k) in large else []
                     for reason in [*at_rounding, *_reasons(pair, grid, loaded)]:
                         places.setdefault(reason, []).append(place)
-    told += [f"{reason} (at {len(at)} of {solved} pressure maps; the first: {at[0]})" for reason, at in places.items()]
+    told += [_at_places(reason, at, solved) for reason, at in places.items()]
     turned = np.where(carried.rotation > 0.0, carried.rotation, math.inf)
     twist = body_torsion * carried.torque[:, None] / pair.base_radii[0] / (turned * pair.base_radii[1])
     if (share := float(twist.max())) > MOST_TORSION:
@@ -89,6 +94,23 @@ def warn_of_accuracy(
         )
     for sentence in told:
         give_accuracy_warning(sentence, stacklevel=3)
+
+
+def warn_of_contacts(result: MeshCycle, reason: str, where: Mask, stacklevel: int) -> None:
+    """Give an AccuracyWarning with the number of contacts of a result, (torque, position, pair), that it concerns."""
+    angles, pairs = result.path.pinion_angle, result.pair
+    places = [_place(result.torque[t], angles[n], pairs[k]) for t, n, k in np.argwhere(where).tolist()]
+    if places:
+        loaded = int(np.count_nonzero(result.load_share > 0.0))
+        give_accuracy_warning(_at_places(reason, places, loaded), stacklevel=stacklevel + 1)
+
+
+def _place(torque: float, angle: float, number: int) -> str:
+    return f"{1e-3 * torque:g} N m, pinion angle {math.degrees(angle):.4g} deg, tooth pair {number:+d}"
+
+
+def _at_places(reason: str, places: Sequence[str], count: int) -> str:
+    return f"{reason} (at {len(places)} of {count} pressure maps; the first: {places[0]})"
 
 
 def warn_of_gears(scene: Scene, pair: GearPair) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import reduce
 
 import numpy as np
@@ -87,6 +87,10 @@ class FlankPoints:
     z: Array
     gradient: Array
     steepness: Array
+
+    def at(self, rows: int | Indices | tuple[slice | int, ...]) -> FlankPoints:
+        """Some of the points, as of an index of the grid."""
+        return FlankPoints(*(getattr(self, one.name)[rows] for one in fields(self)))
 
 
 class NormalGap:

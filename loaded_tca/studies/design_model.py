@@ -35,7 +35,7 @@ from loaded_tca.results.load_factors import load_factors
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.root_stress import GEARS, root_stress_of_gear, stress_at_extreme
 from loaded_tca.scene import Scene
-from loaded_tca.separation.gap_change import value_at
+from loaded_tca.separation.pair_change import value_at
 from loaded_tca.studies.study import Distribution, Study, is_finite, is_whole, told_distribution
 from loaded_tca.unloaded import ContactPoint, trace_teeth
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.contact import ContactProblem, contact_stiffness, solve_problem
-from loaded_tca.contact.cuts import CROWDING
+from loaded_tca.contact.cuts import CROWDING, CutCells, crowding_growth
 from loaded_tca.contact.grid import Grids
 from loaded_tca.contact.love import influence_coefficients
 from loaded_tca.errors import InputError
@@ -180,3 +180,20 @@ test_impossible_covers_are_refused = refusals(
     ([[1.0, 0.0], [0.5, 1.0]], "cover: 1 cells with a finite gap are not above 0 and at most 1"),
     ([[1.0, 1.2], [np.nan, 1.0]], "cover: 2 cells with a finite gap are not above 0 and at most 1"),
 )
+
+
+def test_displacement_of_cut_cells_grows_with_their_parts_as_between_two_covers(rng):
+    shape, aspect, step = (8, 5), 20.0, 1e-6
+    cover = np.clip(rng.uniform(-0.5, 1.5, shape), 0.0, 1.0)
+    growth = rng.normal(size=(2, *shape)) * ((cover > 0.0) & (cover < 1.0))
+    pressure = rng.uniform(1.0, 3.0, shape)
+
+    def displaced(parts):
+        out = np.zeros((1, *shape))
+        CutCells.of(parts[None], np.array([aspect])).add(pressure[None], out)
+        return out[0]
+
+    expected = [(displaced(cover + step * one) - displaced(cover - step * one)) / (2.0 * step) for one in growth]
+    found = crowding_growth(cover, growth, pressure, aspect)
+    # differences of 1/c, of cells with a hundredth of their material: (step/c)^2
+    assert_allclose(found, expected, rtol=0, atol=1e-6 * np.abs(found).max())

@@ -16,7 +16,8 @@ from loaded_tca.loaded.cycle import carried_by_one
 from loaded_tca.loaded.load_sharing import share_load, tooth_pairs_at
 from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents, loaded_states
 from loaded_tca.loaded.tooth_contact import GridChoice
-from loaded_tca.separation.gap_change import contact_changes, pair_changes
+from loaded_tca.separation.gap_change import contact_changes
+from loaded_tca.separation.pair_change import pair_changes
 from loaded_tca.unloaded import trace_contact, trace_teeth
 from tests.samples.results import SCENES
 
@@ -179,7 +180,12 @@ def test_forces_change_with_gaps_and_torque_as_in_the_dense_problem(pairs):
     assert_allclose(force_change(tangent, change[active]), expected, rtol=0, atol=OTHERS * np.abs(expected).max())
     steeper = [pairs.solve(TORQUE + sign * 0.5)[0][active] for sign in (-1.0, 1.0)]
     by_torque = steeper[1] - steeper[0]
-    assert_allclose(tangent.force_by_torque, by_torque, rtol=0, atol=OTHERS * np.abs(by_torque).max())
+    assert_allclose(
+        tangent.by_rotation / tangent.spread(tangent.stiffness),
+        by_torque,
+        rtol=0,
+        atol=OTHERS * np.abs(by_torque).max(),
+    )
 
 
 def test_numbers_of_the_forces_change_by_their_adjoint_as_by_the_forces(pairs):
@@ -190,7 +196,7 @@ def test_numbers_of_the_forces_change_by_their_adjoint_as_by_the_forces(pairs):
     expected = slopes @ ((above[0] - below[0]) / step)[active]
     gaps = np.stack([change[active], 0.0 * change[active]])
     found = tangent.functional_change(slopes, gaps, np.array([[0.0], [1.0]]))
-    assert_allclose(found[:, 0], [expected, slopes @ tangent.force_by_torque], rtol=OTHERS)
+    assert_allclose(found[:, 0], [expected, slopes @ tangent.by_rotation / tangent.stiffness[0]], rtol=OTHERS)
 
 
 def test_share_of_a_pair_changes_as_the_dense_problem_solved_anew(pairs):
@@ -275,7 +281,7 @@ def test_helical_pair_turns_with_centre_distance_and_axial_offset_by_closed_form
     tangent = Tangents([grids])
     changes = pair_changes(scene, ["mounting.centre_distance_error_mm", "mounting.axial_offset_mm"])
     contacts, separations = [grid.contact for grid in grids], [grid.separation for grid in grids]
-    grown = contact_changes(pair, contacts, separations, [grid.active for grid in grids], changes).gaps
+    grown = contact_changes(pair, contacts, separations, [grid.active for grid in grids], changes).held_gaps
     found = -pair.driving * tangent.rotation_change(grown)[:, 0] * pair.base_radii[1]
     closed = [-np.sin(scene.mesh().working_pressure_angle), np.tan(abs(gear.base_helix_angle))]
     assert_allclose(found, closed, rtol=1e-3)

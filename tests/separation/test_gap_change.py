@@ -7,8 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca import read_scene, sample_separation, trace_contact
-from loaded_tca.separation.gap_change import contact_changes, pair_changes
+from loaded_tca.separation.gap_change import contact_changes
 from loaded_tca.separation.normal_gap import NormalGap
+from loaded_tca.separation.pair_change import pair_changes
 from tests.refusals import refusals
 from tests.samples.results import SCENES
 
@@ -78,7 +79,7 @@ def grown(pair, contact, separation, scene, keys):
     """Growth of the gap with the gears held, (keys, nx, ny); zero where there is no material."""
     there = np.isfinite(separation.cut_gap)
     found = np.zeros((len(keys), *there.shape))
-    found[:, there] = contact_changes(pair, [contact], [separation], [there], pair_changes(scene, keys)).gaps
+    found[:, there] = contact_changes(pair, [contact], [separation], [there], pair_changes(scene, keys)).held_gaps
     return found
 
 
@@ -176,7 +177,9 @@ def test_levers_and_places_change_as_those_of_contact_points_traced_anew(name):
     scene = scene_of(file, **changes)
     pair, contact, separation = grid_of(scene, cells=(3, 3))
     changes = contact_changes(pair, [contact], [separation], [np.ones((3, 3), bool)], pair_changes(scene, keys))
-    for key, found, shift in zip(keys, changes.levers[..., 0].T, changes.shifts[:, 0], strict=True):
+    for key, found, shift in zip(
+        keys, changes.at_points.levers[..., 0].T, changes.at_points.shifts[:, 0, 0], strict=True
+    ):
         step, trials = LENGTHS[key.rpartition("_")[2]], []
         *sections, last = key.split(".")
         value = scene

@@ -14,7 +14,7 @@ from scipy.stats import norm
 from loaded_tca import analyse, read_scene
 from loaded_tca.errors import ConvergenceError, InputError
 from loaded_tca.results.files import write_dataset
-from loaded_tca.separation.gap_change import value_at
+from loaded_tca.separation.pair_change import value_at
 from loaded_tca.studies import DesignModel, Study, load_design, optimise, robustness
 from loaded_tca.studies import design as designs
 from loaded_tca.studies.design_model import FIGURES, smooth_span

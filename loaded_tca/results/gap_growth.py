@@ -1,0 +1,187 @@
+r"""Growth of the gaps of loaded contacts with keys of the scene, on grids that follow them.
+
+Sensitivities rest on the growth dh of all that the forces f as they are leave open between the flanks: of the gaps
+themselves, of (dK) f where the edges of flanks move in the grids, and of the bending of the teeth and of their free
+edges where the wheel moves below the lines of the forces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from itertools import combinations, pairwise
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.compliance import ToothCompliance
+from loaded_tca.contact.cuts import crowding_growth
+from loaded_tca.errors import InputError
+from loaded_tca.loaded.free_edges import edge_compliances
+from loaded_tca.loaded.pair_coupling import BendingModel
+from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.pressure_map import PressureMap
+from loaded_tca.separation import Separation
+from loaded_tca.separation.gap_change import contact_changes
+from loaded_tca.separation.pair_change import PairChange
+
+Grid = TypeVar("Grid", Separation, PressureMap)
+
+if TYPE_CHECKING:
+    from loaded_tca.results.mesh_cycle import MeshCycle
+
+
+@dataclass(frozen=True, eq=False)
+class GapGrowth:
+    """Growth of what the loaded states of a result balance.
+
+    Attributes
+    ----------
+    gaps : (keys, n) array [mm per unit]
+        At the active cells, with what the forces as they are displace more.
+    lever_torques : (keys, grids) array [N mm per unit]
+        Growth of the torque of each pair by that of its lever.
+    motions : (keys, grids, 6) array
+        Of the grids, as of :class:`loaded_tca.separation.gap_change.MovedContacts`.
+    turns : (keys, grids) array [rad per unit]
+        Of the wheel back into contact, against the normal force of each pair.
+    """
+
+    gaps: Array
+    lever_torques: Array
+    motions: Array
+    turns: Array
+
+    def of_grids(self, grids: Sequence[int]) -> GapGrowth:
+        """The same of some of the grids, without gaps."""
+        some = list(grids)
+        none = np.zeros((len(self.turns), 0))
+        return GapGrowth(none, self.lever_torques[:, some], self.motions[:, some], self.turns[:, some])
+
+    def at_keys(self, at: Sequence[int], count: int) -> GapGrowth:
+        """The same as rows ``at`` of so many keys, of which the others change nothing."""
+
+        def spread(values: Array) -> Array:
+            found = np.zeros((count, *values.shape[1:]))
+            found[list(at)] = values
+            return found
+
+        return GapGrowth(*(spread(getattr(self, one.name)) for one in fields(self)))
+
+
+def gap_growth(
+    result: MeshCycle,
+    tangents: Tangents,
+    bending: BendingModel | None,
+    places: tuple[Array, ...],
+    changes: Sequence[PairChange],
+) -> GapGrowth:
+    """Growth with each change.
+
+    Parameters
+    ----------
+    result : MeshCycle
+    tangents : Tangents
+        Of all states.
+    bending : BendingModel or None
+    places : three (grids,) arrays
+        Torque, position and pair of each grid.
+    changes : sequence of PairChange
+    """
+    pair, grids, (_, positions, pairs) = result.gear_pair, tangents.grids, places
+    separations = [grid.separation for grid in grids]
+    held = contact_changes(
+        pair, [grid.contact for grid in grids], separations, [grid.active for grid in grids], changes
+    )
+    found, points = held.followed(tangents.gathered(grid.pressure for grid in grids), separations), held.at_points
+    # the gears of a pair are turned back into contact first, then closed under load
+    touching = np.array([path.transmission_error for path in result.paths])[pairs, positions]
+    turned = pair.driving * (touching - result.transmission_error[places[:2]])
+    wheel_levers = np.array([grid.contact.wheel_lever for grid in grids])
+    gaps = found.gaps + (points.turns * wheel_levers - turned * points.levers[1])[:, tangents.grid]
+    for i, (first, last) in enumerate(pairwise([0, *tangents.ends.tolist()])):
+        if (own := found.covers[:, first:last]).any():
+            gaps[:, first:last] += _released(grids[i], own)
+    _add_moved_lines(tangents, bending, changes, found.motions, gaps, free_edges=result.scene.analysis.free_edges)
+    return GapGrowth(gaps, result.normal_force[places] * points.levers[0], found.motions, points.turns)
+
+
+def _released(grid: LoadedGrid, covers: Array) -> Array:
+    """What the forces of a grid displace its active cells (keys, n) [mm per unit] more as edges move in it."""
+    growth = np.zeros((len(covers), *grid.active.shape))
+    growth[:, grid.active] = covers
+    (dx, dy), problem = grid.problem.spacing, grid.problem
+    cover = np.ones(grid.active.shape) if problem.cover is None else problem.cover
+    displaced = crowding_growth(cover, growth, grid.pressure, dy / dx)
+    return displaced[:, grid.active] * (dx / problem.contact_modulus)
+
+
+def moved(grid: Grid, motion: Array) -> Grid:
+    """A grid moved by small motions (6,) as of :class:`loaded_tca.separation.gap_change.MovedContacts`."""
+    along_x, along_y, turn, tilt_x, tilt_y, lift = motion
+    rates = np.array([[0.0, turn, -tilt_x], [-turn, 0.0, -tilt_y], [tilt_x, tilt_y, 0.0]])
+    axes = grid.axes + rates @ grid.axes
+    return replace(grid, origin=grid.origin + np.array([along_x, along_y, lift]) @ grid.axes, axes=axes)
+
+
+def _add_moved_lines(
+    tangents: Tangents,
+    bending: BendingModel | None,
+    changes: Sequence[PairChange],
+    motions: Array,
+    gaps: Array,
+    *,
+    free_edges: bool,
+) -> None:
+    """Add to the gaps (keys, n) what teeth bend more under the forces, as the lines of these move on them."""
+    grids = tangents.grids
+    separations = [grid.separation for grid in grids]
+    slices = np.concatenate([grid.active.nonzero()[1] for grid in grids])
+    slices = (
+        slices + (np.cumsum([one.y.size for one in separations]) - [one.y.size for one in separations])[tangents.grid]
+    )
+    mounted = [key for key, change in enumerate(changes) if not change.of_modifications]
+    for key in mounted:
+        change = changes[key]
+        low, high = (  # either side: faces of one width have a kink between
+            _displaced(
+                tangents,
+                bending.mounted(side) if isinstance(bending, ToothCompliance) else bending,
+                side if free_edges else None,
+                [moved(one, part * change.difference * by) for one, by in zip(separations, motions[key], strict=True)],
+            )
+            for side, part in ((change.below, -0.5), (change.above, 0.5))
+        )
+        gaps[key] += ((high - low) / change.difference)[slices]
+    others = [key for key in range(len(changes)) if key not in mounted]
+    if tangents.by_shift is not None and others:
+        shifts = np.repeat(motions[others][..., 0], [one.y.size for one in separations], axis=1)
+        gaps[others] += (tangents.by_shift @ shifts.T).T[:, slices]
+
+
+def _displaced(
+    tangents: Tangents, bending: BendingModel | None, pair: GearPair | None, separations: Sequence[Separation]
+) -> Array:
+    """Deflection of the slices of all grids, in one row [mm], under the forces as they are, on other grids.
+
+    ``pair``: whose free edges count; None: there are none.
+    """
+    grids, forces = tangents.grids, [grid.slice_force for grid in tangents.grids]
+    found = [np.zeros(force.shape) for force in forces]
+    if pair is not None:
+        for i, ends in enumerate(edge_compliances(pair, separations)):
+            if isinstance(ends, InputError):
+                raise ends
+            if ends is not None:
+                found[i] += ends @ forces[i]
+    if bending is not None:
+        for i, (grid, one) in enumerate(zip(grids, separations, strict=True)):
+            found[i] += bending.within(grid.number, one) @ forces[i]
+        for state in np.split(np.arange(len(grids)), np.flatnonzero(np.diff(tangents.state)) + 1):
+            for i, j in combinations(state.tolist(), 2):
+                between = bending.between((grids[i].number, separations[i]), (grids[j].number, separations[j]))
+                found[i] += between @ forces[j]
+                found[j] += between.T @ forces[i]
+    return np.concatenate(found)
