@@ -7,7 +7,7 @@ the grid (nx, ny); it counts for cells under pressure and below the cap, whose f
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -15,7 +15,14 @@ from loaded_tca.arrays import Array
 from loaded_tca.contact.patch import peak_weights, reaches_border, top_weights
 from loaded_tca.errors import require
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.results.load_factors import STRIPS, strip_borders, strip_forces, strip_motions, strip_shares
+from loaded_tca.results.load_factors import (
+    STRIPS,
+    loaded_maps,
+    strip_borders,
+    strip_forces,
+    strip_motions,
+    strip_shares,
+)
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.slice_pressure import UnderPressure, largest_slice_pressures
 from loaded_tca.unloaded import ContactPath
@@ -167,22 +174,14 @@ def face_load_factor_slopes(
         By position and tooth pair, zero at cells without pressure. None where K_Hbeta does not depend on a pair: it has
         no map, or the position is the last one; everywhere if K_Hbeta itself is NaN, for one position and without load.
     """
-    borders = strip_borders(pair, path)
-    loaded = [one for row in positions[:-1] for one in row if one is not None]
-    forces = np.sum([np.zeros(STRIPS), *(strip_forces(pair, one, borders)[0] for one in loaded)], axis=0)
-    found: list[list[Array | None]] = [[None] * len(row) for row in positions]
-    if not forces.any():
-        return found
-    largest, total = int(forces.argmax()), float(forces.sum())
-    factor = STRIPS * forces[largest] / total
-    for n, row in enumerate(positions[:-1]):
-        for k, one in enumerate(row):
-            if one is not None:
-                slopes = np.zeros(one.pressure.shape)
-                shares = strip_shares(pair, one, borders)[0][largest]
-                slopes[one.pressure > 0.0] = (STRIPS * shares - factor) / total
-                found[n][k] = slopes
-    return found
+
+    def slopes(one: PressureMap, borders: Array, forces: Array) -> Array:
+        largest, total = int(forces.argmax()), float(forces.sum())
+        shares, by_cell = strip_shares(pair, one, borders)[0][largest], np.zeros(one.pressure.shape)
+        by_cell[one.pressure > 0.0] = (STRIPS * shares - STRIPS * forces[largest] / total) / total
+        return by_cell
+
+    return _of_maps(pair, path, positions, slopes)
 
 
 def face_load_factor_motions(
@@ -201,15 +200,23 @@ def face_load_factor_motions(
         By the motions of the grid as of :class:`loaded_tca.separation.gap_change.MovedContacts`, and by those of the
         lower and the upper end of the common face [1/mm]. None as there.
     """
+
+    def motions(one: PressureMap, borders: Array, forces: Array) -> Array:
+        return strip_motions(pair, one, borders, int(forces.argmax())) * (STRIPS / float(forces.sum()))
+
+    return _of_maps(pair, path, positions, motions)
+
+
+def _of_maps(
+    pair: GearPair,
+    path: ContactPath,
+    positions: Sequence[Sequence[PressureMap | None]],
+    derivative: Callable[[PressureMap, Array, Array], Array],
+) -> list[list[Array | None]]:
+    """A derivative of K_Hbeta by every map, of the map, the borders of the strips and their forces; None without."""
     borders = strip_borders(pair, path)
-    loaded = [one for row in positions[:-1] for one in row if one is not None]
-    forces = np.sum([np.zeros(STRIPS), *(strip_forces(pair, one, borders)[0] for one in loaded)], axis=0)
-    found: list[list[Array | None]] = [[None] * len(row) for row in positions]
-    if not forces.any():
-        return found
-    largest, total = int(forces.argmax()), float(forces.sum())
-    for n, row in enumerate(positions[:-1]):
-        found[n] = [
-            None if one is None else strip_motions(pair, one, borders, largest) * (STRIPS / total) for one in row
-        ]
-    return found
+    forces = sum((strip_forces(pair, one, borders)[0] for one in loaded_maps(positions)), np.zeros(STRIPS))
+    by_map: list[list[Array | None]] = [[None] * len(row) for row in positions]
+    for n, row in enumerate(positions[:-1] if forces.any() else ()):
+        by_map[n] = [None if one is None else derivative(one, borders, forces) for one in row]
+    return by_map

@@ -59,7 +59,7 @@ def load_factors(pair: GearPair, path: ContactPath, maps: Maps, mean_length: flo
     factors = np.full((2, len(maps)), math.nan)
     for torque, positions in enumerate(maps):
         strips, largest = np.zeros(STRIPS), 0.0
-        for one in (one for row in positions[:-1] for one in row if one is not None):
+        for one in loaded_maps(positions):
             force, length = strip_forces(pair, one, borders)
             strips += force
             largest = max(largest, float(force.max()) / length)
@@ -89,7 +89,7 @@ def face_load_factor_error(
         end of the face, or no contact ends there by an edge.
     """
     borders = strip_borders(pair, path)
-    loaded = [one for row in positions[:-1] for one in row if one is not None]
+    loaded = loaded_maps(positions)
     strips = [strip_forces(pair, one, borders) for one in loaded]
     forces = np.sum([np.zeros(STRIPS), *(force for force, _ in strips)], axis=0)
     largest = int(forces.argmax())
@@ -101,6 +101,11 @@ def face_load_factor_error(
         if one.pressure[one.beside_end].any()
     )
     return MISSING_AT_END * cells / float(forces[largest]) if cells else math.nan
+
+
+def loaded_maps(positions: Sequence[Sequence[PressureMap | None]]) -> list[PressureMap]:
+    """Maps by positions and tooth pairs that count in the load factors: all but those of the last position."""
+    return [one for row in positions[:-1] for one in row if one is not None]
 
 
 def strip_forces(pair: GearPair, one: PressureMap, borders: Array) -> tuple[Array, float]:
