@@ -152,4 +152,5 @@ def refinement(
         solution = yield from solved(cells, tolerance, prolong(coarse.pressure, cells, (2, 2)))
         if coarse.pressure.any():
             change = abs(solution.approach - coarse.approach) / solution.approach_under_load
-            solution = replace(solution, coarser=CoarserGrid(coarse.pressure, solution.pressure, change))
+            before = 0.0 if coarse.coarser is None else coarse.coarser.change_beside_peak
+            solution = replace(solution, coarser=CoarserGrid(coarse.pressure, solution.pressure, change, before))

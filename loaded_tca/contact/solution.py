@@ -20,9 +20,10 @@ FEWEST_CELLS = 8
 LEAST_ERROR = 0.6
 # Error of the peak over its change from the coarser grid, which has four times the error; and, at the most, over that
 # change and the largest one beside the peak, where the curvature of the gap jumps and the error falls with the cell
-# (validation/loaded/error_estimates.py).
+# (validation/loaded/error_estimates.py). Where two grids agree by chance there, the change before theirs tells: an
+# eighth of it is half of theirs if the error falls with the square of the cell.
 SECOND_ORDER = 1.0 / 3.0
-MOST_OF_CHANGE, MOST_OF_CHANGE_BESIDE = 0.4, 0.5
+MOST_OF_CHANGE, MOST_OF_CHANGE_BESIDE, MOST_OF_CHANGE_BEFORE = 0.4, 0.5, 0.15
 
 
 class ContactStatus(enum.Enum):
@@ -41,8 +42,8 @@ class ErrorEstimate:
     ----------
     peak_pressure : float
         Hardly ever exceeded: half of the largest change of pressure from the coarser grid in the cells about the peak,
-        0.4 of the change of the peak, or 0.6 over the square of the cells across, whichever is largest; all of the
-        change where a border or an edge ends the contact.
+        0.15 of that change between the two grids before, 0.4 of the change of the peak, or 0.6 over the square of the
+        cells across, whichever is largest; all of the change where a border or an edge ends the contact.
     approach : float
         The change of the approach from the coarser grid.
     second_order : float
@@ -67,11 +68,14 @@ class CoarserGrid:
         On the grid.
     approach_change : float
         Relative change of the approach between them.
+    change_before : float
+        ``change_beside_peak`` of the coarser grid against the one before it; zero if there was none.
     """
 
     pressure: Array
     finer: Array
     approach_change: float
+    change_before: float = 0.0
 
     @cached_property
     def change_of_largest(self) -> float:
@@ -233,7 +237,12 @@ class ContactSolution:
             return ErrorEstimate(change, coarser.approach_change, change)
         change, beside = coarser.change_of_peak, coarser.change_beside_peak
         return ErrorEstimate(
-            peak_pressure=max(MOST_OF_CHANGE * change, MOST_OF_CHANGE_BESIDE * beside, least),
+            peak_pressure=max(
+                MOST_OF_CHANGE * change,
+                MOST_OF_CHANGE_BESIDE * beside,
+                MOST_OF_CHANGE_BEFORE * coarser.change_before,
+                least,
+            ),
             approach=coarser.approach_change,
             second_order=max(SECOND_ORDER * change, least),
         )

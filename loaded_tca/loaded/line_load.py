@@ -13,6 +13,10 @@ AVERAGED_OVER = 0.25
 """Length along the contact over which a line load is averaged, over the normal module."""
 LEFT_OF_CHANGE = 0.5
 """Error of the line load at a place over its change from a grid half as fine, where it falls with the cell."""
+LEFT_BESIDE_END, COMPETES = 0.035, 0.5
+"""Error of the pressure of slices beside a sharp end, over the part that a slice has of the averaged length: two grids
+may agree by chance (``validation/loaded/error_estimates.py``); and the line load there, over the largest one, from
+which the pressure there may be the largest, where the contact is more curved."""
 
 
 def averaged_line_load(force: Array, borders: Array, length: float) -> tuple[Array, Array]:
@@ -107,13 +111,26 @@ class SliceLoads:
         self.ends = borders[carrying[0]], borders[carrying[-1] + 1]
         self.length = min(AVERAGED_OVER * module, loaded_length(self.force, borders))
         self.places, self.line_load = averaged_line_load(self.force, borders, self.length)
-        self.y = np.clip(self.places, *self.ends)
-        self.x = np.interp(self.y, separation.y[carrying], middles)
+        self._middles = separation.y[carrying], middles
+        self.x, self.y, _ = self.at(self.places)
         self.step = dy
 
+    def at(self, places: Array) -> tuple[Array, Array, Array]:
+        """Where the contact lies at places along it, x and y [mm] on the slices that carry load, and its line load."""
+        y = np.clip(places, *self.ends)
+        return np.interp(y, *self._middles), y, np.interp(places, self.places, self.line_load)
+
     def error_of_largest(self, coarser: SliceLoads) -> float:
-        """Relative error that the largest line load may have: where two maxima compete more than its change tells."""
+        """Relative error that the largest line load may have by a coarser grid: of its change, or of competing maxima.
+
+        Pressures grow with the root of the line load: their error is half as large. Where the line load goes on to a
+        sharp end their error is told by the length of the slices, too.
+        """
         places = np.union1d(self.places, coarser.places)
         line_load, before = (np.interp(places, each.places, each.line_load) for each in (self, coarser))
         errors, largest = LEFT_OF_CHANGE * np.abs(line_load - before), float(line_load.max())
-        return max(float((line_load + errors).max()) / largest - 1.0, 1.0 - float((line_load - errors).max()) / largest)
+        above, below = float((line_load + errors).max()) / largest, float((line_load - errors).max()) / largest
+        change = abs(float(coarser.line_load.max()) / float(self.line_load.max()) - 1.0)
+        beside_end = np.minimum(self.y - self.ends[0], self.ends[1] - self.y) < self.length
+        at_end = float(self.line_load[beside_end].max(initial=0.0)) > COMPETES * largest
+        return max(above - 1.0, 1.0 - below, change, LEFT_BESIDE_END * self.step / self.length if at_end else 0.0)

@@ -31,6 +31,9 @@ from loaded_tca.separation import Separation
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import ContactPoint
 
+ROUNDS, BETWEEN = 2, 17
+"""How often places between those beside the largest pressure are tried, and how many."""
+
 UnderPressure = tuple[ContactPoint, Separation, Array]
 """A contact under load: its contact point, its grid and the pressure (nx, ny) [MPa] there."""
 
@@ -70,24 +73,35 @@ def largest_slice_pressures(pair: GearPair, contacts: Sequence[UnderPressure]) -
     and after it, since on even grids two places may be alike.
     """
     slices = [SliceLoads(pair.module, separation, pressure) for _, separation, pressure in contacts]
-    count = max(one.y.size for one in slices)
-    x, y, line_load = (
-        np.stack([np.pad(getattr(one, name), (0, count - one.y.size), "edge") for one in slices])
-        for name in ("x", "y", "line_load")
-    )
     axes = np.array([separation.axes for _, separation, _ in contacts])
-    curvature = np.maximum(
-        NormalGap(pair.sharp, [contact for contact, *_ in contacts], axes).curvature_across(x, y), 0.0
-    )
-    pressure = np.sqrt(line_load * pair.contact_modulus * curvature / math.pi)
+    gap = NormalGap(pair.sharp, [contact for contact, *_ in contacts], axes)
+    count = max(each.places.size for each in slices)
+    places = np.stack([np.pad(each.places, (0, count - each.places.size), "edge") for each in slices])
+    pressure, bends = _slice_pressures(pair, gap, slices, places)
+    finest = places
+    for _ in range(ROUNDS):  # where the curvature jumps the largest pressure is at the jump, between two places
+        top = pressure.argmax(axis=1, keepdims=True)
+        below, above = (np.take_along_axis(finest, np.clip(top + k, 0, finest.shape[1] - 1), 1) for k in (-1, 1))
+        finest = below + (above - below) * np.linspace(0.0, 1.0, BETWEEN)
+        pressure, _ = _slice_pressures(pair, gap, slices, finest)
     cap = math.inf if pair.max_pressure is None else pair.max_pressure
-    found = []
+    peaks = []
     for k, top in enumerate(pressure.argmax(axis=1).tolist()):
         highest, slopes = float(pressure[k, top]), np.zeros(slices[k].force.size)
+        x, y, _ = slices[k].at(finest[k, top])
         if 0.0 < highest < cap:
-            slopes = 0.5 * highest * _relative_slopes(slices[k], float(y[k, top]), curvature[k])
-        found.append(SlicePeak(min(highest, cap), (float(x[k, top]), float(y[k, top])), slopes))
-    return found
+            slopes = 0.5 * highest * _relative_slopes(slices[k], float(y), bends[k])
+        peaks.append(SlicePeak(min(highest, cap), (float(x), float(y)), slopes))
+    return peaks
+
+
+def _slice_pressures(
+    pair: GearPair, gap: NormalGap, slices: Sequence[SliceLoads], places: Array
+) -> tuple[Array, Array]:
+    """Pressure of the slices at places (contacts, n) along them [MPa], and the curvature across [1/mm]."""
+    x, y, line_load = (np.stack(part) for part in zip(*map(SliceLoads.at, slices, places), strict=True))
+    bends = np.maximum(gap.curvature_across(x, y), 0.0)
+    return np.sqrt(line_load * pair.contact_modulus * bends / math.pi), bends
 
 
 def _relative_slopes(slices: SliceLoads, place: float, curvature: Array) -> Array:

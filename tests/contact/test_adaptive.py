@@ -160,3 +160,19 @@ def test_peak_that_converges_to_first_order_is_refined_to_64_cells(second_order,
         next(refinement(solve, 1e-2, 1e-6, lambda _: True, (16, 16), None))
     assert end.value.value[0].pressure.shape == (cells, cells)
     assert end.value.value[1] == second_order
+
+
+def test_refined_grid_knows_how_much_the_pressure_changed_between_the_grids_before():
+    """By 8 % from the first to the second, by nothing from the second to the third."""
+    pressures, errors = iter((0.92, 1.0, 1.0)), iter((math.nan, 0.5, 0.001))
+
+    def solve(cells, _tolerance, _start):
+        error = next(errors)
+        return Solution(False, ErrorEstimate(error, 1e-4, error), np.full(cells, next(pressures)))
+        yield
+
+    with pytest.raises(StopIteration) as end:
+        next(refinement(solve, 1e-2, 1e-6, lambda _: True, (16, 16), None))
+    coarser = end.value.value[0].coarser
+    assert coarser.change_beside_peak == 0.0
+    assert coarser.change_before == pytest.approx(0.08)

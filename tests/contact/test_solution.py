@@ -98,6 +98,14 @@ def test_estimate_sees_a_change_beside_a_peak_that_stays():
     assert estimate.second_order < 0.4 * estimate.peak_pressure
 
 
+def test_estimate_remembers_the_change_before_two_grids_that_agree():
+    inside = ball()
+    coarser = dataclasses.replace(with_coarser(inside, 1.0).coarser, change_before=0.2)
+    estimate = dataclasses.replace(inside, coarser=coarser).error_estimate
+    assert estimate.peak_pressure == pytest.approx(0.15 * 0.2)
+    assert estimate.second_order < 0.5 * estimate.peak_pressure
+
+
 def test_peak_at_the_cap_has_the_least_error():
     capped = ball(max_pressure=500.0)
     estimate = with_coarser(capped, 1.0).error_estimate

@@ -409,6 +409,25 @@ def test_estimate_of_slices_sees_a_change_beside_the_largest_line_load():
     assert error([3, 10, 5, 5, 5, 9.2, 5, 5], [5, 10, 5, 5, 5, 9.2, 5, 5]) == 0.0, "where it is small"
 
 
+def test_estimate_of_slices_beside_a_sharp_end_grows_with_their_length():
+    """Two equal line loads: a contact that ends with a third of its line load there has no such error."""
+
+    def error(slices, at_end):
+        grid = SimpleNamespace(
+            x=np.arange(3.0),
+            y=np.arange(slices) * 8.0 / slices,
+            spacing=(1.0, 8.0 / slices),
+            cover=np.ones((3, slices)),
+        )
+        even = np.where(np.abs(grid.y - grid.y.mean()) < 3.0, 1.0, at_end) * np.array([[0.0], [1.0], [0.0]])
+        loads = SliceLoads(4.0, grid, even)
+        return loads.error_of_largest(loads)
+
+    assert error(16, 1.0) == pytest.approx(0.5 * error(8, 1.0))
+    assert error(16, 1.0) > 0.01
+    assert error(16, 0.3) == 0.0
+
+
 def test_width_of_a_contact_that_leaves_the_axis_of_its_grid_is_that_of_its_slices():
     loaded = solved(gear_pair(), 2700.0)
     assert loaded.at_edge

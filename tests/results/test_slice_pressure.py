@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca import AccuracyWarning, analyse, read_scene
-from loaded_tca.loaded.line_load import averaged_line_load
+from loaded_tca.loaded.line_load import SliceLoads, averaged_line_load
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
 from loaded_tca.reference.hertz import point_contact
 from loaded_tca.results.slice_pressure import largest_slice_pressures
@@ -106,6 +106,30 @@ def test_slice_pressures_of_several_contacts_are_those_of_each():
             (alone,) = largest_slice_pressures(pair, [contact])
             assert (together.pressure, together.place) == (alone.pressure, alone.place)
             assert_array_equal(together.slopes, alone.slopes)
+
+
+def test_slice_pressure_at_a_jump_of_the_curvature_is_found_between_the_slices():
+    """A parabolic tip relief begins within the contact: the largest pressure is that of the jump, on any slices."""
+    scene = read_scene(SCENES / "helical.toml")
+    start = 2.0 * scene.mesh().pinion.tip_radius - 1.5
+    pair = scene.with_changes(
+        {"pinion.modifications.tip_relief_um": 25.0, "pinion.modifications.tip_relief_start_mm": start}
+    ).pair()
+    contact = loaded(pair, (32, 48), 1000.0, 0.5 * pair.pitch)
+    (peak,) = largest_slice_pressures(pair, [under_pressure(contact)])
+    slices = SliceLoads(pair.module, contact.separation, contact.solution.pressure)
+    gap = NormalGap(pair.sharp, [contact.contact], contact.separation.axes[None])
+
+    def pressures(places):
+        x, y, line_load = slices.at(places)
+        bends = gap.curvature_across(x[None], y[None])[0]
+        return np.sqrt(line_load * MODULUS * bends / math.pi), bends
+
+    at_borders, _ = pressures(slices.places)
+    between, bends = pressures(np.linspace(*slices.places[[0, -1]], 20001))
+    assert np.abs(np.diff(np.log(bends))).max() > 0.5, "no jump"
+    assert at_borders.max() < 0.99 * between.max()
+    assert_allclose(peak.pressure, between.max(), rtol=1e-3)  # a sixty-fourth of a slice
 
 
 def test_slice_pressure_takes_line_load_and_curvature_of_its_own_place():

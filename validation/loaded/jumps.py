@@ -4,7 +4,9 @@ The curve of an elastic pair is continuous, and smooth but where a pair comes in
 computed curve has beyond that are jumps of its grids. The jump of a step between two positions is the smaller of its
 two second differences where both have one sign, over the peak to peak of the curve: a jump sticks out on both sides.
 Steps in which a pair comes into contact or leaves it are left out. A steep stretch sticks out as well; it does so less
-with finer positions, so that scenes with jumps above the bound are judged by twice as many positions.
+with finer positions, a jump does not: scenes with jumps above the bound are judged by twice as many positions, and once
+more (scene 27, whose contact point takes half a position to pass a corner of both flanks, with a lever that changes by
+0.17 % there).
 """
 
 import warnings
@@ -18,7 +20,7 @@ from validation.random_scenes import random_scene
 from validation.table import Row
 
 CASE, SOURCE = "jumps of the loaded transmission error", "the curve of an elastic pair is continuous"
-SCENES, POSITIONS, FINER = 40, 65, 129
+SCENES, POSITIONS = 40, (65, 129, 257)
 LARGEST = 0.015
 """Jump over the peak to peak that is allowed."""
 
@@ -29,9 +31,10 @@ def rows() -> list[Row]:
 
 
 def _row(seed: int) -> Row:
-    jump, positions = largest_jump(seed, POSITIONS), POSITIONS
-    if jump > LARGEST:
-        jump, positions = largest_jump(seed, FINER), FINER
+    for positions in POSITIONS:
+        jump = largest_jump(seed, positions)
+        if jump <= LARGEST:
+            break
     scene = random_scene(seed)
     name = f"scene {seed} ({scene.geometry.type}): largest jump over the peak to peak, {positions} positions"
     return Row(CASE, SOURCE, name, 0.0, jump, LARGEST)
