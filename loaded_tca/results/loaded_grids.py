@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.compliance import tooth_compliance
+from loaded_tca.compliance.model import model_of
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.free_edges import edge_compliances
@@ -40,7 +40,7 @@ def states_of_maps(result: MeshCycle) -> LoadedStates:
     """
     pair, wanted, numbers = result.gear_pair, result.scene.analysis, result.pair.tolist()
     unloaded, apart = _unloaded_contacts(pair, result.pinion_angle, alone=not wanted.load_sharing)
-    bending = None if wanted.compliance == "contact" else tooth_compliance(pair, neighbours=apart)
+    bending = model_of(result.scene, pair, apart)
     places = np.argwhere(result.normal_force > 0.0).tolist()
     maps = [one for t, n, k in places if (one := result.maps[t][n][k]) is not None]
     contacts = [unloaded[n][numbers[k]] for _, n, k in places if numbers[k] in unloaded[n]]

@@ -21,8 +21,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from loaded_tca.analysis import bending_of, roots_of
+from loaded_tca.analysis import roots_of
 from loaded_tca.arrays import Array, numbers, real
+from loaded_tca.compliance import model_of, require_teeth
 from loaded_tca.errors import InputError, named, require
 from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.held_contacts import HeldContacts, ShapedContacts
@@ -271,7 +272,9 @@ class DesignModel:
         scene = self.scene.with_changes(self._at(deviation, dict(zip(self.keys, self.start.tolist(), strict=True))))
         pair = scene.pair()
         mesh = trace_teeth(pair, pair.pitch * (np.arange(self.positions) / self.positions - 0.5))
-        bending = bending_of(scene, pair, farthest_apart(mesh))
+        if without_bodies := scene.analysis.without_bodies:
+            require_teeth(pair, without_bodies)
+        bending = model_of(scene, pair, farthest_apart(mesh))
         ranges = {
             key: (low + by, high + by) for (key, (low, high)), by in zip(self.variables.items(), own, strict=True)
         }
