@@ -37,7 +37,7 @@ from loaded_tca.contact.grid import AT_BOUND, OUT_OF_REACH, Grids, Operator, eac
 from loaded_tca.contact.levels import coarsen, coarsening, merged, prolong
 from loaded_tca.contact.love import column_coefficients
 from loaded_tca.contact.solution import ContactStatus
-from loaded_tca.contact.solver import (
+from loaded_tca.contact.stopping import (
     COARSE_FACTOR,
     COARSE_TOLERANCE,
     MOST_CHECKS,
