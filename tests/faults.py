@@ -389,7 +389,7 @@ FAULTS = (
     ),
     Fault(
         "key figures: body torsion is added instead of taken off",
-        "results/mesh_cycle.py",
+        "results/numbers.py",
         "1.0 / stiffness - 1e3 * self.face_width",
         "1.0 / stiffness + 1e3 * self.face_width",
         UNITS,

@@ -10,6 +10,7 @@ import numpy as np
 
 from loaded_tca.output.report import csv_table
 from loaded_tca.results.files import Buffer, FilePath, netcdf_of, replace_together
+from loaded_tca.results.key_figures import key_figures
 from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.summary import shown
 from loaded_tca.results.tolerances import key_figure_slopes
@@ -96,7 +97,7 @@ def sensitivities_text(found: Sensitivities, tolerances: Mapping[str, float], to
     torque : int
         Index of the torque.
     """
-    figures = found.result.key_figures()[torque]
+    figures = key_figures(found.result, torque)
     slopes = {name: values[torque] for name, values in key_figure_slopes(found).items()}
     spread = np.array([tolerances[key] for key in found.keys])
     together = [math.sqrt(float(((values * spread) ** 2).sum())) for values in slopes.values()]

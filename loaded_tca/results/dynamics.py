@@ -10,12 +10,11 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import require
 from loaded_tca.results.files import Part, variables_of
+from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.unloaded.harmonics import harmonic_coefficients
 
 if TYPE_CHECKING:
     import xarray
-
-    from loaded_tca.results.mesh_cycle import MeshCycle
 
 TORQUE, PHASE, ORDER = "pinion_torque_Nm", "mesh_phase", "order"
 OVER_PITCH, OVER_ORDERS = (TORQUE, PHASE), (TORQUE, ORDER)
@@ -64,7 +63,7 @@ The transmission error is absolute: 0 for that pair, negative where the wheel st
 The mesh stiffness is a tangent, positive: d(T1/r_b1) = k |d(r_b2 TE)|; about the pinion's axis it is k r_b1^2."""
 
 
-def dynamics_of(result: MeshCycle) -> xarray.Dataset:
+def dynamics_of(result: CycleNumbers) -> xarray.Dataset:
     """Return what models of gear dynamics take from a result; see ``MeshCycle.to_dynamics``."""
     import xarray
 

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.results.iso_figures import iso_figures
 from loaded_tca.results.load_factors import face_load_factor_error
+from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.root_figures import root_figures
-
-if TYPE_CHECKING:
-    from loaded_tca.results.mesh_cycle import MeshCycle
 
 ARCSEC = math.degrees(3600.0)
 """Seconds of arc per radian."""
@@ -50,7 +48,7 @@ def mean_over_a_pitch(values: Array) -> float:
     return float(np.average(values[known], weights=weights[known])) if known.any() else math.nan
 
 
-def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
+def key_figures(result: CycleNumbers, torque: int) -> dict[str, float]:
     """Return the figures under one torque by names that end in their unit; NaN: not known.
 
     Parameters
@@ -141,7 +139,7 @@ def key_figures(result: MeshCycle, torque: int) -> dict[str, float]:
     }
 
 
-def _face_load_factor_error(result: MeshCycle, torque: int) -> float:
+def _face_load_factor_error(result: CycleNumbers, torque: int) -> float:
     """By how much half-spaces without free edges have K_Hbeta too low; NaN where free edges soften the face ends."""
     if result.scene.analysis.free_edges:
         return math.nan

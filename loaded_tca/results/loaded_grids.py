@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,20 +16,18 @@ from loaded_tca.loaded.load_sharing import tooth_pairs_at
 from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_states
 from loaded_tca.loaded.tooth_contact import contact_problem
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.separation.box import Box
 from loaded_tca.separation.sample import Separation, sample_separations
 from loaded_tca.unloaded import ContactPoint, trace_contact, trace_teeth
 from loaded_tca.unloaded.curvature import relative_curvatures
 
-if TYPE_CHECKING:
-    from loaded_tca.results.mesh_cycle import MeshCycle
-
 SAME = 1e-6
 """Distance of two contact points, over the module, that are the same."""
 
 
-def states_of_maps(result: MeshCycle) -> LoadedStates:
+def states_of_maps(result: CycleNumbers) -> LoadedStates:
     """Contact problems that the pressure maps of a result solve, and how they answer.
 
     Raises

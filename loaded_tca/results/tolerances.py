@@ -11,7 +11,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.results.key_figures import mean_over_a_pitch
-from loaded_tca.results.root_stress import GEARS
+from loaded_tca.results.quantities import GEARS
 from loaded_tca.results.sensitivities import TORQUE
 from loaded_tca.scene import Scene
 from loaded_tca.scene.section import contents

@@ -34,7 +34,8 @@ from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.results.figure_slopes import EXPONENT, face_load_factor_slopes, pressure_norm
 from loaded_tca.results.load_factors import load_factors
 from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.results.root_stress import GEARS, root_stress_of_gear, stress_at_extreme
+from loaded_tca.results.quantities import GEARS
+from loaded_tca.results.root_stress import root_stress_of_gear, stress_at_extreme
 from loaded_tca.scene import Scene
 from loaded_tca.separation.pair_change import value_at
 from loaded_tca.studies.study import Distribution, Study, is_finite, is_whole, told_distribution
