@@ -12,8 +12,8 @@ import numpy as np
 
 from loaded_tca.errors import InputError, require
 from loaded_tca.results.dynamics import dynamics_of
+from loaded_tca.results.figures import key_figures
 from loaded_tca.results.files import Buffer, FilePath, arrays_of, netcdf_of, read_dataset, replacing, variables_of
-from loaded_tca.results.key_figures import key_figures
 from loaded_tca.results.numbers import CycleNumbers, dataset_of
 from loaded_tca.results.pressure_map import maps_from, stacked_maps
 from loaded_tca.results.quantities import (

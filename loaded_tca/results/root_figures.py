@@ -10,7 +10,9 @@ from loaded_tca.pairs.gear import Gear
 from loaded_tca.reference.iso6336_3 import THINNEST_RIM, face_load_factor, rim_thickness_factor
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.quantities import GEARS, PLACE
-from loaded_tca.results.summary import FACTORS
+
+FACTORS = "form", "stress_correction", "helix_angle"
+"""Of ISO 6336-3, as their key figures are named."""
 
 
 def root_figures(result: CycleNumbers, torque: int) -> dict[str, float]:
