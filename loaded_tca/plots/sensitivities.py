@@ -19,6 +19,7 @@ from loaded_tca.plots.labels import label_of
 from loaded_tca.plots.removal import plot_removal_weights
 from loaded_tca.plots.study_panels import panels_of, without_unit
 from loaded_tca.plots.style import DISTINCT_COLOURS, MARKERS, chosen_torque, load, loads, range_of_positions
+from loaded_tca.results.figures import key_figures
 from loaded_tca.results.key_figures import mean_over_a_pitch
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.sensitivities import Sensitivities
@@ -85,7 +86,7 @@ def plot_tornado(
     chosen = figures or [name for name, values in changes.items() if np.isfinite(values).any()]
     if not chosen:
         raise InputError(f"nothing is under load with {style.torque_label(result, torque)}: no derivatives")
-    now = result.key_figures()[torque]
+    now = key_figures(result, torque)
     labels = [_with_tolerance(key, one) for key, one in zip(found.keys, spread.tolist(), strict=True)]
     bars = min(len(labels), MOST_BARS)
     drawing, panels = panels_of(len(chosen), (6.5, 1.0 + 0.3 * max(bars, 3)))

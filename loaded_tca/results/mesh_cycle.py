@@ -80,11 +80,6 @@ class MeshCycle(CycleNumbers):
         """
         return root_stress_maps(self)  # without any, this ends as an AttributeError in __getattr__, which says why
 
-    @property
-    def bending(self) -> str:
-        """Whether teeth bend, in words."""
-        return "teeth do not bend" if self.scene.analysis.compliance == "contact" else "teeth bend"
-
     def sensitivities(self, keys: Sequence[str]) -> Sensitivities:
         """Return the derivatives with respect to keys of the scene, all from one linear problem for each state.
 

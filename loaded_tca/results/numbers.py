@@ -117,6 +117,11 @@ class CycleNumbers:
         return 1.0 / (1.0 / stiffness - 1e3 * self.face_width * sum(body_torsion(self.gear_pair)))
 
     @property
+    def bending(self) -> str:
+        """Whether teeth bend, in words."""
+        return "teeth do not bend" if self.scene.analysis.compliance == "contact" else "teeth bend"
+
+    @property
     def peak_column(self) -> NDArray[np.int_]:
         """Index of the pair with the highest peak pressure, (torque, position)."""
         return _column_of_largest(self.peak_pressure)
