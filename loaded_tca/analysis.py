@@ -6,14 +6,8 @@ from datetime import UTC, datetime
 
 import numpy as np
 
-from loaded_tca.compliance import (
-    RootStress,
-    ToothCompliance,
-    require_teeth,
-    root_stress_model,
-    tooth_compliance,
-    way_out_told,
-)
+from loaded_tca.compliance import RootStress, model_of, require_teeth, root_stress_model, way_out_told
+from loaded_tca.compliance.torsion import body_torsion
 from loaded_tca.errors import give_accuracy_warning, named, noted_accuracy_warnings, require
 from loaded_tca.loaded.cycle import Progress, carried_by_all, carried_by_one, farthest_apart
 from loaded_tca.loaded.effort import expected_effort
@@ -76,28 +70,19 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
             roots = roots_of(scene, pair)
             if wanted.load_sharing:
                 mesh = trace_teeth(pair, angles)
-                bending = bending_of(scene, pair, farthest_apart(mesh))
+                bending = model_of(scene, pair, farthest_apart(mesh))
                 carried = carried_by_all(pair, mesh, torques, grid, bending, progress)
             else:
                 path = trace_contact(pair, angles)
-                bending = bending_of(scene, pair, 1)
+                bending = model_of(scene, pair, 1)
                 carried = carried_by_one(pair, path, torques, grid, bending, progress)
-            torsion = 0.0 if bending is None else sum(bending.body_torsion)
+            torsion = 0.0 if bending is None else sum(body_torsion(pair))
             at_edges = pressures_at_rounded_edges(
                 pair, carried, bending, free_edges=wanted.free_edges, every=wanted.edge_pressures == "all"
             )
             warn_of_accuracy(pair, grid, carried, at_edges, load_sharing=wanted.load_sharing, body_torsion=torsion)
         date = datetime.now(UTC).isoformat(timespec="seconds")
         return mesh_cycle(scene, pair, carried, at_edges, roots, warnings=told, date=date)
-
-
-def bending_of(scene: Scene, pair: GearPair, neighbours: int) -> ToothCompliance | None:
-    """Bending of the teeth, where loaded ones are up to so many pitches apart; None if the scene asks for none."""
-    if scene.analysis.compliance == "contact":
-        return None
-    require_teeth(pair, scene.analysis.without_bodies)
-    with way_out_told():
-        return tooth_compliance(pair, neighbours=max(neighbours, 1))
 
 
 def roots_of(scene: Scene, pair: GearPair) -> tuple[RootStress, ...]:

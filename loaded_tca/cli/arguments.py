@@ -92,6 +92,12 @@ variant; of a design start and optimum. It prints on A4. Needs the package jinja
 EXAMPLE = "Start with 'loaded-tca demo': it writes a scene file to change and to run again."
 
 
+BESIDE = "beside the result; with options that choose a part of it, in a directory there that these name"
+"""Where the files of what is made of a result go by default."""
+Command = Callable[..., argparse.ArgumentParser]
+"""Adds a command of a name, a function to run, a text, and a text below its options."""
+
+
 def command_line() -> argparse.ArgumentParser:
     """Return the parser of the command line; its namespace has the ``command`` to call with it."""
     common = _Parser(add_help=False)
@@ -110,13 +116,28 @@ def command_line() -> argparse.ArgumentParser:
         added.set_defaults(command=run)
         return added
 
+    _add_analyses(command)
+    _add_readers(command)
+    _add_comparisons(command)
+    _add_tables_and_maps(command)
+    _add_studies(command)
+    check = command("check", run_by.check, "read a scene and show its geometry, without computing a contact", None)
+    _add_scene(check)
+    return parser
+
+
+def _add_analyses(command: Command) -> None:
+    """Add the commands that analyse a scene."""
     demo = command("demo", run_by.demo, "analyse a helical pair; writes its scene file too")
     place = run_by.DEMO_DIRECTORY
     demo.add_argument("--out", metavar="DIR", type=_path, default=place, help=f"default: ./{place}")
     run = command("run", run_by.run, "analyse a scene; writes result.nc, summary.json, positions.csv and pictures")
     _add_scene(run)
     run.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the results")
-    own = "beside the result; with options that choose a part of it, in a directory there that these name"
+
+
+def _add_readers(command: Command) -> None:
+    """Add the commands that show one result again."""
     peak = "default: that of the peak pressure of the summary"
     plot = command("plot", run_by.plot, "draw the pictures of a result again")
     told = "write the complete teeth of a result as surfaces (VTK, STL) and as a picture"
@@ -128,7 +149,7 @@ def command_line() -> argparse.ArgumentParser:
         (below, "pinion torque", "the pressure map"),
     ):
         reader.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
-        reader.add_argument("--out", metavar="DIR", type=_path, help=f"directory for the files; default: {own}")
+        reader.add_argument("--out", metavar="DIR", type=_path, help=f"directory for the files; default: {BESIDE}")
         reader.add_argument("--torque", metavar="NM", type=float, help=f"{of_torque}; default: largest")
         reader.add_argument("--position", metavar="N", type=int, help=f"position of {of_position}, from 1; {peak}")
     plot.add_argument("--all", action="store_true", help="draw contact_patterns.png and full_mesh.png too")
@@ -138,6 +159,10 @@ def command_line() -> argparse.ArgumentParser:
     below.add_argument(
         "--gear", choices=("pinion", "wheel"), default="pinion", help="below whose flank; default: pinion"
     )
+
+
+def _add_comparisons(command: Command) -> None:
+    """Add the commands that show what changes."""
     compare = command("compare", run_by.compare, "show what two or more results differ in", COMPARE)
     compare.add_argument(
         "results", metavar="DIR|FILE", nargs="+", type=_path, help="results; the first is what others are compared with"
@@ -154,8 +179,12 @@ def command_line() -> argparse.ArgumentParser:
     slopes.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
     told = "for instance mounting.axial_offset_mm=0.05"
     slopes.add_argument("--keys", metavar="KEY[=TOLERANCE]", nargs="+", type=_tolerance, help=told)
-    slopes.add_argument("--out", metavar="DIR", type=_path, help=f"directory for the files; default: {own}")
+    slopes.add_argument("--out", metavar="DIR", type=_path, help=f"directory for the files; default: {BESIDE}")
     slopes.add_argument("--torque", metavar="NM", type=float, help="pinion torque shown; default: largest, bands all")
+
+
+def _add_tables_and_maps(command: Command) -> None:
+    """Add the tables for gear dynamics and the ease-off."""
     dynamics = command("dynamics", run_by.dynamics, "write tables that programs of gear dynamics read", DYNAMICS)
     dynamics.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
     dynamics.add_argument("--out", metavar="FILE", type=_path, help="first table; default: dynamics.csv beside it")
@@ -163,6 +192,10 @@ def command_line() -> argparse.ArgumentParser:
     _add_scene(ease_off)
     ease_off.add_argument("--out", metavar="DIR", required=True, type=_path, help="directory for the picture")
     ease_off.add_argument("--gear", choices=("pinion", "wheel"), default="pinion", help="whose flank; default: pinion")
+
+
+def _add_studies(command: Command) -> None:
+    """Add studies and reports."""
     study = command(
         "study", run_by.study, "analyse the variants of a study file; run again, it goes on where it stopped", STUDY
     )
@@ -184,9 +217,6 @@ def command_line() -> argparse.ArgumentParser:
     report.add_argument("result", metavar="DIR|FILE", type=_path, help=told)
     report.add_argument("--out", metavar="FILE", type=_path, help="default: report.html beside the result")
     report.add_argument("--rank-by", metavar="FIGURE", help="of a study, the least is best; default: TE span")
-    check = command("check", run_by.check, "read a scene and show its geometry, without computing a contact", None)
-    _add_scene(check)
-    return parser
 
 
 class _Parser(argparse.ArgumentParser):

@@ -16,11 +16,13 @@ if TYPE_CHECKING:
     )
     from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_compliance
     from loaded_tca.compliance.layout import MeshDensity
+    from loaded_tca.compliance.model import BendingModel, model_of
     from loaded_tca.compliance.root_stress import RootStress, root_stress_model
 else:
     __getattr__, __dir__ = lazy_names(__name__)
 
 __all__ = [
+    "BendingModel",
     "FlankLine",
     "GearCompliance",
     "MeshDensity",
@@ -29,6 +31,7 @@ __all__ = [
     "default_density",
     "flank_lines",
     "gear_compliance",
+    "model_of",
     "require_teeth",
     "root_stress_model",
     "tooth_compliance",

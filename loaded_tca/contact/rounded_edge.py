@@ -12,7 +12,8 @@ import numpy as np
 from loaded_tca.arrays import Array, count_problems, numbers, real
 from loaded_tca.contact.columns import EVEN, FineZone, column_borders, pressed_width
 from loaded_tca.contact.edges import SHARPEST, FreeEdge, extra_displacement
-from loaded_tca.contact.graded import GradedProblem, GradedSolution, solve_graded
+from loaded_tca.contact.graded import solve_graded
+from loaded_tca.contact.graded_problem import GradedProblem, GradedSolution
 from loaded_tca.contact.samples import slope_jump, top
 from loaded_tca.errors import require
 

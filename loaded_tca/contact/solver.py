@@ -21,7 +21,6 @@ from __future__ import annotations
 import math
 from collections.abc import Hashable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -34,28 +33,21 @@ from loaded_tca.contact.grid import AT_BOUND, LARGEST_WHOLE, OUT_OF_REACH, Grids
 from loaded_tca.contact.levels import coarsening, prolong, window_around
 from loaded_tca.contact.problem import ContactProblem, Spacing
 from loaded_tca.contact.solution import CoarserGrid, ContactSolution, ContactStatus
+from loaded_tca.contact.stopping import (
+    COARSE_FACTOR,
+    COARSE_TOLERANCE,
+    MOST_CHECKS,
+    MOST_ITERATIONS,
+    RESERVE,
+    OnFailure,
+    not_converged,
+)
 from loaded_tca.errors import ConvergenceError, InputError, give_accuracy_warning
 
-if TYPE_CHECKING:
-    from loaded_tca.contact.graded import GradedSolution
-
-# Iterations on one grid. Rough surfaces need about a hundred, smooth ones less than ten.
-MOST_ITERATIONS = 500
-# Checks on the whole grid; every one that fails widens the window or starts from an exact displacement.
-MOST_CHECKS = 20
-# A coarse grid is solved so much less closely than the next finer one: as closely costs as much as it brings, four
-# times less closely (as its own error is larger) brings an iteration more on the finest grid of a smooth contact.
-COARSE_FACTOR = 2.0
-COARSE_TOLERANCE = 1e-3
-# The iteration stops a little below the tolerance, so that the check in double precision finds it kept.
-RESERVE = 0.8
 # Cells of the problems in one stack at most: more arrays of it than that do not fit the cache of a core.
 STACK_CELLS = 2**15
 # Above this tolerance the first displacement on a grid may be in single precision; the check is in double always.
 SINGLE_PRECISION = 1e-6
-
-
-OnFailure = Literal["raise", "return"]
 
 
 def solve_contact(
@@ -242,18 +234,6 @@ def solve_problems(
         if solution.status is ContactStatus.NOT_CONVERGED and on_failure == "raise":
             raise not_converged(solution, tolerances[k], f"contact {k}" if len(problems) > 1 else "contact")
     return [found[k] for k in range(len(problems))]
-
-
-def not_converged(
-    solution: ContactSolution | GradedSolution, tolerance: float, name: str = "contact"
-) -> ConvergenceError:
-    """Error that tells of a contact that is not solved to its tolerance."""
-    return ConvergenceError(
-        f"{name} not converged: residual {solution.residual:.1e} > tolerance {tolerance:.1e} after "
-        f"{solution.iterations} iterations; try a larger tolerance (in scenes: analysis.tolerance), or "
-        "on_failure='return' to look at it",
-        last=solution,
-    )
 
 
 def contact_stiffness(solution: ContactSolution, tolerance: float = 1e-6) -> float:

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
+from loaded_tca.compliance.model import BendingModel
 from loaded_tca.errors import ConvergenceError, named
 from loaded_tca.loaded.load_sharing import SharedLoad, tooth_pairs_at, torque_shared
 from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_states
 from loaded_tca.loaded.together import Result, Steps, found_together
 from loaded_tca.loaded.tooth_contact import GridChoice, contact_under_load

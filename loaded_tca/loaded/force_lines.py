@@ -17,7 +17,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from loaded_tca.arrays import Array, Indices
-from loaded_tca.loaded.pair_coupling import BendingModel
+from loaded_tca.compliance.model import BendingModel
 from loaded_tca.loaded.sensitivity import LoadedGrid
 from loaded_tca.separation import Separation
 

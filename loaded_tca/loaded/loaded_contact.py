@@ -9,10 +9,10 @@ from functools import cached_property
 import numpy as np
 
 from loaded_tca.arrays import Array
+from loaded_tca.compliance.model import BendingModel
 from loaded_tca.contact import ContactSolution, solve_problem
 from loaded_tca.contact.levels import under_other_load
 from loaded_tca.contact.patch import values_at_ends, widths
-from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.together import Steps, Task
 from loaded_tca.reference.hertz import PointContact, point_contact
 from loaded_tca.separation import Separation

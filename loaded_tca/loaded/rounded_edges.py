@@ -15,13 +15,13 @@ import numpy as np
 from scipy.interpolate import make_interp_spline
 
 from loaded_tca.arrays import Array, Mask
+from loaded_tca.compliance.model import BendingModel
 from loaded_tca.contact.rounded_edge import SURELY_LESS, EdgePressure, RoundedEdge, edge_pressures
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.cycle import Carried, told_where
 from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.loaded.lines_of_edges import PARALLEL, ReachedEdge, dilated, reached_edges
 from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation.normal_gap import NormalGap
 

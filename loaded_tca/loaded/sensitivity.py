@@ -37,12 +37,12 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from loaded_tca.arrays import Array, Indices, Mask
+from loaded_tca.compliance.model import BendingModel
 from loaded_tca.contact import ContactProblem
 from loaded_tca.contact.convolution import Preconditioner
 from loaded_tca.contact.grid import Grids
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.separation import Separation
 from loaded_tca.unloaded import ContactPoint
 

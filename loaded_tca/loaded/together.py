@@ -16,7 +16,8 @@ from typing import Any, NamedTuple, TypeVar
 from loaded_tca.arrays import Array
 from loaded_tca.contact import ContactProblem
 from loaded_tca.contact.solution import ContactSolution, ContactStatus
-from loaded_tca.contact.solver import not_converged, solve_problems
+from loaded_tca.contact.solver import solve_problems
+from loaded_tca.contact.stopping import not_converged
 from loaded_tca.errors import LoadedTCAError
 from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.pairs.gear_pair import GearPair

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from loaded_tca.arrays import Array
+from loaded_tca.compliance.model import BendingModel
 from loaded_tca.contact import ContactProblem, ContactSolution
 from loaded_tca.contact.adaptive import TOLERANCE_SHARE, refinement
 from loaded_tca.contact.checks import memory_problem
@@ -15,7 +16,7 @@ from loaded_tca.contact.patch import ends_at_material, values_at_ends
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.line_load import SliceLoads
 from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.pair_coupling import BendingModel, Coupling
+from loaded_tca.loaded.pair_coupling import Coupling
 from loaded_tca.loaded.together import Ends, Gap, Steps, Task, found_alone
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation

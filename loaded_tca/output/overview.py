@@ -10,9 +10,10 @@ from loaded_tca.errors import noted_accuracy_warnings
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
 from loaded_tca.loaded.effort import expected_effort, rounded
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.figures import RIM_LABEL
 from loaded_tca.results.iso_figures import STIFFNESS_ROW, STRESS, STRESS_ROWS, iso_figures, reasons_beside
 from loaded_tca.results.root_figures import rim_factor
-from loaded_tca.results.summary import RIM_LABEL, shown
+from loaded_tca.results.summary import shown
 from loaded_tca.results.warnings import warn_of_gears
 from loaded_tca.scene import Scene
 from loaded_tca.scene.model import Row

@@ -14,11 +14,20 @@ import numpy as np
 
 from loaded_tca.results.files import Buffer, FilePath, Part, replace_together
 from loaded_tca.results.key_figures import ARCSEC
-from loaded_tca.results.mesh_cycle import CYCLE, PAIRS, PATH_PARTS, QUANTITIES, MeshCycle
-from loaded_tca.results.pressure_map import MAP_PARTS
+from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.quantities import (
+    CYCLE,
+    GEARS,
+    MAP_PARTS,
+    OVER_CYCLE,
+    PAIRS,
+    PATH_PARTS,
+    QUANTITIES,
+    ROOT_MAPS,
+    ROOT_QUANTITIES,
+)
 from loaded_tca.results.reached_edges import NAMES as EDGES
 from loaded_tca.results.reached_edges import reached_edges
-from loaded_tca.results.root_stress import GEARS, OVER_CYCLE, ROOT_MAPS, ROOT_QUANTITIES
 from loaded_tca.results.summary import without_rounding
 
 RESULT, SUMMARY, POSITIONS, CONTACTS = "result.nc", "summary.json", "positions.csv", "contacts.csv"

@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from loaded_tca.output.report import csv_table
+from loaded_tca.results.figure import unit_of
+from loaded_tca.results.figures import FIGURES, key_figures
 from loaded_tca.results.files import Buffer, FilePath, netcdf_of, replace_together
 from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.summary import shown
@@ -16,16 +18,6 @@ from loaded_tca.results.tolerances import key_figure_slopes
 
 ALL, TABLE = "sensitivities.nc", "sensitivities.csv"
 """Names of the two files."""
-HEADS = {
-    "transmission_error_mean_um": ("TE, mean", "[um]"),
-    "transmission_error_span_um": ("peak to peak", "[um]"),
-    "transmission_error_order_1_um": ("order 1", "[um]"),
-    "face_load_factor": ("K_Hbeta", "[-]"),
-    "peak_pressure_MPa": ("peak pressure", "[MPa]"),
-    "pinion_root_tension_MPa": ("pinion tension", "[MPa]"),
-    "wheel_root_tension_MPa": ("wheel tension", "[MPa]"),
-}
-"""What the columns of the text say of a key figure."""
 WIDTH = 15
 
 
@@ -96,13 +88,16 @@ def sensitivities_text(found: Sensitivities, tolerances: Mapping[str, float], to
     torque : int
         Index of the torque.
     """
-    figures = found.result.key_figures()[torque]
+    figures = key_figures(found.result, torque)
     slopes = {name: values[torque] for name, values in key_figure_slopes(found).items()}
     spread = np.array([tolerances[key] for key in found.keys])
     together = [math.sqrt(float(((values * spread) ** 2).sum())) for values in slopes.values()]
     rows: list[tuple[str, list[str]]] = [
-        (f"pinion torque {figures['pinion_torque_Nm']:.6g} N m", [HEADS[name][0] for name in slopes]),
-        ("", [HEADS[name][1] for name in slopes]),
+        (
+            f"pinion torque {figures['pinion_torque_Nm']:.6g} N m",
+            [slope.head for name in slopes if (slope := FIGURES[name].slope)],
+        ),
+        ("", [f"[{unit_of(name) or '-'}]" for name in slopes]),
         ("this result", [shown(figures[name], name) for name in slopes]),
         ("change per unit of", []),
         *((f"  {key}", [_digits(values[k]) for values in slopes.values()]) for k, key in enumerate(found.keys)),

@@ -8,8 +8,7 @@ from typing import Any
 
 from loaded_tca.output.report import csv_table
 from loaded_tca.results.files import Buffer, FilePath, Part, netcdf_of, replace_together, variables_of
-from loaded_tca.results.mesh_cycle import QUANTITIES
-from loaded_tca.results.pressure_map import MAP_PARTS
+from loaded_tca.results.quantities import MAP_PARTS, QUANTITIES
 from loaded_tca.results.stress_below import StressBelow
 
 FIELDS, TABLE = "subsurface.nc", "subsurface.csv"

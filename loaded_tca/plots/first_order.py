@@ -15,6 +15,7 @@ from loaded_tca.plots import style
 from loaded_tca.plots.labels import label_of
 from loaded_tca.plots.study_panels import SAME, panels_of, told_of_variants
 from loaded_tca.plots.style import ACCENT, COLOURS, chosen_torque, load
+from loaded_tca.results.figures import key_figures
 from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.tolerances import key_figure_slopes
 from loaded_tca.studies.ranking import figure_values, varied_keys
@@ -71,7 +72,7 @@ def plot_first_order_scatter(found: Sensitivities, study: xarray.Dataset, torque
     scattered = {name: figure_values(study, name)[:, torque] for name in sigmas if name in study}
     shown = [name for name, values in scattered.items() if np.isfinite(values).any() and math.isfinite(sigmas[name])]
     require((bool(shown), f"study: has none of {', '.join(sigmas)}"))
-    middle = result.key_figures()[torque]
+    middle = key_figures(result, torque)
     drawing, panels = panels_of(len(shown), (6.0, 3.6))
     for axes, name in zip(panels, shown, strict=True):
         values = scattered[name][np.isfinite(scattered[name])]

@@ -32,6 +32,7 @@ from loaded_tca.plots.style import (
     set_title,
 )
 from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.summary import signed
 
@@ -211,7 +212,9 @@ def highest_of_maps(result: MeshCycle, position: int, column: int, torques: Iter
     return highest
 
 
-def both_flanks(result: MeshCycle, *draw: Callable[[Axes, ToPicture], Sequence[Artist]]) -> tuple[Figure, list[Axes]]:
+def both_flanks(
+    result: CycleNumbers, *draw: Callable[[Axes, ToPicture], Sequence[Artist]]
+) -> tuple[Figure, list[Axes]]:
     """A panel for each flank, with what is drawn on it cut off at its outline; a row for each function that draws.
 
     The function is called with the axes and what takes points to the picture; it returns what is to be cut off.

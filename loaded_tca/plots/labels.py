@@ -5,18 +5,10 @@ from __future__ import annotations
 import re
 import textwrap
 
-UNITS = {
-    "N_per_mm_um": "N/(mm µm)",
-    "N_per_mm": "N/mm",
-    "arcsec": "arcsec",
-    "um": "µm",
-    "mm": "mm",
-    "deg": "deg",
-    "rad": "rad",
-    "Nm": "N m",
-    "MPa": "MPa",
-    "N": "N",
-}
+from loaded_tca.results import figure
+from loaded_tca.results.figures import FIGURES
+
+UNITS = {ending: unit.replace("um", "µm") for ending, unit in figure.UNITS.items()}
 """Ending of a name -> unit as it is printed."""
 SILENT = {"pair", "modifications", "mounting", "load", "analysis", "material"}
 """Sections that a name does without: the key says enough."""
@@ -30,22 +22,7 @@ NAMES = {
     "sample": "number of the variant",
     "tip_relief_start_roll": "tip relief start (roll angle)",
     "root_relief_start_roll": "root relief start (roll angle)",
-    "transmission_error_mean": "mean transmission error",
-    **{f"transmission_error_order_{order}": f"order {order} of the transmission error" for order in (1, 2, 3)},
-    "transmission_error_span": "peak-to-peak transmission error",
-    "unloaded_transmission_error_span": "peak-to-peak unloaded transmission error",
-    "face_load_factor": "face load factor K_Hβ",
-    "transverse_load_factor": "transverse load factor K_Hα",
-    "nominal_contact_stress_iso_6336": "nominal contact stress σ_H0, ISO 6336",
-    "pinion_single_contact_factor_iso_6336": "single contact factor Z_B, ISO 6336",
-    "wheel_single_contact_factor_iso_6336": "single contact factor Z_D, ISO 6336",
-    "contact_ratio_factor_iso_6336": "contact ratio factor Z_ε, ISO 6336",
-    "contact_helix_angle_factor_iso_6336": "helix angle factor Z_β, ISO 6336",
-    "single_stiffness_iso_6336": "single stiffness c', ISO 6336",
-    "mesh_stiffness_iso_6336": "mean mesh stiffness c_γα, ISO 6336",
-    "largest_transverse_load_factor_iso_6336": "upper bound of K_Hα, lower 1, ISO 6336",
-    "pinion_rim_thickness_factor_iso_6336": "pinion rim thickness factor Y_B, ISO 6336",
-    "wheel_rim_thickness_factor_iso_6336": "wheel rim thickness factor Y_B, ISO 6336",
+    **{figure.without_unit(name): declared.axis for name, declared in FIGURES.items() if declared.axis},
 }
 """Keys and figures whose words alone do not name them."""
 PROPER = {"hertz": "Hertz", "iso": "ISO"}

@@ -25,7 +25,8 @@ from loaded_tca.plots.style import (
     range_of_positions,
 )
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.results.root_stress import GEARS, RootStressMap
+from loaded_tca.results.quantities import GEARS
+from loaded_tca.results.root_stress import RootStressMap
 
 DIVERGING = "RdBu_r"
 """White without stress, red in tension, blue in compression: told apart by colour-blind readers."""

@@ -19,8 +19,9 @@ from loaded_tca.plots.labels import label_of
 from loaded_tca.plots.removal import plot_removal_weights
 from loaded_tca.plots.study_panels import panels_of, without_unit
 from loaded_tca.plots.style import DISTINCT_COLOURS, MARKERS, chosen_torque, load, loads, range_of_positions
+from loaded_tca.results.figures import key_figures
 from loaded_tca.results.key_figures import mean_over_a_pitch
-from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.summary import shown
 from loaded_tca.results.tolerances import default_tolerances, key_figure_slopes
@@ -85,7 +86,7 @@ def plot_tornado(
     chosen = figures or [name for name, values in changes.items() if np.isfinite(values).any()]
     if not chosen:
         raise InputError(f"nothing is under load with {style.torque_label(result, torque)}: no derivatives")
-    now = result.key_figures()[torque]
+    now = key_figures(result, torque)
     labels = [_with_tolerance(key, one) for key, one in zip(found.keys, spread.tolist(), strict=True)]
     bars = min(len(labels), MOST_BARS)
     drawing, panels = panels_of(len(chosen), (6.5, 1.0 + 0.3 * max(bars, 3)))
@@ -250,7 +251,7 @@ def _legend_of_bands(axes: Axes) -> list[Artist]:
 
 def _spread(found: Sensitivities, tolerances: Mapping[str, float] | None) -> Array:
     """Standard deviations (keys,)."""
-    result: MeshCycle = found.result
+    result: CycleNumbers = found.result
     known = default_tolerances(result.scene, found.keys) if tolerances is None else tolerances
     missing = [key for key in found.keys if key not in known]
     require((not missing, f"tolerances: none given for {', '.join(missing)}"))

@@ -22,7 +22,7 @@ from loaded_tca.arrays import Array, index_checks
 from loaded_tca.errors import require
 from loaded_tca.flanks.frame import FlankFrame
 from loaded_tca.results.files import FilePath, replacing
-from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.summary import shown_torque, signed
 
 COLOURS = "viridis"
@@ -79,14 +79,14 @@ def one_panel(height: float = 5.0) -> tuple[Figure, Axes]:
     return figure, axes
 
 
-def finished(figure: Figure, axes: Axes, result: MeshCycle, *about: str, columns: int = 3) -> Figure:
+def finished(figure: Figure, axes: Axes, result: CycleNumbers, *about: str, columns: int = 3) -> Figure:
     """Return the figure with the legend of its panel below and its title, by default of all positions."""
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=columns, fontsize="small")
     set_title(figure, result, *about)
     return figure
 
 
-def torque_styles(result: MeshCycle) -> Iterator[tuple[int, str, str, str]]:
+def torque_styles(result: CycleNumbers) -> Iterator[tuple[int, str, str, str]]:
     """Index, label, colour and marker of each torque; of many torques only some have a label."""
     count = len(result.torque)
     every = math.ceil(count / MOST_LABELS)
@@ -127,44 +127,46 @@ def tell(axes: Axes, why: str) -> None:
     axes.text(0.5, 0.65, why, transform=axes.transAxes, ha="center", va="center", wrap=True)
 
 
-def highest_torque(result: MeshCycle) -> int:
+def highest_torque(result: CycleNumbers) -> int:
     """Return the index of the largest torque."""
     return int(np.argmax(result.torque))
 
 
-def chosen_torque(result: MeshCycle, torque: int | None, position: int | None = None, column: int | None = None) -> int:
+def chosen_torque(
+    result: CycleNumbers, torque: int | None, position: int | None = None, column: int | None = None
+) -> int:
     """Return the index of a torque, by default of the largest; InputError with every index that the result has not."""
     counts = {"position": (position, len(result.path)), "column": (column, len(result.pair))}
     require(*index_checks(torque=(torque, len(result.torque)), **counts))
     return highest_torque(result) if torque is None else torque
 
 
-def torques_with_panels(result: MeshCycle) -> list[int]:
+def torques_with_panels(result: CycleNumbers) -> list[int]:
     """Return the indices of all torques in ascending order, of many torques four from the least to the largest."""
     order = np.argsort(result.torque, kind="stable")
     spread = np.linspace(0.0, len(order) - 1.0, min(len(order), MOST_PANELS)).round().astype(int)
     return order[np.unique(spread)].tolist()
 
 
-def torque_label(result: MeshCycle, torque: int) -> str:
+def torque_label(result: CycleNumbers, torque: int) -> str:
     """Return what legends and panels say of one torque."""
     return f"pinion torque {shown_torque(result.torque[torque])}"
 
 
-def load(result: MeshCycle, torque: int) -> str:
+def load(result: CycleNumbers, torque: int) -> str:
     """Return what a title says of one torque, and which of several it is."""
     count = len(result.torque)
     which = "the largest" if torque == highest_torque(result) else f"number {torque + 1}"
     return torque_label(result, torque) + (f" ({which} of {count})" if count > 1 else "")
 
 
-def loads(result: MeshCycle) -> str:
+def loads(result: CycleNumbers) -> str:
     """Return what a title says of all torques."""
     low, high = shown_torque(result.torque.min()).split()[0], shown_torque(result.torque.max())
     return load(result, 0) if len(result.torque) == 1 else f"pinion torques {low} to {high}"
 
 
-def position_label(result: MeshCycle, position: int, column: int | None = None) -> str:
+def position_label(result: CycleNumbers, position: int, column: int | None = None) -> str:
     """Return what a title says of one position, and of one of several tooth pairs there."""
     several = column is not None and len(result.pair) > 1
     which = f", tooth pair {signed(int(result.pair[column]))}" if several else ""
@@ -172,7 +174,7 @@ def position_label(result: MeshCycle, position: int, column: int | None = None) 
     return f"position {position + 1} of {len(result.path)}{which}: pinion angle {angle} deg"
 
 
-def place(result: MeshCycle, position: int, frame: FlankFrame, column: int) -> tuple[str, str]:
+def place(result: CycleNumbers, position: int, frame: FlankFrame, column: int) -> tuple[str, str]:
     """Return what a title says of one position, and of a pair's contact point in the frame of the pinion's flank."""
     where = result.paths[column][position]
     return (
@@ -181,7 +183,7 @@ def place(result: MeshCycle, position: int, frame: FlankFrame, column: int) -> t
     )
 
 
-def range_of_positions(result: MeshCycle) -> str:
+def range_of_positions(result: CycleNumbers) -> str:
     """Return what a title says of all positions."""
     first, last = (_degrees(result.pinion_angle[end]) for end in (0, -1))
     if len(result.path) == 1:
@@ -189,7 +191,7 @@ def range_of_positions(result: MeshCycle) -> str:
     return f"{len(result.path)} positions, pinion angle {first} to {last} deg"
 
 
-def set_title(figure: Figure, result: MeshCycle, *about: str) -> None:
+def set_title(figure: Figure, result: CycleNumbers, *about: str) -> None:
     """Write what is shown over a picture, and below it the scene and the rest."""
     write_title(figure, result.scene.title, *about)
 

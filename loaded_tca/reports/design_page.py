@@ -13,10 +13,10 @@ from loaded_tca.reports.page import Table, pictures_of
 from loaded_tca.reports.result_page import explained, scene_content
 from loaded_tca.results.summary import shown
 from loaded_tca.scene import parse_scene
-from loaded_tca.studies.design import FIGURE_TEXTS, DesignResult
+from loaded_tca.studies.design import DesignResult
+from loaded_tca.studies.design_figures import FIGURES, FigureOfErrors
 
 PEAK = "MPa", "peak pressure, largest over the positions"
-NO_PEAK = ", above or below the peak pressure by up to a third"
 CAPTIONS = {
     "before_and_after": "Transmission error and peak pressure over a pitch, load factor and peak-to-peak over the "
     "torque. Lines: mean of the samples of the scatter, bands: all of them.",
@@ -33,7 +33,7 @@ def design_content(design: DesignResult) -> dict[str, Any]:
     """
     found = design.dataset
     scene = parse_scene(found.attrs["scene_toml"], source="scene_toml", folder=None)
-    unit, words = FIGURE_TEXTS[found.attrs["figure"]]
+    minimised = FIGURES[found.attrs["figure"]]
     figures = {
         "before_and_after": plot_before_and_after(design),
         "peak_to_peak": plot_peak_to_peak_over_torque(design),
@@ -41,7 +41,8 @@ def design_content(design: DesignResult) -> dict[str, Any]:
     return {
         "title": scene.title or "Design",
         **scene_content(scene),
-        "objective": f"{found.attrs['objective']} of the {words}" + (f" [{unit}]" if unit != "1" else ""),
+        "objective": f"{found.attrs['objective']} of the {minimised.text}"
+        + (f" [{minimised.unit}]" if minimised.unit != "1" else ""),
         "objectives": Table(
             (
                 ("by the full analysis", *(f"{one:.4g}" for one in design.objective)),
@@ -65,8 +66,10 @@ def design_content(design: DesignResult) -> dict[str, Any]:
 def _told_limit(limit: str) -> str:
     """A limit with what its figure measures."""
     name = limit.partition(" ")[0]
-    words = FIGURE_TEXTS[name][1] if name in FIGURE_TEXTS else ""
-    return f"{limit} ({words}{NO_PEAK if name == 'pressure_MPa' else ''})" if words else limit
+    if name not in FIGURES:
+        return limit
+    figure = FIGURES[name]
+    return f"{limit} ({figure.text}{'' if isinstance(figure, FigureOfErrors) else figure.note})"
 
 
 def _values(design: DesignResult) -> Table:
@@ -95,7 +98,8 @@ def _figures(design: DesignResult) -> Table:
     """The worst value over the samples of each figure under each torque, of start and optimum."""
     found = design.dataset
     rows = []
-    for name, (unit, words) in {"peak_pressure": PEAK, **FIGURE_TEXTS}.items():
+    texts = {name: (figure.unit, figure.text) for name, figure in FIGURES.items()}
+    for name, (unit, words) in {"peak_pressure": PEAK, **texts}.items():
         if name not in found:
             continue
         values = found[name].max("position") if name == "peak_pressure" else found[name]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,46 +12,17 @@ from loaded_tca.output.overview import scene_sections
 from loaded_tca.plots import result_figures
 from loaded_tca.plots.labels import label_of
 from loaded_tca.reports.page import Table, parts_of, pictures_of, tables_of
+from loaded_tca.results.accuracy import NO_ESTIMATE, Figures, in_percent
 from loaded_tca.results.explanations import Explanation, explanation_of
-from loaded_tca.results.iso_figures import REASONS
+from loaded_tca.results.figure import labelled
+from loaded_tca.results.figures import FIGURES, declared
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.results.summary import IN_PERCENT, Figures, known_rows, limits_of, shown
+from loaded_tca.results.summary import known_rows, limits_of, shown
 from loaded_tca.scene import Scene
 
 MOST_TORQUES = 5
 """Torques with a column each in one table of a page."""
-TORQUE = "pinion torque [N m]"
-IN_THE_TABLE = {
-    "pinion_torque_Nm": TORQUE,
-    "peak_pressure_MPa": "peak pressure [MPa]",
-    "edge_pressure_MPa": "pressure at an edge [MPa]",
-    "transmission_error_span_um": "transmission error, peak to peak [µm]",
-    "mesh_stiffness_mean_N_per_mm_um": "mesh stiffness, mean [N/(mm µm)]",
-    "face_load_factor": "K_Hβ",
-    "transverse_load_factor": "K_Hα",
-    "pinion_root_tension_MPa": "root tension, pinion [MPa]",
-    "wheel_root_tension_MPa": "root tension, wheel [MPa]",
-}
-"""Key figures of the table of the load cases."""
-WIDE = 33.0
-"""Face width over the module from which the ends of a face matter little."""
-COMPARED: dict[str, dict[str, float]] = {
-    f"spur teeth on a face of {WIDE:g} modules or more": {
-        "transmission_error_mean_": 1.0,
-        "transmission_error_span_": 0.5,
-        "mesh_stiffness_mean_": 3.0,
-    },
-    f"spur teeth on a face below {WIDE:g} modules": {
-        "transmission_error_mean_": 2.7,
-        "transmission_error_span_": 2.5,
-        "mesh_stiffness_mean_": 4.7,
-    },
-    "spur teeth": {"root_tension_MPa": 0.5, "root_compression_MPa": 0.6},
-    "helical teeth": {"root_tension_MPa": 0.9, "root_compression_MPa": 1.5},
-}
-"""Kind of gears -> by how many percent key figures with such words in their names differ from finite elements in the
-studies of the documentation: the mesh cycle, and root stress. Gears of other kinds were not compared."""
-NO_ESTIMATE = "no estimate"
+TORQUE = "pinion_torque_Nm"
 CAPTIONS = {
     "contact_path": "Where the flanks carry pressure at some positions, and the unloaded contact points of all.",
     "transmission_error": "Absolute, and below less its mean over a pitch. The unloaded one is that of the flanks.",
@@ -141,9 +112,10 @@ def _load_cases(result: MeshCycle, figures: Sequence[Figures]) -> Table:
     """A line for each torque: forces, and the figures that matter most."""
     torques = result.torque.tolist()
     forces = result.scene.force_rows(torques)[:2]  # tangential and normal; all of them are in what was asked
-    names = [name for name in IN_THE_TABLE if any(math.isfinite(one.get(name, math.nan)) for one in figures)]
+    cases = declared(lambda figure: figure.is_load_case)
+    names = [name for name in cases if any(math.isfinite(one.get(name, math.nan)) for one in figures)]
     first, *others = names
-    heads = [IN_THE_TABLE[first], *(label for label, *_ in forces), *(IN_THE_TABLE[name] for name in others)]
+    heads = [_head(first), *(label for label, *_ in forces), *map(_head, others)]
     rows = [
         (shown(one[first], first), *(row[k + 1] for row in forces), *(shown(one[name], name) for name in others))
         for k, one in enumerate(figures)
@@ -151,15 +123,24 @@ def _load_cases(result: MeshCycle, figures: Sequence[Figures]) -> Table:
     return Table(tuple(rows), tuple(heads))
 
 
+def _head(name: str) -> str:
+    """Label of a figure in the table of the load cases."""
+    words, bracket, unit = labelled(name, FIGURES[name].column or FIGURES[name].label).rpartition(" [")
+    return words + bracket + unit.replace("um", "µm") if bracket else unit
+
+
 def _key_figures(result: MeshCycle, part: slice, figures: Sequence[Figures]) -> Table:
     """Every figure of the summary under some torques, its unit, and what is to be known of its accuracy."""
     rows = []
     for label, names in known_rows(figures):
-        for name in names if label != TORQUE else ():
+        for name in names if names != (TORQUE,) else ():
+            accuracy = FIGURES[name].accuracy
             indent = "  " if label.startswith(" ") else ""
             values = (_value(one, name) for one in figures)
-            unit = " [%]" if name in IN_PERCENT else ""  # as summaries show it
-            rows.append((indent + label_of(name) + unit, *values, _note(name, result, part, figures)))
+            unit = " [%]" if FIGURES[name].is_part else ""  # as summaries show it
+            rows.append(
+                (indent + label_of(name) + unit, *values, accuracy(name, result, part, figures) if accuracy else "")
+            )
     return Table(tuple(rows), ("key figure", *_under(figures), "accuracy"))
 
 
@@ -175,87 +156,6 @@ def _value(figures: Figures, name: str) -> str:
     return NO_ESTIMATE if lacks else shown(value, name)
 
 
-def _note(name: str, result: MeshCycle, part: slice, figures: Sequence[Figures]) -> str:
-    """What is to be known of the accuracy of a key figure; nothing of most."""
-    if name in PRESSURES:
-        return PRESSURES[name](result, part, figures)
-    if name in REASONS:
-        return REASONS[name]
-    if name == "line_load_at_largest_force_N_per_mm" and any(one["edge_positions"] for one in figures):
-        return "mesh-dependent where it lies at a sharp face end"
-    if name == "face_load_factor":
-        return "from 30 strips of the face"
-    positions = f"{len(result.path)} positions"
-    if name == "transverse_load_factor":
-        return f"the largest of {positions}: more may find a larger one"
-    if name.startswith("transmission_error_order_"):
-        return f"of {positions}: higher orders are aliased into it"
-    bends = result.scene.analysis.compliance != "contact"
-    if not bends and name.startswith(("transmission_error_", "mesh_stiffness_", "secant_stiffness_")):
-        return "of the flanks alone: the teeth do not bend"
-    return _compared(name, result)
-
-
-def _note_on_edge(_: MeshCycle, __: slice, figures: Sequence[Figures]) -> str:
-    """What is to be known of the pressure at an edge."""
-    rounded = {bool(one["edge_is_rounded"]) for one in figures if math.isfinite(one["edge_pressure_MPa"])}
-    if rounded == {True}:
-        return "rounded edge: with the error below"
-    return "mesh-dependent at sharp edges: not for rating"
-
-
-def _note_on_peak(result: MeshCycle, part: slice, figures: Sequence[Figures]) -> str:
-    """How accurate the peak pressure is."""
-    of_slices = any(one["edge_positions"] or one["relief_start_positions"] for one in figures)
-    beside = "; where an edge or a relief start is reached, that of slices" if of_slices else ""
-    return f"mesh-independent; error of the grid: {_errors_at_peak(result, part)}{beside}"
-
-
-def _note_on_hertz(*_: Any) -> str:
-    """What the pressure after Hertz is for."""
-    return "closed form, to compare with"
-
-
-PRESSURES: dict[str, Callable[[MeshCycle, slice, Sequence[Figures]], str]] = {
-    "peak_pressure_MPa": _note_on_peak,
-    "edge_pressure_MPa": _note_on_edge,
-    "hertz_pressure_there_MPa": _note_on_hertz,
-}
-"""Key figures whose accuracy depends on the contacts."""
-
-
-def _errors_at_peak(result: MeshCycle, part: slice) -> str:
-    """Estimated error of the peak pressure itself under some torques."""
-    places = [result.peak_contact(torque) for torque in range(len(result.torque))[part]]
-    errors = [
-        math.nan if place is None else float(result.discretisation_error[torque][place])
-        for torque, place in zip(range(len(result.torque))[part], places, strict=True)
-    ]
-    return NO_ESTIMATE if np.isnan(errors).all() else ", ".join(map(_percent, errors))
-
-
-def _compared(name: str, result: MeshCycle) -> str:
-    """By how much a key figure of gears of this kind differs from finite elements; nothing of most figures."""
-    if not any(words in name for compared in COMPARED.values() for words in compared) or "unloaded" in name:
-        return ""
-    for kind in _kinds(result):
-        for words, percent in COMPARED[kind].items():
-            if words in name:
-                return f"{kind}: within {percent:g} % of finite elements"
-    return f"{NO_ESTIMATE}: such gears were not compared with finite elements"
-
-
-def _kinds(result: MeshCycle) -> Iterator[str]:
-    """Kinds of gears of ``COMPARED`` that a result is of."""
-    spur_wide, spur_narrow, spur, helical = COMPARED
-    _, helix = result.scene.transverse_angles
-    if helix == 0.0:
-        yield spur_wide if result.face_width >= WIDE * result.gear_pair.module else spur_narrow
-        yield spur
-    elif math.isfinite(helix):
-        yield helical
-
-
 def _accuracy(result: MeshCycle, part: slice, figures: Sequence[Figures]) -> Table:
     """What limits the numbers under some torques: errors of grids, cells, residuals."""
     wanted = result.scene.analysis
@@ -265,11 +165,11 @@ def _accuracy(result: MeshCycle, part: slice, figures: Sequence[Figures]) -> Tab
         ("accuracy of the peak pressure that the scene asks for", *(asked for _ in errors)),
         (
             "estimated discretisation error of the peak pressure, largest",
-            *(_percent(one["largest_discretisation_error"]) for one in figures[part]),
+            *(in_percent(one["largest_discretisation_error"]) for one in figures[part]),
         ),
         (
             "estimated error of the pressure at rounded edges, largest",
-            *("-" if error == -math.inf else _percent(error) for error in errors),
+            *("-" if error == -math.inf else in_percent(error) for error in errors),
         ),
         *(
             (
@@ -292,10 +192,3 @@ def _accuracy(result: MeshCycle, part: slice, figures: Sequence[Figures]) -> Tab
         ),
     ]
     return Table(tuple(rows), ("", *_under(figures[part])))
-
-
-def _percent(error: float) -> str:
-    """A relative error as a percentage."""
-    if error == math.inf:
-        return "no limit"
-    return f"{error:.2%}" if math.isfinite(error) else NO_ESTIMATE

@@ -18,12 +18,16 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import line_contact
 from loaded_tca.results.edge_cell import place_on_material, sharp_edge_cell
 from loaded_tca.results.load_factors import load_factors
-from loaded_tca.results.mesh_cycle import MeshCycle, dataset_of
+from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.numbers import dataset_of
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.root_stress import root_stress_arrays
 from loaded_tca.results.slice_pressure import SlicePeak, largest_slice_pressures
 from loaded_tca.scene import Scene
 from loaded_tca.unloaded import heelwards
+
+Place = tuple[int, int, int]
+"""Indices of torque, position and pair of a result."""
 
 
 def mesh_cycle(
@@ -56,22 +60,8 @@ def mesh_cycle(
     order = np.argsort(carried.pairs)
     share = carried.share[..., order]
     contacts = {(t, n, k): carried.contacts[t][n][order[k]] for t, n, k in np.ndindex(share.shape)}
-    numbers: dict[str, Array] = {}
-    maps: dict[tuple[int, ...], PressureMap | None] = dict.fromkeys(contacts)
-    under_load = {place: one for place, one in contacts.items() if one is not None and one.solution.load > 0.0}
-    rough = {place: loaded for place, loaded in under_load.items() if loaded.is_rough}
-    under = [(one.contact, one.separation, one.solution.pressure) for one in rough.values()]
-    peaks = dict(zip(rough, largest_slice_pressures(pair, under), strict=True)) if rough else {}
-    for place, loaded in contacts.items():
-        if loaded is None:
-            continue
-        one = maps[place] = _pressure_map(loaded)
-        at_edge = at_rounded_edges.get((*place[:2], int(order[place[2]])))
-        for name, number in (
-            _numbers(pair, loaded, one, peaks.get(place)) | _at_edge(pair, loaded, one, at_edge)
-        ).items():
-            missing = math.nan if isinstance(number, float) else type(number)()
-            numbers.setdefault(name, np.full(share.shape, missing))[place] = number
+    at_edges = {(t, n, k): at_rounded_edges.get((t, n, int(order[k]))) for t, n, k in contacts}
+    numbers, maps = _numbers_and_maps(pair, contacts, at_edges, share.shape)
     apart = np.isnan(numbers["contact_deformation"])
     numbers["normal_force"] = np.where(apart & ~np.isnan(share), 0.0, numbers["normal_force"])
     lengths = 1e3 * pair.base_radii[0] * pair.base_radii[1] * pair.face_width
@@ -111,6 +101,30 @@ def mesh_cycle(
         maps=stacked,
         states=(scene, carried.states),
     )
+
+
+def _numbers_and_maps(
+    pair: GearPair,
+    contacts: Mapping[Place, LoadedContact | None],
+    at_edges: Mapping[Place, PeakAtEdge | None],
+    shape: tuple[int, ...],
+) -> tuple[dict[str, Array], dict[Place, PressureMap | None]]:
+    """Arrays (torque, position, pair) of what a result has of each contact, by their names; its pressure maps."""
+    numbers: dict[str, Array] = {}
+    maps: dict[Place, PressureMap | None] = dict.fromkeys(contacts)
+    under_load = {place: one for place, one in contacts.items() if one is not None and one.solution.load > 0.0}
+    rough = {place: loaded for place, loaded in under_load.items() if loaded.is_rough}
+    under = [(one.contact, one.separation, one.solution.pressure) for one in rough.values()]
+    peaks = dict(zip(rough, largest_slice_pressures(pair, under), strict=True)) if rough else {}
+    for place, loaded in contacts.items():
+        if loaded is None:
+            continue
+        one = maps[place] = _pressure_map(loaded)
+        of_contact = _numbers(pair, loaded, one, peaks.get(place)) | _at_edge(pair, loaded, one, at_edges[place])
+        for name, number in of_contact.items():
+            missing = math.nan if isinstance(number, float) else type(number)()
+            numbers.setdefault(name, np.full(shape, missing))[place] = number
+    return numbers, maps
 
 
 def _pressure_map(loaded: LoadedContact) -> PressureMap:

@@ -12,6 +12,8 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, require
+from loaded_tca.results.figure import labelled
+from loaded_tca.results.figures import FIGURES, declared
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.summary import kind_of_edge, shown, without_rounding
 from loaded_tca.scene.section import as_table
@@ -20,25 +22,6 @@ from loaded_tca.scene.text import shown as shown_value
 if TYPE_CHECKING:
     import xarray
 
-MAIN = {
-    "peak_pressure_MPa": "peak pressure [MPa]",
-    "contact_length_at_peak_mm": "  contact length there [mm]",
-    "edge_pressure_MPa": "{edge} [MPa]",
-    "transmission_error_mean_um": "transmission error, mean [um]",
-    "transmission_error_span_um": "  peak to peak [um]",
-    "unloaded_transmission_error_span_um": "  unloaded, peak to peak [um]",
-    **{f"transmission_error_order_{order}_um": f"  order {order} of the tooth mesh [um]" for order in (1, 2, 3)},
-    "mesh_stiffness_mean_N_per_mm_um": "mesh stiffness, mean [N/(mm um)]",
-    "face_load_factor": "load factor K_Hbeta",
-    "transverse_load_factor": "load factor K_Halpha",
-    "line_load_at_largest_force_N_per_mm": "line load under the largest force [N/mm]",
-    "loaded_contact_ratio": "tooth pairs under load, mean",
-    "pinion_root_tension_MPa": "root tension of the pinion [MPa]",
-    "wheel_root_tension_MPa": "root tension of the wheel [MPa]",
-    "pinion_root_compression_MPa": "root compression of the pinion [MPa]",
-    "wheel_root_compression_MPa": "root compression of the wheel [MPa]",
-}
-"""Key figures of the summary and their labels; {edge} stands for what ``kind_of_edge`` says."""
 PLACES = "pinion_angle_at", "_axial_"
 """Parts of the names of figures that count from a zero of no meaning: they have no relative difference."""
 NOT_COMPARED = "title", "load.pinion_torque_Nm", "analysis.torques_Nm"
@@ -137,9 +120,10 @@ class Comparison:
         under = self.figures.isel(torque=at)
         pressure, rounded = (under.value.sel(figure=name).values for name in ("edge_pressure_MPa", "edge_is_rounded"))
         edge = kind_of_edge([{"edge_is_rounded": one} for one in rounded[np.isfinite(pressure)]])
-        for name, label in MAIN.items():
+        for name in declared(lambda figure: figure.is_compared):
             if name not in under.figure:
                 continue
+            label = labelled(name, FIGURES[name].below or FIGURES[name].label)
             one = under.sel(figure=name)
             if not one.value.isnull().all():
                 table.append((label.format(edge=edge), *_cells(name, *(one[part].values for part in one))))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,12 +11,11 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import require
 from loaded_tca.results.files import Part, variables_of
+from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.unloaded.harmonics import harmonic_coefficients
 
 if TYPE_CHECKING:
     import xarray
-
-    from loaded_tca.results.mesh_cycle import MeshCycle
 
 TORQUE, PHASE, ORDER = "pinion_torque_Nm", "mesh_phase", "order"
 OVER_PITCH, OVER_ORDERS = (TORQUE, PHASE), (TORQUE, ORDER)
@@ -64,7 +64,7 @@ The transmission error is absolute: 0 for that pair, negative where the wheel st
 The mesh stiffness is a tangent, positive: d(T1/r_b1) = k |d(r_b2 TE)|; about the pinion's axis it is k r_b1^2."""
 
 
-def dynamics_of(result: MeshCycle) -> xarray.Dataset:
+def dynamics_of(result: CycleNumbers) -> xarray.Dataset:
     """Return what models of gear dynamics take from a result; see ``MeshCycle.to_dynamics``."""
     import xarray
 
@@ -91,7 +91,7 @@ def dynamics_of(result: MeshCycle) -> xarray.Dataset:
         "mesh_stiffness": stiffness,
         "loaded_pairs": result.loaded_pairs.astype(float),
     }
-    order = np.arange((count - 2) // 2 + 1)
+    series = _fourier_series(curves, begin, (count - 2) // 2)
     arrays: dict[str, Any] = {
         "pinion_teeth": pair.teeth[0],
         "wheel_teeth": pair.teeth[1],
@@ -104,20 +104,13 @@ def dynamics_of(result: MeshCycle) -> xarray.Dataset:
         TORQUE: torque,
         PHASE: phase[ascending],
         "pinion_angle_rad": pair.pitch * phase[ascending],
-        ORDER: order.astype(np.int32),
         "loaded_contact_ratio": curves["loaded_pairs"][:, :-1].mean(axis=-1),
         "unloaded_transmission_error_m": over_pitch(second * result.unloaded_transmission_error),
         "transmission_error_rad": over_pitch(result.transmission_error),
         "torsional_stiffness_Nm_per_rad": over_pitch(second**2 * stiffness),
         "normal_force_per_torque_N_per_Nm": over_pitch(result.normal_force.sum(axis=-1) * per_torque[:, None]),
     }
-    for name, unit in SERIES.items():
-        coefficients = np.stack([harmonic_coefficients(curve, order[-1], begin) for curve in curves[name]])
-        mean = curves[name][:, :-1].mean(axis=-1, keepdims=True)
-        ending = f"_{unit}" if unit else ""
-        arrays[f"{name}{ending}"] = over_pitch(curves[name])
-        arrays[f"{name}_amplitude{ending}"] = np.hstack([mean, np.abs(coefficients)])
-        arrays[f"{name}_phase_rad"] = np.hstack([np.zeros_like(mean), np.angle(coefficients)])
+    arrays |= series | {f"{name}{ending(name)}": over_pitch(curve) for name, curve in curves.items()}
     known = {name: part for name, part in QUANTITIES.items() if part[0] or math.isfinite(arrays[name])}  # not of bevels
     variables = variables_of(known, arrays)
     coordinates = {name: variables.pop(name) for name in COORDINATES}
@@ -129,3 +122,22 @@ def dynamics_of(result: MeshCycle) -> xarray.Dataset:
         "conventions": f"{CONVENTIONS}\nThe {driving} drives; {result.bending}{held}.",
     }
     return xarray.Dataset(variables, coordinates, attributes)
+
+
+def ending(name: str) -> str:
+    """Unit of a curve of ``SERIES`` as its names end in it."""
+    return f"_{SERIES[name]}" if SERIES[name] else ""
+
+
+def _fourier_series(curves: Mapping[str, Array], begin: float, highest: int) -> dict[str, Array]:
+    """Orders of the tooth mesh from 0 on, amplitudes and phases of curves (torque, position) by the names of tables.
+
+    ``begin``: the first position, in pitches from the pinion angle 0.
+    """
+    arrays: dict[str, Array] = {ORDER: np.arange(highest + 1, dtype=np.int32)}
+    for name, curve in curves.items():
+        coefficients = np.stack([harmonic_coefficients(row, highest, begin) for row in curve])
+        mean = curve[:, :-1].mean(axis=-1, keepdims=True)
+        arrays[f"{name}_amplitude{ending(name)}"] = np.hstack([mean, np.abs(coefficients)])
+        arrays[f"{name}_phase_rad"] = np.hstack([np.zeros_like(mean), np.angle(coefficients)])
+    return arrays

@@ -10,27 +10,24 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import combinations, pairwise
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.compliance import ToothCompliance
+from loaded_tca.compliance.model import BendingModel, SumOfParts
 from loaded_tca.contact.cuts import crowding_growth
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.free_edges import edge_compliances
-from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.separation import Separation
 from loaded_tca.separation.gap_change import contact_changes
 from loaded_tca.separation.pair_change import PairChange
 
 Grid = TypeVar("Grid", Separation, PressureMap)
-
-if TYPE_CHECKING:
-    from loaded_tca.results.mesh_cycle import MeshCycle
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +69,7 @@ class GapGrowth:
 
 
 def gap_growth(
-    result: MeshCycle,
+    result: CycleNumbers,
     tangents: Tangents,
     bending: BendingModel | None,
     places: tuple[Array, ...],
@@ -148,7 +145,7 @@ def _add_moved_lines(
         low, high = (  # either side: faces of one width have a kink between
             _displaced(
                 tangents,
-                bending.mounted(side) if isinstance(bending, ToothCompliance) else bending,
+                bending.mounted(side) if isinstance(bending, SumOfParts) else bending,
                 side if free_edges else None,
                 [moved(one, part * change.difference * by) for one, by in zip(separations, motions[key], strict=True)],
             )

@@ -21,6 +21,18 @@ STIFFNESS_ROW = "  ISO 6336-1: c' | c_gamma_alpha [N/(mm um)]", (SINGLE_STIFFNES
 LOAD_ROW = "  ISO 6336-1: K_Halpha from 1 to", (TRANSVERSE_LOAD,)
 """Labels of lines of a summary, and their key figures."""
 
+AXES = {
+    STRESS: "nominal contact stress σ_H0, ISO 6336",
+    SINGLE_CONTACT[0]: "single contact factor Z_B, ISO 6336",
+    SINGLE_CONTACT[1]: "single contact factor Z_D, ISO 6336",
+    CONTACT_RATIO: "contact ratio factor Z_ε, ISO 6336",
+    HELIX_ANGLE: "helix angle factor Z_β, ISO 6336",
+    SINGLE_STIFFNESS: "single stiffness c', ISO 6336",
+    MESH_STIFFNESS: "mean mesh stiffness c_γα, ISO 6336",
+    TRANSVERSE_LOAD: "upper bound of K_Hα, lower 1, ISO 6336",
+}
+"""Key figure -> its label on axes, in the order of tables and files."""
+
 REASONS: Mapping[str, str] = {
     STRESS: "sigma_H0 is the pressure of Hertz at the pitch point under an even load; the peak pressure has the load "
     "as pairs and face share it, and the curvature where it acts",

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.compliance import tooth_compliance
+from loaded_tca.compliance.model import model_of
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.free_edges import edge_compliances
@@ -17,20 +16,18 @@ from loaded_tca.loaded.load_sharing import tooth_pairs_at
 from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_states
 from loaded_tca.loaded.tooth_contact import contact_problem
 from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.separation.box import Box
 from loaded_tca.separation.sample import Separation, sample_separations
 from loaded_tca.unloaded import ContactPoint, trace_contact, trace_teeth
 from loaded_tca.unloaded.curvature import relative_curvatures
 
-if TYPE_CHECKING:
-    from loaded_tca.results.mesh_cycle import MeshCycle
-
 SAME = 1e-6
 """Distance of two contact points, over the module, that are the same."""
 
 
-def states_of_maps(result: MeshCycle) -> LoadedStates:
+def states_of_maps(result: CycleNumbers) -> LoadedStates:
     """Contact problems that the pressure maps of a result solve, and how they answer.
 
     Raises
@@ -40,7 +37,7 @@ def states_of_maps(result: MeshCycle) -> LoadedStates:
     """
     pair, wanted, numbers = result.gear_pair, result.scene.analysis, result.pair.tolist()
     unloaded, apart = _unloaded_contacts(pair, result.pinion_angle, alone=not wanted.load_sharing)
-    bending = None if wanted.compliance == "contact" else tooth_compliance(pair, neighbours=apart)
+    bending = model_of(result.scene, pair, apart)
     places = np.argwhere(result.normal_force > 0.0).tolist()
     maps = [one for t, n, k in places if (one := result.maps[t][n][k]) is not None]
     contacts = [unloaded[n][numbers[k]] for _, n, k in places if numbers[k] in unloaded[n]]

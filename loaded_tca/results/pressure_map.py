@@ -12,7 +12,7 @@ import numpy as np
 from scipy.ndimage import binary_dilation
 
 from loaded_tca.arrays import Array, Mask
-from loaded_tca.results.files import Part
+from loaded_tca.results.quantities import MAP_PARTS, SIZES
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,28 +102,6 @@ class PressureMap:
 
 Maps = tuple[tuple[tuple[PressureMap | None, ...], ...], ...]
 """By torque, position and tooth pair; None where a pair carries nothing."""
-
-MAP_PARTS: dict[str, Part] = {
-    "x": (("across",), "mm", "cell centres across the contact, from the contact point"),
-    "y": (("along",), "mm", "cell centres along the contact, from the contact point"),
-    "spacing": (("axis",), "mm", "cell sizes across and along"),
-    "pressure": (
-        ("across", "along"),
-        "MPa",
-        "contact pressure, the mean over the whole cell where an edge cuts it; NaN beyond the grid of the position",
-    ),
-    "gap": (
-        ("across", "along"),
-        "mm",
-        "deformed gap, infinite where a flank ends before the middle of the cell, NaN beyond the grid",
-    ),
-    "origin": (("vector",), "mm", "contact point in the fixed frame"),
-    "force_line": (("along",), "mm", "place of the force of each slice across the contact, from the contact point"),
-    "axes": (("row", "vector"), "1", "directions across, along and normal out of the pinion, in rows"),
-}
-"""Parts of a pressure map; in a file each has the dimensions torque, position and pair before its own."""
-SIZES = {"axis": 2, "row": 3, "vector": 3}
-"""Lengths of dimensions that are the same in every map."""
 
 
 def stacked_maps(maps: Maps) -> dict[str, Array]:

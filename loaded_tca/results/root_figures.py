@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.reference.iso6336_3 import THINNEST_RIM, face_load_factor, rim_thickness_factor
-from loaded_tca.results.root_stress import GEARS, PLACE
-from loaded_tca.results.summary import FACTORS
+from loaded_tca.results.numbers import CycleNumbers
+from loaded_tca.results.quantities import GEARS, PLACE
 
-if TYPE_CHECKING:
-    from loaded_tca.results.mesh_cycle import MeshCycle
+FACTORS = "form", "stress_correction", "helix_angle"
+"""Of ISO 6336-3, as their key figures are named."""
 
 
-def root_figures(result: MeshCycle, torque: int) -> dict[str, float]:
+def root_figures(result: CycleNumbers, torque: int) -> dict[str, float]:
     """Return the figures of root stress under one torque, by names that end in their unit; NaN: not known.
 
     Parameters
@@ -48,7 +47,7 @@ def rim_factor(gear: Gear) -> float:
     return rim_thickness_factor(rim) if rim > THINNEST_RIM else math.nan
 
 
-def _extreme(result: MeshCycle, torque: int, gear: int, name: str) -> dict[str, float]:
+def _extreme(result: CycleNumbers, torque: int, gear: int, name: str) -> dict[str, float]:
     """Largest tension or compression of a gear over the positions, and where it is."""
     stress, figure = getattr(result, name)[torque, :, gear], f"{GEARS[gear]}_{name}"
     position = int(np.where(np.isnan(stress), -1.0, np.abs(stress)).argmax())

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,60 +16,15 @@ from numpy.typing import NDArray
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance import FlankLine, RootStress, flank_lines
 from loaded_tca.contact.patch import top_weights
-from loaded_tca.errors import NotAskedError
 from loaded_tca.loaded.sensitivity import LoadedGrid
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.results.files import Part
+from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import Maps, PressureMap
+from loaded_tca.results.quantities import GEARS, ON_FILLETS, PLACE, ROOT_QUANTITIES
 from loaded_tca.threads import one_blas_thread
 
-if TYPE_CHECKING:
-    from loaded_tca.results.mesh_cycle import MeshCycle
-
-GEARS = "pinion", "wheel"
 STATES_AT_A_TIME = 32
 """Positions whose stress is held in memory at once, 10 to 20 MB of each tooth."""
-
-OVER_CYCLE = ("torque", "position", "gear")
-ROOT_QUANTITIES: dict[str, Part] = {
-    "root_tension": (OVER_CYCLE, "MPa", "largest stress at the roots of all teeth of pinion and wheel, on both sides"),
-    "root_compression": (OVER_CYCLE, "MPa", "smallest stress there, negative in compression"),
-    "root_tension_angle": (OVER_CYCLE, "rad", "tangent of the fillet to the middle of the tooth, at the tension"),
-    "root_compression_angle": (OVER_CYCLE, "rad", "the same at the compression"),
-    "root_tension_axial": (OVER_CYCLE, "mm", "axial coordinate on the gear itself, at the tension"),
-    "root_compression_axial": (OVER_CYCLE, "mm", "the same at the compression"),
-    "root_tension_place": (
-        (*OVER_CYCLE, "index"),
-        "1",
-        "tooth, counted in the sense of +theta; side, 0 that in contact; station along the fillet; place along the "
-        "face; -1 where nothing is known",
-    ),
-    "root_compression_place": ((*OVER_CYCLE, "index"), "1", "the same of the compression"),
-    "root_stress_ratio": (
-        ("torque", "gear"),
-        "1",
-        "smallest over largest stress in a whole turn where a tooth has its largest tension",
-    ),
-}
-"""Numbers of both gears that a result has where its scene asks for root stress."""
-PLACE = "tooth", "side", "station", "along"
-"""What the axis ``index`` counts."""
-
-ON_FILLETS: dict[str, Part] = {
-    "root_angle": (("side", "station"), "rad", "tangent of the fillet to the middle of the tooth"),
-    "root_point": (("side", "station"), "mm", "places in the frame of the tooth"),
-    "root_stress_at_tension": (("torque", "side", "station"), "MPa", "stress of the tooth with the largest tension"),
-    "root_stress_largest": (("torque", "side", "station"), "MPa", "largest stress of a tooth in a whole turn"),
-    "root_stress_smallest": (("torque", "side", "station"), "MPa", "smallest stress of a tooth in a whole turn"),
-}
-"""Arrays of each gear over both sides of a tooth, stations along the fillet and places along the face."""
-ROOT_MAPS: dict[str, Part] = {
-    f"{gear}_{name}": ((*axes, f"{gear}_along", *(("vector",) if name == "root_point" else ())), unit, text)
-    for gear in GEARS
-    for name, (axes, unit, text) in ON_FILLETS.items()
-}
-"""The same by their names in a file; places along the face are as many as the width of each gear asks for."""
-ROOT_PARTS = ROOT_QUANTITIES | ROOT_MAPS
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,15 +50,10 @@ class RootStressMap:
     smallest: Array
 
 
-def root_stress_maps(result: MeshCycle) -> tuple[RootStressMap, RootStressMap]:
+def root_stress_maps(result: CycleNumbers) -> tuple[RootStressMap, RootStressMap]:
     """Root stress of pinion and wheel over fillet and face; NotAskedError of a result that has none."""
     pinion, wheel = (RootStressMap(*(getattr(result, f"{gear}_{name}") for name in ON_FILLETS)) for gear in GEARS)
     return pinion, wheel
-
-
-def not_asked(name: str) -> NotAskedError:
-    """Error of a result without root stress."""
-    return NotAskedError(f"{name}: the result has no root stress; set analysis.root_stress = true")
 
 
 def root_stress_arrays(

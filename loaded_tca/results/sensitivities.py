@@ -27,6 +27,7 @@ from loaded_tca.results.figure_slopes import (
 from loaded_tca.results.gap_growth import GapGrowth, gap_growth, moved
 from loaded_tca.results.load_factors import common_face
 from loaded_tca.results.loaded_grids import states_of_maps
+from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.root_stress import stress_at_extreme
 from loaded_tca.results.slice_pressure import largest_slice_pressures
 from loaded_tca.results.warnings import warn_of_contacts
@@ -35,8 +36,6 @@ from loaded_tca.unloaded.harmonics import harmonic_coefficients
 
 if TYPE_CHECKING:
     import xarray
-
-    from loaded_tca.results.mesh_cycle import MeshCycle
 
 TORQUE = "load.pinion_torque_Nm"
 STEP = 1e-2
@@ -73,14 +72,14 @@ class Sensitivities:
     """
 
     keys: tuple[str, ...]
-    result: MeshCycle
+    result: CycleNumbers
     tangents: Tangents
     places: Indices
     pairs: Indices
     growth: GapGrowth
     changes: tuple[PairChange | None, ...]
 
-    def __reduce__(self) -> tuple[Callable[..., Sensitivities], tuple[MeshCycle, tuple[str, ...]]]:
+    def __reduce__(self) -> tuple[Callable[..., Sensitivities], tuple[CycleNumbers, tuple[str, ...]]]:
         """Found anew by pickle and copy: the linear systems are large, and quickly made."""
         return sensitivities, (self.result, self.keys)
 
@@ -412,7 +411,7 @@ class Sensitivities:
         return found
 
 
-def sensitivities(result: MeshCycle, keys: Sequence[str]) -> Sensitivities:
+def sensitivities(result: CycleNumbers, keys: Sequence[str]) -> Sensitivities:
     """Derivatives of a result to keys of its scene; see :meth:`MeshCycle.sensitivities`."""
     listed = isinstance(keys, Iterable) and not isinstance(keys, str | bytes)
     require((listed, f"keys: {keys!r:.80}; allowed is a list of keys"))

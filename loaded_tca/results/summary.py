@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
-from loaded_tca.results.iso_figures import LOAD_ROW, STIFFNESS_ROW, STRESS_ROWS, WHERE_REASONS_ARE, reasons_beside
-
-Figures = Mapping[str, float]
-"""Name with its unit -> number, for one torque."""
+from loaded_tca.results.accuracy import Figures
+from loaded_tca.results.figures import FIGURES, SUMMARY
+from loaded_tca.results.iso_figures import WHERE_REASONS_ARE, reasons_beside
 
 ROUNDING = 1e-6
 """Figures below this, in the engineer's units, are rounding; residuals and errors of the grid are not."""
@@ -16,89 +15,6 @@ FOUR_DIGITS = 9999.5
 """From here on four digits would be written with an exponent."""
 MOST_TORQUES = 6
 """Torques that a note names one by one."""
-
-FACTORS = "form", "stress_correction", "helix_angle"
-"""Of ISO 6336-3, as their key figures are named."""
-RIM_LABEL = "    Y_B of thin rims, not in it: pinion | wheel"
-ROWS: tuple[tuple[str, tuple[str, ...]], ...] = (
-    ("pinion torque [N m]", ("pinion_torque_Nm",)),
-    ("peak pressure [MPa] | pinion angle [deg]", ("peak_pressure_MPa", "pinion_angle_at_peak_deg")),
-    ("  normal force of that tooth pair [N]", ("normal_force_at_peak_N",)),
-    ("  pinion diameter | axial position [mm]", ("pinion_diameter_at_peak_mm", "pinion_axial_at_peak_mm")),
-    ("  contact length | width [mm]", ("contact_length_at_peak_mm", "contact_width_at_peak_mm")),
-    ("{edge} [MPa] | its force [N]", ("edge_pressure_MPa", "normal_force_at_edge_N")),
-    ("  estimated error [%]", ("edge_pressure_error",)),
-    ("  pinion diameter | axial position [mm]", ("pinion_diameter_at_edge_mm", "pinion_axial_at_edge_mm")),
-    *STRESS_ROWS,
-    ("highest where Hertz holds | Hertz [MPa]", ("peak_pressure_where_hertz_holds_MPa", "hertz_pressure_there_MPa")),
-    ("  length | width after Hertz [mm]", ("hertz_length_there_mm", "hertz_width_there_mm")),
-    ("transmission error, mean [arcsec | um]", ("transmission_error_mean_arcsec", "transmission_error_mean_um")),
-    ("  peak to peak [arcsec | um]", ("transmission_error_span_arcsec", "transmission_error_span_um")),
-    (
-        "  unloaded, peak to peak [arcsec | um]",
-        ("unloaded_transmission_error_span_arcsec", "unloaded_transmission_error_span_um"),
-    ),
-    ("  orders 1 | 2 | 3 of the tooth mesh [um]", tuple(f"transmission_error_order_{order}_um" for order in (1, 2, 3))),
-    (
-        "mesh stiffness, mean, tangent | secant [N/(mm um)]",
-        ("mesh_stiffness_mean_N_per_mm_um", "secant_stiffness_mean_N_per_mm_um"),
-    ),
-    (
-        "  tangent, without body torsion [N/(mm um)]",
-        ("mesh_stiffness_without_body_torsion_mean_N_per_mm_um",),
-    ),
-    STIFFNESS_ROW,
-    ("load factors K_Hbeta | K_Halpha", ("face_load_factor", "transverse_load_factor")),
-    ("  K_Hbeta too low by its cells, at the most [%]", ("face_load_factor_error",)),
-    LOAD_ROW,
-    (
-        "line load under the largest force; mesh-dependent at sharp ends [N/mm]",
-        ("line_load_at_largest_force_N_per_mm",),
-    ),
-    (
-        "tooth pairs under load, mean | fewest | most",
-        ("loaded_contact_ratio", "fewest_loaded_pairs", "most_loaded_pairs"),
-    ),
-    ("root tension of pinion | wheel [MPa]", ("pinion_root_tension_MPa", "wheel_root_tension_MPa")),
-    ("  tangent angle [deg]", ("pinion_root_tension_angle_deg", "wheel_root_tension_angle_deg")),
-    ("  axial position on the gear [mm]", ("pinion_root_tension_axial_mm", "wheel_root_tension_axial_mm")),
-    ("  stress ratio R there", ("pinion_root_stress_ratio", "wheel_root_stress_ratio")),
-    (
-        "  ISO 6336-3:2006, sigma_F0 K_Fbeta [MPa]",
-        ("pinion_root_stress_iso_6336_MPa", "wheel_root_stress_iso_6336_MPa"),
-    ),
-    (
-        "    its sigma_F0 of pinion | wheel [MPa], K_Fbeta",
-        (
-            "pinion_nominal_root_stress_iso_6336_MPa",
-            "wheel_nominal_root_stress_iso_6336_MPa",
-            "root_face_load_factor_iso_6336",
-        ),
-    ),
-    *(
-        (f"    its Y_F | Y_S | Y_beta of the {gear}", tuple(f"{gear}_{name}_factor_iso_6336" for name in FACTORS))
-        for gear in ("pinion", "wheel")
-    ),
-    (RIM_LABEL, tuple(f"{gear}_rim_thickness_factor_iso_6336" for gear in ("pinion", "wheel"))),
-    ("root compression of pinion | wheel [MPa]", ("pinion_root_compression_MPa", "wheel_root_compression_MPa")),
-    ("most cells across | along, worst residual", ("most_cells_across", "most_cells_along", "worst_solver_residual")),
-)
-"""Label and key figures of each line of the summary; {edge} stands for what ``kind_of_edge`` says."""
-
-IN_PERCENT = "edge_pressure_error", "face_load_factor_error"
-ONLY_IF_KNOWN = (
-    "_without_body_torsion_",
-    "_at_edge_",
-    "edge_pressure",
-    "_order_",
-    "load_factor",
-    "loaded_contact_ratio",
-    "_where_hertz_holds_",
-    "_there_",
-    "_root_",
-    "_iso_6336",
-)
-"""Figures whose line is left out where no torque has them."""
 
 NOTES = (
     ("line_positions", "the unloaded contact is a line"),
@@ -144,12 +60,12 @@ def summary_text(title: str, scope: str, figures: Sequence[Figures], warnings: S
 
 
 def known_rows(figures: Sequence[Figures]) -> list[tuple[str, tuple[str, ...]]]:
-    """Return label and key figures of the lines that a summary has: those of ``ROWS`` that any torque knows."""
+    """Return label and key figures of the lines that a summary has: those that are always there or any torque knows."""
     return [
-        (label, names)
-        for label, names in ROWS
-        if not any(part in name for name in names for part in ONLY_IF_KNOWN)
-        or any(not math.isnan(entry.get(name, math.nan)) for entry in figures for name in names)
+        (line.label, line.names)
+        for line in SUMMARY
+        if line.is_always_there
+        or any(not math.isnan(entry.get(name, math.nan)) for entry in figures for name in line.names)
     ]
 
 
@@ -182,7 +98,7 @@ def shown(value: float, name: str) -> str:
         return "-"
     if "residual" in name:
         return f"{value:.1e}"
-    if name in IN_PERCENT:
+    if name in FIGURES and FIGURES[name].is_part:
         return f"{100.0 * value:.2g}"
     return f"{value:.0f}" if abs(value) >= FOUR_DIGITS else f"{value:.4g}"
 

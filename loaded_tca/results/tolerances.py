@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from numbers import Real
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from loaded_tca.arrays import Array
-from loaded_tca.results.key_figures import mean_over_a_pitch
-from loaded_tca.results.root_stress import GEARS
+from loaded_tca.results.figures import FIGURES
 from loaded_tca.results.sensitivities import TORQUE
 from loaded_tca.scene import Scene
 from loaded_tca.scene.section import contents
@@ -90,21 +86,9 @@ def key_figure_slopes(found: Sensitivities) -> dict[str, Array]:
         The peak pressure is that of the place which has the highest one, the root tension, where the scene asks for
         it, that of the position.
     """
-    result = found.result
-    length = 1e3 * result.wheel_base_radius
-    means = [[mean_over_a_pitch(slope) for slope in slopes.T] for slopes in found.transmission_error]
-    peaks = [result.peak_contact(torque) for torque in range(len(result.torque))]
-    unknown = np.full(len(found.keys), math.nan)
-    slopes = {
-        "transmission_error_mean_um": length * np.array(means),
-        "transmission_error_span_um": length * found.peak_to_peak,
-        "transmission_error_order_1_um": length * found.harmonics(1)[:, 0],
-        "face_load_factor": found.face_load_factor,
-        "peak_pressure_MPa": np.array(
-            [unknown if at is None else found.peak_pressure[torque][at] for torque, at in enumerate(peaks)]
-        ),
+    with_slopes = {name: figure.slope for name, figure in FIGURES.items() if figure.slope is not None}
+    return {
+        name: slope.of(found)
+        for name, slope in sorted(with_slopes.items(), key=lambda entry: entry[1].place)
+        if found.result.has_root_stress or not FIGURES[name].is_of_roots
     }
-    for gear, name in enumerate(GEARS if result.has_root_stress else ()):
-        at = np.nan_to_num(result.root_tension[..., gear]).argmax(axis=1)
-        slopes[f"{name}_root_tension_MPa"] = found.root_tension[np.arange(len(at)), at, gear]
-    return slopes

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,11 +17,9 @@ from loaded_tca.loaded.rounded_edges import PeakAtEdge
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.iso6336_3 import THIN_RIM
+from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.scene import Scene
 from loaded_tca.unloaded.tooth_cycle import REACH
-
-if TYPE_CHECKING:
-    from loaded_tca.results.mesh_cycle import MeshCycle
 
 THICKEST_CONTACT = 0.25
 """Half width of a contact, over the module, above which a tooth is no half-space: it is 1.6 modules thick."""
@@ -96,7 +93,7 @@ def warn_of_accuracy(
         give_accuracy_warning(sentence, stacklevel=3)
 
 
-def warn_of_contacts(result: MeshCycle, reason: str, where: Mask, stacklevel: int) -> None:
+def warn_of_contacts(result: CycleNumbers, reason: str, where: Mask, stacklevel: int) -> None:
     """Give an AccuracyWarning with the number of contacts of a result, (torque, position, pair), that it concerns."""
     angles, pairs = result.path.pinion_angle, result.pair
     places = [_place(result.torque[t], angles[n], pairs[k]) for t, n, k in np.argwhere(where).tolist()]

@@ -17,7 +17,6 @@ import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -25,19 +24,20 @@ import numpy as np
 from loaded_tca.analysis import analyse
 from loaded_tca.arrays import Array, real
 from loaded_tca.errors import ConvergenceError, InputError, noted_accuracy_warnings, require
-from loaded_tca.results.files import FilePath, Part, read_dataset, variables_of, write_dataset
+from loaded_tca.results.files import variables_of
 from loaded_tca.results.warnings import without_place
 from loaded_tca.scene import Scene
-from loaded_tca.studies.design_model import (
+from loaded_tca.studies.design_figures import (
     FIGURES,
-    OF_ERRORS,
-    OF_ROOTS,
     SMOOTHING,
-    DesignModel,
-    Evaluation,
+    FigureOfErrors,
+    Limit,
+    Objective,
     mean_pressure_norm,
     root_tension_norm,
 )
+from loaded_tca.studies.design_model import DesignModel, Evaluation
+from loaded_tca.studies.design_result import KIND, PARTS, DesignResult, load_design
 from loaded_tca.studies.study import MOST_VARIANTS, is_finite, is_whole
 from loaded_tca.threads import one_thread
 
@@ -46,7 +46,6 @@ if TYPE_CHECKING:
 
 __all__ = ["DesignModel", "DesignResult", "Evaluation", "load_design", "optimise", "robustness"]
 
-OBJECTIVES = ("mean", "mean + k sigma", "percentile")
 MOST_ITERATIONS = 50
 ACCURACY = 1e-5
 """Of the objective, relative, at which SLSQP stops. At 1e-3 it gives up where a short step gains little, half way."""
@@ -57,155 +56,9 @@ CONFIRMED = 0.5
 are coarser: a gain that is much larger than both is confirmed nearly whole, one of their size is none."""
 LIMITS_CONFIRMED = 0.05
 """Part of a limit by which the full analysis may exceed it: K_Hbeta and pressures on two grids differ by percents."""
-KIND = "design"
-TEXTS, NUMBERS = ("scene_toml", "warnings", "objective", "limits"), ("value", "objective", "held_objective")
-"""Attributes and variables that every result has, besides its figure."""
 Limits = Mapping[str, float | Mapping[float, float]]
 Progress = Callable[[int, float, float], None]
 """Called with the number of designs evaluated, the objective of the last one, the part by which it exceeds a limit."""
-
-
-@dataclass(frozen=True)
-class Objective:
-    """What is minimised: a figure, mean over the torques, as it scatters over the samples.
-
-    Attributes
-    ----------
-    kind : {"mean", "mean + k sigma", "percentile"}
-    k : float
-        Standard deviations on top of the mean.
-    percentile : float
-        From 0 to 100.
-    figure : str
-        One of ``FIGURES``.
-    """
-
-    kind: str = "mean + k sigma"
-    k: float = 1.0
-    percentile: float = 90.0
-    figure: str = "smooth_span_um"
-
-    def __post_init__(self) -> None:
-        require(
-            (self.kind in OBJECTIVES, f"objective: {self.kind!r:.60}; allowed {', '.join(map(repr, OBJECTIVES))}"),
-            (self.figure in FIGURES, f"figure: {self.figure!r:.60}; allowed {', '.join(FIGURES)}"),
-            (0.0 <= real(self.k) < math.inf, f"k: {self.k!r:.60}; allowed a finite number from 0 on"),
-            (0.0 <= real(self.percentile) <= 100.0, f"percentile: {self.percentile!r:.60}; allowed 0 to 100"),
-        )
-
-    @property
-    def told(self) -> str:
-        """In words."""
-        if self.kind == "percentile":
-            return f"percentile {self.percentile:g}"
-        return self.kind if self.kind == "mean" else f"mean + {self.k:g} sigma"
-
-    def of(self, figures: Array) -> tuple[float, Array]:
-        """Value of figures (sample, torque), and its derivatives to them."""
-        values = figures.mean(axis=1)
-        if self.kind == "percentile":
-            order, place = np.argsort(values), 0.01 * self.percentile * (values.size - 1)
-            low, part = int(place), place - int(place)
-            weights = np.zeros(values.size)
-            weights[order[low]] += 1.0 - part
-            weights[order[min(low + 1, values.size - 1)]] += part
-            value = float(weights @ values)
-        else:
-            weights, value, sigma = np.full(values.size, 1.0 / values.size), float(values.mean()), float(values.std())
-            if self.kind == "mean + k sigma":
-                value += self.k * sigma
-                weights += self.k * (values - values.mean()) / (values.size * sigma) if sigma > 0.0 else 0.0
-        return value, np.broadcast_to(weights[:, None] / figures.shape[1], figures.shape)
-
-
-@dataclass(frozen=True)
-class Limit:
-    """Highest value of a figure under some torques, with every sample."""
-
-    figure: str
-    torques: tuple[int, ...]
-    highest: float
-
-
-@dataclass(frozen=True, eq=False)
-class DesignResult:
-    """Result of a design: start and optimum, with the figures of both by the whole analysis.
-
-    Attributes
-    ----------
-    dataset : xarray.Dataset
-        Over ``design`` ("start", "optimum"), sample, torque, position and key: ``value`` of the keys, analysed
-        ``transmission_error`` [rad], ``peak_pressure`` [MPa], load factors and ``FIGURES``; those on held contacts as
-        ``held_...``; ``history_x``, ``history_objective`` and ``history_excess`` over the evaluations; ``range`` of the
-        keys and ``scatter``; ``attrs`` has in words ``limits``, ``distributions`` of the scatter, ``seeds`` and
-        ``warnings``, each with the number of analyses that it concerns.
-    """
-
-    dataset: xarray.Dataset
-
-    def __repr__(self) -> str:
-        before, after = self.objective
-        told = self.dataset.attrs["warnings"].count("\n") + 1 if self.dataset.attrs["warnings"] else 0
-        values = ", ".join(f"{key} = {value:.4g}" for key, value in self.optimum.items())
-        figure = f"{self.dataset.attrs['objective']} of {self.dataset.attrs['figure']}"
-        warned = f", {told} accuracy warnings in dataset.attrs" if told else ""
-        return f"DesignResult({figure}: {before:.4g} -> {after:.4g}, {values}{warned})"
-
-    @property
-    def start(self) -> dict[str, float]:
-        """Values of the keys where the design started."""
-        return self._values("start")
-
-    @property
-    def optimum(self) -> dict[str, float]:
-        """Values of the keys that were found."""
-        return self._values("optimum")
-
-    def _values(self, design: str) -> dict[str, float]:
-        values = self.dataset["value"].sel(design=design).values.tolist()
-        return dict(zip(self.dataset["key"].values.tolist(), values, strict=True))
-
-    @property
-    def objective(self) -> tuple[float, float]:
-        """Objective of start and optimum by the full analysis."""
-        before, after = self.dataset["objective"].values.tolist()
-        return before, after
-
-    @property
-    def held_objective(self) -> tuple[float, float]:
-        """Objective of start and optimum on held contacts."""
-        before, after = self.dataset["held_objective"].values.tolist()
-        return before, after
-
-    @property
-    def evaluations(self) -> int:
-        """How many designs were evaluated."""
-        return int(self.dataset.sizes["evaluation"])
-
-    def save(self, path: FilePath) -> None:
-        """Write the result to a NetCDF-3 file, to be read by :func:`load_design`."""
-        write_dataset(path, self.dataset)
-
-
-def load_design(path: FilePath) -> DesignResult:
-    """Read the result of a design.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, is damaged, is no design, or lacks what all designs have.
-    """
-    dataset = read_dataset(path)
-    if dataset.attrs.get("kind") != KIND:
-        raise InputError(f"{path}: a result of loaded_tca, but no design; read it with load_result or load_study")
-    figure = dataset.attrs.get("figure")
-    require(
-        *((isinstance(dataset.attrs.get(name), str), f"{name}: missing, or no text") for name in TEXTS),
-        *((name in dataset, f"{name}: missing") for name in NUMBERS),
-        (str(figure) in FIGURE_TEXTS, f"figure: {figure!r:.60}; allowed {', '.join(FIGURE_TEXTS)}"),
-        owner=f"{path}: not the result of a design",
-    )
-    return DesignResult(dataset)
 
 
 def optimise(
@@ -230,16 +83,16 @@ def optimise(
         Of the figure, its mean over the torques, over the samples of the scatter.
     limits : mapping, optional
         Figure -> its highest value under every torque with every sample, or a mapping of torques [N mm] to values.
-        ``pressure_MPa`` is a norm, above or below the highest pressure by up to a third; ``edge_pressure_MPa`` keeps
-        contacts away from the ends of the flanks.
+        ``pressure_MPa`` is a norm, above or below the highest pressure by up to a third; ``edge_pressure_norm_MPa``
+        keeps contacts away from the ends of the flanks.
     k : float
         Standard deviations on top of the mean.
     percentile : float
         From 0 to 100.
     figure : str
         "span_um", "smooth_span_um" (which has derivatives everywhere), "mean_transmission_error_um", "pressure_MPa",
-        "edge_pressure_MPa", "face_load_factor"; with ``analysis.root_stress`` also "pinion_root_tension_MPa" and
-        "wheel_root_tension_MPa".
+        "edge_pressure_norm_MPa", "face_load_factor"; with ``analysis.root_stress`` also
+        "pinion_root_tension_norm_MPa" and "wheel_root_tension_norm_MPa".
     starts : int
         Designs to start from: that of the scene, then points of a scrambled Sobol sequence within the ranges.
     seed : int
@@ -473,8 +326,8 @@ def robustness(
         scaled = model.with_scatter(multiple)
         found[:, column] = [wanted.of(scaled.evaluate(x).figure(figure))[0] for x in values]
     coordinates = {"design": [*designs], "multiple": np.asarray(multiples, dtype=float)}
-    unit, text = FIGURE_TEXTS[figure]
-    told = {"long_name": f"{wanted.told} of the {text}", "units": unit}
+    measured = FIGURES[figure]
+    told = {"long_name": f"{wanted.told} of the {measured.text}", "units": measured.unit}
     return xarray.Dataset({"objective": (("design", "multiple"), found, told)}, coordinates)
 
 
@@ -490,10 +343,13 @@ def _analysed(scene: Scene) -> dict[str, Any]:
         "transverse_load_factor": result.transverse_load_factor,
         "warnings": [*dict.fromkeys(map(without_place, told))],
     }
-    found |= {name: np.array([of(row, SMOOTHING)[0] for row in errors]) for name, of in OF_ERRORS.items()}
-    for gear, name in enumerate(OF_ROOTS if scene.analysis.root_stress else ()):
+    for name, figure in FIGURES.items():
+        if isinstance(figure, FigureOfErrors):
+            found[name] = np.array([figure.of(row, SMOOTHING)[0] for row in errors])
+    of_roots = [name for name, figure in FIGURES.items() if figure.is_of_roots]
+    for gear, name in enumerate(of_roots if scene.analysis.root_stress else ()):
         found[name] = np.array([root_tension_norm(row) for row in result.root_tension[:, :-1, gear]])
-    for name, at_edges in (("pressure_MPa", False), ("edge_pressure_MPa", True)):
+    for name, at_edges in (("pressure_MPa", False), ("edge_pressure_norm_MPa", True)):
         positions = ([[one for one in row if one is not None] for row in rows[:-1]] for rows in result.maps)
         found[name] = np.array([mean_pressure_norm(rows, at_edges=at_edges)[0] for rows in positions])
     return found
@@ -558,45 +414,10 @@ def _require_confirmed(result: DesignResult, limits: Sequence[Limit]) -> None:
             f"{optimum:.4g} by the analysis"
         )
     for one in limits:
-        if one.figure != "edge_pressure_MPa":  # a number of the grid where edges are sharp
+        if FIGURES[one.figure].is_confirmed:
             largest = float(result.dataset[one.figure].sel(design="optimum").values[:, one.torques].max())
             if not largest <= (1.0 + LIMITS_CONFIRMED) * one.highest:
                 problems.append(f"{one.figure} is {largest:.4g} by the analysis, its limit {one.highest:g}")
     if problems:
         told = "; ".join(problems)
         raise ConvergenceError(f"design: not confirmed: {told}; try more cells of the model", last=result)
-
-
-ANALYSED = "design", "sample", "torque", "position"
-FIGURE_TEXTS = {
-    "span_um": ("um", "peak-to-peak loaded transmission error at the wheel's base circle"),
-    "smooth_span_um": ("um", "smooth peak-to-peak loaded transmission error at the wheel's base circle"),
-    "mean_transmission_error_um": ("um", "mean loaded transmission error at the wheel's base circle"),
-    "pressure_MPa": ("MPa", "norm of the pressure away from the ends of the flanks"),
-    "edge_pressure_MPa": ("MPa", "norm of the pressure beside the ends of the flanks"),
-    "face_load_factor": ("1", "K_Hbeta"),
-    **{name: ("MPa", f"root tension of the {name.partition('_')[0]}, smooth maximum") for name in OF_ROOTS},
-}
-PARTS: dict[str, Part] = {
-    "value": (("design", "key"), "1", "value of the key, in the unit at the end of its name"),
-    "range": (("key", "bound"), "1", "lowest and highest value of the key"),
-    "scatter": (("sample", "scatter_key"), "1", "value of the key, or its deviation from that of the design"),
-    "transmission_error": (ANALYSED, "rad", "loaded transmission error"),
-    "peak_pressure": (ANALYSED, "MPa", "largest peak pressure of the tooth pairs"),
-    "transverse_load_factor": (ANALYSED[:3], "1", "K_Halpha"),
-    **{name: (ANALYSED[:3], *told) for name, told in FIGURE_TEXTS.items()},
-    "objective": (ANALYSED[:1], "", "what was minimised, by the full analysis"),
-    "held_transmission_error": (
-        (*ANALYSED[:3], "held_position"),
-        "rad",
-        "loaded transmission error on held contacts, without the last position, the first one of the next pitch",
-    ),
-    **{
-        f"held_{name}": (ANALYSED[:3], unit, f"{told}, on held contacts") for name, (unit, told) in FIGURE_TEXTS.items()
-    },
-    "held_objective": (ANALYSED[:1], "", "what was minimised, on held contacts"),
-    "history_x": (("evaluation", "key"), "1", "value of the key"),
-    "history_objective": (("evaluation",), "", "objective on held contacts"),
-    "history_excess": (("evaluation",), "1", "part by which a figure exceeds its limit; negative within all limits"),
-}
-"""What the dataset of a result holds."""

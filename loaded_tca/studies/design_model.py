@@ -15,14 +15,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from loaded_tca.analysis import bending_of, roots_of
+from loaded_tca.analysis import roots_of
 from loaded_tca.arrays import Array, numbers, real
+from loaded_tca.compliance import model_of, require_teeth
 from loaded_tca.errors import InputError, named, require
 from loaded_tca.loaded.cycle import farthest_apart
 from loaded_tca.loaded.held_contacts import HeldContacts, ShapedContacts
@@ -30,26 +31,19 @@ from loaded_tca.loaded.load_sharing import SharedLoad
 from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
 from loaded_tca.loaded.together import found_together
 from loaded_tca.loaded.tooth_contact import GridChoice
-from loaded_tca.results.figure_slopes import EXPONENT, face_load_factor_slopes, pressure_norm
-from loaded_tca.results.load_factors import load_factors
-from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.results.root_stress import GEARS, root_stress_of_gear, stress_at_extreme
 from loaded_tca.scene import Scene
 from loaded_tca.separation.pair_change import value_at
+from loaded_tca.studies.design_figures import FIGURES, SMOOTHING, FigureOfErrors
 from loaded_tca.studies.study import Distribution, Study, is_finite, is_whole, told_distribution
 from loaded_tca.unloaded import ContactPoint, trace_teeth
 
 CELLS = (24, 40)
 """Of every contact, where the scene gives none."""
-SMOOTHING = 0.01
-"""tau of the span [um]: it exceeds the span by 2 tau ln(N) at the most."""
 TOLERANCE = 1e-6
 """Of contacts, relative."""
 AGREEMENT = 10.0
 """That of the balance of the tooth pairs over it."""
 FEWEST_POSITIONS, FEWEST_CELLS = 4, 4
-ROOT_EXPONENT = 50.0
-"""Of the norm of the root tension over the positions: 3 % above the largest if four of them are alike."""
 LINEAR = 1e-7
 """Of the linear systems of gradients, relative."""
 
@@ -151,11 +145,13 @@ class DesignModel:
     @property
     def figures(self) -> tuple[str, ...]:
         """Those of ``FIGURES`` that the scene asks for: root tension only with ``analysis.root_stress``."""
-        return tuple(name for name in FIGURES if name not in OF_ROOTS or self.roots)
+        return tuple(name for name in FIGURES if not FIGURES[name].is_of_roots or self.roots)
 
     def require_figure(self, argument: str, name: Any) -> None:
         """InputError, naming the argument, if the model does not have a figure."""
-        way = "; root tension needs analysis.root_stress = true" if name in OF_ROOTS else ""
+        way = (
+            "; root tension needs analysis.root_stress = true" if name in FIGURES and FIGURES[name].is_of_roots else ""
+        )
         require((name in self.figures, f"{argument}: {name!r:.60}; allowed {', '.join(self.figures)}{way}"))
 
     @property
@@ -271,7 +267,9 @@ class DesignModel:
         scene = self.scene.with_changes(self._at(deviation, dict(zip(self.keys, self.start.tolist(), strict=True))))
         pair = scene.pair()
         mesh = trace_teeth(pair, pair.pitch * (np.arange(self.positions) / self.positions - 0.5))
-        bending = bending_of(scene, pair, farthest_apart(mesh))
+        if without_bodies := scene.analysis.without_bodies:
+            require_teeth(pair, without_bodies)
+        bending = model_of(scene, pair, farthest_apart(mesh))
         ranges = {
             key: (low + by, high + by) for (key, (low, high)), by in zip(self.variables.items(), own, strict=True)
         }
@@ -406,12 +404,13 @@ class Evaluation:
     def _figure(self, name: str, s: int, t: int) -> tuple[float, Array]:
         """A figure, and its derivatives to the errors of the positions [um], or to the forces of all active cells."""
         if (name, s, t) not in self._found:
-            if name in OF_ERRORS:
+            figure = FIGURES[name]
+            if isinstance(figure, FigureOfErrors):
                 errors = self.model.micrometres * self.transmission_error[s, t]
-                self._found[name, s, t] = OF_ERRORS[name](errors, self.model.smoothing)
+                self._found[name, s, t] = figure.of(errors, self.model.smoothing)
             else:
                 positions = [self._grids[s, t, n] for n in range(self.model.positions)]
-                value, slopes = OF_FORCES[name](self.model, self.model.held[s], positions)
+                value, slopes = figure.of(self.model.roots, self.model.held[s], positions)
                 grids = (grid for position in positions for grid in position)
                 active = [slope[grid.active] for slope, grid in zip(slopes, grids, strict=True)]
                 self._found[name, s, t] = value, np.concatenate(active)
@@ -420,7 +419,7 @@ class Evaluation:
     def _gradient(self, name: str, s: int, t: int) -> Array:
         slopes = self._figure(name, s, t)[1]
         tangents, gaps = self._tangents_of(s, t)
-        if name in OF_ERRORS:
+        if isinstance(FIGURES[name], FigureOfErrors):
             scale = -self.model.driving * self.model.micrometres
             return np.asarray(scale * tangents.rotation_change(gaps) @ slopes)
         return np.asarray(tangents.functional_change(slopes, gaps).sum(axis=-1))
@@ -438,122 +437,3 @@ class Evaluation:
     def _slopes(self) -> list[dict[ContactPoint, Array]]:
         """Derivatives of the gaps of each sample."""
         return [one.slopes(self.x + own) for one, own in zip(self.model.held, self.model.own_deviations, strict=True)]
-
-
-Positions = Sequence[Sequence[LoadedGrid]]
-"""Loaded contacts of each position, the last one of the scene left out."""
-
-
-def pressure(_: DesignModel, __: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
-    """Norm of the pressure [MPa] of all cells that have no end of a flank beside them, and its derivatives."""
-    return mean_pressure_norm([[_map_of(grid) for grid in position] for position in positions], at_edges=False)
-
-
-def edge_pressure(_: DesignModel, __: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
-    """The same of the cells that have one beside them."""
-    return mean_pressure_norm([[_map_of(grid) for grid in position] for position in positions], at_edges=True)
-
-
-def face_load_factor(_: DesignModel, held: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
-    """K_Hbeta and its derivatives, the strip with the largest force held."""
-    maps = [tuple(_map_of(grid) for grid in position) for position in positions]
-    path, closed = held.mesh.leading_contact, (*maps, ())  # of load factors the last position does not count
-    factor = float(load_factors(held.pair, path, (closed,), math.nan)[0][0])
-    slopes = face_load_factor_slopes(held.pair, path, closed)
-    return factor, [one for row in slopes for one in row if one is not None]
-
-
-def root_tension(gear: int, model: DesignModel, held: HeldContacts, positions: Positions) -> tuple[float, list[Array]]:
-    """Smooth maximum over the positions of the root tension of a gear [MPa], and its derivatives."""
-    root, numbers = model.roots[gear], sorted({grid.number for position in positions for grid in position})
-    rows = [{grid.number: _map_of(grid) for grid in position} for position in positions]
-    maps = (tuple(tuple(row.get(number) for number in numbers) for row in rows),)
-    found = root_stress_of_gear(held.pair, gear, root, numbers, np.ones((1, len(rows)), dtype=bool), maps)
-    tension, slopes = np.zeros(len(positions)), []
-    for n, position in enumerate(positions):
-        place = found["root_tension_place"][0, n].tolist()
-        loads, per_force = stress_at_extreme(held.pair, gear, root, position, place)
-        by_slice = [per_force(line) for line, _ in loads]
-        tension[n] = sum(own @ forces for own, (_, forces) in zip(by_slice, loads, strict=True))
-        slopes.append([np.broadcast_to(own, grid.active.shape) for own, grid in zip(by_slice, position, strict=True)])
-    norm = root_tension_norm(tension)
-    weights = (tension / norm) ** (ROOT_EXPONENT - 1.0)
-    return norm, [weight * own for weight, row in zip(weights, slopes, strict=True) for own in row]
-
-
-def root_tension_norm(tension: Array) -> float:
-    """Norm of the root tension of the positions (n,) [MPa]: its largest one, or more by up to ln n over the exponent.
-
-    Examples
-    --------
-    >>> round(root_tension_norm(np.array([200.0, 300.0, 290.0])), 1)
-    301.0
-    """
-    largest = float(tension.max())
-    return largest * float(((tension / largest) ** ROOT_EXPONENT).sum()) ** (1.0 / ROOT_EXPONENT)
-
-
-def _map_of(grid: LoadedGrid) -> PressureMap:
-    one = grid.separation
-    return PressureMap(one.x, one.y, one.spacing, grid.pressure, one.gap, one.origin, one.axes, one.force_line)
-
-
-def mean_pressure_norm(positions: Sequence[Sequence[PressureMap]], *, at_edges: bool) -> tuple[float, list[Array]]:
-    """Norm [MPa] of the pressures of cells beside the ends of the flanks, or of all others, as a mean over positions.
-
-    Also returns its derivatives by the forces of the cells of all maps [1/mm^2].
-    """
-    found = []
-    for one in (one for position in positions for one in position):
-        kept = np.where(one.beside_end == at_edges, one.pressure, 0.0)
-        found.append(pressure_norm(kept, np.ones(kept.shape), one.spacing))
-    largest = max((norm for norm, _ in found), default=0.0)
-    if largest == 0.0:
-        return 0.0, [slopes for _, slopes in found]
-    norm = largest * (sum((own / largest) ** EXPONENT for own, _ in found) / len(positions)) ** (1.0 / EXPONENT)
-    return norm, [slopes * (own / norm) ** (EXPONENT - 1.0) / len(positions) for own, slopes in found]
-
-
-def span(errors: Array, _: float) -> tuple[float, Array]:
-    """Largest less smallest of errors (n,), and its derivatives, those at these two places."""
-    weights = np.zeros(errors.size)
-    weights[errors.argmax()] += 1.0
-    weights[errors.argmin()] -= 1.0
-    return float(np.ptp(errors)), weights
-
-
-def smooth_span(errors: Array, smoothing: float) -> tuple[float, Array]:
-    """The same with smooth maxima, which are larger by up to ``smoothing`` ln n each.
-
-    Examples
-    --------
-    >>> value, weights = smooth_span(np.array([0.0, 0.3, 0.3]), 0.01)
-    >>> round(value, 6), weights.round(6)
-    (0.306931, array([-1. ,  0.5,  0.5]))
-    """
-    value, weights = 0.0, np.zeros(errors.size)
-    for sign in (1.0, -1.0):
-        top = float((sign * errors).max())
-        parts = np.exp((sign * errors - top) / smoothing)
-        value += top + smoothing * float(np.log(parts.sum()))
-        weights += sign * parts / parts.sum()
-    return value, weights
-
-
-def mean(errors: Array, _: float) -> tuple[float, Array]:
-    """Mean of errors (n,), and its derivatives."""
-    return float(errors.mean()), np.full(errors.size, 1.0 / errors.size)
-
-
-OF_ERRORS = {"span_um": span, "smooth_span_um": smooth_span, "mean_transmission_error_um": mean}
-OF_ROOTS = {f"{name}_root_tension_MPa": partial(root_tension, gear) for gear, name in enumerate(GEARS)}
-OF_FORCES: dict[str, Callable[[DesignModel, HeldContacts, Positions], tuple[float, list[Array]]]] = {
-    "pressure_MPa": pressure,
-    "edge_pressure_MPa": edge_pressure,
-    "face_load_factor": face_load_factor,
-    **OF_ROOTS,
-}
-FIGURES = (*OF_ERRORS, *OF_FORCES)
-"""Figures of a design under one torque with one sample: peak-to-peak transmission error at the wheel's base circle, the
-same with smooth maxima, its mean; norm of the pressure away from the ends of the flanks, and beside them; K_Hbeta;
-root tension of either gear, a smooth maximum over the positions."""

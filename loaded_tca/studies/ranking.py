@@ -8,6 +8,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array, index_checks
 from loaded_tca.errors import InputError, require
+from loaded_tca.results.figures import FIGURES, declared
 from loaded_tca.scene.keys import did_you_mean, nearest
 from loaded_tca.scene.parse import parse_scene
 from loaded_tca.scene.section import as_table
@@ -16,8 +17,7 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-ROOT_TENSION = "pinion_root_tension_MPa", "wheel_root_tension_MPa"
-MAIN_FIGURES = ("transmission_error_span_um", "peak_pressure_MPa", "face_load_factor", *ROOT_TENSION)
+MAIN_FIGURES = tuple(sorted(declared(lambda figure: figure.rank), key=lambda name: FIGURES[name].rank or 0))
 """Figures by which variants are compared unless others are asked for; the first one ranks them."""
 QUANTILE = 0.95
 """Of a figure over the samples of a combination."""

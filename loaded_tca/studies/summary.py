@@ -8,19 +8,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from loaded_tca.results.figure import labelled
+from loaded_tca.results.figures import FIGURES, declared
 from loaded_tca.results.warnings import without_place
 
 if TYPE_CHECKING:
     import xarray
 
-MAIN = {
-    "peak_pressure_MPa": "peak pressure [MPa]",
-    "transmission_error_span_um": "transmission error, peak to peak [um]",
-    "transmission_error_order_1_um": "  order 1 of the tooth mesh [um]",
-    "mesh_stiffness_mean_N_per_mm_um": "mesh stiffness, mean [N/(mm um)]",
-    "face_load_factor": "load factor K_Hbeta",
-}
-"""Figures that are told, those of them that the study has, with their labels."""
+MAIN = declared(lambda figure: figure.is_scattered)
+"""Figures that are told, those of them that the study has."""
 PERCENTILES = {"min": 0, "5 %": 5, "median": 50, "95 %": 95, "max": 100}
 MOST_REASONS = 5
 
@@ -56,7 +52,9 @@ def study_summary(study: xarray.Dataset) -> str:
 
 def _table(study: xarray.Dataset) -> Iterator[str]:
     """Percentiles of the main figures over the variants, one line for each torque."""
-    shown = {name: label for name, label in MAIN.items() if name in study and np.isfinite(study[name]).any()}
+    shown = {
+        name: labelled(name, FIGURES[name].label) for name in MAIN if name in study and np.isfinite(study[name]).any()
+    }
     if not shown:
         return
     torques = study["pinion_torque_Nm"].values if "pinion_torque_Nm" in study else np.zeros((1, 1))

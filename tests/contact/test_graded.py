@@ -7,7 +7,8 @@ from numpy.testing import assert_allclose
 from loaded_tca.contact import ContactStatus, FreeEdge, GradedProblem, solve_contact, solve_graded
 from loaded_tca.contact.columns import FineZone, column_borders
 from loaded_tca.contact.edges import extra_displacement
-from loaded_tca.contact.graded import BYTES_PER_PAIR, GradedGrids, memory_problem
+from loaded_tca.contact.graded import GradedGrids
+from loaded_tca.contact.graded_problem import BYTES_PER_PAIR, memory_problem
 from loaded_tca.contact.love import column_coefficients, influence_coefficients
 from loaded_tca.errors import ConvergenceError, InputError
 from loaded_tca.reference import hertz, wedge

@@ -19,8 +19,7 @@ from loaded_tca.output.report import contacts_csv, positions_csv
 from loaded_tca.output.sensitivity_files import sensitivities_csv
 from loaded_tca.output.subsurface_files import subsurface_csv
 from loaded_tca.results import compare_results
-from loaded_tca.results.mesh_cycle import QUANTITIES
-from loaded_tca.results.root_stress import ROOT_QUANTITIES
+from loaded_tca.results.quantities import QUANTITIES, ROOT_QUANTITIES
 from loaded_tca.results.stress_below import stress_below
 from loaded_tca.studies.figures import figures_of
 from tests.samples.results import changed, changed_scene, result

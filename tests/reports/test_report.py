@@ -20,6 +20,7 @@ from loaded_tca.plots.labels import label_of
 from loaded_tca.reports import page as report_page
 from loaded_tca.reports import result_page, write_html_report
 from loaded_tca.reports.page import Table, parts_of, tables_of
+from loaded_tca.results.accuracy import COMPARED
 from loaded_tca.results.explanations import EXPLANATIONS, explanation_of
 from loaded_tca.results.summary import known_rows, shown
 from loaded_tca.studies.design import DesignResult
@@ -228,7 +229,7 @@ def test_accuracy_of_figures_is_what_the_studies_show(page):
         ),
         *({"root_tension_MPa": max(of["tension"]), "root_compression_MPa": max(of["compression"])} for of in roots),
     ]
-    for measured, (kind, said) in zip(differences, result_page.COMPARED.items(), strict=True):
+    for measured, (kind, said) in zip(differences, COMPARED.items(), strict=True):
         assert {*measured} == {*said}
         for name, difference in measured.items():
             assert difference <= said[name] < difference + 0.3, (kind, name)

@@ -13,7 +13,8 @@ from numpy.testing import assert_allclose
 from loaded_tca.analysis import analyse
 from loaded_tca.errors import InputError
 from loaded_tca.results.files import read_dataset, write_dataset
-from loaded_tca.results.mesh_cycle import QUANTITIES, MeshCycle
+from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.quantities import QUANTITIES
 from loaded_tca.scene import read_scene
 from tests.refusals import refused_calls
 from tests.samples.results import ONE_PAIR, PER_PAIR, PER_POSITION, SCENES, assert_same, changed, result, with_a_gap

@@ -9,8 +9,8 @@ from loaded_tca.compliance import FlankLine, RootStress
 from loaded_tca.errors import InputError, NotAskedError
 from loaded_tca.results import MeshCycle, compare_results, load_result
 from loaded_tca.results.files import write_dataset
-from loaded_tca.results.mesh_cycle import QUANTITIES
-from loaded_tca.results.root_stress import PLACE, ROOT_PARTS, ROOT_QUANTITIES, root_stress_arrays
+from loaded_tca.results.quantities import PLACE, QUANTITIES, ROOT_PARTS, ROOT_QUANTITIES
+from loaded_tca.results.root_stress import root_stress_arrays
 from tests.samples.results import assert_same
 from tests.samples.root_stress import analysed, models, result, scene
 

@@ -11,7 +11,7 @@ from numpy.testing import assert_array_equal
 
 from loaded_tca.analysis import analyse
 from loaded_tca.errors import AccuracyWarning
-from loaded_tca.results.mesh_cycle import CYCLE, PAIRS, QUANTITIES
+from loaded_tca.results.quantities import CYCLE, PAIRS, QUANTITIES
 from loaded_tca.scene import Scene, read_scene
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"

@@ -13,11 +13,12 @@ from scipy.stats import norm
 
 from loaded_tca import analyse, read_scene
 from loaded_tca.errors import ConvergenceError, InputError
+from loaded_tca.results.figures import FIGURES as KEY_FIGURES
 from loaded_tca.results.files import write_dataset
 from loaded_tca.separation.pair_change import value_at
 from loaded_tca.studies import DesignModel, Study, load_design, optimise, robustness
 from loaded_tca.studies import design as designs
-from loaded_tca.studies.design_model import FIGURES, smooth_span
+from loaded_tca.studies.design_figures import FIGURES, smooth_span
 from tests.refusals import refusals
 from tests.samples.root_stress import coarsely
 
@@ -63,6 +64,10 @@ def found():
         one = model(cells=ENOUGH)
         result = optimise(one, limits={"face_load_factor": {130e3: 1.9}}, progress=lambda *one: told.append(one))
     return result, told
+
+
+def test_figures_that_are_other_numbers_than_those_of_a_result_have_other_names():
+    assert {*FIGURES} & {*KEY_FIGURES} == {"face_load_factor"}
 
 
 @pytest.mark.parametrize("name", FIGURES)
@@ -172,7 +177,7 @@ def test_samples_of_distributions_are_those_of_a_study_about_their_medians():
 
 def test_root_tension_is_designed_and_limited():
     """A helix slope takes the load off the end of the face to which the misalignment brings it."""
-    scene, name = SCENE.with_changes({"analysis.root_stress": True}), "pinion_root_tension_MPa"
+    scene, name = SCENE.with_changes({"analysis.root_stress": True}), "pinion_root_tension_norm_MPa"
     with coarsely():
         one = model({SLOPE: (-15.0, 15.0)}, {MISALIGNMENT: [8.0]}, scene=scene)
         least = optimise(one, "mean", figure=name)
@@ -226,6 +231,18 @@ def test_a_result_comes_back_from_its_file(found, tmp_path):
     assert again.optimum == result.optimum
     assert again.objective == result.objective
     assert again.dataset.identical(result.dataset)
+
+
+def test_a_file_of_an_earlier_version_has_the_names_of_today(found, tmp_path):
+    dataset = found[0].dataset
+    now, before = "edge_pressure_norm_MPa", "edge_pressure_MPa"
+    limits = {name: f"{name} <= 900 at 130 N m\nspan_um <= 2 at 130 N m" for name in (now, before)}
+    names = {now: before, f"held_{now}": f"held_{before}"}
+    write_dataset(tmp_path / "design.nc", dataset.rename(names).assign_attrs(figure=before, limits=limits[before]))
+    again = load_design(tmp_path / "design.nc").dataset
+    assert (again.attrs["figure"], again.attrs["limits"]) == (now, limits[now])
+    assert again[now].identical(dataset[now])
+    assert {f"held_{now}"} == {name for name in again if "held_edge_pressure" in name}
 
 
 def test_a_file_of_something_else_is_no_design(found, tmp_path):
@@ -343,8 +360,8 @@ test_a_search_that_cannot_be_is_refused = refusals(
     ({"limits": [1.0]}, "limits: .*; allowed a mapping"),
     ({"limits": {"span_um": {}}}, "limits: span_um: none given"),
     ({"limits": {"span_um": {"a": 1.0}}}, "span_um: 'a' N mm is no torque of the model"),
-    ({"limits": {"wheel_root_tension_MPa": 300.0}}, "root tension needs analysis.root_stress = true"),
-    ({"figure": "pinion_root_tension_MPa"}, "root tension needs analysis.root_stress = true"),
+    ({"limits": {"wheel_root_tension_norm_MPa": 300.0}}, "root tension needs analysis.root_stress = true"),
+    ({"figure": "pinion_root_tension_norm_MPa"}, "root tension needs analysis.root_stress = true"),
     ({"limits": {"noise": 1.0}}, "limits: 'noise'; allowed span_um"),
     ({"limits": {"face_load_factor": {99e3: 1.5}}}, "face_load_factor: 99000.0 N mm is no torque of the model"),
     ({"limits": {"face_load_factor": -1.5}}, "face_load_factor: -1.5; allowed a finite number above 0"),

@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 
 from loaded_tca.compliance import MeshDensity, tooth_compliance
+from loaded_tca.compliance.model import BendingModel
 from loaded_tca.loaded.cycle import Carried, carried_by_all
 from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.pair_coupling import BendingModel
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import parse_scene

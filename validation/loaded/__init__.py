@@ -10,6 +10,7 @@
 - ``local_term``: how far the local term of a tooth reaches along the face;
 - ``root_stress``: tooth root stress beside a plane reference, convergence, time and memory of its model;
 - ``root_stress_families``: that of helical, bevel and face-milled gears beside finer meshes, in minutes;
+  ``root_stress_models``: what both share;
 - ``root_stress_cycle``, ``root_stress_space``: root stress over the mesh and in space beside finite elements of another
   program; ``root_face_load``: under uneven loads, beside ISO 6336-3; ``root_stress_fem``: a page of all three;
 - ``numbers_to_copy``: load factors, peak pressure and free edges over misalignment, box, grid and defaults; a page;

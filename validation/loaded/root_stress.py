@@ -23,35 +23,34 @@ from unittest.mock import patch
 
 import numpy as np
 from scipy.interpolate import CubicSpline
-from scipy.optimize import brentq
 
 from loaded_tca import analyse, read_scene
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import FlankLine, MeshDensity, RootStress
-from loaded_tca.compliance.body import ToothFrame, factorised, gear_nodes
+from loaded_tca.compliance.body import factorised, gear_nodes
 from loaded_tca.compliance.finite_elements import discretise
 from loaded_tca.compliance.root_stress import (
     BEST,
     DENSITY,
     OUTLINE,
     first_told,
-    root_influence,
     stress_density,
     tangent_angles,
 )
 from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.flanks.base import outward_normal
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.reference.iso6336_3 import RootSection, root_section
 from loaded_tca.tooth.profile import polar
 from validation.calculix import plane_ring
 from validation.calculix.tables import RINGS_FILE, read_table
+from validation.loaded.root_stress_families import rows as family_rows
+from validation.loaded.root_stress_models import CASE, FINER, finer, line_on, model_of, spur_pair_gear
 from validation.page import SCENES, Page, machine, medians, peak_memory, table, take_times, timed, write_page
 from validation.table import Row
 
-CASE, SOURCE, FINER = "root stress", "plane finite elements, whole ring", "finer mesh of the same elements"
+SOURCE = "plane finite elements, whole ring"
 LINE_LOAD = 100.0
 """Of the reference [N/mm]."""
 LOADED_AT = ("tip", "HPSTC", "pitch point", "LPSTC")
@@ -98,17 +97,6 @@ NINE = (
 """Teeth, profile shift, radius of the rack's tip in modules."""
 HEIGHTS = (0.4, 0.7, 1.0)
 """Parts of the flank's height at which they are loaded."""
-
-
-def spur_pair_gear(
-    teeth: int = 25, width: float = 20.0, shift: float = 0.0, rounding: float = 0.38, helix_deg: float = 0.0
-) -> Gear:
-    """Pinion of module 3 beside a wheel of 37 teeth."""
-    pinion, wheel = (
-        CylindricalGear(z, 3.0, width, helix_angle=math.radians(beta), profile_shift=x, root_radius_coefficient=rho)
-        for z, beta, x, rho in ((teeth, helix_deg, shift, rounding), (37, -helix_deg, 0.0, 0.38))
-    )
-    return cylindrical_pair(CylindricalMesh(pinion, wheel)).pinion
 
 
 def loaded_radii() -> Array:
@@ -325,22 +313,6 @@ def form_rows(refined: Container[tuple[int, float]] | None = None) -> Iterator[R
                 yield Row(CASE, iso, f"{words}: tension over that of rho {usual}", *ratios, TREND)
 
 
-def line_on(
-    model: RootStress, height: float, part: float = 1.0, middle: float = 0.5, rise: float = 0.0
-) -> tuple[FlankLine, Array]:
-    """Force of 1 N spread evenly over a part of the face, at a height of the flank of tooth 0 that rises along it."""
-    places, weights = np.polynomial.legendre.leggauss(40)
-    flank = model.frame.places(height + 0.5 * part * rise * places, middle + 0.5 * part * places)
-    x, y, z = flank.point.T
-    return FlankLine(0, np.hypot(x, y), z), 0.5 * weights
-
-
-def model_of(gear: Gear, density: MeshDensity) -> RootStress:
-    """Model that is made, not taken from what is kept."""
-    frame = ToothFrame(gear, gear_nodes(gear, density, OUTLINE))
-    return RootStress(frame, root_influence(frame))
-
-
 @cache
 def spur_model() -> RootStress:
     """Of the pinion of the reference."""
@@ -363,16 +335,6 @@ def space_rows() -> Iterator[Row]:
         strict=True,
     ):
         yield Row(CASE, SPATIAL, f"in space: tension {place} of the face [MPa]", kept, float(found), allowed)
-
-
-def finer(density: MeshDensity) -> MeshDensity:
-    """Half as many elements more in every direction, the outermost layers half as thick."""
-    section = {name: 3 * getattr(density, name) // 2 for name in ("through", "flank", "fillet", "land", "rim")}
-    layers, coarse = np.arange(section["through"] // 2), np.arange(density.through // 2)
-    half = 2.0 * (density.grading**coarse).sum()  # of the tooth, over the thickness of its outermost layer
-    grading = float(brentq(lambda grading: (grading**layers).sum() - half, 1.0, 10.0))
-    lengthwise = 2 * math.ceil(0.75 * density.lengthwise)
-    return replace(density, grading=grading, skin=0.5 * density.skin, lengthwise=lengthwise, **section)
 
 
 def rows() -> list[Row]:
@@ -481,8 +443,6 @@ def of_forms() -> str:
 
 def page() -> str:
     """Measure everything; the page."""
-    from validation.loaded.root_stress_families import rows as family_rows
-
     plane = list(plane_rows())
     middle, end = (stress / TENSION[1] for stress in in_space())
     with multiprocessing.get_context("spawn").Pool(1, maxtasksperchild=1) as pool:

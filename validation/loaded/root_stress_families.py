@@ -18,7 +18,7 @@ from loaded_tca.gears import bevel_mesh
 from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.scene import read_scene
-from validation.loaded.root_stress import CASE, FINER, finer, line_on, model_of, spur_pair_gear
+from validation.loaded.root_stress_models import CASE, FINER, finer, line_on, model_of, spur_pair_gear
 from validation.table import Row
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"

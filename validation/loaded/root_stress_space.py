@@ -19,7 +19,7 @@ from loaded_tca.compliance import FlankLine, RootStress, root_stress_model
 from validation.calculix.case import FACE_WIDTH
 from validation.calculix.ring_run import HELICES, LINE_LOAD, LOADS, loaded_line, pinion
 from validation.calculix.tables import RING_FILLETS_FILE, RINGS_FILE, read_table
-from validation.loaded.root_stress import spur_pair_gear
+from validation.loaded.root_stress_models import spur_pair_gear
 from validation.table import Row
 
 SOURCE = "finite elements in space (CalculiX)"

@@ -1,0 +1,132 @@
+"""The bending model of an analysis: what gives way beneath the contacts, beside the half-spaces, as a sum of parts.
+
+``PARTS`` is the one place that names them. A further compliance, of shafts for instance, is a function that makes its
+part for a scene, and its name there: analyses, designs and the sensitivities of results from a file all ask
+:func:`model_of`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol, Self
+
+from loaded_tca.arrays import Array
+from loaded_tca.compliance.compliance import ContactGrid, tooth_compliance, way_out_told
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.scene import Scene
+from loaded_tca.separation import Separation
+
+
+class BendingModel(Protocol):
+    """Bending, shear and foundation of teeth and bodies beneath the contacts, for instance by finite elements.
+
+    Tooth pairs are told by their numbers: 0 is in contact at the pitch point at phi1 = 0, +1 comes into mesh after it.
+    The grid of a contact stands in the angles of its own tooth: pair k as if it were pair 0, k pitches ago. Its slices
+    are cells of one place along the contact.
+    """
+
+    @property
+    def neighbours(self) -> int:
+        """How many pitches two loaded tooth pairs may be apart."""
+
+    def within(self, number: int, grid: ContactGrid) -> Array:
+        """Deflection of every slice under a unit force on each, (ny, ny) [mm/N], symmetric.
+
+        On top of two half-spaces under the same pressures.
+        """
+
+    def between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
+        """Deflection of every slice of one contact under a unit force on each slice of another [mm/N].
+
+        Its transpose is that of ``between(under, at)``.
+        """
+
+
+class BendingPart(BendingModel, Protocol):
+    """A bending model whose gears can stand elsewhere."""
+
+    def mounted(self, pair: GearPair) -> Self:
+        """The same bodies in a pair whose wheel stands elsewhere."""
+
+
+@dataclass(frozen=True, eq=False)
+class SumOfParts:
+    """Deflections of several parts under the same forces, added up.
+
+    Attributes
+    ----------
+    parts : tuple of BendingPart
+        At least one.
+    """
+
+    parts: tuple[BendingPart, ...]
+
+    @property
+    def neighbours(self) -> int:
+        """How many pitches two loaded tooth pairs may be apart: what the part of the fewest allows."""
+        return min(part.neighbours for part in self.parts)
+
+    def within(self, number: int, grid: ContactGrid) -> Array:
+        """Deflection of every slice under a unit force on each, (ny, ny) [mm/N]."""
+        return _sum([part.within(number, grid) for part in self.parts])
+
+    def between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
+        """Deflection of every slice of one contact under a unit force on each slice of another [mm/N]."""
+        return _sum([part.between(at, under) for part in self.parts])
+
+    def mounted(self, pair: GearPair) -> SumOfParts:
+        """The same parts in a pair whose wheel stands elsewhere."""
+        return SumOfParts(tuple(part.mounted(pair) for part in self.parts))
+
+
+def _sum(deflections: list[Array]) -> Array:
+    first, *others = deflections
+    for deflection in others:
+        first = first + deflection
+    return first
+
+
+def teeth_and_bodies(scene: Scene, pair: GearPair, neighbours: int) -> BendingPart | None:
+    """Teeth, foundations and gear bodies by finite elements; None where the scene lets the flanks alone give way."""
+    if scene.analysis.compliance == "contact":
+        return None
+    with way_out_told():
+        return tooth_compliance(pair, neighbours=neighbours)
+
+
+PARTS: tuple[Callable[[Scene, GearPair, int], BendingPart | None], ...] = (teeth_and_bodies,)
+"""What a bending model is the sum of: each makes its part, or None where the scene does not ask for it."""
+
+
+def model_of(scene: Scene, pair: GearPair, neighbours: int) -> SumOfParts | None:
+    """Bending model that a scene asks for.
+
+    Parameters
+    ----------
+    scene : Scene
+    pair : GearPair
+        Of the scene.
+    neighbours : int
+        How many pitches two loaded tooth pairs are apart at the most; one is modelled at least.
+
+    Returns
+    -------
+    SumOfParts or None
+        None if the scene asks for no part.
+
+    Raises
+    ------
+    InputError, GeometryError
+        If a gear body that the scene asks for cannot be built; the setting that needs none is named.
+
+    Examples
+    --------
+    >>> from loaded_tca import parse_scene
+    >>> from loaded_tca.cli import DEMO_SCENE
+    >>> scene = parse_scene(DEMO_SCENE.read_text()).with_changes({"analysis.compliance": "contact"})
+    >>> model_of(scene, scene.pair(), 1) is None
+    True
+    """
+    parts = [part for make in PARTS if (part := make(scene, pair, max(neighbours, 1))) is not None]
+    return SumOfParts(tuple(parts)) if parts else None

@@ -1,0 +1,185 @@
+"""What a result holds: name, dimensions, unit and long name of every array in the dataset and in its file."""
+
+from __future__ import annotations
+
+from loaded_tca.errors import NotAskedError
+from loaded_tca.results.files import Part
+
+CYCLE = ("torque", "position")
+PAIRS = (*CYCLE, "pair")
+
+QUANTITIES: dict[str, Part] = {
+    "torque": (("torque",), "N mm", "pinion torque"),
+    "pair": (("pair",), "1", "tooth pair: 0 is in contact at the pitch point at phi1 = 0, +1 follows it"),
+    "pinion_angle": (("position",), "rad", "angle of the pinion phi1"),
+    "wheel_base_radius": ((), "mm", "base radius of the wheel"),
+    "face_width": ((), "mm", "common face width"),
+    "max_pressure": ((), "MPa", "cap on the pressure; NaN: elastic"),
+    "unloaded_transmission_error": (("position",), "rad", "unloaded transmission error, absolute"),
+    "face_load_factor": (("torque",), "1", "face load factor K_Hbeta, from 30 strips of the face"),
+    "transverse_load_factor": (("torque",), "1", "transverse load factor K_Halpha; NaN for bevel gears"),
+    "transmission_error": (CYCLE, "rad", "loaded transmission error, absolute"),
+    "mesh_stiffness": (CYCLE, "N/(mm um)", "tangent of the force over the face width to the transmission error"),
+    "secant_stiffness": (CYCLE, "N/(mm um)", "force over the face width, over the transmission error it adds"),
+    "loaded_pairs": (CYCLE, "1", "number of tooth pairs under load"),
+    "load_share": (PAIRS, "1", "share of the tooth pair in the torque"),
+    "normal_force": (PAIRS, "N", "normal force on the tooth pair"),
+    "peak_pressure": (
+        PAIRS,
+        "MPa",
+        "peak contact pressure; where the contact reaches a sharp edge or a relief start, the largest of its slices",
+    ),
+    "edge_pressure": (
+        PAIRS,
+        "MPa",
+        "largest pressure at an edge; NaN where none is reached, and at rounded ones that cannot hold the largest of "
+        "their torque unless all are asked for",
+    ),
+    "edge_is_rounded": (PAIRS, "1", "whether that edge is rounded; the pressure at a sharp one is mesh-dependent"),
+    "edge_pressure_error": (PAIRS, "1", "estimated relative error of the pressure at a rounded edge by its columns"),
+    "edge_radius": (PAIRS, "mm", "radius on the pinion of the edge pressure"),
+    "edge_axial": (PAIRS, "mm", "axial coordinate on the pinion of the edge pressure"),
+    "central_pressure": (
+        PAIRS,
+        "MPa",
+        "contact pressure beside the unloaded contact point, mesh-dependent where that is on a sharp edge",
+    ),
+    "peak_radius": (PAIRS, "mm", "radius on the pinion of the peak pressure"),
+    "peak_axial": (PAIRS, "mm", "axial coordinate on the pinion of the peak pressure"),
+    "hertz_pressure": (
+        PAIRS,
+        "MPa",
+        "peak pressure after Hertz at the contact point or of the line; NaN where Hertz does not hold",
+    ),
+    "hertz_semi_minor": (PAIRS, "mm", "half width across the contact after Hertz"),
+    "hertz_semi_major": (PAIRS, "mm", "half length of the Hertz ellipse, or of the loaded line"),
+    "contact_width": (PAIRS, "mm", "full width of the contact across, from the pressure map"),
+    "contact_length": (PAIRS, "mm", "full length of the contact, from the pressure map, but not beyond the face"),
+    "line_load": (PAIRS, "N/mm", "largest force per length along the contact; at a face end mesh-dependent"),
+    "line_load_ratio": (PAIRS, "1", "largest line load over the force spread evenly along the whole face"),
+    "contact_deformation": (PAIRS, "mm", "approach of the two flanks as half-spaces, along the normal"),
+    "tooth_deflection": (PAIRS, "mm", "deflection of the teeth and bodies along the normal"),
+    "on_edge": (PAIRS, "1", "whether the contact reaches an edge of a flank"),
+    "on_relief_start": (PAIRS, "1", "whether the start of a linear relief lies in the contact"),
+    "cells_across": (PAIRS, "1", "cells of the grid across the contact"),
+    "cells_along": (PAIRS, "1", "cells of the grid along the contact"),
+    "discretisation_error": (
+        PAIRS,
+        "1",
+        "estimated relative error of the peak pressure by the grid, from the two finest; NaN where cells are given, "
+        "and without load",
+    ),
+    "iterations": (PAIRS, "1", "iterations of the contact solver"),
+    "residual": (PAIRS, "1", "residual of the contact solver"),
+}
+"""Name in ``MeshCycle.dataset`` -> dimensions, unit, long name."""
+COORDINATES = ("torque", "pinion_angle", "pair")
+
+OF_THE_PEAK = frozenset(
+    {"peak_pressure", "peak_radius", "peak_axial", "on_edge", "on_relief_start"}
+    | {"cells_across", "cells_along", "discretisation_error", "iterations", "residual"}
+)
+"""Numbers whose value at a position is that of the pair with the highest peak pressure."""
+OF_THE_EDGE = frozenset({"edge_pressure", "edge_is_rounded", "edge_pressure_error", "edge_radius", "edge_axial"})
+
+GEARS = "pinion", "wheel"
+OVER_CYCLE = ("torque", "position", "gear")
+ROOT_QUANTITIES: dict[str, Part] = {
+    "root_tension": (OVER_CYCLE, "MPa", "largest stress at the roots of all teeth of pinion and wheel, on both sides"),
+    "root_compression": (OVER_CYCLE, "MPa", "smallest stress there, negative in compression"),
+    "root_tension_angle": (OVER_CYCLE, "rad", "tangent of the fillet to the middle of the tooth, at the tension"),
+    "root_compression_angle": (OVER_CYCLE, "rad", "the same at the compression"),
+    "root_tension_axial": (OVER_CYCLE, "mm", "axial coordinate on the gear itself, at the tension"),
+    "root_compression_axial": (OVER_CYCLE, "mm", "the same at the compression"),
+    "root_tension_place": (
+        (*OVER_CYCLE, "index"),
+        "1",
+        "tooth, counted in the sense of +theta; side, 0 that in contact; station along the fillet; place along the "
+        "face; -1 where nothing is known",
+    ),
+    "root_compression_place": ((*OVER_CYCLE, "index"), "1", "the same of the compression"),
+    "root_stress_ratio": (
+        ("torque", "gear"),
+        "1",
+        "smallest over largest stress in a whole turn where a tooth has its largest tension",
+    ),
+}
+"""Numbers of both gears that a result has where its scene asks for root stress."""
+PLACE = "tooth", "side", "station", "along"
+"""What the axis ``index`` counts."""
+
+ON_FILLETS: dict[str, Part] = {
+    "root_angle": (("side", "station"), "rad", "tangent of the fillet to the middle of the tooth"),
+    "root_point": (("side", "station"), "mm", "places in the frame of the tooth"),
+    "root_stress_at_tension": (("torque", "side", "station"), "MPa", "stress of the tooth with the largest tension"),
+    "root_stress_largest": (("torque", "side", "station"), "MPa", "largest stress of a tooth in a whole turn"),
+    "root_stress_smallest": (("torque", "side", "station"), "MPa", "smallest stress of a tooth in a whole turn"),
+}
+"""Arrays of each gear over both sides of a tooth, stations along the fillet and places along the face."""
+ROOT_MAPS: dict[str, Part] = {
+    f"{gear}_{name}": ((*axes, f"{gear}_along", *(("vector",) if name == "root_point" else ())), unit, text)
+    for gear in GEARS
+    for name, (axes, unit, text) in ON_FILLETS.items()
+}
+"""The same by their names in a file; places along the face are as many as the width of each gear asks for."""
+ROOT_PARTS = ROOT_QUANTITIES | ROOT_MAPS
+
+PATH_PARTS: dict[str, Part] = {
+    "pinion_angle": ((), "rad", "angle of the pinion phi1"),
+    "wheel_angle": ((), "rad", "unloaded angle of the wheel phi2"),
+    "transmission_error": ((), "rad", "unloaded transmission error, absolute"),
+    "point": (("vector",), "mm", "unloaded contact point in the fixed frame"),
+    "normal": (("vector",), "1", "unit normal out of the pinion"),
+    "pinion_radius": ((), "mm", "radius of the contact point on the pinion"),
+    "pinion_axial": ((), "mm", "axial coordinate of the contact point on the pinion"),
+    "wheel_radius": ((), "mm", "radius of the contact point on the wheel"),
+    "wheel_axial": ((), "mm", "axial coordinate of the contact point on the wheel"),
+    "pinion_lever": ((), "mm", "torque of a unit normal force about the axis of the pinion"),
+    "wheel_lever": ((), "mm", "torque of a unit normal force about the axis of the wheel"),
+    "in_contact": ((), "1", "whether the tooth pair is in contact"),
+    "on_edge": ((), "1", "whether the unloaded contact lies on an edge of a flank"),
+    "on_relief_start": ((), "1", "whether the unloaded contact lies on the start of a linear relief"),
+    "on_line": ((), "1", "whether the unloaded contact is a line"),
+    "line_ends": (("end", "vector"), "mm", "ends of the line in the fixed frame"),
+    "edges": (("edge",), "1", "edges that hold the point, pinion then wheel: tip, root, lower (toe), upper (heel)"),
+    "iterations": ((), "1", "Newton steps of the unloaded contact"),
+    "residual": ((), "1", "sine of the angle between the two normals"),
+}
+"""Parts of a contact path; each has the dimension position before its own."""
+
+MAP_PARTS: dict[str, Part] = {
+    "x": (("across",), "mm", "cell centres across the contact, from the contact point"),
+    "y": (("along",), "mm", "cell centres along the contact, from the contact point"),
+    "spacing": (("axis",), "mm", "cell sizes across and along"),
+    "pressure": (
+        ("across", "along"),
+        "MPa",
+        "contact pressure, the mean over the whole cell where an edge cuts it; NaN beyond the grid of the position",
+    ),
+    "gap": (
+        ("across", "along"),
+        "mm",
+        "deformed gap, infinite where a flank ends before the middle of the cell, NaN beyond the grid",
+    ),
+    "origin": (("vector",), "mm", "contact point in the fixed frame"),
+    "force_line": (("along",), "mm", "place of the force of each slice across the contact, from the contact point"),
+    "axes": (("row", "vector"), "1", "directions across, along and normal out of the pinion, in rows"),
+}
+"""Parts of a pressure map; in a file each has the dimensions torque, position and pair before its own."""
+SIZES = {"axis": 2, "row": 3, "vector": 3}
+"""Lengths of dimensions that are the same in every map."""
+
+IN_FILES: dict[str, Part] = {
+    **{f"path_{name}": (("path", "position", *own), unit, text) for name, (own, unit, text) in PATH_PARTS.items()},
+    **{f"map_{name}": ((*PAIRS, *own), unit, text) for name, (own, unit, text) in MAP_PARTS.items()},
+}
+"""What a file has beside ``QUANTITIES``: the paths, that of the leading contact before those of the pairs; the maps."""
+
+
+ABOUT = ("version", "date", "warnings")
+"""Attributes of the dataset: version of the package, date and accuracy warnings of the analysis, a line each."""
+
+
+def not_asked(name: str) -> NotAskedError:
+    """Error of a result without root stress."""
+    return NotAskedError(f"{name}: the result has no root stress; set analysis.root_stress = true")
