@@ -106,6 +106,11 @@ def solve_graded(
     return solution
 
 
+def guess(problem: GradedProblem) -> Array:
+    """Pressure (nx, ny) [MPa] of a sphere of this load whose contact has as large an area as the gap lets close."""
+    return np.asarray(GradedGrids.of_problem(problem).guess()[0] * (problem.contact_modulus / problem.widths))
+
+
 def _solved(problem: GradedProblem, tolerance: float, start: Array | None) -> GradedSolution:
     """Solve from a start or from coarser columns, and check in double precision."""
     grids, line = GradedGrids.of_problem(problem), problem.widths / problem.contact_modulus

@@ -12,7 +12,7 @@ import numpy as np
 from loaded_tca.arrays import Array, count_problems, numbers, real
 from loaded_tca.contact.columns import EVEN, FineZone, column_borders, pressed_width
 from loaded_tca.contact.edges import SHARPEST, FreeEdge, extra_displacement
-from loaded_tca.contact.graded import solve_graded
+from loaded_tca.contact.graded import guess, solve_graded
 from loaded_tca.contact.graded_problem import GradedProblem, GradedSolution
 from loaded_tca.contact.samples import slope_jump, top
 from loaded_tca.errors import require
@@ -258,13 +258,12 @@ def edge_pressures(
         slices, place = None, (y, np.diff(borders)) if slice_axis == 1 else (x, np.full(rows, dx))
         if slice_compliance is not None:
             slices = slice_compliance(*place)
-        heights, reference = numbers("gap", gap(x, y)), None
+        heights, demand = numbers("gap", gap(x, y)), (contact_modulus, load, max_pressure)
+        problem = GradedProblem(heights, dx, borders, *demand, slices, slice_axis, free)
+        expected = guess(problem) if before is None else _carried(before, low[0], x, y)
         if free:
-            centre = float(y[heights.min(axis=0).argmin()]) if before is None else _load_centre(before)
-            reference = min(max(centre, first), last)
-        demand = contact_modulus, load, max_pressure
-        problem = GradedProblem(heights, dx, borders, *demand, slices, slice_axis, free, reference)
-        start = None if before is None else _carried(before, low[0], x, y)
+            problem = replace(problem, reference=min(max(_load_centre(problem, expected), first), last))
+        start = None if before is None else expected
         return solve_graded(problem, tolerance=tolerance, initial_pressure=start)
 
     solution, found, coarse = None, list[EdgePressure](), list[EdgePressure]()
@@ -404,10 +403,10 @@ def _growth_at_slope_jump(problem: GradedProblem, row: int, column: int) -> floa
     return problem.contact_modulus * jump * math.log(2.0) / (2.0 * math.pi)
 
 
-def _load_centre(solution: GradedSolution) -> float:
+def _load_centre(problem: GradedProblem, pressure: Array) -> float:
     """Centre of the load along y [mm]."""
-    forces = solution.pressure.sum(axis=0) * solution.problem.widths
-    return float(forces @ solution.problem.middles / forces.sum())
+    forces = pressure.sum(axis=0) * problem.widths
+    return float(forces @ problem.middles / forces.sum())
 
 
 def _carried(solution: GradedSolution, low: float, x: Array, y: Array) -> Array:

@@ -253,6 +253,25 @@ def test_wedges_of_all_sizes_and_on_either_side_are_alike():
     assert_allclose(other.place[1], -found.place[1], rtol=1e-4)
 
 
+@pytest.mark.parametrize(("load", "rows"), [(50e3, 9), (7e3, 32)])
+def test_contact_that_first_touches_on_the_edge_of_a_wedge_is_solved(load, rows):
+    """Only where the load will be may forces be said to add nothing beneath them: at the edge itself that is too much.
+
+    A cylinder that lies askew over the edge touches on it and is pressed far from it.
+    """
+
+    def gap(x, y):
+        return x[:, None] ** 2 / 4000.0 + (y + 0.3 * x[:, None]) ** 2 / 40.0 + np.maximum(y, 0.0) ** 2 / 0.04
+
+    edge = RoundedEdge((0.0, 0.0), (0.0, 1.0), 0.02, math.radians(115.0))
+    options = {"load": load, "cells": (rows, 24), "tolerance": 1e-5, "slice_axis": 0}
+    found = peak(gap, ((-6.0, 6.0), (-2.0, 0.09)), edge, **options)
+    solution = found.solution
+    assert solution.residual <= 1e-5
+    assert_allclose(np.sum(solution.pressure * solution.problem.cell_areas), load, rtol=ROUNDING)
+    assert solution.problem.reference < -0.1
+
+
 def test_angle_counts_along_the_columns_and_not_beside_slices_that_tell_the_tilt():
     def slices(places, _):
         return 1e-6 * np.exp(-np.abs(places[:, None] - places))
