@@ -85,7 +85,7 @@ def compared(name: str, result: CycleNumbers, *_: object) -> str:
     for kind in _kinds(result):
         for words, percent in COMPARED[kind].items():
             if words in name:
-                return f"{kind}: within {percent:g} % of finite elements"
+                return f"{kind}: those compared are within {percent:g} % of finite elements"
     return f"{NO_ESTIMATE}: such gears were not compared with finite elements"
 
 

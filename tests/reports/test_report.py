@@ -243,8 +243,8 @@ def test_accuracy_of_figures_is_what_the_studies_show(page):
     [
         ("mesh_cycle_helical", {}, "no estimate: such gears were not compared"),
         ("mesh_cycle_bevel", {}, "no estimate: such gears were not compared"),
-        ("mesh_cycle_spur", {}, "spur teeth on a face below 33 modules: within {} % of finite elements"),
-        ("mesh_cycle_spur", {"face_width": 99.0}, "spur teeth on a face of 33 modules or more: within {} % of finite"),
+        ("mesh_cycle_spur", {}, "spur teeth on a face below 33 modules: those compared are within {} % of finite"),
+        ("mesh_cycle_spur", {"face_width": 99.0}, "spur teeth on a face of 33 modules or more: those compared are"),
     ],
 )
 def test_accuracy_of_teeth_that_bend_is_that_of_their_kind(written, name, changes, note):
