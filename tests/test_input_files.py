@@ -9,7 +9,7 @@ import pytest
 
 from loaded_tca import load_result, read_scene
 from loaded_tca.errors import InputError
-from loaded_tca.flanks.topography_file import read_topography
+from loaded_tca.flanks.topography import read_topography
 from loaded_tca.studies import Study, load_design, load_study, read_study, run_study
 from tests.samples.studies import HELICAL, crowning, helical
 

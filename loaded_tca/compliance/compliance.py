@@ -23,7 +23,7 @@ from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
 from loaded_tca.tooth.build import Resolution, build_tooth
-from loaded_tca.tooth.geometry import ToothGeometry
+from loaded_tca.tooth.families import ToothGeometry
 
 LAYERS_PER_HEIGHT = 2.5
 """Layers of elements across a face as wide as the teeth are high; between the two numbers below."""

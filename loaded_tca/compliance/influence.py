@@ -37,7 +37,7 @@ from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.errors import InputError
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
-from loaded_tca.tooth.geometry import ToothGeometry
+from loaded_tca.tooth.families import ToothGeometry
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,7 +23,7 @@ from loaded_tca.compliance.half_space import line_force
 from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
-from loaded_tca.tooth.profile import polar
+from loaded_tca.tooth.fillet import polar
 
 DENSITY = MeshDensity(through=8, flank=12, fillet=4, land=4, rim=6, lengthwise=1, neighbours=0)
 """Of the middle section: twice as fine gives the same to 1 %. Without neighbours the cut of the half-plane's field,

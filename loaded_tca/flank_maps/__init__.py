@@ -1,8 +1,7 @@
 """Maps over a whole flank: ease-off topography, contact pattern, V-H check."""
 
-from loaded_tca.flank_maps.ease_off_map import EaseOffMap, ease_off_map
+from loaded_tca.flank_maps.ease_off_map import EaseOffMap, SecondOrder, ease_off_map
 from loaded_tca.flank_maps.pattern import ContactArea, ContactPattern, contact_area, contact_pattern
-from loaded_tca.flank_maps.second_order import SecondOrder
 from loaded_tca.flank_maps.vh_check import VHCheck, vh_check
 
 __all__ = [

@@ -19,7 +19,7 @@ from loaded_tca.arrays import Array, finite_row
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flank_maps.conjugate import GearName
 from loaded_tca.flank_maps.pattern import COMPOUND, ContactPattern, contact_pattern
-from loaded_tca.flanks.frame import FlankFrame
+from loaded_tca.flanks.base import FlankFrame
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.teeth import trace_teeth
 

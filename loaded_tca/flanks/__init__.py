@@ -5,16 +5,14 @@ from typing import TYPE_CHECKING
 from loaded_tca.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from loaded_tca.flanks.base import Flank
+    from loaded_tca.flanks.base import ConeFrame, CylinderFrame, Flank, FlankFrame
     from loaded_tca.flanks.bevel import SphericalInvoluteFlank
     from loaded_tca.flanks.cylindrical import InvoluteFlank
     from loaded_tca.flanks.face_milled import FlankAngles, GeneratedFlank
-    from loaded_tca.flanks.frame import ConeFrame, CylinderFrame, FlankFrame
     from loaded_tca.flanks.modification import FlankModifications, ModifiedFlank
     from loaded_tca.flanks.rounding import EdgeRounding, RoundedFlank
     from loaded_tca.flanks.spline import SplineFlank, fitted, measured
-    from loaded_tca.flanks.topography import MeasuredDeviations, MeasuredPoints, Topography
-    from loaded_tca.flanks.topography_file import read_topography
+    from loaded_tca.flanks.topography import MeasuredDeviations, MeasuredPoints, Topography, read_topography
 else:
     __getattr__, __dir__ = lazy_names(__name__)
 

@@ -17,13 +17,12 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError
-from loaded_tca.flanks.base import Region
+from loaded_tca.flanks.base import ConeFrame, Region
+from loaded_tca.flanks.bevel import NODES, ToothRegion, chebyshev_nodes, face_cone_angles
 from loaded_tca.flanks.cradle import CradleGeneration, GeneratedPoints
-from loaded_tca.flanks.frame import ConeFrame
 from loaded_tca.flanks.jet import Jet
 from loaded_tca.flanks.spline import FitError, SplineFlank
 from loaded_tca.flanks.tensor_spline import TensorSpline, fit
-from loaded_tca.flanks.tooth_region import NODES, ToothRegion, chebyshev_nodes, face_cone_angles
 from loaded_tca.gears.cutter import FlankName
 from loaded_tca.gears.face_milled import FaceMilledGear
 

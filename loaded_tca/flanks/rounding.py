@@ -26,9 +26,9 @@ from numpy.polynomial import Chebyshev
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.errors import require
 from loaded_tca.flanks.base import EDGE_NAMES, DerivedFlank, Flank, outward_normal, unmodified
+from loaded_tca.flanks.bevel import NODES, DistanceCurve, chebyshev_nodes
 from loaded_tca.flanks.jet import Jet
 from loaded_tca.flanks.tensor_spline import SplineDerivatives
-from loaded_tca.flanks.tooth_region import NODES, DistanceCurve, chebyshev_nodes
 
 LEAST_RADIUS = 0.01
 """Smallest radius [mm] of a rounded edge: below it an edge is sharp."""

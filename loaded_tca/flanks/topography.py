@@ -1,8 +1,23 @@
-r"""Measured topographies: where the points of a measured flank lie, and how far they are off the nominal one.
+r"""Measured topographies: where the points of a measured flank lie, how far off the nominal one, and their files.
 
 The excess e is a distance along the normal, positive where the flank has **more** material than the nominal one, as
 gear measuring centres count; a modification counts the material removed, delta = -e. Both are turned into an angle by
 the same rule, :math:`\Theta = \Theta_n + s\, e\, |\nabla F|`.
+
+Files hold comma-separated values with the unit of every column in its header::
+
+    # gear = wheel
+    # measured = left flank, tooth 7
+    profile_index,lengthwise_index,radius_mm,axial_mm,deviation_um
+    1,1,82.91,-11.2,-4.1
+    2,1,84.45,-11.2,-1.6
+    ...
+
+The columns are either ``x, y, z`` (points), or ``radius, axial`` and one of ``deviation`` (positive: **more** material
+than nominal, as measuring centres count) and ``removed`` (positive: less material, as modifications count), each with
+``_um``, ``_mm``, ``_m`` or ``_in`` behind it. Rows come in any order with the columns ``profile_index`` and
+``lengthwise_index``; without them in the order of the grid, the profile running fastest, and a comment says how many
+points there are: ``# points = 5 x 9`` (profile x lengthwise). Semicolons and tabs separate values, too.
 
 References
 ----------
@@ -11,6 +26,9 @@ ISO/TR 10064-6 and ISO 17485 (measurement of bevel gears: flank form grids, devi
 
 from __future__ import annotations
 
+import difflib
+import os
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -19,8 +37,182 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from loaded_tca.arrays import Array
-from loaded_tca.errors import InputError
+from loaded_tca.errors import InputError, named
 from loaded_tca.flanks.base import Flank
+from loaded_tca.input_files import read_text
+
+LARGEST_FILE = 2**23
+"""Bytes of a topography file; a point takes about 60."""
+UNITS = {"um": 1e-3, "mm": 1.0, "m": 1e3, "in": 25.4}
+"""Unit at the end of a column's name -> factor to mm."""
+INDICES = ("profile_index", "lengthwise_index")
+LENGTHS = ("x", "y", "z", "radius", "axial", "deviation", "removed")
+CHOICES = ({"x", "y", "z"}, {"radius", "axial", "deviation"}, {"radius", "axial", "removed"})
+DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+([eE][+-]?\d+)?\s*")
+MOST_PROBLEMS = 10
+"""Problems of single lines that are told; more of them are counted."""
+
+
+def read_topography(path: str | os.PathLike[str]) -> Topography:
+    r"""Read the measured points, or deviations, of one flank.
+
+    Parameters
+    ----------
+    path : str or path
+        A file as this module describes it, UTF-8.
+
+    Returns
+    -------
+    Topography
+        ``MeasuredPoints`` or ``MeasuredDeviations``; its ``notes`` hold the comments "key = value".
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or with every problem that it holds, one per line.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> rows = [f"{20 + i},{5 * j},{i - j}" for j in range(4) for i in range(5)]
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = pathlib.Path(folder, "flank.csv")
+    ...     _ = file.write_text("\n".join(["# points = 5 x 4", "radius_mm,axial_mm,deviation_um", *rows]))
+    ...     topography = read_topography(file)
+    >>> topography.radius.shape, float(topography.excess[4, 1])
+    ((5, 4), 0.003)
+    """
+    text = read_text(path, LARGEST_FILE)
+    with named(os.fspath(path)):
+        return parse_topography(text)
+
+
+def parse_topography(text: str) -> Topography:
+    """Topography of the text of a file; see ``read_topography``."""
+    numbered = [(number, line.strip()) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
+    comments = [line[1:].split("=", 1) for _, line in numbered if line.startswith("#")]
+    notes = {part[0].strip(): part[1].strip() for part in comments if len(part) == 2}
+    body = [(number, line) for number, line in numbered if not line.startswith("#")]
+    if len(body) < 2:
+        raise InputError("no points: a line with the names of the columns, and one line per point, are asked for")
+    separator = next((mark for mark in (";", "\t") if mark in body[0][1]), ",")
+    header = [name.strip() for name in body[0][1].split(separator)]
+    columns = _factors(body[0][0], header)
+    values = _numbers(body[1:], header, separator)
+    table = {name: values[:, k] * factor for k, (name, factor) in enumerate(columns)}
+    if INDICES[0] in table:
+        shape, order = _order_by_indices(*(table[name] for name in INDICES))
+    else:
+        shape, order = _given_order(len(values), notes.get("points", ""))
+    grids = {name: column[order].reshape(shape) for name, column in table.items() if name not in INDICES}
+    if "x" in grids:
+        return MeasuredPoints(np.stack([grids[name] for name in ("x", "y", "z")], axis=-1), notes)
+    excess = grids["deviation"] if "deviation" in grids else -grids["removed"]
+    return MeasuredDeviations(grids["radius"], grids["axial"], excess, notes)
+
+
+def _numbers(body: list[tuple[int, str]], header: list[str], separator: str) -> Array:
+    """Rows of numbers (points, columns); InputError with every line that is none.
+
+    Places are told, and not what stands there: the file may be any that can be read.
+    """
+    lines = [(number, line.split(separator)) for number, line in body]
+    longer = [number for number, cells in lines if separator == "," and len(cells) > len(header)]
+    with_comma = [number for number, cells in lines if any(map(DECIMAL_COMMA.fullmatch, cells))]
+    if 2 * len(longer) > len(lines) or with_comma:
+        raise InputError(
+            f"line {(with_comma or longer)[0]}: decimal commas, it seems ({len(with_comma or longer)} such lines); "
+            "numbers are written with a decimal point"
+        )
+    rows, problems = [], []
+    for number, cells in lines:
+        if len(cells) != len(header):
+            problems.append(f"line {number}: {len(cells)} values; the header names {len(header)} columns")
+            continue
+        row = [_number(cell) for cell in cells]
+        problems += [
+            f"line {number}, column {k}: {name} is not a finite number"
+            for k, (name, value) in enumerate(zip(header, row, strict=True), 1)
+            if not np.isfinite(value)
+        ]
+        rows.append(row)
+    if problems:
+        more = len(problems) - MOST_PROBLEMS
+        raise InputError(problems[:MOST_PROBLEMS] + ([f"and {more} more problems of this kind"] if more > 0 else []))
+    return np.array(rows)
+
+
+def _number(cell: str) -> float:
+    try:
+        return float(cell)
+    except ValueError:
+        return float("nan")
+
+
+def _factors(line: int, header: list[str]) -> list[tuple[str, float]]:
+    """Name of each column without its unit, and the factor to mm; InputError with every problem of the header."""
+    found, problems = [], []
+    known = [*INDICES, *(f"{name}_{unit}" for name in LENGTHS for unit in UNITS)]
+    for k, column in enumerate(header, 1):
+        name, _, unit = column.rpartition("_")
+        if column in INDICES:
+            found.append((column, 1.0))
+        elif name in LENGTHS and unit in UNITS:
+            found.append((name, UNITS[unit]))
+        elif column in LENGTHS:
+            problems.append(f"column {column!r} has no unit; allowed {', '.join(f'{column}_{unit}' for unit in UNITS)}")
+        else:
+            near = difflib.get_close_matches(column, known, 1)
+            meant = f"did you mean {near[0]!r}?" if near else f"allowed {', '.join(INDICES)}, and lengths as x_mm"
+            problems.append(f"line {line}, column {k}: the name of the column is unknown; {meant}")
+    names = [name for name, _ in found]
+    problems += [f"column {name} appears twice" for name in sorted(set(names)) if names.count(name) > 1]
+    lengths = set(names) - set(INDICES)
+    if not problems and lengths not in CHOICES:
+        allowed = "x, y, z, or radius, axial and deviation, or radius, axial and removed, each with its unit"
+        problems.append(f"columns {', '.join(sorted(lengths)) or 'none'}; allowed {allowed}")
+    if not problems and len(set(names) & set(INDICES)) == 1:
+        problems.append(f"columns {' and '.join(INDICES)} belong together; only one is there")
+    if problems:
+        raise InputError(problems)
+    return found
+
+
+def _given_order(count: int, points: str) -> tuple[tuple[int, int], Array]:
+    """Shape (profile, lengthwise) of a grid that a comment tells, and the order in which ``count`` rows fill it."""
+    found = re.fullmatch(r"(\d+)\s*x\s*(\d+)", points)
+    if found is None:
+        columns = " and ".join(INDICES)
+        raise InputError(f"the shape of the grid is missing: columns {columns}, or a comment '# points = 5 x 9'")
+    shape = int(found[1]), int(found[2])
+    if shape[0] * shape[1] != count:
+        raise InputError(f"points = {shape[0]} x {shape[1]} are {shape[0] * shape[1]}, but there are {count} rows")
+    return shape, np.arange(count).reshape(shape[::-1]).T.ravel()
+
+
+def _order_by_indices(profile: Array, lengthwise: Array) -> tuple[tuple[int, int], Array]:
+    """Shape (profile, lengthwise) of a grid with these indices, and the order of the rows in which they fill it."""
+    fractions = [(name, at[at != np.round(at)]) for name, at in zip(INDICES, (profile, lengthwise), strict=True)]
+    problems = [f"{name}: {at[0]:g} is not a whole number ({at.size} such rows)" for name, at in fractions if at.size]
+    if problems:  # each would be a line of the grid of its own
+        raise InputError(problems)
+    (rows, row), (columns, column) = (np.unique(index, return_inverse=True) for index in (profile, lengthwise))
+    shape, place = (len(rows), len(columns)), row * len(columns) + column
+    taken, times = np.unique(place, return_counts=True)
+    free = np.flatnonzero(taken != np.arange(len(taken)))
+    first_free, missing = int(free[0]) if free.size else len(taken), shape[0] * shape[1] - len(taken)
+    twice = taken[times > 1]
+    cases = ((missing, first_free, "missing"), (len(twice), int(twice[0]) if len(twice) else 0, "given more than once"))
+    problems = [
+        f"{count} of the {shape[0]} x {shape[1]} points {'is' if count == 1 else 'are'} {what}, the first at "
+        f"{INDICES[0]} {rows[first // shape[1]]:g}, {INDICES[1]} {columns[first % shape[1]]:g}"
+        for count, first, what in cases
+        if count
+    ]
+    if problems:
+        raise InputError(problems)
+    return shape, np.argsort(place)
+
 
 LARGEST_EXCESS = 0.1
 """Part of the flank's height that no deviation reaches: beyond it the points belong to another flank."""

@@ -7,8 +7,7 @@ from loaded_tca.gears.blank_gear import BlankGear
 from loaded_tca.gears.cutter import Blade, Cutter
 from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.gears.cylindrical_mesh import CylindricalMesh
-from loaded_tca.gears.face_milled import FaceMilledGear, FaceMilledMesh
-from loaded_tca.gears.machine_settings import FaceMilledBlank, MachineSettings
+from loaded_tca.gears.face_milled import FaceMilledBlank, FaceMilledGear, FaceMilledMesh, MachineSettings
 from loaded_tca.gears.transverse_profile import transverse_profile
 
 __all__ = [

@@ -18,7 +18,7 @@ apex off that axis by t_zR cos(delta_f).)
 - **Duplex spread blade**: both gears of the pair so, and the blade angles make up for the tilt of the root planes
   against the pitch plane, which the flanks of a slot see with opposite signs: by the number of the blade group.
 
-Lengths are in mm, angles in rad; signs are those of :mod:`loaded_tca.gears.machine_settings`.
+Lengths are in mm, angles in rad; signs are those of :mod:`loaded_tca.gears.face_milled`.
 """
 
 from __future__ import annotations
@@ -30,8 +30,7 @@ from loaded_tca.errors import require
 from loaded_tca.gears.bevel_blank import BevelBlank
 from loaded_tca.gears.blank_gear import BlankGear
 from loaded_tca.gears.cutter import MINUTES_PER_NUMBER, Blade, Cutter
-from loaded_tca.gears.face_milled import FaceMilledGear
-from loaded_tca.gears.machine_settings import FaceMilledBlank, MachineSettings
+from loaded_tca.gears.face_milled import FaceMilledBlank, FaceMilledGear, MachineSettings
 
 Hand = Literal["right", "left"]
 

@@ -20,7 +20,7 @@ from loaded_tca.gears.checks import (
     spiral_check,
     teeth_checks,
 )
-from loaded_tca.gears.interference import Room
+from loaded_tca.gears.cylindrical_mesh import Room
 
 _EQUAL = 1e-9
 _DEDENDUM = 1.25

@@ -28,7 +28,7 @@ from loaded_tca.loaded.loaded_contact import LoadedContact
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation.normal_gap import NormalGap
-from loaded_tca.unloaded.arcs import edge_distances, lengths_past_tangents, relief_start_distances
+from loaded_tca.unloaded.scan import edge_distances, lengths_past_tangents, relief_start_distances
 
 PEAK_OF_ROUNDING = 1.80
 """Of the pressure at a rounded edge, over K/sqrt(d)."""

@@ -21,7 +21,7 @@ from loaded_tca.loaded.together import Ends, Gap, Steps, Task, found_alone
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
 from loaded_tca.unloaded import ContactPoint
-from loaded_tca.unloaded.arcs import arcs_at, relief_start_distances
+from loaded_tca.unloaded.scan import arcs_at, relief_start_distances
 
 FIRST_CELLS, FIRST_CELLS_AT_ENDS = (16, 16), (16, 32)
 """Grids from which an accuracy is approached, doubled as often as needed. Where flanks end in the box, edges cut the

@@ -4,8 +4,7 @@ from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.pairs.face_milled import face_milled_pair
 from loaded_tca.pairs.gear import Gear
-from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
-from loaded_tca.pairs.mating_teeth import MatingTeeth, mating_teeth
+from loaded_tca.pairs.gear_pair import Driving, GearPair, MatingTeeth, Sense, mating_teeth
 
 __all__ = [
     "BevelMounting",

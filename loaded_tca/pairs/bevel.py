@@ -26,7 +26,7 @@ from loaded_tca.gears.bevel import BevelMesh
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense, require_finite, signs_of
-from loaded_tca.tooth.bevel import BevelTooth
+from loaded_tca.tooth.families import BevelTooth
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from loaded_tca.gears.checks import LEAST_FACE
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense, require_finite, signs_of
-from loaded_tca.tooth.cylindrical import CylindricalTooth
+from loaded_tca.tooth.families import CylindricalTooth
 
 LARGEST_ANGLE = math.radians(45.0)
 """Angular errors stay below this [rad]: the axes are those of parallel gears, which still face each other."""

@@ -18,7 +18,7 @@ from loaded_tca.material import Material
 from loaded_tca.pairs.bevel import BevelMounting
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, signs_of
-from loaded_tca.tooth.face_milled import FaceMilledTooth
+from loaded_tca.tooth.families import FaceMilledTooth
 
 _EQUAL = 1e-6
 

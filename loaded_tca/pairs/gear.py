@@ -13,8 +13,7 @@ from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import EdgeRounding, RoundedFlank, sharp
 from loaded_tca.material import Material
-from loaded_tca.tooth.form import ToothForm
-from loaded_tca.tooth.geometry import ToothGeometry
+from loaded_tca.tooth.families import ToothForm, ToothGeometry
 from loaded_tca.tooth.rounded import RoundedTooth, rounding_problems
 
 DEFAULT_BORE = 0.55

@@ -11,8 +11,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
 from loaded_tca.arrays import Array
-from loaded_tca.flank_maps.ease_off_map import EaseOffMap
-from loaded_tca.flank_maps.second_order import SecondOrder
+from loaded_tca.flank_maps.ease_off_map import EaseOffMap, SecondOrder
 from loaded_tca.plots.style import ACCENT, COLOURS, write_title
 
 LEVELS = 10

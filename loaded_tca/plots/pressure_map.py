@@ -16,7 +16,7 @@ from matplotlib.ticker import MaxNLocator
 
 from loaded_tca.arrays import real
 from loaded_tca.errors import require
-from loaded_tca.flanks.frame import FlankFrame
+from loaded_tca.flanks.base import FlankFrame
 from loaded_tca.plots.flanks import highest_of_maps
 from loaded_tca.plots.style import ACCENT, COLOURS, NO_LOAD, NO_MATERIAL, chosen_torque, load, place, set_title, tell
 from loaded_tca.results.mesh_cycle import MeshCycle

@@ -20,7 +20,7 @@ from scipy.ndimage import label
 
 from loaded_tca.arrays import Array, index_checks
 from loaded_tca.errors import require
-from loaded_tca.flanks.frame import FlankFrame
+from loaded_tca.flanks.base import FlankFrame
 from loaded_tca.results.files import FilePath, replacing
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.summary import shown_torque, signed

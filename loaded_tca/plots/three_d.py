@@ -63,7 +63,7 @@ def plot_teeth(result: MeshCycle, position: int | None = None, torque: int | Non
     ------
     InputError, GeometryError
         If there is no such torque or position, nothing is in contact there, or there are no complete teeth, see
-        :func:`loaded_tca.pairs.mating_teeth`.
+        :func:`loaded_tca.pairs.gear_pair`.
     """
     return draw_teeth(result, _shown(result, position, torque))
 

@@ -22,7 +22,7 @@ from loaded_tca.errors import InputError
 from loaded_tca.flank_maps.conjugate import GearName
 from loaded_tca.flank_maps.pattern import ContactPattern
 from loaded_tca.flank_maps.vh_check import BEYOND, VHCheck
-from loaded_tca.flanks.frame import FlankFrame
+from loaded_tca.flanks.base import FlankFrame
 from loaded_tca.plots.envelope import pressure_seen
 from loaded_tca.plots.flanks import FINENESS, loaded_maps, picture_of
 from loaded_tca.plots.labels import label_of

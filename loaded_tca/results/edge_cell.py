@@ -8,7 +8,7 @@ from scipy.ndimage import binary_dilation
 from loaded_tca.arrays import Mask
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.unloaded.arcs import arcs_at, edge_distances
+from loaded_tca.unloaded.scan import arcs_at, edge_distances
 
 
 def arc_cells(pair: GearPair, one: PressureMap) -> Mask:

@@ -9,7 +9,7 @@ from scipy.ndimage import binary_dilation
 from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.results.edge_cell import arc_cells
 from loaded_tca.results.mesh_cycle import MeshCycle
-from loaded_tca.unloaded.arcs import edge_distances
+from loaded_tca.unloaded.scan import edge_distances
 
 NAMES = tuple(f"{gear} {edge}" for gear in ("pinion", "wheel") for edge in EDGE_NAMES)
 """Edges in the order of ``ContactPath.edges``."""

@@ -10,7 +10,7 @@ from typing import ClassVar, Literal
 
 from loaded_tca.gears.bevel import BevelGear, BevelMesh, pitch_angles
 from loaded_tca.gears.checks import LARGEST_PRESSURE_ANGLE
-from loaded_tca.gears.interference import AT_MID_FACE, interferences
+from loaded_tca.gears.cylindrical_mesh import AT_MID_FACE, interferences
 from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene import spiral

@@ -9,7 +9,7 @@ from typing import ClassVar, Literal
 
 from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
-from loaded_tca.gears.interference import ROUNDING, Room, interferences
+from loaded_tca.gears.cylindrical_mesh import ROUNDING, Room, interferences
 from loaded_tca.pairs.cylindrical import LARGEST_ANGLE, Mounting, common_face_width, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.reference import iso6336_3

@@ -12,9 +12,8 @@ from typing import ClassVar, Literal
 from loaded_tca.errors import require
 from loaded_tca.gears import cutter
 from loaded_tca.gears.bevel import pitch_angles
-from loaded_tca.gears.face_milled import FaceMilledGear, FaceMilledMesh
-from loaded_tca.gears.interference import AT_MID_FACE, interferences
-from loaded_tca.gears.machine_settings import FaceMilledBlank, MachineSettings
+from loaded_tca.gears.cylindrical_mesh import AT_MID_FACE, interferences
+from loaded_tca.gears.face_milled import FaceMilledBlank, FaceMilledGear, FaceMilledMesh, MachineSettings
 from loaded_tca.pairs.bevel import BevelMounting
 from loaded_tca.pairs.face_milled import face_milled_pair
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense

@@ -8,8 +8,8 @@ from math import cos, degrees, isnan, nan, pi, sin
 import numpy as np
 
 from loaded_tca.flanks.face_milled import GeneratedFlank, tooth_angle
+from loaded_tca.gears.cylindrical_mesh import Room
 from loaded_tca.gears.face_milled import FaceMilledGear, FaceMilledMesh
-from loaded_tca.gears.interference import Room
 from loaded_tca.scene.model import Row
 from loaded_tca.scene.spiral import Point, Side, pitch_point
 

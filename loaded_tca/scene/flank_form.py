@@ -11,10 +11,8 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, named
-from loaded_tca.flanks.spline import DEFAULT_POINTS
-from loaded_tca.flanks.structured_grid import FEWEST_POINTS
-from loaded_tca.flanks.topography import MeasuredPoints
-from loaded_tca.flanks.topography_file import read_topography
+from loaded_tca.flanks.spline import DEFAULT_POINTS, FEWEST_POINTS
+from loaded_tca.flanks.topography import MeasuredPoints, read_topography
 from loaded_tca.scene.keys import Choice, Grid, Line, List, Number, Whole, above_zero, key
 from loaded_tca.scene.section import Rule, Section, rule, subsection
 from loaded_tca.scene.text import shown

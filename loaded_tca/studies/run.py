@@ -28,11 +28,10 @@ from loaded_tca.errors import (
 )
 from loaded_tca.results.files import FilePath, make_directory, read_dataset, remove, replacing, write_dataset
 from loaded_tca.scene import Scene
-from loaded_tca.studies.figures import figures as key_figures
-from loaded_tca.studies.figures import figures_of
-from loaded_tca.studies.rows import Row, Rows, problem_of_figures
-from loaded_tca.studies.store import dataset_of
+from loaded_tca.studies.rows import Row, Rows, dataset_of, problem_of_figures
 from loaded_tca.studies.study import Study
+from loaded_tca.studies.summary import figures as key_figures
+from loaded_tca.studies.summary import figures_of
 from loaded_tca.threads import one_thread
 
 if TYPE_CHECKING:
@@ -78,7 +77,7 @@ def run_study(
     Returns
     -------
     xarray.Dataset
-        See :func:`loaded_tca.studies.store.dataset_of`. What does not fit or does not converge is a row with its
+        See :func:`loaded_tca.studies.rows.dataset_of`. What does not fit or does not converge is a row with its
         ``status`` and ``reason``. The numbers depend neither on the executor nor on the order; ``seconds`` do.
 
     Raises

@@ -12,9 +12,8 @@ from loaded_tca.arrays import Array, count_problems
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import RoundedFlank, sharp
-from loaded_tca.tooth.fillet import ArcFillet, Fillet, FilletCurve
-from loaded_tca.tooth.form import ToothForm
-from loaded_tca.tooth.profile import Profile, profile_of
+from loaded_tca.tooth.families import ToothForm
+from loaded_tca.tooth.fillet import ArcFillet, Fillet, FilletCurve, Profile, profile_of
 from loaded_tca.tooth.sections import in_space
 from loaded_tca.tooth.surface import ToothSurface
 

@@ -10,8 +10,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import LOWER, TIP, UPPER, EdgeRounding, RoundedFlank, edge_places, material_cosines
-from loaded_tca.tooth.form import ToothForm
-from loaded_tca.tooth.geometry import ToothGeometry
+from loaded_tca.tooth.families import ToothForm, ToothGeometry
 
 ROUNDING = 1e-12
 LARGEST = 0.3

@@ -13,10 +13,10 @@ from loaded_tca.arrays import Array, Indices, Mask, finite_row
 from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning
 from loaded_tca.flanks.base import EDGE_NAMES, outward_normal
 from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
-from loaded_tca.unloaded.arcs import past_tangents
 from loaded_tca.unloaded.ease_off import EaseOff, Station
 from loaded_tca.unloaded.line import Lines, find_lines
 from loaded_tca.unloaded.reduced import FEASIBLE
+from loaded_tca.unloaded.scan import past_tangents
 from loaded_tca.unloaded.search import FirstTouch, first_touch, spread
 
 POSITIONS = 21

@@ -15,10 +15,9 @@ import numpy as np
 from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.unloaded.arcs import moved_along_arcs, on_arcs
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.reduced import Maxima, climb
-from loaded_tca.unloaded.scan import Scan, Starts, inside_pinion, region_corners, scan_pinion
+from loaded_tca.unloaded.scan import Scan, Starts, inside_pinion, moved_along_arcs, on_arcs, region_corners, scan_pinion
 
 POSITIONS_AT_ONCE = 1024
 """Positions searched together: some 0.2 GB."""

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.baselines.bidirectional import BidirectionalStart
+from loaded_tca.baselines.bidirectional import BidirectionalStart, GeneratingLine
 from loaded_tca.baselines.conventional import contact_equations, solve_conventional
-from loaded_tca.baselines.generating_line import GeneratingLine
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.pairs.bevel import BevelMounting
 from loaded_tca.pairs.face_milled import face_milled_pair

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from loaded_tca.baselines.generating_line import GeneratingLine
+from loaded_tca.baselines.bidirectional import GeneratingLine
 from loaded_tca.errors import ConvergenceError, InputError
 from loaded_tca.flanks.base import outward_normal
 from loaded_tca.flanks.face_milled import GeneratedFlank

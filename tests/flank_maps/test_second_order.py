@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from loaded_tca.flank_maps.second_order import flank_lengths, second_order
+from loaded_tca.flank_maps.ease_off_map import flank_lengths, second_order
 from loaded_tca.flanks import InvoluteFlank
 from loaded_tca.gears import bevel_mesh
 from loaded_tca.pairs.bevel import bevel_pair

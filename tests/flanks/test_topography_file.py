@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from loaded_tca import InputError
 from loaded_tca.flanks import FlankModifications, MeasuredDeviations, MeasuredPoints, measured, read_topography
 from loaded_tca.flanks.base import unmodified
-from loaded_tca.flanks.topography_file import LARGEST_FILE, MOST_PROBLEMS, parse_topography
+from loaded_tca.flanks.topography import LARGEST_FILE, MOST_PROBLEMS, parse_topography
 from tests.samples.gear_pairs import gear_pair
 
 HEADER = "profile_index,lengthwise_index,radius_mm,axial_mm,deviation_um"

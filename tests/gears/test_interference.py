@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, bevel_mesh
-from loaded_tca.gears.interference import RIGID, ROUNDING, Room, interferences
+from loaded_tca.gears.cylindrical_mesh import RIGID, ROUNDING, Room, interferences
 from loaded_tca.scene import read_scene
 from tests.refusals import refusals
 

@@ -21,7 +21,7 @@ from loaded_tca.output.subsurface_files import subsurface_csv
 from loaded_tca.results import compare_results
 from loaded_tca.results.quantities import QUANTITIES, ROOT_QUANTITIES
 from loaded_tca.results.stress_below import stress_below
-from loaded_tca.studies.figures import figures_of
+from loaded_tca.studies.summary import figures_of
 from tests.samples.results import changed, changed_scene, result
 
 DIGITS = {"rtol": 1e-8, "atol": 1e-12}

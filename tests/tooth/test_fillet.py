@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.tooth import ArcFillet, RackFillet
-from loaded_tca.tooth.profile import profile_of
+from loaded_tca.tooth.fillet import profile_of
 from tests.samples.teeth import CROWNED, MESHES, NONE, RELIEVED, flanks_of, form_of
 
 TANGENT = 1e-9

@@ -3,7 +3,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.tooth import TriangleMesh
-from loaded_tca.tooth.triangles import grid_triangles
+from loaded_tca.tooth.surface import grid_triangles
 from tests.refusals import refusals
 
 CORNERS = np.array([[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 1.0]])

@@ -31,7 +31,7 @@ from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.material import Material
 from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.pairs.gear import Gear
-from loaded_tca.tooth.profile import polar
+from loaded_tca.tooth.fillet import polar
 from validation.contact.wedge import elasticity_of_waves
 from validation.page import table
 from validation.table import Row

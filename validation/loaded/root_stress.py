@@ -42,7 +42,7 @@ from loaded_tca.flanks.base import outward_normal
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.reference.iso6336_3 import RootSection, root_section
-from loaded_tca.tooth.profile import polar
+from loaded_tca.tooth.fillet import polar
 from validation.calculix import plane_ring
 from validation.calculix.tables import RINGS_FILE, read_table
 from validation.loaded.root_stress_families import rows as family_rows

@@ -23,8 +23,8 @@ from loaded_tca.gears import CylindricalGear, CylindricalMesh, bevel_mesh
 from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.unloaded.arcs import on_arcs
 from loaded_tca.unloaded.ease_off import EaseOff
+from loaded_tca.unloaded.scan import on_arcs
 from loaded_tca.unloaded.search import FirstTouch, first_touch
 from validation.table import Row, render
 from validation.unloaded.random_starts import RUNS, timed

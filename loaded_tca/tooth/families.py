@@ -1,0 +1,346 @@
+"""What a family of gears tells of the teeth of one gear: flanks of both sides, modifications, form.
+
+The form is what shapes a tooth beside its flanks: how far apart they stand, the root surface, the fillet. Families are
+spur and helical gears, straight and spiral bevel gears, and face-milled gears, cut after machine settings.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from loaded_tca.arrays import Array
+from loaded_tca.errors import GeometryError
+from loaded_tca.flanks.base import Flank, unmodified
+from loaded_tca.flanks.bevel import SphericalInvoluteFlank, chebyshev_nodes, face_cone_angles
+from loaded_tca.flanks.cylindrical import InvoluteFlank
+from loaded_tca.flanks.face_milled import GeneratedFlank, tooth_angle
+from loaded_tca.flanks.modification import FlankModifications, modified
+from loaded_tca.gears import BevelGear, CylindricalGear, FaceMilledGear
+from loaded_tca.gears.cutter import BLADE_SIGNS
+from loaded_tca.gears.cylindrical_mesh import ActiveProfile
+from loaded_tca.tooth.fillet import ArcFillet, Fillet, RackFillet
+from loaded_tca.tooth.sections import ApexSpheres, Sections, TransversePlanes
+
+
+@dataclass(frozen=True)
+class ToothForm:
+    """Form of a tooth without its flanks: thickness, root surface and fillet.
+
+    Attributes
+    ----------
+    teeth : int
+        Number of teeth z.
+    half_thickness_angle : float [rad]
+        From the middle of the tooth to either flank where Theta = 0.
+    sections : Sections
+    root_radius : callable
+        Coordinates (m,) of sections [mm] -> radii (m,) of the images of their root circles [mm].
+    fillet : Fillet
+    largest_that_fits : bool
+        Whether an arc that does not fit into the space is made smaller, instead of an error.
+    """
+
+    teeth: int
+    half_thickness_angle: float
+    sections: Sections
+    root_radius: Callable[[Array], Array]
+    fillet: Fillet
+    largest_that_fits: bool = False
+
+    def with_arc(self, radius: float) -> ToothForm:
+        """The form with arcs of a radius [mm], at the mean section, instead of the fillet that belongs to the gear.
+
+        Raises
+        ------
+        InputError
+            If the radius is not positive and finite.
+        """
+        arc = replace(self.fillet, radius=radius) if isinstance(self.fillet, ArcFillet) else ArcFillet(radius)
+        return replace(self, fillet=arc, largest_that_fits=False)
+
+
+@dataclass(frozen=True)
+class RootCylinder:
+    """Root circles of a cylindrical gear.
+
+    Parameters
+    ----------
+    radius : float [mm]
+    """
+
+    radius: float
+
+    def __call__(self, coordinate: Array) -> Array:
+        """Radius in every section (m,)."""
+        return np.full(np.shape(coordinate), self.radius)
+
+
+@dataclass(frozen=True)
+class RootCone:
+    r"""Root circles on spheres about the gear's apex, :math:`u = \delta_f - \arcsin(z_0 \sin\delta_f/R)`.
+
+    Parameters
+    ----------
+    angle : float [rad]
+        delta_f, between axis and cone.
+    apex : float [mm]
+        z_0, where the cone meets the axis, in the gear's own frame.
+    """
+
+    angle: float
+    apex: float = 0.0
+
+    def __call__(self, coordinate: Array) -> Array:
+        """Radius 2 R tan(u/2) of the images (m,)."""
+        cone_angle = self.angle - np.arcsin(self.apex * math.sin(self.angle) / coordinate)
+        return 2.0 * coordinate * np.tan(0.5 * cone_angle)
+
+
+class ToothGeometry(ABC):
+    """The teeth of one gear by their equations; each family of gears has its subclass."""
+
+    @property
+    @abstractmethod
+    def unmodified(self) -> ToothGeometry:
+        """The same teeth without modifications; equal ones have equal nominal flanks and forms."""
+
+    @abstractmethod
+    def nominal(self, side: int) -> Flank:
+        """Flank of the side s = +1 or -1 without modifications, with Theta = 0 at the pitch point of mid-face."""
+
+    @abstractmethod
+    def modified(self, nominal: Flank) -> Flank:
+        """A flank of :meth:`nominal` with the modifications of the gear.
+
+        Raises
+        ------
+        InputError
+            If a relief starts off the active profile, or is longer than half the face.
+        """
+
+    @abstractmethod
+    def form(self) -> ToothForm:
+        """All of a tooth but its flanks: thickness, root surface, fillet."""
+
+
+@dataclass(frozen=True)
+class CylindricalTooth(ToothGeometry):
+    """Involute teeth of a cylindrical gear, with the fillet that its basic rack cuts.
+
+    Parameters
+    ----------
+    gear : CylindricalGear
+    working_radius : float [mm]
+        Radius of the working circle, where Theta = 0 at mid-face.
+    active : ActiveProfile
+        Over which profile modifications run.
+    modifications : FlankModifications
+
+    Examples
+    --------
+    >>> from loaded_tca.gears import CylindricalMesh
+    >>> gears = [CylindricalGear(teeth=z, normal_module=3.0, face_width=25.0) for z in (34, 57)]
+    >>> mesh = CylindricalMesh(*gears)
+    >>> form = CylindricalTooth(gears[0], mesh.pinion_working_radius, mesh.pinion_active_profile).form()
+    >>> round(form.half_thickness_angle * 34, 6)  # without profile shift half a tooth is a quarter of a pitch
+    1.570796
+    """
+
+    gear: CylindricalGear
+    working_radius: float
+    active: ActiveProfile
+    modifications: FlankModifications = FlankModifications()
+
+    @property
+    def unmodified(self) -> ToothGeometry:
+        """The same teeth without modifications."""
+        return replace(self, modifications=FlankModifications())
+
+    def nominal(self, side: int) -> Flank:
+        """Involute flank of a side."""
+        gear = self.gear
+        radii = gear.form_radius, gear.tip_radius
+        return InvoluteFlank(gear.base_radius, gear.base_helix_angle, side, self.working_radius, radii, gear.face_width)
+
+    def modified(self, nominal: Flank) -> Flank:
+        """The flank with its modifications; profile modifications run over the roll length."""
+        return modified(
+            nominal,
+            self.modifications,
+            self.gear.face_width,
+            (2.0 * self.active.start_radius, 2.0 * self.active.end_radius),
+            lambda diameter: self.gear.roll_length(0.5 * diameter),
+            owner=self.gear.name,
+        )
+
+    def form(self) -> ToothForm:
+        """Transverse sections, root cylinder and the fillet of the rack."""
+        gear = self.gear
+        half_angle = 0.5 * gear.tooth_thickness_at(self.working_radius) / self.working_radius
+        root, fillet = RootCylinder(gear.root_radius), RackFillet(gear)
+        return ToothForm(gear.teeth, half_angle, TransversePlanes(), root, fillet)
+
+
+FILLET_RADIUS_COEFFICIENT = 0.38
+"""Radius of the fillet of bevel gears in mean normal modules, as that of the basic rack of ISO 53, profile A."""
+
+
+@dataclass(frozen=True)
+class BevelTooth(ToothGeometry):
+    """Spherical involute teeth of a bevel gear, with arcs as fillets.
+
+    Parameters
+    ----------
+    gear : BevelGear
+    active : (float, float) [rad]
+        Cone angles between which profile modifications run.
+    modifications : FlankModifications
+    """
+
+    gear: BevelGear
+    active: tuple[float, float]
+    modifications: FlankModifications = FlankModifications()
+
+    @property
+    def unmodified(self) -> ToothGeometry:
+        """The same teeth without modifications."""
+        return replace(self, modifications=FlankModifications())
+
+    def nominal(self, side: int) -> Flank:
+        """Spherical involute flank of a side."""
+        gear = self.gear
+        return SphericalInvoluteFlank(
+            gear.pitch_angle,
+            gear.pressure_angle,
+            gear.spiral_angle,
+            side,
+            (gear.form_angle, gear.tip_angle),
+            (gear.inner_cone_distance, gear.outer_cone_distance),
+        )
+
+    def modified(self, nominal: Flank) -> Flank:
+        """The flank with its modifications; profile modifications run over the unwound arc."""
+        gear = self.gear
+        return modified(
+            nominal,
+            self.modifications,
+            gear.face_width,
+            (gear.diameter_at(self.active[0]), gear.diameter_at(self.active[1])),
+            lambda diameter: gear.unwound_arc(gear.cone_angle_at_diameter(diameter)),
+            owner=gear.name,
+        )
+
+    def form(self) -> ToothForm:
+        """Spheres about the apex, root cone, and arcs of 0.38 mean normal modules or the largest that fit."""
+        gear = self.gear
+        fillet = ArcFillet(FILLET_RADIUS_COEFFICIENT * gear.mean_normal_module, gear.mean_cone_distance)
+        root = RootCone(gear.root_cone_angle)
+        return ToothForm(gear.teeth, gear.half_thickness_angle, ApexSpheres(), root, fillet, largest_that_fits=True)
+
+
+TIP_POINTS = 9
+"""Points along the face cone at which the thickness of the tooth is checked."""
+MOST_FLANKS = 8
+"""Nominal flanks that are kept for variants of the micro-geometry."""
+
+
+@dataclass(frozen=True)
+class FaceMilledTooth(ToothGeometry):
+    """Teeth of a face-milled gear; their root is the root cone of the blank.
+
+    Parameters
+    ----------
+    gear : FaceMilledGear
+    modifications : FlankModifications
+    exact : bool
+        Solve the generating equations at every point of a flank; otherwise its B-spline is taken.
+    """
+
+    gear: FaceMilledGear
+    modifications: FlankModifications = FlankModifications()
+    exact: bool = False
+
+    @property
+    def unmodified(self) -> ToothGeometry:
+        """The same teeth without modifications."""
+        return replace(self, modifications=FlankModifications())
+
+    def nominal(self, side: int) -> Flank:
+        """Generated flank of a side.
+
+        Raises
+        ------
+        InputError
+            If the cutter has no blade for it.
+        GeometryError
+            If the flank is undercut or not cut at all, or meets the other one below the face cone.
+        """
+        return _nominal(self.gear, side, self.exact)
+
+    def modified(self, nominal: Flank) -> Flank:
+        """The flank with its modifications; the profile runs from the form line to the tip."""
+        generated, blank = unmodified(nominal), self.gear.blank
+        assert isinstance(generated, GeneratedFlank)
+        distance, (tip, foot) = blank.mean_cone_distance, generated.mean_cone_angles
+
+        def diameter(angle: float) -> float:
+            sine = math.sin(angle)
+            return 2.0 * distance * (sine if angle <= 0.5 * math.pi else 2.0 - sine)
+
+        def height(of: float) -> float:
+            sine = 0.5 * of / distance
+            angle = math.asin(sine) if sine <= 1.0 else math.pi - math.asin(2.0 - sine)
+            return generated.mean_height * (angle - foot) / (tip - foot)
+
+        ends = diameter(foot), diameter(tip)
+        return modified(nominal, self.modifications, blank.face_width, ends, height, owner=self.gear.name)
+
+    def form(self) -> ToothForm:
+        """Spheres about the apex, the root cone, and arcs of the larger edge radius of the blades, or what fits.
+
+        Blades without an edge radius get that of a basic rack, 0.38 mean normal modules.
+
+        Raises
+        ------
+        InputError
+            If the cutter has one blade only.
+        """
+        gear, blank = self.gear, self.gear.blank
+        rho, z = (blank.mean_cone_distance * part(blank.pitch_angle) for part in (math.sin, math.cos))
+        half_angle = 0.5 * float(tooth_angle(gear, np.array([rho]), np.array([z]))[0])
+        radius = max(gear.cutter.blade(flank).edge_radius for flank in BLADE_SIGNS)
+        if radius == 0.0:
+            spiral = GeneratedFlank(gear, "concave").angles.spiral
+            radius = FILLET_RADIUS_COEFFICIENT * 2.0 * rho * math.cos(spiral) / gear.teeth
+        root = RootCone(blank.root_angle, -blank.root_apex)
+        return ToothForm(gear.teeth, half_angle, ApexSpheres(), root, ArcFillet(radius), largest_that_fits=True)
+
+
+@lru_cache(maxsize=MOST_FLANKS)
+def _nominal(gear: FaceMilledGear, side: int, exact: bool) -> Flank:
+    """Generated flank of a side; its B-spline takes far longer than its modifications."""
+    flank = GeneratedFlank(gear, gear.flank_name(side))
+    if gear.cutter.concave is not None and gear.cutter.convex is not None:
+        _require_tip(gear, flank)
+    return flank if exact else flank.as_spline()
+
+
+def _require_tip(gear: FaceMilledGear, flank: GeneratedFlank) -> None:
+    """Refuse a tooth whose two flanks, cut with one set of machine settings, meet below the face cone."""
+    distance = chebyshev_nodes(flank.cone_distances, TIP_POINTS)
+    angle = face_cone_angles(flank.face_cone, distance)
+    rho, z = distance * np.sin(angle), distance * np.cos(angle)
+    thickness = rho * tooth_angle(gear, rho, z)
+    worst = int(np.argmin(thickness))
+    if not thickness[worst] > 0.0:
+        raise GeometryError(
+            f"{gear.name}: pointed tooth: its flanks lie {-thickness[worst]:.3g} mm beyond each other at the "
+            f"tip, {flank.frame.place(float(rho[worst]), float(z[worst]))}; lower face_angle, or bring the point "
+            "radii of the cutter nearer to each other"
+        )
