@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.fft import dct, irfft, rfft
 
-from loaded_tca.arrays import Array, numbers
+from loaded_tca.arrays import Array, Indices, numbers
 from loaded_tca.contact import checks
 from loaded_tca.contact.convolution import ALL, Rows, Window, fast_length
 from loaded_tca.contact.descent import Descent, judge
@@ -189,30 +189,35 @@ class Kernel:
         reach = fast_length(2 * self.rows) // 2
         coefficients = column_coefficients(reach + 1, self.spacing, self.borders)
         for edge in self.edges:
-            mirrored, inside = self._mirrored(edge)
+            mirrored, nearest = self._mirrored(edge)
             image = column_coefficients(reach + 1, self.spacing, self.borders, mirrored)
-            # Images of what lies beyond, on columns of other widths, could make K indefinite.
-            coefficients += image * (edge.factor * (inside[:, None] & inside))
+            coefficients += edge.factor * image[:, nearest[:, None], nearest]
         return np.asarray(dct(coefficients, type=1, axis=0, overwrite_x=True))
 
     @cached_property
-    def levels(self) -> list[tuple[Array, Array]]:
-        """Columns (ny,) beside each edge, and the transform (wave numbers, 1, 1) of what is left out there."""
+    def levels(self) -> list[Array]:
+        """Of each edge the transform (wave numbers, 1, 1) of what is left out of its images."""
         levels, reach, reference = [], fast_length(2 * self.rows) // 2, self.reference
         if reference is None:
             return []
         middles = 0.5 * (self.borders[1:] + self.borders[:-1])
         for edge in self.edges:
-            mirrored, inside = self._mirrored(edge)
-            k = int(np.where(inside, np.abs(middles - reference), np.inf).argmin())
+            mirrored, nearest = self._mirrored(edge)
+            k = int(nearest[np.abs(middles - reference).argmin()])
             own = column_coefficients(reach + 1, self.spacing, self.borders[k : k + 2], mirrored[k : k + 1])
-            levels.append((inside, edge.factor * dct(own, type=1, axis=0)))
+            levels.append(edge.factor * dct(own, type=1, axis=0))
         return levels
 
-    def _mirrored(self, edge: FreeEdge) -> tuple[Array, Array]:
-        """Middles of the columns mirrored in an edge, and which of them lie where the bodies are."""
+    def _mirrored(self, edge: FreeEdge) -> tuple[Array, Indices]:
+        """Middles of the columns mirrored in an edge, and of each column the nearest one where the bodies are.
+
+        A contact may go on beyond the apex of a wedge on its rounding. There it gives way as much as at the apex, and
+        its forces act as if there: less would be a step in the surface, on which the pressure has no limit.
+        """
         place, middles = self.borders[0] + edge.position, 0.5 * (self.borders[1:] + self.borders[:-1])
-        return 2.0 * place - middles, (middles < place) == (edge.material == "below")
+        inside = np.flatnonzero((middles < place) == (edge.material == "below"))
+        nearest = np.arange(middles.size)
+        return 2.0 * place - middles, np.clip(nearest, inside[0], inside[-1]) if inside.size else nearest
 
     @cached_property
     def symmetric(self) -> Array:
@@ -317,8 +322,8 @@ class GradedGrids(Grids):
         """Displacement by forces, and the part of it that the symmetric coefficients do not tell."""
         symmetric = self.operator()(forces, np.empty(forces.shape))
         rest = _filtered(forces[0], self.kernel.whole - self.kernel.symmetric)[None]
-        for inside, level in self.kernel.levels:
-            rest -= _filtered(forces[0][:, inside].sum(axis=1, keepdims=True), level) * inside
+        for level in self.kernel.levels:
+            rest -= _filtered(forces[0].sum(axis=1, keepdims=True), level)
         return symmetric + rest, rest
 
     def preconditioner(self, threads: int = 1) -> Operator:  # noqa: ARG002

@@ -42,7 +42,8 @@ class GradedProblem:
     slice_axis : {1, 0}
         Axis along which slices follow each other: 1 if each column is a slice, n = ny.
     free_edges : sequence of FreeEdge
-        Across the second axis, ``axis`` 1. The gap beyond them is as it is given; what is pressed there has no image.
+        Across the second axis, ``axis`` 1. The gap beyond them is as it is given; columns there give way, and act,
+        as the last one before the edge.
     reference : float, optional [mm]
         Place along the second axis, counted as the borders, where a force adds nothing to the displacement beneath it
         by its image; images count in full if absent.

@@ -253,23 +253,36 @@ def test_wedges_of_all_sizes_and_on_either_side_are_alike():
     assert_allclose(other.place[1], -found.place[1], rtol=1e-4)
 
 
-@pytest.mark.parametrize(("load", "rows"), [(50e3, 9), (7e3, 32)])
-def test_contact_that_first_touches_on_the_edge_of_a_wedge_is_solved(load, rows):
-    """Only where the load will be may forces be said to add nothing beneath them: at the edge itself that is too much.
-
-    A cylinder that lies askew over the edge touches on it and is pressed far from it.
-    """
+def askew(load=7e3, rows=9, radius=20.0, angle=math.radians(115.0)):
+    """A cylinder that lies askew over an edge with a rounding of 0.02 mm: it touches there and is pressed far off."""
 
     def gap(x, y):
-        return x[:, None] ** 2 / 4000.0 + (y + 0.3 * x[:, None]) ** 2 / 40.0 + np.maximum(y, 0.0) ** 2 / 0.04
+        across = y + 0.3 * x[:, None]
+        return x[:, None] ** 2 / 4000.0 + across**2 / (2.0 * radius) + np.maximum(y, 0.0) ** 2 / 0.04
 
-    edge = RoundedEdge((0.0, 0.0), (0.0, 1.0), 0.02, math.radians(115.0))
-    options = {"load": load, "cells": (rows, 24), "tolerance": 1e-5, "slice_axis": 0}
-    found = peak(gap, ((-6.0, 6.0), (-2.0, 0.09)), edge, **options)
-    solution = found.solution
+    edge = RoundedEdge((0.0, 0.0), (0.0, 1.0), 0.02, angle)
+    box = ((-6.0, 6.0), (-2.0, 0.09))
+    return peak(gap, box, edge, load=load, cells=(rows, 24), tolerance=1e-5, slice_axis=0)
+
+
+@pytest.mark.parametrize(("load", "rows"), [(50e3, 9), (7e3, 32)])
+def test_contact_that_first_touches_on_the_edge_of_a_wedge_is_solved(load, rows):
+    """Forces may be said to add nothing beneath them where the load will be; at the edge itself that is too much."""
+    solution = askew(load, rows).solution
     assert solution.residual <= 1e-5
-    assert_allclose(np.sum(solution.pressure * solution.problem.cell_areas), load, rtol=ROUNDING)
+    assert_allclose(solution.load, load, rtol=ROUNDING)
     assert solution.problem.reference < -0.1
+
+
+@pytest.mark.parametrize("options", [{"load": 50e3}, {"radius": 5.0}])
+def test_pressure_beside_the_apex_of_a_wedge_is_below_that_of_a_half_space(options):
+    """The wedge is the softer the nearer its edge is, and as soft beyond the place where its faces would meet.
+
+    With a step there the few cells beyond it take several times the pressure, and the more the finer they are.
+    """
+    wedge, half_space = askew(**options), askew(**options, angle=None)
+    assert wedge.pressure < half_space.pressure
+    assert wedge.error < 0.02
 
 
 def test_angle_counts_along_the_columns_and_not_beside_slices_that_tell_the_tilt():
