@@ -204,7 +204,7 @@ def _largest(peaks: list[PeakAtEdge]) -> PeakAtEdge:
     return replace(top, error=max(peak.error for peak in same), ends_sharp=any(peak.ends_sharp for peak in same))
 
 
-def _by_pressure(one: PeakAtEdge) -> float:
+def _by_pressure(one: PeakAtEdge | EdgePressure) -> float:
     """Pressure, zero where no edge is reached."""
     return 0.0 if math.isnan(one.pressure) else one.pressure
 
@@ -290,8 +290,9 @@ class _ContactAlongEdge:
                 at_least=at_least,
             )
             pressed = found[0].solution.pressure > 0.0
-            if not (pressed[[0, -1]].any() or pressed[:, [0, -1]].any()):
-                return found
+            is_less = all(_by_pressure(one) < SURELY_LESS * at_least for one in found)
+            if is_less or not (pressed[[0, -1]].any() or pressed[:, [0, -1]].any()):
+                return found  # in a box that cuts the contact the pressure is too high
         return [replace(one, error=math.inf) for one in found]
 
     def _box(self, margin: float) -> tuple[tuple[tuple[float, float], tuple[float, float]], tuple[int, int]]:

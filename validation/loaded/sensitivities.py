@@ -103,6 +103,9 @@ PAIRS = {
 }
 # Levers are those of flanks with modifications, whose normals are off by some 1e-4.
 OF_CLOSED_FORMS = 1e-3
+APART, OF_TWO = 2e-3, 1e-4
+"""Centre distance [mm] by which two analyses are off the nominal one, and by what their slope may differ: its change
+from 2 to 8 um is 4e-5."""
 FIGURES = {
     "transmission_error": "transmission error",
     "load_share": "load share",
@@ -275,16 +278,36 @@ def cubic(steps: Array, values: Array) -> tuple[Array, Array]:
 
 
 def closed_forms(setting: str, cells: int) -> dict[str, tuple[float, Array]]:
-    """Of the helical pair: what is expected, and what each position has."""
+    """Of the helical pair: what is expected, and what each position has.
+
+    Where the teeth bend the centre distance changes that, too: the same forces then act higher on the wheel's teeth.
+    """
     one = analysed("mesh_cycle_helical", setting, cells)
     found, mesh = one.sensitivities([CENTRE_DISTANCE, AXIAL_OFFSET]), one.scene.mesh()
     moved = found.transmission_error[0] * one.wheel_base_radius
     removed = [sum(part.sum() for part in row if part is not None) for row in found.weight_maps[0]]
-    return {
+    forms = {
         "sum of the weights of removal times the lever": (1.0, np.array(removed) * one.path.wheel_lever),
-        "r_b2 dTE per mm of centre distance: -sin(alpha_wt)": (-np.sin(mesh.working_pressure_angle), moved[:, 0]),
         "r_b2 dTE per mm of axial offset: tan(beta_b)": (np.tan(abs(mesh.pinion.base_helix_angle)), moved[:, 1]),
     }
+    if one.scene.analysis.compliance == "contact":
+        by_distance = "r_b2 dTE per mm of centre distance: -sin(alpha_wt)"
+        forms[by_distance] = -np.sin(mesh.working_pressure_angle), moved[:, 0]
+    return forms
+
+
+def row_of_bending_by_distance() -> Row:
+    """Of the helical pair with bending: derivative to the centre distance against two analyses, the worst position."""
+    one = analysed("mesh_cycle_helical", "with bending", GRIDS[0])
+    found = one.sensitivities([CENTRE_DISTANCE]).transmission_error[0, :, 0]
+    low, high = (
+        analysed("mesh_cycle_helical", "with bending", GRIDS[0], ((CENTRE_DISTANCE, by),)) for by in (-APART, APART)
+    )
+    slopes = (high.transmission_error - low.transmission_error)[0] / (2.0 * APART)
+    worst = int(np.abs(found / slopes - 1.0).argmax())
+    quantity = "r_b2 dTE per mm of centre distance, worst position, with bending"
+    radius = one.wheel_base_radius
+    return Row(CASE, "two analyses", quantity, float(radius * slopes[worst]), float(radius * found[worst]), OF_TWO)
 
 
 def rows() -> list[Row]:
@@ -295,6 +318,7 @@ def rows() -> list[Row]:
             worst = float(values[np.abs(values - expected).argmax()])
             quantity = f"{what}, worst position, {setting}"
             found.append(Row(CASE, "closed form", quantity, float(expected), worst, OF_CLOSED_FORMS))
+    found.append(row_of_bending_by_distance())
     for name, cells, key in [
         *((name, GRIDS[0], key) for name, keys in IN_ROWS.items() for key in keys),
         *((name, GRIDS[1], keys[-1]) for name, keys in IN_ROWS.items()),
@@ -651,7 +675,7 @@ largest tension stays with one side of one tooth.
 Helical pair 34/57. Removal all over the flanks turns the wheel by itself over the lever. Involutes stay conjugate
 when the gears are moved: the line of action shifts by sin(alpha_wt) per mm of centre distance and by tan(beta_b) per
 mm of axial offset, whatever the load. Single positions differ from the first formula, since the crowning turns the
-normals.
+normals. Where teeth bend it does not hold: farther apart, the forces act higher on the wheel's teeth, which bend more.
 
 {of_closed_forms()}
 
