@@ -454,22 +454,23 @@ FAULTS = (
     *(
         Fault(f"units: {text}", file, text, wrong, UNITS)
         for file, text, wrong in (
-            ("output/report.py", '("tooth_deflection_um", 1e3)', '("tooth_deflection_um", 1.0)'),
-            ("output/report.py", '("contact_deformation_um", 1e3)', '("contact_deformation_um", 1.0)'),
+            ("output/report.py", '("tooth_deflection_um", 1.0)', '("tooth_deflection_um", 1e3)'),
+            ("output/report.py", '("contact_deformation_um", 1.0)', '("contact_deformation_um", 1e3)'),
             ("output/report.py", '("hertz_width_mm", 2.0)', '("hertz_width_mm", 1.0)'),
             ("output/report.py", '("edge_pinion_diameter_mm", 2.0)', '("edge_pinion_diameter_mm", 1.0)'),
             (
                 "output/report.py",
-                '("root_compression_angle_deg", math.degrees(1.0))',
                 '("root_compression_angle_deg", 1.0)',
+                '("root_compression_angle_deg", 2.0)',
             ),
             (
                 "output/report.py",
                 "path.transmission_error * result.wheel_base_radius * 1e3",
                 "path.transmission_error * result.wheel_base_radius",
             ),
-            ("output/report.py", '"N mm": (1e-3, "Nm")', '"N mm": (1.0, "Nm")'),
-            ("output/report.py", '"rad": (ARCSEC, "arcsec")', '"rad": (60.0 * ARCSEC, "arcsec")'),
+            ("units.py", '"um": Unit("um", "mm", 1e-3)', '"um": Unit("um", "mm", 1e-6)'),
+            ("units.py", '"Nm": Unit("N m", "N mm", 1e3)', '"Nm": Unit("N m", "N mm", 1.0)'),
+            ("units.py", "math.radians(1.0 / 3600.0)", "math.radians(1.0 / 60.0)"),
             (
                 "results/figures.py",
                 '2.0 * under.edge.number("edge_radius")',

@@ -29,34 +29,29 @@ from loaded_tca.results.quantities import (
 from loaded_tca.results.reached_edges import NAMES as EDGES
 from loaded_tca.results.reached_edges import reached_edges
 from loaded_tca.results.summary import without_rounding
+from loaded_tca.units import factor_of
 
 RESULT, SUMMARY, POSITIONS, CONTACTS = "result.nc", "summary.json", "positions.csv", "contacts.csv"
 """Names of the files; the last one is there only where tooth pairs share the load."""
 
-ENGINEERS_UNITS = {
-    "rad": (ARCSEC, "arcsec"),
-    "N mm": (1e-3, "Nm"),
-    "N/(mm um)": (1.0, "N_per_mm_um"),
-    "N/mm": (1.0, "N_per_mm"),
-    "1": (1.0, ""),
-}
-"""Unit of a result -> factor to, and name of, the unit in the table; others stay as they are."""
+ENGINEERS_UNITS = {"rad": "arcsec", "N mm": "Nm", "N/(mm um)": "N_per_mm_um", "N/mm": "N_per_mm", "1": ""}
+"""Unit of a result -> ending of its column; others stay as they are."""
 COLUMNS = {
     "hertz_semi_minor": ("hertz_width_mm", 2.0),
     "hertz_semi_major": ("hertz_length_mm", 2.0),
-    "contact_deformation": ("contact_deformation_um", 1e3),
-    "tooth_deflection": ("tooth_deflection_um", 1e3),
+    "contact_deformation": ("contact_deformation_um", 1.0),
+    "tooth_deflection": ("tooth_deflection_um", 1.0),
     "peak_radius": ("peak_pinion_diameter_mm", 2.0),
     "peak_axial": ("peak_pinion_axial_mm", 1.0),
     "edge_radius": ("edge_pinion_diameter_mm", 2.0),
     "edge_axial": ("edge_pinion_axial_mm", 1.0),
-    "root_tension_angle": ("root_tension_angle_deg", math.degrees(1.0)),
-    "root_compression_angle": ("root_compression_angle_deg", math.degrees(1.0)),
-    "pinion_angle": ("pinion_angle_deg", math.degrees(1.0)),
-    "torque": ("pinion_torque_Nm", 1e-3),
+    "root_tension_angle": ("root_tension_angle_deg", 1.0),
+    "root_compression_angle": ("root_compression_angle_deg", 1.0),
+    "pinion_angle": ("pinion_angle_deg", 1.0),
+    "torque": ("pinion_torque_Nm", 1.0),
     "pair": ("tooth_pair", 1.0),
 }
-"""Name -> column and factor, where these do not follow from the unit: full widths, diameters, um."""
+"""Name -> column, and how many times the number, where this does not follow from the unit: full widths, diameters."""
 
 
 def write_report(result: MeshCycle, directory: FilePath, outdated: Iterable[str] = ()) -> tuple[Path, ...]:
@@ -185,8 +180,9 @@ def csv_table(columns: Mapping[str, Iterable[Any]]) -> str:
 
 def _column(name: str, unit: str) -> tuple[str, float]:
     """Header of a number, and the factor to the unit that it tells."""
-    factor, unit_name = ENGINEERS_UNITS.get(unit, (1.0, unit))
-    return COLUMNS.get(name, (f"{name}_{unit_name}" if unit_name else name, factor))
+    ending = ENGINEERS_UNITS.get(unit, unit)
+    column, times = COLUMNS.get(name, (f"{name}_{ending}" if ending else name, 1.0))
+    return column, times * factor_of(column)
 
 
 def cell(value: Any, name: str) -> str:

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from loaded_tca.output.report import csv_table
-from loaded_tca.results.figure import unit_of
 from loaded_tca.results.figures import FIGURES, key_figures
 from loaded_tca.results.files import Buffer, FilePath, netcdf_of, replace_together
 from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.summary import shown
 from loaded_tca.results.tolerances import key_figure_slopes
+from loaded_tca.units import unit_of
 
 ALL, TABLE = "sensitivities.nc", "sensitivities.csv"
 """Names of the two files."""

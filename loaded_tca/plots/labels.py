@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import re
 import textwrap
 
-from loaded_tca.results import figure
 from loaded_tca.results.figures import FIGURES
+from loaded_tca.units import unit_of, without_unit
 
-UNITS = {ending: unit.replace("um", "µm") for ending, unit in figure.UNITS.items()}
-"""Ending of a name -> unit as it is printed."""
 SILENT = {"pair", "modifications", "mounting", "load", "analysis", "material"}
 """Sections that a name does without: the key says enough."""
 NAMES = {
@@ -22,14 +19,13 @@ NAMES = {
     "sample": "number of the variant",
     "tip_relief_start_roll": "tip relief start (roll angle)",
     "root_relief_start_roll": "root relief start (roll angle)",
-    **{figure.without_unit(name): declared.axis for name, declared in FIGURES.items() if declared.axis},
+    **{without_unit(name): declared.axis for name, declared in FIGURES.items() if declared.axis},
 }
 """Keys and figures whose words alone do not name them."""
 PROPER = {"hertz": "Hertz", "iso": "ISO"}
 """Words that are written otherwise than in names."""
 SHORT_LINE = 18
 """Characters."""
-UNIT = re.compile(f"_({'|'.join(UNITS)})$")
 
 
 def label_of(name: str) -> str:
@@ -50,12 +46,10 @@ def label_of(name: str) -> str:
     ('pinion lead crowning [µm]', 'peak-to-peak transmission error [µm]')
     """
     *sections, key = name.split(".")
-    found = UNIT.search(key)
-    plain = key[: found.start()] if found else key
-    words = [*(section for section in sections if section not in SILENT), plain]
+    words = [*(section for section in sections if section not in SILENT), without_unit(key)]
     words = [NAMES.get(word) or word.replace("_", " ") for word in words]
     words = [PROPER.get(word, word) for word in " ".join(words).split()]
-    return " ".join(words) + (f" [{UNITS[found[1]]}]" if found else "")
+    return " ".join(words) + (f" [{unit.replace('um', 'µm')}]" if (unit := unit_of(key)) else "")
 
 
 def wrapped_label_of(name: str) -> str:

@@ -1,4 +1,4 @@
-"""What is declared of a key figure, and units of names."""
+"""What is declared of a key figure."""
 
 from __future__ import annotations
 
@@ -13,20 +13,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.results.accuracy import Note
 from loaded_tca.results.key_figures import UnderTorque, mean_over_a_pitch
 from loaded_tca.results.sensitivities import Sensitivities
-
-UNITS = {
-    "N_per_mm_um": "N/(mm um)",
-    "N_per_mm": "N/mm",
-    "arcsec": "arcsec",
-    "um": "um",
-    "mm": "mm",
-    "deg": "deg",
-    "rad": "rad",
-    "Nm": "N m",
-    "MPa": "MPa",
-    "N": "N",
-}
-"""Ending of a name -> unit."""
+from loaded_tca.units import unit_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,22 +75,6 @@ class Line(NamedTuple):
     label: str
     names: tuple[str, ...]
     is_always_there: bool = False
-
-
-def without_unit(name: str) -> str:
-    """A name less the unit at its end."""
-    return next((name.removesuffix(f"_{ending}") for ending in UNITS if name.endswith(f"_{ending}")), name)
-
-
-def unit_of(name: str) -> str:
-    """Unit at the end of a name; nothing where it has none.
-
-    Examples
-    --------
-    >>> unit_of("mesh_stiffness_mean_N_per_mm_um"), unit_of("face_load_factor")
-    ('N/(mm um)', '')
-    """
-    return next((unit for ending, unit in UNITS.items() if name.endswith(f"_{ending}")), "")
 
 
 def labelled(name: str, label: str) -> str:

@@ -14,8 +14,9 @@ from loaded_tca.results.iso_figures import iso_figures
 from loaded_tca.results.load_factors import face_load_factor_error
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.root_figures import root_figures
+from loaded_tca.units import UNITS
 
-ARCSEC = math.degrees(3600.0)
+ARCSEC = 1.0 / UNITS["arcsec"].factor
 """Seconds of arc per radian."""
 
 CAPPED = 1.0 - 1e-6

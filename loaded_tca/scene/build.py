@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -20,9 +19,7 @@ from loaded_tca.scene.flank_form import FITTED_DEGREE, FlankForm, Measurement
 from loaded_tca.scene.section import Section, as_table
 from loaded_tca.scene.sections import ElasticMaterial, GearSection
 from loaded_tca.tooth import ToothForm, ToothGeometry
-
-UNITS = {"mm": 1.0, "um": 1e-3, "deg": math.pi / 180.0, "MPa": 1.0, "Nm": 1e3}
-"""Unit at the end of a key -> factor to mm, rad, MPa and N mm."""
+from loaded_tca.units import UNITS, ending_of, without_unit
 
 
 def in_base_units(section: Section) -> dict[str, Any]:
@@ -33,14 +30,10 @@ def in_base_units(section: Section) -> dict[str, Any]:
     >>> in_base_units(ElasticMaterial(youngs_modulus_MPa=206000, poisson_ratio=0.3))
     {'youngs_modulus': 206000.0, 'poisson_ratio': 0.3}
     """
-    values = {}
-    for key, value in as_table(section).items():
-        name, _, unit = key.rpartition("_")
-        if unit not in UNITS:
-            values[key] = value
-        else:
-            values[name] = _scaled(value, UNITS[unit])
-    return values
+    return {
+        without_unit(key): _scaled(value, UNITS[ending].factor) if (ending := ending_of(key)) else value
+        for key, value in as_table(section).items()
+    }
 
 
 def _scaled(value: Any, factor: float) -> Any:

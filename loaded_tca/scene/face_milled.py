@@ -293,7 +293,6 @@ def _gear(own: GearSection, name: str, pitch_angle: float) -> FaceMilledGear:
     """A gear with its exact pitch angle, which rounded root and face angles of uniform teeth may not pass."""
     blank = in_base_units(own.blank)
     machine = {"root_angle": blank["root_angle"], **in_base_units(own.machine)}
-    machine["helical_motion"] = machine.pop("helical_motion_mm_per_rad")
     blank["pitch_angle"] = pitch_angle
     blank["root_angle"] = min(blank["root_angle"], pitch_angle)
     blank["face_angle"] = max(blank["face_angle"], pitch_angle)

@@ -6,9 +6,10 @@ from pathlib import Path
 import pytest
 
 from loaded_tca.plots.labels import label_of
-from loaded_tca.results.figure import UNITS, labelled, unit_of, without_unit
+from loaded_tca.results.figure import labelled
 from loaded_tca.results.figures import FIGURES, SUMMARY, declared, key_figures
 from loaded_tca.studies.ranking import MAIN_FIGURES
+from loaded_tca.units import UNITS, unit_of, without_unit
 from tests.samples.results import result
 from tests.samples.root_stress import result as with_root_stress
 
@@ -52,7 +53,7 @@ def test_figures_of_texts_stand_in_the_summary():
 
 
 def test_unit_is_the_longest_ending_that_a_name_has():
-    assert [unit_of(f"x_{ending}") for ending in UNITS] == [*UNITS.values()]
+    assert [unit_of(f"x_{ending}") for ending in UNITS] == [unit.text for unit in UNITS.values()]
     assert without_unit("secant_stiffness_mean_N_per_mm_um") == "secant_stiffness_mean"
     assert labelled("line_load_N_per_mm", "line load") == "line load [N/mm]"
     assert labelled("face_load_factor", "K_Hbeta") == "K_Hbeta"
