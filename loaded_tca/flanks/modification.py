@@ -41,19 +41,6 @@ NO_POLYNOMIAL = (0.0,) * 6
 LARGEST_AMOUNT = 1.0
 """Amount [mm] beyond which a warning says so: gears have some hundredths of a millimetre."""
 
-AMOUNTS = (
-    "lead_crowning",
-    "end_relief",
-    "end_relief_lower",
-    "end_relief_upper",
-    "profile_crowning",
-    "tip_relief",
-    "root_relief",
-    "helix_slope",
-    "profile_slope",
-    "twist",
-)
-
 MOST = 2.0
 """What all modifications may remove or add together, over the longer side of the flank: crownings of the literature
 that bring a contact to the middle at any price are about as thick as the flank is long."""
@@ -363,6 +350,14 @@ class FlankModifications:
                 origin, shape = start(name), one_sided_parabola if form == "parabolic" else None
                 terms.append(Term("profile", amount, origin, end - origin, shape))
         return terms
+
+
+AMOUNTS = tuple(
+    entry.name
+    for entry in fields(FlankModifications)
+    if not entry.name.endswith(("_form", "_length", "_start", "_roll")) and entry.name != "polynomial"
+)
+"""Fields that are amounts of material; the others say of what form they are, and where they begin."""
 
 
 def _starts_of(relief: str) -> tuple[str, str, str]:
