@@ -104,7 +104,9 @@ def values_of(section: Section) -> dict[str, Any]:
     return values
 
 
-def check(section: type[Section], found: Mapping[str, Any], place: str = "") -> tuple[dict[str, Any], list[str]]:
+def check(
+    section: type[Section], found: Mapping[str, Any], place: str = "", whole: type[Section] | None = None
+) -> tuple[dict[str, Any], list[str]]:
     """Check a table against a section.
 
     Parameters
@@ -114,6 +116,8 @@ def check(section: type[Section], found: Mapping[str, Any], place: str = "") -> 
         Names -> values; sections inside are mappings or made already. None counts as not given.
     place : str
         Prefix of the keys in messages, empty or ending in a dot.
+    whole : type of Section, optional
+        That this one stands in: a key that belongs elsewhere in it is shown its place. Default: the section.
 
     Returns
     -------
@@ -124,11 +128,12 @@ def check(section: type[Section], found: Mapping[str, Any], place: str = "") -> 
         One line per problem.
     """
     values: dict[str, Any] = {}
-    problems = list(_unknown(section, found, place))
+    whole = whole or section
+    problems = list(_unknown(section, found, place, whole))
     for name, (_, entry) in entries(section).items():
         given = found.get(name)
         if isinstance(entry, Subsection):
-            inner, inner_problems = _check_subsection(name, entry, given, place)
+            inner, inner_problems = _check_subsection(name, entry, given, place, whole)
             values |= inner
             problems += inner_problems
             continue
@@ -144,7 +149,9 @@ def check(section: type[Section], found: Mapping[str, Any], place: str = "") -> 
     return values, problems
 
 
-def _check_subsection(name: str, entry: Subsection, given: Any, place: str) -> tuple[dict[str, Any], list[str]]:
+def _check_subsection(
+    name: str, entry: Subsection, given: Any, place: str, whole: type[Section]
+) -> tuple[dict[str, Any], list[str]]:
     if given is None and entry.optional:
         return {name: None}, []
     if type(given) is entry.section:  # checked when it was made
@@ -153,7 +160,7 @@ def _check_subsection(name: str, entry: Subsection, given: Any, place: str) -> t
         given = contents(given) if isinstance(given, entry.section) else shown(given)
     if not isinstance(given, Mapping | None):
         return {}, [f"{place}{name}: found {shown(given)}; allowed a section [{place}{name}]"]
-    values, problems = check(entry.section, given or {}, f"{place}{name}.")
+    values, problems = check(entry.section, given or {}, f"{place}{name}.", whole)
     inner = {f"{name}.{key}": value for key, value in values.items()}
     if problems:
         return inner, problems
@@ -169,14 +176,17 @@ def made(section: type[SectionType], values: Mapping[str, Any]) -> SectionType:
     return section(**{attribute: values[name] for name, (attribute, _) in entries(section).items()})
 
 
-def _unknown(section: type[Section], found: Mapping[str, Any], place: str) -> Iterator[str]:
+def _unknown(
+    section: type[Section], found: Mapping[str, Any], place: str, whole: type[Section] | None = None
+) -> Iterator[str]:
     known = entries(section)
     unknown = [name for name in found if name not in known]
-    homes = _homes(section) if unknown else {}
+    homes = {name: place + home for name, home in _homes(section).items()} if unknown else {}
+    elsewhere = _homes(whole) if unknown and whole is not None else {}
     for name in unknown[:MOST_UNKNOWN_KEYS]:
-        meant = nearest(name, homes)
+        meant = elsewhere.get(name) or homes.get(nearest(name, homes) or "")
         allowed = shorten(", ".join(known), LONGEST_LIST, placeholder=" ...")
-        hint = did_you_mean(place + homes[meant]) if meant else f"; allowed {allowed}"
+        hint = did_you_mean(meant) or f"; allowed {allowed}"
         yield f"{place}{shown_key(name)}: unknown key{hint}"
     if len(unknown) > MOST_UNKNOWN_KEYS:
         more = len(unknown) - MOST_UNKNOWN_KEYS

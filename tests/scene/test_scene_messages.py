@@ -237,6 +237,11 @@ def test_message_of_a_rule_waits_for_sound_values(table):
     assert [line.split(":")[0] for line in found] == ["material.youngs_modulus_MPa", "analysis.accuracy"]
 
 
+def test_key_of_another_section_is_shown_its_place(table):
+    (line,) = problems_of(table, {"load.driving": "wheel"})
+    assert line == 'load.driving: unknown key; did you mean "pair.driving"?'
+
+
 def test_unknown_keys_beyond_twenty_are_counted(table):
     found = problems_of(table, {f"load.x{i}": 1 for i in range(30)})
     assert len(found) == 21
