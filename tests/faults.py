@@ -37,6 +37,13 @@ AT_EDGES = "results/test_sensitivities_at_edges.py::"
 UNITS = "output/test_units.py::test_every_number_is_an_attribute_times_its_factor"
 FAULTS = (
     Fault(
+        "sensitivities: contact points on the start of a linear relief have the flank on both sides of it",
+        "separation/contact_points.py",
+        "        if contacts[0].on_relief_start:  # then it is the only one",
+        "        if False:",
+        f"{AT_EDGES}test_contact_points_on_the_start_of_a_linear_relief_move_as_by_whole_analyses",
+    ),
+    Fault(
         "free edges: the angle of the material is taken for that of the air",
         "loaded/free_edges.py",
         "np.arccos(np.clip(cosine, -1.0, 1.0))",

@@ -9,7 +9,7 @@ off, and the flank becomes Theta - s delta |grad F| with |grad F| of the unmodif
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Literal, get_args
 
@@ -398,6 +398,11 @@ class ModifiedFlank(DerivedFlank):
         """Theta of the modified flank."""
         turned = self.nominal.gradient_norm(rho, z) * -float(self.side)
         return self.nominal.theta(rho, z) + self.removal(rho, z, beyond).times(turned)
+
+    def without_ramps(self, dropped: Sequence[bool]) -> ModifiedFlank:
+        """The flank as it is before the starts of some of its linear reliefs, everywhere."""
+        ramps = [term for term, drop in zip(self._ramps, dropped, strict=True) if drop]
+        return ModifiedFlank(self.nominal, tuple(term for term in self.terms if term not in ramps))
 
     def relief_starts(self, rho: Array, z: Array) -> tuple[Jet, ...]:
         """Starts of the linear reliefs, in millimetres of roll length beyond them."""

@@ -11,17 +11,20 @@ B the relative curvature. On an edge at the distance D it stays on the edge, aga
 .. math:: (B - \lambda \nabla^2 D) s - \nabla D\,d\lambda = -\nabla dh, \qquad
           \nabla D \cdot s = -dD, \qquad \nabla h = \lambda \nabla D,
 
-and in a corner on both. The start of a linear relief holds it likewise. The levers (r x n).e follow.
+and in a corner on both. The start of a linear relief holds it likewise; h is then the gap without that relief, which
+goes on smoothly beyond its start. The levers (r x n).e follow.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from loaded_tca.arrays import Array, Mask
+from loaded_tca.flanks.modification import ModifiedFlank
+from loaded_tca.flanks.rounding import sharp
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation.moving_edges import Distance, Places, edge_distance, grown, rises, start_distance
 from loaded_tca.separation.normal_gap import NormalGap
@@ -36,6 +39,8 @@ SAME_NORMAL = 1e-9
 """Difference of two unit normals that is none."""
 ON_LINE = 1e-6
 """Distance, over the module, at which a contact point lies on an edge or a relief start."""
+BESIDE_START = 1e-3
+"""Distance of a relief start, over the module, from a contact point on it in pairs that differ in a key."""
 TURNS = 3
 LEVEL = 1e-9
 """Curvature along an edge, over that across the contact, that is none: a line has no place along itself."""
@@ -86,6 +91,12 @@ class _Stencil:
 
     def __init__(self, pair: GearPair, contacts: Sequence[ContactPoint], changes: Sequence[PairChange]) -> None:
         self.pair, self.contacts, self.changes = pair, contacts, changes
+        if contacts[0].on_relief_start:  # then it is the only one
+            pair = _without_ramps(pair, contacts[0])
+            changes = [
+                replace(one, below=_without_ramps(one.below, contacts[0]), above=_without_ramps(one.above, contacts[0]))
+                for one in changes
+            ]
         self.curvatures, self.beside = relative_curvatures(pair, contacts), BESIDE * pair.module
         self.axes = np.array([one.axes for one in self.curvatures])
         parts = [0.0, -1.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0, 1.0]
@@ -136,6 +147,41 @@ def point_changes(
         The grid of each.
     changes : sequence of PairChange
     """
+    on_start = np.array([bool(one.on_relief_start) for one in contacts])
+    groups = [np.flatnonzero(~on_start), *np.flatnonzero(on_start)[:, None]]
+    groups = [group for group in groups if group.size]
+    parts = [_alike(pair, [contacts[i] for i in group], [separations[i] for i in group], changes) for group in groups]
+    order = np.argsort(np.concatenate(groups))
+    axes = {"steepness": 0, "held": 0, "levers": 2}
+    return PointChanges(
+        **{
+            one.name: np.concatenate([getattr(part, one.name) for part in parts], axis=axes.get(one.name, 1)).take(
+                order, axis=axes.get(one.name, 1)
+            )
+            for one in fields(PointChanges)
+        }
+    )
+
+
+def _without_ramps(pair: GearPair, contact: ContactPoint) -> GearPair:
+    """The pair without the linear reliefs on whose starts a contact point lies."""
+    places = (contact.pinion_radius, contact.pinion_axial), (contact.wheel_radius, contact.wheel_axial)
+    gears = []
+    for gear, (rho, z) in zip((pair.pinion, pair.wheel), places, strict=True):
+        flank, limit = sharp(gear.flank), BESIDE_START * pair.module
+        near = [abs(float(start.value)) < limit for start in flank.relief_starts(np.asarray(rho), np.asarray(z))]
+        smooth = flank.without_ramps(near) if any(near) and isinstance(flank, ModifiedFlank) else None
+        gears.append(gear if smooth is None else replace(gear, flank=smooth))
+    return replace(pair, pinion=gears[0], wheel=gears[1])
+
+
+def _alike(
+    pair: GearPair,
+    contacts: Sequence[ContactPoint],
+    separations: Sequence[Separation],
+    changes: Sequence[PairChange],
+) -> PointChanges:
+    """Derivatives at contact points that lie on no relief start, or at one that does."""
     stencil = _Stencil(pair, contacts, changes)
     held = np.array([bool(one.on_edge or one.on_relief_start) for one in contacts])
     gaps = (stencil.grown[1] - stencil.grown[0])[..., 0]

@@ -12,6 +12,8 @@ from tests.samples.results import FLANKS_ALONE, SCENES
 
 DISTANCE, RELIEF = "mounting.centre_distance_error_mm", "pinion.modifications.tip_relief_um"
 MICROMETRES = 1e3
+START = 177.0
+"""Of a relief at the tip of the wheel of 57 teeth [mm]."""
 
 
 def solved(name, cells, positions, **changes):
@@ -78,3 +80,23 @@ def test_starts_of_linear_reliefs_beside_the_point_are_warned_of_with_keys_that_
     assert moved.across_relief_starts.any()
     assert_array_equal(moved.across_relief_starts, held.across_relief_starts)
     assert not moved.across_relief_starts[~(result.on_relief_start > 0)].any()
+
+
+@pytest.mark.parametrize(("key", "step"), [("wheel.modifications.tip_relief_start_mm", 0.01), (DISTANCE, 0.02)])
+def test_contact_points_on_the_start_of_a_linear_relief_move_as_by_whole_analyses(key, step):
+    """Beyond the start the flank has another slope: both sides of it at once give 30 times the derivative."""
+    form = {"tip_relief_form": "linear", "tip_relief_um": 16.0, "tip_relief_start_mm": START}
+    relief = {f"wheel.modifications.{name}": value for name, value in form.items()}
+    result, length = solved("mesh_cycle_helical", 64, 5, **FLANKS_ALONE, **relief)
+    assert any(grid.contact.on_relief_start for state in result.states[1].grids for grid in state)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # starts beside contact points
+        found = result.sensitivities([key]).transmission_error[0, :, 0]
+    value = START if key.endswith("start_mm") else 0.0
+    low, high = (
+        solved("mesh_cycle_helical", 64, 5, **FLANKS_ALONE, **relief | {key: value + by})[0].transmission_error[0]
+        for by in (-step, step)
+    )
+    slopes = (high - low) / (2.0 * step)
+    # as starts run through the cells of other contacts; the slope at that point was off by 3 and by 13 um/mm
+    assert_allclose(found * length, slopes * length, rtol=0, atol=0.05)
