@@ -343,8 +343,8 @@ FAULTS = (
     Fault(
         "sensitivities: a contact that moves is not bent otherwise by other pairs",
         "loaded/force_lines.py",
-        "own += between @ forces[j] / step",
-        "own += 0.0",
+        "found[at, at] += by_place @ forces[j][loaded[j]]",
+        "found[at, at] += (i == j) * (by_place @ forces[j][loaded[j]])",
         "loaded/test_force_lines.py::"
         "test_slices_bend_by_shifts_of_the_forces_under_their_own_load_and_that_of_other_pairs",
     ),

@@ -380,19 +380,26 @@ def loaded_states(
 
 def _coupling(states: Sequence[Sequence[LoadedGrid]], bending: BendingModel) -> csr_array:
     """Deflection of all slices, in one row, per force on each slice of another pair of the same state [mm/N]."""
-    rows, columns, values, first = [np.zeros(1, int)], [np.zeros(1, int)], [np.zeros(1)], 0
+    matrices = []
     for state in states:
-        ends = first + np.cumsum([grid.active.shape[1] for grid in state])
+        ends = np.cumsum([grid.active.shape[1] for grid in state])
+        matrix = np.zeros((ends[-1], ends[-1]))
         for (one, i), (two, j) in combinations(zip(state, ends.tolist(), strict=True), 2):
-            matrix = bending.between((one.number, one.separation), (two.number, two.separation))
-            at, under = (place.ravel() for place in np.indices(matrix.shape))
-            at, under = at + (i - matrix.shape[0]), under + (j - matrix.shape[1])
-            rows += [at, under]
-            columns += [under, at]
-            values += [matrix.ravel()] * 2
-        first = int(ends[-1])
-    places = np.concatenate(rows), np.concatenate(columns)
-    return csr_array((np.concatenate(values), places), shape=(first, first))
+            between = bending.between((one.number, one.separation), (two.number, two.separation))
+            at, under = slice(i - between.shape[0], i), slice(j - between.shape[1], j)
+            matrix[at, under], matrix[under, at] = between, between.T
+        matrices.append(matrix)
+    return block_diagonal(matrices)
+
+
+def block_diagonal(matrices: Sequence[Array]) -> csr_array:
+    """Square matrices of single states as one of all their places."""
+    sizes = np.array([len(matrix) for matrix in matrices])
+    ends = np.cumsum(sizes)
+    columns = [np.tile(np.arange(end - size, end), size) for end, size in zip(ends, sizes, strict=True)]
+    rows = np.concatenate([[0], np.cumsum(np.repeat(sizes, sizes))])
+    values = np.concatenate([matrix.ravel() for matrix in matrices])
+    return csr_array((values, np.concatenate(columns), rows), shape=(ends[-1], ends[-1]))
 
 
 def _alike(grids: Sequence[LoadedGrid], ends: Indices) -> list[list[tuple[LoadedGrid, Indices]]]:

@@ -24,7 +24,7 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.separation import Separation
-from loaded_tca.separation.gap_change import contact_changes
+from loaded_tca.separation.gap_change import OF_GRIDS, contact_changes
 from loaded_tca.separation.pair_change import PairChange
 
 Grid = TypeVar("Grid", Separation, PressureMap)
@@ -88,6 +88,9 @@ def gap_growth(
     changes : sequence of PairChange
     """
     pair, grids, (_, positions, pairs) = result.gear_pair, tangents.grids, places
+    if not changes:
+        none = np.zeros((0, pairs.size))
+        return GapGrowth(np.zeros((0, tangents.grid.size)), none, np.zeros((*none.shape, OF_GRIDS)), none)
     separations = [grid.separation for grid in grids]
     held = contact_changes(
         pair, [grid.contact for grid in grids], separations, [grid.active for grid in grids], changes

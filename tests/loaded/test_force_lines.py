@@ -1,6 +1,7 @@
 """Teeth that bend at the centres of pressure: against slopes of a bilinear compliance by hand, and dense problems."""
 
 import warnings
+from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 
@@ -24,8 +25,8 @@ class Bilinear:
 
     HIGHER = np.array([0.3, -0.2, 0.1])  # 1/mm, in the fixed frame
 
-    def within(self, number, grid):
-        return (2.0 + number) * self.between((number, grid), (number, grid))
+    def within(self, number, grid, under=None):
+        return (2.0 + number) * self.between((number, grid), (number, grid if under is None else under))
 
     def between(self, at, under):
         (higher, along), (other, beside) = ((self.height(grid), self.ending(grid)) for _, grid in (at, under))
@@ -45,7 +46,8 @@ def loaded_grids(rng):
     for number, pitches, cells in ((0, -0.3, (6, 5)), (1, 0.2, (5, 7)), (0, 0.1, (6, 4))):
         contact = trace_contact(pair, [pitches * pair.pitch])[0]
         grid = sample_separation(pair, contact, cells=cells, box=(0.2, 2.0))
-        grids.append(SimpleNamespace(number=number, separation=grid, slice_force=rng.random(cells[1])))
+        force, bending = rng.random(cells[1]), Bilinear().within(number, grid)
+        grids.append(SimpleNamespace(number=number, separation=grid, slice_force=force, bending=bending))
     return grids, np.array([0, 0, 1])
 
 
@@ -76,7 +78,11 @@ def tangents(times=1.0):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)  # contacts on edges
         result = analyse(read_scene(SCENES / "mesh_cycle_helical.toml").with_changes(changes))
-    held = Tangents([state for state in result.states[1].grids if state])
+    states = [
+        [replace(grid, bending=Bilinear().within(grid.number, grid.separation)) for grid in state]
+        for state in result.states[1].grids
+    ]
+    held = Tangents(states)
     return held, held.with_lines(times * bending_by_shift(held.grids, held.state, Bilinear()))
 
 
