@@ -17,8 +17,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel, SumOfParts
 from loaded_tca.contact.cuts import crowding_growth
-from loaded_tca.errors import InputError
-from loaded_tca.loaded.free_edges import edge_compliances
+from loaded_tca.loaded.free_edge_growth import MovedSlices, edge_deflection_growth
 from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.numbers import CycleNumbers
@@ -104,7 +103,8 @@ def gap_growth(
     for i, (first, last) in enumerate(pairwise([0, *tangents.ends.tolist()])):
         if (own := found.covers[:, first:last]).any():
             gaps[:, first:last] += _released(grids[i], own)
-    _add_moved_lines(tangents, bending, changes, found.motions, gaps, free_edges=result.scene.analysis.free_edges)
+    free_edges = result.scene.analysis.free_edges
+    _add_moved_lines(pair, tangents, bending, changes, found.motions, gaps, free_edges=free_edges)
     return GapGrowth(gaps, result.normal_force[places] * points.levers[0], found.motions, points.turns)
 
 
@@ -127,6 +127,7 @@ def moved(grid: Grid, motion: Array) -> Grid:
 
 
 def _add_moved_lines(
+    pair: GearPair,
     tangents: Tangents,
     bending: BendingModel | None,
     changes: Sequence[PairChange],
@@ -143,45 +144,43 @@ def _add_moved_lines(
         slices + (np.cumsum([one.y.size for one in separations]) - [one.y.size for one in separations])[tangents.grid]
     )
     mounted = [key for key, change in enumerate(changes) if not change.of_modifications]
-    for key in mounted:
-        change = changes[key]
-        low, high = (  # either side: faces of one width have a kink between
-            _displaced(
-                tangents,
-                bending.mounted(side) if isinstance(bending, SumOfParts) else bending,
-                side if free_edges else None,
-                [moved(one, part * change.difference * by) for one, by in zip(separations, motions[key], strict=True)],
+    moved_grids = [
+        [
+            [moved(one, part * changes[key].difference * by) for one, by in zip(separations, motions[key], strict=True)]
+            for part in (-0.5, 0.5)
+        ]
+        for key in mounted
+    ]
+    forces = np.concatenate([grid.slice_force for grid in grids])
+    if free_edges and mounted:
+        steps = [
+            MovedSlices((changes[key].below, low), (changes[key].above, high), changes[key].difference)
+            for key, (low, high) in zip(mounted, moved_grids, strict=True)
+        ]
+        gaps[mounted] += edge_deflection_growth(pair, separations, forces, steps)[:, slices]
+    for key, sides in zip(mounted, moved_grids, strict=True):
+        if bending is not None:
+            change = changes[key]
+            low, high = (
+                _bent(tangents, bending.mounted(gears) if isinstance(bending, SumOfParts) else bending, there)
+                for gears, there in zip((change.below, change.above), sides, strict=True)
             )
-            for side, part in ((change.below, -0.5), (change.above, 0.5))
-        )
-        gaps[key] += ((high - low) / change.difference)[slices]
+            gaps[key] += ((high - low) / change.difference)[slices]
     others = [key for key in range(len(changes)) if key not in mounted]
     if tangents.by_shift is not None and others:
         shifts = np.repeat(motions[others][..., 0], [one.y.size for one in separations], axis=1)
         gaps[others] += (tangents.by_shift @ shifts.T).T[:, slices]
 
 
-def _displaced(
-    tangents: Tangents, bending: BendingModel | None, pair: GearPair | None, separations: Sequence[Separation]
-) -> Array:
-    """Deflection of the slices of all grids, in one row [mm], under the forces as they are, on other grids.
-
-    ``pair``: whose free edges count; None: there are none.
-    """
+def _bent(tangents: Tangents, bending: BendingModel, separations: Sequence[Separation]) -> Array:
+    """Bending of the slices of all grids, in one row [mm], under the forces as they are, on other grids."""
     grids, forces = tangents.grids, [grid.slice_force for grid in tangents.grids]
-    found = [np.zeros(force.shape) for force in forces]
-    if pair is not None:
-        for i, ends in enumerate(edge_compliances(pair, separations)):
-            if isinstance(ends, InputError):
-                raise ends
-            if ends is not None:
-                found[i] += ends @ forces[i]
-    if bending is not None:
-        for i, (grid, one) in enumerate(zip(grids, separations, strict=True)):
-            found[i] += bending.within(grid.number, one) @ forces[i]
-        for state in np.split(np.arange(len(grids)), np.flatnonzero(np.diff(tangents.state)) + 1):
-            for i, j in combinations(state.tolist(), 2):
-                between = bending.between((grids[i].number, separations[i]), (grids[j].number, separations[j]))
-                found[i] += between @ forces[j]
-                found[j] += between.T @ forces[i]
+    found = [
+        bending.within(grid.number, one) @ force for grid, one, force in zip(grids, separations, forces, strict=True)
+    ]
+    for state in np.split(np.arange(len(grids)), np.flatnonzero(np.diff(tangents.state)) + 1):
+        for i, j in combinations(state.tolist(), 2):
+            between = bending.between((grids[i].number, separations[i]), (grids[j].number, separations[j]))
+            found[i] += between @ forces[j]
+            found[j] += between.T @ forces[i]
     return np.concatenate(found)
