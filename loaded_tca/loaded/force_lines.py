@@ -27,8 +27,8 @@ STEP = 1e-2
 
 
 @dataclass(frozen=True, eq=False)
-class _LoadedSlices:
-    """Slices of a grid that carry forces, or the same ones shifted across."""
+class LoadedSlices:
+    """Slices of a grid that carry forces, as :class:`loaded_tca.compliance.compliance.ContactGrid` has them."""
 
     y: Array
     origin: Array
@@ -36,7 +36,8 @@ class _LoadedSlices:
     force_line: Array
 
     @classmethod
-    def of(cls, grid: Separation, loaded: Indices, shift: float = 0.0) -> _LoadedSlices:
+    def of(cls, grid: Separation, loaded: Indices, shift: float = 0.0) -> LoadedSlices:
+        """Those with the numbers ``loaded``, shifted across the contact [mm]."""
         return cls(grid.y[loaded], grid.origin, grid.axes, grid.force_line[loaded] + shift)
 
 
@@ -66,9 +67,9 @@ def _of_state(grids: Sequence[LoadedGrid], bending: BendingModel) -> Array:
     first = np.cumsum([0, *(force.size for force in forces)])
     loaded = [np.flatnonzero(force) for force in forces]
     steps = [STEP * grid.separation.spacing[0] * len(grid.separation.x) for grid in grids]
-    held = [(grid.number, _LoadedSlices.of(grid.separation, own)) for grid, own in zip(grids, loaded, strict=True)]
+    held = [(grid.number, LoadedSlices.of(grid.separation, own)) for grid, own in zip(grids, loaded, strict=True)]
     beyond = [
-        (grid.number, _LoadedSlices.of(grid.separation, own, step))
+        (grid.number, LoadedSlices.of(grid.separation, own, step))
         for grid, own, step in zip(grids, loaded, steps, strict=True)
     ]
     found = np.zeros((first[-1], first[-1]))

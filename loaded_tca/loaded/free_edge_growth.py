@@ -33,14 +33,14 @@ class MovedSlices(NamedTuple):
 def edge_deflection_growth(
     pair: GearPair, grids: Sequence[Slices], forces: Array, moved: Sequence[MovedSlices]
 ) -> Array:
-    """Growth (keys, n) [mm per unit] of the deflection of slices by the free edges of both gears.
+    """Growth (keys, n) [mm per unit] of the deflection of slices with forces by the free edges of both gears.
 
     Parameters
     ----------
     pair : GearPair
     grids : sequence of Slices
     forces : (n,) array [N]
-        On the slices of all grids, in one row, as they are.
+        On the slices of all grids, in one row, as they are; where there are none, the growth is left out.
     moved : sequence of MovedSlices
         With each key.
 
@@ -56,6 +56,9 @@ def edge_deflection_growth(
             continue
         for error in near.problems.values():
             raise error
+        near = near.some(forces[near.near] != 0.0)
+        if not near.near.size:
+            continue
         distances, factors = np.zeros((len(moved), forces.size)), np.zeros((len(moved), near.size.size))
         for key, ((low, high), one) in enumerate(zip(sides, moved, strict=True)):
             distances[key] = (high[number].distance - low[number].distance) / one.difference

@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple, Protocol, Self
 
@@ -261,6 +261,22 @@ class NearEdge:
         places = y, slices.width[near], distance[near], np.minimum(np.maximum(rise, -1.0), 1.0)
         psi = line.factors(pair, end)
         return cls(near, run, before, after, first, size, end, *psi, *places, reach, pair.module, material)
+
+    def some(self, kept: Mask) -> NearEdge:
+        """Some of the slices (n,), which lie and rise as they do among all."""
+        runs, first, size = np.unique(self.run[kept], return_index=True, return_counts=True)
+        problems = {number: self.problems[run] for number, run in enumerate(runs.tolist()) if run in self.problems}
+        of_slices = ("near", "before", "after", "y", "width", "distance", "steepness")
+        return replace(
+            self,
+            **{name: getattr(self, name)[kept] for name in of_slices},
+            run=np.repeat(np.arange(runs.size), size),
+            first=first,
+            size=size,
+            end=self.end[runs],
+            factor=self.factor[runs],
+            problems=problems,
+        )
 
     def pairs(self) -> Iterator[tuple[Indices, Indices]]:
         """Every slice with each of its run, in parts."""

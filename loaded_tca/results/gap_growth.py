@@ -17,6 +17,7 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel, SumOfParts
 from loaded_tca.contact.cuts import crowding_growth
+from loaded_tca.loaded.force_lines import LoadedSlices
 from loaded_tca.loaded.free_edge_growth import MovedSlices, edge_deflection_growth
 from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
 from loaded_tca.pairs.gear_pair import GearPair
@@ -174,13 +175,18 @@ def _add_moved_lines(
 
 def _bent(tangents: Tangents, bending: BendingModel, separations: Sequence[Separation]) -> Array:
     """Bending of the slices of all grids, in one row [mm], under the forces as they are, on other grids."""
-    grids, forces = tangents.grids, [grid.slice_force for grid in tangents.grids]
-    found = [
-        bending.within(grid.number, one) @ force for grid, one, force in zip(grids, separations, forces, strict=True)
+    grids, whole = tangents.grids, [grid.slice_force for grid in tangents.grids]
+    loaded = [np.flatnonzero(force) for force in whole]
+    forces = [force[own] for force, own in zip(whole, loaded, strict=True)]
+    lines = [
+        (grid.number, LoadedSlices.of(one, own)) for grid, one, own in zip(grids, separations, loaded, strict=True)
     ]
+    found = [bending.within(*line) @ force for line, force in zip(lines, forces, strict=True)]
     for state in np.split(np.arange(len(grids)), np.flatnonzero(np.diff(tangents.state)) + 1):
         for i, j in combinations(state.tolist(), 2):
-            between = bending.between((grids[i].number, separations[i]), (grids[j].number, separations[j]))
+            between = bending.between(lines[i], lines[j])
             found[i] += between @ forces[j]
             found[j] += between.T @ forces[i]
-    return np.concatenate(found)
+    for force, own, bent in zip(whole, loaded, found, strict=True):
+        force[own] = bent
+    return np.concatenate(whole)
