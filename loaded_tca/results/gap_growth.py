@@ -144,7 +144,8 @@ def _add_moved_lines(
     slices = (
         slices + (np.cumsum([one.y.size for one in separations]) - [one.y.size for one in separations])[tangents.grid]
     )
-    mounted = [key for key, change in enumerate(changes) if not change.of_modifications]
+    of_modifications = [change.of_modifications for change in changes]
+    mounted = np.flatnonzero(np.logical_not(of_modifications)).tolist() if free_edges or bending is not None else []
     moved_grids = [
         [
             [moved(one, part * changes[key].difference * by) for one, by in zip(separations, motions[key], strict=True)]
@@ -167,7 +168,7 @@ def _add_moved_lines(
                 for gears, there in zip((change.below, change.above), sides, strict=True)
             )
             gaps[key] += ((high - low) / change.difference)[slices]
-    others = [key for key in range(len(changes)) if key not in mounted]
+    others = np.flatnonzero(of_modifications).tolist()
     if tangents.by_shift is not None and others:
         shifts = np.repeat(motions[others][..., 0], [one.y.size for one in separations], axis=1)
         gaps[others] += (tangents.by_shift @ shifts.T).T[:, slices]
