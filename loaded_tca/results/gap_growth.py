@@ -100,7 +100,9 @@ def gap_growth(
     touching = np.array([path.transmission_error for path in result.paths])[pairs, positions]
     turned = pair.driving * (touching - result.transmission_error[places[:2]])
     wheel_levers = np.array([grid.contact.wheel_lever for grid in grids])
-    gaps = found.gaps + (points.turns * wheel_levers - turned * points.levers[1])[:, tangents.grid]
+    gaps = found.gaps
+    for row, closed in zip(gaps, points.turns * wheel_levers - turned * points.levers[1], strict=True):
+        row += closed[tangents.grid]
     for i, (first, last) in enumerate(pairwise([0, *tangents.ends.tolist()])):
         if (own := found.covers[:, first:last]).any():
             gaps[:, first:last] += _released(grids[i], own)
