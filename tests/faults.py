@@ -33,6 +33,7 @@ class Fault(NamedTuple):
 ROWS = "studies/test_rows.py::test_malformed_row_costs_its_own_variant_and_no_other"
 BOXES = "separation/test_box.py"
 FREE_EDGES, ROUNDED = "loaded/test_free_edges.py", "loaded/test_rounded_edges.py"
+EDGE_GROWTH = "loaded/test_free_edge_growth.py::"
 AT_EDGES = "results/test_sensitivities_at_edges.py::"
 UNITS = "output/test_units.py::test_every_number_is_an_attribute_times_its_factor"
 FAULTS = (
@@ -109,8 +110,8 @@ FAULTS = (
     Fault(
         "bending: the distance of places counts along the axis of the grid alone",
         "compliance/compliance.py",
-        "np.hypot(grid.y[:, None] - grid.y, grid.force_line[:, None] - grid.force_line)",
-        "np.abs(grid.y[:, None] - grid.y)",
+        "np.hypot(grid.y[:, None] - there.y, grid.force_line[:, None] - there.force_line)",
+        "np.abs(grid.y[:, None] - there.y)",
         "compliance/test_compliance.py::test_bending_does_not_depend_on_the_axes_of_the_grid",
     ),
     *(
@@ -306,8 +307,8 @@ FAULTS = (
     Fault(
         "free edges: slices beside a tip give way half as much",
         "loaded/free_edges.py",
-        "found[place] += mean * runs.factor",
-        "found[place] += 0.5 * mean * runs.factor",
+        "found[place] += mean * near.factor",
+        "found[place] += 0.5 * mean * near.factor",
         f"{FREE_EDGES}::test_tip_that_is_free_takes_up_the_energy_of_its_slices",
     ),
     *(
@@ -350,10 +351,27 @@ FAULTS = (
     Fault(
         "sensitivities: a contact that moves is not bent otherwise by other pairs",
         "loaded/force_lines.py",
-        "own += between @ forces[j] / step",
-        "own += 0.0",
+        "found[at, at] += by_place @ forces[j][loaded[j]]",
+        "found[at, at] += (i == j) * (by_place @ forces[j][loaded[j]])",
         "loaded/test_force_lines.py::"
         "test_slices_bend_by_shifts_of_the_forces_under_their_own_load_and_that_of_other_pairs",
+    ),
+    *(
+        Fault(f"growth of free edges: {what}", "loaded/free_edge_growth.py", text, wrong, f"{EDGE_GROWTH}{test}")
+        for what, text, wrong, test in (
+            (
+                "slices keep their slope to the edge",
+                "weights @ steeper]",
+                "0.0 * (weights @ steeper)]",
+                "test_deflection_grows_as_differences_of_the_whole_say_where_the_wheel_or_the_slices_move",
+            ),
+            (
+                "slices on an edge count as inside",
+                "return 0.5 + 0.5 * np.sign(",
+                "return 0.0 + np.sign(1e-300 + ",
+                "test_slices_on_an_edge_grow_by_the_mean_of_both_sides",
+            ),
+        )
     ),
     *(
         Fault(f"sensitivities at edges: {what}", file, text, wrong, f"{AT_EDGES}{test}")
@@ -382,7 +400,7 @@ FAULTS = (
             (
                 "teeth bend below the wheel that has not moved",
                 "results/gap_growth.py",
-                "bending.mounted(side) if isinstance",
+                "bending.mounted(gears) if isinstance",
                 "bending if isinstance",
                 "test_spur_teeth_that_bend_and_centre_distance_as_by_whole_analyses",
             ),

@@ -21,7 +21,6 @@ from loaded_tca.flanks.rounding import sharp
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING, Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import GearPair
-from loaded_tca.separation import Separation
 from loaded_tca.tooth.build import Resolution, build_tooth
 from loaded_tca.tooth.families import ToothGeometry
 
@@ -88,7 +87,7 @@ class ToothCompliance:
         """The same teeth in a pair whose wheel stands elsewhere."""
         return replace(self, pair=pair)
 
-    def within(self, number: int, grid: ContactGrid) -> Array:
+    def within(self, number: int, grid: ContactGrid, under: ContactGrid | None = None) -> Array:
         """Deflection of every slice of a contact's grid per force on each, both gears together.
 
         It comes on top of the displacement of the two half-spaces that carry the same pressures.
@@ -99,22 +98,29 @@ class ToothCompliance:
             Of the tooth pair: 0 is in contact at the pitch point at phi1 = 0, +1 comes into mesh after it.
         grid : Separation or other ContactGrid
             Of its contact, in the angles of its own tooth: as if it were pair 0.
+        under : the same, optional
+            Slices of the same contact that carry the forces; default: those of the grid.
 
         Returns
         -------
-        (ny, ny) array [mm/N]
-            Symmetric.
+        (m, n) array [mm/N]
+            Symmetric where the slices are the same.
         """
-        distance = np.hypot(grid.y[:, None] - grid.y, grid.force_line[:, None] - grid.force_line)
-        on_pinion, on_wheel = self.lines(number, grid)
-        return self.pinion.within(on_pinion, distance) + self.wheel.within(on_wheel, distance)
+        there = grid if under is None else under
+        distance = np.hypot(grid.y[:, None] - there.y, grid.force_line[:, None] - there.force_line)
+        lines, forces = self.lines(number, grid), (None, None) if under is None else self.lines(number, under)
+        on_pinion, on_wheel = (
+            gear.within(line, distance, force)
+            for gear, line, force in zip((self.pinion, self.wheel), lines, forces, strict=True)
+        )
+        return on_pinion + on_wheel
 
-    def between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
+    def between(self, at: tuple[int, ContactGrid], under: tuple[int, ContactGrid]) -> Array:
         """Deflection of every slice of one contact's grid per force on each slice of another's.
 
         Parameters
         ----------
-        at, under : (int, Separation)
+        at, under : (int, Separation or other ContactGrid)
             Numbers of two different tooth pairs and grids of their contacts, as in :meth:`within`.
 
         Returns

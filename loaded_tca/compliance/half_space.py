@@ -39,6 +39,13 @@ def depth_displacement(depth: Array, distance: Array, material: Material) -> Arr
     return np.asarray(scale * (depth * depth / square + 2.0 * (1.0 - nu)) / np.sqrt(square))
 
 
+def depth_displacement_slope(depth: float, square: Array, material: Material) -> Array:
+    """Derivative of :func:`depth_displacement` by the square of the distance [1/(N mm)], at squares [mm^2]."""
+    from_force, nu = depth * depth + square, material.poisson_ratio
+    scale = (1.0 + nu) / (2.0 * math.pi * material.youngs_modulus)
+    return np.asarray(-scale * (1.5 * depth * depth / from_force + (1.0 - nu)) / (from_force * np.sqrt(from_force)))
+
+
 def line_force(points: Array, material: Material) -> tuple[Array, Array]:
     r"""Displacement and stress in a half-plane under a line force on its surface, strain being plane.
 

@@ -115,27 +115,34 @@ class GearCompliance:
         """Displacements at places of a tooth under forces at places of the one that stands so many pitches before."""
         return np.asarray(at.shares @ self._mutual[self.neighbours + away] @ under.shares.T)
 
-    def within(self, line: FlankLine, distance: Array) -> Array:
-        """Displacements (m, m) of places of one tooth per force at each [mm/N], on top of those of a half-space.
+    def within(self, line: FlankLine, distance: Array, under: FlankLine | None = None) -> Array:
+        """Displacements (m, n) of places of one tooth per force at others [mm/N], on top of those of a half-space.
 
         Parameters
         ----------
         line : FlankLine
             m places.
-        distance : (m, m) array [mm]
-            Between them, along the line.
+        distance : (m, n) array [mm]
+            Between them and those of the forces, along the line.
+        under : FlankLine, optional
+            n places of the forces; default: the same ones.
         """
-        places = self._places(line)
-        depth = (places.across @ self.table.depth * places.along).sum(axis=1)[:, None]
+        at, there = self._places(line), self._places(line if under is None else under)
         width, deviation = self._spread
-        from_start = width * (places.length[:, None] + places.length)  # of mirror images beyond the ends of the face
+        from_start = width * (at.length[:, None] + there.length)  # of mirror images beyond the ends of the face
         away = np.array([distance, from_start, 2.0 * width - from_start]) / deviation
         # Line density [1/mm], whose integral over the distances of a line is 1.
         spread = np.exp(-0.5 * away * away).sum(axis=0) / (math.sqrt(2.0 * math.pi) * deviation)
+        found = self._local(at, spread, distance)
+        mutual = found.T if under is None else self._local(there, spread.T, distance.T).T
+        return self._displaced(0, at, there) + 0.5 * (found + mutual)
+
+    def _local(self, places: _Places, spread: Array, distance: Array) -> Array:
+        """Local term (m, n) less what the half-space counts, by the depth below the m places."""
+        depth = (places.across @ self.table.depth * places.along).sum(axis=1)[:, None]
         half_space = depth_displacement(depth, distance, self.frame.gear.material)
         local = np.interp(places.height, self.table.local_height, self.table.local_value)
-        found = local[:, None] * spread - half_space
-        return self._displaced(0, places, places) + 0.5 * (found + found.T)
+        return np.asarray(local[:, None] * spread - half_space)
 
     @cached_property
     def _spread(self) -> tuple[float, float]:

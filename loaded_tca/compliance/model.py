@@ -15,7 +15,6 @@ from loaded_tca.arrays import Array
 from loaded_tca.compliance.compliance import ContactGrid, tooth_compliance, way_out_told
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import Scene
-from loaded_tca.separation import Separation
 
 
 class BendingModel(Protocol):
@@ -30,13 +29,14 @@ class BendingModel(Protocol):
     def neighbours(self) -> int:
         """How many pitches two loaded tooth pairs may be apart."""
 
-    def within(self, number: int, grid: ContactGrid) -> Array:
+    def within(self, number: int, grid: ContactGrid, under: ContactGrid | None = None) -> Array:
         """Deflection of every slice under a unit force on each, (ny, ny) [mm/N], symmetric.
 
-        On top of two half-spaces under the same pressures.
+        On top of two half-spaces under the same pressures. ``under``: other slices of the contact, which carry the
+        forces.
         """
 
-    def between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
+    def between(self, at: tuple[int, ContactGrid], under: tuple[int, ContactGrid]) -> Array:
         """Deflection of every slice of one contact under a unit force on each slice of another [mm/N].
 
         Its transpose is that of ``between(under, at)``.
@@ -67,11 +67,11 @@ class SumOfParts:
         """How many pitches two loaded tooth pairs may be apart: what the part of the fewest allows."""
         return min(part.neighbours for part in self.parts)
 
-    def within(self, number: int, grid: ContactGrid) -> Array:
-        """Deflection of every slice under a unit force on each, (ny, ny) [mm/N]."""
-        return _sum([part.within(number, grid) for part in self.parts])
+    def within(self, number: int, grid: ContactGrid, under: ContactGrid | None = None) -> Array:
+        """Deflection of every slice under a unit force on each, or on each of ``under`` [mm/N]."""
+        return _sum([part.within(number, grid, under) for part in self.parts])
 
-    def between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
+    def between(self, at: tuple[int, ContactGrid], under: tuple[int, ContactGrid]) -> Array:
         """Deflection of every slice of one contact under a unit force on each slice of another [mm/N]."""
         return _sum([part.between(at, under) for part in self.parts])
 

@@ -11,14 +11,15 @@ forces on the slices,
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from scipy.sparse import csr_array
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.compliance.model import BendingModel
-from loaded_tca.loaded.sensitivity import LoadedGrid
+from loaded_tca.loaded.sensitivity import LoadedGrid, block_diagonal
 from loaded_tca.separation import Separation
 
 STEP = 1e-2
@@ -26,8 +27,8 @@ STEP = 1e-2
 
 
 @dataclass(frozen=True, eq=False)
-class _Doubled:
-    """Slices of a grid under load, and the same ones shifted across."""
+class LoadedSlices:
+    """Slices of a grid that carry forces, as :class:`loaded_tca.compliance.compliance.ContactGrid` has them."""
 
     y: Array
     origin: Array
@@ -35,9 +36,9 @@ class _Doubled:
     force_line: Array
 
     @classmethod
-    def of(cls, grid: Separation, loaded: Indices, step: float) -> _Doubled:
-        line = np.concatenate([grid.force_line[loaded], grid.force_line[loaded] + step])
-        return cls(np.tile(grid.y[loaded], 2), grid.origin, grid.axes, line)
+    def of(cls, grid: Separation, loaded: Indices, shift: float = 0.0) -> LoadedSlices:
+        """Those with the numbers ``loaded``, shifted across the contact [mm]."""
+        return cls(grid.y[loaded], grid.origin, grid.axes, grid.force_line[loaded] + shift)
 
 
 def bending_by_shift(grids: Sequence[LoadedGrid], state: Indices, bending: BendingModel) -> csr_array:
@@ -46,6 +47,7 @@ def bending_by_shift(grids: Sequence[LoadedGrid], state: Indices, bending: Bendi
     Parameters
     ----------
     grids : sequence of LoadedGrid
+        With the compliance of their slices by the same model.
     state : (grids,) array
         That each belongs to.
     bending : BendingModel
@@ -53,37 +55,34 @@ def bending_by_shift(grids: Sequence[LoadedGrid], state: Indices, bending: Bendi
     Returns
     -------
     (slices, slices) sparse array
-        Of one state only the slices depend on each other.
+        Of one state only the slices that carry forces depend on each other.
     """
+    in_states = np.split(np.arange(len(grids)), np.flatnonzero(np.diff(state)) + 1)
+    return block_diagonal([_of_state([grids[i] for i in numbers], bending) for numbers in in_states])
+
+
+def _of_state(grids: Sequence[LoadedGrid], bending: BendingModel) -> Array:
+    """The same of one state, (slices, slices)."""
     forces = [grid.slice_force for grid in grids]
-    ends = np.cumsum([force.size for force in forces])
-    blocks: dict[tuple[int, int], Array] = {}
-    for i, grid in enumerate(grids):
-        separation, loaded = grid.separation, np.flatnonzero(forces[i])
-        count, force = loaded.size, forces[i][loaded]
-        step = STEP * separation.spacing[0] * len(separation.x)
-        both = bending.within(grid.number, _Doubled.of(separation, loaded, step))
-        by_place = (both[count:, :count] - both[:count, :count]) / step
-        own = np.zeros(forces[i].size)
-        own[loaded] = by_place @ force
-        blocks[i, i] = np.zeros((own.size, own.size))
-        blocks[i, i][np.ix_(loaded, loaded)] = by_place.T * force
-        beyond = replace(separation, force_line=separation.force_line + step)
-        for j in np.flatnonzero(state == state[i]).tolist():
-            if j != i:
-                other = grids[j].number, grids[j].separation
-                between = bending.between((grid.number, beyond), other) - bending.between(
-                    (grid.number, separation), other
-                )
-                own += between @ forces[j] / step
-                blocks[j, i] = between.T * forces[i] / step
-        blocks[i, i] += np.diag(own)
-    rows, columns, values = [], [], []
-    for (i, j), block in blocks.items():
-        at, under = (place.ravel() for place in np.indices(block.shape))
-        rows.append(at + (ends[i] - block.shape[0]))
-        columns.append(under + (ends[j] - block.shape[1]))
-        values.append(block.ravel())
-    size = int(ends[-1])
-    places = np.concatenate(rows), np.concatenate(columns)
-    return csr_array((np.concatenate(values), places), shape=(size, size))
+    first = np.cumsum([0, *(force.size for force in forces)])
+    loaded = [np.flatnonzero(force) for force in forces]
+    steps = [STEP * grid.separation.spacing[0] * len(grid.separation.x) for grid in grids]
+    held = [(grid.number, LoadedSlices.of(grid.separation, own)) for grid, own in zip(grids, loaded, strict=True)]
+    beyond = [
+        (grid.number, LoadedSlices.of(grid.separation, own, step))
+        for grid, own, step in zip(grids, loaded, steps, strict=True)
+    ]
+    found = np.zeros((first[-1], first[-1]))
+    for i, j in product(range(len(grids)), repeat=2):
+        if i == j:
+            before = grids[i].bending
+            assert before is not None
+            by_place = bending.within(grids[i].number, beyond[i][1], held[i][1])
+            by_place = by_place - before[np.ix_(loaded[i], loaded[i])]
+        else:
+            by_place = bending.between(beyond[i], held[j]) - bending.between(held[i], held[j])
+        by_place = by_place / steps[i]
+        at, under = first[i] + loaded[i], first[j] + loaded[j]
+        found[at, at] += by_place @ forces[j][loaded[j]]
+        found[np.ix_(under, at)] += by_place.T * forces[i][loaded[i]]
+    return found

@@ -22,6 +22,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple, Protocol, Self
 
 import numpy as np
@@ -104,40 +106,71 @@ class Slices(ContactGrid, Protocol):
 
 def edge_compliances(pair: GearPair, grids: Sequence[Slices]) -> list[Array | InputError | None]:
     """Return :func:`edge_compliance` of many grids, found together; an error stands in the place of what raises it."""
-    points = np.concatenate([one.origin + one.y[:, None] * one.axes[1] for one in grids])
-    there = np.concatenate([one.with_material for one in grids])
-    slices, problems = _Slices.of(grids), dict[int, InputError]()
-    radius, _, axial = pair.to_wheel(points)
-    places = (np.hypot(points[:, 0], points[:, 1]), points[:, 2]), (radius, axial)
+    slices, problems = SliceRow.of(grids), dict[int, InputError]()
     found = np.zeros(sum(one.y.size**2 for one in grids))
-    for name, gear, (rho, z) in zip(("pinion", "wheel"), (pair.pinion, pair.wheel), places, strict=True):
-        jets = gear.flank.edges(rho, z)
-        for edge, part in REACHES.items():
-            in_rho, in_z = (np.broadcast_to(by, rho.shape) for by in (jets[edge].rho, jets[edge].z))
-            distance, reach = jets[edge].value / np.hypot(in_rho, in_z), part * pair.module
-            near = (there & (np.abs(distance) < reach)).nonzero()[0]
-            if not near.size:
-                continue
-            numbers, first, count = np.unique(slices.grid[near], return_index=True, return_counts=True)
-            end = near[np.lexsort((np.abs(distance[near]), slices.grid[near]))][first]  # of each grid, the nearest one
-            normal, slope = outward_normal(sharp(gear.flank), rho[end], z[end]), np.hypot(in_rho[end], in_z[end])
-            cosine = (normal[:, 0] * in_rho[end] + normal[:, 2] * in_z[end]) / slope
-            factor = np.zeros(count.size)
-            for run, angle in enumerate(np.arccos(np.clip(cosine, -1.0, 1.0)).tolist()):
-                try:
-                    factor[run] = wedge_factor(angle, gear.material.poisson_ratio)
-                except InputError as error:
-                    end_name = f"analysis.free_edges: {gear.flank.frame.edges[edge]} of the {name}"
-                    told = InputError(f"{end_name}: {problem}" for problem in error.problems)
-                    problems.setdefault(int(numbers[run]), told)
-            runs = _Runs(near, first, count, factor)
-            _add(found, slices, runs, distance, reach, pair.module, gear.material)
+    for line in edge_lines(pair, grids):
+        if (near := NearEdge.of(pair, line, slices)) is None:
+            continue
+        for run, error in near.problems.items():
+            problems.setdefault(int(slices.grid[near.near[near.first[run]]]), error)
+        for at, under in near.pairs():
+            mean, place = near.image(at, under).mean, slices.row[near.near[at]] + slices.column[near.near[under]]
+            # no pair stands there twice
+            found[place] += mean * near.factor[near.run[at]] * near.faded[at] * near.faded[under]
     ends = np.cumsum([one.y.size**2 for one in grids])[:-1]
     matrices = [one.reshape(math.isqrt(one.size), -1) for one in np.split(found, ends)]
     return [problems.get(number, 0.5 * (one + one.T) if one.any() else None) for number, one in enumerate(matrices)]
 
 
-class _Slices(NamedTuple):
+class EdgeLine(NamedTuple):
+    """An edge of one gear, seen from the middles (n,) of the slices of all grids.
+
+    Attributes
+    ----------
+    gear, edge : int
+        Numbers: 0 pinion, 1 wheel, and that in ``REACHES``.
+    rho, z, in_rho, in_z, distance : (n,) array
+        Places on the flank, growth of the distance there, and distance [mm].
+    """
+
+    gear: int
+    edge: int
+    rho: Array
+    z: Array
+    in_rho: Array
+    in_z: Array
+    distance: Array
+
+    def factors(self, pair: GearPair, places: Indices) -> tuple[Array, dict[int, InputError]]:
+        """Psi (k,) of the edge beside some of the places, zero where there is none and the reason."""
+        gear, name = (pair.pinion, pair.wheel)[self.gear], ("pinion", "wheel")[self.gear]
+        in_rho, in_z = self.in_rho[places], self.in_z[places]
+        normal = outward_normal(sharp(gear.flank), self.rho[places], self.z[places])
+        cosine = (normal[:, 0] * in_rho + normal[:, 2] * in_z) / np.hypot(in_rho, in_z)
+        factor, problems = np.zeros(places.size), dict[int, InputError]()
+        for number, angle in enumerate(np.arccos(np.clip(cosine, -1.0, 1.0)).tolist()):
+            try:
+                factor[number] = wedge_factor(angle, gear.material.poisson_ratio)
+            except InputError as error:
+                end_name = f"analysis.free_edges: {gear.flank.frame.edges[self.edge]} of the {name}"
+                problems[number] = InputError(f"{end_name}: {problem}" for problem in error.problems)
+        return factor, problems
+
+
+def edge_lines(pair: GearPair, grids: Sequence[Slices]) -> list[EdgeLine]:
+    """Edges of both gears that add to the deflection of slices."""
+    points = np.concatenate([one.origin + one.y[:, None] * one.axes[1] for one in grids])
+    radius, _, axial = pair.to_wheel(points)
+    places, found = ((np.hypot(points[:, 0], points[:, 1]), points[:, 2]), (radius, axial)), []
+    for gear, (flank, (rho, z)) in enumerate(zip((pair.pinion.flank, pair.wheel.flank), places, strict=True)):
+        jets = flank.edges(rho, z)
+        for edge in REACHES:
+            in_rho, in_z = (np.broadcast_to(by, rho.shape) for by in (jets[edge].rho, jets[edge].z))
+            found.append(EdgeLine(gear, edge, rho, z, in_rho, in_z, jets[edge].value / np.hypot(in_rho, in_z)))
+    return found
+
+
+class SliceRow(NamedTuple):
     """Slices (n,) of all grids in one row.
 
     Attributes
@@ -148,6 +181,8 @@ class _Slices(NamedTuple):
         Where its row begins if the matrices of all grids stand in one row.
     y, width : (n,) array [mm]
         Place along the contact, and width of the slice there.
+    there : (n,) bool array
+        Whether it has material.
     """
 
     grid: Indices
@@ -155,60 +190,178 @@ class _Slices(NamedTuple):
     row: Indices
     y: Array
     width: Array
+    there: Mask
 
     @classmethod
     def of(cls, grids: Sequence[Slices]) -> Self:
+        """Of some grids."""
         size = np.array([one.y.size for one in grids])
         grid = np.repeat(np.arange(size.size), size)
         row = np.cumsum(size[grid]) - size[grid]
-        y, width = (np.concatenate([getattr(one, name) for one in grids]) for name in ("y", "widths"))
-        return cls(grid, np.arange(grid.size) - (np.cumsum(size) - size)[grid], row, y, width)
+        y, width, there = (
+            np.concatenate([getattr(one, name) for one in grids]) for name in ("y", "widths", "with_material")
+        )
+        return cls(grid, np.arange(grid.size) - (np.cumsum(size) - size)[grid], row, y, width, there)
 
 
-class _Runs(NamedTuple):
-    """Slices ``near`` (n,) an edge, grid after grid: where each grid (k,) begins, how many it has, and its psi."""
+@dataclass(frozen=True, eq=False)
+class NearEdge:
+    """Slices (n,) near an edge, grid after grid: runs (k,).
+
+    Attributes
+    ----------
+    near : (n,) int array
+        Which of all slices.
+    run, before, after : (n,) int array
+        The run of each, and the slices beside it in that run, of all slices.
+    first, size, end : (k,) int array
+        Of each run the first slice and their number, and the one of all slices that is nearest to the edge.
+    factor : (k,) array
+        Psi.
+    problems : dict of int to InputError
+        Of runs without it.
+    y, width, distance, steepness : (n,) array
+        Place along the contact and width of a slice, distance of its middle to the edge, its growth along y [mm, 1].
+    reach, module : float [mm]
+    material : Material
+    """
 
     near: Indices
+    run: Indices
+    before: Indices
+    after: Indices
     first: Indices
     size: Indices
+    end: Indices
     factor: Array
+    problems: dict[int, InputError]
+    y: Array
+    width: Array
+    distance: Array
+    steepness: Array
+    reach: float
+    module: float
+    material: Material
 
+    @classmethod
+    def of(cls, pair: GearPair, line: EdgeLine, slices: SliceRow) -> NearEdge | None:
+        """Those near an edge; None if there are none."""
+        distance, reach = line.distance, REACHES[line.edge] * pair.module
+        near = (slices.there & (np.abs(distance) < reach)).nonzero()[0]
+        if not near.size:
+            return None
+        _, first, size = np.unique(slices.grid[near], return_index=True, return_counts=True)
+        end = near[np.lexsort((np.abs(distance[near]), slices.grid[near]))][first]
+        run = np.repeat(np.arange(size.size), size)
+        before = np.maximum(near - 1, near[first][run])
+        after = np.minimum(near + 1, near[first + size - 1][run])
+        y = slices.y[near]
+        rise = risen(distance, slices.y, before, after)
+        material = (pair.pinion, pair.wheel)[line.gear].material
+        places = y, slices.width[near], distance[near], np.minimum(np.maximum(rise, -1.0), 1.0)
+        psi = line.factors(pair, end)
+        return cls(near, run, before, after, first, size, end, *psi, *places, reach, pair.module, material)
 
-def _add(
-    found: Array, slices: _Slices, runs: _Runs, distance: Array, reach: float, module: float, material: Material
-) -> None:
-    """Add to ``found``, matrices in one row [mm/N], what an edge at distances (n,) adds to the slices near it.
+    def some(self, kept: Mask) -> NearEdge:
+        """Some of the slices (n,), which lie and rise as they do among all."""
+        runs, first, size = np.unique(self.run[kept], return_index=True, return_counts=True)
+        problems = {number: self.problems[run] for number, run in enumerate(runs.tolist()) if run in self.problems}
+        of_slices = ("near", "before", "after", "y", "width", "distance", "steepness")
+        return replace(
+            self,
+            **{name: getattr(self, name)[kept] for name in of_slices},
+            run=np.repeat(np.arange(runs.size), size),
+            first=first,
+            size=size,
+            end=self.end[runs],
+            factor=self.factor[runs],
+            problems=problems,
+        )
 
-    The image of a slice is a straight line, so that 1/R has its mean over it in closed form; the mean over the slice
-    that it displaces is taken at three places.
-    """
-    near, run = runs.near, np.repeat(np.arange(runs.size.size), runs.size)
-    begin, end = near[runs.first][run], near[runs.first + runs.size - 1][run]
-    before, after = np.maximum(near - 1, begin), np.minimum(near + 1, end)
-    y, width, distance_there = slices.y[near], slices.width[near], distance[near]
-    apart = slices.y[after] - slices.y[before]
-    rise = np.divide(distance[after] - distance[before], apart, out=np.zeros(apart.shape), where=apart != 0.0)
-    rise = np.minimum(np.maximum(rise, -1.0), 1.0)
-    inside = np.maximum(distance_there, 0.0)  # a contact on an edge is beside it by rounding, or curves beyond it
-    part = inside / reach
-    faded = 1.0 - part**2 * (3.0 - 2.0 * part)  # from 1 at an edge to 0 at the end of its reach, without a kink
-    own = np.maximum(distance_there + 0.5 * width * rise * NODES[:, None], 0.0)  # (3, n), in the slice displaced
-    scale = VARIATION / quarter_space_factor(material.poisson_ratio)
-    surface = depth_displacement(np.asarray(0.0), np.asarray(1.0), material)
-    for at, under in _pairs(runs.first[run], runs.size[run]):
-        half, image, slope = 0.5 * width[under], inside[under], rise[under]
-        apart = (y[at] - y[under]) + 0.5 * width[at] * NODES[:, None]
-        both, flat = own[:, at] + image, 1.0 - slope**2
+    def pairs(self) -> Iterator[tuple[Indices, Indices]]:
+        """Every slice with each of its run, in parts."""
+        yield from _pairs(self.first[self.run], self.size[self.run])
+
+    @cached_property
+    def inside(self) -> Array:
+        """Distances (n,), of contacts on an edge, which are beside it by rounding or curve beyond it, none."""
+        return np.maximum(self.distance, 0.0)
+
+    @cached_property
+    def faded(self) -> Array:
+        """What counts (n,): from 1 at an edge to 0 at the end of its reach, without a kink."""
+        part = self.inside / self.reach
+        return np.asarray(1.0 - part**2 * (3.0 - 2.0 * part))
+
+    @cached_property
+    def nodes(self) -> Array:
+        """Distances (3, n) of places in the slices, less than zero beyond the edge [mm]."""
+        return np.asarray(self.distance + 0.5 * self.width * self.steepness * NODES[:, None])
+
+    @cached_property
+    def scales(self) -> tuple[float, float]:
+        """Variation of psi over it, and displacement of the surface by the distance [mm^2/N]."""
+        scale = VARIATION / quarter_space_factor(self.material.poisson_ratio)
+        return scale, float(depth_displacement(np.asarray(0.0), np.asarray(1.0), self.material))
+
+    def image(self, at: Indices, under: Indices) -> Image:
+        """What slices (p,) are displaced by the images of others, for psi = 1 and without fading.
+
+        The image of a slice is a straight line, so that 1/R has its mean over it in closed form; the mean over the
+        slice that it displaces is taken at three places.
+        """
+        half, image, slope = 0.5 * self.width[under], self.inside[under], self.steepness[under]
+        apart = (self.y[at] - self.y[under]) + 0.5 * self.width[at] * NODES[:, None]
+        own, least = np.maximum(self.nodes[:, at], 0.0), (WIDTH * self.module) ** 2
+        both, flat = own + image, 1.0 - slope**2
         along = apart * flat - both * slope  # of the place, from the middle of the image along it
-        square = both**2 + apart**2 * flat + (WIDTH * module) ** 2
-        off = np.sqrt(np.maximum(square - along**2, (WIDTH * module) ** 2))
+        square = both**2 + apart**2 * flat + least
+        off = np.sqrt(np.maximum(square - along**2, least))
         inverse = (np.arcsinh((half - along) / off) + np.arcsinh((half + along) / off)) / (2.0 * half)
-        varied = 1.0 + scale * (4.0 * own[:, at] * image / square - MEAN_PLACE)
+        scale, surface = self.scales
+        varied = 1.0 + scale * (4.0 * own * image / square - MEAN_PLACE)
         below = 1.0 + scale * (PLACE_BELOW - MEAN_PLACE)
-        middle = depth_displacement(np.asarray(DEPTH * module), np.sqrt(square), material)
+        middle = depth_displacement(np.asarray(DEPTH * self.module), np.sqrt(square), self.material)
         mean = (0.5 * WEIGHTS) @ (varied * surface * inverse - below * middle)
-        place = slices.row[near[at]] + slices.column[near[under]]
-        found[place] += mean * runs.factor[run[at]] * faded[at] * faded[under]  # no pair stands there twice
+        return Image(mean, own, image, slope, half, apart, along, square, off, inverse, varied, below)
+
+
+class Image(NamedTuple):
+    """What places (3, p) in slices see of the images of others (p,).
+
+    Attributes
+    ----------
+    mean : (p,) array [mm/N]
+        Displacement of the slices.
+    own, square, along, off, inverse, varied : (3, p) array
+        Distance of the places to the edge, that to the image squared and along and off its line, the mean of 1/R, the
+        variation of psi.
+    image, slope, half : (p,) array
+        Distance to the edge, its growth along y, and half width of the slices with the force.
+    apart : (3, p) array [mm]
+        Of the places from them along y.
+    below : float
+        Variation of psi in the middle of the tooth.
+    """
+
+    mean: Array
+    own: Array
+    image: Array
+    slope: Array
+    half: Array
+    apart: Array
+    along: Array
+    square: Array
+    off: Array
+    inverse: Array
+    varied: Array
+    below: float
+
+
+def risen(values: Array, y: Array, before: Indices, after: Indices) -> Array:
+    """Growth along y (..., n) of values (..., all slices) from the slices before to those after."""
+    apart, rise = y[after] - y[before], values[..., after] - values[..., before]
+    return np.divide(rise, apart, out=np.zeros(rise.shape), where=apart != 0.0)
 
 
 def _pairs(first: Indices, count: Indices) -> Iterator[tuple[Indices, Indices]]:

@@ -144,13 +144,14 @@ class _HeldBending:
         self.neighbours = model.neighbours
         self._known: dict[tuple[int, ...], tuple[tuple[Array, ...], Array]] = {}
 
-    def within(self, number: int, grid: ContactGrid) -> Array:
-        key = number, id(grid.y)
+    def within(self, number: int, grid: ContactGrid, under: ContactGrid | None = None) -> Array:
+        there = grid if under is None else under
+        key = number, id(grid.y), id(there.y)
         if key not in self._known:
-            self._known[key] = (grid.y,), self._model.within(number, grid)
+            self._known[key] = (grid.y, there.y), self._model.within(number, grid, under)
         return self._known[key][1]
 
-    def between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
+    def between(self, at: tuple[int, ContactGrid], under: tuple[int, ContactGrid]) -> Array:
         key = at[0], id(at[1].y), under[0], id(under[1].y)
         if key not in self._known:
             self._known[key] = (at[1].y, under[1].y), self._model.between(at, under)

@@ -21,7 +21,8 @@ lost where cells do change sides: their forces start at zero.
 
 References
 ----------
-Bonnans & Shapiro 2000, Perturbation Analysis of Optimization Problems, chapter 5 (minima under inequalities).
+Bonnans & Shapiro 2000, Perturbation Analysis of Optimization Problems, chapter 5 (minima under inequalities);
+Eisenstat, Elman & Schultz 1983, SIAM J. Numer. Anal. 20, 345-357 (generalised conjugate residuals).
 """
 
 from __future__ import annotations
@@ -51,8 +52,8 @@ TOLERANCE = 1e-10
 RATE_TOLERANCE = 1e-6
 """The same where c alone is wanted, which then errs by at most as much."""
 MOST_ITERATIONS = 500
-MOST_CORRECTIONS, CORRECTION = 50, 1e-2
-"""Of what the motion of the force lines adds to a linear system, and how closely each is solved."""
+MOST_STEPS = 100
+"""The same where force lines follow the forces: all steps are kept. A dozen or two are the rule."""
 CELLS_TOGETHER = 2**15
 """Of the states whose answers :func:`loaded_states` finds together, about: more take more memory and save no time."""
 
@@ -251,17 +252,9 @@ class Tangents:
         left = displacement - self.displaced(forces) if start is not None else displacement.copy()
         if self.by_shift is None:
             return forces + self._symmetric(left, goal)
-        # what the lines of the forces do is small: it is corrected for, in a few steps
         if start is not None:
             left -= self._by_lines(forces, transposed=transposed)
-        for _ in range(MOST_CORRECTIONS):
-            size = self.summed(left**2)
-            if not (size > goal).any():
-                return forces
-            step = self._symmetric(left, np.maximum(goal, CORRECTION**2 * size))
-            forces = forces + step
-            left = left - self.displaced(step) - self._by_lines(step, transposed=transposed)
-        raise self._unsolved(displacement.size, MOST_CORRECTIONS, forces)
+        return forces + self._unsymmetric(left, goal, transposed=transposed)
 
     def _symmetric(self, residual: Array, goal: Array) -> Array:
         """K^-1 of displacements (n,), to the squares ``goal`` (states,) of what is left, by conjugate gradients."""
@@ -280,6 +273,30 @@ class Tangents:
             residual -= self.spread(step) * moved
             before = np.where(left, product, 1.0)
         raise self._unsolved(residual.size, MOST_ITERATIONS, forces)
+
+    def _unsymmetric(self, residual: Array, goal: Array, *, transposed: bool) -> Array:
+        """The same where force lines follow the forces, or of the transpose, by generalised conjugate residuals.
+
+        What the lines do is small beside K: as many steps are needed as without, but each knows all earlier ones.
+        """
+        forces, residual = np.zeros(residual.size), residual.copy()
+        earlier: list[tuple[Array, Array, Array]] = []  # steps, what they displace, and its squares
+        while len(earlier) < MOST_STEPS:
+            left = self.summed(residual**2) > goal
+            if not left.any():
+                return forces
+            step = self._preconditioned(residual)
+            moved = self.displaced(step) + self._by_lines(step, transposed=transposed)
+            for before, displaced, square in earlier:
+                part = self.spread(self.summed(displaced * moved) / square)
+                step -= part * before
+                moved -= part * displaced
+            square = self.summed(moved**2)
+            earlier.append((step, moved, np.where(square > 0.0, square, 1.0)))
+            length = self.spread(np.where(left, self.summed(moved * residual) / earlier[-1][2], 0.0))
+            forces += length * step
+            residual -= length * moved
+        raise self._unsolved(residual.size, MOST_STEPS, forces)
 
     def _unsolved(self, cells: int, iterations: int, forces: Array) -> ConvergenceError:
         return ConvergenceError(
@@ -363,19 +380,26 @@ def loaded_states(
 
 def _coupling(states: Sequence[Sequence[LoadedGrid]], bending: BendingModel) -> csr_array:
     """Deflection of all slices, in one row, per force on each slice of another pair of the same state [mm/N]."""
-    rows, columns, values, first = [np.zeros(1, int)], [np.zeros(1, int)], [np.zeros(1)], 0
+    matrices = []
     for state in states:
-        ends = first + np.cumsum([grid.active.shape[1] for grid in state])
+        ends = np.cumsum([grid.active.shape[1] for grid in state])
+        matrix = np.zeros((ends[-1], ends[-1]))
         for (one, i), (two, j) in combinations(zip(state, ends.tolist(), strict=True), 2):
-            matrix = bending.between((one.number, one.separation), (two.number, two.separation))
-            at, under = (place.ravel() for place in np.indices(matrix.shape))
-            at, under = at + (i - matrix.shape[0]), under + (j - matrix.shape[1])
-            rows += [at, under]
-            columns += [under, at]
-            values += [matrix.ravel()] * 2
-        first = int(ends[-1])
-    places = np.concatenate(rows), np.concatenate(columns)
-    return csr_array((np.concatenate(values), places), shape=(first, first))
+            between = bending.between((one.number, one.separation), (two.number, two.separation))
+            at, under = slice(i - between.shape[0], i), slice(j - between.shape[1], j)
+            matrix[at, under], matrix[under, at] = between, between.T
+        matrices.append(matrix)
+    return block_diagonal(matrices)
+
+
+def block_diagonal(matrices: Sequence[Array]) -> csr_array:
+    """Square matrices of single states as one of all their places."""
+    sizes = np.array([len(matrix) for matrix in matrices])
+    ends = np.cumsum(sizes)
+    columns = [np.tile(np.arange(end - size, end), size) for end, size in zip(ends, sizes, strict=True)]
+    rows = np.concatenate([[0], np.cumsum(np.repeat(sizes, sizes))])
+    values = np.concatenate([matrix.ravel() for matrix in matrices])
+    return csr_array((values, np.concatenate(columns), rows), shape=(ends[-1], ends[-1]))
 
 
 def _alike(grids: Sequence[LoadedGrid], ends: Indices) -> list[list[tuple[LoadedGrid, Indices]]]:

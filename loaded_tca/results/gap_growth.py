@@ -17,14 +17,14 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel, SumOfParts
 from loaded_tca.contact.cuts import crowding_growth
-from loaded_tca.errors import InputError
-from loaded_tca.loaded.free_edges import edge_compliances
+from loaded_tca.loaded.force_lines import LoadedSlices
+from loaded_tca.loaded.free_edge_growth import MovedSlices, edge_deflection_growth
 from loaded_tca.loaded.sensitivity import LoadedGrid, Tangents
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.separation import Separation
-from loaded_tca.separation.gap_change import contact_changes
+from loaded_tca.separation.gap_change import OF_GRIDS, contact_changes
 from loaded_tca.separation.pair_change import PairChange
 
 Grid = TypeVar("Grid", Separation, PressureMap)
@@ -88,6 +88,9 @@ def gap_growth(
     changes : sequence of PairChange
     """
     pair, grids, (_, positions, pairs) = result.gear_pair, tangents.grids, places
+    if not changes:
+        none = np.zeros((0, pairs.size))
+        return GapGrowth(np.zeros((0, tangents.grid.size)), none, np.zeros((*none.shape, OF_GRIDS)), none)
     separations = [grid.separation for grid in grids]
     held = contact_changes(
         pair, [grid.contact for grid in grids], separations, [grid.active for grid in grids], changes
@@ -97,11 +100,14 @@ def gap_growth(
     touching = np.array([path.transmission_error for path in result.paths])[pairs, positions]
     turned = pair.driving * (touching - result.transmission_error[places[:2]])
     wheel_levers = np.array([grid.contact.wheel_lever for grid in grids])
-    gaps = found.gaps + (points.turns * wheel_levers - turned * points.levers[1])[:, tangents.grid]
+    gaps = found.gaps
+    for row, closed in zip(gaps, points.turns * wheel_levers - turned * points.levers[1], strict=True):
+        row += closed[tangents.grid]
     for i, (first, last) in enumerate(pairwise([0, *tangents.ends.tolist()])):
         if (own := found.covers[:, first:last]).any():
             gaps[:, first:last] += _released(grids[i], own)
-    _add_moved_lines(tangents, bending, changes, found.motions, gaps, free_edges=result.scene.analysis.free_edges)
+    free_edges = result.scene.analysis.free_edges
+    _add_moved_lines(pair, tangents, bending, changes, found.motions, gaps, free_edges=free_edges)
     return GapGrowth(gaps, result.normal_force[places] * points.levers[0], found.motions, points.turns)
 
 
@@ -124,6 +130,7 @@ def moved(grid: Grid, motion: Array) -> Grid:
 
 
 def _add_moved_lines(
+    pair: GearPair,
     tangents: Tangents,
     bending: BendingModel | None,
     changes: Sequence[PairChange],
@@ -139,46 +146,50 @@ def _add_moved_lines(
     slices = (
         slices + (np.cumsum([one.y.size for one in separations]) - [one.y.size for one in separations])[tangents.grid]
     )
-    mounted = [key for key, change in enumerate(changes) if not change.of_modifications]
-    for key in mounted:
-        change = changes[key]
-        low, high = (  # either side: faces of one width have a kink between
-            _displaced(
-                tangents,
-                bending.mounted(side) if isinstance(bending, SumOfParts) else bending,
-                side if free_edges else None,
-                [moved(one, part * change.difference * by) for one, by in zip(separations, motions[key], strict=True)],
+    of_modifications = [change.of_modifications for change in changes]
+    mounted = np.flatnonzero(np.logical_not(of_modifications)).tolist() if free_edges or bending is not None else []
+    moved_grids = [
+        [
+            [moved(one, part * changes[key].difference * by) for one, by in zip(separations, motions[key], strict=True)]
+            for part in (-0.5, 0.5)
+        ]
+        for key in mounted
+    ]
+    forces = np.concatenate([grid.slice_force for grid in grids])
+    if free_edges and mounted:
+        steps = [
+            MovedSlices((changes[key].below, low), (changes[key].above, high), changes[key].difference)
+            for key, (low, high) in zip(mounted, moved_grids, strict=True)
+        ]
+        gaps[mounted] += edge_deflection_growth(pair, separations, forces, steps)[:, slices]
+    for key, sides in zip(mounted, moved_grids, strict=True):
+        if bending is not None:
+            change = changes[key]
+            low, high = (
+                _bent(tangents, bending.mounted(gears) if isinstance(bending, SumOfParts) else bending, there)
+                for gears, there in zip((change.below, change.above), sides, strict=True)
             )
-            for side, part in ((change.below, -0.5), (change.above, 0.5))
-        )
-        gaps[key] += ((high - low) / change.difference)[slices]
-    others = [key for key in range(len(changes)) if key not in mounted]
+            gaps[key] += ((high - low) / change.difference)[slices]
+    others = np.flatnonzero(of_modifications).tolist()
     if tangents.by_shift is not None and others:
         shifts = np.repeat(motions[others][..., 0], [one.y.size for one in separations], axis=1)
         gaps[others] += (tangents.by_shift @ shifts.T).T[:, slices]
 
 
-def _displaced(
-    tangents: Tangents, bending: BendingModel | None, pair: GearPair | None, separations: Sequence[Separation]
-) -> Array:
-    """Deflection of the slices of all grids, in one row [mm], under the forces as they are, on other grids.
-
-    ``pair``: whose free edges count; None: there are none.
-    """
-    grids, forces = tangents.grids, [grid.slice_force for grid in tangents.grids]
-    found = [np.zeros(force.shape) for force in forces]
-    if pair is not None:
-        for i, ends in enumerate(edge_compliances(pair, separations)):
-            if isinstance(ends, InputError):
-                raise ends
-            if ends is not None:
-                found[i] += ends @ forces[i]
-    if bending is not None:
-        for i, (grid, one) in enumerate(zip(grids, separations, strict=True)):
-            found[i] += bending.within(grid.number, one) @ forces[i]
-        for state in np.split(np.arange(len(grids)), np.flatnonzero(np.diff(tangents.state)) + 1):
-            for i, j in combinations(state.tolist(), 2):
-                between = bending.between((grids[i].number, separations[i]), (grids[j].number, separations[j]))
-                found[i] += between @ forces[j]
-                found[j] += between.T @ forces[i]
-    return np.concatenate(found)
+def _bent(tangents: Tangents, bending: BendingModel, separations: Sequence[Separation]) -> Array:
+    """Bending of the slices of all grids, in one row [mm], under the forces as they are, on other grids."""
+    grids, whole = tangents.grids, [grid.slice_force for grid in tangents.grids]
+    loaded = [np.flatnonzero(force) for force in whole]
+    forces = [force[own] for force, own in zip(whole, loaded, strict=True)]
+    lines = [
+        (grid.number, LoadedSlices.of(one, own)) for grid, one, own in zip(grids, separations, loaded, strict=True)
+    ]
+    found = [bending.within(*line) @ force for line, force in zip(lines, forces, strict=True)]
+    for state in np.split(np.arange(len(grids)), np.flatnonzero(np.diff(tangents.state)) + 1):
+        for i, j in combinations(state.tolist(), 2):
+            between = bending.between(lines[i], lines[j])
+            found[i] += between @ forces[j]
+            found[j] += between.T @ forces[i]
+    for force, own, bent in zip(whole, loaded, found, strict=True):
+        force[own] = bent
+    return np.concatenate(whole)

@@ -125,9 +125,9 @@ class _Stencil:
         grown_there[1] -= turned[:, None] * self.lever_parts[contact]
         planes = np.repeat(self.planes[:, contact, None], 5, axis=1)
         points = self.points[0].at(contact), self.points[1].at(contact)
-        along = np.zeros((2, len(turned), 5, 2))
+        heights, tilts = np.zeros((2, 5)), np.zeros((len(turned), 5, 2))
         motions = np.repeat(np.eye(2)[None], 5, axis=0)
-        return Places(points, planes, grown_there, along, self.rising[:, contact], motions)
+        return Places(points, planes, grown_there, heights, tilts, self.rising[:, contact], motions)
 
 
 def point_changes(

@@ -41,8 +41,8 @@ class ContactChanges:
     ----------
     gaps : (keys, n) array [mm per unit of the key]
         Growth of the gaps at chosen cells of all grids, in one row, the wheel turned back into contact.
-    by_tilt : (keys, n) array [mm per unit of the key]
-        Growth of the gaps as the normals of the grids tilt with those of the contacts.
+    tilt_slopes : (n, 2) array [mm/rad]
+        Growth of the gaps as the normals of the grids tilt along x and y.
     lever_parts : (n,) array
         Lever of the wheel's flank at each cell over that at the contact point of its grid: how much it moves if the
         wheel is turned.
@@ -59,7 +59,7 @@ class ContactChanges:
     """
 
     gaps: Array
-    by_tilt: Array
+    tilt_slopes: Array
     lever_parts: Array
     slopes: Array
     contact: Indices
@@ -94,9 +94,10 @@ class ContactChanges:
         plane[edges] = following(border.of_keys(edges), of_border, parts, plane[edges], scales)
         motions[edges, :, MOTIONS:-1], motions[edges, :, -1] = points.tilts[edges], points.lifts[edges]
         gaps, covers = self.gaps.copy(), np.zeros(self.gaps.shape)
-        gaps[edges] += self.by_tilt[edges]
-        for motion in range(MOTIONS):
-            gaps += plane[:, self.contact, motion] * self.slopes[:, motion]
+        for key in edges.tolist():
+            gaps[key] += (points.tilts[key, self.contact] * self.tilt_slopes).sum(axis=-1)
+        for key in np.flatnonzero(plane.any(axis=(1, 2))).tolist():
+            gaps[key] += (plane[key, self.contact] * self.slopes).sum(axis=-1)
         by_motion = (plane[:, of_border] * border.slopes).sum(axis=-1)
         covers[np.ix_(edges, border.cell)] = (border.rates + by_motion)[edges]
         return MovedContacts(gaps, covers, motions)
@@ -153,13 +154,12 @@ def contact_changes(
         np.concatenate([getattr(grid, name)[place[axis]] for grid, place in zip(separations, places, strict=True)])
         for axis, name in enumerate("xy")
     )
-    gaps, by_tilt = np.zeros((2, len(changes), contact.size))
-    lever_parts = np.zeros(contact.size)
-    slopes = np.zeros((contact.size, MOTIONS))
+    gaps, lever_parts = np.zeros((len(changes), contact.size)), np.zeros(contact.size)
+    tilt_slopes, slopes = np.zeros((contact.size, 2)), np.zeros((contact.size, MOTIONS))
     for first in range(0, contact.size, TOGETHER):
         part = slice(first, first + TOGETHER)
         at, lever_parts[part] = met.at(contact[part], x[part], y[part])
-        gaps[:, part], by_tilt[:, part], slopes[part] = at.gaps, at.gaps_by_tilt, at.gap_slopes
+        gaps[:, part], tilt_slopes[part], slopes[part] = at.gaps, at.tilt_slopes, at.gap_slopes
     near = np.concatenate([_near_edges(grid.cover)[own] for grid, own in zip(separations, cells, strict=True)])
     cell = np.flatnonzero(near)
     own, (dx, dy) = np.tile(contact[cell], 3), np.array([one.spacing for one in separations])[contact[cell]].T
@@ -171,7 +171,7 @@ def contact_changes(
     )
     border = BorderCells.of(pair, beside, cell, changes)
     moves_edges = np.array([not change.of_modifications for change in changes], dtype=bool)
-    return ContactChanges(gaps, by_tilt, lever_parts, slopes, contact, border, met.at_points, moves_edges)
+    return ContactChanges(gaps, tilt_slopes, lever_parts, slopes, contact, border, met.at_points, moves_edges)
 
 
 class _Met:
@@ -204,8 +204,8 @@ class _Met:
             ((one.point - origins[contact]) * plane[:, 2]).sum(axis=-1)
             for one, origins, plane in zip(points, self.origins, planes, strict=True)
         ]
-        along = np.stack([height[:, None] * self.at_points.tilts[:, contact] for height in heights])
-        return Places(points, planes, growth, along, rising, grid_motions(x, y)), levers
+        tilts = self.at_points.tilts[:, contact]
+        return Places(points, planes, growth, np.array(heights), tilts, rising, grid_motions(x, y)), levers
 
 
 def _near_edges(cover: Array) -> Mask:

@@ -88,8 +88,10 @@ class Places:
         Axes of the plane and its normal in the frames of pinion and wheel.
     grown : (2, keys, n) array [mm per unit]
         Growth of both flanks along the normals, the wheel turned back into contact.
-    along : (2, keys, n, 2) array [mm per unit]
-        Motion of the normals at both flanks along x and y, as they tilt.
+    heights : (2, n) array [mm]
+        Of the points of both flanks over the plane.
+    tilts : (keys, n, 2) array [rad per unit]
+        Growth of the normal along x and y.
     slopes : (2, n, 2) array
         The same by the motion of the place along x and y.
     motions : (n, k, 2) array
@@ -99,7 +101,8 @@ class Places:
     points: tuple[FlankPoints, FlankPoints]
     planes: Array
     grown: Array
-    along: Array
+    heights: Array
+    tilts: Array
     slopes: Array
     motions: Array
 
@@ -114,17 +117,17 @@ class Places:
         return np.asarray(self.grown[1] - self.grown[0])
 
     @property
-    def gaps_by_tilt(self) -> Array:
-        """Growth of the gaps (keys, n) as the normals tilt."""
-        first, second = (self.along * self.slopes[:, None]).sum(axis=-1)
+    def tilt_slopes(self) -> Array:
+        """Growth of the gaps (n, 2) by tilts of the normals along x and y."""
+        first, second = self.heights[..., None] * self.slopes
         return np.asarray(second - first)
 
     def growth(self, pair: GearPair, gear: int, distance: Distance, changes: Sequence[PairChange]) -> Array:
         """Growth (keys, n) of a distance on one of the flanks, on planes that are held."""
-        points = self.points[gear]
-        rise = self.grown[gear] + (self.along[gear] * self.slopes[gear]).sum(axis=-1)
+        points, along = self.points[gear], self.heights[gear][:, None] * self.tilts
+        rise = self.grown[gear] + (along * self.slopes[gear]).sum(axis=-1)
         moved = rise[..., None] * self.planes[gear, :, 2]
-        moved += np.einsum("kna,nai->kni", self.along[gear], self.planes[gear, :, :2])
+        moved += np.einsum("kna,nai->kni", along, self.planes[gear, :, :2])
         for key, change in enumerate(changes if gear == 1 else ()):
             if change.of_mounting:
                 moved[key] -= moved_below(pair, change, points)

@@ -3,7 +3,7 @@ import math
 import numpy as np
 from numpy.testing import assert_allclose
 
-from loaded_tca.compliance.half_space import depth_displacement, line_force
+from loaded_tca.compliance.half_space import depth_displacement, depth_displacement_slope, line_force
 from loaded_tca.material import Material
 
 STEEL = Material()
@@ -32,6 +32,12 @@ def test_stress_of_a_line_force_balances_it():
     arc = 3.0 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     traction = np.einsum("nab,nb->na", line_force(arc, STEEL)[1], arc)
     assert_allclose(weight @ traction, [-1.0, 0.0], atol=1e-12)  # a force of one, summed over the nodes: 9e-18 seen
+
+
+def test_displacement_at_a_depth_falls_with_the_square_of_the_distance_as_its_differences_say():
+    square, depth = np.array([0.01, 0.5, 1.0, 9.0]), 2.3
+    low, high = (depth_displacement(np.asarray(depth), np.sqrt(square + by), STEEL) for by in (-STEP, STEP))
+    assert_allclose(depth_displacement_slope(depth, square, STEEL), (high - low) / (2.0 * STEP), rtol=DIFFERENCES)
 
 
 def test_line_force_is_a_line_of_point_forces():

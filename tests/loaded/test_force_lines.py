@@ -1,10 +1,12 @@
 """Teeth that bend at the centres of pressure: against slopes of a bilinear compliance by hand, and dense problems."""
 
 import warnings
+from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca import analyse, read_scene, sample_separation, trace_contact
@@ -14,14 +16,17 @@ from loaded_tca.loaded.sensitivity import Tangents
 from tests.samples.gear_pairs import gear_pair
 from tests.samples.results import SCENES
 
+FAR = 15.0
+"""Times the motion of the lines, with which they displace more than what they follow: K^-1 of it is no correction."""
+
 
 class Bilinear:
     """Teeth whose compliance grows linearly with the places of both slices, more at one end of each contact."""
 
     HIGHER = np.array([0.3, -0.2, 0.1])  # 1/mm, in the fixed frame
 
-    def within(self, number, grid):
-        return (2.0 + number) * self.between((number, grid), (number, grid))
+    def within(self, number, grid, under=None):
+        return (2.0 + number) * self.between((number, grid), (number, grid if under is None else under))
 
     def between(self, at, under):
         (higher, along), (other, beside) = ((self.height(grid), self.ending(grid)) for _, grid in (at, under))
@@ -41,7 +46,8 @@ def loaded_grids(rng):
     for number, pitches, cells in ((0, -0.3, (6, 5)), (1, 0.2, (5, 7)), (0, 0.1, (6, 4))):
         contact = trace_contact(pair, [pitches * pair.pitch])[0]
         grid = sample_separation(pair, contact, cells=cells, box=(0.2, 2.0))
-        grids.append(SimpleNamespace(number=number, separation=grid, slice_force=rng.random(cells[1])))
+        force, bending = rng.random(cells[1]), Bilinear().within(number, grid)
+        grids.append(SimpleNamespace(number=number, separation=grid, slice_force=force, bending=bending))
     return grids, np.array([0, 0, 1])
 
 
@@ -65,19 +71,24 @@ def test_slices_bend_by_shifts_of_the_forces_under_their_own_load_and_that_of_ot
 
 
 @cache
-def tangents():
-    """Of two states of helical gears, under teeth whose compliance follows the places of the forces."""
+def tangents(times=1.0):
+    """Of two states of helical gears, under teeth whose compliance follows the places of the forces, so many times."""
     coarse = {"analysis.cells": (16, 16), "analysis.positions": 3, "analysis.compliance": "contact"}
     changes = {**coarse, "analysis.free_edges": False, "analysis.torques_Nm": (130.0,), "analysis.accuracy": None}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)  # contacts on edges
         result = analyse(read_scene(SCENES / "mesh_cycle_helical.toml").with_changes(changes))
-    held = Tangents([state for state in result.states[1].grids if state])
-    return held, held.with_lines(bending_by_shift(held.grids, held.state, Bilinear()))
+    states = [
+        [replace(grid, bending=Bilinear().within(grid.number, grid.separation)) for grid in state]
+        for state in result.states[1].grids
+    ]
+    held = Tangents(states)
+    return held, held.with_lines(times * bending_by_shift(held.grids, held.state, Bilinear()))
 
 
-def test_forces_of_lines_that_follow_displace_the_cells_as_asked_and_the_transposed_system_is_adjoint(rng):
-    held, follow = tangents()
+@pytest.mark.parametrize("times", [1.0, FAR])
+def test_forces_of_lines_that_follow_displace_the_cells_as_asked_and_the_transposed_system_is_adjoint(times, rng):
+    held, follow = tangents(times)
     one, two = rng.normal(size=(2, held.grid.size))
     forces, adjoint = follow.solved(one), follow.solved(two, transposed=True)
     shifts = np.zeros(follow.by_shift.shape[0])

@@ -131,6 +131,15 @@ BOTH_GEARS = [
     for gear in ("pinion", "wheel")
     for name in ("lead_crowning", "profile_crowning", "helix_slope", "profile_slope", "twist", "tip_relief")
 ]
+TORQUE = "load.pinion_torque_Nm"
+KINDS = {
+    "the torque alone": [TORQUE],
+    "one modification": [CROWNING],
+    "four modifications": [CROWNING, SLOPE, f"{PINION}profile_crowning_um", f"{WHEEL}lead_crowning_um"],
+    "one mounting error": [CENTRE_DISTANCE],
+    "four mounting errors": [CENTRE_DISTANCE, AXIAL_OFFSET, MISALIGNMENT, "mounting.in_plane_deg"],
+}
+"""Keys of ``helical.toml`` whose cost is told by kind."""
 MOUNTING = {
     "cylindrical": (
         "in_plane_deg",
@@ -151,7 +160,7 @@ def reliefs(start: str, pinion: float, wheel: float) -> dict[str, Any]:
 
 def twenty(kind: str, changes: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:
     """Changes of a scene and twenty keys: modifications, mounting errors, the torque, and of the changes."""
-    keys = [*BOTH_GEARS, *(f"mounting.{name}" for name in MOUNTING[kind]), "load.pinion_torque_Nm"]
+    keys = [*BOTH_GEARS, *(f"mounting.{name}" for name in MOUNTING[kind]), TORQUE]
     return changes, [*keys, *(key for key in changes if key not in keys)][:20]
 
 
@@ -326,7 +335,7 @@ def rows() -> list[Row]:
     ]:
         for setting in SETTINGS:
             found += rows_of(name, setting, cells, key)
-    return found
+    return [*found, *rows_of_cost()]
 
 
 def rows_of(name: str, setting: str, cells: int, key: str) -> Iterator[Row]:
@@ -443,6 +452,31 @@ def cost(name: str, setting: str, accuracy: float) -> dict[str, float]:
     return {**medians(times), "ratio": median_ratio(times["sensitivities"], times["analysis"])}
 
 
+def cost_of_kinds() -> dict[str, float]:
+    """Processor time of derivatives of the transmission error by keys of each kind over that of the analysis."""
+    scene = read_scene(SCENES / "helical.toml")
+    analyses: list[float] = []
+    times: dict[str, list[float]] = {kind: [] for kind in KINDS}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)
+        analyse(scene)
+        for _ in range(RUNS):
+            result, analysis = timed(lambda: analyse(scene), clock=time.process_time)
+            analyses += analysis
+            for kind, keys in KINDS.items():
+                times[kind] += timed(
+                    lambda of=result, by=keys: of.sensitivities(by).transmission_error, clock=time.process_time
+                )[1]
+    return {kind: median_ratio(own, analyses) for kind, own in times.items()}
+
+
+def rows_of_cost() -> Iterator[Row]:
+    """What keys of each kind cost; shown alone, as it is another on every machine."""
+    for kind, ratio in in_a_process(cost_of_kinds).items():
+        words = f"processor time of d transmission error by {kind}, over the analysis, helical.toml"
+        yield Row(CASE, "its analysis", words, 0.0, ratio, None)
+
+
 def all_finite(result: MeshCycle, keys: list[str]) -> bool:
     """Whether every state has sensitivities of the transmission error and of the pressure norm."""
     found = result.sensitivities(keys)
@@ -530,6 +564,12 @@ def of_cost() -> str:
                 found.append([PAIRS[name], setting, f"{accuracy:g}", *times])
                 print(*found[-1], flush=True)
     return table("pair | setting | accuracy | analysis [s] | sensitivities [s] | ratio", found, SPACED)
+
+
+def of_kinds() -> str:
+    """The same by the kind of the keys."""
+    ratios = in_a_process(cost_of_kinds)
+    return table("keys | ratio", [[kind, f"{100.0 * ratio:.0f} %"] for kind, ratio in ratios.items()], SPACED)
 
 
 def of_studies(scenes: Mapping[float, Scattered]) -> str:
@@ -715,6 +755,11 @@ whose result they are derivatives of: processor time in one process with one thr
 turns, and of their ratios; asked below 50 %. Scenes with tip reliefs on both gears. {machine()}.
 
 {of_cost()}
+
+The transmission error of `helical.toml` (21 positions, one torque), by the kind of the keys: that of the torque is
+what all keys share, the solution with force lines that follow the forces and how these bend the teeth.
+
+{of_kinds()}
 """
 
 
