@@ -32,6 +32,7 @@ from loaded_tca.results.root_stress import stress_at_extreme
 from loaded_tca.results.slice_pressure import largest_slice_pressures
 from loaded_tca.results.warnings import warn_of_contacts
 from loaded_tca.separation.pair_change import PairChange, pair_changes
+from loaded_tca.threads import one_blas_thread
 from loaded_tca.unloaded.harmonics import harmonic_coefficients
 
 if TYPE_CHECKING:
@@ -268,8 +269,9 @@ class Sensitivities:
         """Of an extreme of the root stress, (torque, position, gear, key)."""
         places = getattr(self.result, f"{name}_place")
         found = np.full((*places.shape[:-1], len(self.keys)), np.nan)
-        for gear in range(places.shape[-2]):
-            found[(*self.places, gear)] = self._at_extremes(gear, places[(*self.places, gear)].tolist()).T
+        with one_blas_thread():
+            for gear in range(places.shape[-2]):
+                found[(*self.places, gear)] = self._at_extremes(gear, places[(*self.places, gear)].tolist()).T
         return found
 
     def _at_extremes(self, gear: int, places: Sequence[Sequence[int]]) -> Array:
@@ -427,13 +429,14 @@ def sensitivities(result: CycleNumbers, keys: Sequence[str]) -> Sensitivities:
     loaded = states if states is not None and solved == result.scene else states_of_maps(result)
     count = [len(state) for state in loaded.grids]
     require((any(count), "sensitivities: no tooth pair of the result carries load"))
-    tangents = loaded.tangents(LINEAR)
-    if loaded.bending is not None:
-        tangents = tangents.with_lines(bending_by_shift(tangents.grids, tangents.state, loaded.bending))
     pairs = result.pair.tolist()
     places = np.array(np.unravel_index(np.flatnonzero(count), result.transmission_error.shape))
-    columns = np.array([pairs.index(grid.number) for grid in tangents.grids])
-    found = gap_growth(result, tangents, loaded.bending, (*places[:, tangents.state], columns), changes)
+    with one_blas_thread():
+        tangents = loaded.tangents(LINEAR)
+        if loaded.bending is not None:
+            tangents = tangents.with_lines(bending_by_shift(tangents.grids, tangents.state, loaded.bending))
+        columns = np.array([pairs.index(grid.number) for grid in tangents.grids])
+        found = gap_growth(result, tangents, loaded.bending, (*places[:, tangents.state], columns), changes)
     by_key = dict(zip(named, changes, strict=True))
     every = tuple(by_key.get(key) for key in keys)
     made = Sensitivities(tuple(keys), result, tangents, places, columns, found.at_keys(at, len(keys)), every)
