@@ -65,6 +65,7 @@ LONG = (
     "loaded.rounded_edges",
     "loaded.root_stress_families",
     "loaded.jumps",
+    "loaded.random_sensitivities",
     "loaded.moving_edges",
     "loaded.bending_line",
     "loaded.face_ends",
