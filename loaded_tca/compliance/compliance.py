@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -17,6 +18,7 @@ from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_comp
 from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.compliance.torsion import body_torsion
 from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning, named, require
+from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import sharp
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING, Material
 from loaded_tca.pairs.gear import Gear
@@ -27,6 +29,8 @@ from loaded_tca.tooth.families import ToothGeometry
 LAYERS_PER_HEIGHT = 2.5
 """Layers of elements across a face as wide as the teeth are high; between the two numbers below."""
 FEWEST_LAYERS, MOST_LAYERS = 6, 24
+NEWTON_STEPS = 2
+"""From the tangent plane to the flank, a fiftieth of the distance along it: the second leaves 1e-6 of that."""
 CHECKED = Resolution(flank=9, fillet=5, land=3, lengthwise=5)
 """Points of a tooth that is built to see whether it exists."""
 
@@ -150,6 +154,8 @@ class ToothCompliance:
 def flank_lines(pair: GearPair, number: int, grid: ContactGrid) -> tuple[FlankLine, FlankLine]:
     """Places on the flanks of pinion and wheel where the forces of the slices of a contact's grid act.
 
+    The normal of the contact meets them there: far along the contact flanks of spiral teeth leave its tangent plane.
+
     Parameters
     ----------
     pair : GearPair
@@ -159,10 +165,33 @@ def flank_lines(pair: GearPair, number: int, grid: ContactGrid) -> tuple[FlankLi
         In the angles of its own tooth: as if it were pair 0.
     """
     points = grid.origin + grid.force_line[:, None] * grid.axes[0] + grid.y[:, None] * grid.axes[1]
+    points = _on_flank(sharp(pair.pinion.flank), points, grid.axes[2], grid.origin)
     radius, _, axial = pair.to_wheel(points)
     tooth = pair.sense * number
     on_pinion = FlankLine(-tooth, np.hypot(points[:, 0], points[:, 1]), points[:, 2])
     return on_pinion, FlankLine(tooth, radius, axial)
+
+
+def _section(points: Array) -> tuple[Array, Array]:
+    """Places (rho, z) of points (n, 3)."""
+    return np.hypot(points[:, 0], points[:, 1]), points[:, 2]
+
+
+def _on_flank(flank: Flank, points: Array, normal: Array, origin: Array) -> Array:
+    """Points (n, 3) moved along a normal onto a flank through an origin; where there is none they stay."""
+    turned = math.atan2(origin[1], origin[0]) - float(np.ravel(flank.theta(*_section(origin[None])).value)[0])
+    found = points
+    for _ in range(NEWTON_STEPS):
+        rho, z = _section(found)
+        theta = flank.theta(rho, z)
+        off = np.arctan2(found[:, 1], found[:, 0]) - theta.value - turned
+        off = np.remainder(off + math.pi, 2.0 * math.pi) - math.pi
+        outwards = (found[:, :2] @ normal[:2]) / rho
+        steep = (
+            (found[:, 0] * normal[1] - found[:, 1] * normal[0]) / rho**2 - theta.rho * outwards - theta.z * normal[2]
+        )
+        found = found - (off / steep)[:, None] * normal
+    return np.where(np.isfinite(found).all(axis=1, keepdims=True), found, points)
 
 
 TEETH_DO_NOT_BEND = 'analysis.compliance = "contact"'

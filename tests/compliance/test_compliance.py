@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.optimize import root_scalar
 
-from loaded_tca.compliance import MeshDensity, default_density, tooth_compliance
+from loaded_tca.compliance import MeshDensity, default_density, flank_lines, tooth_compliance
 from loaded_tca.errors import InputError
 from loaded_tca.gears import CylindricalGear, CylindricalMesh, bevel_mesh
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
@@ -28,6 +29,8 @@ PITCH = 2.0 * math.pi / 25
 STANDARD = 0.1
 """The standard's stiffness is an average of measurements."""
 ROUNDING = 1e-9
+MET = 1e-7
+"""Lengths [mm], to which flanks are met."""
 CONVERGED = 0.02
 
 
@@ -205,3 +208,27 @@ def test_material_that_keeps_its_volume_is_refused(member, ratio):
         InputError, match=f"^{member}: poisson_ratio: {ratio} is above 0.49: finite elements would lock$"
     ):
         tooth_compliance(pair, density=COARSE)
+
+
+@pytest.mark.parametrize("made_of", [made_of_bevels, made_of_face_milled])
+def test_forces_act_on_the_flanks_however_far_from_the_contact_point(made_of):
+    """Flanks of spiral teeth leave the tangent plane of their contact point; roots along its normal, one by one."""
+    pair = made_of().pair
+    contact = trace_contact(pair, [0.0])[0]
+    grid = sample_separation(pair, contact, cells=(8, 9), box=(0.1, 0.6 * pair.face_width))
+    on_pinion, on_wheel = flank_lines(pair, 0, grid)
+    farthest = 0.0
+    for n, y in enumerate(grid.y):
+        start = grid.origin + grid.force_line[n] * grid.axes[0] + y * grid.axes[1]
+
+        def off(way, start=start):
+            x, y, z = start + way * contact.normal
+            theta = pair.pinion.flank.theta(np.array(np.hypot(x, y)), np.array(z)).value
+            return math.remainder(math.atan2(y, x) - float(theta) - pair.sense * contact.pinion_angle, 2.0 * math.pi)
+
+        way = root_scalar(off, bracket=(-2.0, 2.0), xtol=1e-12).root
+        point, farthest = start + way * contact.normal, max(farthest, abs(way))
+        radius, _, axial = pair.to_wheel(point)
+        assert_allclose((on_pinion.rho[n], on_pinion.z[n]), (np.hypot(*point[:2]), point[2]), rtol=0, atol=MET)
+        assert_allclose((on_wheel.rho[n], on_wheel.z[n]), (radius, axial), rtol=0, atol=MET)
+    assert farthest > 0.05

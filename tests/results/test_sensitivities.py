@@ -178,7 +178,7 @@ def test_pressure_norm_grows_with_the_torque_as_between_two_analyses():
     ("name", "changes"), [("mesh_cycle_helical", {}), ("mesh_cycle_bevel", {}), ("spur", ONE_PAIR)]
 )
 def test_transmission_error_changes_with_the_torque_by_the_inverse_of_the_mesh_stiffness(name, changes, bends):
-    one = analysed(name, bends, tuple(changes.items()), 24, 3)
+    one = analysed(name, bends, tuple(changes.items()), 48, 3)
     found = one.sensitivities([TORQUE]).transmission_error[..., 0]  # rad per N m
     lengths = 1e3 * np.prod(one.gear_pair.base_radii) * one.face_width
     # the stiffness holds the places of the forces on the teeth, which the transmission error lets follow: 1e-4 was seen
