@@ -134,7 +134,7 @@ def test_ended_study_leaves_its_rows_and_no_process(tmp_path, how):
     told = process.communicate(timeout=LONG)[1]  # its end is that of all that write there
     wait_until(lambda: all(map(is_over, children)))
     if how.endswith("start"):
-        assert told.count("Traceback") == 1
+        assert told.splitlines().count("KeyboardInterrupt") == 1  # it may come while another exception is dealt with
         return
     assert calls_in(tmp_path) == [1.0, 2.0]
     if how != "kill":
