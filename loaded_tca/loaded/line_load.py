@@ -18,6 +18,9 @@ LEFT_BESIDE_END, COMPETES = 0.035, 0.5
 may agree by chance (``validation/loaded/error_estimates.py``); and the line load there, over the largest one, from
 which the pressure there may be the largest, where the contact is more curved."""
 
+WITHIN = 1e-9
+"""Part of a slice, from which on it lies in a stretch."""
+
 
 def averaged_line_load(force: Array, borders: Array, length: float) -> tuple[Array, Array]:
     """Line load averaged over a length along the contact, where it may be largest.
@@ -60,19 +63,29 @@ def stretch_parts(borders: Array, places: Array, length: float) -> Array:
     return np.asarray(np.maximum(within, 0.0) / np.diff(borders))
 
 
-def loaded_length(force: Array, borders: Array) -> float:
-    """Length of an even line load with the scatter of the given one, at most that of the slices that carry it [mm].
+def loaded_length(force: Array, borders: Array) -> tuple[float, Array]:
+    """Length of an even line load with the scatter of the given one, at most that of the slices that carry it.
+
+    Returns
+    -------
+    length : float [mm]
+    slopes : (ny,) array [mm/N]
+        Derivative by the forces of the slices; zero where the slices that carry them set it.
 
     Examples
     --------
-    >>> round(loaded_length(np.array([0.0, 2.0, 2.0, 2.0]), np.arange(5.0)), 12)
-    3.0
+    >>> length, slopes = loaded_length(np.array([0.0, 1.0, 2.0, 1.0]), np.arange(5.0))
+    >>> round(length, 3), slopes.round(3)
+    (2.646, array([ 1.948,  0.243, -0.324,  0.243]))
     """
-    middles, widths = 0.5 * (borders[:-1] + borders[1:]), np.diff(borders)
-    share = force / force.sum()
-    scatter = share @ ((middles - share @ middles) ** 2 + widths**2 / 12.0)
-    carrying = np.flatnonzero(force)
-    return min(math.sqrt(12.0 * float(scatter)), float(borders[carrying[-1] + 1] - borders[carrying[0]]))
+    middles, widths, whole = 0.5 * (borders[:-1] + borders[1:]), np.diff(borders), float(force.sum())
+    squares = (middles - force @ middles / whole) ** 2 + widths**2 / 12.0
+    scatter = float(force @ squares) / whole
+    length, carrying = math.sqrt(12.0 * scatter), np.flatnonzero(force)
+    most = float(borders[carrying[-1] + 1] - borders[carrying[0]])
+    if length > most:
+        return most, np.zeros(force.size)
+    return length, 6.0 / length * (squares - scatter) / whole
 
 
 class SliceLoads:
@@ -90,8 +103,8 @@ class SliceLoads:
         The last slices end where their material does.
     ends : (float, float) [mm]
         Of the slices that carry load.
-    length : float [mm]
-        Of the average.
+    length, length_slopes : float [mm], (ny,) array [mm/N]
+        Of the average, and its derivative by the forces of the slices.
     places : (2 ny + 2,) array [mm]
         Along the contact, middles of the stretches over which is averaged; between them the line load is linear.
     x, y : (2 ny + 2,) array [mm]
@@ -109,7 +122,9 @@ class SliceLoads:
             part = np.where(pressure > 0.0, separation.cover, 0.0).max(axis=0)
             borders[first], borders[last + 1] = borders[first + 1] - part[first] * dy, borders[last] + part[last] * dy
         self.ends = borders[carrying[0]], borders[carrying[-1] + 1]
-        self.length = min(AVERAGED_OVER * module, loaded_length(self.force, borders))
+        self.length, self.length_slopes = loaded_length(self.force, borders)
+        if self.length > (most := AVERAGED_OVER * module):
+            self.length, self.length_slopes = most, np.zeros(self.force.size)
         self.places, self.line_load = averaged_line_load(self.force, borders, self.length)
         self._middles = separation.y[carrying], middles
         self.x, self.y, _ = self.at(self.places)
@@ -119,6 +134,16 @@ class SliceLoads:
         """Where the contact lies at places along it, x and y [mm] on the slices that carry load, and its line load."""
         y = np.clip(places, *self.ends)
         return np.interp(y, *self._middles), y, np.interp(places, self.places, self.line_load)
+
+    def least_at_ends(self, place: float) -> float:
+        """Smaller line load just within the ends of the stretch about a place [N/mm].
+
+        By that the force grows with the length, where it is largest: the stretch ends where both are alike, or one
+        jumps to less, and stays there.
+        """
+        middles, density = 0.5 * (self.borders[1:] + self.borders[:-1]), self.force / np.diff(self.borders)
+        within = np.flatnonzero(stretch_parts(self.borders, np.array([place]), self.length)[0] > WITHIN)
+        return float(density[within[[0, -1]]].min()) if within.size else float(np.interp(place, middles, density))
 
     def error_of_largest(self, coarser: SliceLoads) -> float:
         """Relative error that the largest line load may have by a coarser grid: of its change, or of competing maxima.

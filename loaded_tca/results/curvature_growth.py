@@ -1,8 +1,8 @@
-"""Growth of the relative curvature at places of loaded contacts with keys of the scene."""
+"""Growth of the largest slice pressures with keys of the scene, by the relative curvature at their places."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,67 +11,122 @@ from loaded_tca.arrays import Array
 from loaded_tca.loaded.sensitivity import LoadedGrid
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.gap_growth import GapGrowth, moved
+from loaded_tca.results.slice_pressure import SlicePeak
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.separation.pair_change import PairChange
 
 STEP = 1e-3
 """Step of the motion of a grid, over the width of its cells."""
 JUMP = 0.1
-"""Relative change of a curvature within a step, from which on the start of a relief lies between."""
+"""Relative change of a curvature over the length in which a peak is known to lie, from which on a relief starts there;
+and between two sides of a step, from which on its start lies between them."""
+HALVINGS = 40
+"""Of that length, on the way to the start: to 1e-12 of it."""
+FLAT = 1e-12
+"""Curvature [1/mm] that is none."""
 
 
 def curvature_growth(
     pair: GearPair,
     grids: Sequence[LoadedGrid],
-    places: Sequence[tuple[float, float]],
+    peaks: Sequence[SlicePeak],
     changes: Sequence[PairChange | None],
     growth: GapGrowth,
 ) -> Array:
-    """Relative growth (keys, grids) [1 per unit] of the curvatures across, at one place of each of some grids.
+    """Relative growth (keys, grids) [1 per unit] of line load times curvature at the peaks of some grids, forces held.
+
+    A peak goes with its grid; one at the start of a relief, where the curvature jumps, goes with the start, to where
+    the line load is another.
 
     Parameters
     ----------
     pair : GearPair
     grids : sequence of LoadedGrid
-    places : sequence of (float, float) [mm]
-        From the contact point across and along; they go with the grids.
+    peaks : sequence of SlicePeak
+        Of the slices of each.
     changes : sequence of PairChange or None
         None of keys that change no gears.
     growth : GapGrowth
         Of these grids.
     """
-    x, y = np.array(places)[:, :, None].swapaxes(0, 1)
-    found = np.zeros((len(changes), len(grids)))
-
-    def curvature(gears: GearPair, turns: Array, motions: Array) -> Array:
-        """Curvatures (grids,), the wheel turned and the grids moved."""
-        contacts, axes = [], []
-        for grid, turn, motion in zip(grids, turns, motions, strict=True):
-            there = moved(grid.separation, motion)
-            angle = grid.contact.wheel_angle - pair.driving * turn
-            contacts.append(replace(grid.contact, point=there.origin, wheel_angle=angle))
-            axes.append(there.axes)
-        return np.log(np.maximum(NormalGap(gears.sharp, contacts, np.array(axes)).curvature_across(x, y)[:, 0], FLAT))
-
+    along = np.array([[peak.place[1]] for peak in peaks])
+    reach = np.array([[peak.resolution] for peak in peaks])
     held = np.zeros((len(grids), growth.motions.shape[-1]))
+    ends = along + reach * [-1.0, 1.0]
+    at_ends = _log_curvature(pair, grids, held[:, 0], held)(_middles(peaks, ends), ends)
+    starts = np.flatnonzero(np.abs(at_ends[:, 1] - at_ends[:, 0]) > JUMP)
+    rises = at_ends[starts, 1] > at_ends[starts, 0]
+
+    def grown(gears: GearPair, turns: Array, motions: Array) -> Array:
+        """Logarithm (grids,) of line load times curvature at the peaks, the wheel turned and the grids moved."""
+        bends = _log_curvature(gears, grids, turns, motions)
+        found = bends(_middles(peaks, along), along)[:, 0]
+        if starts.size:
+            found[starts] = _at_starts(bends, peaks, starts, rises, at_ends.mean(axis=1), ends)
+        return found
+
+    found = np.zeros((len(changes), len(grids)))
     for key, change in enumerate(changes):
         if change is None:
             continue
         turns, motions = growth.turns[key], growth.motions[key]
         of_shape = [
-            curvature(side, part * change.difference * turns, held)
+            grown(side, part * change.difference * turns, held)
             for side, part in ((change.below, -0.5), (change.above, 0.5))
         ]
         lengths = np.abs(motions[:, :2]).max(axis=1)
         step = (
             STEP * np.array([grid.separation.spacing[0] for grid in grids]) / np.where(lengths > 0.0, lengths, np.inf)
         )
-        of_motion = [curvature(pair, 0.0 * turns, part * step[:, None] * motions) for part in (-1.0, 1.0)]
+        of_motion = [grown(pair, 0.0 * turns, part * step[:, None] * motions) for part in (-1.0, 1.0)]
         for (low, high), width in ((of_shape, change.difference), (of_motion, 2.0 * step)):
-            grown = np.where(np.abs(high - low) < JUMP, high - low, 0.0)
-            found[key] += np.divide(grown, width, out=np.zeros(len(grids)), where=np.asarray(width) > 0.0)
+            change_of_log = np.where(np.abs(high - low) < JUMP, high - low, 0.0)
+            found[key] += np.divide(change_of_log, width, out=np.zeros(len(grids)), where=np.asarray(width) > 0.0)
     return found
 
 
-FLAT = 1e-12
-"""Curvature [1/mm] that is none."""
+def _middles(peaks: Sequence[SlicePeak], along: Array) -> Array:
+    """Middles across of the slices at places (grids, n) along them [mm]."""
+    return np.stack([peak.slices.at(row)[0] for peak, row in zip(peaks, along, strict=True)])
+
+
+def _log_curvature(
+    gears: GearPair, grids: Sequence[LoadedGrid], turns: Array, motions: Array
+) -> Callable[[Array, Array], Array]:
+    """Logarithm of the curvatures at places (grids, n) across and along, the wheel turned and the grids moved."""
+    contacts, axes = [], []
+    for grid, turn, motion in zip(grids, turns, motions, strict=True):
+        there = moved(grid.separation, motion)
+        angle = grid.contact.wheel_angle - gears.driving * turn
+        contacts.append(replace(grid.contact, point=there.origin, wheel_angle=angle))
+        axes.append(there.axes)
+    gap = NormalGap(gears.sharp, contacts, np.array(axes))
+    return lambda across, along: np.log(np.maximum(gap.curvature_across(across, along), FLAT))
+
+
+def _at_starts(
+    bends: Callable[[Array, Array], Array],
+    peaks: Sequence[SlicePeak],
+    starts: Array,
+    rises: Array,
+    level: Array,
+    ends: Array,
+) -> Array:
+    """Logarithm of line load times curvature at the starts of reliefs, where some of the peaks lie, less at the peaks.
+
+    A start lies where the curvature passes a ``level`` (grids,) between ``ends`` (grids, 2), upwards or not.
+    """
+    between = ends.copy()
+    for _ in range(HALVINGS):
+        middle = between.mean(axis=1, keepdims=True)
+        above = (bends(_middles(peaks, middle), middle)[:, 0] > level)[starts]
+        between[starts, np.where(above == rises, 1, 0)] = middle[starts, 0]
+    side = np.where(rises, 1, 0)  # that with the larger curvature
+    place = between[:, :1].copy()
+    place[starts, 0] = between[starts, side]
+    logarithms = bends(_middles(peaks, place), place)[starts, 0]
+    loads = [
+        np.log(peaks[i].slices.at(place[i])[2][0] / peaks[i].slices.at(np.array([peaks[i].place[1]]))[2][0])
+        for i in starts.tolist()
+    ]
+    return np.asarray(logarithms + loads)

@@ -38,6 +38,9 @@ class GapGrowth:
     ----------
     gaps : (keys, n) array [mm per unit]
         At the active cells, with what the forces as they are displace more.
+    kinks : (keys, grids) array [1 per unit]
+        Part of its loaded length by which a contact that edges of both gears end at one place is shorter on one side of
+        a key than on the other.
     lever_torques : (keys, grids) array [N mm per unit]
         Growth of the torque of each pair by that of its lever.
     motions : (keys, grids, 6) array
@@ -47,6 +50,7 @@ class GapGrowth:
     """
 
     gaps: Array
+    kinks: Array
     lever_torques: Array
     motions: Array
     turns: Array
@@ -55,7 +59,9 @@ class GapGrowth:
         """The same of some of the grids, without gaps."""
         some = list(grids)
         none = np.zeros((len(self.turns), 0))
-        return GapGrowth(none, self.lever_torques[:, some], self.motions[:, some], self.turns[:, some])
+        return GapGrowth(
+            none, self.kinks[:, some], self.lever_torques[:, some], self.motions[:, some], self.turns[:, some]
+        )
 
     def at_keys(self, at: Sequence[int], count: int) -> GapGrowth:
         """The same as rows ``at`` of so many keys, of which the others change nothing."""
@@ -90,7 +96,7 @@ def gap_growth(
     pair, grids, (_, positions, pairs) = result.gear_pair, tangents.grids, places
     if not changes:
         none = np.zeros((0, pairs.size))
-        return GapGrowth(np.zeros((0, tangents.grid.size)), none, np.zeros((*none.shape, OF_GRIDS)), none)
+        return GapGrowth(np.zeros((0, tangents.grid.size)), none, none, np.zeros((*none.shape, OF_GRIDS)), none)
     separations = [grid.separation for grid in grids]
     held = contact_changes(
         pair, [grid.contact for grid in grids], separations, [grid.active for grid in grids], changes
@@ -100,15 +106,17 @@ def gap_growth(
     touching = np.array([path.transmission_error for path in result.paths])[pairs, positions]
     turned = pair.driving * (touching - result.transmission_error[places[:2]])
     wheel_levers = np.array([grid.contact.wheel_lever for grid in grids])
-    gaps = found.gaps
+    gaps, kinks = found.gaps, np.zeros(points.turns.shape)
     for row, closed in zip(gaps, points.turns * wheel_levers - turned * points.levers[1], strict=True):
         row += closed[tangents.grid]
     for i, (first, last) in enumerate(pairwise([0, *tangents.ends.tolist()])):
         if (own := found.covers[:, first:last]).any():
             gaps[:, first:last] += _released(grids[i], own)
+        if (own := found.kinks[:, first:last]).any():
+            kinks[:, i] = own.max(axis=1) / np.count_nonzero(grids[i].slice_force)
     free_edges = result.scene.analysis.free_edges
     _add_moved_lines(pair, tangents, bending, changes, found.motions, gaps, free_edges=free_edges)
-    return GapGrowth(gaps, result.normal_force[places] * points.levers[0], found.motions, points.turns)
+    return GapGrowth(gaps, kinks, result.normal_force[places] * points.levers[0], found.motions, points.turns)
 
 
 def _released(grid: LoadedGrid, covers: Array) -> Array:
@@ -146,8 +154,8 @@ def _add_moved_lines(
     slices = (
         slices + (np.cumsum([one.y.size for one in separations]) - [one.y.size for one in separations])[tangents.grid]
     )
-    of_modifications = [change.of_modifications for change in changes]
-    mounted = np.flatnonzero(np.logical_not(of_modifications)).tolist() if free_edges or bending is not None else []
+    held = np.array([change.of_modifications for change in changes]) & ~motions.any(axis=(1, 2))
+    mounted = np.flatnonzero(~held).tolist() if free_edges or bending is not None else []
     moved_grids = [
         [
             [moved(one, part * changes[key].difference * by) for one, by in zip(separations, motions[key], strict=True)]
@@ -170,10 +178,6 @@ def _add_moved_lines(
                 for gears, there in zip((change.below, change.above), sides, strict=True)
             )
             gaps[key] += ((high - low) / change.difference)[slices]
-    others = np.flatnonzero(of_modifications).tolist()
-    if tangents.by_shift is not None and others:
-        shifts = np.repeat(motions[others][..., 0], [one.y.size for one in separations], axis=1)
-        gaps[others] += (tangents.by_shift @ shifts.T).T[:, slices]
 
 
 def _bent(tangents: Tangents, bending: BendingModel, separations: Sequence[Separation]) -> Array:

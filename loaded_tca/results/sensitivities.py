@@ -4,32 +4,39 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from loaded_tca.arrays import Array, Indices, Mask, real
-from loaded_tca.compliance import FlankLine, flank_lines, root_stress_model
 from loaded_tca.errors import require
 from loaded_tca.loaded.force_lines import bending_by_shift
 from loaded_tca.loaded.sensitivity import Tangents
 from loaded_tca.results.curvature_growth import curvature_growth
+from loaded_tca.results.face_slopes import face_load_factor_changes, rival_strip
 from loaded_tca.results.figure_slopes import (
     EXPONENT,
-    face_load_factor_motions,
-    face_load_factor_slopes,
     line_load_slopes,
     peak_pressure_slopes,
     pressure_norm,
 )
-from loaded_tca.results.gap_growth import GapGrowth, gap_growth, moved
-from loaded_tca.results.load_factors import common_face
+from loaded_tca.results.gap_growth import GapGrowth, gap_growth
+from loaded_tca.results.kinks import (
+    ACROSS_STARTS,
+    AT_CORNERS,
+    LITTLE,
+    ON_CUT_SLICES,
+    largest_cut,
+    peak_cut,
+    warn_of_edges,
+    warn_of_strips,
+)
 from loaded_tca.results.loaded_grids import states_of_maps
 from loaded_tca.results.numbers import CycleNumbers
-from loaded_tca.results.root_stress import stress_at_extreme
-from loaded_tca.results.slice_pressure import largest_slice_pressures
+from loaded_tca.results.root_slopes import root_slopes
+from loaded_tca.results.slice_pressure import SlicePeak, largest_slice_pressures
 from loaded_tca.results.warnings import warn_of_contacts
 from loaded_tca.separation.pair_change import PairChange, pair_changes
 from loaded_tca.threads import one_blas_thread
@@ -39,8 +46,8 @@ if TYPE_CHECKING:
     import xarray
 
 TORQUE = "load.pinion_torque_Nm"
-STEP = 1e-2
-"""By which a line of forces is shifted to see how the root stress changes, over the width of its grid."""
+MICROMETRES = 1e3
+"""Of a millimetre."""
 NEWTON_MILLIMETRES = 1e3
 """Of a newton metre."""
 LINEAR = 1e-6
@@ -129,6 +136,25 @@ class Sensitivities:
         found = np.full((*self.result.transmission_error.shape, len(self.keys)), np.nan)
         change = self.tangents.rotation_change(self.growth.gaps, self.torques)
         found[*self.places] = -self.result.gear_pair.driving * change.T
+        if self.growth.kinks.any():
+            length = MICROMETRES * self.result.gear_pair.base_radii[1]
+            warn_of_edges(self.keys, found, self.transmission_error_kinks, length, stacklevel=3)
+        return found
+
+    @cached_property
+    def transmission_error_kinks(self) -> Array:
+        """How large kinks of the transmission error are at most, (torque, position, key) [rad per unit]; else zero.
+
+        Where edges of both gears end a contact at one place, as the ends of faces of one width, the pinion's end it
+        to one side of a key and the wheel's to the other, and on one of them the contact is shorter: by that part of
+        its length the pair is softer, or by less where the end carries less. Derivatives of both sides differ by that;
+        those given are of the edges that rule, cell by cell.
+        """
+        result, (torque, position, _) = self.result, self._grids
+        unloaded = np.array([path.transmission_error for path in result.paths])[self.pairs, position]
+        closed = np.abs(result.transmission_error[torque, position] - unloaded) * result.load_share[*self._grids]
+        found = np.zeros((*result.transmission_error.shape, len(self.keys)))
+        np.add.at(found, (torque, position), (self.growth.kinks * closed).T)
         return found
 
     @cached_property
@@ -146,13 +172,18 @@ class Sensitivities:
     def on_cut_slices(self) -> Mask:
         """Whether an edge cuts the slices with the largest line load, (torque, position, pair).
 
-        Their line load has no derivative by keys that move edges: an AccuracyWarning says so where it is read.
+        Derivatives of their line load are less exact: an AccuracyWarning says so where they are read.
         """
-        found = np.zeros(self.result.load_share.shape, dtype=bool)
-        for place, grid in zip(self._grids.T.tolist(), self.tangents.grids, strict=True):
-            top = line_load_slopes(grid.pressure, grid.problem.spacing) > 0.0
-            found[tuple(place)] = (grid.separation.cover < 1.0)[top & (grid.pressure > 0.0)].any()
-        return found
+        return self._where(largest_cut(self.tangents.grids))
+
+    @cached_property
+    def at_corners(self) -> Mask:
+        """Whether an edge cuts slices of the peak pressure, or a pair only just carries, (torque, position, pair).
+
+        Derivatives of peak pressures are less exact there: an AccuracyWarning says so where they are read.
+        """
+        just_loaded = (self.result.on_edge > 0) & (self.result.load_share < LITTLE)
+        return self._where(peak_cut(self.tangents.grids, self._slice_peaks)) | just_loaded
 
     @cached_property
     def across_relief_starts(self) -> Mask:
@@ -160,9 +191,13 @@ class Sensitivities:
 
         Derivatives by keys that move contacts or starts depend on the grid by 15 to 25 % there (AccuracyWarning).
         """
-        found = np.zeros(self.result.load_share.shape, dtype=bool)
         across = self.result.on_relief_start[*self._grids] > 0
-        found[*self._grids] = across & [not grid.contact.on_relief_start for grid in self.tangents.grids]
+        return self._where(across & [not grid.contact.on_relief_start for grid in self.tangents.grids])
+
+    def _where(self, marks: Iterable[bool] | Mask) -> Mask:
+        """Marks of the grids as (torque, position, pair)."""
+        found = np.zeros(self.result.load_share.shape, dtype=bool)
+        found[*self._grids] = list(marks)
         return found
 
     @property
@@ -173,9 +208,7 @@ class Sensitivities:
     @cached_property
     def line_load(self) -> Array:
         """Derivatives of the line load of each contact, (torque, position, pair, key) [N/mm per unit]."""
-        if self._moves_lines:
-            reason = "an edge cuts the slices of the largest line load, which has no derivative by keys that move edges"
-            warn_of_contacts(self.result, reason, self.on_cut_slices, stacklevel=3)
+        warn_of_contacts(self.result, ON_CUT_SLICES, self._of_changes(self.on_cut_slices), stacklevel=3)
         slopes = self.tangents.gathered(
             line_load_slopes(grid.pressure, grid.problem.spacing) for grid in self.tangents.grids
         )
@@ -187,21 +220,33 @@ class Sensitivities:
 
         Of a contact at an edge or a relief start that of its largest slice pressure.
         """
-        result, grids = self.result, self.tangents.grids
-        rough = ((result.on_edge > 0) | (result.on_relief_start > 0))[*self._grids].tolist()
-        contacts = [(grid.contact, grid.separation, grid.pressure) for grid in grids]
-        slopes = peak_pressure_slopes(result.gear_pair, contacts, rough)
+        warn_of_contacts(self.result, AT_CORNERS, self._of_changes(self.at_corners), stacklevel=3)
+        pair, grids, peaks = self.result.gear_pair, self.tangents.grids, self._slice_peaks
+        slopes = peak_pressure_slopes(pair, [(one.contact, one.separation, one.pressure) for one in grids], peaks)
         found = self._of_each_pair(self.tangents.gathered(slopes))
-        if any(rough):
-            found[:, rough] += self._by_curvature(np.flatnonzero(rough).tolist())
+        at, rough = (
+            [i for i, peak in enumerate(peaks) if peak is not None],
+            [peak for peak in peaks if peak is not None],
+        )
+        if rough:
+            grown = curvature_growth(pair, [grids[i] for i in at], rough, self.changes, self.growth.of_grids(at))
+            found[:, at] += grown * [0.5 * peak.pressure if peak.slopes.any() else 0.0 for peak in rough]
         return self._by_pair(found)
 
-    def _by_curvature(self, rough: Sequence[int]) -> Array:
-        """Growth (keys, grids) of the largest slice pressures of some grids by the curvatures at their places."""
-        pair, grids = self.result.gear_pair, [self.tangents.grids[i] for i in rough]
-        peaks = largest_slice_pressures(pair, [(grid.contact, grid.separation, grid.pressure) for grid in grids])
-        grown = curvature_growth(pair, grids, [peak.place for peak in peaks], self.changes, self.growth.of_grids(rough))
-        return grown * [0.5 * peak.pressure if peak.slopes.any() else 0.0 for peak in peaks]
+    @cached_property
+    def _slice_peaks(self) -> list[SlicePeak | None]:
+        """Largest slice pressure of each grid that reaches an edge or a relief start, whose peak it is; else None."""
+        result, grids = self.result, self.tangents.grids
+        rough = ((result.on_edge > 0) | (result.on_relief_start > 0))[*self._grids].tolist()
+        uneven = [
+            (one.contact, one.separation, one.pressure) for one, is_rough in zip(grids, rough, strict=True) if is_rough
+        ]
+        peaks = iter(largest_slice_pressures(result.gear_pair, uneven) if uneven else ())
+        return [next(peaks) if is_rough else None for is_rough in rough]
+
+    def _of_changes(self, marks: Mask) -> Mask:
+        """Marks of contacts, if a key changes the gears: the torque alone moves none of them."""
+        return marks & any(change is not None for change in self.changes)
 
     def pressure_norm(self, exponent: float = EXPONENT) -> Array:
         r"""Derivatives of the norm of the pressure over a position, (torque, position, key) [MPa per unit].
@@ -227,30 +272,28 @@ class Sensitivities:
 
     @cached_property
     def face_load_factor(self) -> Array:
-        """Derivatives of K_Hbeta, (torque, key) [1 per unit], the largest strip held; NaN with one position."""
-        result, found = self.result, np.full((len(self.result.torque), len(self.keys)), np.nan)
-        of_maps = [face_load_factor_slopes(result.gear_pair, result.path, positions) for positions in result.maps]
-        slopes = [
-            np.zeros(grid.active.shape) if (own := of_maps[t][n][k]) is None else own
-            for (t, n, k), grid in zip(self._grids.T.tolist(), self.tangents.grids, strict=True)
-        ]
-        change = self.tangents.functional_change(self.tangents.gathered(slopes), self.growth.gaps, self.torques)
-        of_motions = [face_load_factor_motions(result.gear_pair, result.path, rows) for rows in result.maps]
-        for t in np.flatnonzero(np.isfinite(result.face_load_factor)).tolist():
-            found[t] = change[:, self.places[0] == t].sum(axis=1)
-        for i, (t, n, k) in enumerate(self._grids.T.tolist()):
-            if (own := of_motions[t][n][k]) is not None:
-                found[t] += self.growth.motions[:, i] @ own[:6] + self._face_ends @ own[6:]
+        """Derivatives of K_Hbeta, (torque, key) [1 per unit], the largest strip held; NaN with one position.
+
+        Where another strip of the face carries nearly as much, an AccuracyWarning tells what its derivatives are.
+        """
+        result = self.result
+        found = self._of_strips([None] * len(result.torque))
+        rivals = [rival_strip(result.gear_pair, result.path, rows) for rows in result.maps]
+        if any(rivals):
+            others = self._of_strips([None if rival is None else rival[0] for rival in rivals])
+            lacking = [rival[1] for rival in rivals if rival is not None]
+            warn_of_strips(self.keys, found, others - found, lacking, stacklevel=3)
         return found
 
-    @cached_property
-    def _face_ends(self) -> Array:
-        """Growth of the places of both ends of the common face (keys, 2) [mm per unit]."""
-        found = np.zeros((len(self.keys), 2))
-        for key, other in self._of_the_wheel:
-            low, high = (np.array(common_face(side, self.result.path)) for side in (other.below, other.above))
-            found[key] = (high - low) / other.difference
-        return found
+    def _of_strips(self, strips: Sequence[int | None]) -> Array:
+        """Derivatives (torque, key) of the factor of one strip of the face under each torque; None: the largest."""
+        slopes, by_motion = face_load_factor_changes(
+            self.result, self._grids, self.tangents.grids, self.growth.motions, self.changes, strips
+        )
+        change = self.tangents.functional_change(self.tangents.gathered(slopes), self.growth.gaps, self.torques)
+        for t in range(len(by_motion)):
+            by_motion[t] += change[:, self.places[0] == t].sum(axis=1)
+        return by_motion
 
     @cached_property
     def root_tension(self) -> Array:
@@ -271,55 +314,17 @@ class Sensitivities:
         found = np.full((*places.shape[:-1], len(self.keys)), np.nan)
         with one_blas_thread():
             for gear in range(places.shape[-2]):
-                found[(*self.places, gear)] = self._at_extremes(gear, places[(*self.places, gear)].tolist()).T
+                rows, moved_lines = root_slopes(
+                    self.result.gear_pair,
+                    gear,
+                    self.tangents,
+                    places[(*self.places, gear)].tolist(),
+                    self.changes,
+                    self.growth.motions,
+                )
+                change = self.tangents.functional_change(self.tangents.gathered(rows), self.growth.gaps, self.torques)
+                found[(*self.places, gear)] = (change + moved_lines).T
         return found
-
-    def _at_extremes(self, gear: int, places: Sequence[Sequence[int]]) -> Array:
-        """Changes (keys, states) of the stress about the extremes of a gear, which lie at a place in each state.
-
-        It follows the forces, and the lines along which they load the teeth.
-        """
-        pair, grids = self.result.gear_pair, self.tangents.grids
-        model = root_stress_model((pair.pinion, pair.wheel)[gear])
-        by_force, moved_lines = [], np.zeros((len(self.keys), len(places)))
-        in_states = np.split(np.arange(len(grids)), np.flatnonzero(np.diff(self.tangents.state)) + 1)
-        for state, (numbers, place) in enumerate(zip(in_states, places, strict=True)):
-            loads, per_force = stress_at_extreme(pair, gear, model, [grids[i] for i in numbers], place)
-            for i, (line, forces) in zip(numbers, loads, strict=True):
-                grid, stress = grids[i].separation, per_force(line)
-                step = STEP * grid.spacing[0] * len(grid.x)
-                shifted = replace(grid, force_line=grid.force_line + step)
-                across = (per_force(flank_lines(pair, grids[i].number, shifted)[gear]) - stress) / step
-                by_force.append(stress + across * (grid.x[:, None] - grid.force_line))
-                for key, change in enumerate(self.changes):
-                    if change is not None:
-                        moved_lines[key, state] += self._by_moved_line(gear, key, i, per_force, across) @ forces
-        return (
-            self.tangents.functional_change(self.tangents.gathered(by_force), self.growth.gaps, self.torques)
-            + moved_lines
-        )
-
-    def _by_moved_line(
-        self, gear: int, key: int, i: int, per_force: Callable[[FlankLine], Array], across: Array
-    ) -> Array:
-        """Growth of the stress per force of the slices (ny,) [MPa/N per unit], as the line of a grid moves.
-
-        ``across``: that by its shift along x.
-        """
-        change, grid, motion = self.changes[key], self.tangents.grids[i], self.growth.motions[key, i]
-        assert change is not None
-        if change.of_modifications:
-            return across * motion[0]
-        low, high = (
-            per_force(flank_lines(side, grid.number, moved(grid.separation, part * change.difference * motion))[gear])
-            for side, part in ((change.below, -0.5), (change.above, 0.5))
-        )
-        return np.asarray((high - low) / change.difference)
-
-    @property
-    def _of_the_wheel(self) -> list[tuple[int, PairChange]]:
-        """Numbers of the keys that move the wheel, and their changes."""
-        return [(k, one) for k, one in enumerate(self.changes) if one is not None and one.of_mounting]
 
     @cached_property
     def weight_maps(self) -> tuple[tuple[tuple[Array | None, ...], ...], ...]:
@@ -441,6 +446,5 @@ def sensitivities(result: CycleNumbers, keys: Sequence[str]) -> Sensitivities:
     every = tuple(by_key.get(key) for key in keys)
     made = Sensitivities(tuple(keys), result, tangents, places, columns, found.at_keys(at, len(keys)), every)
     if made._moves_lines:
-        reason = "a linear relief starts in the contact beside its point: derivatives depend on the grid by up to 25 %"
-        warn_of_contacts(result, reason, made.across_relief_starts, stacklevel=4)
+        warn_of_contacts(result, ACROSS_STARTS, made.across_relief_starts, stacklevel=4)
     return made

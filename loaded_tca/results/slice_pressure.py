@@ -48,12 +48,17 @@ class SlicePeak:
         Not above the cap.
     place : (float, float) [mm]
         Across and along the contact, from the contact point.
+    resolution : float [mm]
+        Length along the contact by which the place is known.
+    slices : SliceLoads
     slopes : (ny,) array [1/mm^2]
         Derivative of the pressure by the forces of the slices; zero at the cap.
     """
 
     pressure: float
     place: tuple[float, float]
+    resolution: float
+    slices: SliceLoads
     slopes: Array
 
 
@@ -68,9 +73,9 @@ def largest_slice_pressures(pair: GearPair, contacts: Sequence[UnderPressure]) -
 
     Notes
     -----
-    In the derivative the place of the largest pressure, its curvature and the length of the average are held: p dq/2q.
-    Where the average has room in the contact, q k is that of a parabola through the place and those one slice before
-    and after it, since on even grids two places may be alike.
+    In the derivative the place of the largest pressure and its curvature are held: p dq/2q. Where the average has room
+    in the contact, q k is that of a parabola through the place and those one slice before and after it, since on even
+    grids two places may be alike. Where the contact is shorter than the length of the average, that grows with it.
     """
     slices = [SliceLoads(pair.module, separation, pressure) for _, separation, pressure in contacts]
     axes = np.array([separation.axes for _, separation, _ in contacts])
@@ -91,7 +96,8 @@ def largest_slice_pressures(pair: GearPair, contacts: Sequence[UnderPressure]) -
         x, y, _ = slices[k].at(finest[k, top])
         if 0.0 < highest < cap:
             slopes = 0.5 * highest * _relative_slopes(slices[k], float(y), bends[k])
-        peaks.append(SlicePeak(min(highest, cap), (float(x), float(y)), slopes))
+        resolution = float(np.diff(finest[k]).max())
+        peaks.append(SlicePeak(min(highest, cap), (float(x), float(y)), resolution, slices[k], slopes))
     return peaks
 
 
@@ -114,4 +120,5 @@ def _relative_slopes(slices: SliceLoads, place: float, curvature: Array) -> Arra
         bends = np.interp(places, slices.y, curvature[: slices.y.size])
         if (loads * bends).argmax() == 1:
             weights = top_weights(loads * bends) * bends
-    return np.asarray(weights @ parts / (weights @ loads))
+    by_length = slices.least_at_ends(place) / (parts[1] @ slices.force) - 1.0 / slices.length
+    return np.asarray(weights @ parts / (weights @ loads) + by_length * slices.length_slopes)

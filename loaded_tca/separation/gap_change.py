@@ -96,11 +96,15 @@ class ContactChanges:
         gaps, covers = self.gaps.copy(), np.zeros(self.gaps.shape)
         for key in edges.tolist():
             gaps[key] += (points.tilts[key, self.contact] * self.tilt_slopes).sum(axis=-1)
-        for key in np.flatnonzero(plane.any(axis=(1, 2))).tolist():
+        moved = plane.any(axis=(1, 2))
+        for key in np.flatnonzero(moved).tolist():
             gaps[key] += (plane[key, self.contact] * self.slopes).sum(axis=-1)
         by_motion = (plane[:, of_border] * border.slopes).sum(axis=-1)
-        covers[np.ix_(edges, border.cell)] = (border.rates + by_motion)[edges]
-        return MovedContacts(gaps, covers, motions)
+        of_edges = np.flatnonzero(self.moves_edges | moved)
+        covers[np.ix_(of_edges, border.cell)] = (self.moves_edges[:, None] * border.rates + by_motion)[of_edges]
+        kinks = np.zeros(covers.shape)
+        kinks[np.ix_(edges, border.cell)] = border.kinks[edges]
+        return MovedContacts(gaps, covers, kinks, motions)
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,6 +117,8 @@ class MovedContacts:
         Growth of the gaps, the wheel turned back into contact.
     covers : (keys, n) array [1 per unit of the key]
         Growth of the parts of the cells that have material.
+    kinks : (keys, n) array [1 per unit of the key]
+        What that of growing values is less than that of falling ones, where edges of both gears are at one place.
     motions : (keys, contacts, 6) array [mm, mm, rad, rad, rad, mm per unit of the key]
         Of the grids along their x and y, their turn from x to y, the growth of their normal along x and y, their motion
         along the normal.
@@ -120,6 +126,7 @@ class MovedContacts:
 
     gaps: Array
     covers: Array
+    kinks: Array
     motions: Array
 
 

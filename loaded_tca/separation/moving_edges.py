@@ -38,7 +38,9 @@ Distance = Callable[[GearPair, FlankPoints], Jet]
 """To an edge or a relief start of one flank of a pair [mm], at points of it."""
 MOTIONS = 3
 """Of a grid in its plane: along x, along y, its turn from x to y."""
-OPEN = 1e-3
+AT_ONE_PLACE = 0.02
+"""Difference of the parts that two edges leave of a cell, up to which either may rule."""
+OPEN = 1e-5
 """Weight of the motion of the contact point itself, over that of edges beside the whole force."""
 
 
@@ -156,12 +158,16 @@ class BorderCells:
         Their places in the row of all cells.
     rates : (keys, m) array [1 per unit of the key]
         Growth of their parts with material on grids that are held, the wheel turned back into contact.
+    kinks : (keys, m) array [1 per unit of the key]
+        By how much the rates of growing values of the keys are less than those of falling ones, where another edge
+        leaves the same part.
     slopes : (m, 3) array [1/mm, 1/mm, 1/rad]
         The same by the motion of the grid along x and y and by its turn from x to y.
     """
 
     cell: Indices
     rates: Array
+    kinks: Array
     slopes: Array
 
     @classmethod
@@ -185,22 +191,32 @@ class BorderCells:
         steps = distances[:, 1:] - distances[:, :1]
         widths = np.abs(steps).sum(axis=1)
         parts = 0.5 + distances[:, 0] / widths
-        part, ruling = parts.min(axis=0), parts.argmin(axis=0)
+        part = parts.min(axis=0)
         kept = (part >= SLIVER) & (part <= 1.0 + SLIVER)
+        near = kept & (parts - part < AT_ONE_PLACE)
         rates, slopes = np.zeros((len(changes), cell.size)), np.zeros((cell.size, MOTIONS))
-        for number in np.unique(ruling[kept]).tolist():
-            own, (gear, distance) = kept & (ruling == number), edges[number]
+        least, most = np.full(rates.shape, np.inf), np.full(rates.shape, -np.inf)
+        for number in np.flatnonzero(near.any(axis=1)).tolist():
+            own, (gear, distance) = near[number], edges[number]
+            rules = (parts.argmin(axis=0) == number)[own]
             signs = np.sign(steps[number][:, own])
             by_keys = places.growth(pair, gear, distance, changes).reshape(-1, 3, cell.size)[..., own]
             by_motion = places.slopes_of(pair, gear, distance).T.reshape(MOTIONS, 3, cell.size)[..., own]
-            for grown, found in ((by_keys, rates), (by_motion, slopes.T)):
-                wider = ((grown[:, 1:] - grown[:, :1]) * signs).sum(axis=1)
-                found[:, own] = (grown[:, 0] - (part[own] - 0.5) * wider) / widths[number, own]
-        return cls(cell[kept], rates[:, kept], slopes[kept])
+            by_keys, by_motion = (
+                (grown[:, 0] - (part[own] - 0.5) * ((grown[:, 1:] - grown[:, :1]) * signs).sum(axis=1))
+                / widths[number, own]
+                for grown in (by_keys, by_motion)
+            )
+            rates[:, own], slopes[own] = (
+                np.where(rules, by_keys, rates[:, own]),
+                np.where(rules, by_motion, slopes[own].T).T,
+            )
+            least[:, own], most[:, own] = np.minimum(least[:, own], by_keys), np.maximum(most[:, own], by_keys)
+        return cls(cell[kept], rates[:, kept], (most - least)[:, kept], slopes[kept])
 
     def of_keys(self, keys: Indices) -> BorderCells:
         """The same with some of the keys."""
-        return replace(self, rates=self.rates[keys])
+        return replace(self, rates=self.rates[keys], kinks=self.kinks[keys])
 
 
 def edge_distance(gear: int, number: int) -> Distance:

@@ -17,7 +17,8 @@ from loaded_tca.compliance import RootStress
 from loaded_tca.errors import require
 from loaded_tca.loaded.held_contacts import HeldContacts
 from loaded_tca.loaded.sensitivity import LoadedGrid
-from loaded_tca.results.figure_slopes import EXPONENT, face_load_factor_slopes, pressure_norm
+from loaded_tca.results.face_slopes import face_load_factor_slopes
+from loaded_tca.results.figure_slopes import EXPONENT, pressure_norm
 from loaded_tca.results.load_factors import load_factors
 from loaded_tca.results.pressure_map import PressureMap
 from loaded_tca.results.quantities import GEARS

@@ -10,9 +10,10 @@ from numpy.testing import assert_allclose, assert_array_equal
 from loaded_tca.contact import patch, solve_contact
 from loaded_tca.errors import InputError
 from loaded_tca.flanks import FlankModifications
+from loaded_tca.loaded import line_load
 from loaded_tca.loaded.tooth_contact import GridChoice, solve_under_load
+from loaded_tca.results.face_slopes import face_load_factor_slopes
 from loaded_tca.results.figure_slopes import (
-    face_load_factor_slopes,
     line_load_slopes,
     peak_pressure_slopes,
     pressure_norm,
@@ -142,7 +143,7 @@ def test_smooth_peak_changes_as_the_top_of_its_quadratic():
 
 def test_smooth_peak_of_a_gear_pair_changes_as_its_own():
     pair, contact, peak = of_result("helical")
-    (slopes,) = peak_pressure_slopes(pair, [contact], [False])
+    (slopes,) = peak_pressure_slopes(pair, [contact], [None])
     assert_changes(patch.peak_pressure, slopes, contact[2], area_of(contact))
     assert_allclose((slopes * contact[2]).sum() * area_of(contact), peak, rtol=ROUNDING)
 
@@ -184,7 +185,7 @@ def test_peak_at_the_cap_does_not_change():
     _, contact, peak = of_result("fzg_c14")
     for cap, changes in ((0.99 * peak, False), (1.01 * peak, True)):
         capped = read_scene(SCENES / "fzg_c14.toml").with_changes({"material.max_pressure_MPa": cap}).pair()
-        (slopes,) = peak_pressure_slopes(capped, [contact], [True])
+        (slopes,) = peak_pressure_slopes(capped, [contact], largest_slice_pressures(capped, [contact]))
         assert slopes.any() == changes
 
 
@@ -201,11 +202,31 @@ def test_slice_pressure_where_a_contact_ends_changes_as_its_own(name, heavier):
     def figure(pressure):
         return largest_slice_pressures(pair, [(point, separation, pressure)])[0].pressure
 
-    (slopes,) = peak_pressure_slopes(pair, [contact], [True])
+    (slopes,) = peak_pressure_slopes(pair, [contact], largest_slice_pressures(pair, [contact]))
     assert np.ptp(slopes, axis=0).max() == 0.0, "the cells of a slice count alike"
     assert_changes(figure, slopes, pressure, area_of(contact), alike=len(pressure))
     force = (slopes * pressure).sum() * area_of(contact)
     assert_allclose(force, 0.5 * figure(pressure), rtol=ROUNDING)  # it grows with the root of the force
+
+
+@pytest.mark.parametrize("name", ["spiral_bevel", "helical"])
+def test_slice_pressure_of_a_contact_shorter_than_the_average_changes_with_its_length(name, monkeypatch):
+    """The average is over a length that follows the forces: a longer contact has less pressure for its force."""
+    monkeypatch.setattr(line_load, "AVERAGED_OVER", 100.0)
+    pair, (point, separation, pressure), _ = of_result(name)
+
+    def figure(pressure):
+        return largest_slice_pressures(pair, [(point, separation, pressure)])[0].pressure
+
+    (peak,) = largest_slice_pressures(pair, [(point, separation, pressure)])
+    assert peak.slices.length < np.diff(peak.slices.ends)
+    slopes = np.broadcast_to(peak.slopes, pressure.shape)
+    area = area_of((point, separation, pressure))
+    grown = pressure * np.linspace(1.0, 3.0, pressure.shape[1])  # one end gains more
+    step = 1e-4
+    expected = (figure(pressure + step * grown) - figure(pressure - step * grown)) / (2.0 * step)
+    assert_allclose((slopes * grown).sum() * area, expected, rtol=0.02)  # the place is one of some between slices
+    assert_allclose((slopes * pressure).sum() * area, 0.5 * peak.pressure, rtol=1e-9)  # evenly more: the same length
 
 
 def test_slice_pressure_of_a_map_is_that_of_its_result():
@@ -232,7 +253,7 @@ def test_slice_pressure_within_a_contact_changes_as_the_top_of_a_parabola():
         )
         return np.sqrt(parabola_top(line_load * curvature) * pair.contact_modulus / np.pi)
 
-    (slopes,) = peak_pressure_slopes(pair, [contact], [True])
+    (slopes,) = peak_pressure_slopes(pair, [contact], largest_slice_pressures(pair, [contact]))
     assert_allclose(peak.pressure, figure(pressure), rtol=1e-3)  # the peak is that of one place
     changes = np.random.default_rng(2).uniform(-1.0, 1.0, (5, *pressure.shape)) * pressure
     expected = [(figure(pressure + STEP * one) - figure(pressure - STEP * one)) / (2.0 * STEP) for one in changes]
@@ -243,7 +264,7 @@ def test_slice_pressure_within_a_contact_changes_as_the_top_of_a_parabola():
 
 def test_slice_pressure_of_an_even_contact_does_not_change_as_it_tilts():
     pair, contact = on_relief_start()
-    (slopes,) = peak_pressure_slopes(pair, [contact], [True])
+    (slopes,) = peak_pressure_slopes(pair, [contact], largest_slice_pressures(pair, [contact]))
     tilt = slopes * tilting(contact[2])
     assert_allclose(tilt.sum(), 0.0, atol=1e-4 * np.abs(tilt).sum())  # even to the solver's tolerance
 
@@ -251,9 +272,10 @@ def test_slice_pressure_of_an_even_contact_does_not_change_as_it_tilts():
 def test_peaks_of_several_contacts_are_those_of_each():
     pair, contact = on_relief_start()
     _, coarse = on_relief_start((24, 20))
-    together = peak_pressure_slopes(pair, [contact, coarse, contact], [True, True, False])
-    for found, one, rough in zip(together, [contact, coarse, contact], [True, True, False], strict=True):
-        assert_array_equal(found, peak_pressure_slopes(pair, [one], [rough])[0])  # exact: each contact by itself
+    peaks = [*largest_slice_pressures(pair, [contact, coarse]), None]
+    together = peak_pressure_slopes(pair, [contact, coarse, contact], peaks)
+    for found, one, peak in zip(together, [contact, coarse, contact], peaks, strict=True):
+        assert_array_equal(found, peak_pressure_slopes(pair, [one], [peak])[0])  # exact: each contact by itself
     assert peak_pressure_slopes(pair, [], []) == []
 
 

@@ -198,6 +198,7 @@ def test_maps_of_weights_take_the_same_off_the_transmission_error_as_even_remova
         )
 
 
+@pytest.mark.filterwarnings("ignore:an edge cuts the slices")
 def test_spread_adds_up_the_squares_of_independent_deviations():
     one = result("mesh_cycle_helical")
     found = one.sensitivities([CROWNING, SLOPE])

@@ -1,0 +1,191 @@
+"""Derivatives of K_Hbeta by the forces of the cells, the motions of the grids and of the common face."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from loaded_tca.arrays import Array, Indices
+from loaded_tca.loaded.sensitivity import LoadedGrid
+from loaded_tca.pairs.gear_pair import GearPair
+from loaded_tca.results.load_factors import (
+    STRIPS,
+    common_face,
+    loaded_maps,
+    strip_borders,
+    strip_forces,
+    strip_motions,
+    strip_shares,
+)
+from loaded_tca.results.numbers import CycleNumbers
+from loaded_tca.results.pressure_map import PressureMap
+from loaded_tca.separation.pair_change import PairChange
+from loaded_tca.unloaded import ContactPath
+
+AS_LARGE, BESIDE = 1e-2, 5e-4
+"""Relative difference of the forces of two strips of the face up to which a kink of K_Hbeta is near; and of a strip
+beside the largest one, which follows it, but where both are as far from the top."""
+
+
+def face_load_factor_changes(
+    result: CycleNumbers,
+    places: Indices,
+    grids: Sequence[LoadedGrid],
+    motions: Array,
+    changes: Sequence[PairChange | None],
+    strips: Sequence[int | None],
+) -> tuple[list[Array], Array]:
+    """Derivatives of the face load factor of one strip under each torque by forces, and its growth by motions.
+
+    Parameters
+    ----------
+    result : MeshCycle
+    places : (3, grids) int array
+        Torque, position and pair of each grid.
+    grids : sequence of LoadedGrid
+    motions : (keys, grids, 6) array
+        Of the grids.
+    changes : sequence of PairChange or None
+        None of keys that change no gears.
+    strips : sequence of int or None
+        Strip by torque; None: that with the largest force.
+
+    Returns
+    -------
+    slopes : list of (nx, ny) arrays [1/N]
+        On each grid.
+    by_motion : (torque, key) array [1 per unit]
+        As grids and the ends of the common face move, forces held; NaN with one position.
+    """
+    rows = [(result.gear_pair, result.path, maps, strip) for maps, strip in zip(result.maps, strips, strict=True)]
+    of_maps, of_motions = (
+        [derivative(*row) for row in rows] for derivative in (face_load_factor_slopes, face_load_factor_motions)
+    )
+    by_motion = np.zeros((len(result.torque), len(changes)))
+    by_motion[~np.isfinite(result.face_load_factor)] = np.nan
+    face_ends = np.zeros((len(changes), 2))
+    for key, change in enumerate(changes):
+        if change is not None and change.of_mounting:
+            low, high = (np.array(common_face(side, result.path)) for side in (change.below, change.above))
+            face_ends[key] = (high - low) / change.difference
+    slopes = []
+    for i, ((t, n, k), grid) in enumerate(zip(places.T.tolist(), grids, strict=True)):
+        own = of_maps[t][n][k]
+        slopes.append(np.zeros(grid.active.shape) if own is None else own)
+        if (moved := of_motions[t][n][k]) is not None:
+            by_motion[t] += motions[:, i] @ moved[:6] + face_ends @ moved[6:]
+    return slopes, by_motion
+
+
+def face_load_factor_slopes(
+    pair: GearPair,
+    path: ContactPath,
+    positions: Sequence[Sequence[PressureMap | None]],
+    strip: int | None = None,
+) -> list[list[Array | None]]:
+    """Derivatives of K_Hbeta under one torque by the forces of the cells of all positions and tooth pairs.
+
+    The strip with the largest force is held.
+
+    Parameters
+    ----------
+    pair : GearPair
+    path : ContactPath
+        Unloaded contact, of n positions.
+    positions : sequence of sequences
+        Pressure maps by n positions and tooth pairs.
+    strip : int, optional
+        Taken for that with the largest force.
+
+    Returns
+    -------
+    list of lists of (nx, ny) arrays [1/N]
+        By position and tooth pair, zero at cells without pressure. None where K_Hbeta does not depend on a pair: it has
+        no map, or the position is the last one; everywhere if K_Hbeta itself is NaN, for one position and without load.
+    """
+
+    def slopes(one: PressureMap, borders: Array, forces: Array) -> Array:
+        largest, total = int(forces.argmax()) if strip is None else strip, float(forces.sum())
+        shares, by_cell = strip_shares(pair, one, borders)[0][largest], np.zeros(one.pressure.shape)
+        by_cell[one.pressure > 0.0] = (STRIPS * shares - STRIPS * forces[largest] / total) / total
+        return by_cell
+
+    return _of_maps(pair, path, positions, slopes)
+
+
+def face_load_factor_motions(
+    pair: GearPair,
+    path: ContactPath,
+    positions: Sequence[Sequence[PressureMap | None]],
+    strip: int | None = None,
+) -> list[list[Array | None]]:
+    """Derivatives of K_Hbeta under one torque by the motions of the grids and of the common face, the forces held.
+
+    Parameters
+    ----------
+    pair, path, positions, strip
+        As of :func:`face_load_factor_slopes`.
+
+    Returns
+    -------
+    list of lists of (8,) arrays
+        By the motions of the grid as of :class:`loaded_tca.separation.gap_change.MovedContacts`, and by those of the
+        lower and the upper end of the common face [1/mm]. None as there.
+    """
+
+    def motions(one: PressureMap, borders: Array, forces: Array) -> Array:
+        largest = int(forces.argmax()) if strip is None else strip
+        return strip_motions(pair, one, borders, largest) * (STRIPS / float(forces.sum()))
+
+    return _of_maps(pair, path, positions, motions)
+
+
+def _of_maps(
+    pair: GearPair,
+    path: ContactPath,
+    positions: Sequence[Sequence[PressureMap | None]],
+    derivative: Callable[[PressureMap, Array, Array], Array],
+) -> list[list[Array | None]]:
+    """A derivative of K_Hbeta by every map, of the map, the borders of the strips and their forces; None without."""
+    borders = strip_borders(pair, path)
+    forces = sum((strip_forces(pair, one, borders)[0] for one in loaded_maps(positions)), np.zeros(STRIPS))
+    by_map: list[list[Array | None]] = [[None] * len(row) for row in positions]
+    for n, row in enumerate(positions[:-1] if forces.any() else ()):
+        by_map[n] = [None if one is None else derivative(one, borders, forces) for one in row]
+    return by_map
+
+
+def rival_strip(
+    pair: GearPair, path: ContactPath, positions: Sequence[Sequence[PressureMap | None]]
+) -> tuple[int, float] | None:
+    """Strip of the face that carries nearly as much as the one that sets K_Hbeta, and what it lacks, relative.
+
+    Another top of the forces along the face within 1 %, or a strip beside the largest one within 0.05 %: what is beside
+    it is followed, but of the two in the middle of an aligned pair either may be the larger one.
+
+    Parameters
+    ----------
+    pair : GearPair
+    path : ContactPath
+        Unloaded contact, of n positions.
+    positions : sequence of sequences
+        Pressure maps by n positions and tooth pairs.
+
+    Returns
+    -------
+    (int, float) or None
+        The largest such strip; None if there is none.
+    """
+    borders = strip_borders(pair, path)
+    forces = sum((strip_forces(pair, one, borders)[0] for one in loaded_maps(positions)), np.zeros(STRIPS))
+    largest = int(forces.argmax())
+    ends = np.concatenate([[-np.inf], forces, [-np.inf]])
+    lacking = 1.0 - forces / (forces[largest] or 1.0)
+    beside = np.abs(np.arange(STRIPS) - largest) <= 1
+    rivals = np.where(beside, lacking <= BESIDE, (forces >= ends[:-2]) & (forces >= ends[2:]) & (lacking <= AS_LARGE))
+    rivals[largest] = False
+    if not rivals.any() or not forces.any():
+        return None
+    rival = int(np.where(rivals, forces, -np.inf).argmax())
+    return rival, float(lacking[rival])
