@@ -47,9 +47,26 @@ EXPLANATIONS = (
     ),
     Explanation(
         "an edge cuts the slices of the largest line load",
-        "which cells the edge leaves of a slice changes with every step of a mounting error or machine setting: two "
-        "steps of analyses differ by up to 100 %",
-        "read the derivatives of the load share and of the peak pressure; modifications are as exact as elsewhere",
+        "which cells the edge leaves of a slice changes with every step of a key: analyses on both sides differ by as "
+        "much as the derivative",
+        "read the derivatives of the load share and of the peak pressure",
+    ),
+    Explanation(
+        "an edge cuts the slices of the peak pressure",
+        "a corner of a contact, or one that has only just come under load, has few cells: the peak follows them",
+        "read the derivatives of other contacts, or compare two grids; more crowning, end or tip relief on the gears",
+    ),
+    Explanation(
+        "edges of both gears end the contact at one place",
+        "to one side of the key the pinion's end rules and to the other the wheel's, and on one of them the contact is "
+        "shorter: the derivative is that of the edges that rule in the scene, and lies between those of both sides",
+        "faces of two widths or an offset, so that one gear ends the contact; else analyses on both sides",
+    ),
+    Explanation(
+        "another strip of the face carries as much",
+        "K_Hbeta is the largest of 30 strips, and beyond the change by which another one becomes the largest it "
+        "follows that: of an aligned pair it rises to either side",
+        "analyses on both sides, or a Monte Carlo study; not the spread to first order",
     ),
     Explanation(
         "a linear relief starts in the contact beside its point",

@@ -1,11 +1,13 @@
 """Scatter to first order beside that of a study: the standard deviations of both are those of their numbers."""
 
+import warnings
 from functools import cache
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from loaded_tca.errors import AccuracyWarning
 from loaded_tca.plots import plot_first_order_scatter
 from loaded_tca.results import key_figure_slopes
 from tests.refusals import refusals
@@ -20,7 +22,11 @@ FIGURE = "peak_pressure_MPa"
 
 @cache
 def found():
-    return result("mesh_cycle_helical", positions=5, torques=TORQUES).sensitivities(KEYS)
+    slopes = result("mesh_cycle_helical", positions=5, torques=TORQUES).sensitivities(KEYS)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AccuracyWarning)  # contacts reach edges, and faces are of one width
+        key_figure_slopes(slopes)  # all are read, and kept
+    return slopes
 
 
 def study(name=FIGURE, count=500, torques=TORQUES, keys=KEYS, status=None):
