@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from loaded_tca.arrays import Array
+from loaded_tca.arrays import Array, Mask
 from loaded_tca.loaded.sensitivity import LoadedGrid
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.gap_growth import GapGrowth, moved
@@ -20,8 +21,8 @@ STEP = 1e-3
 JUMP = 0.1
 """Relative change of a curvature over the length in which a peak is known to lie, from which on a relief starts there;
 and between two sides of a step, from which on its start lies between them."""
-HALVINGS = 40
-"""Of that length, on the way to the start: to 1e-12 of it."""
+ROUNDS, BETWEEN = 6, 17
+"""How often that length is divided on the way to the start, by so many places: to 6e-8 of it."""
 FLAT = 1e-12
 """Curvature [1/mm] that is none."""
 
@@ -55,14 +56,15 @@ def curvature_growth(
     ends = along + reach * [-1.0, 1.0]
     at_ends = _log_curvature(pair, grids, held[:, 0], held)(_middles(peaks, ends), ends)
     starts = np.flatnonzero(np.abs(at_ends[:, 1] - at_ends[:, 0]) > JUMP)
-    rises = at_ends[starts, 1] > at_ends[starts, 0]
+    at = starts.tolist()
+    rises, level = at_ends[starts, 1] > at_ends[starts, 0], at_ends[starts].mean(axis=1, keepdims=True)
 
     def grown(gears: GearPair, turns: Array, motions: Array) -> Array:
         """Logarithm (grids,) of line load times curvature at the peaks, the wheel turned and the grids moved."""
-        bends = _log_curvature(gears, grids, turns, motions)
-        found = bends(_middles(peaks, along), along)[:, 0]
+        found = _log_curvature(gears, grids, turns, motions)(_middles(peaks, along), along)[:, 0]
         if starts.size:
-            found[starts] = _at_starts(bends, peaks, starts, rises, at_ends.mean(axis=1), ends)
+            bends = _log_curvature(gears, [grids[i] for i in at], turns[starts], motions[starts])
+            found[starts] = _at_starts(bends, [peaks[i] for i in at], level, rises, ends[starts])
         return found
 
     found = np.zeros((len(changes), len(grids)))
@@ -105,28 +107,18 @@ def _log_curvature(
 
 
 def _at_starts(
-    bends: Callable[[Array, Array], Array],
-    peaks: Sequence[SlicePeak],
-    starts: Array,
-    rises: Array,
-    level: Array,
-    ends: Array,
+    bends: Callable[[Array, Array], Array], peaks: Sequence[SlicePeak], level: Array, rises: Mask, ends: Array
 ) -> Array:
-    """Logarithm of line load times curvature at the starts of reliefs, where some of the peaks lie, less at the peaks.
+    """Logarithm of line load times curvature at the starts of reliefs on which peaks lie, the former over that there.
 
-    A start lies where the curvature passes a ``level`` (grids,) between ``ends`` (grids, 2), upwards or not.
+    A start lies where the curvature passes a ``level`` (grids, 1) between ``ends`` (grids, 2), upwards or not.
     """
-    between = ends.copy()
-    for _ in range(HALVINGS):
-        middle = between.mean(axis=1, keepdims=True)
-        above = (bends(_middles(peaks, middle), middle)[:, 0] > level)[starts]
-        between[starts, np.where(above == rises, 1, 0)] = middle[starts, 0]
-    side = np.where(rises, 1, 0)  # that with the larger curvature
-    place = between[:, :1].copy()
-    place[starts, 0] = between[starts, side]
-    logarithms = bends(_middles(peaks, place), place)[starts, 0]
-    loads = [
-        np.log(peaks[i].slices.at(place[i])[2][0] / peaks[i].slices.at(np.array([peaks[i].place[1]]))[2][0])
-        for i in starts.tolist()
-    ]
-    return np.asarray(logarithms + loads)
+    for _ in range(ROUNDS):
+        places = ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * np.linspace(0.0, 1.0, BETWEEN)
+        beyond = (bends(_middles(peaks, places), places) > level) == rises[:, None]
+        first = np.clip(beyond.argmax(axis=1), 1, None)[:, None]
+        ends = np.take_along_axis(places, first + np.array([-1, 0]), axis=1)
+    place = np.where(rises, ends[:, 1], ends[:, 0])[:, None]  # on the side with the larger curvature
+    found = bends(_middles(peaks, place), place)[:, 0]
+    loads = [peak.slices.at(np.array([y, peak.place[1]]))[2] for peak, (y,) in zip(peaks, place, strict=True)]
+    return np.asarray(found + [math.log(there / before) for there, before in loads])

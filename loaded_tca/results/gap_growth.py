@@ -154,8 +154,8 @@ def _add_moved_lines(
     slices = (
         slices + (np.cumsum([one.y.size for one in separations]) - [one.y.size for one in separations])[tangents.grid]
     )
-    held = np.array([change.of_modifications for change in changes]) & ~motions.any(axis=(1, 2))
-    mounted = np.flatnonzero(~held).tolist() if free_edges or bending is not None else []
+    hold = np.array([change.holds_lines for change in changes])
+    mounted = np.flatnonzero(~hold).tolist() if free_edges or bending is not None else []
     moved_grids = [
         [
             [moved(one, part * changes[key].difference * by) for one, by in zip(separations, motions[key], strict=True)]
@@ -178,6 +178,10 @@ def _add_moved_lines(
                 for gears, there in zip((change.below, change.above), sides, strict=True)
             )
             gaps[key] += ((high - low) / change.difference)[slices]
+    others = np.flatnonzero(hold).tolist()
+    if tangents.by_shift is not None and others:
+        shifts = np.repeat(motions[others][..., 0], [one.y.size for one in separations], axis=1)
+        gaps[others] += (tangents.by_shift @ shifts.T).T[:, slices]
 
 
 def _bent(tangents: Tangents, bending: BendingModel, separations: Sequence[Separation]) -> Array:
