@@ -154,31 +154,31 @@ def _add_moved_lines(
     slices = (
         slices + (np.cumsum([one.y.size for one in separations]) - [one.y.size for one in separations])[tangents.grid]
     )
-    hold = np.array([change.holds_lines for change in changes])
-    mounted = np.flatnonzero(~hold).tolist() if free_edges or bending is not None else []
+    moving = [key for key, change in enumerate(changes) if not change.holds_lines]
+    if not free_edges and bending is None:
+        moving = []
     moved_grids = [
         [
             [moved(one, part * changes[key].difference * by) for one, by in zip(separations, motions[key], strict=True)]
             for part in (-0.5, 0.5)
         ]
-        for key in mounted
+        for key in moving
     ]
     forces = np.concatenate([grid.slice_force for grid in grids])
-    if free_edges and mounted:
+    if free_edges and moving:
         steps = [
             MovedSlices((changes[key].below, low), (changes[key].above, high), changes[key].difference)
-            for key, (low, high) in zip(mounted, moved_grids, strict=True)
+            for key, (low, high) in zip(moving, moved_grids, strict=True)
         ]
-        gaps[mounted] += edge_deflection_growth(pair, separations, forces, steps)[:, slices]
-    for key, sides in zip(mounted, moved_grids, strict=True):
-        if bending is not None:
-            change = changes[key]
+        gaps[moving] += edge_deflection_growth(pair, separations, forces, steps)[:, slices]
+    for key, sides in zip(moving, moved_grids, strict=True):
+        if bending is not None and not (change := changes[key]).of_modifications:
             low, high = (
                 _bent(tangents, bending.mounted(gears) if isinstance(bending, SumOfParts) else bending, there)
                 for gears, there in zip((change.below, change.above), sides, strict=True)
             )
             gaps[key] += ((high - low) / change.difference)[slices]
-    others = np.flatnonzero(hold).tolist()
+    others = [key for key, change in enumerate(changes) if change.of_modifications]
     if tangents.by_shift is not None and others:
         shifts = np.repeat(motions[others][..., 0], [one.y.size for one in separations], axis=1)
         gaps[others] += (tangents.by_shift @ shifts.T).T[:, slices]
