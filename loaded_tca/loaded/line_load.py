@@ -76,7 +76,7 @@ def loaded_length(force: Array, borders: Array) -> tuple[float, Array]:
     --------
     >>> length, slopes = loaded_length(np.array([0.0, 1.0, 2.0, 1.0]), np.arange(5.0))
     >>> round(length, 3), slopes.round(3)
-    (2.646, array([ 1.948,  0.243, -0.324,  0.243]))
+    (2.646, array([ 1.984,  0.283, -0.283,  0.283]))
     """
     middles, widths, whole = 0.5 * (borders[:-1] + borders[1:]), np.diff(borders), float(force.sum())
     squares = (middles - force @ middles / whole) ** 2 + widths**2 / 12.0

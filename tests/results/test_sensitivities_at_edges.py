@@ -143,8 +143,8 @@ def test_contacts_between_two_face_ends_stay_where_they_are_though_their_point_m
 @pytest.mark.parametrize(
     ("seed", "position", "pair", "key", "step", "allowed"),
     [
-        # at the start of a parabolic relief the curvature jumps, and the peak goes with it: 0.2 of the slope before
-        (15, 1, 1, "mounting.in_plane_deg", 1e-3, 0.1),
+        # at the start of a parabolic relief the curvature jumps, and the peak goes with it: 0.6 of the slope before
+        (15, 1, 1, "mounting.centre_distance_error_mm", 2e-3, 0.1),
         # a corner of 0.7 mm, shorter than the length of the average: 1.6 times before
         (13, 3, 0, "mounting.centre_distance_error_mm", 1e-3, 0.02),
     ],
