@@ -113,7 +113,7 @@ def gap_growth(
         if (own := found.covers[:, first:last]).any():
             gaps[:, first:last] += _released(grids[i], own)
         if (own := found.kinks[:, first:last]).any():
-            kinks[:, i] = own.max(axis=1) / np.count_nonzero(grids[i].slice_force)
+            kinks[:, i] = _shorter(grids[i], own)
     free_edges = result.scene.analysis.free_edges
     _add_moved_lines(pair, tangents, bending, changes, found.motions, gaps, free_edges=free_edges)
     return GapGrowth(gaps, kinks, result.normal_force[places] * points.levers[0], found.motions, points.turns)
@@ -127,6 +127,18 @@ def _released(grid: LoadedGrid, covers: Array) -> Array:
     cover = np.ones(grid.active.shape) if problem.cover is None else problem.cover
     displaced = crowding_growth(cover, growth, grid.pressure, dy / dx)
     return displaced[:, grid.active] * (dx / problem.contact_modulus)
+
+
+def _shorter(grid: LoadedGrid, kinks: Array) -> Array:
+    """Part (keys,) of its loaded slices by which a contact is shorter on one side of the keys.
+
+    ``kinks`` (keys, n): of the parts of its active cells; of a slice the mean by the pressure, since an end has them
+    all across.
+    """
+    slices, line = grid.active.nonzero()[1], grid.pressure.sum(axis=0)
+    parts = np.zeros((line.size, len(kinks)))
+    np.add.at(parts, slices, (kinks * grid.pressure[grid.active] / line[slices]).T)
+    return np.asarray(parts.max(axis=0) / np.count_nonzero(line))
 
 
 def moved(grid: Grid, motion: Array) -> Grid:

@@ -159,8 +159,8 @@ class BorderCells:
     rates : (keys, m) array [1 per unit of the key]
         Growth of their parts with material on grids that are held, the wheel turned back into contact.
     kinks : (keys, m) array [1 per unit of the key]
-        By how much the rates of growing values of the keys are less than those of falling ones, where another edge
-        leaves the same part.
+        By how much the rates of growing values of the keys are less than those of falling ones, where an edge of the
+        other gear leaves the same part.
     slopes : (m, 3) array [1/mm, 1/mm, 1/rad]
         The same by the motion of the grid along x and y and by its turn from x to y.
     """
@@ -193,12 +193,14 @@ class BorderCells:
         parts = 0.5 + distances[:, 0] / widths
         part = parts.min(axis=0)
         kept = (part >= SLIVER) & (part <= 1.0 + SLIVER)
-        near = kept & (parts - part < AT_ONE_PLACE)
+        ruling, gears = parts.argmin(axis=0), np.array([gear for gear, _ in edges])
+        near = kept & (parts - part < AT_ONE_PLACE) & (gears[:, None] != gears[ruling])
+        near |= kept & (np.arange(len(edges))[:, None] == ruling)
         rates, slopes = np.zeros((len(changes), cell.size)), np.zeros((cell.size, MOTIONS))
         least, most = np.full(rates.shape, np.inf), np.full(rates.shape, -np.inf)
         for number in np.flatnonzero(near.any(axis=1)).tolist():
             own, (gear, distance) = near[number], edges[number]
-            rules = (parts.argmin(axis=0) == number)[own]
+            rules = (ruling == number)[own]
             signs = np.sign(steps[number][:, own])
             by_keys = places.growth(pair, gear, distance, changes).reshape(-1, 3, cell.size)[..., own]
             by_motion = places.slopes_of(pair, gear, distance).T.reshape(MOTIONS, 3, cell.size)[..., own]
