@@ -6,6 +6,7 @@ from datetime import UTC, datetime
 
 import numpy as np
 
+from loaded_tca import warning_kinds as kinds
 from loaded_tca.compliance import RootStress, model_of, require_teeth, root_stress_model, way_out_told
 from loaded_tca.compliance.torsion import body_torsion
 from loaded_tca.errors import give_accuracy_warning, named, noted_accuracy_warnings, require
@@ -95,8 +96,5 @@ def roots_of(scene: Scene, pair: GearPair) -> tuple[RootStress, ...]:
         with way_out_told("analysis.root_stress = false"), named(name):
             found.append(root_stress_model(gear))
         if (layer := found[-1].layer / pair.module) > THICKEST_LAYER:
-            give_accuracy_warning(
-                f"root stress of the {name}: across its face elements are {layer:.2g} modules wide; where contacts "
-                "cover a part of the face alone, root stress is too low, by a tenth at 2 modules"
-            )
+            give_accuracy_warning(kinds.FACE_ELEMENTS.sentence(gear=name, width=layer))
     return tuple(found)

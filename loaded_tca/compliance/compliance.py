@@ -12,6 +12,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from loaded_tca import warning_kinds as kinds
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.flexibility import MOST_IN_MEMORY
 from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_compliance
@@ -234,8 +235,7 @@ def require_teeth(pair: GearPair, way_out: str = TEETH_DO_NOT_BEND) -> None:
         _ = pair.rigid_bores
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         if gear.sharp.flank is not gear.nominal_flank and (fault := _fault_of(gear)):
-            sentence = f"{name}, with its modifications: {fault}; it bends like the tooth without them"
-            give_accuracy_warning(sentence, stacklevel=3)
+            give_accuracy_warning(kinds.UNMODIFIED_TOOTH.sentence(gear=name, fault=fault), stacklevel=3)
 
 
 def warn_of_teeth(pair: GearPair) -> None:
@@ -253,7 +253,7 @@ def warn_of_teeth(pair: GearPair) -> None:
     """
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         if fault := _fault_of(gear):
-            give_accuracy_warning(f"{name}: {fault}; its flank in contact is analysed all the same", stacklevel=3)
+            give_accuracy_warning(kinds.NO_TOOTH.sentence(gear=name, fault=fault), stacklevel=3)
 
 
 def _fault_of(gear: Gear) -> GeometryError | None:

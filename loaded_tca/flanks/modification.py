@@ -15,6 +15,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
+from loaded_tca import warning_kinds as kinds
 from loaded_tca.arrays import Array, real
 from loaded_tca.errors import InputError, give_accuracy_warning
 from loaded_tca.flanks.base import DerivedFlank, Flank, unmodified
@@ -454,7 +455,7 @@ def modified(
     for name in AMOUNTS:
         amount = getattr(modifications, name) or 0.0  # None: as at both ends
         if abs(amount) > LARGEST_AMOUNT:
-            message = f"{owner}.{name}: {amount:.6g} mm is more than {LARGEST_AMOUNT:g} mm; is its unit right?"
+            message = kinds.UNIT.sentence(key=f"{owner}.{name}", amount=amount, most=LARGEST_AMOUNT)
             give_accuracy_warning(message, stacklevel=2)
     return flank
 

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from loaded_tca import warning_kinds as kinds
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning
 from loaded_tca.flanks.base import DerivedFlank, Flank, Region, unmodified
@@ -86,10 +87,7 @@ class StructuredGrid:
                 left = " and ".join(
                     f"{100.0 * max(end, 0.0):.0f} % at the {edge}" for end, edge in zip(ends, names, strict=True)
                 )
-                message = (
-                    f"{name}: the points leave {left} of the flank uncovered; there the deviation is a continuation"
-                )
-                give_accuracy_warning(message, stacklevel=3)
+                give_accuracy_warning(kinds.UNCOVERED.sentence(direction=name, left=left), stacklevel=3)
 
     def _too_coarse(self, degrees: tuple[int, int], counts: tuple[int, int]) -> list[str]:
         problems = []
@@ -303,9 +301,8 @@ def fitted(flank: Flank, points: tuple[int, int] = DEFAULT_POINTS, degree: int =
     between = (part[1::2, 1::2] for part in flank.grid(2 * points[0] - 1, 2 * points[1] - 1))
     check = FitError.of(bare.distance_to(flank, *between))
     if check.largest > FIT_TOLERANCE:
-        advice = "take more points; the relief start where a linear relief starts is rounded off by any number"
-        message = f"the B-spline through {points[0]} x {points[1]} points misses the flank by {check} between them"
-        give_accuracy_warning(f"{message}: {advice}", stacklevel=2)
+        message = kinds.COARSE_FIT.sentence(points=f"{points[0]} x {points[1]}", error=check)
+        give_accuracy_warning(message, stacklevel=2)
     return SplineFlank(region, spline, FitError.of(bare.distance_to(flank, rho, z)), check)
 
 
@@ -397,8 +394,7 @@ def _warn_if_swinging(nominal: Flank, excess: Array, spline: TensorSpline, smoot
     beyond, span = max(known.min() - found.min(), found.max() - known.max()), float(np.ptp(excess))
     if beyond > max(SWING * span, FIT_TOLERANCE):
         from_to = (f"{1e3 * one.min():.3g} to {1e3 * one.max():.3g} um" for one in (excess, found))
-        message = "the points deviate by {}, the flank by {}: its continuation beyond them swings".format(*from_to)
-        give_accuracy_warning(message, stacklevel=3)
+        give_accuracy_warning(kinds.SWINGS.sentence(points=next(from_to), flank=next(from_to)), stacklevel=3)
 
 
 def pitch_point(flank: Flank) -> tuple[Array, Array]:

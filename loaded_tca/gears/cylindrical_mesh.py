@@ -14,6 +14,7 @@ from functools import cached_property
 from math import atan, ceil, cos, inf, pi, sin, sqrt, tan
 from typing import NamedTuple
 
+from loaded_tca import warning_kinds as kinds
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.checks import pair_checks
 from loaded_tca.gears.cylindrical import CylindricalGear, inverse_involute, involute
@@ -371,18 +372,11 @@ def interferences(room: Room, module: float, place: str, *, nominal: bool = Fals
 def _what_jams(room: Room, module: float, nominal: bool) -> Iterator[tuple[str, str]]:
     """What interferes, and by how much."""
     if room.backlash < -ROUNDING * module and not nominal:
-        yield (
-            "negative backlash: teeth are thicker than the spaces of the mating gear, so that whole gears jam, while "
-            "the analysis has the contact of one flank of each",
-            f"{-room.backlash:.4f} mm",
-        )
+        yield kinds.BACKLASH.sentence(), f"{-room.backlash:.4f} mm"
     for (name, mating), length in zip(BOTH_WAYS, room.below_form, strict=True):
         if length < -ROUNDING * module:
-            yield (
-                f"fillet interference: the tip of the {mating} reaches below the form circle of the {name}, where its "
-                "flank ends",
-                f"{-length:.4f} mm on the line of action",
-            )
+            what = f"the tip of the {mating} reaches below the form circle of the {name}, where its flank ends"
+            yield kinds.FILLET.sentence(what=what), f"{-length:.4f} mm on the line of action"
 
 
 def _what_stops(room: Room, module: float) -> Iterator[str]:

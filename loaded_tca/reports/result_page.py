@@ -13,12 +13,12 @@ from loaded_tca.plots import result_figures
 from loaded_tca.plots.labels import label_of
 from loaded_tca.reports.page import Table, parts_of, pictures_of, tables_of
 from loaded_tca.results.accuracy import NO_ESTIMATE, Figures, in_percent
-from loaded_tca.results.explanations import Explanation, explanation_of
 from loaded_tca.results.figure import labelled
 from loaded_tca.results.figures import FIGURES, declared
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.summary import known_rows, limits_of, shown
 from loaded_tca.scene import Scene
+from loaded_tca.warning_kinds import Kind, kind_of
 
 MOST_TORQUES = 5
 """Torques with a column each in one table of a page."""
@@ -94,11 +94,11 @@ def scene_content(scene: Scene) -> dict[str, Any]:
     }
 
 
-def explained(sentences: Sequence[str]) -> list[tuple[list[str], Explanation | None]]:
+def explained(sentences: Sequence[str]) -> list[tuple[list[str], Kind | None]]:
     """Return accuracy warnings, those for one reason together, with what is to be known of them."""
-    found: dict[Explanation | None, list[str]] = {}
+    found: dict[Kind | None, list[str]] = {}
     for sentence in sentences:
-        found.setdefault(explanation_of(sentence), []).append(sentence)
+        found.setdefault(kind_of(sentence), []).append(sentence)
     return [(told, known) for known, told in found.items()]
 
 

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from loaded_tca import warning_kinds as kinds
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.loaded.sensitivity import LoadedGrid
@@ -22,15 +23,6 @@ LEVEL = 1e-6
 """Relative difference of derivatives between positions that is none."""
 LITTLE = 0.05
 """Share of the torque below which a pair has only just come under load."""
-ON_CUT_SLICES = (
-    "an edge cuts the slices of the largest line load: one derivative in five is off by more than 5%, "
-    "one in ten by more than 10%"
-)
-AT_CORNERS = (
-    "an edge cuts the slices of the peak pressure, or the pair carries less than 5% of the torque: "
-    "one derivative in seven is off by more than 5%, one in twenty by more than 10%"
-)
-ACROSS_STARTS = "a linear relief starts in the contact beside its point: derivatives depend on the grid by up to 25%"
 
 
 def largest_cut(grids: Sequence[LoadedGrid]) -> list[bool]:
@@ -63,12 +55,9 @@ def warn_of_strips(keys: Sequence[str], slopes: Array, kinks: Array, lacking: Se
     worst = np.nan_to_num(sizes).max(axis=0, initial=0.0)
     if (worst > TOLD).any():
         own = int(worst.argmax())
-        give_accuracy_warning(
-            f"another strip of the face carries as much but for {min(lacking):.1g}: K_Hbeta has a kink, beyond which "
-            f"derivatives are others by up to {worst[own]:.0%} ({keys[own]}; {np.count_nonzero(worst > TOLD)} of "
-            f"{len(keys)} keys)",
-            stacklevel=stacklevel + 1,
-        )
+        told = {"key": keys[own], "count": np.count_nonzero(worst > TOLD), "keys": len(keys)}
+        sentence = kinds.STRIPS_ALIKE.sentence(lacking=min(lacking), size=worst[own], **told)
+        give_accuracy_warning(sentence, stacklevel=stacklevel + 1)
 
 
 def warn_of_edges(keys: Sequence[str], slopes: Array, kinks: Array, length: float, stacklevel: int) -> None:
@@ -84,10 +73,7 @@ def warn_of_edges(keys: Sequence[str], slopes: Array, kinks: Array, length: floa
     told = (sizes > TOLD * scale).any(axis=0)
     if told.any():
         own = int(np.where(told, sizes.max(axis=0), -1.0).argmax())
-        unit = keys[own].rpartition("_")[2]
-        give_accuracy_warning(
-            "edges of both gears end the contact at one place: derivatives of the transmission error have a kink, and "
-            f"differ by up to {length * float(sizes[:, own].max()):.2g} um per {unit} on its sides ({keys[own]}; "
-            f"{np.count_nonzero(told)} of {len(keys)} keys)",
-            stacklevel=stacklevel + 1,
-        )
+        size, unit = length * float(sizes[:, own].max()), keys[own].rpartition("_")[2]
+        counted = {"key": keys[own], "count": np.count_nonzero(told), "keys": len(keys)}
+        sentence = kinds.EDGES_AT_ONE_PLACE.sentence(size=size, unit=unit, **counted)
+        give_accuracy_warning(sentence, stacklevel=stacklevel + 1)

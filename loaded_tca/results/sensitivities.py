@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from loaded_tca import warning_kinds as kinds
 from loaded_tca.arrays import Array, Indices, Mask, real
 from loaded_tca.errors import require
 from loaded_tca.loaded.force_lines import bending_by_shift
@@ -24,10 +25,7 @@ from loaded_tca.results.figure_slopes import (
 )
 from loaded_tca.results.gap_growth import GapGrowth, gap_growth
 from loaded_tca.results.kinks import (
-    ACROSS_STARTS,
-    AT_CORNERS,
     LITTLE,
-    ON_CUT_SLICES,
     largest_cut,
     peak_cut,
     warn_of_edges,
@@ -208,7 +206,9 @@ class Sensitivities:
     @cached_property
     def line_load(self) -> Array:
         """Derivatives of the line load of each contact, (torque, position, pair, key) [N/mm per unit]."""
-        warn_of_contacts(self.result, ON_CUT_SLICES, self._of_changes(self.on_cut_slices), stacklevel=3)
+        warn_of_contacts(
+            self.result, kinds.LINE_LOAD_SLOPES.sentence(), self._of_changes(self.on_cut_slices), stacklevel=3
+        )
         slopes = self.tangents.gathered(
             line_load_slopes(grid.pressure, grid.problem.spacing) for grid in self.tangents.grids
         )
@@ -220,7 +220,7 @@ class Sensitivities:
 
         Of a contact at an edge or a relief start that of its largest slice pressure.
         """
-        warn_of_contacts(self.result, AT_CORNERS, self._of_changes(self.at_corners), stacklevel=3)
+        warn_of_contacts(self.result, kinds.PEAK_SLOPES.sentence(), self._of_changes(self.at_corners), stacklevel=3)
         pair, grids, peaks = self.result.gear_pair, self.tangents.grids, self._slice_peaks
         slopes = peak_pressure_slopes(pair, [(one.contact, one.separation, one.pressure) for one in grids], peaks)
         found = self._of_each_pair(self.tangents.gathered(slopes))
@@ -446,5 +446,5 @@ def sensitivities(result: CycleNumbers, keys: Sequence[str]) -> Sensitivities:
     every = tuple(by_key.get(key) for key in keys)
     made = Sensitivities(tuple(keys), result, tangents, places, columns, found.at_keys(at, len(keys)), every)
     if made._moves_lines:
-        warn_of_contacts(result, ACROSS_STARTS, made.across_relief_starts, stacklevel=4)
+        warn_of_contacts(result, kinds.RELIEF_START_BESIDE.sentence(), made.across_relief_starts, stacklevel=4)
     return made

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from loaded_tca import warning_kinds as kinds
 from loaded_tca.arrays import Mask
 from loaded_tca.compliance import require_teeth, warn_of_teeth
 from loaded_tca.contact.rounded_edge import LARGE_ERROR
@@ -59,13 +60,11 @@ def warn_of_accuracy(
     large = {place: peak.error for place, peak in at_rounded_edges.items() if peak.error > limit}
     worst = max(large.values(), default=0.0)
     size = "without a limit" if worst == math.inf else f"{worst:.0%} at the most"
-    mesh_error = f"the pressure at a rounded edge has an estimated error above {LARGE_ERROR:.0%}, {size}"
+    mesh_error = kinds.ROUNDED_EDGE.sentence(limit=LARGE_ERROR, size=size)
     for t, (torque, rows) in enumerate(zip(carried.torque.tolist(), carried.contacts, strict=True)):
         loads = [loaded.solution.load for row in rows for loaded in row if loaded is not None]
         if torque > 0.0 and not any(loads):
-            told.append(
-                f"{1e-3 * torque:g} N m is next to no torque, the gaps it closes are rounding: taken for no load"
-            )
+            told.append(kinds.NO_TORQUE.sentence(torque=1e-3 * torque))
         for n, (angle, row) in enumerate(zip(carried.path.pinion_angle.tolist(), rows, strict=True)):
             for k, (number, loaded) in enumerate(zip(carried.pairs.tolist(), row, strict=True)):
                 if loaded is not None:
@@ -79,16 +78,10 @@ def warn_of_accuracy(
     twist = body_torsion * carried.torque[:, None] / pair.base_radii[0] / (turned * pair.base_radii[1])
     if (share := float(twist.max())) > MOST_TORSION:
         bores = " and ".join(f"{bore:.4g}" for bore in pair.rigid_bores)
-        told.append(
-            f"the twist of the gear bodies about their bores, {bores} mm, is up to {min(share, 1.0):.0%} of the "
-            "deflection: the mesh stiffness is that of the bodies"
-        )
+        told.append(kinds.BODY_TWIST.sentence(bores=bores, share=min(share, 1.0)))
     deflection = float(np.nanmax(carried.rotation, initial=0.0)) * pair.base_radii[1]
     if load_sharing and deflection > REACH * pair.module:
-        told.append(
-            f"the deflection under load is up to {deflection:.3g} mm, more than {REACH:g} modules: tooth pairs with a "
-            "larger initial separation are not looked for"
-        )
+        told.append(kinds.DEFLECTION.sentence(deflection=deflection, reach=REACH))
     for sentence in told:
         give_accuracy_warning(sentence, stacklevel=3)
 
@@ -132,11 +125,7 @@ def warn_of_gears(scene: Scene, pair: GearPair) -> None:
         warn_of_teeth(pair)
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         if scene.analysis.root_stress and (rim := gear.rim_over_height) < THIN_RIM:
-            give_accuracy_warning(
-                f"root stress of the {name}: the rim below its teeth is {rim:.2g} tooth heights thick, less than "
-                f"{THIN_RIM:g}: on a bore that is held rigid stress falls as the rim thins, on a real one it rises",
-                stacklevel=3,
-            )
+            give_accuracy_warning(kinds.THIN_RIM.sentence(gear=name, rim=rim, least=THIN_RIM), stacklevel=3)
 
 
 def without_place(sentence: str) -> str:
@@ -148,23 +137,20 @@ def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[st
     solution = loaded.solution
     found = []
     if loaded.at_edge and not loaded.at_arc:
-        edge = "the contact reaches an edge of a flank, where the pressure of the map is mesh-dependent"
-        found.append(edge + ("" if grid.free_edges else "; the free edge is left out (analysis.free_edges)"))
+        found.append((kinds.EDGE if grid.free_edges else kinds.EDGE_NOT_FREE).sentence())
     if loaded.at_relief_start:
-        found.append(
-            "the contact lies across the start of a linear relief, where the pressure of the map is mesh-dependent"
-        )
+        found.append(kinds.RELIEF_START.sentence())
     # a grid is not refined for this estimate where a contact is rough, nor where the curvature of its gap jumps
     refined = loaded.is_rough or solution.error_estimate.second_order <= grid.accuracy
     allowed = max(LARGE_ERROR, grid.accuracy) if refined else grid.accuracy
     if grid.cells is None and loaded.peak_error > allowed:
-        found.append(f"the estimated error of the peak pressure stays above {allowed:g}")
+        found.append(kinds.PEAK_ERROR.sentence(allowed=allowed))
     if loaded.peak_change > LARGE_ERROR:
-        found.append(f"the peak pressure moves by more than {LARGE_ERROR:.0%} as the teeth bend beneath it")
+        found.append(kinds.PEAK_MOVES.sentence(limit=LARGE_ERROR))
     if solution.reaches_border:
-        found.append("the contact reaches the box of its grid")
+        found.append(kinds.BOX.sentence())
     if solution.load > 0.0 and solution.cells_across[0] < 8:
-        found.append("fewer than 8 cells lie across the contact")
+        found.append(kinds.FEW_CELLS.sentence())
     if 0.5 * loaded.extent[0] > THICKEST_CONTACT * pair.module:
-        found.append("the contact is so wide that the tooth is no half-space")
+        found.append(kinds.WIDE.sentence())
     return found

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
+from loaded_tca import warning_kinds as kinds
 from loaded_tca.errors import GeometryError, InputError, require
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.gears.cylindrical_mesh import ROUNDING, Room, interferences
@@ -263,7 +264,7 @@ class CylindricalScene(BlankScene):
             pinion, wheel = (clearance + error for clearance in mesh.tip_clearances)
             room = Room(mesh.backlash_at(distance), (0.0, 0.0), (pinion, wheel))
             told = interferences(room, module, place, nominal=nominal)
-            return [*told, f"fillet interference: {problem} ({place})"]  # an undercut
+            return [*told, kinds.FILLET.sentence(what=f"{problem} ({place})")]  # an undercut
         return interferences(mounted.room, module, place, nominal=nominal)
 
 

@@ -9,6 +9,7 @@ from typing import Any, Generic, TypeVar, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from loaded_tca import warning_kinds as kinds
 from loaded_tca.arrays import Array, Indices, Mask, finite_row
 from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning
 from loaded_tca.flanks.base import EDGE_NAMES, outward_normal
@@ -187,8 +188,9 @@ def warn_of_fillets(pair: GearPair, path: ContactPath, what: str) -> None:
     if flanks:
         count = int((held[0] | held[1]).sum())
         where = " or a ".join(dict.fromkeys(flank.frame.edges[root] for flank in flanks))
-        message = f"fillet interference: at {count} of {len(path)} positions the {what} lies on a {where}"
-        give_accuracy_warning(message + ", where the flank ends and the fillet begins", stacklevel=3)
+        held_there = f"at {count} of {len(path)} positions the {what} lies on a {where}"
+        sentence = kinds.FILLET.sentence(what=f"{held_there}, where the flank ends and the fillet begins")
+        give_accuracy_warning(sentence, stacklevel=3)
 
 
 def default_angles(pair: GearPair) -> Array:

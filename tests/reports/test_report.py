@@ -8,12 +8,13 @@ import sys
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
+from string import Formatter
 
 import numpy as np
 import pytest
 import xarray
 
-from loaded_tca import analyse, cli, load_result, read_scene
+from loaded_tca import analyse, cli, load_result, read_scene, warning_kinds
 from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.plots import plot_pressure_map, plot_transmission_error
 from loaded_tca.plots.labels import label_of
@@ -21,9 +22,9 @@ from loaded_tca.reports import page as report_page
 from loaded_tca.reports import result_page, write_html_report
 from loaded_tca.reports.page import Table, parts_of, tables_of
 from loaded_tca.results.accuracy import COMPARED
-from loaded_tca.results.explanations import EXPLANATIONS, explanation_of
 from loaded_tca.results.summary import known_rows, shown
 from loaded_tca.studies.design import DesignResult
+from loaded_tca.warning_kinds import KINDS, kind_of
 from tests.samples.results import SCENES, changed, changed_scene, result
 from tests.samples.study_datasets import LEAD, MISALIGNMENT, dataset, grid, sampled
 
@@ -266,7 +267,7 @@ def test_every_warning_is_told_with_what_it_means(page):
     assert told
     for sentence in told:
         assert sentence in page.words
-        known = explanation_of(sentence)
+        known = kind_of(sentence)
         assert known.meaning.replace("`", "") in page.words
         assert known.advice.replace("`", "") in page.words
 
@@ -303,23 +304,34 @@ def test_explanations_are_those_of_the_documents():
     rows = [line.strip("| ").split(" | ") for line in table.splitlines() if line.startswith("| ")][1:]
     assert len(rows) > 10
     for sentence, meaning, advice, _ in rows:
-        known = explanation_of(sentence)
+        known = kind_of(sentence)
         assert (known.meaning, known.advice) == (meaning, advice)
-    assert len({one.words for one in EXPLANATIONS}) == len(EXPLANATIONS)
+    assert len({one.words for one in KINDS}) == len(KINDS)
 
 
 def test_free_edges_are_advised_only_where_they_are_left_out():
     told = "the contact reaches an edge of a flank, where the pressure of the map is mesh-dependent"
     left_out = f"{told}; the free edge is left out (analysis.free_edges)"
-    assert "free_edges" not in explanation_of(told).advice
-    assert explanation_of(left_out).advice.startswith("`free_edges = true`")
+    assert "free_edges" not in kind_of(told).advice
+    assert kind_of(left_out).advice.startswith("`free_edges = true`")
 
 
-def test_every_warning_of_the_package_is_explained():
-    sources = [path.read_text(encoding="utf-8") for path in (ROOT / "loaded_tca").rglob("*.py")]
-    code = re.sub(r'"\s*\n?\s*f?"', "", "\n".join(one for one in sources if "EXPLANATIONS = (" not in one))
-    for known in EXPLANATIONS:
-        assert known.words in code, known.words
+def test_every_kind_of_warning_is_given_and_every_warning_is_of_a_kind():
+    code = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "loaded_tca").rglob("*.py"))
+    names = [name for name, one in vars(warning_kinds).items() if isinstance(one, warning_kinds.Kind)]
+    assert len(names) == len(KINDS)
+    for name in names:
+        assert re.search(rf"kinds\.{name}\b", code), name
+    assert not re.search(
+        r"give_accuracy_warning\(\s*f?[\"']", code.replace('give_accuracy_warning("the fit is coarse")', "")
+    )
+
+
+@pytest.mark.parametrize("known", KINDS, ids=lambda one: one.words[:30])
+def test_sentence_of_a_kind_is_known_again(known):
+    """With values of any length in its fields."""
+    fields = {name: 12345.678 if form else "anything" for _, name, form, _ in Formatter().parse(known.template) if name}
+    assert kind_of(f"{known.sentence(**fields)} (at 1 of 9 pressure maps; the first: 130 N m)") is known
 
 
 def test_page_needs_nothing_else(page):

@@ -10,9 +10,9 @@ from loaded_tca.errors import noted_accuracy_warnings
 from loaded_tca.output.overview import describe_scene
 from loaded_tca.output.report import summary_json
 from loaded_tca.reports.result_page import result_content
-from loaded_tca.results.explanations import explanation_of
 from loaded_tca.results.warnings import warn_of_gears
 from loaded_tca.studies import Study, run_study, study_summary
+from loaded_tca.warning_kinds import kind_of
 from tests.samples.results import SCENES
 
 QUICK = {
@@ -54,7 +54,7 @@ def test_gears_that_jam_are_warned_of_in_every_output(monkeypatch):
     assert f"warning: {sentence}" in describe_scene(scene).splitlines()
     monkeypatch.setattr("loaded_tca.reports.result_page.result_figures", lambda *_, **__: {})
     explained = {told: known for group, known in result_content(result)["warnings"] for told in group}
-    assert explained[sentence] == explanation_of(sentence)
+    assert explained[sentence] == kind_of(sentence)
     assert "both flanks of a tooth touch" in explained[sentence].meaning
 
 

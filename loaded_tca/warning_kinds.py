@@ -1,0 +1,216 @@
+"""Kinds of accuracy warnings: the sentence of each, what it means for the numbers, and what to do.
+
+A warning is declared here and given where its reason is seen: ``give_accuracy_warning(kinds.BOX.sentence())``. Files
+and reports have sentences; ``kind_of`` finds what is to be known of one.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cached_property
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What is to be known of a kind of accuracy warning; code in backticks.
+
+    Attributes
+    ----------
+    template : str
+        Its sentence, numbers and names of which are fields in braces.
+    meaning, advice : str
+    """
+
+    template: str
+    meaning: str
+    advice: str
+
+    def sentence(self, **values: object) -> str:
+        """The sentence with the values of its fields."""
+        return self.template.format(**values)
+
+    @cached_property
+    def words(self) -> str:
+        """The longest part of the sentence that all of its kind have."""
+        return max(re.split(r"\{[^}]*\}", self.template), key=len)
+
+
+EDGE_NOT_FREE = Kind(
+    "the contact reaches an edge of a flank, where the pressure of the map is mesh-dependent; the free edge is left "
+    "out (analysis.free_edges)",
+    "a tip or face end ends the contact; theory has an infinite pressure at a sharp edge, and the half-space goes "
+    "on beyond it, which is too stiff there: K_Hbeta grows with the cells, by `face_load_factor_error` at the most",
+    "`free_edges = true`; read `peak_pressure`, not `edge_pressure` or the cells of the map; more crowning, end or "
+    "tip relief on the gears",
+)
+EDGE = Kind(
+    "the contact reaches an edge of a flank, where the pressure of the map is mesh-dependent",
+    "a tip or face end ends the contact; theory has an infinite pressure at a sharp edge",
+    "read `peak_pressure`, not `edge_pressure` or the cells of the map; more crowning, end or tip relief on the gears",
+)
+ROUNDED_EDGE = Kind(
+    "the pressure at a rounded edge has an estimated error above {limit:.0%}, {size}",
+    "two edges that meet askew, or a rounding much smaller than the contact, need more columns than are made; where "
+    "a rounded edge meets a sharp one or the start of a linear relief, the pressure has no limit",
+    "read `edge_pressure` with its error; a larger radius, or one for the sharp edge, too; a parabolic relief",
+)
+RELIEF_START = Kind(
+    "the contact lies across the start of a linear relief, where the pressure of the map is mesh-dependent",
+    "the flank has a relief start there",
+    '`tip_relief_form = "parabolic"`, or read `peak_pressure`, not the cells of the map',
+)
+LINE_LOAD_SLOPES = Kind(
+    "an edge cuts the slices of the largest line load: one derivative in five is off by more than 5%, one in ten by "
+    "more than 10%",
+    "which cells the edge leaves of a slice changes with every step of a key: analyses on both sides differ by as "
+    "much as the derivative",
+    "read the derivatives of the load share and of the peak pressure",
+)
+PEAK_SLOPES = Kind(
+    "an edge cuts the slices of the peak pressure, or the pair carries less than 5% of the torque: one derivative "
+    "in seven is off by more than 5%, one in twenty by more than 10%",
+    "a corner of a contact, or one that has only just come under load, has few cells: the peak follows them",
+    "read the derivatives of other contacts, or compare two grids; more crowning, end or tip relief on the gears",
+)
+EDGES_AT_ONE_PLACE = Kind(
+    "edges of both gears end the contact at one place: derivatives of the transmission error have a kink, and "
+    "differ by up to {size:.2g} um per {unit} on its sides ({key}; {count} of {keys} keys)",
+    "to one side of the key the pinion's end rules and to the other the wheel's, and on one of them the contact is "
+    "shorter: the derivative is that of the edges that rule in the scene, and lies between those of both sides",
+    "faces of two widths or an offset, so that one gear ends the contact; else analyses on both sides",
+)
+STRIPS_ALIKE = Kind(
+    "another strip of the face carries as much but for {lacking:.1g}: K_Hbeta has a kink, beyond which derivatives "
+    "are others by up to {size:.0%} ({key}; {count} of {keys} keys)",
+    "K_Hbeta is the largest of 30 strips, and beyond the change by which another one becomes the largest it follows "
+    "that: of an aligned pair it rises to either side",
+    "analyses on both sides, or a Monte Carlo study; not the spread to first order",
+)
+RELIEF_START_BESIDE = Kind(
+    "a linear relief starts in the contact beside its point: derivatives depend on the grid by up to 25%",
+    "the start runs through cells that have the gap of their middles: derivatives by mounting errors, machine "
+    "settings and starts are off by 15 to 25 %, of either sign, and by more for line loads whose slice lies there",
+    '`tip_relief_form = "parabolic"`, or compare two grids; amounts of reliefs are as exact as elsewhere',
+)
+PEAK_ERROR = Kind(
+    "the estimated error of the peak pressure stays above {allowed:g}",
+    "the finest grid allowed is too coarse for the accuracy asked for; at edges and relief starts, where grids are "
+    "refined until the approach agrees, the line load still moves by more than that; where the curvature of the gap "
+    "jumps, the pressure beside the peak",
+    "a larger `accuracy`, or `cells`; at edges a smaller `accuracy`",
+)
+PEAK_MOVES = Kind(
+    "the peak pressure moves by more than {limit:.0%} as the teeth bend beneath it",
+    "the forces of the slices bend the teeth otherwise than when the grid was chosen, and the peak changed by more "
+    "than its load: its error is as large",
+    "fewer `cells` along the contact, or a larger `accuracy`; compare the same position a pitch later",
+)
+BOX = Kind(
+    "the contact reaches the box of its grid",
+    "the grid ends before the contact does, after it was made larger eight times: the pressure at its border is "
+    "that of a body ending there",
+    "less torque, or a higher `max_pressure_MPa`: a contact that outgrows its estimate 25 times over is no small "
+    "area of the flank",
+)
+NO_TORQUE = Kind(
+    "{torque:g} N m is next to no torque, the gaps it closes are rounding: taken for no load",
+    "forces below 1e-12 E* m_n² (1 µN at module 3) deform flanks by what rounding puts into their gaps",
+    "nothing, or a torque that is one",
+)
+BODY_TWIST = Kind(
+    "the twist of the gear bodies about their bores, {bores} mm, is up to {share:.0%} of the deflection: the mesh "
+    "stiffness is that of the bodies",
+    "with teeth that bend: bores are held rigid, and small ones let the whole body turn",
+    "the `bore_diameter_mm` of the hub or shaft seat; of a pinion in one piece with its shaft none (0.55 of the "
+    "root diameter)",
+)
+FEW_CELLS = Kind(
+    "fewer than 8 cells lie across the contact",
+    "the grid is wide for its contact: a pair that barely carries load, or few `cells`",
+    "nothing if its `load_share` is small; else more `cells`, or `accuracy`",
+)
+WIDE = Kind(
+    "the contact is so wide that the tooth is no half-space",
+    "half its width is above a quarter of the module",
+    "an estimate, all of it: less torque, or finite elements",
+)
+DEFLECTION = Kind(
+    "the deflection under load is up to {deflection:.3g} mm, more than {reach:g} modules: tooth pairs with a larger "
+    "initial separation are not looked for",
+    "only pairs with a smaller one share the load; another one may come to bear under so much load",
+    "less torque; else read the shares as those of too few pairs",
+)
+FILLET = Kind(
+    "fillet interference: {what}",
+    "the mating gear's tip touches where the flank ends and the fillet begins",
+    "tip diameters, profile shifts, or the cutter; `check` tells the diameters",
+)
+BACKLASH = Kind(
+    "negative backlash: teeth are thicker than the spaces of the mating gear, so that whole gears jam, while the "
+    "analysis has the contact of one flank of each",
+    "both flanks of a tooth touch, and the load of the back adds to that of the flank in contact; no number of the "
+    "result contains it",
+    "a smaller sum of profile shifts, or a larger centre distance: `check` has the sum that leaves no backlash; of "
+    "bevel gears thinner teeth",
+)
+NO_TOOTH = Kind(
+    "{gear}: {fault}; its flank in contact is analysed all the same",
+    "pressure on half-spaces needs no tooth behind the flank; a gear would have none",
+    "profile shift, tip diameter, cutter, or smaller amounts of the modifications",
+)
+THIN_RIM = Kind(
+    "root stress of the {gear}: the rim below its teeth is {rim:.2g} tooth heights thick, less than {least:g}: on a "
+    "bore that is held rigid stress falls as the rim thins, on a real one it rises",
+    "a real rim bends, and root stress on it rises by Y_B of ISO 6336-3; the bore of the model takes that strain",
+    "multiply by Y_B, or finite elements of the whole gear; of a pinion in one piece with its shaft "
+    "`bore_diameter_mm = 0`",
+)
+UNCOVERED = Kind(
+    "{direction}: the points leave {left} of the flank uncovered; there the deviation is a continuation",
+    "measured points do not reach the edges",
+    "results near these edges rest on no measurement",
+)
+SWINGS = Kind(
+    "the points deviate by {points}, the flank by {flank}: its continuation beyond them swings",
+    "a B-spline through every point follows the noise, too, and goes on with it beyond the outermost points: near "
+    "the edges the flank is no measured one",
+    "`degree = 3` with `coefficients = [4, 4]`, or few more; points nearer to the edges; compare two fits",
+)
+COARSE_FIT = Kind(
+    "the B-spline through {points} points misses the flank by {error} between them: take more points; the relief "
+    "start where a linear relief starts is rounded off by any number",
+    "the fit is coarse",
+    "more points",
+)
+UNIT = Kind(
+    "{key}: {amount:.6g} mm is more than {most:g} mm; is its unit right?",
+    "modifications are some hundredths of a millimetre",
+    "the amount in the unit of its key: um in scenes, mm in Python",
+)
+UNMODIFIED_TOOTH = Kind(
+    "{gear}, with its modifications: {fault}; it bends like the tooth without them",
+    "the modified tooth cannot be meshed, for instance where it is pointed; its contact has the modifications, its "
+    "bending has not",
+    "smaller amounts; the compliance is that of a tooth a few hundredths of a millimetre thicker",
+)
+FACE_ELEMENTS = Kind(
+    "root stress of the {gear}: across its face elements are {width:.2g} modules wide; where contacts cover a part "
+    "of the face alone, root stress is too low, by a tenth at 2 modules",
+    "the face is so wide that few elements lie across it",
+    "read root stress under a contact of the whole face; a contact that covers a part of it has more",
+)
+
+KINDS = tuple(one for one in globals().values() if isinstance(one, Kind))
+"""Of every accuracy warning of an analysis, and of derivatives of its result."""
+
+
+def kind_of(sentence: str) -> Kind | None:
+    """Return the kind of an accuracy warning; None of one that another package gave.
+
+    Examples
+    --------
+    >>> kind_of("the contact reaches the box of its grid (at 1 of 9 pressure maps; the first: ...)").advice[:11]
+    'less torque'
+    """
+    return max((one for one in KINDS if one.words in sentence), key=lambda one: len(one.words), default=None)
