@@ -18,28 +18,7 @@ FILES = """files in DIR:
   summary.json              the key figures
   positions.csv             one row per torque and position
   contacts.csv              one row per torque, position and tooth pair, only where pairs share the load
-  contact_path.png          where the flanks carry pressure, under the largest torque
-  transmission_error.png    over the positions, all torques
-  peak_pressure.png         over the positions, all torques
-  pressure_map.png          at the position of the peak pressure, under the largest torque
-  pressure_map_edge.png     only if a contact at another position has the highest edge pressure
-  pressure_map_hertz.png    only if Hertz holds, but not where the peak pressure is
-and where tooth pairs share the load
-  load_share.png            of each tooth pair, all torques
-  harmonics.png             orders of the tooth mesh in the transmission error, all torques
-  mesh_stiffness.png        over the positions, all torques
-  line_load.png             over the positions, all torques
-  line_load_distribution.png    along the contacts on the flanks, under the largest torque
-  face_load.png             load over the face width with K_Hbeta, all torques
-  pressure_envelope.png     the highest pressure on the flanks, under the largest torque
-  path_pressure.png         from the begin to the end of contact, all torques
-and with analysis.root_stress = true
-  root_stress.png           over fillet and face of both gears, with its envelopes, under the largest torque
-  root_stress_cycle.png     tension and compression over the positions, all torques
-  root_stress_over_torque.png   tension and compression over several torques
-and, only with 'plot --all'
-  contact_patterns.png      the highest pressure on the flanks under each of several torques, on one scale
-  full_mesh.png             all tooth pairs at the position of pressure_map.png on the flanks
+{pictures}
 Pictures of these names that the result does not have are removed; docs/reference/files.md says more."""
 TEETH = """files in DIR:
   pinion.vtk, wheel.vtk     the teeth in contact, in the fixed frame; "patch" tells flanks, fillets and lands apart
@@ -220,7 +199,15 @@ def _add_studies(command: Command) -> None:
 
 
 class _Parser(argparse.ArgumentParser):
-    """Tells a wrong command line, and help that cannot be shown, as any other bad input."""
+    """Tells a wrong command line, and help that cannot be shown, as any other bad input.
+
+    What pictures a result has is looked up only when help is asked for.
+    """
+
+    def format_help(self) -> str:
+        if self.epilog == FILES:
+            self.epilog = FILES.format(pictures=_list_of_pictures())
+        return super().format_help()
 
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message}; see '{self.prog} --help'")
@@ -228,6 +215,22 @@ class _Parser(argparse.ArgumentParser):
     def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
         flush()
         super().exit(status, message)
+
+
+def _list_of_pictures() -> str:
+    from loaded_tca.plots import ALWAYS, ON_REQUEST, ROOTS, SHARED
+
+    groups = (
+        (None, ALWAYS),
+        ("and where tooth pairs share the load", SHARED),
+        ("and with analysis.root_stress = true", ROOTS),
+        ("and, only with 'plot --all'", ON_REQUEST),
+    )
+    lines = []
+    for head, pictures in groups:
+        lines += [] if head is None else [head]
+        lines += [f"  {name + '.png':<24}  {one.line}" for name, one in pictures.items()]
+    return "\n".join(lines)
 
 
 class _Version(argparse.Action):

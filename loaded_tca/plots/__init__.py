@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 from matplotlib.figure import Figure
 
@@ -91,28 +93,183 @@ __all__ = [
     "show_teeth",
 ]
 
-PICTURES = (
-    "contact_path",
-    "transmission_error",
-    "peak_pressure",
-    "pressure_map",
-    "pressure_map_edge",
-    "pressure_map_hertz",
-    "load_share",
-    "harmonics",
-    "mesh_stiffness",
-    "line_load",
-    "line_load_distribution",
-    "face_load",
-    "pressure_envelope",
-    "path_pressure",
-    "root_stress",
-    "root_stress_cycle",
-    "root_stress_over_torque",
-)
+
+class Shown(NamedTuple):
+    """What is shown of a result: maps and flanks under one torque, by index; else all, or the one that is asked for."""
+
+    result: MeshCycle
+    asked: int | None
+    torque: int
+    position: int | None
+
+    def shares_load(self) -> bool:
+        """Whether tooth pairs share the load, at more than one position."""
+        return self.result.scene.analysis.load_sharing and len(self.result.path) > 1
+
+    def map_at(self, place: tuple[int, int] | None) -> Figure | None:
+        """The pressure map at a position and tooth pair."""
+        return None if place is None else plot_pressure_map(self.result, place[0], self.torque, place[1])
+
+    def full_mesh(self) -> Figure | None:
+        """All pairs at one position, if anything is in contact."""
+        peak = self.result.peak_contact(self.torque)
+        return None if peak is None else plot_full_mesh(self.result, self.position, self.torque)
+
+    def map_of_peak(self) -> Figure | None:
+        """That of the peak pressure, or of the position asked for."""
+        if self.position is None:
+            return self.map_at(self.result.peak_contact(self.torque))
+        return self.map_at((self.position, int(self.result.peak_column[self.torque, self.position])))
+
+    def map_of_edge(self) -> Figure | None:
+        """That of a higher pressure at an edge in another position."""
+        edge = self.result.edge_contact(self.torque)
+        return self.map_at(None if self.position is not None or edge == self.result.peak_contact(self.torque) else edge)
+
+    def map_of_hertz(self) -> Figure | None:
+        """That of the highest pressure where Hertz holds, unless it does at the peak."""
+        peak = self.result.peak_contact(self.torque)
+        holds = peak is not None and self.result.hertz_pressure[self.torque][peak] > 0.0
+        smooth = self.result.peak_contact(self.torque, where_hertz_holds=True)
+        return self.map_at(None if self.position is not None or holds else smooth)
+
+
+class Picture(NamedTuple):
+    """A picture of a result.
+
+    Attributes
+    ----------
+    line : str
+        Of the help of the command.
+    caption : str
+        How it is read, in reports.
+    draw : callable
+        None if the result does not have it.
+    """
+
+    line: str
+    caption: str
+    draw: Callable[[Shown], Figure | None]
+
+
+ALWAYS = {
+    "contact_path": Picture(
+        "where the flanks carry pressure, under the largest torque",
+        "Where the flanks carry pressure at some positions, and the unloaded contact points of all.",
+        lambda one: plot_contact_path(one.result, one.torque),
+    ),
+    "transmission_error": Picture(
+        "over the positions, all torques",
+        "Absolute, and below less its mean over a pitch. The unloaded one is that of the flanks.",
+        lambda one: plot_transmission_error(one.result),
+    ),
+    "peak_pressure": Picture(
+        "over the positions, all torques",
+        "Broad dashed lines: after Hertz, where Hertz holds. Crosses and arrows: pressure at an edge, "
+        "mesh-dependent where the edge is sharp.",
+        lambda one: plot_peak_pressure(one.result),
+    ),
+    "pressure_map": Picture(
+        "at the position of the peak pressure, under the largest torque",
+        "At the position of the peak pressure, in the tangent plane. White: no pressure, grey: no "
+        "material. The direction across is drawn larger.",
+        Shown.map_of_peak,
+    ),
+    "pressure_map_edge": Picture(
+        "only if a contact at another position has the highest edge pressure",
+        "At the position of the highest pressure at an edge. At a sharp edge the pressure of single "
+        "cells depends on the mesh.",
+        Shown.map_of_edge,
+    ),
+    "pressure_map_hertz": Picture(
+        "only if Hertz holds, but not where the peak pressure is",
+        "At the highest peak pressure where Hertz holds, with the area after Hertz.",
+        Shown.map_of_hertz,
+    ),
+}
+SHARED = {
+    "load_share": Picture(
+        "of each tooth pair, all torques",
+        "Share of each tooth pair in the torque, and how many pairs carry load.",
+        lambda one: plot_load_share(one.result, one.asked),
+    ),
+    "harmonics": Picture(
+        "orders of the tooth mesh in the transmission error, all torques",
+        "Amplitudes and phases of the orders of the tooth mesh in the loaded transmission error.",
+        lambda one: plot_harmonics(one.result),
+    ),
+    "mesh_stiffness": Picture(
+        "over the positions, all torques",
+        "Solid: tangent of the force over the face width to the transmission error. Dotted: secant from no load.",
+        lambda one: plot_mesh_stiffness(one.result),
+    ),
+    "line_load": Picture(
+        "over the positions, all torques",
+        "Largest force per length along the contact of the most loaded pair; at a sharp face end mesh-dependent.",
+        lambda one: plot_line_load(one.result),
+    ),
+    "line_load_distribution": Picture(
+        "along the contacts on the flanks, under the largest torque",
+        "Force per length along the contacts of all positions, where they lie on the flanks.",
+        lambda one: plot_line_load_distribution(one.result, one.torque),
+    ),
+    "face_load": Picture(
+        "load over the face width with K_Hbeta, all torques",
+        "Normal force of all tooth pairs per face width, the mean over a pitch. Its largest value "
+        "over its mean is K_Hβ.",
+        lambda one: plot_face_load(one.result),
+    ),
+    "pressure_envelope": Picture(
+        "the highest pressure on the flanks, under the largest torque",
+        "The highest pressure that each place of the flanks sees over the mesh cycle.",
+        lambda one: plot_pressure_envelope(one.result, one.torque),
+    ),
+    "path_pressure": Picture(
+        "from the begin to the end of contact, all torques",
+        "Peak pressure of a tooth pair from the begin to the end of its contact.",
+        lambda one: plot_path_pressure(one.result),
+    ),
+}
+ROOTS = {
+    "root_stress": Picture(
+        "over fillet and face of both gears, with its envelopes, under the largest torque",
+        "Tangential stress over fillet and face: at the largest tension, and as envelopes over the mesh.",
+        lambda one: plot_root_stress(one.result, one.torque),
+    ),
+    "root_stress_cycle": Picture(
+        "tension and compression over the positions, all torques",
+        "Largest tension and compression at the roots over the positions.",
+        lambda one: plot_root_stress_cycle(one.result) if len(one.result.path) > 1 else None,
+    ),
+    "root_stress_over_torque": Picture(
+        "tension and compression over several torques",
+        "Largest tension and compression at the roots over the torque.",
+        lambda one: plot_root_stress_over_torque(one.result) if len(one.result.torque) > 1 else None,
+    ),
+}
+ON_REQUEST = {
+    "contact_patterns": Picture(
+        "the highest pressure on the flanks under each of several torques, on one scale",
+        "The pressure envelope under each torque, all on one scale of colours.",
+        lambda one: plot_contact_patterns(one.result) if len(one.result.torque) > 1 else None,
+    ),
+    "full_mesh": Picture(
+        "all tooth pairs at the position of pressure_map.png on the flanks",
+        "All tooth pairs in contact at one position, with their shares of the torque.",
+        lambda one: (
+            None
+            if one.result.peak_contact(one.torque) is None
+            else plot_full_mesh(one.result, one.position, one.torque)
+        ),
+    ),
+}
+"""Pictures that every result has; where tooth pairs share the load; with root stress; on request alone."""
+PICTURES = (*ALWAYS, *SHARED, *ROOTS)
 """Names of the pictures that a result has, without their ending."""
-MORE_PICTURES = ("contact_patterns", "full_mesh")
+MORE_PICTURES = tuple(ON_REQUEST)
 """Names of those that are drawn on request."""
+CAPTIONS = {name: one.caption for group in (ALWAYS, SHARED, ROOTS, ON_REQUEST) for name, one in group.items()}
+"""How each picture is read."""
 
 
 def plot_all(
@@ -180,44 +337,12 @@ def result_figures(
     InputError
         If the result has no such torque or position.
     """
-    asked, torque = torque, chosen_torque(result, torque, position)
-    figures = {
-        "contact_path": plot_contact_path(result, torque),
-        "transmission_error": plot_transmission_error(result),
-        "peak_pressure": plot_peak_pressure(result),
-    }
-    peak, edge = result.peak_contact(torque), result.edge_contact(torque)
-    smooth = result.peak_contact(torque, where_hertz_holds=True)
-    hertz_at_peak = peak is not None and result.hertz_pressure[torque][peak] > 0.0
-    places = {
-        "pressure_map": peak,
-        "pressure_map_edge": None if edge == peak else edge,
-        "pressure_map_hertz": None if hertz_at_peak else smooth,
-    }
-    if position is not None:
-        places = {"pressure_map": (position, int(result.peak_column[torque, position]))}
-    for name, place in places.items():
-        if place is not None:
-            figures[name] = plot_pressure_map(result, place[0], torque, place[1])
-    if result.scene.analysis.load_sharing and len(result.path) > 1:
-        figures |= {
-            "load_share": plot_load_share(result, asked),
-            "harmonics": plot_harmonics(result),
-            "mesh_stiffness": plot_mesh_stiffness(result),
-            "line_load": plot_line_load(result),
-            "line_load_distribution": plot_line_load_distribution(result, torque),
-            "face_load": plot_face_load(result),
-            "pressure_envelope": plot_pressure_envelope(result, torque),
-            "path_pressure": plot_path_pressure(result),
-        }
-        if more and len(result.torque) > 1:
-            figures["contact_patterns"] = plot_contact_patterns(result)
-        if more and peak is not None:
-            figures["full_mesh"] = plot_full_mesh(result, position, torque)
-    if result.has_root_stress:
-        figures["root_stress"] = plot_root_stress(result, torque)
-        if len(result.path) > 1:
-            figures["root_stress_cycle"] = plot_root_stress_cycle(result)
-        if len(result.torque) > 1:
-            figures["root_stress_over_torque"] = plot_root_stress_over_torque(result)
-    return figures
+    shown = Shown(result, torque, chosen_torque(result, torque, position), position)
+    wanted = [
+        ALWAYS,
+        *([SHARED] if shown.shares_load() else ()),
+        *([ON_REQUEST] if shown.shares_load() and more else ()),
+        *([ROOTS] if result.has_root_stress else ()),
+    ]
+    figures = {name: picture.draw(shown) for group in wanted for name, picture in group.items()}
+    return {name: figure for name, figure in figures.items() if figure is not None}

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from loaded_tca.output.overview import scene_sections
-from loaded_tca.plots import result_figures
+from loaded_tca.plots import CAPTIONS, result_figures
 from loaded_tca.plots.labels import label_of
 from loaded_tca.reports.page import Table, parts_of, pictures_of, tables_of
 from loaded_tca.results.accuracy import NO_ESTIMATE, Figures, in_percent
@@ -23,34 +23,6 @@ from loaded_tca.warning_kinds import Kind, kind_of
 MOST_TORQUES = 5
 """Torques with a column each in one table of a page."""
 TORQUE = "pinion_torque_Nm"
-CAPTIONS = {
-    "contact_path": "Where the flanks carry pressure at some positions, and the unloaded contact points of all.",
-    "transmission_error": "Absolute, and below less its mean over a pitch. The unloaded one is that of the flanks.",
-    "peak_pressure": "Broad dashed lines: after Hertz, where Hertz holds. Crosses and arrows: pressure at an edge, "
-    "mesh-dependent where the edge is sharp.",
-    "pressure_map": "At the position of the peak pressure, in the tangent plane. White: no pressure, grey: no "
-    "material. The direction across is drawn larger.",
-    "pressure_map_edge": "At the position of the highest pressure at an edge. At a sharp edge the pressure of single "
-    "cells depends on the mesh.",
-    "pressure_map_hertz": "At the highest peak pressure where Hertz holds, with the area after Hertz.",
-    "load_share": "Share of each tooth pair in the torque, and how many pairs carry load.",
-    "harmonics": "Amplitudes and phases of the orders of the tooth mesh in the loaded transmission error.",
-    "mesh_stiffness": "Solid: tangent of the force over the face width to the transmission error. Dotted: secant from "
-    "no load.",
-    "line_load": "Largest force per length along the contact of the most loaded pair; at a sharp face end "
-    "mesh-dependent.",
-    "line_load_distribution": "Force per length along the contacts of all positions, where they lie on the flanks.",
-    "face_load": "Normal force of all tooth pairs per face width, the mean over a pitch. Its largest value over its "
-    "mean is K_Hβ.",
-    "pressure_envelope": "The highest pressure that each place of the flanks sees over the mesh cycle.",
-    "path_pressure": "Peak pressure of a tooth pair from the begin to the end of its contact.",
-    "root_stress": "Tangential stress over fillet and face: at the largest tension, and as envelopes over the mesh.",
-    "root_stress_cycle": "Largest tension and compression at the roots over the positions.",
-    "root_stress_over_torque": "Largest tension and compression at the roots over the torque.",
-    "contact_patterns": "The pressure envelope under each torque, all on one scale of colours.",
-    "full_mesh": "All tooth pairs in contact at one position, with their shares of the torque.",
-}
-"""How each picture is read."""
 
 
 def result_content(result: MeshCycle) -> dict[str, Any]:
