@@ -18,9 +18,6 @@ LEFT_BESIDE_END, COMPETES = 0.035, 0.5
 may agree by chance (``validation/loaded/error_estimates.py``); and the line load there, over the largest one, from
 which the pressure there may be the largest, where the contact is more curved."""
 
-WITHIN = 1e-9
-"""Part of a slice, from which on it lies in a stretch."""
-
 
 def averaged_line_load(force: Array, borders: Array, length: float) -> tuple[Array, Array]:
     """Line load averaged over a length along the contact, where it may be largest.
@@ -139,11 +136,11 @@ class SliceLoads:
         """Smaller line load just within the ends of the stretch about a place [N/mm].
 
         By that the force grows with the length, where it is largest: the stretch ends where both are alike, or one
-        jumps to less, and stays there.
+        jumps to less, as at the end of the contact, and stays there.
         """
-        middles, density = 0.5 * (self.borders[1:] + self.borders[:-1]), self.force / np.diff(self.borders)
-        within = np.flatnonzero(stretch_parts(self.borders, np.array([place]), self.length)[0] > WITHIN)
-        return float(density[within[[0, -1]]].min()) if within.size else float(np.interp(place, middles, density))
+        parts = stretch_parts(self.borders, np.array([place]), self.length)[0]
+        within = np.flatnonzero((parts > 0.0) & (self.force > 0.0))[[0, -1]]
+        return float((self.force / np.diff(self.borders))[within].min())
 
     def error_of_largest(self, coarser: SliceLoads) -> float:
         """Relative error that the largest line load may have by a coarser grid: of its change, or of competing maxima.
