@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 
 import numpy as np
 
-from loaded_tca import warning_kinds as kinds
+import loaded_tca.warning_kinds as kinds
 from loaded_tca.compliance import RootStress, model_of, require_teeth, root_stress_model, way_out_told
 from loaded_tca.compliance.torsion import body_torsion
 from loaded_tca.errors import give_accuracy_warning, named, noted_accuracy_warnings, require

@@ -12,7 +12,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from loaded_tca import warning_kinds as kinds
+import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.flexibility import MOST_IN_MEMORY
 from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_compliance

@@ -15,7 +15,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from loaded_tca import warning_kinds as kinds
+import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array, real
 from loaded_tca.errors import InputError, give_accuracy_warning
 from loaded_tca.flanks.base import DerivedFlank, Flank, unmodified

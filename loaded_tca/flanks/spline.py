@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from loaded_tca import warning_kinds as kinds
+import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning
 from loaded_tca.flanks.base import DerivedFlank, Flank, Region, unmodified

@@ -14,7 +14,7 @@ from functools import cached_property
 from math import atan, ceil, cos, inf, pi, sin, sqrt, tan
 from typing import NamedTuple
 
-from loaded_tca import warning_kinds as kinds
+import loaded_tca.warning_kinds as kinds
 from loaded_tca.errors import GeometryError, require
 from loaded_tca.gears.checks import pair_checks
 from loaded_tca.gears.cylindrical import CylindricalGear, inverse_involute, involute

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from loaded_tca import warning_kinds as kinds
+import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.errors import give_accuracy_warning
 from loaded_tca.loaded.sensitivity import LoadedGrid

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loaded_tca import warning_kinds as kinds
+import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array, Indices, Mask, real
 from loaded_tca.errors import require
 from loaded_tca.loaded.force_lines import bending_by_shift

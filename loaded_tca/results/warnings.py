@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from loaded_tca import warning_kinds as kinds
+import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Mask
 from loaded_tca.compliance import require_teeth, warn_of_teeth
 from loaded_tca.contact.rounded_edge import LARGE_ERROR
