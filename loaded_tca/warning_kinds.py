@@ -61,7 +61,7 @@ RELIEF_START = Kind(
     '`tip_relief_form = "parabolic"`, or read `peak_pressure`, not the cells of the map',
 )
 LINE_LOAD_SLOPES = Kind(
-    "an edge cuts the slices of the largest line load: one derivative in five is off by more than 5%, one in ten by "
+    "an edge cuts the slices of the largest line load: one derivative in four is off by more than 5%, one in six by "
     "more than 10%",
     "which cells the edge leaves of a slice changes with every step of a key: analyses on both sides differ by as "
     "much as the derivative",
@@ -69,7 +69,7 @@ LINE_LOAD_SLOPES = Kind(
 )
 PEAK_SLOPES = Kind(
     "an edge cuts the slices of the peak pressure, or the pair carries less than 5% of the torque: one derivative "
-    "in seven is off by more than 5%, one in twenty by more than 10%",
+    "in eight is off by more than 5%, one in thirty by more than 10%",
     "a corner of a contact, or one that has only just come under load, has few cells: the peak follows them",
     "read the derivatives of other contacts, or compare two grids; more crowning, end or tip relief on the gears",
 )
