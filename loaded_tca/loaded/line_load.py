@@ -60,29 +60,36 @@ def stretch_parts(borders: Array, places: Array, length: float) -> Array:
     return np.asarray(np.maximum(within, 0.0) / np.diff(borders))
 
 
-def loaded_length(force: Array, borders: Array) -> tuple[float, Array]:
-    """Length of an even line load with the scatter of the given one, at most that of the slices that carry it.
-
-    Returns
-    -------
-    length : float [mm]
-    slopes : (ny,) array [mm/N]
-        Derivative by the forces of the slices; zero where the slices that carry them set it.
+def loaded_length(force: Array, borders: Array) -> float:
+    """Length of an even line load with the scatter of the given one, at most that of the slices that carry it [mm].
 
     Examples
     --------
-    >>> length, slopes = loaded_length(np.array([0.0, 1.0, 2.0, 1.0]), np.arange(5.0))
-    >>> round(length, 3), slopes.round(3)
-    (2.646, array([ 1.984,  0.283, -0.283,  0.283]))
+    >>> round(loaded_length(np.array([0.0, 2.0, 2.0, 2.0]), np.arange(5.0)), 12)
+    3.0
     """
-    middles, widths, whole = 0.5 * (borders[:-1] + borders[1:]), np.diff(borders), float(force.sum())
-    squares = (middles - force @ middles / whole) ** 2 + widths**2 / 12.0
+    carrying = np.flatnonzero(force)
+    even = math.sqrt(12.0 * float(force @ _squares(force, borders)) / float(force.sum()))
+    return min(even, float(borders[carrying[-1] + 1] - borders[carrying[0]]))
+
+
+def loaded_length_slopes(force: Array, borders: Array) -> Array:
+    """Derivative (ny,) [mm/N] of that length by the forces, where their scatter sets it.
+
+    Examples
+    --------
+    >>> loaded_length_slopes(np.array([0.0, 1.0, 2.0, 1.0]), np.arange(5.0)).round(3)
+    array([ 1.984,  0.283, -0.283,  0.283])
+    """
+    squares, whole = _squares(force, borders), float(force.sum())
     scatter = float(force @ squares) / whole
-    length, carrying = math.sqrt(12.0 * scatter), np.flatnonzero(force)
-    most = float(borders[carrying[-1] + 1] - borders[carrying[0]])
-    if length > most:
-        return most, np.zeros(force.size)
-    return length, 6.0 / length * (squares - scatter) / whole
+    return np.asarray(6.0 / math.sqrt(12.0 * scatter) * (squares - scatter) / whole)
+
+
+def _squares(force: Array, borders: Array) -> Array:
+    """Squares (ny,) of the distances of the slices from the middle of their forces, in the mean over each [mm^2]."""
+    middles = 0.5 * (borders[:-1] + borders[1:])
+    return np.asarray((middles - force @ middles / force.sum()) ** 2 + np.diff(borders) ** 2 / 12.0)
 
 
 class SliceLoads:
@@ -100,8 +107,8 @@ class SliceLoads:
         The last slices end where their material does.
     ends : (float, float) [mm]
         Of the slices that carry load.
-    length, length_slopes : float [mm], (ny,) array [mm/N]
-        Of the average, and its derivative by the forces of the slices.
+    length : float [mm]
+        Of the average.
     places : (2 ny + 2,) array [mm]
         Along the contact, middles of the stretches over which is averaged; between them the line load is linear.
     x, y : (2 ny + 2,) array [mm]
@@ -119,9 +126,8 @@ class SliceLoads:
             part = np.where(pressure > 0.0, separation.cover, 0.0).max(axis=0)
             borders[first], borders[last + 1] = borders[first + 1] - part[first] * dy, borders[last] + part[last] * dy
         self.ends = borders[carrying[0]], borders[carrying[-1] + 1]
-        self.length, self.length_slopes = loaded_length(self.force, borders)
-        if self.length > (most := AVERAGED_OVER * module):
-            self.length, self.length_slopes = most, np.zeros(self.force.size)
+        self.length = min(AVERAGED_OVER * module, loaded_length(self.force, borders))
+        self._longest = min(AVERAGED_OVER * module, self.ends[1] - self.ends[0])
         self.places, self.line_load = averaged_line_load(self.force, borders, self.length)
         self._middles = separation.y[carrying], middles
         self.x, self.y, _ = self.at(self.places)
@@ -131,6 +137,13 @@ class SliceLoads:
         """Where the contact lies at places along it, x and y [mm] on the slices that carry load, and its line load."""
         y = np.clip(places, *self.ends)
         return np.interp(y, *self._middles), y, np.interp(places, self.places, self.line_load)
+
+    @property
+    def length_slopes(self) -> Array:
+        """Derivative (ny,) of the length of the average by the forces of the slices [mm/N]: none of the longest one."""
+        if self.length < self._longest:
+            return loaded_length_slopes(self.force, self.borders)
+        return np.zeros(self.force.size)
 
     def least_at_ends(self, place: float) -> float:
         """Smaller line load just within the ends of the stretch about a place [N/mm].

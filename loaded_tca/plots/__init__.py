@@ -102,10 +102,6 @@ class Shown(NamedTuple):
     torque: int
     position: int | None
 
-    def shares_load(self) -> bool:
-        """Whether tooth pairs share the load, at more than one position."""
-        return self.result.scene.analysis.load_sharing and len(self.result.path) > 1
-
     def map_at(self, place: tuple[int, int] | None) -> Figure | None:
         """The pressure map at a position and tooth pair."""
         return None if place is None else plot_pressure_map(self.result, place[0], self.torque, place[1])
@@ -338,11 +334,12 @@ def result_figures(
         If the result has no such torque or position.
     """
     shown = Shown(result, torque, chosen_torque(result, torque, position), position)
-    wanted = [
-        ALWAYS,
-        *([SHARED] if shown.shares_load() else ()),
-        *([ON_REQUEST] if shown.shares_load() and more else ()),
-        *([ROOTS] if result.has_root_stress else ()),
-    ]
-    figures = {name: picture.draw(shown) for group in wanted for name, picture in group.items()}
+    shares_load = result.scene.analysis.load_sharing and len(result.path) > 1
+    groups = (
+        (ALWAYS, True),
+        (SHARED, shares_load),
+        (ON_REQUEST, shares_load and more),
+        (ROOTS, result.has_root_stress),
+    )
+    figures = {name: one.draw(shown) for group, wanted in groups if wanted for name, one in group.items()}
     return {name: figure for name, figure in figures.items() if figure is not None}

@@ -12,9 +12,7 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.load_factors import (
     STRIPS,
     common_face,
-    loaded_maps,
-    strip_borders,
-    strip_forces,
+    face_forces,
     strip_motions,
     strip_shares,
 )
@@ -148,8 +146,7 @@ def _of_maps(
     derivative: Callable[[PressureMap, Array, Array], Array],
 ) -> list[list[Array | None]]:
     """A derivative of K_Hbeta by every map, of the map, the borders of the strips and their forces; None without."""
-    borders = strip_borders(pair, path)
-    forces = sum((strip_forces(pair, one, borders)[0] for one in loaded_maps(positions)), np.zeros(STRIPS))
+    borders, forces = face_forces(pair, path, positions)
     by_map: list[list[Array | None]] = [[None] * len(row) for row in positions]
     for n, row in enumerate(positions[:-1] if forces.any() else ()):
         by_map[n] = [None if one is None else derivative(one, borders, forces) for one in row]
@@ -177,15 +174,14 @@ def rival_strip(
     (int, float) or None
         The largest such strip; None if there is none.
     """
-    borders = strip_borders(pair, path)
-    forces = sum((strip_forces(pair, one, borders)[0] for one in loaded_maps(positions)), np.zeros(STRIPS))
+    _, forces = face_forces(pair, path, positions)
     largest = int(forces.argmax())
     ends = np.concatenate([[-np.inf], forces, [-np.inf]])
     lacking = 1.0 - forces / (forces[largest] or 1.0)
     beside = np.abs(np.arange(STRIPS) - largest) <= 1
     rivals = np.where(beside, lacking <= BESIDE, (forces >= ends[:-2]) & (forces >= ends[2:]) & (lacking <= AS_LARGE))
     rivals[largest] = False
-    if not rivals.any() or not forces.any():
+    if not rivals.any():
         return None
     rival = int(np.where(rivals, forces, -np.inf).argmax())
     return rival, float(lacking[rival])

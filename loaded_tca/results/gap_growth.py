@@ -166,9 +166,8 @@ def _add_moved_lines(
     slices = (
         slices + (np.cumsum([one.y.size for one in separations]) - [one.y.size for one in separations])[tangents.grid]
     )
-    moving = [key for key, change in enumerate(changes) if not change.holds_lines]
-    if not free_edges and bending is None:
-        moving = []
+    bends = free_edges or bending is not None
+    moving = [key for key, change in enumerate(changes) if bends and not change.holds_lines]
     moved_grids = [
         [
             [moved(one, part * changes[key].difference * by) for one, by in zip(separations, motions[key], strict=True)]

@@ -1,7 +1,7 @@
 """Where derivatives hold less than elsewhere: marks of contacts, sizes of kinks, and the warnings of both.
 
-Each has a size: of marks how many of the derivatives of 20 random scenes are off there, by how much
-(``validation/loaded/random_sensitivities.py``); of kinks what derivatives on the other side are.
+Each has a size: of marks how many of the derivatives of random scenes are off there, by how much
+(``docs/how_it_works/sensitivities.md``); of kinks what derivatives on the other side are.
 """
 
 from __future__ import annotations
@@ -66,10 +66,12 @@ def warn_of_edges(keys: Sequence[str], slopes: Array, kinks: Array, length: floa
     Of the size of what the derivative differs between positions, which is what figures are made of; ``length`` [um/rad]
     by which it is told.
     """
+    loaded = np.isfinite(slopes).any(axis=(1, 2))
+    slopes, kinks = slopes[loaded], kinks[loaded]
     over_positions = np.nanmax(slopes, axis=1) - np.nanmin(slopes, axis=1)
     largest = np.nanmax(np.abs(slopes), axis=1)
     scale = np.where(over_positions > LEVEL * largest, over_positions, largest)
-    sizes = np.nanmax(np.abs(kinks), axis=1)
+    sizes = np.abs(kinks).max(axis=1)
     told = (sizes > TOLD * scale).any(axis=0)
     if told.any():
         own = int(np.where(told, sizes.max(axis=0), -1.0).argmax())

@@ -108,6 +108,14 @@ def loaded_maps(positions: Sequence[Sequence[PressureMap | None]]) -> list[Press
     return [one for row in positions[:-1] for one in row if one is not None]
 
 
+def face_forces(
+    pair: GearPair, path: ContactPath, positions: Sequence[Sequence[PressureMap | None]]
+) -> tuple[Array, Array]:
+    """Borders of the strips of the face (STRIPS + 1,) [mm], and the force of all loaded maps in each (STRIPS,) [N]."""
+    borders = strip_borders(pair, path)
+    return borders, sum((strip_forces(pair, one, borders)[0] for one in loaded_maps(positions)), np.zeros(STRIPS))
+
+
 def strip_forces(pair: GearPair, one: PressureMap, borders: Array) -> tuple[Array, float]:
     """Force of a pressure map in strips of the face, and the length of a contact line that crosses a strip.
 

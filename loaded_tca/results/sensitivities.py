@@ -198,11 +198,6 @@ class Sensitivities:
         found[*self._grids] = list(marks)
         return found
 
-    @property
-    def _moves_lines(self) -> bool:
-        """Whether a key moves contacts across edges or relief starts."""
-        return any(change is not None and not change.holds_lines for change in self.changes)
-
     @cached_property
     def line_load(self) -> Array:
         """Derivatives of the line load of each contact, (torque, position, pair, key) [N/mm per unit]."""
@@ -224,13 +219,11 @@ class Sensitivities:
         pair, grids, peaks = self.result.gear_pair, self.tangents.grids, self._slice_peaks
         slopes = peak_pressure_slopes(pair, [(one.contact, one.separation, one.pressure) for one in grids], peaks)
         found = self._of_each_pair(self.tangents.gathered(slopes))
-        at, rough = (
-            [i for i, peak in enumerate(peaks) if peak is not None],
-            [peak for peak in peaks if peak is not None],
-        )
+        rough = {i: peak for i, peak in enumerate(peaks) if peak is not None}
         if rough:
-            grown = curvature_growth(pair, [grids[i] for i in at], rough, self.changes, self.growth.of_grids(at))
-            found[:, at] += grown * [0.5 * peak.pressure if peak.slopes.any() else 0.0 for peak in rough]
+            at, tops = [*rough], [*rough.values()]
+            grown = curvature_growth(pair, [grids[i] for i in at], tops, self.changes, self.growth.of_grids(at))
+            found[:, at] += grown * [0.5 * peak.pressure if peak.slopes.any() else 0.0 for peak in tops]
         return self._by_pair(found)
 
     @cached_property
@@ -445,6 +438,6 @@ def sensitivities(result: CycleNumbers, keys: Sequence[str]) -> Sensitivities:
     by_key = dict(zip(named, changes, strict=True))
     every = tuple(by_key.get(key) for key in keys)
     made = Sensitivities(tuple(keys), result, tangents, places, columns, found.at_keys(at, len(keys)), every)
-    if made._moves_lines:
+    if any(not change.holds_lines for change in changes):
         warn_of_contacts(result, kinds.RELIEF_START_BESIDE.sentence(), made.across_relief_starts, stacklevel=4)
     return made

@@ -191,28 +191,24 @@ class BorderCells:
         steps = distances[:, 1:] - distances[:, :1]
         widths = np.abs(steps).sum(axis=1)
         parts = 0.5 + distances[:, 0] / widths
-        part = parts.min(axis=0)
+        part, ruling, gears = parts.min(axis=0), parts.argmin(axis=0), np.array([gear for gear, _ in edges])
         kept = (part >= SLIVER) & (part <= 1.0 + SLIVER)
-        ruling, gears = parts.argmin(axis=0), np.array([gear for gear, _ in edges])
-        near = kept & (parts - part < AT_ONE_PLACE) & (gears[:, None] != gears[ruling])
-        near |= kept & (np.arange(len(edges))[:, None] == ruling)
+        rules = np.arange(len(edges))[:, None] == ruling
+        near = kept & (rules | ((parts - part < AT_ONE_PLACE) & (gears[:, None] != gears[ruling])))
         rates, slopes = np.zeros((len(changes), cell.size)), np.zeros((cell.size, MOTIONS))
         least, most = np.full(rates.shape, np.inf), np.full(rates.shape, -np.inf)
         for number in np.flatnonzero(near.any(axis=1)).tolist():
             own, (gear, distance) = near[number], edges[number]
-            rules = (ruling == number)[own]
-            signs = np.sign(steps[number][:, own])
-            by_keys = places.growth(pair, gear, distance, changes).reshape(-1, 3, cell.size)[..., own]
-            by_motion = places.slopes_of(pair, gear, distance).T.reshape(MOTIONS, 3, cell.size)[..., own]
+            mine, signs = rules[number, own], np.sign(steps[number][:, own])
             by_keys, by_motion = (
                 (grown[:, 0] - (part[own] - 0.5) * ((grown[:, 1:] - grown[:, :1]) * signs).sum(axis=1))
                 / widths[number, own]
-                for grown in (by_keys, by_motion)
+                for grown in (
+                    places.growth(pair, gear, distance, changes).reshape(-1, 3, cell.size)[..., own],
+                    places.slopes_of(pair, gear, distance).T.reshape(MOTIONS, 3, cell.size)[..., own],
+                )
             )
-            rates[:, own], slopes[own] = (
-                np.where(rules, by_keys, rates[:, own]),
-                np.where(rules, by_motion, slopes[own].T).T,
-            )
+            rates[:, own & rules[number]], slopes[own & rules[number]] = by_keys[:, mine], by_motion[:, mine].T
             least[:, own], most[:, own] = np.minimum(least[:, own], by_keys), np.maximum(most[:, own], by_keys)
         return cls(cell[kept], rates[:, kept], (most - least)[:, kept], slopes[kept])
 

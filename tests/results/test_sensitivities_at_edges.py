@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from loaded_tca import analyse, read_scene
 from loaded_tca.errors import AccuracyWarning, noted_accuracy_warnings
 from loaded_tca.results.face_slopes import rival_strip
-from loaded_tca.results.load_factors import STRIPS, loaded_maps, strip_borders, strip_forces
+from loaded_tca.results.load_factors import STRIPS, face_forces
 from loaded_tca.results.sensitivities import TORQUE
 from loaded_tca.separation.pair_change import value_at
 from tests.samples.results import FLANKS_ALONE, SCENES
@@ -168,13 +168,7 @@ def test_a_strip_that_carries_as_much_is_a_kink_of_the_face_load_factor():
     low, high = (
         solved("mesh_cycle_spur", 32, 3, **FLANKS_ALONE, **{"mounting.misalignment_um": by})[0] for by in (-4.0, 4.0)
     )
-    forces = [
-        sum(
-            strip_forces(one.gear_pair, each, strip_borders(one.gear_pair, one.path))[0]
-            for each in loaded_maps(one.maps[0])
-        )
-        for one in (low, high)
-    ]
+    forces = [face_forces(one.gear_pair, one.path, one.maps[0])[1] for one in (low, high)]
     factors = [force[strip] / force.mean() for force in forces]
     assert_allclose(abs(slope), abs(factors[1] - factors[0]) / 8.0, rtol=0.05)  # over 4 um
 
@@ -198,3 +192,13 @@ def test_ends_of_faces_of_one_width_are_a_kink_of_the_transmission_error():
         .sensitivities([OFFSET])
         .transmission_error_kinks.any()
     )
+
+
+def test_kinks_are_told_beside_a_torque_that_loads_nothing():
+    at = {"mounting.misalignment_um": 20.0, "analysis.torques_Nm": (0.0, 130.0)}
+    result, _ = solved("helical", 16, 3, **FLANKS_ALONE, **at)
+    with pytest.warns(AccuracyWarning, match="edges of both gears end") as caught:
+        slopes = result.sensitivities([OFFSET]).transmission_error
+    assert [one.category for one in caught] == [AccuracyWarning]
+    assert np.isnan(slopes[0]).all()
+    assert np.isfinite(slopes[1]).all()
