@@ -231,7 +231,7 @@ FAULTS = (
             ),
             (
                 "where an arc begins the slope of the gap is said to jump",
-                "contact/samples.py",
+                "contact/columns.py",
                 "np.maximum(bends[:-3], bends[3:])",
                 "np.minimum(bends[:-3], bends[3:])",
                 "contact/test_samples.py::test_curvature_that_jumps_is_no_jump_of_the_slope",
@@ -434,7 +434,7 @@ FAULTS = (
             ),
             (
                 "peaks stay where the start of a relief was",
-                "results/curvature_growth.py",
+                "results/gap_growth.py",
                 "if starts.size:",
                 "if starts.size < 0:",
                 "test_peaks_follow_relief_starts_and_the_length_of_contacts",
@@ -521,17 +521,17 @@ FAULTS = (
     *(
         Fault(f"units: {text}", file, text, wrong, UNITS)
         for file, text, wrong in (
-            ("output/report.py", '("tooth_deflection_um", 1.0)', '("tooth_deflection_um", 1e3)'),
-            ("output/report.py", '("contact_deformation_um", 1.0)', '("contact_deformation_um", 1e3)'),
-            ("output/report.py", '("hertz_width_mm", 2.0)', '("hertz_width_mm", 1.0)'),
-            ("output/report.py", '("edge_pinion_diameter_mm", 2.0)', '("edge_pinion_diameter_mm", 1.0)'),
+            ("output/result_files.py", '("tooth_deflection_um", 1.0)', '("tooth_deflection_um", 1e3)'),
+            ("output/result_files.py", '("contact_deformation_um", 1.0)', '("contact_deformation_um", 1e3)'),
+            ("output/result_files.py", '("hertz_width_mm", 2.0)', '("hertz_width_mm", 1.0)'),
+            ("output/result_files.py", '("edge_pinion_diameter_mm", 2.0)', '("edge_pinion_diameter_mm", 1.0)'),
             (
-                "output/report.py",
+                "output/result_files.py",
                 '("root_compression_angle_deg", 1.0)',
                 '("root_compression_angle_deg", 2.0)',
             ),
             (
-                "output/report.py",
+                "output/result_files.py",
                 "path.transmission_error * result.wheel_base_radius * 1e3",
                 "path.transmission_error * result.wheel_base_radius",
             ),
@@ -554,7 +554,7 @@ FAULTS = (
                 "span_of(under.transmission_error)",
             ),
             (
-                "results/root_figures.py",
+                "results/root_stress.py",
                 'math.degrees(there("_angle"))',
                 'there("_angle")',
             ),

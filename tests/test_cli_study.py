@@ -114,7 +114,7 @@ def test_study_fails_whatever_its_variants_fail_of(study, capsys, monkeypatch, e
     def fail(_):
         raise error
 
-    monkeypatch.setattr(sys.modules["loaded_tca.studies.summary"], "analyse", fail)
+    monkeypatch.setattr(sys.modules["loaded_tca.studies.ranking"], "analyse", fail)
     assert cli.main(["study", name, "--out", "out"]) == 2
     out, err = capsys.readouterr()
     assert out.startswith(f"2 variants: 2 {status}\n{status}: {error} (2 variants)\n")

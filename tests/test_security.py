@@ -18,7 +18,7 @@ from loaded_tca.compliance import flexibility
 from loaded_tca.flanks import topography
 from loaded_tca.results.files import read_dataset, write_dataset
 from loaded_tca.scene import parse
-from loaded_tca.scene.text import shown
+from loaded_tca.scene.keys import shown
 from loaded_tca.studies import read, read_study
 from tests.samples.results import result
 

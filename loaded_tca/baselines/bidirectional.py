@@ -44,8 +44,7 @@ from scipy.optimize import brentq
 from loaded_tca.arrays import Array
 from loaded_tca.errors import ConvergenceError, GeometryError, InputError
 from loaded_tca.flanks.cradle import ALPHA, RHO, CradleGeneration, Z
-from loaded_tca.gears.cutter import FlankName
-from loaded_tca.gears.face_milled import FaceMilledGear
+from loaded_tca.gears.face_milled import FaceMilledGear, FlankName
 from loaded_tca.pairs.gear_pair import GearPair
 
 MOST_STEPS = 30
@@ -261,7 +260,7 @@ class BidirectionalStart:
 
     Examples
     --------
-    >>> from loaded_tca.pairs.face_milled import face_milled_pair
+    >>> from loaded_tca.pairs.bevel import face_milled_pair
     >>> from loaded_tca.gears import BevelBlank
     >>> from loaded_tca.gears.basic_settings import duplex_spread_blade
     >>> blank = BevelBlank((20, 30), 5.0, 20.0, spiral_angle=0.6, cutter_radius=60.0, taper="duplex")

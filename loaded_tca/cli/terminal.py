@@ -59,7 +59,7 @@ def progress_bar(scene: Scene) -> Iterator[Callable[[int, int], None] | None]:
     In a file or a pipe there is no bar, and an estimate only of an analysis that is long or exceeds the memory. The bar
     is there from the start, before the first position teeth that bend are modelled, and shows the time all along.
     """
-    from loaded_tca.loaded.effort import expected_effort
+    from loaded_tca.analysis import expected_effort
 
     effort, terminal = expected_effort(scene), sys.stderr is not None and sys.stderr.isatty()
     if not effort.is_refused and (terminal or effort.seconds > WORTH_TELLING or not effort.fits):

@@ -14,10 +14,10 @@ import numpy as np
 
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array
+from loaded_tca.compliance.body import body_torsion
 from loaded_tca.compliance.flexibility import MOST_IN_MEMORY
 from loaded_tca.compliance.influence import FlankLine, GearCompliance, gear_compliance
 from loaded_tca.compliance.layout import MeshDensity
-from loaded_tca.compliance.torsion import body_torsion
 from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning, named, require
 from loaded_tca.flanks.base import Flank
 from loaded_tca.flanks.rounding import sharp
@@ -83,7 +83,7 @@ class ToothCompliance:
     def body_torsion(self) -> tuple[float, float]:
         """Twist of the gear body between bore and root of pinion and wheel [mm/N].
 
-        See :func:`loaded_tca.compliance.torsion.body_torsion`. It is a part of :meth:`within`, told to show what a bore
+        See :func:`loaded_tca.compliance.body.body_torsion`. It is a part of :meth:`within`, told to show what a bore
         diameter does; along the normal of helical teeth it is cos^2(beta_b) of that.
         """
         return body_torsion(self.pair)

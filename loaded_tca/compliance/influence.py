@@ -31,8 +31,7 @@ from numpy.polynomial.chebyshev import chebvander
 from loaded_tca.arrays import Array
 from loaded_tca.compliance import flexibility
 from loaded_tca.compliance.body import ToothFrame, gear_nodes
-from loaded_tca.compliance.flexibility import MOST_IN_MEMORY, ToothFlexibility, kept_flexibility
-from loaded_tca.compliance.half_space import depth_displacement
+from loaded_tca.compliance.flexibility import MOST_IN_MEMORY, ToothFlexibility, depth_displacement, kept_flexibility
 from loaded_tca.compliance.layout import MeshDensity
 from loaded_tca.errors import InputError
 from loaded_tca.material import Material

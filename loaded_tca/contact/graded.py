@@ -37,13 +37,13 @@ from loaded_tca.contact.graded_problem import GradedProblem, GradedSolution
 from loaded_tca.contact.grid import AT_BOUND, OUT_OF_REACH, Grids, Operator, each
 from loaded_tca.contact.levels import coarsen, coarsening, merged, prolong
 from loaded_tca.contact.love import column_coefficients
-from loaded_tca.contact.solution import ContactStatus
-from loaded_tca.contact.stopping import (
+from loaded_tca.contact.solution import (
     COARSE_FACTOR,
     COARSE_TOLERANCE,
     MOST_CHECKS,
     MOST_ITERATIONS,
     RESERVE,
+    ContactStatus,
     OnFailure,
     not_converged,
 )

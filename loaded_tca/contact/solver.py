@@ -32,13 +32,15 @@ from loaded_tca.contact.edges import FreeEdge
 from loaded_tca.contact.grid import AT_BOUND, LARGEST_WHOLE, OUT_OF_REACH, Grids, each
 from loaded_tca.contact.levels import coarsening, prolong, window_around
 from loaded_tca.contact.problem import ContactProblem, Spacing
-from loaded_tca.contact.solution import CoarserGrid, ContactSolution, ContactStatus
-from loaded_tca.contact.stopping import (
+from loaded_tca.contact.solution import (
     COARSE_FACTOR,
     COARSE_TOLERANCE,
     MOST_CHECKS,
     MOST_ITERATIONS,
     RESERVE,
+    CoarserGrid,
+    ContactSolution,
+    ContactStatus,
     OnFailure,
     not_converged,
 )

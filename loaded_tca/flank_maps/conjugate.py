@@ -30,7 +30,7 @@ from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.base import Flank
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.ease_off import EaseOff
-from loaded_tca.unloaded.roots import find_roots
+from loaded_tca.unloaded.search import find_roots
 
 SAMPLES = 16
 """Angles per pitch at which the lead of a point is sampled."""

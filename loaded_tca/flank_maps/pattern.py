@@ -29,7 +29,7 @@ from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded.curvature import relative_curvature
 from loaded_tca.unloaded.ease_off import EaseOff
 from loaded_tca.unloaded.path import ContactPoint, require_contact
-from loaded_tca.unloaded.roots import find_roots
+from loaded_tca.unloaded.search import find_roots
 from loaded_tca.unloaded.teeth import MeshPath, trace_teeth
 
 COMPOUND = 6.35e-3

@@ -46,8 +46,7 @@ from numpy.polynomial import chebyshev
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
-from loaded_tca.flanks.base import ConeFrame, Flank
-from loaded_tca.flanks.jet import Jet, cone_angle, cone_distance, of_cone_angle
+from loaded_tca.flanks.base import ConeFrame, Flank, Jet, cone_angle, cone_distance, of_cone_angle
 from loaded_tca.flanks.tensor_spline import polynomial
 
 NODES = 11

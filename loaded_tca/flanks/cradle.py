@@ -41,9 +41,8 @@ from typing import Any
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.flanks.jet import Jet
-from loaded_tca.gears.cutter import BLADE_SIGNS, Blade, FlankName
-from loaded_tca.gears.face_milled import MachineSettings
+from loaded_tca.flanks.base import Jet
+from loaded_tca.gears.face_milled import BLADE_SIGNS, Blade, FlankName, MachineSettings
 
 MOST_STEPS = 30
 LARGEST_STEP = 0.2

@@ -20,8 +20,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
-from loaded_tca.flanks.base import CylinderFrame, Flank
-from loaded_tca.flanks.jet import Jet
+from loaded_tca.flanks.base import CylinderFrame, Flank, Jet
 
 SMALLEST_ROLL_LENGTH = 1e-6
 """Roll lengths are kept above this fraction of r_b: at the base circle itself the curvature is infinite."""

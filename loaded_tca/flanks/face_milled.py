@@ -17,14 +17,12 @@ import numpy as np
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError
-from loaded_tca.flanks.base import ConeFrame, Region
+from loaded_tca.flanks.base import ConeFrame, Jet, Region
 from loaded_tca.flanks.bevel import NODES, ToothRegion, chebyshev_nodes, face_cone_angles
 from loaded_tca.flanks.cradle import CradleGeneration, GeneratedPoints
-from loaded_tca.flanks.jet import Jet
 from loaded_tca.flanks.spline import FitError, SplineFlank
 from loaded_tca.flanks.tensor_spline import TensorSpline, fit
-from loaded_tca.gears.cutter import FlankName
-from loaded_tca.gears.face_milled import FaceMilledGear
+from loaded_tca.gears.face_milled import FaceMilledGear, FlankName
 
 SPLINE_POINTS = (41, 33)
 """Chebyshev-Lobatto points of the B-spline along the profile and lengthwise: it is within 1e-7 mm of usual flanks. The

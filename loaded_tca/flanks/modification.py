@@ -18,8 +18,7 @@ import numpy as np
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array, real
 from loaded_tca.errors import InputError, give_accuracy_warning
-from loaded_tca.flanks.base import DerivedFlank, Flank, unmodified
-from loaded_tca.flanks.jet import Jet
+from loaded_tca.flanks.base import DerivedFlank, Flank, Jet, unmodified
 
 Shape = Callable[[Any], tuple[Any, Any, Any]]
 """t -> (f, f', f'')."""

@@ -25,9 +25,8 @@ from numpy.polynomial import Chebyshev
 
 from loaded_tca.arrays import Array, Indices
 from loaded_tca.errors import require
-from loaded_tca.flanks.base import EDGE_NAMES, DerivedFlank, Flank, outward_normal, unmodified
+from loaded_tca.flanks.base import EDGE_NAMES, DerivedFlank, Flank, Jet, outward_normal, unmodified
 from loaded_tca.flanks.bevel import NODES, DistanceCurve, chebyshev_nodes
-from loaded_tca.flanks.jet import Jet
 from loaded_tca.flanks.tensor_spline import SplineDerivatives
 
 LEAST_RADIUS = 0.01

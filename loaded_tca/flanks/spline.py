@@ -19,8 +19,7 @@ import numpy as np
 import loaded_tca.warning_kinds as kinds
 from loaded_tca.arrays import Array
 from loaded_tca.errors import GeometryError, InputError, give_accuracy_warning
-from loaded_tca.flanks.base import DerivedFlank, Flank, Region, unmodified
-from loaded_tca.flanks.jet import Jet
+from loaded_tca.flanks.base import DerivedFlank, Flank, Jet, Region, unmodified
 from loaded_tca.flanks.tensor_spline import TensorSpline, fit
 from loaded_tca.flanks.topography import Topography, excess_problems
 

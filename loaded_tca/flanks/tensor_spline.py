@@ -27,7 +27,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.linalg import LinearOperator, lsmr
 
 from loaded_tca.arrays import Array
-from loaded_tca.flanks.jet import Bends, Jet
+from loaded_tca.flanks.base import Bends, Jet
 
 POINTS_AT_ONCE = 4096
 """Points evaluated together: their coefficients take 1.2 MB."""

@@ -4,10 +4,9 @@ from loaded_tca.gears.basic_settings import duplex_spread_blade, spread_blade
 from loaded_tca.gears.bevel import BevelGear, BevelMesh, bevel_mesh
 from loaded_tca.gears.bevel_blank import BevelBlank
 from loaded_tca.gears.blank_gear import BlankGear
-from loaded_tca.gears.cutter import Blade, Cutter
 from loaded_tca.gears.cylindrical import CylindricalGear
 from loaded_tca.gears.cylindrical_mesh import CylindricalMesh
-from loaded_tca.gears.face_milled import FaceMilledBlank, FaceMilledGear, FaceMilledMesh, MachineSettings
+from loaded_tca.gears.face_milled import Blade, Cutter, FaceMilledBlank, FaceMilledGear, FaceMilledMesh, MachineSettings
 from loaded_tca.gears.transverse_profile import transverse_profile
 
 __all__ = [

@@ -29,8 +29,14 @@ from typing import Literal
 from loaded_tca.errors import require
 from loaded_tca.gears.bevel_blank import BevelBlank
 from loaded_tca.gears.blank_gear import BlankGear
-from loaded_tca.gears.cutter import MINUTES_PER_NUMBER, Blade, Cutter
-from loaded_tca.gears.face_milled import FaceMilledBlank, FaceMilledGear, MachineSettings
+from loaded_tca.gears.face_milled import (
+    MINUTES_PER_NUMBER,
+    Blade,
+    Cutter,
+    FaceMilledBlank,
+    FaceMilledGear,
+    MachineSettings,
+)
 
 Hand = Literal["right", "left"]
 

@@ -14,9 +14,8 @@ from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.errors import ConvergenceError, named
 from loaded_tca.loaded.load_sharing import SharedLoad, tooth_pairs_at, torque_shared
-from loaded_tca.loaded.loaded_contact import LoadedContact
+from loaded_tca.loaded.loaded_contact import LoadedContact, Result, Steps, found_together
 from loaded_tca.loaded.sensitivity import LoadedGrid, LoadedStates, loaded_states
-from loaded_tca.loaded.together import Result, Steps, found_together
 from loaded_tca.loaded.tooth_contact import GridChoice, contact_under_load
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded import ContactPath, MeshPath

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from loaded_tca.arrays import Array, Indices
-from loaded_tca.compliance.half_space import depth_displacement_slope
+from loaded_tca.compliance.flexibility import depth_displacement_slope
 from loaded_tca.loaded.free_edges import DEPTH, NODES, WEIGHTS, NearEdge, SliceRow, Slices, edge_lines, risen
 from loaded_tca.pairs.gear_pair import GearPair
 

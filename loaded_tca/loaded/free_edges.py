@@ -30,7 +30,7 @@ import numpy as np
 
 from loaded_tca.arrays import Array, Indices, Mask
 from loaded_tca.compliance.compliance import ContactGrid
-from loaded_tca.compliance.half_space import depth_displacement
+from loaded_tca.compliance.flexibility import depth_displacement
 from loaded_tca.contact.edges import quarter_space_factor, wedge_factor
 from loaded_tca.errors import InputError
 from loaded_tca.flanks.base import outward_normal

@@ -32,7 +32,7 @@ from loaded_tca.compliance.model import BendingModel
 from loaded_tca.errors import AccuracyWarning, InputError, LoadedTCAError
 from loaded_tca.loaded.free_edges import edge_compliances
 from loaded_tca.loaded.load_sharing import SharedLoad, ToothPair, tooth_pairs_at, torque_shared
-from loaded_tca.loaded.together import Ends, Gap, Result, Steps
+from loaded_tca.loaded.loaded_contact import Ends, Gap, Result, Steps
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.scene import Scene

@@ -40,8 +40,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.compliance.model import BendingModel
 from loaded_tca.errors import ConvergenceError, InputError, named
 from loaded_tca.loaded.balance import PowerLaw, balance
-from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.together import Gap, Steps, found_alone
+from loaded_tca.loaded.loaded_contact import Gap, LoadedContact, Steps, found_alone
 from loaded_tca.loaded.tooth_contact import FIRST_CELLS, GridChoice, contact_under_load, expected_pressure
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import point_contact

@@ -1,8 +1,12 @@
-"""One tooth pair at one position solved under a normal force: its box, its grids, with teeth that bend."""
+"""One tooth pair at one position solved under a normal force: its box, its grids, with teeth that bend.
+
+What other tooth pairs do to a contact: they move its slices.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,13 +19,15 @@ from loaded_tca.contact.checks import memory_problem
 from loaded_tca.contact.patch import ends_at_material, values_at_ends
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.line_load import SliceLoads
-from loaded_tca.loaded.loaded_contact import LoadedContact
-from loaded_tca.loaded.pair_coupling import Coupling
-from loaded_tca.loaded.together import Ends, Gap, Steps, Task, found_alone
+from loaded_tca.loaded.loaded_contact import Ends, Gap, LoadedContact, Steps, Task, found_alone
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.separation import Separation
 from loaded_tca.unloaded import ContactPoint
 from loaded_tca.unloaded.scan import arcs_at, relief_start_distances
+
+Coupling = Callable[[Separation], Array | None]
+"""Displacement of the slices of a tooth pair's grid (ny,) [mm] by what the other pairs carry; None if nothing bends."""
+
 
 FIRST_CELLS, FIRST_CELLS_AT_ENDS = (16, 16), (16, 32)
 """Grids from which an accuracy is approached, doubled as often as needed. Where flanks end in the box, edges cut the

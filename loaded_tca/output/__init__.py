@@ -1,13 +1,15 @@
 """What is written to files and the terminal: reports, tables, comparisons, teeth, stresses, sensitivities, dynamics."""
 
-from loaded_tca.output.comparison_files import write_comparison
-from loaded_tca.output.dynamics_files import write_dynamics
 from loaded_tca.output.overview import describe_scene
-from loaded_tca.output.report import describe_results, write_report
-from loaded_tca.output.sensitivity_files import sensitivities_text, write_sensitivities
-from loaded_tca.output.subsurface_files import write_subsurface
-from loaded_tca.output.surface_files import write_stl, write_teeth, write_vtk
-from loaded_tca.output.teeth_in_space import teeth_in_space
+from loaded_tca.output.result_files import describe_results, write_report
+from loaded_tca.output.surface_files import teeth_in_space, write_stl, write_teeth, write_vtk
+from loaded_tca.output.tables import (
+    sensitivities_text,
+    write_comparison,
+    write_dynamics,
+    write_sensitivities,
+    write_subsurface,
+)
 
 __all__ = [
     "describe_results",

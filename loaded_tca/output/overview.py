@@ -6,19 +6,19 @@ import math
 from collections.abc import Iterator
 from itertools import chain
 
+from loaded_tca.analysis import expected_effort, rounded
 from loaded_tca.errors import noted_accuracy_warnings
 from loaded_tca.flanks.spline import DEFAULT_POINTS, SplineFlank
-from loaded_tca.loaded.effort import expected_effort, rounded
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.results.figures import RIM_LABEL
-from loaded_tca.results.iso_figures import STIFFNESS_ROW, STRESS, STRESS_ROWS, iso_figures, reasons_beside
-from loaded_tca.results.root_figures import rim_factor
+from loaded_tca.results.key_figures import STIFFNESS_ROW, STRESS, STRESS_ROWS, iso_figures, reasons_beside
+from loaded_tca.results.root_stress import rim_factor
 from loaded_tca.results.summary import shown
 from loaded_tca.results.warnings import warn_of_gears
 from loaded_tca.scene import Scene
 from loaded_tca.scene.model import Row
 from loaded_tca.scene.section import Section, contents
-from loaded_tca.unloaded.contact_span import contact_span, roll_lengths_of_flanks
+from loaded_tca.unloaded.path import contact_span, roll_lengths_of_flanks
 
 MOST_TORQUES = 4
 """Torques that have a column each; of more, the least and the largest are shown."""

@@ -1,8 +1,7 @@
 """Two gears in space: frames, mounting errors, senses of rotation, complete teeth in mesh."""
 
-from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
+from loaded_tca.pairs.bevel import BevelMounting, bevel_pair, face_milled_pair
 from loaded_tca.pairs.cylindrical import Mounting, cylindrical_pair
-from loaded_tca.pairs.face_milled import face_milled_pair
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, MatingTeeth, Sense, mating_teeth
 

@@ -11,6 +11,11 @@ without errors: the same apex, e_x2 = (-cos Sigma, 0, sin Sigma), e_y2 = (0, -1,
 Senses of rotation, sides and angles are those of :mod:`loaded_tca.pairs.gear_pair`; at phi1 = phi2 = 0 the
 unmodified, aligned pair touches on the pitch line at the mean cone distance. The fixed frame stays with the pinion:
 where the pinion is withdrawn by P, the wheel comes nearer along the pinion's axis by P in this frame.
+
+Pairs of face-milled spiral bevel gears, cut after machine settings.
+
+Frames, senses of rotation and mounting errors are those of :mod:`loaded_tca.pairs.bevel`. phi1 = phi2 = 0 where both
+flanks hold the pitch point at the mean cone distance.
 """
 
 from __future__ import annotations
@@ -21,12 +26,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from loaded_tca.arrays import Array
+from loaded_tca.errors import InputError
+from loaded_tca.flanks.base import unmodified
+from loaded_tca.flanks.face_milled import GeneratedFlank
 from loaded_tca.flanks.modification import FlankModifications
 from loaded_tca.gears.bevel import BevelMesh
+from loaded_tca.gears.face_milled import FaceMilledGear, FlankName
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense, require_finite, signs_of
-from loaded_tca.tooth.families import BevelTooth
+from loaded_tca.tooth.families import BevelTooth, FaceMilledTooth
 
 
 @dataclass(frozen=True)
@@ -123,3 +132,103 @@ def bevel_pair(
         base_radii=(mesh.pinion.mean_base_radius, mesh.wheel.mean_base_radius),
         face_width=mesh.pinion.face_width,
     )
+
+
+_EQUAL = 1e-6
+
+
+def face_milled_pair(
+    pinion: FaceMilledGear,
+    wheel: FaceMilledGear,
+    *,
+    pinion_flank: FlankName = "concave",
+    driving: Driving = "pinion",
+    shaft_angle: float | None = None,
+    modifications: tuple[FlankModifications, FlankModifications] = (FlankModifications(), FlankModifications()),
+    mounting: BevelMounting = BevelMounting(),
+    materials: tuple[Material, Material] = (Material(), Material()),
+    exact: bool = False,
+) -> GearPair:
+    """Pair of face-milled gears.
+
+    Its module is the mean normal one and its base radii are r cos(alpha_t) at the mean cone distance, with the means of
+    the angles that both generated flanks have there.
+
+    Parameters
+    ----------
+    pinion, wheel : FaceMilledGear
+        Of opposite hands; cutters need the blades of the flanks in contact only.
+    pinion_flank : {"concave", "convex"}
+        The flank of the pinion that touches; the sense of rotation follows. Drive side: concave.
+    driving : {"pinion", "wheel"}
+    shaft_angle : float [rad], optional
+        Sigma; default: the sum of the pitch angles.
+    modifications : (FlankModifications, FlankModifications)
+        Of pinion and wheel; the profile runs from the form line to the tip, reliefs start at diameters 2 R_m sin u.
+    mounting : BevelMounting
+    materials : (Material, Material)
+    exact : bool
+        Solve the generating equations at every point; default: B-splines of the flanks.
+
+    Returns
+    -------
+    GearPair
+
+    Raises
+    ------
+    InputError
+        If the gears do not fit each other or a value is unknown.
+    GeometryError
+        If a flank is undercut or not cut at all, or a tooth is pointed.
+
+    Examples
+    --------
+    >>> from loaded_tca.gears import BevelBlank
+    >>> from loaded_tca.gears.basic_settings import spread_blade
+    >>> blank = BevelBlank((20, 30), 5.0, 22.0, spiral_angle=math.radians(35), cutter_radius=50.0, taper="duplex")
+    >>> face_milled_pair(*spread_blade(blank))
+    GearPair(20/30, module 3.59349 mm, face 22 mm)
+    """
+    _require_mating_gears(pinion, wheel, pinion_flank)
+    drive = signs_of(driving, "positive")[1]
+    side, blanks = pinion.side(pinion_flank), (pinion.blank, wheel.blank)
+    first, second = (
+        Gear.of(FaceMilledTooth(gear, changes, exact), side, material, gear.bore_diameter)
+        for gear, changes, material in zip((pinion, wheel), modifications, materials, strict=True)
+    )
+    flanks = [unmodified(gear.nominal_flank) for gear in (first, second)]
+    angles = [flank.angles for flank in flanks if isinstance(flank, GeneratedFlank)]
+    spiral = 0.5 * sum(abs(one.spiral) for one in angles)
+    pressure = 0.5 * sum(one.transverse_pressure for one in angles)
+    distance = 0.5 * sum(blank.mean_cone_distance for blank in blanks)
+    radii = [distance * math.sin(blank.pitch_angle) for blank in blanks]
+    origin, axes = mounting.place(sum(blank.pitch_angle for blank in blanks) if shaft_angle is None else shaft_angle)
+    return GearPair(
+        pinion=first,
+        wheel=second,
+        teeth=(pinion.teeth, wheel.teeth),
+        wheel_origin=origin,
+        wheel_axes=axes,
+        sense=side * drive,
+        driving=drive,
+        module=2.0 * radii[0] * math.cos(spiral) / pinion.teeth,
+        base_radii=(radii[0] * math.cos(pressure), radii[1] * math.cos(pressure)),
+        face_width=min(blank.face_width for blank in blanks),
+    )
+
+
+def _require_mating_gears(pinion: FaceMilledGear, wheel: FaceMilledGear, pinion_flank: str) -> None:
+    """Refuse gears whose pitch cones do not roll on each other."""
+    problems = []
+    if pinion_flank not in ("concave", "convex"):
+        problems.append(f"pinion_flank: {pinion_flank!r} is not 'concave' or 'convex'")
+    if pinion.blank.hand == wheel.blank.hand:
+        problems.append(f"hand: pinion and wheel are both {pinion.blank.hand}-hand; they must be opposite")
+    sines = [math.sin(gear.blank.pitch_angle) * gear.blank.mean_cone_distance for gear in (pinion, wheel)]
+    if not math.isclose(sines[0] * wheel.teeth, sines[1] * pinion.teeth, rel_tol=_EQUAL):
+        problems.append(
+            f"pitch_angle: mean pitch radii {sines[0]:.6g} and {sines[1]:.6g} mm do not roll on each other with "
+            f"{pinion.teeth}/{wheel.teeth} teeth"
+        )
+    if problems:
+        raise InputError(problems)

@@ -11,14 +11,22 @@ from matplotlib.figure import Figure
 from loaded_tca.plots.comparison import plot_compared_maps, plot_comparison
 from loaded_tca.plots.curves import plot_peak_pressure, plot_transmission_error
 from loaded_tca.plots.design import plot_before_and_after, plot_peak_to_peak_over_torque, plot_robustness
-from loaded_tca.plots.ease_off import plot_ease_off
-from loaded_tca.plots.envelope import plot_contact_patterns, plot_pressure_envelope
 from loaded_tca.plots.first_order import plot_first_order_scatter
 from loaded_tca.plots.flanks import plot_contact_path, plot_full_mesh
-from loaded_tca.plots.pressure_map import plot_pressure_map
-from loaded_tca.plots.removal import plot_removal_weights
+from loaded_tca.plots.pressure_map import (
+    plot_contact_patterns,
+    plot_pressure_envelope,
+    plot_pressure_map,
+    plot_stress_below,
+    plot_subsurface,
+)
 from loaded_tca.plots.root_stress import plot_root_stress, plot_root_stress_cycle, plot_root_stress_over_torque
-from loaded_tca.plots.sensitivities import plot_sensitivity_curves, plot_tornado, plot_transmission_error_band
+from loaded_tca.plots.sensitivities import (
+    plot_removal_weights,
+    plot_sensitivity_curves,
+    plot_tornado,
+    plot_transmission_error_band,
+)
 from loaded_tca.plots.sharing import (
     plot_face_load,
     plot_harmonics,
@@ -33,12 +41,11 @@ from loaded_tca.plots.study import (
     plot_study_heat_map,
     plot_study_lines,
 )
-from loaded_tca.plots.study_ranking import plot_study_ranking
+from loaded_tca.plots.study_panels import plot_study_ranking
 from loaded_tca.plots.study_scatter import plot_study_histogram, plot_study_over_torque, plot_study_scatter_matrix
 from loaded_tca.plots.style import chosen_torque, png_of, save_figure
-from loaded_tca.plots.subsurface import plot_stress_below, plot_subsurface
 from loaded_tca.plots.three_d import draw_teeth, plot_teeth, show_teeth
-from loaded_tca.plots.vh_check import plot_loaded_vh_check, plot_vh_check
+from loaded_tca.plots.vh_check import plot_ease_off, plot_loaded_vh_check, plot_vh_check
 from loaded_tca.results.files import FilePath, replace_together
 from loaded_tca.results.mesh_cycle import MeshCycle
 

@@ -12,9 +12,8 @@ from matplotlib.figure import Figure
 
 from loaded_tca.errors import require
 from loaded_tca.plots import style
-from loaded_tca.plots.labels import label_of
 from loaded_tca.plots.study_panels import SAME, panels_of, told_of_variants
-from loaded_tca.plots.style import ACCENT, COLOURS, chosen_torque, load
+from loaded_tca.plots.style import ACCENT, COLOURS, chosen_torque, label_of, load
 from loaded_tca.results.figures import key_figures
 from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.tolerances import key_figure_slopes

@@ -35,7 +35,7 @@ from loaded_tca.results.load_factors import strip_borders, strip_forces
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.summary import signed
 from loaded_tca.separation import slice_middles
-from loaded_tca.unloaded.contact_span import contact_span, path_letters, roll_lengths_of_flanks
+from loaded_tca.unloaded.path import contact_span, path_letters, roll_lengths_of_flanks
 
 WHAT_LETTERS_ARE = {
     "A": "end at the pinion's root",

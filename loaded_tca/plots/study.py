@@ -19,7 +19,6 @@ from matplotlib.patches import Patch, Rectangle
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.plots import style
-from loaded_tca.plots.labels import label_of
 from loaded_tca.plots.study_panels import (
     MISSING,
     NOTHING,
@@ -35,6 +34,7 @@ from loaded_tca.plots.study_panels import (
     mark_missing,
     panels_of,
     percentiles_of,
+    plot_study_ranking,
     set_study_title,
     set_ticks,
     shown_torques,
@@ -44,7 +44,6 @@ from loaded_tca.plots.study_panels import (
     under_torques,
     without_unit,
 )
-from loaded_tca.plots.study_ranking import plot_study_ranking
 from loaded_tca.plots.study_scatter import (
     BAND,
     TRANSMISSION_ERROR,
@@ -52,7 +51,7 @@ from loaded_tca.plots.study_scatter import (
     plot_study_over_torque,
     plot_study_scatter_matrix,
 )
-from loaded_tca.plots.style import ACCENT, COLOURS, MOST_LABELS, NOT_REACHED
+from loaded_tca.plots.style import ACCENT, COLOURS, MOST_LABELS, NOT_REACHED, label_of
 from loaded_tca.studies.ranking import figure_values, main_figures, varied_keys
 
 if TYPE_CHECKING:

@@ -17,7 +17,6 @@ from matplotlib.ticker import MaxNLocator, PercentFormatter
 
 from loaded_tca.arrays import Array, index_checks
 from loaded_tca.errors import InputError, require
-from loaded_tca.plots.labels import label_of, wrapped_label_of
 from loaded_tca.plots.study_panels import (
     MISSING,
     PERCENTILES,
@@ -38,7 +37,7 @@ from loaded_tca.plots.study_panels import (
     under_torques,
     without_unit,
 )
-from loaded_tca.plots.style import ACCENT, COLOURS
+from loaded_tca.plots.style import ACCENT, COLOURS, label_of, wrapped_label_of
 from loaded_tca.studies.ranking import figure_values, main_figures, nominal_variant, varied_keys
 
 if TYPE_CHECKING:

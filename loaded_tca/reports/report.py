@@ -9,9 +9,8 @@ from typing import Any
 
 from loaded_tca.errors import InputError, require
 from loaded_tca.reports import page
-from loaded_tca.reports.design_page import design_content
 from loaded_tca.reports.result_page import result_content
-from loaded_tca.reports.study_page import study_content
+from loaded_tca.reports.study_page import design_content, study_content
 from loaded_tca.results.files import FilePath, make_directory, replacing
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.studies.design import DesignResult

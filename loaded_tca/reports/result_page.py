@@ -10,10 +10,9 @@ import numpy as np
 
 from loaded_tca.output.overview import scene_sections
 from loaded_tca.plots import CAPTIONS, result_figures
-from loaded_tca.plots.labels import label_of
+from loaded_tca.plots.style import label_of
 from loaded_tca.reports.page import Table, parts_of, pictures_of, tables_of
-from loaded_tca.results.accuracy import NO_ESTIMATE, Figures, in_percent
-from loaded_tca.results.figure import labelled
+from loaded_tca.results.figure import NO_ESTIMATE, Figures, in_percent, labelled
 from loaded_tca.results.figures import FIGURES, declared
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.summary import known_rows, limits_of, shown

@@ -1,9 +1,8 @@
 """Results of an analysis: the mesh cycle, its figures and file, stresses below the flanks, comparisons."""
 
 from loaded_tca.results.comparison import Comparison, compare_results
-from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.mesh_cycle import MeshCycle, reached_edges
 from loaded_tca.results.pressure_map import PressureMap
-from loaded_tca.results.reached_edges import reached_edges
 from loaded_tca.results.root_stress import RootStressMap
 from loaded_tca.results.sensitivities import Sensitivities
 from loaded_tca.results.stress_below import StressBelow, stress_below

@@ -16,11 +16,10 @@ from loaded_tca.loaded.loaded_contact import EQUAL, LoadedContact
 from loaded_tca.loaded.rounded_edges import NOT_REACHED, PeakAtEdge
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.reference.hertz import line_contact
-from loaded_tca.results.edge_cell import place_on_material, sharp_edge_cell
 from loaded_tca.results.load_factors import load_factors
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.numbers import dataset_of
-from loaded_tca.results.pressure_map import PressureMap
+from loaded_tca.results.pressure_map import PressureMap, place_on_material, sharp_edge_cell
 from loaded_tca.results.root_stress import root_stress_arrays
 from loaded_tca.results.slice_pressure import SlicePeak, largest_slice_pressures
 from loaded_tca.scene import Scene

@@ -16,8 +16,8 @@ from loaded_tca.results.figure import labelled
 from loaded_tca.results.figures import FIGURES, declared
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.results.summary import kind_of_edge, shown, without_rounding
+from loaded_tca.scene.keys import shown as shown_value
 from loaded_tca.scene.section import as_table
-from loaded_tca.scene.text import shown as shown_value
 
 if TYPE_CHECKING:
     import xarray

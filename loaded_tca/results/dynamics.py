@@ -12,7 +12,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import require
 from loaded_tca.results.files import Part, variables_of
 from loaded_tca.results.numbers import CycleNumbers
-from loaded_tca.unloaded.harmonics import harmonic_coefficients
+from loaded_tca.unloaded.teeth import harmonic_coefficients
 
 if TYPE_CHECKING:
     import xarray
@@ -22,7 +22,7 @@ OVER_PITCH, OVER_ORDERS = (TORQUE, PHASE), (TORQUE, ORDER)
 SERIES = {"transmission_error": "m", "mesh_stiffness": "N_per_m", "loaded_pairs": ""}
 """Curves over the pitch that have Fourier coefficients, and the unit at the end of their names."""
 
-QUANTITIES: dict[str, Part] = {
+PARTS: dict[str, Part] = {
     "pinion_teeth": ((), "1", "number of teeth of the pinion z1"),
     "wheel_teeth": ((), "1", "number of teeth of the wheel z2"),
     "mesh_frequency_Hz_per_pinion_rev_per_s": ((), "1", "tooth-mesh frequency over the speed of the pinion in rev/s"),
@@ -111,7 +111,7 @@ def dynamics_of(result: CycleNumbers) -> xarray.Dataset:
         "normal_force_per_torque_N_per_Nm": over_pitch(result.normal_force.sum(axis=-1) * per_torque[:, None]),
     }
     arrays |= series | {f"{name}{ending(name)}": over_pitch(curve) for name, curve in curves.items()}
-    known = {name: part for name, part in QUANTITIES.items() if part[0] or math.isfinite(arrays[name])}  # not of bevels
+    known = {name: part for name, part in PARTS.items() if part[0] or math.isfinite(arrays[name])}  # not of bevels
     variables = variables_of(known, arrays)
     coordinates = {name: variables.pop(name) for name in COORDINATES}
     driving = "pinion" if pair.driving > 0 else "wheel"

@@ -12,8 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from loaded_tca.results.accuracy import (
+from loaded_tca.results.figure import (
+    Figure,
+    Line,
+    Slope,
     compared,
+    length,
     of_bending,
     of_edge,
     of_largest,
@@ -21,20 +25,18 @@ from loaded_tca.results.accuracy import (
     of_orders,
     of_peak,
     saying,
-)
-from loaded_tca.results.figure import (
-    Figure,
-    Line,
-    Slope,
-    length,
     slope_of_mean_error,
     slope_of_peak,
     slope_of_root_tension,
 )
-from loaded_tca.results.iso_figures import AXES, LOAD_ROW, REASONS, STIFFNESS_ROW, STRESS_ROWS
 from loaded_tca.results.key_figures import (
     ARCSEC,
+    AXES,
+    LOAD_ROW,
     ORDERS,
+    REASONS,
+    STIFFNESS_ROW,
+    STRESS_ROWS,
     UnderTorque,
     mean_over_a_pitch,
     positions_with,
@@ -43,7 +45,7 @@ from loaded_tca.results.key_figures import (
 )
 from loaded_tca.results.numbers import CycleNumbers
 from loaded_tca.results.quantities import GEARS
-from loaded_tca.results.root_figures import FACTORS
+from loaded_tca.results.root_stress import FACTORS
 
 
 def key_figures(result: CycleNumbers, torque: int) -> dict[str, float]:

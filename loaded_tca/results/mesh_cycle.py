@@ -1,4 +1,7 @@
-"""The result of an analysis: what the tooth pairs carry over the positions of a pitch, under each torque."""
+"""The result of an analysis: what the tooth pairs carry over the positions of a pitch, under each torque.
+
+Which edges of the two flanks a loaded contact reaches: the tips, the roots, the face ends.
+"""
 
 from __future__ import annotations
 
@@ -9,13 +12,16 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import binary_dilation
 
 from loaded_tca.errors import InputError, require
+from loaded_tca.flanks.base import EDGE_NAMES
 from loaded_tca.results.dynamics import dynamics_of
 from loaded_tca.results.figures import key_figures
 from loaded_tca.results.files import Buffer, FilePath, arrays_of, netcdf_of, read_dataset, replacing, variables_of
 from loaded_tca.results.numbers import CycleNumbers, dataset_of
-from loaded_tca.results.pressure_map import maps_from, stacked_maps
+from loaded_tca.results.pressure_map import arc_cells, maps_from, stacked_maps
 from loaded_tca.results.quantities import (
     ABOUT,
     IN_FILES,
@@ -32,6 +38,7 @@ from loaded_tca.results.sensitivities import Sensitivities, sensitivities
 from loaded_tca.results.summary import signed, summary_text
 from loaded_tca.scene import parse_scene
 from loaded_tca.unloaded import ContactPath
+from loaded_tca.unloaded.scan import edge_distances
 
 if TYPE_CHECKING:
     import xarray
@@ -228,3 +235,35 @@ class MeshCycle(CycleNumbers):
             paths=tuple(paths),
             maps=maps_from({name: arrays[f"map_{name}"] for name in MAP_PARTS}),
         )
+
+
+NAMES = tuple(f"{gear} {edge}" for gear in ("pinion", "wheel") for edge in EDGE_NAMES)
+"""Edges in the order of ``ContactPath.edges``."""
+
+
+def reached_edges(result: MeshCycle) -> NDArray[np.bool_]:
+    """Edges that each contact of a result reaches.
+
+    Parameters
+    ----------
+    result : MeshCycle
+
+    Returns
+    -------
+    (m, n, pairs, 8) array of bool
+        Over torques, positions, pairs, and ``NAMES``: those that hold the unloaded contact point of a pair under load,
+        and those beyond which, or on whose arcs, the cells beside its pressure lie.
+    """
+    pair = result.gear_pair
+    held = np.stack([path.edges for path in result.paths], axis=1)
+    reached = held & (result.normal_force > 0.0)[..., None]
+    for t, n, k in np.argwhere(result.on_edge):
+        one = result.maps[t][n][k]
+        if one is None:
+            continue
+        row, column = np.nonzero(binary_dilation(one.pressure > 0.0) & np.isinf(one.gap))
+        points = one.origin + one.x[row, None] * one.axes[0] + one.y[column, None] * one.axes[1]
+        reached[t, n, k] |= (edge_distances(pair, points) < 0.0).any(axis=0)
+        if pair.sharp is not pair:
+            reached[t, n, k] |= arc_cells(pair, one)[one.pressure > 0.0].any(axis=0)
+    return reached

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loaded_tca.arrays import Array
-from loaded_tca.compliance.torsion import body_torsion
+from loaded_tca.compliance.body import body_torsion
 from loaded_tca.errors import InputError
 from loaded_tca.loaded.sensitivity import LoadedStates
 from loaded_tca.pairs.gear_pair import GearPair
@@ -29,7 +29,7 @@ from loaded_tca.results.quantities import (
 )
 from loaded_tca.scene import Scene
 from loaded_tca.unloaded import ContactPath
-from loaded_tca.unloaded.harmonics import harmonic_coefficients
+from loaded_tca.unloaded.teeth import harmonic_coefficients
 
 if TYPE_CHECKING:
     import xarray

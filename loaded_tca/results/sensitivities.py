@@ -15,30 +15,30 @@ from loaded_tca.arrays import Array, Indices, Mask, real
 from loaded_tca.errors import require
 from loaded_tca.loaded.force_lines import bending_by_shift
 from loaded_tca.loaded.sensitivity import Tangents
-from loaded_tca.results.curvature_growth import curvature_growth
-from loaded_tca.results.face_slopes import face_load_factor_changes, rival_strip
+from loaded_tca.results.face_slopes import (
+    LITTLE,
+    face_load_factor_changes,
+    largest_cut,
+    peak_cut,
+    rival_strip,
+    warn_of_edges,
+    warn_of_strips,
+)
 from loaded_tca.results.figure_slopes import (
     EXPONENT,
     line_load_slopes,
     peak_pressure_slopes,
     pressure_norm,
+    root_slopes,
 )
-from loaded_tca.results.gap_growth import GapGrowth, gap_growth
-from loaded_tca.results.kinks import (
-    LITTLE,
-    largest_cut,
-    peak_cut,
-    warn_of_edges,
-    warn_of_strips,
-)
+from loaded_tca.results.gap_growth import GapGrowth, curvature_growth, gap_growth
 from loaded_tca.results.loaded_grids import states_of_maps
 from loaded_tca.results.numbers import CycleNumbers
-from loaded_tca.results.root_slopes import root_slopes
 from loaded_tca.results.slice_pressure import SlicePeak, largest_slice_pressures
 from loaded_tca.results.warnings import warn_of_contacts
 from loaded_tca.separation.pair_change import PairChange, pair_changes
 from loaded_tca.threads import one_blas_thread
-from loaded_tca.unloaded.harmonics import harmonic_coefficients
+from loaded_tca.unloaded.teeth import harmonic_coefficients
 
 if TYPE_CHECKING:
     import xarray

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from loaded_tca.results.accuracy import Figures
+from loaded_tca.results.figure import Figures
 from loaded_tca.results.figures import FIGURES, SUMMARY
-from loaded_tca.results.iso_figures import WHERE_REASONS_ARE, reasons_beside
+from loaded_tca.results.key_figures import WHERE_REASONS_ARE, reasons_beside
 
 ROUNDING = 1e-6
 """Figures below this, in the engineer's units, are rounding; residuals and errors of the grid are not."""

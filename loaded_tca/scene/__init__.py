@@ -12,7 +12,7 @@ from loaded_tca.scene import cylindrical, bevel, face_milled
 from loaded_tca.scene.cylindrical import CylindricalScene
 from loaded_tca.scene.bevel import BevelScene
 from loaded_tca.scene.face_milled import FaceMilledScene
-from loaded_tca.scene.describe import describe_keys
+from loaded_tca.scene.parse import describe_keys
 from loaded_tca.scene.flank_form import FlankForm, Measurement
 from loaded_tca.scene.model import Scene, scene_from_table
 from loaded_tca.scene.parse import parse_scene, read_scene

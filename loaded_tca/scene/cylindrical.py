@@ -16,11 +16,21 @@ from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.reference import iso6336_3
 from loaded_tca.scene.blank import BlankGearSection, BlankScene
 from loaded_tca.scene.build import build_materials, build_modifications, in_base_units, parameters_of
-from loaded_tca.scene.iso6336 import ContactStandard, contact_standard
 from loaded_tca.scene.keys import Choice, Number, above_zero, key
 from loaded_tca.scene.model import Row, family
 from loaded_tca.scene.section import Rule, Section, subsection
-from loaded_tca.scene.sections import DRIVING, SENSE, DIAMETER_mm, ERROR_deg, ERROR_mm, Pair, SLOPE_um, below
+from loaded_tca.scene.sections import (
+    DRIVING,
+    SENSE,
+    ContactStandard,
+    DIAMETER_mm,
+    ERROR_deg,
+    ERROR_mm,
+    Pair,
+    SLOPE_um,
+    below,
+    contact_standard,
+)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,12 +10,11 @@ from math import degrees, isclose, radians
 from typing import ClassVar, Literal
 
 from loaded_tca.errors import require
-from loaded_tca.gears import cutter
+from loaded_tca.gears import face_milled
 from loaded_tca.gears.bevel import pitch_angles
 from loaded_tca.gears.cylindrical_mesh import AT_MID_FACE, interferences
 from loaded_tca.gears.face_milled import FaceMilledBlank, FaceMilledGear, FaceMilledMesh, MachineSettings
-from loaded_tca.pairs.bevel import BevelMounting
-from loaded_tca.pairs.face_milled import face_milled_pair
+from loaded_tca.pairs.bevel import BevelMounting, face_milled_pair
 from loaded_tca.pairs.gear_pair import Driving, GearPair, Sense
 from loaded_tca.scene import face_milled_rows, sections, spiral
 from loaded_tca.scene.blank import opposite_hands
@@ -136,7 +135,7 @@ class Blade(Section):
 
 def _in_range_with_number(flank: Literal["concave", "convex"]) -> Rule:
     def complain(number: float, angle: float) -> str | None:
-        steep = angle - cutter.BLADE_SIGNS[flank] * number * cutter.MINUTES_PER_NUMBER / 60.0
+        steep = angle - face_milled.BLADE_SIGNS[flank] * number * face_milled.MINUTES_PER_NUMBER / 60.0
         if abs(steep) <= STEEPEST_deg:
             return None
         return f"found {number:g}, which turns {flank}.blade_angle_deg to {steep:g}; allowed up to {STEEPEST_deg:g}"
@@ -297,13 +296,13 @@ def _gear(own: GearSection, name: str, pitch_angle: float) -> FaceMilledGear:
     blank["root_angle"] = min(blank["root_angle"], pitch_angle)
     blank["face_angle"] = max(blank["face_angle"], pitch_angle)
     concave, convex = (
-        None if blade is None else cutter.Blade(**in_base_units(blade))
+        None if blade is None else face_milled.Blade(**in_base_units(blade))
         for blade in (own.cutter.concave, own.cutter.convex)
     )
     return FaceMilledGear(
         teeth=own.teeth,
         blank=FaceMilledBlank(**blank),
-        cutter=cutter.Cutter(concave, convex, own.cutter.number),
+        cutter=face_milled.Cutter(concave, convex, own.cutter.number),
         machine=MachineSettings(**machine),
         name=name,
         bore_diameter=own.bore_diameter_mm,

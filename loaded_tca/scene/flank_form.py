@@ -13,9 +13,8 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, named
 from loaded_tca.flanks.spline import DEFAULT_POINTS, FEWEST_POINTS
 from loaded_tca.flanks.topography import MeasuredPoints, read_topography
-from loaded_tca.scene.keys import Choice, Grid, Line, List, Number, Whole, above_zero, key
+from loaded_tca.scene.keys import Choice, Grid, Line, List, Number, Whole, above_zero, key, shown
 from loaded_tca.scene.section import Rule, Section, rule, subsection
-from loaded_tca.scene.text import shown
 
 FARTHEST_mm = 100000.0
 MOST_POINTS = 100

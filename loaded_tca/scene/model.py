@@ -12,8 +12,7 @@ from loaded_tca.errors import InputError, require
 from loaded_tca.material import LARGEST_RATIO_IN_BENDING
 from loaded_tca.pairs.gear_pair import GearPair, Sense
 from loaded_tca.scene.build import build_rounding, described_gear, in_base_units
-from loaded_tca.scene.iso6336 import ContactStandard
-from loaded_tca.scene.keys import Choice, Line, key
+from loaded_tca.scene.keys import Choice, Line, key, literal
 from loaded_tca.scene.section import (
     Rule,
     Section,
@@ -26,8 +25,7 @@ from loaded_tca.scene.section import (
     rule,
     subsection,
 )
-from loaded_tca.scene.sections import Analysis, ElasticMaterial, GearSection, Load, Pair
-from loaded_tca.scene.text import literal
+from loaded_tca.scene.sections import Analysis, ContactStandard, ElasticMaterial, GearSection, Load, Pair
 
 Hand = Literal["right", "left"]
 Row = tuple[str, ...]

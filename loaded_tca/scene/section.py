@@ -13,8 +13,7 @@ from textwrap import shorten
 from typing import Any, ClassVar, TypeVar
 
 from loaded_tca.errors import InputError
-from loaded_tca.scene.keys import Key, did_you_mean, nearest
-from loaded_tca.scene.text import shown, shown_key
+from loaded_tca.scene.keys import Key, did_you_mean, nearest, shown, shown_key
 
 SectionType = TypeVar("SectionType", bound="Section")
 

@@ -16,7 +16,7 @@ from loaded_tca.reference.hertz import line_contact, point_contact
 from loaded_tca.separation.normal_gap import NormalGap
 from loaded_tca.unloaded import ContactPoint, RelativeCurvature
 from loaded_tca.unloaded.curvature import relative_curvatures
-from loaded_tca.unloaded.roots import find_roots
+from loaded_tca.unloaded.search import find_roots
 
 MARGIN = 1.25
 """Box over estimated contact."""

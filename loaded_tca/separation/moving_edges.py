@@ -25,8 +25,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from loaded_tca.arrays import Array, Indices
-from loaded_tca.flanks.base import EDGE_NAMES
-from loaded_tca.flanks.jet import Jet
+from loaded_tca.flanks.base import EDGE_NAMES, Jet
 from loaded_tca.flanks.modification import removal_change
 from loaded_tca.flanks.spline import SplineFlank
 from loaded_tca.pairs.gear_pair import GearPair

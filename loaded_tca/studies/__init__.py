@@ -5,14 +5,11 @@ variant, writes down each one that is done, and goes on where it stopped when it
 """
 
 from loaded_tca.studies.design import DesignModel, DesignResult, load_design, optimise, robustness
-from loaded_tca.studies.pool import process_pool
-from loaded_tca.studies.ranking import rank_combinations, rank_variants
-from loaded_tca.studies.read import parse_study, read_study
+from loaded_tca.studies.ranking import figures, rank_combinations, rank_variants, study_summary
+from loaded_tca.studies.read import parse_study, read_study, vh_study
 from loaded_tca.studies.rows import load_study
-from loaded_tca.studies.run import run_study
+from loaded_tca.studies.run import process_pool, run_study
 from loaded_tca.studies.study import Study
-from loaded_tca.studies.summary import figures, study_summary
-from loaded_tca.studies.vh_study import vh_study
 
 __all__ = [
     "DesignModel",

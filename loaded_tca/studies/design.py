@@ -29,15 +29,18 @@ from loaded_tca.results.warnings import without_place
 from loaded_tca.scene import Scene
 from loaded_tca.studies.design_figures import (
     FIGURES,
+    KIND,
+    PARTS,
     SMOOTHING,
+    DesignResult,
     FigureOfErrors,
     Limit,
     Objective,
+    load_design,
     mean_pressure_norm,
     root_tension_norm,
 )
 from loaded_tca.studies.design_model import DesignModel, Evaluation
-from loaded_tca.studies.design_result import KIND, PARTS, DesignResult, load_design
 from loaded_tca.studies.study import MOST_VARIANTS, is_finite, is_whole
 from loaded_tca.threads import one_thread
 

@@ -21,7 +21,7 @@ from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError, reason_of
 from loaded_tca.input_files import require_regular
 from loaded_tca.results.files import FilePath, make_directory, read_dataset
-from loaded_tca.scene.text import literal, shown
+from loaded_tca.scene.keys import literal, shown
 from loaded_tca.studies.study import Study, told_distribution
 
 if TYPE_CHECKING:

@@ -18,9 +18,8 @@ import numpy as np
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
 from loaded_tca.scene import Scene
-from loaded_tca.scene.keys import Key, Number, Whole
+from loaded_tca.scene.keys import Key, Number, Whole, shown
 from loaded_tca.scene.section import as_table, key_at
-from loaded_tca.scene.text import shown
 
 NEVER = 1e-12
 """Probabilities nearer than this to 0 or 1 are moved there: a distribution without bounds has no value at its ends."""

@@ -22,8 +22,8 @@ from loaded_tca.flanks.cylindrical import InvoluteFlank
 from loaded_tca.flanks.face_milled import GeneratedFlank, tooth_angle
 from loaded_tca.flanks.modification import FlankModifications, modified
 from loaded_tca.gears import BevelGear, CylindricalGear, FaceMilledGear
-from loaded_tca.gears.cutter import BLADE_SIGNS
 from loaded_tca.gears.cylindrical_mesh import ActiveProfile
+from loaded_tca.gears.face_milled import BLADE_SIGNS
 from loaded_tca.tooth.fillet import ArcFillet, Fillet, RackFillet
 from loaded_tca.tooth.sections import ApexSpheres, Sections, TransversePlanes
 

@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 
 from loaded_tca.arrays import Array
-from loaded_tca.flanks.jet import Jet, weighted_sum
+from loaded_tca.flanks.base import Jet, weighted_sum
 from loaded_tca.pairs.gear_pair import GearPair, cylindrical_basis
 
 FULL_TURN = 2.0 * math.pi

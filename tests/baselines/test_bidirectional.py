@@ -11,8 +11,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.baselines.bidirectional import BidirectionalStart, GeneratingLine
 from loaded_tca.baselines.conventional import contact_equations, solve_conventional
 from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.pairs.bevel import BevelMounting
-from loaded_tca.pairs.face_milled import face_milled_pair
+from loaded_tca.pairs.bevel import BevelMounting, face_milled_pair
 from loaded_tca.unloaded import trace_contact
 from tests.samples.face_milled import on_machine, published_wheel
 from validation.face_milled.pairs import (

@@ -13,9 +13,8 @@ from loaded_tca.compliance.geometry import body_nodes
 from loaded_tca.compliance.layout import RingLayout
 from loaded_tca.errors import InputError
 from loaded_tca.gears import bevel_mesh
-from loaded_tca.pairs.bevel import bevel_pair
+from loaded_tca.pairs.bevel import bevel_pair, face_milled_pair
 from loaded_tca.pairs.cylindrical import cylindrical_pair
-from loaded_tca.pairs.face_milled import face_milled_pair
 from loaded_tca.scene import read_scene
 from loaded_tca.tooth import Resolution, build_tooth
 from tests.samples.bodies import pinion, spur_mesh

@@ -3,7 +3,7 @@ import math
 import numpy as np
 from numpy.testing import assert_allclose
 
-from loaded_tca.compliance.half_space import depth_displacement, depth_displacement_slope, line_force
+from loaded_tca.compliance.flexibility import depth_displacement, depth_displacement_slope, line_force
 from loaded_tca.material import Material
 
 STEEL = Material()

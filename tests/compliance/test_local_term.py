@@ -1,8 +1,8 @@
 import numpy as np
 from numpy.testing import assert_allclose
 
+from loaded_tca.compliance.flexibility import local_flexibility
 from loaded_tca.compliance.layout import MeshDensity
-from loaded_tca.compliance.local_term import local_flexibility
 from loaded_tca.material import Material
 from tests.samples.bodies import pinion
 

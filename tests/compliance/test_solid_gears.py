@@ -9,9 +9,8 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.compliance import MeshDensity, tooth_compliance
 from loaded_tca.compliance import geometry as ring_geometry
-from loaded_tca.compliance.body import gear_body, gear_nodes
-from loaded_tca.compliance.local_term import local_flexibility
-from loaded_tca.compliance.torsion import body_torsion, solid_torsion
+from loaded_tca.compliance.body import body_torsion, gear_body, gear_nodes, solid_torsion
+from loaded_tca.compliance.flexibility import local_flexibility
 from loaded_tca.gears import bevel_mesh
 from loaded_tca.material import Material
 from loaded_tca.pairs.bevel import bevel_pair

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from loaded_tca.flanks.jet import Jet, weighted_sum
+from loaded_tca.flanks.base import Jet, weighted_sum
 
 ROUNDING = 1e-12  # a handful of products of numbers of order 10
 

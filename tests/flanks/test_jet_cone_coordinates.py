@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from loaded_tca.flanks.jet import SMALLEST_DISTANCE, cone_angle, cone_distance
+from loaded_tca.flanks.base import SMALLEST_DISTANCE, cone_angle, cone_distance
 
 ROUNDING = 1e-14  # a handful of products of numbers of order one
 STEP = 1e-5

@@ -11,8 +11,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import AccuracyWarning, GeometryError, InputError, trace_contact
 from loaded_tca.flanks import FlankModifications, InvoluteFlank, SplineFlank, fitted
-from loaded_tca.flanks.base import Region, unmodified
-from loaded_tca.flanks.jet import Jet
+from loaded_tca.flanks.base import Jet, Region, unmodified
 from loaded_tca.flanks.spline import pitch_point
 from loaded_tca.gears import bevel_mesh
 from loaded_tca.pairs.bevel import bevel_pair

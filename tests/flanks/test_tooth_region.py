@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
+from loaded_tca.flanks.base import Jet
 from loaded_tca.flanks.bevel import DistanceCurve, ToothRegion, chebyshev_nodes, face_cone_angles
-from loaded_tca.flanks.jet import Jet
 
 DISTANCES, PITCH, FACE_CONE = (95.0, 132.0), math.radians(17.4), (math.radians(19.3), -2.2)
 STEP = 1e-4  # mm

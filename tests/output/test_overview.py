@@ -51,7 +51,7 @@ def test_estimate_is_shown_and_noted_where_it_exceeds_the_memory(monkeypatch):
     few, many = (described(analysis__compliance="contact", analysis__positions=count) for count in (20, 2000))
     assert float(cells(many, label)[0]) == pytest.approx(100.0 * float(cells(few, label)[0]), rel=0.05)  # two digits
     assert float(cells(many, label)[1]) > float(cells(few, label)[1])
-    monkeypatch.setattr("loaded_tca.loaded.effort.machine_memory", lambda: 2.0**29)
+    monkeypatch.setattr("loaded_tca.analysis.machine_memory", lambda: 2.0**29)
     assert any(
         "4000 contacts of" in note and "the machine has 0.5 GiB" in note
         for note in notes(described(analysis__positions=2000))

@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from loaded_tca.analysis import analyse
 from loaded_tca.errors import InputError
 from loaded_tca.output import describe_results
-from loaded_tca.output.report import contacts_csv, positions_csv, summary_json, write_report
+from loaded_tca.output.result_files import contacts_csv, positions_csv, summary_json, write_report
 from loaded_tca.results.mesh_cycle import MeshCycle
 from loaded_tca.scene import read_scene
 from tests.samples.results import SCENES, assert_same, changed, changed_scene, result, with_a_gap

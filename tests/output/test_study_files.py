@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from loaded_tca.errors import InputError
-from loaded_tca.output.study_files import write_study
+from loaded_tca.output.tables import write_study
 from tests.samples.study_datasets import LEAD, dataset, grid
 
 

@@ -15,13 +15,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.output import write_comparison, write_dynamics
-from loaded_tca.output.report import contacts_csv, positions_csv
-from loaded_tca.output.sensitivity_files import sensitivities_csv
-from loaded_tca.output.subsurface_files import subsurface_csv
+from loaded_tca.output.result_files import contacts_csv, positions_csv
+from loaded_tca.output.tables import sensitivities_csv, subsurface_csv
 from loaded_tca.results import compare_results
 from loaded_tca.results.quantities import QUANTITIES, ROOT_QUANTITIES
 from loaded_tca.results.stress_below import stress_below
-from loaded_tca.studies.summary import figures_of
+from loaded_tca.studies.ranking import figures_of
 from tests.samples.results import changed, changed_scene, result
 
 DIGITS = {"rtol": 1e-8, "atol": 1e-12}

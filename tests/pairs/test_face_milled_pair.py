@@ -11,8 +11,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import GeometryError, sample_separation, trace_contact
 from loaded_tca.flanks import FlankModifications
-from loaded_tca.pairs.bevel import BevelMounting
-from loaded_tca.pairs.face_milled import face_milled_pair
+from loaded_tca.pairs.bevel import BevelMounting, face_milled_pair
 from loaded_tca.reference import hertz
 from tests.refusals import refused_calls
 from tests.samples.face_milled import duplex_paper_gears, matched_pinion, on_machine, published_pinion, published_wheel

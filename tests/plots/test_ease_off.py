@@ -6,8 +6,7 @@ from loaded_tca.flank_maps.vh_check import vh_check
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.plots import save_figure
-from loaded_tca.plots.ease_off import plot_ease_off
-from loaded_tca.plots.vh_check import plot_vh_check
+from loaded_tca.plots.vh_check import plot_ease_off, plot_vh_check
 from tests.samples.gear_pairs import gear_pair
 from tests.samples.pictures import told
 

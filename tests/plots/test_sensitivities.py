@@ -17,7 +17,7 @@ from loaded_tca.plots import (
     save_figure,
 )
 from loaded_tca.plots.flanks import picture_of
-from loaded_tca.plots.removal import removal_weights
+from loaded_tca.plots.sensitivities import removal_weights
 from loaded_tca.results import key_figure_slopes
 from loaded_tca.results.key_figures import mean_over_a_pitch
 from tests.samples.pictures import told

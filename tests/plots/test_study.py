@@ -18,7 +18,7 @@ from loaded_tca.plots import (
     plot_study_scatter_matrix,
     png_of,
 )
-from loaded_tca.plots.labels import label_of
+from loaded_tca.plots.style import label_of
 from tests.refusals import refused_calls
 from tests.samples.pictures import told
 from tests.samples.study_datasets import LEAD, MISALIGNMENT, SCENE, TIP, dataset, grid, sampled

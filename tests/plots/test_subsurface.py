@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from loaded_tca.contact import subsurface_stress
+from loaded_tca.plots.pressure_map import plot_subsurface
 from loaded_tca.plots.style import save_figure
-from loaded_tca.plots.subsurface import plot_subsurface
 from tests.refusals import refusals
 from tests.samples.pictures import told
 

@@ -17,11 +17,11 @@ import xarray
 from loaded_tca import analyse, cli, load_result, read_scene, warning_kinds
 from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.plots import plot_pressure_map, plot_transmission_error
-from loaded_tca.plots.labels import label_of
+from loaded_tca.plots.style import label_of
 from loaded_tca.reports import page as report_page
 from loaded_tca.reports import result_page, write_html_report
 from loaded_tca.reports.page import Table, parts_of, tables_of
-from loaded_tca.results.accuracy import COMPARED
+from loaded_tca.results.figure import COMPARED
 from loaded_tca.results.summary import known_rows, shown
 from loaded_tca.studies.design import DesignResult
 from loaded_tca.warning_kinds import KINDS, kind_of

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from loaded_tca.plots.labels import label_of
+from loaded_tca.plots.style import label_of
 from loaded_tca.results.figure import labelled
 from loaded_tca.results.figures import FIGURES, SUMMARY, declared, key_figures
 from loaded_tca.studies.ranking import MAIN_FIGURES

@@ -8,7 +8,7 @@ import pytest
 from loaded_tca import GeometryError, analyse, read_scene
 from loaded_tca.errors import noted_accuracy_warnings
 from loaded_tca.output.overview import describe_scene
-from loaded_tca.output.report import summary_json
+from loaded_tca.output.result_files import summary_json
 from loaded_tca.reports.result_page import result_content
 from loaded_tca.results.warnings import warn_of_gears
 from loaded_tca.studies import Study, run_study, study_summary

@@ -9,10 +9,10 @@ from numpy.testing import assert_allclose
 
 from loaded_tca import read_scene
 from loaded_tca.output.overview import describe_scene
-from loaded_tca.plots.labels import label_of
+from loaded_tca.plots.style import label_of
 from loaded_tca.reports.result_page import result_content
-from loaded_tca.results.iso_figures import REASONS, WHERE_REASONS_ARE, iso_figures
-from loaded_tca.results.root_figures import rim_factor
+from loaded_tca.results.key_figures import REASONS, WHERE_REASONS_ARE, iso_figures
+from loaded_tca.results.root_stress import rim_factor
 from tests.samples.results import SCENES, changed, changed_scene, result
 
 KEY_FIGURES = Path(__file__).parents[2] / "docs" / "reference" / "key_figures.md"

@@ -13,10 +13,10 @@ from scipy.ndimage import binary_dilation
 from loaded_tca.analysis import analyse
 from loaded_tca.errors import AccuracyWarning, InputError
 from loaded_tca.plots import plot_transmission_error
-from loaded_tca.results.edge_cell import place_on_material
 from loaded_tca.results.key_figures import mean_over_a_pitch
+from loaded_tca.results.pressure_map import place_on_material
 from loaded_tca.scene import read_scene
-from loaded_tca.unloaded.harmonics import harmonic_coefficients
+from loaded_tca.unloaded.teeth import harmonic_coefficients
 from tests.samples.results import FLANKS_ALONE, SCENES, changed, result
 
 

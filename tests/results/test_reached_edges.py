@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from loaded_tca.results.reached_edges import NAMES, reached_edges
+from loaded_tca.results.mesh_cycle import NAMES, reached_edges
 from tests.samples.results import result, with_a_gap
 
 

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.output.overview import describe_scene
-from loaded_tca.output.report import positions_csv, summary_json
+from loaded_tca.output.result_files import positions_csv, summary_json
 from loaded_tca.scene import read_scene
 from loaded_tca.studies.ranking import MAIN_FIGURES
 from tests.samples.results import SCENES, changed, changed_scene

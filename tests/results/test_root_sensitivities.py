@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.analysis import roots_of
 from loaded_tca.errors import AccuracyWarning, InputError, NotAskedError
-from loaded_tca.output.sensitivity_files import sensitivities_csv, sensitivities_text
+from loaded_tca.output.tables import sensitivities_csv, sensitivities_text
 from loaded_tca.results import default_tolerances, key_figure_slopes
 from tests.samples.results import result as without_root_stress
 from tests.samples.root_stress import analysed, coarsely, result, scene

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.output.subsurface_files import STRESSES, subsurface_csv, write_subsurface
+from loaded_tca.output.tables import STRESSES, subsurface_csv, write_subsurface
 from loaded_tca.plots import plot_stress_below
 from loaded_tca.results.files import read_dataset
 from loaded_tca.results.stress_below import NAMES, depth_of_largest, stress_below

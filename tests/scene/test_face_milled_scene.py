@@ -17,8 +17,7 @@ from loaded_tca.errors import GeometryError, InputError
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.flanks.base import outward_normal
 from loaded_tca.output.overview import describe_scene
-from loaded_tca.pairs.bevel import BevelMounting
-from loaded_tca.pairs.face_milled import face_milled_pair
+from loaded_tca.pairs.bevel import BevelMounting, face_milled_pair
 from loaded_tca.scene import FaceMilledScene, parse_scene, read_scene, scene_from_table
 from loaded_tca.scene.face_milled import Blade, Blank, Cutter, GearSection, Geometry, Machine, MountingErrors
 from loaded_tca.unloaded import trace_contact

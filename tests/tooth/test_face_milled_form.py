@@ -10,7 +10,7 @@ from loaded_tca.errors import InputError
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.gears import Cutter, FaceMilledMesh
 from loaded_tca.pairs import mating_teeth
-from loaded_tca.pairs.face_milled import face_milled_pair
+from loaded_tca.pairs.bevel import face_milled_pair
 from loaded_tca.tooth import ArcFillet, FaceMilledTooth, Resolution, build_tooth
 from tests.samples.face_milled import published_pinion, published_wheel
 

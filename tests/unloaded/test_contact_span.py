@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.pairs.cylindrical import Mounting
-from loaded_tca.unloaded.contact_span import contact_span, path_letters, roll_lengths_of_flanks
+from loaded_tca.unloaded.path import contact_span, path_letters, roll_lengths_of_flanks
 from tests.samples.gear_pairs import cylindrical_mesh, gear_pair, sam_paper
 
 FOUND = 2e-3

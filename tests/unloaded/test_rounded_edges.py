@@ -16,7 +16,7 @@ from loaded_tca.gears import bevel_mesh
 from loaded_tca.pairs.bevel import BevelMounting, bevel_pair
 from loaded_tca.pairs.cylindrical import Mounting
 from loaded_tca.unloaded import relative_curvature, trace_contact, trace_teeth
-from loaded_tca.unloaded.contact_span import contact_span
+from loaded_tca.unloaded.path import contact_span
 from tests.samples.gear_pairs import gear_pair, transmission_error_at
 
 ROUNDED = EdgeRounding(0.2, 0.2)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from loaded_tca.pairs.face_milled import face_milled_pair
+from loaded_tca.pairs.bevel import face_milled_pair
 from loaded_tca.unloaded import trace_contact
 from validation.face_milled import pairs
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from loaded_tca.gears.basic_settings import duplex_spread_blade
-from loaded_tca.pairs.face_milled import face_milled_pair
+from loaded_tca.pairs.bevel import face_milled_pair
 from validation.face_milled.pairs import duplex_blank
 from validation.loaded import root_stress, root_stress_families
 

@@ -30,7 +30,7 @@ from skfem import (
 )
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
-from loaded_tca.compliance.half_space import depth_displacement
+from loaded_tca.compliance.flexibility import depth_displacement
 from loaded_tca.loaded.free_edges import DEPTH, edge_compliance
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear_pair import GearPair

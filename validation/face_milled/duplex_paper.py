@@ -20,8 +20,8 @@ from scipy.optimize import brentq
 from loaded_tca.baselines.bidirectional import BidirectionalStart, Guess, StartValues
 from loaded_tca.baselines.conventional import solve_conventional
 from loaded_tca.flanks.face_milled import GeneratedFlank
-from loaded_tca.gears.cutter import FlankName
-from loaded_tca.pairs.face_milled import face_milled_pair
+from loaded_tca.gears.face_milled import FlankName
+from loaded_tca.pairs.bevel import face_milled_pair
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded import trace_contact
 from loaded_tca.unloaded.ease_off import EaseOff

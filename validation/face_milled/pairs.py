@@ -15,8 +15,7 @@ from scipy.optimize import brentq
 
 from loaded_tca.gears import BevelBlank
 from loaded_tca.gears.basic_settings import duplex_spread_blade, spread_blade
-from loaded_tca.gears.cutter import Blade, Cutter, FlankName
-from loaded_tca.gears.face_milled import FaceMilledBlank, FaceMilledGear, MachineSettings
+from loaded_tca.gears.face_milled import Blade, Cutter, FaceMilledBlank, FaceMilledGear, FlankName, MachineSettings
 from loaded_tca.pairs.gear_pair import GearPair
 from loaded_tca.unloaded import ContactPath, trace_contact
 from validation.bevel.iso_23509_sample import spygo

@@ -15,8 +15,8 @@ import numpy as np
 
 from loaded_tca.flanks import GeneratedFlank
 from loaded_tca.gears.basic_settings import cutter_number, point_width, spread_blade
-from loaded_tca.gears.cutter import FlankName
-from loaded_tca.pairs.face_milled import face_milled_pair
+from loaded_tca.gears.face_milled import FlankName
+from loaded_tca.pairs.bevel import face_milled_pair
 from loaded_tca.reference.hertz import point_contact
 from loaded_tca.unloaded import relative_curvature
 from validation.bevel.iso_23509_sample import SPYGO, spygo

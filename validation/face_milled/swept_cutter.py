@@ -24,8 +24,7 @@ from scipy.optimize import brentq, minimize_scalar
 from scipy.spatial.transform import Rotation
 
 from loaded_tca.flanks import GeneratedFlank
-from loaded_tca.gears.cutter import FlankName
-from loaded_tca.gears.face_milled import FaceMilledGear
+from loaded_tca.gears.face_milled import FaceMilledGear, FlankName
 from validation.face_milled.pairs import matched_spygo_gears
 from validation.table import Row
 

@@ -24,9 +24,8 @@ from skfem import Basis, ElementTriP2, ElementVector, FacetBasis, LinearForm, Me
 
 from loaded_tca.compliance import MeshDensity
 from loaded_tca.compliance.body import ToothFrame, gear_nodes
-from loaded_tca.compliance.flexibility import grid_of_places
+from loaded_tca.compliance.flexibility import grid_of_places, local_flexibility
 from loaded_tca.compliance.influence import SPREAD
-from loaded_tca.compliance.local_term import local_flexibility
 from loaded_tca.gears import CylindricalGear, CylindricalMesh
 from loaded_tca.material import Material
 from loaded_tca.pairs.cylindrical import cylindrical_pair

@@ -14,7 +14,8 @@ import numpy as np
 
 from loaded_tca.results.files import Buffer, FilePath, Part, replace_together
 from loaded_tca.results.key_figures import ARCSEC
-from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.mesh_cycle import NAMES as EDGES
+from loaded_tca.results.mesh_cycle import MeshCycle, reached_edges
 from loaded_tca.results.quantities import (
     CYCLE,
     GEARS,
@@ -26,8 +27,6 @@ from loaded_tca.results.quantities import (
     ROOT_MAPS,
     ROOT_QUANTITIES,
 )
-from loaded_tca.results.reached_edges import NAMES as EDGES
-from loaded_tca.results.reached_edges import reached_edges
 from loaded_tca.results.summary import without_rounding
 from loaded_tca.units import factor_of
 
