@@ -164,7 +164,7 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
     """
     # products of small matrices: on several threads of BLAS they take longer, and on some processors round otherwise
     with one_blas_thread():
-        with noted_accuracy_warnings() as told:
+        with noted_accuracy_warnings() as warned:
             pair, wanted, effort = scene.pair(), scene.analysis, expected_effort(scene)
             require((not effort.is_refused, f"analysis.cells: {wanted.cells}: {effort}"))
             warn_of_gears(scene, pair)
@@ -191,7 +191,7 @@ def analyse(scene: Scene, progress: Progress | None = None) -> MeshCycle:
             )
             warn_of_accuracy(pair, grid, carried, at_edges, load_sharing=wanted.load_sharing, body_torsion=torsion)
         date = datetime.now(UTC).isoformat(timespec="seconds")
-        return mesh_cycle(scene, pair, carried, at_edges, roots, warnings=told, date=date)
+        return mesh_cycle(scene, pair, carried, at_edges, roots, warnings=warned, date=date)
 
 
 def roots_of(scene: Scene, pair: GearPair) -> tuple[RootStress, ...]:
@@ -199,10 +199,10 @@ def roots_of(scene: Scene, pair: GearPair) -> tuple[RootStress, ...]:
     if not scene.analysis.root_stress:
         return ()
     require_teeth(pair, scene.analysis.without_bodies)
-    found = []
+    roots = []
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         with way_out_told("analysis.root_stress = false"), named(name):
-            found.append(root_stress_model(gear))
-        if (layer := found[-1].layer / pair.module) > THICKEST_LAYER:
+            roots.append(root_stress_model(gear))
+        if (layer := roots[-1].layer / pair.module) > THICKEST_LAYER:
             give_accuracy_warning(kinds.FACE_ELEMENTS.sentence(gear=name, width=layer))
-    return tuple(found)
+    return tuple(roots)

@@ -310,11 +310,11 @@ class BidirectionalStart:
         azimuths, turns = (values.pinion_azimuth, values.wheel_azimuth), (values.pinion_turn, values.wheel_turn)
         places, angles, points = [], [], []
         for member, flank in enumerate(self._flanks):
-            found = self._lines[member].at(azimuths[member])
-            standing = found.azimuth[0] + turns[member]
-            angles.append(_half_turn(standing - float(flank.theta(found.rho, found.z).value[0])))
-            places += [found.rho[0], found.z[0]]
-            own = np.array([found.rho[0] * math.cos(standing), found.rho[0] * math.sin(standing), found.z[0]])
+            place = self._lines[member].at(azimuths[member])
+            standing = place.azimuth[0] + turns[member]
+            angles.append(_half_turn(standing - float(flank.theta(place.rho, place.z).value[0])))
+            places += [place.rho[0], place.z[0]]
+            own = np.array([place.rho[0] * math.cos(standing), place.rho[0] * math.sin(standing), place.z[0]])
             points.append(own @ self._axes[member] + self._origins[member])
         pinion_angle, wheel_angle = self._pair.sense * angles[0], -self._pair.sense * angles[1]
         return Guess(pinion_angle, np.array([*places, wheel_angle]), float(np.linalg.norm(points[0] - points[1])))
@@ -323,14 +323,14 @@ class BidirectionalStart:
         line, mating_line = self._lines[member], self._lines[1 - member]
 
         def longer(angle: Array) -> Array:
-            found = line.at(angle)
-            return np.hypot(found.rho, found.z) - self._gears[member].blank.mean_cone_distance
+            place = line.at(angle)
+            return np.hypot(place.rho, place.z) - self._gears[member].blank.mean_cone_distance
 
         if azimuth is None:
             azimuth = self._root(member, longer, "cone distance {:.4g} mm off the mean one")
-        found = line.at(azimuth)
-        turn = self._meshing_turn(member, found.normal[0], found.moment[0])
-        normal = -(_turned(found.normal[0], turn) @ self._axes[member]) @ self._axes[1 - member].T
+        place = line.at(azimuth)
+        turn = self._meshing_turn(member, place.normal[0], place.moment[0])
+        normal = -(_turned(place.normal[0], turn) @ self._axes[member]) @ self._axes[1 - member].T
 
         def steeper(angle: Array) -> Array:
             return mating_line.at(angle).normal[:, 2] - normal[2]

@@ -175,10 +175,10 @@ def solve_with_scipy_root(
                 values, jacobian = contact_equations(pair, here, (guess * scale)[None], normal_components)
                 return values[0], jacobian[0] * scale
 
-            found = root(equations, unknowns[row] / scale, jac=True, method="hybr", options={"xtol": 1e-14})
-            evaluations[row] = found.nfev
-            if _near(pair, (found.x * scale)[None])[0]:
-                unknowns[row] = found.x * scale
+            answer = root(equations, unknowns[row] / scale, jac=True, method="hybr", options={"xtol": 1e-14})
+            evaluations[row] = answer.nfev
+            if _near(pair, (answer.x * scale)[None])[0]:
+                unknowns[row] = answer.x * scale
     return _result(pair, angle, unknowns, evaluations, normal_components)
 
 

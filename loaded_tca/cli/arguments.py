@@ -119,8 +119,8 @@ def _add_readers(command: Command) -> None:
     """Add the commands that show one result again."""
     peak = "default: that of the peak pressure of the summary"
     plot = command("plot", run_by.plot, "draw the pictures of a result again")
-    told = "write the complete teeth of a result as surfaces (VTK, STL) and as a picture"
-    tooth = command("tooth", run_by.tooth, told, TEETH)
+    text = "write the complete teeth of a result as surfaces (VTK, STL) and as a picture"
+    tooth = command("tooth", run_by.tooth, text, TEETH)
     below = command("subsurface", run_by.subsurface, "show the stresses below a pressure map of a result", SUBSURFACE)
     for reader, of_torque, of_position in (
         (plot, "pinion torque of maps and flanks", "pressure_map.png"),
@@ -156,8 +156,8 @@ def _add_comparisons(command: Command) -> None:
         "sensitivities", run_by.sensitivities, "show what keys of the scene and their tolerances change", SENSITIVITIES
     )
     slopes.add_argument("result", metavar="DIR|FILE", type=_path, help="result.nc, or the directory that holds it")
-    told = "for instance mounting.axial_offset_mm=0.05"
-    slopes.add_argument("--keys", metavar="KEY[=TOLERANCE]", nargs="+", type=_tolerance, help=told)
+    text = "for instance mounting.axial_offset_mm=0.05"
+    slopes.add_argument("--keys", metavar="KEY[=TOLERANCE]", nargs="+", type=_tolerance, help=text)
     slopes.add_argument("--out", metavar="DIR", type=_path, help=f"directory for the files; default: {BESIDE}")
     slopes.add_argument("--torque", metavar="NM", type=float, help="pinion torque shown; default: largest, bands all")
 
@@ -192,8 +192,8 @@ def _add_studies(command: Command) -> None:
         help="variants, from 0, whose results are kept whole",
     )
     report = command("report", run_by.report, "write a report of a result, a study or a design as HTML", REPORT)
-    told = "result.nc, study.nc, the file of a design, or the directory that holds one"
-    report.add_argument("result", metavar="DIR|FILE", type=_path, help=told)
+    text = "result.nc, study.nc, the file of a design, or the directory that holds one"
+    report.add_argument("result", metavar="DIR|FILE", type=_path, help=text)
     report.add_argument("--out", metavar="FILE", type=_path, help="default: report.html beside the result")
     report.add_argument("--rank-by", metavar="FIGURE", help="of a study, the least is best; default: TE span")
 

@@ -301,15 +301,15 @@ def sensitivities(options: argparse.Namespace) -> None:
     torque = highest_torque(result) if torque is None else torque
     tolerances = tolerances_of(options, result.scene)
     with bar_of(f"derivatives to {len(tolerances)} keys", len(DERIVATIVES), BAR) as show:
-        found = result.sensitivities(list(tolerances))
+        slopes = result.sensitivities(list(tolerances))
         for done, name in enumerate(DERIVATIVES, 1):
-            getattr(found, name)
+            getattr(slopes, name)
             if show is not None:
                 show(done, len(DERIVATIVES))
-    text = sensitivities_text(found, tolerances, torque)
-    pictures = sensitivity_pictures(found, tolerances, torque)
+    text = sensitivities_text(slopes, tolerances, torque)
+    pictures = sensitivity_pictures(slopes, tolerances, torque)
     written = write_sensitivities(
-        found, tolerances, directory, {f"{name}.png": png_of(figure) for name, figure in pictures.items()}
+        slopes, tolerances, directory, {f"{name}.png": png_of(figure) for name, figure in pictures.items()}
     )
     print(text, end="\n\n")
     print_files(written)
@@ -349,18 +349,18 @@ def study(options: argparse.Namespace) -> None:
     study, directory = read_study(options.study), options.out
     check_place(directory)
     with executor_of(options, len(study)) as executor, bar_of("variants", len(study), STUDY_BAR) as show:
-        found = run_study(study, executor, directory / "study.nc", show, keep_maps=options.keep_maps)
-    rank_by = options.rank_by if options.rank_by in found else None  # another one is told once all is written
-    pictures = {f"{name}.png": png_of(figure) for name, figure in plot_study(found, rank_by=rank_by).items()}
-    written = write_study(found, directory, pictures, rank_by)
-    print(study_summary(found), end="\n\n")
+        rows = run_study(study, executor, directory / "study.nc", show, keep_maps=options.keep_maps)
+    rank_by = options.rank_by if options.rank_by in rows else None  # another one is told once all is written
+    pictures = {f"{name}.png": png_of(figure) for name, figure in plot_study(rows, rank_by=rank_by).items()}
+    written = write_study(rows, directory, pictures, rank_by)
+    print(study_summary(rows), end="\n\n")
     print_files([directory / "study.nc", *written])
-    failed = (found["status"] != "ok").values
+    failed = (rows["status"] != "ok").values
     require(
         (rank_by == options.rank_by, f"--rank-by {options.rank_by}: not in study.csv; ranked by the default figure"),
         (not failed.all(), "no variant was analysed; the summary says why"),
         *(
-            (not failed[n], f"--keep-maps {n}: no maps, the variant is {found['status'].values[n]}")
+            (not failed[n], f"--keep-maps {n}: no maps, the variant is {rows['status'].values[n]}")
             for n in options.keep_maps
         ),
     )

@@ -191,8 +191,8 @@ class ToothFrame:
             return self.side * (np.arctan2(y, x) - np.interp(where, self.nodes.coordinate, middle))
 
         every = (np.arange(len(point)),)
-        found = bracket_root(beyond, np.zeros(len(point)), FIRST_CHORD * scale, xmin=0.0, args=every)
-        return np.asarray(find_root(beyond, found.bracket, args=every).x)
+        bracket = bracket_root(beyond, np.zeros(len(point)), FIRST_CHORD * scale, xmin=0.0, args=every)
+        return np.asarray(find_root(beyond, bracket.bracket, args=every).x)
 
     def on_flank(self, places: FlankPlaces, number: Indices, tooth: int = 0) -> SurfacePlaces:
         """Places among the nodes (columns, rows, layers) numbered ``number``, on the flank in contact of a tooth."""

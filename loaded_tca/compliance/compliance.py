@@ -181,18 +181,18 @@ def _section(points: Array) -> tuple[Array, Array]:
 def _on_flank(flank: Flank, points: Array, normal: Array, origin: Array) -> Array:
     """Points (n, 3) moved along a normal onto a flank through an origin; where there is none they stay."""
     turned = math.atan2(origin[1], origin[0]) - float(np.ravel(flank.theta(*_section(origin[None])).value)[0])
-    found = points
+    moved = points
     for _ in range(NEWTON_STEPS):
-        rho, z = _section(found)
+        rho, z = _section(moved)
         theta = flank.theta(rho, z)
-        off = np.arctan2(found[:, 1], found[:, 0]) - theta.value - turned
+        off = np.arctan2(moved[:, 1], moved[:, 0]) - theta.value - turned
         off = np.remainder(off + math.pi, 2.0 * math.pi) - math.pi
-        outwards = (found[:, :2] @ normal[:2]) / rho
+        outwards = (moved[:, :2] @ normal[:2]) / rho
         steep = (
-            (found[:, 0] * normal[1] - found[:, 1] * normal[0]) / rho**2 - theta.rho * outwards - theta.z * normal[2]
+            (moved[:, 0] * normal[1] - moved[:, 1] * normal[0]) / rho**2 - theta.rho * outwards - theta.z * normal[2]
         )
-        found = found - (off / steep)[:, None] * normal
-    return np.where(np.isfinite(found).all(axis=1, keepdims=True), found, points)
+        moved = moved - (off / steep)[:, None] * normal
+    return np.where(np.isfinite(moved).all(axis=1, keepdims=True), moved, points)
 
 
 TEETH_DO_NOT_BEND = 'analysis.compliance = "contact"'
@@ -307,12 +307,12 @@ def tooth_compliance(pair: GearPair, *, neighbours: int = 1, density: MeshDensit
     >>> float(compliance.within(0, separation).mean().round(8))  # of an even force
     4.23e-06
     """
-    found = []
+    gears = []
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         with named(name):
             require_bending(gear.material)
-            found.append(gear_compliance(gear, replace(density or default_density(gear), neighbours=neighbours)))
-    return ToothCompliance(pair, *found)
+            gears.append(gear_compliance(gear, replace(density or default_density(gear), neighbours=neighbours)))
+    return ToothCompliance(pair, *gears)
 
 
 def require_bending(material: Material) -> None:

@@ -65,13 +65,13 @@ class Factorisation:
 
     def solve(self, loads: Array) -> Array:
         """Displacements (size, m) under loads (size, m); zero where they are prescribed."""
-        found = np.zeros_like(loads)
+        displacements = np.zeros_like(loads)
         free = np.zeros(self.size, dtype=bool)
         for front in self.fronts:
             free[front.inside] = True
-        found[free] = loads[free]
-        _substitute(self.fronts, self.fronts, found)
-        return found
+        displacements[free] = loads[free]
+        _substitute(self.fronts, self.fronts, displacements)
+        return displacements
 
     def flexibility(self, loads: csr_array, readings: csr_array) -> Array:
         """Values (p, m) of readings (p, size) of the displacements under loads (m, size), neither on a held unknown.
@@ -89,9 +89,9 @@ class Factorisation:
             block = loads[first : first + step]
             below = self._reached(block)
             down = [front.renumbered(place) for front in self.fronts if below[front.inside].any()]
-            found = block[:, active].T.toarray()
-            _substitute(down, up, found)
-            result[:, first : first + step] = readings[:, active] @ found
+            values = block[:, active].T.toarray()
+            _substitute(down, up, values)
+            result[:, first : first + step] = readings[:, active] @ values
         return result
 
     def _reached(self, rows: csr_array) -> Flags:
@@ -104,16 +104,16 @@ class Factorisation:
         return reached
 
 
-def _substitute(down: Sequence[_Front], up: Sequence[_Front], found: Array) -> None:
+def _substitute(down: Sequence[_Front], up: Sequence[_Front], displacements: Array) -> None:
     """Forward and backward substitution through fronts in the order of elimination, in place."""
     with one_blas_thread():  # the fronts are small: threads waiting for each other cost far more
         for front in down:
-            part = solve_triangular(front.factor, found[front.inside], lower=True, check_finite=False)
-            found[front.inside] = part
-            found[front.beside] -= front.coupling @ part
+            part = solve_triangular(front.factor, displacements[front.inside], lower=True, check_finite=False)
+            displacements[front.inside] = part
+            displacements[front.beside] -= front.coupling @ part
         for front in reversed(up):
-            part = found[front.inside] - front.coupling.T @ found[front.beside]
-            found[front.inside] = solve_triangular(front.factor, part, lower=True, trans=1, check_finite=False)
+            part = displacements[front.inside] - front.coupling.T @ displacements[front.beside]
+            displacements[front.inside] = solve_triangular(front.factor, part, lower=True, trans=1, check_finite=False)
 
 
 def factorise(
@@ -155,8 +155,8 @@ def factorise(
     plan = _Plan(kinds, np.where(free[dofs], dofs, size), places, np.bincount(dofs.ravel(), minlength=size))
     unknowns, last = plan.add(np.arange(n))
     needed, limit = plan.bytes + matrices.nbytes, machine_memory()
-    told = f"{size} unknowns need {needed / 2**30:.3g} GiB, the machine has {limit / 2**30:.3g} GiB"
-    require((needed <= limit, f"mesh of the gear body: {told}; take fewer elements"))
+    problem = f"{size} unknowns need {needed / 2**30:.3g} GiB, the machine has {limit / 2**30:.3g} GiB"
+    require((needed <= limit, f"mesh of the gear body: {problem}; take fewer elements"))
     with one_blas_thread():
         factors = plan.factors(matrices)
     return Factorisation(tuple(plan.fronts(factors, last, unknowns)), size)
@@ -256,13 +256,13 @@ class _Plan:
 
     def factors(self, matrices: Array) -> list[tuple[Array, Array]]:
         """L11 and L21 of the Cholesky factor of every step; what a step leaves is kept as long as another needs it."""
-        found, uses = [], self._uses()
+        pairs, uses = [], self._uses()
         left: dict[int, Array] = {}
         for number, step in enumerate(self.steps):
             factor, coupling, left[number] = _eliminated(self._matrix(step, matrices, left), step.count)
-            found.append((factor, coupling))
+            pairs.append((factor, coupling))
             _drop(left, uses, step)
-        return found
+        return pairs
 
     def _matrix(self, step: _Step, matrices: Array, left: dict[int, Array]) -> Array:
         """Stiffness of the unknowns that are left before a step."""

@@ -84,9 +84,9 @@ def following(hanging: Indices, offsets: Indices, quad: Any) -> Array:
         Shape functions of a face.
     """
     codes, which = np.unique(hanging, axis=0, return_inverse=True)
-    found = np.tile(np.eye(len(offsets)), (len(codes), 1, 1))
+    shares = np.tile(np.eye(len(offsets)), (len(codes), 1, 1))
     order = node_offsets(quad)
-    for share, code in zip(found, codes, strict=True):
+    for share, code in zip(shares, codes, strict=True):
         for (axis, value), half in zip(FACES, code, strict=True):
             if half:
                 face = np.flatnonzero(offsets[:, axis] == value)
@@ -95,7 +95,7 @@ def following(hanging: Indices, offsets: Indices, quad: Any) -> Array:
                 shape = np.stack([quad.lbasis(places, i)[0] for i in range(len(order))], axis=-1)
                 same = (order[:, None] == np.stack([along, across], axis=-1)).all(axis=-1).argmax(axis=0)
                 share[np.ix_(face, face)] = shape[:, same]
-    return found[which.ravel()]
+    return shares[which.ravel()]
 
 
 @dataclass(frozen=True, eq=False)
@@ -252,11 +252,11 @@ def discretise(
     used, elements = np.unique(np.ravel_multi_index(tuple(np.moveaxis(nodes, -1, 0)), shape), return_inverse=True)
     number = np.full(shape, -1)
     number.reshape(-1)[used] = np.arange(len(used))
-    found = points.reshape(-1, d)[used]
+    kept_points = points.reshape(-1, d)[used]
     elements = elements.reshape(nodes.shape[:2])
     frames = np.zeros(shape[0]) if turns is None else turns
     first = frames[lowest[:, 0] % shape[0]]
-    corners = np.einsum("nba,nkb->nka", _turn(first, d), found[elements])
+    corners = np.einsum("nba,nkb->nka", _turn(first, d), kept_points[elements])
     onwards = np.remainder(frames[nodes[..., 0]] - first[:, None], 2.0 * math.pi)
     form = (corners - corners[:, :1] * (np.arange(d) == 2)) / np.abs(corners).max()  # wherever it lies along the axis
     form = np.concatenate([form, onwards[..., None]], axis=-1).reshape(len(form), -1)
@@ -266,7 +266,7 @@ def discretise(
     one = np.unique(kinds, return_index=True)[1]
     shares = following(hanging[one], offsets, _element(2))
     products = _products(element, shares @ corners[one])
-    return Discretisation(number, found, elements, lowest, kinds, products, onwards[one], shares)
+    return Discretisation(number, kept_points, elements, lowest, kinds, products, onwards[one], shares)
 
 
 def _turn(angle: Array, dimension: int) -> Array:

@@ -209,13 +209,13 @@ class _Force:
 
 def _rest_loads(mesh: Discretisation, forces: Sequence[_Force]) -> Array:
     """Loads (size, m) of the rest on the free border: what takes the stresses of the half-planes off it."""
-    found = []
+    columns = []
     for fixed, value in FACES:
         offsets = np.empty((3, 2), dtype=int)
         offsets[:, fixed], offsets[:, 1 - fixed] = value, np.arange(3)
         place = mesh.lowest[:, None] + offsets
-        found.append(mesh.number[place[..., 0] % len(mesh.number), place[..., 1]])
-    edges = np.concatenate(found)
+        columns.append(mesh.number[place[..., 0] % len(mesh.number), place[..., 1]])
+    edges = np.concatenate(columns)
     once = np.bincount(edges[:, 1], minlength=len(mesh.points))[edges[:, 1]] == 1
     free = once & ~np.isin(edges[:, 1], mesh.number[:, 0])
     inner = np.tile(mesh.points[mesh.elements].mean(axis=1), (len(FACES), 1))[free]
@@ -329,21 +329,21 @@ def kept(key: str, kind: type[Model], make: Callable[[], Model]) -> Model:
     """
     folder = _folder()
     with _lock:
-        found = _recent.get(key)
-    if found is None and folder is not None:
-        found = _read(folder / f"{key}.npz", key, kind)
-    if found is None:
-        found = make()
+        model = _recent.get(key)
+    if model is None and folder is not None:
+        model = _read(folder / f"{key}.npz", key, kind)
+    if model is None:
+        model = make()
         if folder is not None:
-            _write(folder, key, found)
+            _write(folder, key, model)
     with _lock:
-        _recent[key] = found
+        _recent[key] = model
         _recent.move_to_end(key)
         while len(_recent) > MOST_IN_MEMORY:
             _recent.popitem(last=False)
-    for values in vars(found).values():
+    for values in vars(model).values():
         values.setflags(write=False)
-    return cast(Model, found)
+    return cast(Model, model)
 
 
 def forget() -> None:
@@ -395,9 +395,9 @@ def _read(path: Path, key: str, kind: type[Model]) -> Model | None:
     """Return what a file keeps under a key; None if it is not there, damaged, or another gear's."""
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            told = str(file["digest"])
-            found = kind(**{name: file[name] for name in file.files if name != "digest"})
-            return found if told == _digest(key, found) else None
+            digest = str(file["digest"])
+            model = kind(**{name: file[name] for name in file.files if name != "digest"})
+            return model if digest == _digest(key, model) else None
     except UNREADABLE:
         return None
 

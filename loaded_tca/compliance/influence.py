@@ -132,9 +132,9 @@ class GearCompliance:
         away = np.array([distance, from_start, 2.0 * width - from_start]) / deviation
         # Line density [1/mm], whose integral over the distances of a line is 1.
         spread = np.exp(-0.5 * away * away).sum(axis=0) / (math.sqrt(2.0 * math.pi) * deviation)
-        found = self._local(at, spread, distance)
-        mutual = found.T if under is None else self._local(there, spread.T, distance.T).T
-        return self._displaced(0, at, there) + 0.5 * (found + mutual)
+        displacements = self._local(at, spread, distance)
+        mutual = displacements.T if under is None else self._local(there, spread.T, distance.T).T
+        return self._displaced(0, at, there) + 0.5 * (displacements + mutual)
 
     def _local(self, places: _Places, spread: Array, distance: Array) -> Array:
         """Local term (m, n) less what the half-space counts, by the depth below the m places."""

@@ -136,13 +136,13 @@ class RingLayout:
     def sectors(self) -> tuple[SectorLayout, ...]:
         """Pitches in the sense of +theta, the resolved tooth first."""
         near = self.neighbours
-        found: list[SectorLayout] = []
+        layouts: list[SectorLayout] = []
         for number in range(self.teeth):
             away = min(number, self.teeth - number)
             density = self.density if number == 0 else self.density.coarse() if away <= near else None
-            first = found[-1].first + 2 * found[-1].columns if found else 0
-            found.append(SectorLayout(number if number <= self.teeth // 2 else number - self.teeth, first, density))
-        return tuple(found)
+            first = layouts[-1].first + 2 * layouts[-1].columns if layouts else 0
+            layouts.append(SectorLayout(number if number <= self.teeth // 2 else number - self.teeth, first, density))
+        return tuple(layouts)
 
     def sector(self, number: int) -> SectorLayout:
         """Sector of the tooth ``number``, counted in the sense of +theta; InputError if it has no tooth."""

@@ -236,14 +236,14 @@ class RootStress:
         """Shares (2, m, stations, n) of the places of the table along the profile in the stations."""
         sides, n, m = self.table.tangent_angle.shape
         fillet = self.frame.nodes.layout.density.fillet
-        found = np.empty((sides, m, STATIONS, n))
+        shares = np.empty((sides, m, STATIONS, n))
         for side in range(sides):
             for k in range(m):
                 steps = np.linalg.norm(np.diff(self.table.point[side, :, k], axis=0), axis=1)
                 arc = np.append(0.0, np.cumsum(steps))
                 start = first_told(arc, self.table.tangent_angle[side, :, k], fillet)
-                found[side, k] = CubicSpline(arc, np.eye(n))(np.linspace(start, arc[-1], STATIONS))
-        return found
+                shares[side, k] = CubicSpline(arc, np.eye(n))(np.linspace(start, arc[-1], STATIONS))
+        return shares
 
     @cached_property
     def _along_face(self) -> Array:
@@ -313,12 +313,12 @@ def sharpest(teeth: ToothGeometry) -> float:
     x, y, z = np.moveaxis(tooth.outline, -1, 0)
     radius = form.sections.radius(np.hypot(x, y), z)
     place = radius * np.exp(1j * np.arctan2(y, x))
-    found = []
+    radii = []
     for first, last in (tooth.joints[1:3], tooth.joints[5:7]):
         step = np.diff(place[first : last + 1], axis=0)
         turn = np.abs(np.angle(step[1:] / step[:-1]))
-        found.append(np.quantile(np.abs(step[1:]) / np.maximum(turn, STRAIGHT), SHARPEST, axis=0))
-    return float((np.array(found) / (2.0 * math.pi / tooth.teeth * radius[0])).min())
+        radii.append(np.quantile(np.abs(step[1:]) / np.maximum(turn, STRAIGHT), SHARPEST, axis=0))
+    return float((np.array(radii) / (2.0 * math.pi / tooth.teeth * radius[0])).min())
 
 
 @lru_cache(maxsize=MOST_IN_MEMORY)

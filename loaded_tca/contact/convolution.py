@@ -122,7 +122,7 @@ class _SmallTransforms:
 
     def _plan(self, k: int) -> None:
         """Plans of one more problem, made when it is needed."""
-        given, found, loaded, moved = self._given[k], self._found[k], self._loaded[k], self._moved[k]
+        given, spectrum, loaded, moved = self._given[k], self._found[k], self._loaded[k], self._moved[k]
         within, inward, outward = slice(0, self._box[0]), slice(0, self._rows[0]), slice(0, self._rows[1])
         plans = [
             pyfftw.FFTW(source, target, axes=(1,), direction="FFTW_" + direction, flags=("FFTW_ESTIMATE",)).execute
@@ -130,7 +130,7 @@ class _SmallTransforms:
                 (given, loaded.T[inward], "FORWARD"),
                 (loaded[:, within], moved[:, within], "FORWARD"),
                 (moved[:, within], moved[:, within], "BACKWARD"),
-                (moved.T[outward], found, "BACKWARD"),
+                (moved.T[outward], spectrum, "BACKWARD"),
             )
         ]
         self._forth.append(tuple(plans[:2]))
@@ -192,12 +192,12 @@ class _LargeTransform:
             return pyfftw.FFTW(source, target, axes=(1,), direction=direction, flags=("FFTW_ESTIMATE",))
 
         for _ in range(threads):
-            given, found = (pyfftw.zeros_aligned((part[0].stop, box[1]), dtype) for part in (inward, outward))
+            given, output = (pyfftw.zeros_aligned((part[0].stop, box[1]), dtype) for part in (inward, outward))
             lines = pyfftw.zeros_aligned((across[0].stop, box[0]), compound)
             forth = plan(given, self._spectrum[inward[0]], "FFTW_FORWARD")
-            back = plan(self._spectrum[outward[0]], found, "FFTW_BACKWARD")
+            back = plan(self._spectrum[outward[0]], output, "FFTW_BACKWARD")
             self._plans.append((forth, plan(lines, lines, "FFTW_FORWARD"), plan(lines, lines, "FFTW_BACKWARD"), back))
-            self.nbytes += given.nbytes + found.nbytes + lines.nbytes
+            self.nbytes += given.nbytes + output.nbytes + lines.nbytes
 
     def filter(self, values: Array, corner: tuple[int, int], symbol: Array, out: Array) -> None:
         """Transform values placed at a corner of the box, multiply by the symbol, transform back into ``out``.

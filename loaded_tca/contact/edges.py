@@ -235,14 +235,14 @@ def mirrors(
     edges: tuple[FreeEdge, ...], spacing: tuple[float, float], starts: tuple[int, int] = (0, 0)
 ) -> tuple[Mirror, ...]:
     """The edges on a grid of a spacing, counted from a cell of it."""
-    found = []
+    images = []
     for edge in edges:
         double = 2.0 * edge.position / spacing[edge.axis] - 2 * starts[edge.axis]
         first = math.floor(double + WHOLE)
         part = double - first
         shares = (1.0,) if part <= WHOLE else (1.0 - part, part)  # between half cells: those at either side
-        found += [Mirror(edge.axis, first + n, share * edge.factor) for n, share in enumerate(shares)]
-    return tuple(found)
+        images += [Mirror(edge.axis, first + n, share * edge.factor) for n, share in enumerate(shares)]
+    return tuple(images)
 
 
 def amplification(edges: tuple[FreeEdge, ...]) -> float:
@@ -403,18 +403,18 @@ def crowding_growth(cover: Array, growth: Array, pressure: Array, aspect: float)
     >>> crowding_growth(cover, growth, pressure, 1.0).round(4)[0, :, 0]  # -0.94 * 1.1222 * 3 * 0.1/0.5^2
     array([ 0.    , -1.2658])
     """
-    found = np.zeros(growth.shape)
+    displaced = np.zeros(growth.shape)
     column, row = np.nonzero(((cover > 0.0) & ((cover < 1.0) | growth.any(axis=0))).T)
     if not row.size:
-        return found
+        return displaced
     one, other, start = _partners(column)
     parts, grown = cover[row, column], growth[:, row, column]
     by_part = -grown / parts**2
     of_one = np.where(parts[one] == parts[other], 0.5, parts[one] > parts[other])
     change = of_one * by_part[:, one] + (1.0 - of_one) * by_part[:, other]
     change *= CROWDING * influence_coefficients((len(cover), 1), aspect)[np.abs(row[one] - row[other]), 0]
-    found[:, row, column] = np.add.reduceat(change * pressure[row, column][other], start, axis=1)
-    return found
+    displaced[:, row, column] = np.add.reduceat(change * pressure[row, column][other], start, axis=1)
+    return displaced
 
 
 def _partners(slices: Indices) -> tuple[Indices, Indices, Indices]:

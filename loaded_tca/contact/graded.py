@@ -133,12 +133,12 @@ def _solved(problem: GradedProblem, tolerance: float, start: Array | None) -> Gr
         iterations += int(descent.iterations[0])
         convolutions += int(descent.convolutions[0])
         repeats += 1
-    found = pressure[0] / line
+    in_MPa = pressure[0] / line
     if problem.max_pressure is not None:  # what is at the cap but for rounding is exactly at it from here on
         cap = problem.max_pressure
-        found = np.where((found > 0.0) & (found >= (1.0 - AT_BOUND) * cap), cap, found)
+        in_MPa = np.where((in_MPa > 0.0) & (in_MPa >= (1.0 - AT_BOUND) * cap), cap, in_MPa)
     return GradedSolution(
-        pressure=found,
+        pressure=in_MPa,
         gap=displacement[0] + (problem.gap - problem.first_contact) - approach,
         approach=problem.first_contact + approach,
         iterations=iterations,

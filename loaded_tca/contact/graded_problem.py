@@ -81,8 +81,8 @@ class GradedProblem:
             problems.append(f"borders: {gap.shape[1]} columns have {gap.shape[1] + 1}, not {borders.size}")
         if self.slice_axis not in (0, 1):
             problems.append(f"slice_axis: {self.slice_axis} is neither 0 nor 1")
-        if not problems and gap.ndim == 2 and (told := memory_problem(*gap.shape)) is not None:
-            problems.append(f"gap: {told}")
+        if not problems and gap.ndim == 2 and (memory := memory_problem(*gap.shape)) is not None:
+            problems.append(f"gap: {memory}")
         problems += check_edges(self.free_edges) or [
             f"free_edges[{k}].axis: 0 is not 1, across the columns"
             for k, edge in enumerate(self.free_edges)

@@ -72,14 +72,14 @@ def under_other_load(pressure: Array, ratio: float) -> Array:
     The squares of the pressures under two ellipses of the same shape, or two strips, differ by a constant.
     """
     square, total, shift = continue_outside(pressure * pressure), ratio * float(pressure.sum()), 0.0
-    told = square != 0.0  # no neighbour tells how the others would go on
-    squares, found = square[told], np.zeros(square.shape)
+    pressed = square != 0.0  # no neighbour tells how the others would go on
+    squares, moved = square[pressed], np.zeros(square.shape)
     for _ in range(SHIFTS):
         shifted = np.sqrt(np.maximum(squares + shift, 0.0))
         slope = 0.5 * float((1.0 / shifted[shifted > 0.0]).sum())
         shift -= (float(shifted.sum()) - total) / slope if slope > 0.0 else 0.0
-    found[told] = np.sqrt(np.maximum(squares + shift, 0.0))
-    return found
+    moved[pressed] = np.sqrt(np.maximum(squares + shift, 0.0))
+    return moved
 
 
 def continue_outside(square: Array) -> Array:

@@ -167,13 +167,13 @@ def widths(pressure: Array, cover: Array) -> Array:
     Zero where a line has no pressure. The outermost cells of the grid carry none.
     """
     square, parts = continue_outside(pressure**2).T, cover.T
-    pressed, lines, found = square > 0.0, np.arange(len(square)), np.zeros(len(square))
+    pressed, lines, cells = square > 0.0, np.arange(len(square)), np.zeros(len(square))
     for step, end in ((-1, pressed.argmax(axis=1)), (1, square.shape[1] - 1 - pressed[:, ::-1].argmax(axis=1))):
         end = np.where(pressed.any(axis=1), end, 1)
         inside, beyond = square[lines, end], square[lines, end + step]
         farthest = np.where(parts[lines, end + step] > 0.0, 1.0, parts[lines, end] - 0.5)
-        found += step * end + np.minimum(inside / np.where(pressed.any(axis=1), inside - beyond, 1.0), farthest)
-    return np.where(pressed.any(axis=1), found, 0.0)
+        cells += step * end + np.minimum(inside / np.where(pressed.any(axis=1), inside - beyond, 1.0), farthest)
+    return np.where(pressed.any(axis=1), cells, 0.0)
 
 
 def values_at_ends(pressure: Array, values: Array, cover: Array, axes: tuple[int, ...] = (0, 1)) -> Array:
@@ -183,7 +183,7 @@ def values_at_ends(pressure: Array, values: Array, cover: Array, axes: tuple[int
     end of the material, ``cover`` being the part of each cell that has some. Only ends along ``axes`` are told.
     """
     square = continue_outside(pressure**2)
-    found = []
+    values_of = []
     for axis in axes:
         levels, known, parts = (np.moveaxis(array, axis, 0) for array in (square, values, cover))
         for inner, outer in ((slice(-1), slice(1, None)), (slice(1, None), slice(-1))):
@@ -191,5 +191,5 @@ def values_at_ends(pressure: Array, values: Array, cover: Array, axes: tuple[int
             inside, beyond = levels[inner][ends], levels[outer][ends]
             farthest = np.where(parts[outer][ends] > 0.0, 1.0, parts[inner][ends] - 0.5)
             part = np.minimum(inside / (inside - beyond), farthest)
-            found.append(known[inner][ends] + part * (known[outer][ends] - known[inner][ends]))
-    return np.concatenate(found)
+            values_of.append(known[inner][ends] + part * (known[outer][ends] - known[inner][ends]))
+    return np.concatenate(values_of)

@@ -240,8 +240,12 @@ def edge_pressures(
     """
     low, high = _checked(gap, box, edges, load, contact_modulus, cells, cells_on_arc)
     arcs = [_Arc.first(edge, low, high, load, contact_modulus) for edge in edges]
-    told = slice_compliance is not None and slice_axis == 1
-    wedges = [(edge.place[1], end) for edge in edges if not told and (end := edge.free_edge(float(low[1]))) is not None]
+    along_columns = slice_compliance is not None and slice_axis == 1
+    wedges = [
+        (edge.place[1], end)
+        for edge in edges
+        if not along_columns and (end := edge.free_edge(float(low[1]))) is not None
+    ]
     free = [end for _, end in wedges]
     first = max((place for place, end in wedges if end.material == "above"), default=-math.inf)
     last = min((place for place, end in wedges if end.material == "below"), default=math.inf)
@@ -265,25 +269,25 @@ def edge_pressures(
         start = None if before is None else expected
         return solve_graded(problem, tolerance=tolerance, initial_pressure=start)
 
-    solution, found, coarse = None, list[EdgePressure](), list[EdgePressure]()
+    solution, peaks, coarse = None, list[EdgePressure](), list[EdgePressure]()
     for on_arc in (step * cells_on_arc for step in STEPS):
-        coarse = found
+        coarse = peaks
         for _ in range(MOST_ROUNDS):
             solution = solved(on_arc, solution)
-            found = [arc.found(solution, float(low[0])) for arc in arcs]
-            arcs = [arc.after(one) for arc, one in zip(arcs, found, strict=True)]
-            if all(arc.fine_enough(one, on_arc) for arc, one in zip(arcs, found, strict=True)):
+            peaks = [arc.found(solution, float(low[0])) for arc in arcs]
+            arcs = [arc.after(one) for arc, one in zip(arcs, peaks, strict=True)]
+            if all(arc.fine_enough(one, on_arc) for arc, one in zip(arcs, peaks, strict=True)):
                 break
-        if at_least > 0.0 and not any(one.pressure >= SURELY_LESS * at_least for one in found):
+        if at_least > 0.0 and not any(one.pressure >= SURELY_LESS * at_least for one in peaks):
             break
         if coarse:
-            found = [one.compared_with(other) for one, other in zip(found, coarse, strict=True)]
-            rows, columns = found[0].solution.problem.cells
-            error = max(found, key=lambda one: np.nan_to_num(one.pressure)).error
+            peaks = [one.compared_with(other) for one, other in zip(peaks, coarse, strict=True)]
+            rows, columns = peaks[0].solution.problem.cells
+            error = max(peaks, key=lambda one: np.nan_to_num(one.pressure)).error
             most = MOST_PAIRS if error <= LARGE_ERROR else MOST_PAIRS_IF_LARGE
             if not accuracy < error < math.inf or rows * columns**2 > most:
                 break
-    return found
+    return peaks
 
 
 @dataclass(frozen=True, eq=False)
@@ -326,13 +330,13 @@ class _Arc:
         along = ROWS_ON_ARC / CELLS_ON_ARC * on_arc / self.length
         return max(self.cells(on_arc) * abs(float(self.normal[0])) / self.width, along)
 
-    def fine_enough(self, found: EdgePressure, on_arc: float) -> bool:
+    def fine_enough(self, peak: EdgePressure, on_arc: float) -> bool:
         """Whether a solution has the cells that are asked for, nearly, or rows at their limit."""
-        if math.isnan(found.pressure):
+        if math.isnan(peak.pressure):
             return True
         rows = FEWEST_ON_ARC * ROWS_ON_ARC / CELLS_ON_ARC * on_arc
-        enough = self.length == math.inf or found.rows_on_arc >= rows or found.solution.problem.cells[0] >= MOST_ROWS
-        return enough and found.cells_on_arc >= FEWEST_ON_ARC * on_arc
+        enough = self.length == math.inf or peak.rows_on_arc >= rows or peak.solution.problem.cells[0] >= MOST_ROWS
+        return enough and peak.cells_on_arc >= FEWEST_ON_ARC * on_arc
 
     def zone(self, on_arc: float) -> FineZone:
         """Where columns are fine, for so many cells on the pressed width."""
@@ -370,18 +374,18 @@ class _Arc:
         rows = np.count_nonzero(((beyond + along > 0.0) & (pressure > 0.0)).any(axis=1))
         return EdgePressure(peak, (x_top, y_top), error, ends_sharp, width, on_arc, int(rows), solution)
 
-    def after(self, found: EdgePressure) -> _Arc:
+    def after(self, peak: EdgePressure) -> _Arc:
         """What is known once a solution is."""
-        if math.isnan(found.pressure):
+        if math.isnan(peak.pressure):
             return self
-        problem = found.solution.problem
-        pressed = (found.solution.pressure > 0.0).any(axis=1)
+        problem = peak.solution.problem
+        pressed = (peak.solution.pressure > 0.0).any(axis=1)
         half_length = 0.5 * problem.spacing * float(np.count_nonzero(pressed))
-        width = max(found.pressed_width, LEAST_CHANGE * self.width)
-        middle = self.y_at(found.place[0]) if abs(self.normal[1]) > ALIGNED else self.middle
+        width = max(peak.pressed_width, LEAST_CHANGE * self.width)
+        middle = self.y_at(peak.place[0]) if abs(self.normal[1]) > ALIGNED else self.middle
         length = math.inf
-        if found.rows_on_arc < MOST_OF_ROWS * np.count_nonzero(pressed) and abs(self.normal[1]) > ALIGNED:
-            length = max(problem.spacing * found.rows_on_arc, LEAST_CHANGE * min(self.length, 2.0 * half_length))
+        if peak.rows_on_arc < MOST_OF_ROWS * np.count_nonzero(pressed) and abs(self.normal[1]) > ALIGNED:
+            length = max(problem.spacing * peak.rows_on_arc, LEAST_CHANGE * min(self.length, 2.0 * half_length))
         return replace(self, width=width, middle=middle, half_length=half_length, length=length)
 
 

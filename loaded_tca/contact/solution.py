@@ -222,13 +222,13 @@ class ContactSolution:
     @property
     def accuracy_warnings(self) -> tuple[str, ...]:
         """Reasons why the result may be less exact, as sentences; empty if there are none."""
-        found = []
+        sentences = []
         if self.reaches_border:
-            found.append("contact reaches the box: the pressure at its border is that of a body ending there")
+            sentences.append("contact reaches the box: the pressure at its border is that of a body ending there")
         if 0 < min(self.cells_across) < FEWEST_CELLS:
             across = min(self.cells_across)
-            found.append(f"contact is {across} cells across: fewer than {FEWEST_CELLS} leave errors above 1 %")
-        return tuple(found)
+            sentences.append(f"contact is {across} cells across: fewer than {FEWEST_CELLS} leave errors above 1 %")
+        return tuple(sentences)
 
     @cached_property
     def error_estimate(self) -> ErrorEstimate:

@@ -222,20 +222,23 @@ def solve_problems(
     wrong = []
     for k, (problem, tolerance, start) in enumerate(zip(problems, tolerances, starts, strict=True)):
         name = f"problem {k}: " if len(problems) > 1 else ""
-        wrong += [name + told for told in checks.check_run(tolerance, on_failure, start, problem.cells, threads)]
+        wrong += [
+            name + problem_of_run
+            for problem_of_run in checks.check_run(tolerance, on_failure, start, problem.cells, threads)
+        ]
     checks.raise_if(wrong)
     starts = [None if start is None or not start.any() else start for start in starts]
-    found: dict[int, ContactSolution] = {}
+    solutions: dict[int, ContactSolution] = {}
     for stack in _stacks(problems, tolerances, starts):
         chosen = [problems[k] for k in stack], np.array([tolerances[k] for k in stack]), [starts[k] for k in stack]
-        found |= zip(stack, _solve_stack(*chosen, threads), strict=True)
+        solutions |= zip(stack, _solve_stack(*chosen, threads), strict=True)
     for k, problem in enumerate(problems):
-        if k not in found:
-            found[k] = _without_load(problem)
-        solution = found[k]
+        if k not in solutions:
+            solutions[k] = _without_load(problem)
+        solution = solutions[k]
         if solution.status is ContactStatus.NOT_CONVERGED and on_failure == "raise":
             raise not_converged(solution, tolerances[k], f"contact {k}" if len(problems) > 1 else "contact")
-    return [found[k] for k in range(len(problems))]
+    return [solutions[k] for k in range(len(problems))]
 
 
 def contact_stiffness(solution: ContactSolution, tolerance: float = 1e-6) -> float:
@@ -329,8 +332,8 @@ def _solve_stack(
     if given:
         pressure = grids.fitted(np.stack(given))
     else:
-        pressure, found = _start_from_coarser(grids, tolerance, threads)
-        for k, (own, approach) in enumerate(found):
+        pressure, solved = _start_from_coarser(grids, tolerance, threads)
+        for k, (own, approach) in enumerate(solved):
             if own.any():
                 coarser[k] = own / _unit(problems[k]), approach
     solutions = []
@@ -380,7 +383,7 @@ def _solve_on_finest(
     """Solve in a window around the contact, check on the whole grid, widen the window where the check says so."""
     window, exact = grids.window(start), bool(tolerance[0] < SINGLE_PRECISION)
     iterations, convolutions = np.zeros((2, len(grids)), dtype=int)
-    found: dict[int, ContactSolution] = {}
+    solutions: dict[int, ContactSolution] = {}
     # Those still to be solved, and where they go on from.
     rows, start, displaced = np.arange(len(grids)), np.ascontiguousarray(start[:, *window]), None
     for check in range(MOST_CHECKS):
@@ -402,7 +405,7 @@ def _solve_on_finest(
                 own = np.where((own > 0.0) & (own >= (1.0 - AT_BOUND) * problem.cap), problem.cap, own)
             before = coarser[rows[k]]
             change = math.nan if before is None else abs(1.0 - before[1] / float(approach[k]))
-            found[rows[k]] = ContactSolution(
+            solutions[rows[k]] = ContactSolution(
                 pressure=own,
                 gap=displacement[k] + grids.gap[k] - approach[k],
                 approach=problem.first_contact + float(approach[k]),
@@ -421,4 +424,4 @@ def _solve_on_finest(
         if window != grids.whole:
             window = window_around(state.free[0] | (pressure[0] > 0.0))
         start, displaced = (np.ascontiguousarray(array[:, *window]) for array in (pressure, displacement))
-    return [found[k] for k in range(len(problems))]
+    return [solutions[k] for k in range(len(problems))]

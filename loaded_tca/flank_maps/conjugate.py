@@ -193,12 +193,12 @@ def _highest(field: EaseOff, azimuth: Array, rho: Array, z: Array) -> ConjugateC
     brackets = np.stack([np.where(rises, first, first - step), np.where(rises, first + step, first)])
     values = np.stack([slope(end, every) for end in brackets])
     angle = find_roots(slope, brackets, values, ANGLE_ACCURACY)
-    found = np.isfinite(lead[best]) & (values[0] >= 0.0) & (values[1] <= 0.0)
+    touches = np.isfinite(lead[best]) & (values[0] >= 0.0) & (values[1] <= 0.0)
     station = field.station(angle, rho, z)
     value, distances = field.heights(angle, rho, z)
     rooms = distances[:, WHEEL_EDGES].reshape(-1, 2, 2).min(axis=-1).T
     known = (angle, value, station.wheel_rho, station.wheel_z, *rooms)
-    return ConjugateContact(*(np.where(found, part, np.nan) for part in known))
+    return ConjugateContact(*(np.where(touches, part, np.nan) for part in known))
 
 
 def _near(pair: GearPair, edges: Array) -> Mask:
@@ -281,9 +281,9 @@ def _ends(shares: Array, room: Array, edge: Edge) -> tuple[Array, Array]:
         )
     lines, count = np.arange(room.shape[1]), len(shares)
     first, last = on.argmax(axis=0), count - 1 - on[::-1].argmax(axis=0)
-    found = []
+    ends = []
     for inside, outside in ((first, np.maximum(first - 1, 0)), (last, np.minimum(last + 1, count - 1))):
         brackets = np.stack([shares[outside], shares[inside]])
         values = np.stack([room[outside, lines], room[inside, lines]])
-        found.append(find_roots(edge, brackets, values, EDGE_ACCURACY))
-    return found[0], found[1]
+        ends.append(find_roots(edge, brackets, values, EDGE_ACCURACY))
+    return ends[0], ends[1]

@@ -179,10 +179,10 @@ class GeneratedFlank(ToothRegion):
             "or edge_radius"
         )
 
-    def _not_cut(self, distance: Array, angle: Array, found: Array) -> GeometryError:
+    def _not_cut(self, distance: Array, angle: Array, cut: Array) -> GeometryError:
         """What to say of points that the cutter does not reach."""
-        worst = int(np.argmin(found))
-        missing = f"{int((~found).sum())} of {found.size} points of the flank"
+        worst = int(np.argmin(cut))
+        missing = f"{int((~cut).sum())} of {cut.size} points of the flank"
         return GeometryError(
             f"{self.owner}: the cutter does not cut {missing}, first {self._place(distance[worst], angle[worst])}; do "
             "radial, cradle_angle, root_angle and point_radius belong to this blank?"

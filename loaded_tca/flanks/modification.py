@@ -240,8 +240,8 @@ class FlankModifications:
         for relief in ("tip_relief", "root_relief"):
             starts = {name: value for name in _starts_of(relief) if (value := getattr(self, name)) != 0.0}
             if len(starts) > 1:
-                told = ", ".join(f"{name} = {value}" for name, value in starts.items())
-                problems.append(f"{relief}_start: found {told}; give one of them")
+                given = ", ".join(f"{name} = {value}" for name, value in starts.items())
+                problems.append(f"{relief}_start: found {given}; give one of them")
         if problems:
             raise InputError(problems)
         object.__setattr__(self, "polynomial", tuple(float(value) for value in self.polynomial))
@@ -328,8 +328,8 @@ class FlankModifications:
             if roll != 0.0:
                 name = f"{relief}_start_roll"
                 if roll_unit is None:
-                    told = f"{name}: the flank is no involute and has no roll angle; give {relief}_start"
-                    raise InputError(f"{told} (a diameter) or {relief}_start_length")
+                    problem = f"{name}: the flank is no involute and has no roll angle; give {relief}_start"
+                    raise InputError(f"{problem} (a diameter) or {relief}_start_length")
                 low, high = (math.degrees(end / roll_unit) for end in ends)
                 _require_between(f"{name} (roll angle on the active profile)", math.degrees(roll), low, high, "deg")
                 return float(roll * roll_unit)
@@ -449,8 +449,8 @@ def modified(
     flank = ModifiedFlank(nominal, terms)
     most, limit = float(np.abs(flank.removal(*nominal.grid(*CHECKED)).value).max()), MOST * max(nominal.extent)
     if not most <= limit:
-        told = f"{owner}.modifications: together they remove or add up to {most:.4g} mm"
-        raise InputError(f"{told}; allowed up to {limit:.4g} mm, {MOST:g} longer sides of the flank")
+        warning = f"{owner}.modifications: together they remove or add up to {most:.4g} mm"
+        raise InputError(f"{warning}; allowed up to {limit:.4g} mm, {MOST:g} longer sides of the flank")
     for name in AMOUNTS:
         amount = getattr(modifications, name) or 0.0  # None: as at both ends
         if abs(amount) > LARGEST_AMOUNT:

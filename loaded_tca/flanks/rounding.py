@@ -217,10 +217,10 @@ class RoundedFlank(DerivedFlank):
     def past_tangents(self, rho: Array, z: Array) -> list[Array]:
         """Lengths s (...) [mm] from where the arc of each edge begins towards the edge; -inf at sharp edges."""
         shape, jets = np.broadcast(rho, z).shape, self.edges(rho, z)
-        found = [np.full(shape, -np.inf) for _ in EDGE_NAMES]
+        lengths = [np.full(shape, -np.inf) for _ in EDGE_NAMES]
         for arc in self.arcs:
-            found[arc.edge][...] = arc.past_tangent(self, rho, z, jets[arc.edge])[0].value
-        return found
+            lengths[arc.edge][...] = arc.past_tangent(self, rho, z, jets[arc.edge])[0].value
+        return lengths
 
     def ways_onto_arcs(self, rho: Array, z: Array, slopes: Array) -> Array:
         """Ways (n, 4) [mm] away from the edges to where the arcs, seen along the edge's surface, have given slopes.
@@ -236,7 +236,7 @@ class RoundedFlank(DerivedFlank):
         (n, 4) array
             Zero where a point lies on no arc.
         """
-        jets, found = self.edges(rho, z), np.zeros(slopes.shape)
+        jets, ways = self.edges(rho, z), np.zeros(slopes.shape)
         for arc in self.arcs:
             along, tangent = arc.past_tangent(self, rho, z, jets[arc.edge])
             t = np.asarray(tangent.value)
@@ -244,8 +244,8 @@ class RoundedFlank(DerivedFlank):
             slope = slopes[:, arc.edge] * sine
             turn = np.minimum(np.arctan2(slope, 1.0 + t * slope), arc.turn)
             wanted = arc.radius * (np.sin(turn) - t * (1.0 - np.cos(turn)))
-            found[:, arc.edge] = np.where(along.value > 0.0, (along.value - wanted) * sine, 0.0)
-        return found
+            ways[:, arc.edge] = np.where(along.value > 0.0, (along.value - wanted) * sine, 0.0)
+        return ways
 
     def off_arcs(self, rho: Array, z: Array) -> tuple[Array, Array]:
         """(rho, z) of points, those nearer to an edge moved away from it to where its arc begins [mm]."""
@@ -272,7 +272,7 @@ class RoundedFlank(DerivedFlank):
 
     def _removed(self, rho: Array, z: Array, *, as_angle: bool = False) -> list[Jet]:
         """Removal [mm], or change of Theta [rad], by every arc that some of the points lie on, over all points."""
-        shape, found = np.broadcast(rho, z).shape, []
+        shape, removals = np.broadcast(rho, z).shape, []
         jets = self.edges(rho, z)
         for arc in self.arcs:
             distance = jets[arc.edge]
@@ -283,8 +283,8 @@ class RoundedFlank(DerivedFlank):
                 depth = arc.depth(*arc.past_tangent(self, rows, columns, own))
                 if as_angle:
                     depth = depth.times(self.gradient_norm(rows, columns) * -float(self.side))
-                found.append(_spread(depth, shape, on))
-        return found
+                removals.append(_spread(depth, shape, on))
+        return removals
 
     def __repr__(self) -> str:
         return f"RoundedFlank({self.nominal!r}, tip {self.rounding.tip:g} mm, sides {self.rounding.side:g} mm)"

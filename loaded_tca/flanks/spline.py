@@ -388,11 +388,11 @@ def _warn_if_swinging(nominal: Flank, excess: Array, spline: TensorSpline, smoot
     rho, z = nominal.grid(*DEFAULT_POINTS)
     at = flank_coordinates(nominal, rho, z)
     angles = nominal.side * nominal.gradient_norm(rho, z).value
-    found, plain = (one(*at).value / angles for one in (spline, smooth))
+    splined, plain = (one(*at).value / angles for one in (spline, smooth))
     known = np.concatenate([excess.ravel(), plain.ravel()])
-    beyond, span = max(known.min() - found.min(), found.max() - known.max()), float(np.ptp(excess))
+    beyond, span = max(known.min() - splined.min(), splined.max() - known.max()), float(np.ptp(excess))
     if beyond > max(SWING * span, FIT_TOLERANCE):
-        from_to = (f"{1e3 * one.min():.3g} to {1e3 * one.max():.3g} um" for one in (excess, found))
+        from_to = (f"{1e3 * one.min():.3g} to {1e3 * one.max():.3g} um" for one in (excess, splined))
         give_accuracy_warning(kinds.SWINGS.sentence(points=next(from_to), flank=next(from_to)), stacklevel=3)
 
 

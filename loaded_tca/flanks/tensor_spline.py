@@ -233,14 +233,14 @@ def _least_squares(first: _Direction, second: _Direction, values: Array) -> Arra
         rmatvec=lambda residual: (first.inverse.T @ (transposed @ residual).reshape(shape) @ second.inverse).ravel(),
         dtype=float,
     )
-    found, residual = np.zeros(shape), values
+    coefficients, residual = np.zeros(shape), values
     for _ in range(MOST_ROUNDS):
         if not residual.any():
             break
         raw = lsmr(operator, residual, atol=1e-14, btol=1e-14, conlim=0.0, maxiter=MOST_ITERATIONS)[0]
-        found = found + relaxed(raw)
-        residual = values - matrix @ found.ravel()
-    return found
+        coefficients = coefficients + relaxed(raw)
+        residual = values - matrix @ coefficients.ravel()
+    return coefficients
 
 
 def _row_products(first: Any, second: Any, rows: int) -> Any:

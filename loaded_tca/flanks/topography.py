@@ -151,21 +151,21 @@ def _number(cell: str) -> float:
 
 def _factors(line: int, header: list[str]) -> list[tuple[str, float]]:
     """Name of each column without its unit, and the factor to mm; InputError with every problem of the header."""
-    found, problems = [], []
+    factors, problems = [], []
     known = [*INDICES, *(f"{name}_{unit}" for name in LENGTHS for unit in UNITS)]
     for k, column in enumerate(header, 1):
         name, _, unit = column.rpartition("_")
         if column in INDICES:
-            found.append((column, 1.0))
+            factors.append((column, 1.0))
         elif name in LENGTHS and unit in UNITS:
-            found.append((name, UNITS[unit]))
+            factors.append((name, UNITS[unit]))
         elif column in LENGTHS:
             problems.append(f"column {column!r} has no unit; allowed {', '.join(f'{column}_{unit}' for unit in UNITS)}")
         else:
             near = difflib.get_close_matches(column, known, 1)
             meant = f"did you mean {near[0]!r}?" if near else f"allowed {', '.join(INDICES)}, and lengths as x_mm"
             problems.append(f"line {line}, column {k}: the name of the column is unknown; {meant}")
-    names = [name for name, _ in found]
+    names = [name for name, _ in factors]
     problems += [f"column {name} appears twice" for name in sorted(set(names)) if names.count(name) > 1]
     lengths = set(names) - set(INDICES)
     if not problems and lengths not in CHOICES:
@@ -175,16 +175,16 @@ def _factors(line: int, header: list[str]) -> list[tuple[str, float]]:
         problems.append(f"columns {' and '.join(INDICES)} belong together; only one is there")
     if problems:
         raise InputError(problems)
-    return found
+    return factors
 
 
 def _given_order(count: int, points: str) -> tuple[tuple[int, int], Array]:
     """Shape (profile, lengthwise) of a grid that a comment tells, and the order in which ``count`` rows fill it."""
-    found = re.fullmatch(r"(\d+)\s*x\s*(\d+)", points)
-    if found is None:
+    match = re.fullmatch(r"(\d+)\s*x\s*(\d+)", points)
+    if match is None:
         columns = " and ".join(INDICES)
         raise InputError(f"the shape of the grid is missing: columns {columns}, or a comment '# points = 5 x 9'")
-    shape = int(found[1]), int(found[2])
+    shape = int(match[1]), int(match[2])
     if shape[0] * shape[1] != count:
         raise InputError(f"points = {shape[0]} x {shape[1]} are {shape[0] * shape[1]}, but there are {count} rows")
     return shape, np.arange(count).reshape(shape[::-1]).T.ravel()

@@ -366,7 +366,7 @@ def interferences(room: Room, module: float, place: str, *, nominal: bool = Fals
     """
     if problems := [*_what_stops(room, module)]:
         raise GeometryError(f"the gears cannot turn {place}: {'; '.join(problems)}")
-    return [f"{sentence} ({place} by {told})" for sentence, told in _what_jams(room, module, nominal)]
+    return [f"{sentence} ({place} by {value})" for sentence, value in _what_jams(room, module, nominal)]
 
 
 def _what_jams(room: Room, module: float, nominal: bool) -> Iterator[tuple[str, str]]:

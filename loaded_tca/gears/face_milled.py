@@ -344,8 +344,8 @@ class FaceMilledGear:
     def __post_init__(self) -> None:
         bore, largest = self.bore_diameter, 2.0 * self.blank.cone_distances[0] * sin(self.blank.root_angle)
         fits = bore is None or 0.0 <= bore < largest
-        told = f"bore_diameter: {bore or 0.0:.6g} mm is not below the root diameter at the toe, {largest:.6g} mm"
-        require(*teeth_checks(self.teeth), (fits, told), owner=self.name)
+        problem = f"bore_diameter: {bore or 0.0:.6g} mm is not below the root diameter at the toe, {largest:.6g} mm"
+        require(*teeth_checks(self.teeth), (fits, problem), owner=self.name)
 
     @property
     def mirror(self) -> int:

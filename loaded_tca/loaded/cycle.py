@@ -173,9 +173,9 @@ def _found(
 ) -> list[tuple[tuple[int, int], Result]]:
     """Results of all torques and positions, worked on together, with their indices; the progress is told."""
     states = list(np.ndindex(shape))
-    told = None if progress is None else lambda done: progress(done, len(states))
-    found = found_together(pair, [steps(*state) for state in states], told)
-    return list(zip(states, found, strict=True))
+    report = None if progress is None else lambda done: progress(done, len(states))
+    results = found_together(pair, [steps(*state) for state in states], report)
+    return list(zip(states, results, strict=True))
 
 
 def _loaded_states(pairs: NDArray[np.int_], contacts: Contacts, bending: BendingModel | None) -> LoadedStates:

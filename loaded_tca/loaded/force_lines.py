@@ -72,7 +72,7 @@ def _of_state(grids: Sequence[LoadedGrid], bending: BendingModel) -> Array:
         (grid.number, LoadedSlices.of(grid.separation, own, step))
         for grid, own, step in zip(grids, loaded, steps, strict=True)
     ]
-    found = np.zeros((first[-1], first[-1]))
+    by_shift = np.zeros((first[-1], first[-1]))
     for i, j in product(range(len(grids)), repeat=2):
         if i == j:
             before = grids[i].bending
@@ -83,6 +83,6 @@ def _of_state(grids: Sequence[LoadedGrid], bending: BendingModel) -> Array:
             by_place = bending.between(beyond[i], held[j]) - bending.between(held[i], held[j])
         by_place = by_place / steps[i]
         at, under = first[i] + loaded[i], first[j] + loaded[j]
-        found[at, at] += by_place @ forces[j][loaded[j]]
-        found[np.ix_(under, at)] += by_place.T * forces[i][loaded[i]]
-    return found
+        by_shift[at, at] += by_place @ forces[j][loaded[j]]
+        by_shift[np.ix_(under, at)] += by_place.T * forces[i][loaded[i]]
+    return by_shift

@@ -49,7 +49,7 @@ def edge_deflection_growth(
     InputError
         If a tooth ends at an edge sharper than 30 degrees.
     """
-    slices, found = SliceRow.of(grids), np.zeros((len(moved), forces.size))
+    slices, growth = SliceRow.of(grids), np.zeros((len(moved), forces.size))
     sides = [[edge_lines(*side) for side in one[:2]] for one in moved]
     for number, line in enumerate(edge_lines(pair, grids)):
         if (near := NearEdge.of(pair, line, slices)) is None:
@@ -67,8 +67,8 @@ def edge_deflection_growth(
                 for lines, (gears, _) in zip((low, high), one[:2], strict=True)
             ]
             factors[key] = (psi[1] - psi[0]) / one.difference
-        found[:, near.near] += _deflection_growth(near, forces[near.near], distances, slices, factors)
-    return found
+        growth[:, near.near] += _deflection_growth(near, forces[near.near], distances, slices, factors)
+    return growth
 
 
 def _deflection_growth(near: NearEdge, forces: Array, distances: Array, slices: SliceRow, factors: Array) -> Array:
@@ -84,7 +84,7 @@ def _deflection_growth(near: NearEdge, forces: Array, distances: Array, slices: 
     fading = -6.0 * part * (1.0 - part) / near.reach * _counted(near.distance, near)
     closer = distances[:, near.near]
     steeper = risen(distances, slices.y, near.before, near.after) * (np.abs(near.steepness) < 1.0)
-    found, ends = np.zeros((len(distances), near.near.size)), np.cumsum(near.size**2)
+    deflections, ends = np.zeros((len(distances), near.near.size)), np.cumsum(near.size**2)
     for run, (first, size, end) in enumerate(zip(near.first, near.size, ends, strict=True)):
         own, block = slice(first, first + size), slice(end - size**2, end)
         mean, growth = means[block].reshape(size, size), growths[:, block].reshape(4, size, size)
@@ -94,10 +94,10 @@ def _deflection_growth(near: NearEdge, forces: Array, distances: Array, slices: 
         growth[2] += psi * mean * faded[:, None] * fading[own]
         for moved, at, under in ((closer[:, own], *growth[::2]), (steeper[:, own], *growth[1::2])):
             by_place = at + under.T
-            found[:, own] += 0.5 * (moved * (by_place @ force) + (moved * force) @ by_place)
+            deflections[:, own] += 0.5 * (moved * (by_place @ force) + (moved * force) @ by_place)
         whole = mean * faded[:, None] * faded
-        found[:, own] += 0.5 * factors[:, run, None] * ((whole + whole.T) @ force)
-    return found
+        deflections[:, own] += 0.5 * factors[:, run, None] * ((whole + whole.T) @ force)
+    return deflections
 
 
 def _image_growth(near: NearEdge, at: Indices, under: Indices) -> tuple[Array, Array]:

@@ -86,10 +86,10 @@ def edge_compliance(pair: GearPair, separation: Separation) -> Array | None:
     >>> float(added[1, 1].round(8)), float(added[8, 8])  # the first slice of the face, and that in its middle
     (1.4e-06, 0.0)
     """
-    found = edge_compliances(pair, [separation])[0]
-    if isinstance(found, InputError):
-        raise found
-    return found
+    compliance = edge_compliances(pair, [separation])[0]
+    if isinstance(compliance, InputError):
+        raise compliance
+    return compliance
 
 
 class Slices(ContactGrid, Protocol):
@@ -107,7 +107,7 @@ class Slices(ContactGrid, Protocol):
 def edge_compliances(pair: GearPair, grids: Sequence[Slices]) -> list[Array | InputError | None]:
     """Return :func:`edge_compliance` of many grids, found together; an error stands in the place of what raises it."""
     slices, problems = SliceRow.of(grids), dict[int, InputError]()
-    found = np.zeros(sum(one.y.size**2 for one in grids))
+    compliances = np.zeros(sum(one.y.size**2 for one in grids))
     for line in edge_lines(pair, grids):
         if (near := NearEdge.of(pair, line, slices)) is None:
             continue
@@ -116,9 +116,9 @@ def edge_compliances(pair: GearPair, grids: Sequence[Slices]) -> list[Array | In
         for at, under in near.pairs():
             mean, place = near.image(at, under).mean, slices.row[near.near[at]] + slices.column[near.near[under]]
             # no pair stands there twice
-            found[place] += mean * near.factor[near.run[at]] * near.faded[at] * near.faded[under]
+            compliances[place] += mean * near.factor[near.run[at]] * near.faded[at] * near.faded[under]
     ends = np.cumsum([one.y.size**2 for one in grids])[:-1]
-    matrices = [one.reshape(math.isqrt(one.size), -1) for one in np.split(found, ends)]
+    matrices = [one.reshape(math.isqrt(one.size), -1) for one in np.split(compliances, ends)]
     return [problems.get(number, 0.5 * (one + one.T) if one.any() else None) for number, one in enumerate(matrices)]
 
 
@@ -161,13 +161,13 @@ def edge_lines(pair: GearPair, grids: Sequence[Slices]) -> list[EdgeLine]:
     """Edges of both gears that add to the deflection of slices."""
     points = np.concatenate([one.origin + one.y[:, None] * one.axes[1] for one in grids])
     radius, _, axial = pair.to_wheel(points)
-    places, found = ((np.hypot(points[:, 0], points[:, 1]), points[:, 2]), (radius, axial)), []
+    places, lines = ((np.hypot(points[:, 0], points[:, 1]), points[:, 2]), (radius, axial)), []
     for gear, (flank, (rho, z)) in enumerate(zip((pair.pinion.flank, pair.wheel.flank), places, strict=True)):
         jets = flank.edges(rho, z)
         for edge in REACHES:
             in_rho, in_z = (np.broadcast_to(by, rho.shape) for by in (jets[edge].rho, jets[edge].z))
-            found.append(EdgeLine(gear, edge, rho, z, in_rho, in_z, jets[edge].value / np.hypot(in_rho, in_z)))
-    return found
+            lines.append(EdgeLine(gear, edge, rho, z, in_rho, in_z, jets[edge].value / np.hypot(in_rho, in_z)))
+    return lines
 
 
 class SliceRow(NamedTuple):

@@ -97,12 +97,12 @@ class HeldContact:
 
     def growth(self, one: GearPair, two: GearPair, gears: Sequence[str] = ("pinion", "wheel")) -> Array:
         """Growth of the gap (nx, ny) [mm] from the flanks of one pair to those of another."""
-        found = np.zeros(self.there.shape)
+        growth = np.zeros(self.there.shape)
         if "pinion" in gears:
-            found[self.there] -= self.pinion.moved(one, two, "pinion")
+            growth[self.there] -= self.pinion.moved(one, two, "pinion")
         if "wheel" in gears:
-            found[self.there] += self.wheel.moved(one, two, "wheel")
-        return found
+            growth[self.there] += self.wheel.moved(one, two, "wheel")
+        return growth
 
 
 def held(
@@ -121,7 +121,7 @@ def held(
             raise one
         separations.append(one)
     ends = edge_compliances(pair, separations) if free_edges and count else [None] * count
-    found, size = [], max(1, TOGETHER // math.prod(cells))
+    contacts_held, size = [], max(1, TOGETHER // math.prod(cells))
     for first in range(0, len(contacts), size):
         some = slice(first, first + size)
         axes = np.array([one.axes for one in separations[some]])
@@ -132,8 +132,8 @@ def held(
                 raise matrix
             there = np.isfinite(separation.cut_gap)
             pinion, wheel = (MetPoints(one.rho[k][there], one.z[k][there], one.steepness[k][there]) for one in points)
-            found.append(HeldContact(tooth_pairs[first + k], separation, there, pinion, wheel, matrix))
-    return found
+            contacts_held.append(HeldContact(tooth_pairs[first + k], separation, there, pinion, wheel, matrix))
+    return contacts_held
 
 
 class _HeldBending:
@@ -201,9 +201,9 @@ class HeldContacts:
         self._held: dict[ContactPoint, HeldContact] = {}
         self.contacts: list[list[ContactPoint]] = []
         for position in range(len(mesh)):
-            found = self._held_at(position, shapes)
-            self._held.update((one.tooth_pair.contact, one) for one in found)
-            self.contacts.append([one.tooth_pair.contact for one in found])
+            contacts = self._held_at(position, shapes)
+            self._held.update((one.tooth_pair.contact, one) for one in contacts)
+            self.contacts.append([one.tooth_pair.contact for one in contacts])
         first, last = (self._slopes_at(values) for values in (self.start, spans[:, 1]))
         bends = [np.abs(last[one] - first[one]).max(axis=(1, 2)) @ np.ptp(spans, axis=1) for one in first]
         self._slopes = first if max(bends) <= STRAIGHT else None
@@ -249,12 +249,12 @@ class HeldContacts:
 
     def _slopes_at(self, values: Array, contacts: Iterable[ContactPoint] | None = None) -> dict[ContactPoint, Array]:
         changes = pair_changes(self._scene(values), self.keys)
-        found = {}
+        slopes = {}
         for contact in self._held if contacts is None else contacts:
             one = self._held[contact]
             grown = [one.growth(by.below, by.above, (by.key.partition(".")[0],)) / by.difference for by in changes]
-            found[contact] = np.array(grown)
-        return found
+            slopes[contact] = np.array(grown)
+        return slopes
 
     def _held_at(self, position: int, shapes: Sequence[GearPair]) -> list[HeldContact]:
         """Contacts of a position that one of the shapes may bring under load, in boxes that hold them."""
@@ -337,9 +337,9 @@ class ShapedContacts:
     def _keep(self, contact: ContactPoint, gap: Array) -> Separation:
         one, raised = self._contacts[contact], gap - self._lowest[contact]
         whole = np.where(np.isfinite(one.separation.gap), raised, np.inf)
-        found = self._separations[contact] = replace(one.separation, gap=whole, cut_gap=raised)
-        self._ends[found] = one.ends
-        return found
+        kept = self._separations[contact] = replace(one.separation, gap=whole, cut_gap=raised)
+        self._ends[kept] = one.ends
+        return kept
 
     def shared(self, position: int, torque: float, grid: GridChoice) -> Steps[tuple[float, SharedLoad]]:
         """Share a torque [N mm] at a position: the loaded transmission error [rad], and what the pairs carry."""
@@ -349,9 +349,9 @@ class ShapedContacts:
         first = min(beyond)
         tooth_pairs = [replace(one, initial_separation=rest - first) for one, rest in zip(there, beyond, strict=True)]
         steps = torque_shared(pair, tooth_pairs, torque, grid, contacts.bending)
-        found = yield from self._answered(steps)
+        answer = yield from self._answered(steps)
         unloaded = float(contacts.mesh.transmission_error[position])
-        return unloaded - pair.driving * (first + found.rotation), found
+        return unloaded - pair.driving * (first + answer.rotation), answer
 
     def _answered(self, steps: Steps[Result]) -> Steps[Result]:
         """Answer what is asked for of grids; contact problems are passed on."""

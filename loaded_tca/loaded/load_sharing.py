@@ -298,11 +298,11 @@ class _Balance:
             lines.append((number, separation))
             shares.append(force / force.sum())
         self.first_grids = [separation for _, separation in lines]
-        found = np.diag([own @ bending.within(*line) @ own for line, own in zip(lines, shares, strict=True)])
+        compliance = np.diag([own @ bending.within(*line) @ own for line, own in zip(lines, shares, strict=True)])
         for (i, one), (j, other) in combinations(enumerate(lines), 2):
             if self._coupled(i, j):
-                found[i, j] = found[j, i] = shares[i] @ bending.between(one, other) @ shares[j]
-        return found
+                compliance[i, j] = compliance[j, i] = shares[i] @ bending.between(one, other) @ shares[j]
+        return compliance
 
     def _solve(self, index: int, forces: Array) -> Steps[None]:
         """Solve a pair under its force, on the grid it has if that still fits, and correct its law."""
@@ -346,8 +346,8 @@ class _Balance:
             return {index: loaded.at(float(approach[index]), coupling[index]) for index, loaded in before}
 
         def torque_missing(rotation: float) -> float:
-            found = solved_at(rotation).items()
-            return self.torque - sum(float(self.levers[0, index]) * loaded.solution.load for index, loaded in found)
+            solved = solved_at(rotation).items()
+            return self.torque - sum(float(self.levers[0, index]) * loaded.solution.load for index, loaded in solved)
 
         asked = [share.rotation for share in shared.shares]
         low, high = min(asked), max(asked)
@@ -380,11 +380,12 @@ class _Balance:
         """
         if self.between is None:
             return None
-        found = np.zeros(len(separation.y))
+        displaced = np.zeros(len(separation.y))
         for n, other in self._loaded():
             if n != index and forces[n] > 0.0:
-                found += self._between((index, separation), (n, other.separation)) @ (forces[n] * other.slice_shares)
-        return found
+                between = self._between((index, separation), (n, other.separation))
+                displaced += between @ (forces[n] * other.slice_shares)
+        return displaced
 
     def _coupled(self, index: int, other: int) -> bool:
         """Whether both pairs are in the model of the teeth; of those that are not, one may be loaded."""
@@ -469,5 +470,5 @@ def tooth_pairs_at(mesh: MeshPath, position: int) -> tuple[ToothPair, ...]:
         Index of the pinion angle.
     """
     separations = mesh.initial_separation[:, position]
-    found = zip(mesh.pairs.tolist(), mesh.paths, separations.tolist(), strict=True)
-    return tuple(ToothPair(number, path[position], max(gap, 0.0)) for number, path, gap in found if math.isfinite(gap))
+    pairs = zip(mesh.pairs.tolist(), mesh.paths, separations.tolist(), strict=True)
+    return tuple(ToothPair(number, path[position], max(gap, 0.0)) for number, path, gap in pairs if math.isfinite(gap))

@@ -67,7 +67,7 @@ Steps = Generator[Gap | Ends | Task, Any, Result]
 
 
 def found_together(
-    pair: GearPair, all_steps: Sequence[Steps[Result]], told: Callable[[int], None] | None = None
+    pair: GearPair, all_steps: Sequence[Steps[Result]], progress: Callable[[int], None] | None = None
 ) -> list[Result]:
     """Answer what generators ask for, in rounds, until all have returned.
 
@@ -79,7 +79,7 @@ def found_together(
     ----------
     pair : GearPair
     all_steps : sequence of generators
-    told : callable, optional
+    progress : callable, optional
         Called with how many have returned, whenever one does.
 
     Returns
@@ -100,8 +100,8 @@ def found_together(
             asked[index] = step()
         except StopIteration as end:
             results[index] = end.value
-            if told is not None:
-                told(len(results))
+            if progress is not None:
+                progress(len(results))
 
     waiting = iter(enumerate(all_steps))
     while len(results) < len(all_steps):
@@ -129,8 +129,8 @@ def _answers(
     chosen: Any = {index: asked[index] for index, kind in kinds.items() if kind == most}
     if most is Gap:
         contacts, cells, loads, boxes = zip(*chosen.values(), strict=True)
-        found = sample_separations(pair, contacts, cells=cells, loads=loads, boxes=boxes)
-        return dict(zip(chosen, found, strict=True))
+        answers = sample_separations(pair, contacts, cells=cells, loads=loads, boxes=boxes)
+        return dict(zip(chosen, answers, strict=True))
     if most is Ends:
         separations = [request.separation for request in chosen.values()]
         return dict(zip(chosen, edge_compliances(pair, separations), strict=True))

@@ -124,7 +124,7 @@ def pressures_at_rounded_edges(
     ConvergenceError
         If the solver does not reach its tolerance.
     """
-    found: dict[tuple[int, int, int], PeakAtEdge] = {}
+    peaks_at: dict[tuple[int, int, int], PeakAtEdge] = {}
     for t, positions in enumerate(carried.contacts):
         reached = {
             (t, n, k): (loaded, edges)
@@ -148,8 +148,8 @@ def pressures_at_rounded_edges(
             peak = peaks.get(place, NOT_REACHED)
             can_be_largest = _by_pressure(peak) >= SURELY_LESS * largest or peak.error == math.inf
             below = replace(NOT_REACHED, bound=min(edges[0].bound, largest))
-            found[place] = peak if every or can_be_largest else below
-    return found
+            peaks_at[place] = peak if every or can_be_largest else below
+    return peaks_at
 
 
 def pressure_at_rounded_edge(
@@ -211,7 +211,7 @@ def _by_pressure(one: PeakAtEdge | EdgePressure) -> float:
 
 def _crossing_within(loaded: LoadedContact, lines: list[RoundedEdge]) -> set[RoundedEdge]:
     """Those of some edges that cross another one within two cells of the pressure of a contact."""
-    grid, found = loaded.separation, set[RoundedEdge]()
+    grid, crossing = loaded.separation, set[RoundedEdge]()
     pressed = dilated(loaded.solution.pressure > 0.0, 2)
     for pair in combinations(lines, 2):
         normals = np.array([line.direction for line in pair])
@@ -220,8 +220,8 @@ def _crossing_within(loaded: LoadedContact, lines: list[RoundedEdge]) -> set[Rou
         place = np.linalg.solve(normals, [normal @ line.place for normal, line in zip(normals, pair, strict=True)])
         row, column = np.rint((place - (grid.x[0], grid.y[0])) / grid.spacing).astype(int)
         if 0 <= row < grid.x.size and 0 <= column < grid.y.size and pressed[row, column]:
-            found.update(pair)
-    return found
+            crossing.update(pair)
+    return crossing
 
 
 class _ContactAlongEdge:
@@ -262,13 +262,13 @@ class _ContactAlongEdge:
         along, across = (self.turn @ place).tolist()
         return along, across
 
-    def turned_back(self, found: EdgePressure, left: float) -> PeakAtEdge:
+    def turned_back(self, peak: EdgePressure, left: float) -> PeakAtEdge:
         """A peak, its place across and along the contact, and its error: at least ``left`` over its cells."""
-        if math.isnan(found.pressure):
+        if math.isnan(peak.pressure):
             return NOT_REACHED
-        across, along = (np.array(found.place) @ self.turn).tolist()
-        error = max(found.error, left / found.cells_on_arc)
-        return PeakAtEdge(found.pressure, (across, along), error, found.pressure, found.ends_sharp)
+        across, along = (np.array(peak.place) @ self.turn).tolist()
+        error = max(peak.error, left / peak.cells_on_arc)
+        return PeakAtEdge(peak.pressure, (across, along), error, peak.pressure, peak.ends_sharp)
 
     def solved(self, edges: list[RoundedEdge], at_least: float) -> list[EdgePressure]:
         """Pressures at edges, in a box that holds the contact."""
@@ -277,7 +277,7 @@ class _ContactAlongEdge:
             turned = [replace(edge, angle=None) for edge in turned]
         for margin in MARGIN * 2.0 ** np.arange(MOST_BOXES):
             box, cells = self._box(margin)
-            found = edge_pressures(
+            peaks = edge_pressures(
                 self.gap,
                 box,
                 turned,
@@ -289,11 +289,11 @@ class _ContactAlongEdge:
                 slice_axis=self.slice_axis,
                 at_least=at_least,
             )
-            pressed = found[0].solution.pressure > 0.0
-            is_less = all(_by_pressure(one) < SURELY_LESS * at_least for one in found)
+            pressed = peaks[0].solution.pressure > 0.0
+            is_less = all(_by_pressure(one) < SURELY_LESS * at_least for one in peaks)
             if is_less or not (pressed[[0, -1]].any() or pressed[:, [0, -1]].any()):
-                return found  # in a box that cuts the contact the pressure is too high
-        return [replace(one, error=math.inf) for one in found]
+                return peaks  # in a box that cuts the contact the pressure is too high
+        return [replace(one, error=math.inf) for one in peaks]
 
     def _box(self, margin: float) -> tuple[tuple[tuple[float, float], tuple[float, float]], tuple[int, int]]:
         """A box about the pressure of the grid, so many of its cells larger, and the cells on both its axes."""
@@ -323,10 +323,10 @@ class _ContactAlongEdge:
         along = middles / self.along
         forces = np.interp(along, grid.y, grid.force_line)
         slices = Columns(along, widths / abs(self.along), grid.origin, grid.axes, forces)
-        found = np.zeros((middles.size, middles.size))
+        compliance = np.zeros((middles.size, middles.size))
         if self.bending is not None:
-            found += self.bending.within(self.number, slices)
+            compliance += self.bending.within(self.number, slices)
         ends = edge_compliances(self.pair, [slices])[0] if self.free_edges else None
         if isinstance(ends, InputError):
             raise ends
-        return found if ends is None else found + ends
+        return compliance if ends is None else compliance + ends

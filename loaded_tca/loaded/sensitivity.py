@@ -167,12 +167,12 @@ class Tangents:
 
     def with_lines(self, by_shift: csr_array) -> Tangents:
         """The same, the force lines following the forces: ``by_shift`` as of the class."""
-        found = copy(self)
-        found.__dict__.pop("weights", None)
-        found.by_shift, columns = by_shift, np.concatenate([grid.active.nonzero()[1] for grid in self.grids])
-        found._arms = found._lengths_over_forces(columns)
-        found.stiffness = found.summed(self.wheel_levers * found.weights)
-        return found
+        tangents = copy(self)
+        tangents.__dict__.pop("weights", None)
+        tangents.by_shift, columns = by_shift, np.concatenate([grid.active.nonzero()[1] for grid in self.grids])
+        tangents._arms = tangents._lengths_over_forces(columns)
+        tangents.stiffness = tangents.summed(self.wheel_levers * tangents.weights)
+        return tangents
 
     @cached_property
     def weights(self) -> Array:
@@ -322,11 +322,11 @@ class Tangents:
 
     def _preconditioned(self, residual: Array) -> Array:
         """Approximate inverse of the half-spaces; of cut cells, which are more compliant, by the root of their part."""
-        found = np.empty(residual.size)
+        forces = np.empty(residual.size)
         largest = math.ldexp(1.0, math.frexp(float(np.abs(residual).max()))[1])  # which rounds nothing
         for block in self._blocks:
-            found[block.cells] = block.preconditioned(residual[block.cells] / largest)
-        return largest * found
+            forces[block.cells] = block.preconditioned(residual[block.cells] / largest)
+        return largest * forces
 
 
 @dataclass(frozen=True, eq=False)
@@ -444,5 +444,5 @@ class _Block:
     def preconditioned(self, residual: Array) -> Array:
         given = np.zeros(self._shape, dtype=np.float32)
         given.ravel()[self._at] = self._root * residual
-        found = self._inverse(given, np.empty(self._shape, dtype=np.float32)).ravel()[self._at]
-        return np.asarray(self._unit * self._root * found)
+        pressure = self._inverse(given, np.empty(self._shape, dtype=np.float32)).ravel()[self._at]
+        return np.asarray(self._unit * self._root * pressure)

@@ -184,13 +184,13 @@ WIDTH = 15
 
 
 def write_sensitivities(
-    found: Sensitivities, tolerances: Mapping[str, float], directory: FilePath, more: Mapping[str, Buffer] = {}
+    sensitivities: Sensitivities, tolerances: Mapping[str, float], directory: FilePath, more: Mapping[str, Buffer] = {}
 ) -> tuple[Path, ...]:
     """Write ``sensitivities.nc`` and ``sensitivities.csv``, all files or none.
 
     Parameters
     ----------
-    found : Sensitivities
+    sensitivities : Sensitivities
     tolerances : mapping of str to float
         Standard deviation of every key, in its unit.
     directory : str or path
@@ -208,26 +208,34 @@ def write_sensitivities(
     InputError
         If they cannot be written.
     """
-    result = found.result
-    spreads = ("key", [tolerances[key] for key in found.keys], {"long_name": "standard deviation, in units of the key"})
+    result = sensitivities.result
+    spreads = (
+        "key",
+        [tolerances[key] for key in sensitivities.keys],
+        {"long_name": "standard deviation, in units of the key"},
+    )
     texts = {"title": result.scene.title, "scene_toml": result.scene.to_toml(), "version": result.version}
-    whole = found.dataset.assign_coords(tolerance=spreads).assign_attrs(texts)
+    whole = sensitivities.dataset.assign_coords(tolerance=spreads).assign_attrs(texts)
     return replace_together(
         directory,
-        {SENSITIVITY_DATA: netcdf_of(whole), SENSITIVITIES: sensitivities_csv(found, tolerances).encode(), **more},
+        {
+            SENSITIVITY_DATA: netcdf_of(whole),
+            SENSITIVITIES: sensitivities_csv(sensitivities, tolerances).encode(),
+            **more,
+        },
     )
 
 
-def sensitivities_csv(found: Sensitivities, tolerances: Mapping[str, float]) -> str:
+def sensitivities_csv(sensitivities: Sensitivities, tolerances: Mapping[str, float]) -> str:
     """Return one row per torque and key: the changes of key figures by a unit of the key, and by its tolerance."""
-    keys, torques = found.keys, 1e-3 * found.result.torque
+    keys, torques = sensitivities.keys, 1e-3 * sensitivities.result.torque
     spread = np.array([tolerances[key] for key in keys])
     columns: dict[str, list[str]] = {
         "pinion_torque_Nm": [f"{torque:.9g}" for torque in torques for _ in keys],
         "key": [key for _ in torques for key in keys],
         "tolerance": [f"{one:.9g}" for _ in torques for one in spread],
     }
-    slopes = key_figure_slopes(found)
+    slopes = key_figure_slopes(sensitivities)
     for name, values in slopes.items():
         columns[f"{name}_per_unit"] = _cells(values)
     for name, values in slopes.items():
@@ -240,20 +248,20 @@ def _cells(values: np.ndarray) -> list[str]:
     return [f"{value:.9g}" if math.isfinite(value) else "" for value in values.ravel()]
 
 
-def sensitivities_text(found: Sensitivities, tolerances: Mapping[str, float], torque: int) -> str:
+def sensitivities_text(sensitivities: Sensitivities, tolerances: Mapping[str, float], torque: int) -> str:
     """Return the changes of the key figures under one torque as text: per unit of each key, and per tolerance.
 
     Parameters
     ----------
-    found : Sensitivities
+    sensitivities : Sensitivities
     tolerances : mapping of str to float
         Standard deviation of every key, in its unit.
     torque : int
         Index of the torque.
     """
-    figures = key_figures(found.result, torque)
-    slopes = {name: values[torque] for name, values in key_figure_slopes(found).items()}
-    spread = np.array([tolerances[key] for key in found.keys])
+    figures = key_figures(sensitivities.result, torque)
+    slopes = {name: values[torque] for name, values in key_figure_slopes(sensitivities).items()}
+    spread = np.array([tolerances[key] for key in sensitivities.keys])
     together = [math.sqrt(float(((values * spread) ** 2).sum())) for values in slopes.values()]
     rows: list[tuple[str, list[str]]] = [
         (
@@ -263,17 +271,17 @@ def sensitivities_text(found: Sensitivities, tolerances: Mapping[str, float], to
         ("", [f"[{unit_of(name) or '-'}]" for name in slopes]),
         ("this result", [shown(figures[name], name) for name in slopes]),
         ("change per unit of", []),
-        *((f"  {key}", [_digits(values[k]) for values in slopes.values()]) for k, key in enumerate(found.keys)),
+        *((f"  {key}", [_digits(values[k]) for values in slopes.values()]) for k, key in enumerate(sensitivities.keys)),
         ("change per tolerance (standard deviation) of", []),
         *(
             (f"  {key} = {one:g}", [_digits(values[k] * one) for values in slopes.values()])
-            for k, (key, one) in enumerate(zip(found.keys, spread.tolist(), strict=True))
+            for k, (key, one) in enumerate(zip(sensitivities.keys, spread.tolist(), strict=True))
         ),
         ("  all of them, independent", [_digits(value, sign="") for value in together]),
     ]
     labels = max(len(label) for label, _ in rows)
     lines = [f"{label:<{labels}}" + "".join(f"{cell:>{WIDTH}}" for cell in cells) for label, cells in rows]
-    return "\n".join([found.result.scene.title or "Sensitivities", *(line.rstrip() for line in lines)])
+    return "\n".join([sensitivities.result.scene.title or "Sensitivities", *(line.rstrip() for line in lines)])
 
 
 def _digits(value: float, sign: str = "+") -> str:
@@ -378,7 +386,7 @@ def write_subsurface(below: StressBelow, directory: FilePath, more: Mapping[str,
 
     one, stress, result = below.pressure_map, below.stress, below.result
     grid = ("depth", "across", "along")
-    told: dict[str, tuple[Part, Any]] = {
+    parts_and_arrays: dict[str, tuple[Part, Any]] = {
         "pinion_torque": (((), "N mm", "pinion torque"), result.torque[below.torque]),
         "pinion_angle": (((), "rad", "angle of the pinion phi1"), result.pinion_angle[below.position]),
         "position": (((), "1", "position of the result, from 1"), below.position + 1),
@@ -388,7 +396,7 @@ def write_subsurface(below: StressBelow, directory: FilePath, more: Mapping[str,
         **{name: (MAP_PARTS[name], getattr(one, name)) for name in ("x", "y", "pressure")},
         **{name: ((grid, "MPa", text), getattr(stress, name)) for name, text in STRESSES.items()},
     }
-    parts, arrays = ({name: entry[k] for name, entry in told.items()} for k in (0, 1))
+    parts, arrays = ({name: entry[k] for name, entry in parts_and_arrays.items()} for k in (0, 1))
     texts = {"title": result.scene.title, "scene_toml": result.scene.to_toml(), "version": result.version}
     fields = xarray.Dataset(variables_of(parts, arrays), attrs={**texts, "gear": below.gear})
     return replace_together(

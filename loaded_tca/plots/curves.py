@@ -110,7 +110,7 @@ def _draw_sharp_edges(axes: Axes, result: MeshCycle, angle: Array, peak: Array) 
         axes.plot([], [], "x", color="black", label=label)
     if beyond.any():
         span = " to ".join(dict.fromkeys(f"{value:.0f}" for value in (peak[beyond].min(), peak[beyond].max())))
-        told = "the same" if within.any() else label
-        axes.plot([], [], "^", color="black", label=f"{told} above the axis: {span} MPa")
+        name = "the same" if within.any() else label
+        axes.plot([], [], "^", color="black", label=f"{name} above the axis: {span} MPa")
         high = 1.03 * edge
     axes.set_ylim(0.0, high)

@@ -184,9 +184,9 @@ def _finished(figure: Figure, design: xarray.Dataset, axes: Axes, scene: str, sh
     """The figure with the legend of a panel below, and its title."""
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize="small")
     samples = design.sizes.get("sample", 1)
-    told = f"lines: mean, bands: range of {samples} samples of the scatter"
+    note = f"lines: mean, bands: range of {samples} samples of the scatter"
     with_bands = axes.collections and samples > 1
-    style.write_title(figure, scene, shown, *([told] if with_bands else []))
+    style.write_title(figure, scene, shown, *([note] if with_bands else []))
     return figure
 
 

@@ -28,7 +28,7 @@ WIDTHS = np.linspace(-3.5, 3.5, 141)
 MOST_BARS = 30
 
 
-def plot_first_order_scatter(found: Sensitivities, study: xarray.Dataset, torque: int | None = None) -> Figure:
+def plot_first_order_scatter(sensitivities: Sensitivities, study: xarray.Dataset, torque: int | None = None) -> Figure:
     """Scatter of key figures: histogram of a study, and the normal distribution that first order expects.
 
     The standard deviations of the keys are those of the samples of the study. A panel for each figure that both have,
@@ -36,7 +36,7 @@ def plot_first_order_scatter(found: Sensitivities, study: xarray.Dataset, torque
 
     Parameters
     ----------
-    found : Sensitivities
+    sensitivities : Sensitivities
         Of the result in the middle of the scatter, to all keys that the study varies.
     study : xarray.Dataset
         Of :func:`loaded_tca.studies.run_study`, its keys independent of each other, under the torques of the result.
@@ -54,10 +54,10 @@ def plot_first_order_scatter(found: Sensitivities, study: xarray.Dataset, torque
     """
     from scipy.stats import norm  # half a second, which other pictures do not need
 
-    result, keys = found.result, varied_keys(study)
+    result, keys = sensitivities.result, varied_keys(study)
     torque = chosen_torque(result, torque)
     torques = figure_values(study, TORQUE)
-    others = [key for key in keys if key not in found.keys]
+    others = [key for key in keys if key not in sensitivities.keys]
     same = torques.shape[1] == len(result.torque) and bool(
         np.allclose(torques[np.isfinite(torques).all(axis=1)], 1e-3 * result.torque, rtol=SAME)
     )
@@ -65,8 +65,8 @@ def plot_first_order_scatter(found: Sensitivities, study: xarray.Dataset, torque
         (not others, f"study: varies {', '.join(others)}, to which no derivatives are known"),
         (same, "study: its torques are not those of the result"),
     )
-    spread = np.array([float(np.std(study[key].values, ddof=1)) if key in keys else 0.0 for key in found.keys])
-    slopes = {name: values[torque] for name, values in key_figure_slopes(found).items()}
+    spread = np.array([float(np.std(study[key].values, ddof=1)) if key in keys else 0.0 for key in sensitivities.keys])
+    slopes = {name: values[torque] for name, values in key_figure_slopes(sensitivities).items()}
     sigmas = {name: math.sqrt(float(((values * spread) ** 2).sum())) for name, values in slopes.items()}
     scattered = {name: figure_values(study, name)[:, torque] for name in sigmas if name in study}
     shown = [name for name, values in scattered.items() if np.isfinite(values).any() and math.isfinite(sigmas[name])]

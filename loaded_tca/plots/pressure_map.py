@@ -111,8 +111,8 @@ def plot_pressure_map(
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small")
     frame = result.gear_pair.pinion.flank.frame
     what = "contact pressure" if one.pressure.any() else "no contact pressure"
-    told = [*place(result, at[0], frame, at[1]), *_edge(result, torque, at)]
-    set_title(figure, result, f"{what}, {load(result, torque)}", *told)
+    lines = [*place(result, at[0], frame, at[1]), *_edge(result, torque, at)]
+    set_title(figure, result, f"{what}, {load(result, torque)}", *lines)
     return figure
 
 

@@ -103,8 +103,8 @@ def _mark_extremes(axes: Axes, one: RootStressMap, stress: Array, signs: tuple[f
             place = x, one.point[side, station, along, 2]
             axes.plot(*place, "o", color="black", markeredgecolor="white", markersize=5.0)
             number = f"{stress[side, station, along]:.0f}"
-            told = axes.annotate(number, place, (0.0, 6.0), textcoords="offset points", ha="center")
-            told.set_path_effects([withStroke(linewidth=2.5, foreground="white")])
+            text = axes.annotate(number, place, (0.0, 6.0), textcoords="offset points", ha="center")
+            text.set_path_effects([withStroke(linewidth=2.5, foreground="white")])
 
 
 def plot_root_stress_cycle(result: MeshCycle) -> Figure:

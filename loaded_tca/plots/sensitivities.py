@@ -52,7 +52,7 @@ BLUR = 1.0
 """Fields over which weights are spread, so that the points of cells that move across make no pattern of their own."""
 
 
-def plot_removal_weights(found: Sensitivities, torque: int | None = None) -> Figure:
+def plot_removal_weights(sensitivities: Sensitivities, torque: int | None = None) -> Figure:
     """Where material removed from either flank counts: the change of the mean transmission error per area.
 
     The weight is the growth of the pressure with the torque, over the mean of the positions. Its integral over a flank
@@ -61,7 +61,7 @@ def plot_removal_weights(found: Sensitivities, torque: int | None = None) -> Fig
 
     Parameters
     ----------
-    found : Sensitivities
+    sensitivities : Sensitivities
         To any keys: the weights are those of the result.
     torque : int, optional
         Index of the torque; default: the largest one.
@@ -75,13 +75,13 @@ def plot_removal_weights(found: Sensitivities, torque: int | None = None) -> Fig
     InputError
         If the result has no such torque.
     """
-    result = found.result
+    result = sensitivities.result
     torque = chosen_torque(result, torque)
     meshes: list[QuadMesh] = []
 
     def draw(axes: Axes, to_picture: ToPicture) -> list[Artist]:
         corners = np.transpose([axes.get_xlim(), axes.get_ylim()])
-        borders, weights = removal_weights(found, torque, to_picture, *corners)
+        borders, weights = removal_weights(sensitivities, torque, to_picture, *corners)
         meshes.append(axes.pcolormesh(*borders, weights, cmap=COLOURS, rasterized=True))
         return [meshes[-1]]
 
@@ -107,7 +107,7 @@ def plot_removal_weights(found: Sensitivities, torque: int | None = None) -> Fig
 
 
 def removal_weights(
-    found: Sensitivities, torque: int, to_picture: ToPicture, low: Array, high: Array
+    sensitivities: Sensitivities, torque: int, to_picture: ToPicture, low: Array, high: Array
 ) -> tuple[Array, Array]:
     """Change of the mean transmission error [um] per um of removal and mm2 of a flank, on fields of its picture.
 
@@ -116,7 +116,7 @@ def removal_weights(
     """
     field = (high - low) / FIELDS
     total = np.zeros((FIELDS, FIELDS))
-    for places, weights in _passing(found, torque, to_picture, field):
+    for places, weights in _passing(sensitivities, torque, to_picture, field):
         at = (places - low) / field - 0.5
         first = np.floor(at)
         beyond = at - first
@@ -128,13 +128,15 @@ def removal_weights(
     return np.linspace(low, high, FIELDS + 1).T, gaussian_filter(total, BLUR, truncate=2.0)
 
 
-def _passing(found: Sensitivities, torque: int, to_picture: ToPicture, field: Array) -> Iterator[tuple[Array, Array]]:
+def _passing(
+    sensitivities: Sensitivities, torque: int, to_picture: ToPicture, field: Array
+) -> Iterator[tuple[Array, Array]]:
     """Places (m, 2) in the picture of a flank, and what each adds (m,) to the weight of its field per area."""
-    result = found.result
+    result = sensitivities.result
     intervals = max(1, len(result.path) - 1)
     for pair, path in enumerate(result.paths):
         middles = to_picture(path.point)
-        for position, row in enumerate(found.weight_maps[torque]):
+        for position, row in enumerate(sensitivities.weight_maps[torque]):
             weight, one = row[pair], result.maps[torque][position][pair]
             if weight is None or one is None:
                 continue
@@ -168,18 +170,20 @@ BANDS = ((1.0, 0.45), (2.0, 0.2))
 BASE_CIRCLE = "at the wheel's base circle [µm]"
 
 
-def sensitivity_pictures(found: Sensitivities, tolerances: Mapping[str, float], torque: int) -> dict[str, Figure]:
+def sensitivity_pictures(
+    sensitivities: Sensitivities, tolerances: Mapping[str, float], torque: int
+) -> dict[str, Figure]:
     """Return all pictures of sensitivities under one torque by the names of their files, bands under all torques."""
     return {
-        "tornado": plot_tornado(found, tolerances, torque=torque),
-        "sensitivity_curves": plot_sensitivity_curves(found, tolerances, torque),
-        "transmission_error_band": plot_transmission_error_band(found, tolerances),
-        "removal_weights": plot_removal_weights(found, torque),
+        "tornado": plot_tornado(sensitivities, tolerances, torque=torque),
+        "sensitivity_curves": plot_sensitivity_curves(sensitivities, tolerances, torque),
+        "transmission_error_band": plot_transmission_error_band(sensitivities, tolerances),
+        "removal_weights": plot_removal_weights(sensitivities, torque),
     }
 
 
 def plot_tornado(
-    found: Sensitivities,
+    sensitivities: Sensitivities,
     tolerances: Mapping[str, float] | None = None,
     figures: Sequence[str] | None = None,
     torque: int | None = None,
@@ -191,7 +195,7 @@ def plot_tornado(
 
     Parameters
     ----------
-    found : Sensitivities
+    sensitivities : Sensitivities
     tolerances : mapping of str to float, optional
         Standard deviations of the keys, in their units; default: ``default_tolerances``.
     figures : sequence of str, optional
@@ -208,17 +212,17 @@ def plot_tornado(
     InputError
         If the result has no such torque, a figure is not one of these, or a key has no tolerance.
     """
-    result = found.result
+    result = sensitivities.result
     torque = chosen_torque(result, torque)
-    spread = _spread(found, tolerances)
-    changes = {name: values[torque] * spread for name, values in key_figure_slopes(found).items()}
+    spread = _spread(sensitivities, tolerances)
+    changes = {name: values[torque] * spread for name, values in key_figure_slopes(sensitivities).items()}
     unknown = [name for name in figures or () if name not in changes]
     require((not unknown, f"figures: {', '.join(unknown)} unknown; allowed {', '.join(changes)}"))
     chosen = figures or [name for name, values in changes.items() if np.isfinite(values).any()]
     if not chosen:
         raise InputError(f"nothing is under load with {style.torque_label(result, torque)}: no derivatives")
     now = key_figures(result, torque)
-    labels = [_with_tolerance(key, one) for key, one in zip(found.keys, spread.tolist(), strict=True)]
+    labels = [_with_tolerance(key, one) for key, one in zip(sensitivities.keys, spread.tolist(), strict=True)]
     bars = min(len(labels), MOST_BARS)
     drawing, panels = panels_of(len(chosen), (6.5, 1.0 + 0.3 * max(bars, 3)))
     for axes, name in zip(panels, chosen, strict=True):
@@ -256,7 +260,7 @@ def _draw_tornado(axes: Axes, changes: Array, labels: Sequence[str]) -> None:
 
 
 def plot_sensitivity_curves(
-    found: Sensitivities, tolerances: Mapping[str, float] | None = None, torque: int | None = None
+    sensitivities: Sensitivities, tolerances: Mapping[str, float] | None = None, torque: int | None = None
 ) -> Figure:
     """Change of the transmission error over the positions by the tolerance of each key: absolute, and about its mean.
 
@@ -264,7 +268,7 @@ def plot_sensitivity_curves(
 
     Parameters
     ----------
-    found : Sensitivities
+    sensitivities : Sensitivities
     tolerances : mapping of str to float, optional
         Standard deviations of the keys, in their units; default: ``default_tolerances``.
     torque : int, optional
@@ -279,10 +283,10 @@ def plot_sensitivity_curves(
     InputError
         If the result has no such torque, or a key no tolerance.
     """
-    result = found.result
+    result = sensitivities.result
     torque = chosen_torque(result, torque)
-    spread = _spread(found, tolerances)
-    curves = 1e3 * result.wheel_base_radius * found.transmission_error[torque] * spread
+    spread = _spread(sensitivities, tolerances)
+    curves = 1e3 * result.wheel_base_radius * sensitivities.transmission_error[torque] * spread
     figure = Figure(figsize=(8.0, 7.0), layout="constrained")
     absolute, about_mean = figure.subplots(2, 1, sharex=True)
     known = np.isfinite(curves).all(axis=1)
@@ -290,7 +294,7 @@ def plot_sensitivity_curves(
     drawn = np.sort(np.argsort(-swings, kind="stable")[:MOST_CURVES])
     angle = np.degrees(result.pinion_angle)
     for k, colour, marker in zip(drawn.tolist(), CURVE_COLOURS, cycle(MARKERS), strict=False):
-        label, curve = _with_tolerance(found.keys[k], float(spread[k]), "+"), curves[:, k]
+        label, curve = _with_tolerance(sensitivities.keys[k], float(spread[k]), "+"), curves[:, k]
         absolute.plot(angle, curve, color=colour, marker=marker, markersize=4.0, label=label)
         about_mean.plot(angle, curve - mean_over_a_pitch(curve), color=colour, marker=marker, markersize=4.0)
     absolute.set_ylabel(f"change of the transmission error\n{BASE_CIRCLE}")
@@ -309,7 +313,7 @@ def plot_sensitivity_curves(
 
 
 def plot_transmission_error_band(
-    found: Sensitivities, tolerances: Mapping[str, float] | None = None, torque: int | None = None
+    sensitivities: Sensitivities, tolerances: Mapping[str, float] | None = None, torque: int | None = None
 ) -> Figure:
     """Transmission error over the positions with bands of one and two standard deviations, absolute and about its mean.
 
@@ -317,7 +321,7 @@ def plot_transmission_error_band(
 
     Parameters
     ----------
-    found : Sensitivities
+    sensitivities : Sensitivities
     tolerances : mapping of str to float, optional
         Standard deviations of the keys, in their units; default: ``default_tolerances``.
     torque : int, optional
@@ -332,18 +336,18 @@ def plot_transmission_error_band(
     InputError
         If the result has no such torque, or a key no tolerance.
     """
-    result = found.result
-    given = dict(zip(found.keys, _spread(found, tolerances).tolist(), strict=True))
+    result = sensitivities.result
+    given = dict(zip(sensitivities.keys, _spread(sensitivities, tolerances).tolist(), strict=True))
     shown_torques = style.torques_with_panels(result) if torque is None else [chosen_torque(result, torque)]
     length = 1e3 * result.wheel_base_radius
-    sigma = length * found.spread(given)["transmission_error"].values
+    sigma = length * sensitivities.spread(given)["transmission_error"].values
     figure = Figure(figsize=(10.0, 2.2 + 2.3 * len(shown_torques)), layout="constrained")
     rows = figure.subplots(len(shown_torques), 2, squeeze=False, sharex=True)
     colours = {index: colour for index, _, colour, _ in style.torque_styles(result)}
     angle = np.degrees(result.pinion_angle)
     for index, (absolute, about_mean) in zip(shown_torques, rows.tolist(), strict=True):
         curve = length * result.transmission_error[index]
-        slopes = length * found.transmission_error[index] * list(given.values())
+        slopes = length * sensitivities.transmission_error[index] * list(given.values())
         about = slopes - [mean_over_a_pitch(slope) for slope in slopes.T]
         _draw_band(absolute, angle, curve, sigma[index], colours[index])
         swing = curve - mean_over_a_pitch(curve)
@@ -380,13 +384,13 @@ def _legend_of_bands(axes: Axes) -> list[Artist]:
     return [line, *bands]
 
 
-def _spread(found: Sensitivities, tolerances: Mapping[str, float] | None) -> Array:
+def _spread(sensitivities: Sensitivities, tolerances: Mapping[str, float] | None) -> Array:
     """Standard deviations (keys,)."""
-    result: CycleNumbers = found.result
-    known = default_tolerances(result.scene, found.keys) if tolerances is None else tolerances
-    missing = [key for key in found.keys if key not in known]
+    result: CycleNumbers = sensitivities.result
+    known = default_tolerances(result.scene, sensitivities.keys) if tolerances is None else tolerances
+    missing = [key for key in sensitivities.keys if key not in known]
     require((not missing, f"tolerances: none given for {', '.join(missing)}"))
-    return np.array([known[key] for key in found.keys])
+    return np.array([known[key] for key in sensitivities.keys])
 
 
 def _with_tolerance(key: str, tolerance: float, sign: str = "±") -> str:

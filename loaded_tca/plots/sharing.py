@@ -87,9 +87,9 @@ def plot_load_share(result: MeshCycle, torque: int | None = None) -> Figure:
         axes.set_ylabel("share of\nthe torque [%]")
         axes.set_ylim(-4.0, 106.0)
         axes.grid(alpha=0.3)
-        told = torque_label(result, index) if len(shown) > 1 else "_the only one"
+        name = torque_label(result, index) if len(shown) > 1 else "_the only one"
         width = 1.5 * (len(shown) - k)  # curves on each other are seen, each beside the next
-        below.step(angle, result.loaded_pairs[index], where="mid", color=colours[index], linewidth=width, label=told)
+        below.step(angle, result.loaded_pairs[index], where="mid", color=colours[index], linewidth=width, label=name)
         if len(shown) > 1:
             axes.set_title(torque_label(result, index), fontsize="small")
     below.set_ylabel("pairs\nunder load")
@@ -175,8 +175,8 @@ def plot_face_load(result: MeshCycle) -> Figure:
         maps = [one for row in result.maps[torque][:-1] for one in row if one is not None]
         forces = np.sum([np.zeros(len(borders) - 1), *(strip_forces(pair, one, borders)[0] for one in maps)], axis=0)
         factor = result.face_load_factor[torque]
-        told = label if np.isnan(factor) or label.startswith("_") else f"{label}, K_Hβ = {factor:.3g}"
-        axes.stairs(forces / (len(result.path) - 1) / np.diff(borders), borders, color=colour, label=told)
+        text = label if np.isnan(factor) or label.startswith("_") else f"{label}, K_Hβ = {factor:.3g}"
+        axes.stairs(forces / (len(result.path) - 1) / np.diff(borders), borders, color=colour, label=text)
     axes.set(xlabel=frame.labels[0], ylabel="normal force per face width [N/mm]")
     axes.set_ylim(bottom=0.0)
     about = f"load over the face width, {loads(result)}", "mean over a pitch", range_of_positions(result)
@@ -204,8 +204,8 @@ def plot_harmonics(result: MeshCycle) -> Figure:
     styles = list(torque_styles(result))
     places = draw_orders(axes, [(label, colour, amplitudes[torque]) for torque, label, colour, _ in styles])
     for torque, _, colour, marker in styles:
-        told = amplitudes[torque] >= PART_WITH_PHASE * np.fmax.reduce(amplitudes[torque])
-        below.plot(places[torque][told], phases[torque][told], marker, color=colour)
+        with_phase = amplitudes[torque] >= PART_WITH_PHASE * np.fmax.reduce(amplitudes[torque])
+        below.plot(places[torque][with_phase], phases[torque][with_phase], marker, color=colour)
     below.set(ylim=(-190.0, 190.0), yticks=range(-180, 181, 90), xlabel=axes.get_xlabel())
     below.set_ylabel(f"phase [deg], of amplitudes\nfrom {PART_WITH_PHASE:.0%} of the largest on")
     below.grid(alpha=0.3)

@@ -195,7 +195,7 @@ def told_of_variants(study: xarray.Dataset, values: Array | None = None) -> str:
     doubtful = sum(bool(lines) for lines in study["warnings"].values.tolist())
     more = {"without this figure": without, "with accuracy warnings": doubtful}
     return f"{len(status)} variant{'s' * (len(status) != 1)}: " + ", ".join(
-        counts + [f"{count} {told}" for told, count in more.items() if count]
+        counts + [f"{count} {what}" for what, count in more.items() if count]
     )
 
 
@@ -268,10 +268,10 @@ def _why_unranked(ranking: pandas.DataFrame) -> list[str]:
     status, reasons = (ranking.loc[ranking["rank"].isna(), name].tolist() for name in ("status", "reason"))
     if not status:
         return []
-    told = [
+    shown = [
         f"{word}: {reason}" if reason else "without this figure" for word, reason in zip(status, reasons, strict=True)
     ]
-    counted = Counter(told).most_common()
+    counted = Counter(shown).most_common()
     lines = [f"{textwrap.shorten(line, LONGEST_REASON)} ({count} of them)" for line, count in counted[:MOST_REASONS]]
     more = [f"and {len(counted) - MOST_REASONS} more reason{'s' * (len(counted) > MOST_REASONS + 1)}"] * (
         len(counted) > MOST_REASONS

@@ -245,8 +245,8 @@ def plot_ease_off(ease_off: EaseOffMap, title: str = "") -> Figure:
     filled = axes.contourf(x, y, height, levels, cmap=COLOURS)
     if height.max() > SMALLEST_SPAN_um:
         lines = axes.contour(x, y, height, levels[1:-1], colors="black", linewidths=0.5)
-        for told in axes.clabel(lines, fmt="%.3g", fontsize="x-small"):
-            told.set_path_effects([withStroke(linewidth=2.0, foreground="white")])
+        for label in axes.clabel(lines, fmt="%.3g", fontsize="x-small"):
+            label.set_path_effects([withStroke(linewidth=2.0, foreground="white")])
     if not ease_off.covered.all():
         axes.contourf(x, y, ease_off.covered, [-0.5, 0.5], colors="none", hatches=["///"])
     figure.colorbar(filled, ax=axes, label="ease-off, material removed along the normal [µm]", format="%.3g")

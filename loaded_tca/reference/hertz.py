@@ -112,8 +112,8 @@ class PointContact:
             stresses = self.axis_stresses(self.semi_minor * math.exp(log_depth), poisson_ratio)
             return 0.5 * (min(stresses) - max(stresses)) / self.max_pressure
 
-        found = minimize_scalar(opposite, bounds=(-3.0, 1.0), method="bounded", options={"xatol": 1e-9})
-        return -float(found.fun) * self.max_pressure, self.semi_minor * math.exp(float(found.x))
+        optimum = minimize_scalar(opposite, bounds=(-3.0, 1.0), method="bounded", options={"xatol": 1e-9})
+        return -float(optimum.fun) * self.max_pressure, self.semi_minor * math.exp(float(optimum.x))
 
 
 @dataclass(frozen=True)

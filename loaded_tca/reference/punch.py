@@ -196,7 +196,7 @@ class RoundedPunch:
         ends = (self.half_width, self.contact_half_width) if self.half_width > 0.0 else (0.0, 0.0)
         if ends[1] == 0.0:
             return 0.0, float(self.pressure(0.0))
-        found = minimize_scalar(
+        optimum = minimize_scalar(
             lambda x: -float(self.pressure(x)), bounds=ends, method="bounded", options={"xatol": 1e-9}
         )
-        return float(found.x), -float(found.fun)
+        return float(optimum.x), -float(optimum.fun)

@@ -121,11 +121,11 @@ def svg_of(figure: Figure, prefix: str, title: str) -> str:
     words = title.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
     about = f'role="img" aria-label="{words}" xmlns="http://www.w3.org/2000/svg"'
     links = 'xmlns:xlink="http://www.w3.org/1999/xlink"'
-    found = SIZE.search(drawing)
-    assert found
-    width, height = float(found[1]), float(found[2])
+    size = SIZE.search(drawing)
+    assert size
+    width, height = float(size[1]), float(size[2])
     shape = f'viewBox="0 0 {width:g} {height:g}" style="max-width:{width:g}pt"' + ' class="tall"' * (height > width)
-    return f"<svg {about} {links} {shape}>{drawing[found.end() :].strip()}"
+    return f"<svg {about} {links} {shape}>{drawing[size.end() :].strip()}"
 
 
 def render(template: str, **content: Any) -> str:

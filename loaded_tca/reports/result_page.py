@@ -67,16 +67,16 @@ def scene_content(scene: Scene) -> dict[str, Any]:
 
 def explained(sentences: Sequence[str]) -> list[tuple[list[str], Kind | None]]:
     """Return accuracy warnings, those for one reason together, with what is to be known of them."""
-    found: dict[Kind | None, list[str]] = {}
+    sentences_of: dict[Kind | None, list[str]] = {}
     for sentence in sentences:
-        found.setdefault(kind_of(sentence), []).append(sentence)
-    return [(told, known) for known, told in found.items()]
+        sentences_of.setdefault(kind_of(sentence), []).append(sentence)
+    return [(alike, known) for known, alike in sentences_of.items()]
 
 
 def _materials(scene: Scene) -> tuple[str, ...]:
     """Modulus and ratio of both gears, once if they are the same."""
-    told = (f"E = {1e-3 * one.youngs_modulus_MPa:g} GPa, ν = {one.poisson_ratio:g}" for one in scene.materials)
-    return tuple(dict.fromkeys(told))
+    materials = (f"E = {1e-3 * one.youngs_modulus_MPa:g} GPa, ν = {one.poisson_ratio:g}" for one in scene.materials)
+    return tuple(dict.fromkeys(materials))
 
 
 def _load_cases(result: MeshCycle, figures: Sequence[Figures]) -> Table:

@@ -66,13 +66,13 @@ def study_content(study: xarray.Dataset, rank_by: str | None = None) -> dict[str
     combinations = rank_combinations(study, by) if sampled else None
     grouped = combinations is not None and bool(combinations["rank"].notna().any())
     scene = parse_scene(study.attrs["scene_toml"], source="scene_toml", folder=None)
-    lines = Counter(line for told in study["warnings"].values.tolist() for line in told.splitlines())
+    lines = Counter(line for warned in study["warnings"].values.tolist() for line in warned.splitlines())
     by_reason: dict[str, list[str]] = {}
     for line in lines:
         by_reason.setdefault(without_place(line), []).append(line)
     concerned = {
-        reason: sum(any(line in told.splitlines() for line in found) for told in study["warnings"].values.tolist())
-        for reason, found in by_reason.items()
+        reason: sum(any(line in warned.splitlines() for line in places) for warned in study["warnings"].values.tolist())
+        for reason, places in by_reason.items()
     }
     variants = study.sizes["sample"]
     figures = plot_study(study, rank_by=by)
@@ -195,9 +195,9 @@ def design_content(design: DesignResult) -> dict[str, Any]:
     ----------
     design : DesignResult
     """
-    found = design.dataset
-    scene = parse_scene(found.attrs["scene_toml"], source="scene_toml", folder=None)
-    minimised = FIGURES[found.attrs["figure"]]
+    data = design.dataset
+    scene = parse_scene(data.attrs["scene_toml"], source="scene_toml", folder=None)
+    minimised = FIGURES[data.attrs["figure"]]
     figures = {
         "before_and_after": plot_before_and_after(design),
         "peak_to_peak": plot_peak_to_peak_over_torque(design),
@@ -205,7 +205,7 @@ def design_content(design: DesignResult) -> dict[str, Any]:
     return {
         "title": scene.title or "Design",
         **scene_content(scene),
-        "objective": f"{found.attrs['objective']} of the {minimised.text}"
+        "objective": f"{data.attrs['objective']} of the {minimised.text}"
         + (f" [{minimised.unit}]" if minimised.unit != "1" else ""),
         "objectives": Table(
             (
@@ -215,13 +215,13 @@ def design_content(design: DesignResult) -> dict[str, Any]:
             ("", "start", "optimum"),
         ),
         "values": _values(design),
-        "limits": [*map(_told_limit, found.attrs["limits"].splitlines())],
+        "limits": [*map(_told_limit, data.attrs["limits"].splitlines())],
         "scattered": _scattered(design),
-        "seeds": found.attrs.get("seeds", ""),
+        "seeds": data.attrs.get("seeds", ""),
         "evaluations": design.evaluations,
-        "samples": found.sizes["sample"],
+        "samples": data.sizes["sample"],
         "figures": _figures(design),
-        "warnings": explained(found.attrs["warnings"].splitlines()),
+        "warnings": explained(data.attrs["warnings"].splitlines()),
         "pictures": pictures_of(figures, DESIGN_CAPTIONS, scene.title),
         "optimum_toml": scene.with_changes(design.optimum).to_toml(),
     }
@@ -238,8 +238,8 @@ def _told_limit(limit: str) -> str:
 
 def _values(design: DesignResult) -> Table:
     """What was designed, within which range."""
-    found = design.dataset
-    bounds = found["range"].values.tolist() if "range" in found else [(math.nan, math.nan)] * len(design.start)
+    data = design.dataset
+    bounds = data["range"].values.tolist() if "range" in data else [(math.nan, math.nan)] * len(design.start)
     rows = (
         (label_of(key), key, *(shown(one, key) for one in (*ends, before, design.optimum[key])))
         for (key, before), ends in zip(design.start.items(), bounds, strict=True)
@@ -249,26 +249,26 @@ def _values(design: DesignResult) -> Table:
 
 def _scattered(design: DesignResult) -> Table | None:
     """What scatters, how, and over which values."""
-    found = design.dataset
+    data = design.dataset
     rows = []
-    for line in found.attrs.get("distributions", "").splitlines():
+    for line in data.attrs.get("distributions", "").splitlines():
         key, _, words = line.partition(": ")
-        values = found["scatter"].sel(scatter_key=key).values
+        values = data["scatter"].sel(scatter_key=key).values
         rows.append((label_of(key), key, words, shown(values.min(), key), shown(values.max(), key)))
     return Table(tuple(rows), ("what scatters", "key", "how", "from", "to"), of_words=True) if rows else None
 
 
 def _figures(design: DesignResult) -> Table:
     """The worst value over the samples of each figure under each torque, of start and optimum."""
-    found = design.dataset
+    data = design.dataset
     rows = []
     texts = {name: (figure.unit, figure.text) for name, figure in FIGURES.items()}
     for name, (unit, words) in {"peak_pressure": PEAK, **texts}.items():
-        if name not in found:
+        if name not in data:
             continue
-        values = found[name].max("position") if name == "peak_pressure" else found[name]
+        values = data[name].max("position") if name == "peak_pressure" else data[name]
         worst = np.fmax.reduce(values.transpose("design", "sample", "torque").values, axis=1)
-        for k, torque in enumerate(found["torque"].values.tolist()):
+        for k, torque in enumerate(data["torque"].values.tolist()):
             label = words + (f" [{unit.replace('um', 'µm')}]" if unit != "1" else "")
             rows.append((label, f"{1e-3 * torque:.4g}", *(shown(value, name) for value in worst[:, k].tolist())))
     return Table(tuple(rows), ("largest of the samples", "pinion torque [N m]", "start", "optimum"))

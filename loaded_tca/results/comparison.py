@@ -82,7 +82,7 @@ class Comparison:
     def indices(self) -> np.ndarray[tuple[int, int], np.dtype[np.int_]]:
         """Index (torque, result) of each torque in each result."""
         named = [_torques(result) for result in self.results.values()]
-        return np.array([[known.index(told) for known in named] for told in map(_told, self.torque)])
+        return np.array([[known.index(torque) for known in named] for torque in map(_told, self.torque)])
 
     @cached_property
     def differing_keys(self) -> dict[str, tuple[Any, ...]]:
@@ -211,8 +211,8 @@ def _cells(name: str, value: Array, difference: Array, relative: Array) -> Itera
     yield shown(value[0], name)
     for one, change, part in zip(value[1:], difference[1:], relative[1:], strict=True):
         yield shown(one, name)
-        told = shown(change, name)
-        yield f"+{told}" if change > 0.0 else told
+        text = shown(change, name)
+        yield f"+{text}" if change > 0.0 else text
         yield f"({100.0 * part:+.1f} %)" if math.isfinite(part) else ""
 
 

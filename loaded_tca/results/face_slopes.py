@@ -212,13 +212,13 @@ def largest_cut(grids: Sequence[LoadedGrid]) -> list[bool]:
 
 def peak_cut(grids: Sequence[LoadedGrid], peaks: Sequence[SlicePeak | None]) -> list[bool]:
     """Whether an edge cuts the slices over which the peak pressure of each grid is averaged, or those beside them."""
-    found = []
+    marks = []
     for grid, peak in zip(grids, peaks, strict=True):
         if cut := peak is not None:
             borders, reach = peak.slices.borders, 0.5 * peak.slices.length + peak.slices.step
             cut = _cut(grid, (borders[1:] > peak.place[1] - reach) & (borders[:-1] < peak.place[1] + reach))
-        found.append(cut)
-    return found
+        marks.append(cut)
+    return marks
 
 
 def _cut(grid: LoadedGrid, slices: Mask) -> bool:
@@ -235,8 +235,8 @@ def warn_of_strips(keys: Sequence[str], slopes: Array, kinks: Array, lacking: Se
     worst = np.nan_to_num(sizes).max(axis=0, initial=0.0)
     if (worst > TOLD).any():
         own = int(worst.argmax())
-        told = {"key": keys[own], "count": np.count_nonzero(worst > TOLD), "keys": len(keys)}
-        sentence = kinds.STRIPS_ALIKE.sentence(lacking=min(lacking), size=worst[own], **told)
+        words = {"key": keys[own], "count": np.count_nonzero(worst > TOLD), "keys": len(keys)}
+        sentence = kinds.STRIPS_ALIKE.sentence(lacking=min(lacking), size=worst[own], **words)
         give_accuracy_warning(sentence, stacklevel=stacklevel + 1)
 
 
@@ -252,10 +252,10 @@ def warn_of_edges(keys: Sequence[str], slopes: Array, kinks: Array, length: floa
     largest = np.nanmax(np.abs(slopes), axis=1)
     scale = np.where(over_positions > LEVEL * largest, over_positions, largest)
     sizes = np.abs(kinks).max(axis=1)
-    told = (sizes > TOLD * scale).any(axis=0)
-    if told.any():
-        own = int(np.where(told, sizes.max(axis=0), -1.0).argmax())
+    above = (sizes > TOLD * scale).any(axis=0)
+    if above.any():
+        own = int(np.where(above, sizes.max(axis=0), -1.0).argmax())
         size, unit = length * float(sizes[:, own].max()), keys[own].rpartition("_")[2]
-        counted = {"key": keys[own], "count": np.count_nonzero(told), "keys": len(keys)}
+        counted = {"key": keys[own], "count": np.count_nonzero(above), "keys": len(keys)}
         sentence = kinds.EDGES_AT_ONE_PLACE.sentence(size=size, unit=unit, **counted)
         give_accuracy_warning(sentence, stacklevel=stacklevel + 1)

@@ -193,29 +193,31 @@ def labelled(name: str, label: str) -> str:
     return f"{label} [{unit}]" if (unit := unit_of(name)) else label
 
 
-def length(found: Sensitivities) -> float:
+def length(sensitivities: Sensitivities) -> float:
     """Of a transmission error at the base circle of the wheel [um/rad]."""
-    return 1e3 * found.result.wheel_base_radius
+    return 1e3 * sensitivities.result.wheel_base_radius
 
 
-def slope_of_mean_error(found: Sensitivities) -> Array:
+def slope_of_mean_error(sensitivities: Sensitivities) -> Array:
     """Derivatives of the mean transmission error (torque, key) [um per unit]."""
-    means = [[mean_over_a_pitch(slope) for slope in slopes.T] for slopes in found.transmission_error]
-    return length(found) * np.array(means)
+    means = [[mean_over_a_pitch(slope) for slope in slopes.T] for slopes in sensitivities.transmission_error]
+    return length(sensitivities) * np.array(means)
 
 
-def slope_of_peak(found: Sensitivities) -> Array:
+def slope_of_peak(sensitivities: Sensitivities) -> Array:
     """Derivatives of the peak pressure at the place which has the highest one (torque, key) [MPa per unit]."""
-    peaks = [found.result.peak_contact(torque) for torque in range(len(found.result.torque))]
-    unknown = np.full(len(found.keys), math.nan)
-    return np.array([unknown if at is None else found.peak_pressure[torque][at] for torque, at in enumerate(peaks)])
+    peaks = [sensitivities.result.peak_contact(torque) for torque in range(len(sensitivities.result.torque))]
+    unknown = np.full(len(sensitivities.keys), math.nan)
+    return np.array(
+        [unknown if at is None else sensitivities.peak_pressure[torque][at] for torque, at in enumerate(peaks)]
+    )
 
 
 def slope_of_root_tension(gear: int) -> Callable[[Sensitivities], Array]:
     """Derivatives of the root tension of a gear at the position that has the largest (torque, key) [MPa per unit]."""
 
-    def slope(found: Sensitivities) -> Array:
-        at = np.nan_to_num(found.result.root_tension[..., gear]).argmax(axis=1)
-        return np.asarray(found.root_tension[np.arange(len(at)), at, gear])
+    def slope(sensitivities: Sensitivities) -> Array:
+        at = np.nan_to_num(sensitivities.result.root_tension[..., gear]).argmax(axis=1)
+        return np.asarray(sensitivities.root_tension[np.arange(len(at)), at, gear])
 
     return slope

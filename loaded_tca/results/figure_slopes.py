@@ -81,14 +81,14 @@ def peak_pressure_slopes(
         peak itself. Of the others that of their largest slice pressure, the place along the contact and the curvature
         there held: p dq/2q. Zero at the cap.
     """
-    found = []
+    of_contacts = []
     for (_, separation, pressure), peak in zip(contacts, peaks, strict=True):
         if peak is not None:
-            found.append(np.broadcast_to(peak.slopes, pressure.shape).copy())
+            of_contacts.append(np.broadcast_to(peak.slopes, pressure.shape).copy())
         else:
             slopes = smooth_peak_slopes(pressure, pair.max_pressure)
-            found.append(slopes / (separation.spacing[0] * separation.spacing[1]))
-    return found
+            of_contacts.append(slopes / (separation.spacing[0] * separation.spacing[1]))
+    return of_contacts
 
 
 def smooth_peak_slopes(pressure: Array, max_pressure: float | None = None) -> Array:

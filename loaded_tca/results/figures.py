@@ -65,7 +65,7 @@ def key_figures(result: CycleNumbers, torque: int) -> dict[str, float]:
 
 def _of_order(order: int) -> Figure:
     """Amplitude of an order of the tooth mesh."""
-    slope = Slope(3, "order 1", lambda found: length(found) * found.harmonics(1)[:, 0])
+    slope = Slope(3, "order 1", lambda slopes: length(slopes) * slopes.harmonics(1)[:, 0])
     return Figure(
         of=lambda under: under.length * float(under.harmonics[order - 1]),
         label=f"  order {order} of the tooth mesh",
@@ -187,7 +187,7 @@ FIGURES: dict[str, Figure] = {
         is_load_case=True,
         is_scattered=True,
         rank=1,
-        slope=Slope(2, "peak to peak", lambda found: length(found) * found.peak_to_peak),
+        slope=Slope(2, "peak to peak", lambda slopes: length(slopes) * slopes.peak_to_peak),
     ),
     **{f"transmission_error_order_{order}_um": _of_order(order) for order in range(1, ORDERS + 1)},
     "unloaded_transmission_error_mean_arcsec": Figure(
@@ -230,7 +230,7 @@ FIGURES: dict[str, Figure] = {
         is_load_case=True,
         is_scattered=True,
         rank=3,
-        slope=Slope(4, "K_Hbeta", lambda found: found.face_load_factor),
+        slope=Slope(4, "K_Hbeta", lambda slopes: slopes.face_load_factor),
         accuracy=saying("from 30 strips of the face"),
     ),
     "face_load_factor_error": Figure(of=lambda under: under.face_load_factor_error, is_part=True),

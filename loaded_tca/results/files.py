@@ -62,15 +62,15 @@ def arrays_of(dataset: xarray.Dataset, parts: Mapping[str, Part]) -> dict[str, A
     """
     problems, arrays = [], {}
     for name, (dimensions, _, _) in parts.items():
-        found = dataset.variables.get(name)
-        if found is None:
+        variable = dataset.variables.get(name)
+        if variable is None:
             problems.append(f"{name}: missing")
-        elif found.dims != dimensions:
-            problems.append(f"{name}: found dimensions {found.dims}, expected {dimensions}")
-        elif found.dtype.kind not in "fib":
+        elif variable.dims != dimensions:
+            problems.append(f"{name}: found dimensions {variable.dims}, expected {dimensions}")
+        elif variable.dtype.kind not in "fib":
             problems.append(f"{name}: no numbers")
         else:
-            arrays[name] = found.values.astype(int) if found.dtype.kind == "i" else found.values
+            arrays[name] = variable.values.astype(int) if variable.dtype.kind == "i" else variable.values
     if problems:
         raise InputError(problems)
     return arrays

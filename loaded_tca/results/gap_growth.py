@@ -72,9 +72,9 @@ class GapGrowth:
         """The same as rows ``at`` of so many keys, of which the others change nothing."""
 
         def spread(values: Array) -> Array:
-            found = np.zeros((count, *values.shape[1:]))
-            found[list(at)] = values
-            return found
+            rows = np.zeros((count, *values.shape[1:]))
+            rows[list(at)] = values
+            return rows
 
         return GapGrowth(*(spread(getattr(self, one.name)) for one in fields(self)))
 
@@ -106,22 +106,22 @@ def gap_growth(
     held = contact_changes(
         pair, [grid.contact for grid in grids], separations, [grid.active for grid in grids], changes
     )
-    found, points = held.followed(tangents.gathered(grid.pressure for grid in grids), separations), held.at_points
+    growth, points = held.followed(tangents.gathered(grid.pressure for grid in grids), separations), held.at_points
     # the gears of a pair are turned back into contact first, then closed under load
     touching = np.array([path.transmission_error for path in result.paths])[pairs, positions]
     turned = pair.driving * (touching - result.transmission_error[places[:2]])
     wheel_levers = np.array([grid.contact.wheel_lever for grid in grids])
-    gaps, kinks = found.gaps, np.zeros(points.turns.shape)
+    gaps, kinks = growth.gaps, np.zeros(points.turns.shape)
     for row, closed in zip(gaps, points.turns * wheel_levers - turned * points.levers[1], strict=True):
         row += closed[tangents.grid]
     for i, (first, last) in enumerate(pairwise([0, *tangents.ends.tolist()])):
-        if (own := found.covers[:, first:last]).any():
+        if (own := growth.covers[:, first:last]).any():
             gaps[:, first:last] += _released(grids[i], own)
-        if (own := found.kinks[:, first:last]).any():
+        if (own := growth.kinks[:, first:last]).any():
             kinks[:, i] = _shorter(grids[i], own)
     free_edges = result.scene.analysis.free_edges
-    _add_moved_lines(pair, tangents, bending, changes, found.motions, gaps, free_edges=free_edges)
-    return GapGrowth(gaps, kinks, result.normal_force[places] * points.levers[0], found.motions, points.turns)
+    _add_moved_lines(pair, tangents, bending, changes, growth.motions, gaps, free_edges=free_edges)
+    return GapGrowth(gaps, kinks, result.normal_force[places] * points.levers[0], growth.motions, points.turns)
 
 
 def _released(grid: LoadedGrid, covers: Array) -> Array:
@@ -208,13 +208,13 @@ def _bent(tangents: Tangents, bending: BendingModel, separations: Sequence[Separ
     lines = [
         (grid.number, LoadedSlices.of(one, own)) for grid, one, own in zip(grids, separations, loaded, strict=True)
     ]
-    found = [bending.within(*line) @ force for line, force in zip(lines, forces, strict=True)]
+    deflections = [bending.within(*line) @ force for line, force in zip(lines, forces, strict=True)]
     for state in np.split(np.arange(len(grids)), np.flatnonzero(np.diff(tangents.state)) + 1):
         for i, j in combinations(state.tolist(), 2):
             between = bending.between(lines[i], lines[j])
-            found[i] += between @ forces[j]
-            found[j] += between.T @ forces[i]
-    for force, own, bent in zip(whole, loaded, found, strict=True):
+            deflections[i] += between @ forces[j]
+            deflections[j] += between.T @ forces[i]
+    for force, own, bent in zip(whole, loaded, deflections, strict=True):
         force[own] = bent
     return np.concatenate(whole)
 
@@ -264,13 +264,13 @@ def curvature_growth(
 
     def grown(gears: GearPair, turns: Array, motions: Array) -> Array:
         """Logarithm (grids,) of line load times curvature at the peaks, the wheel turned and the grids moved."""
-        found = _log_curvature(gears, grids, turns, motions)(_middles(peaks, along), along)[:, 0]
+        relative = _log_curvature(gears, grids, turns, motions)(_middles(peaks, along), along)[:, 0]
         if starts.size:
             bends = _log_curvature(gears, [grids[i] for i in at], turns[starts], motions[starts])
-            found[starts] = _at_starts(bends, [peaks[i] for i in at], level, rises, ends[starts])
-        return found
+            relative[starts] = _at_starts(bends, [peaks[i] for i in at], level, rises, ends[starts])
+        return relative
 
-    found = np.zeros((len(changes), len(grids)))
+    relative = np.zeros((len(changes), len(grids)))
     for key, change in enumerate(changes):
         if change is None:
             continue
@@ -286,8 +286,8 @@ def curvature_growth(
         of_motion = [grown(pair, 0.0 * turns, part * step[:, None] * motions) for part in (-1.0, 1.0)]
         for (low, high), width in ((of_shape, change.difference), (of_motion, 2.0 * step)):
             change_of_log = np.where(np.abs(high - low) < JUMP, high - low, 0.0)
-            found[key] += np.divide(change_of_log, width, out=np.zeros(len(grids)), where=np.asarray(width) > 0.0)
-    return found
+            relative[key] += np.divide(change_of_log, width, out=np.zeros(len(grids)), where=np.asarray(width) > 0.0)
+    return relative
 
 
 def _middles(peaks: Sequence[SlicePeak], along: Array) -> Array:
@@ -322,6 +322,6 @@ def _at_starts(
         first = np.clip(beyond.argmax(axis=1), 1, None)[:, None]
         ends = np.take_along_axis(places, first + np.array([-1, 0]), axis=1)
     place = np.where(rises, ends[:, 1], ends[:, 0])[:, None]  # on the side with the larger curvature
-    found = bends(_middles(peaks, place), place)[:, 0]
+    logarithms = bends(_middles(peaks, place), place)[:, 0]
     loads = [peak.slices.at(np.array([y, peak.place[1]]))[2] for peak, (y,) in zip(peaks, place, strict=True)]
-    return np.asarray(found + [math.log(there / before) for there, before in loads])
+    return np.asarray(logarithms + [math.log(there / before) for there, before in loads])

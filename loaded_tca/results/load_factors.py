@@ -202,15 +202,15 @@ def strip_motions(pair: GearPair, one: PressureMap, borders: Array, strip: int) 
         (np.where(swap, second, first), np.where(swap, first, second)) for first, second in (ends, rates)
     )
     width = np.maximum(high - low, ROUNDING * (borders[1] - borders[0]))
-    found = np.zeros(8)
+    growth = np.zeros(8)
     for border, sign in ((strip, -1.0), (strip + 1, 1.0)):
         if 0 < border < len(borders) - 1:
             part, share = (borders[border] - low) / width, border / (len(borders) - 1)
             own = np.zeros(8)
             own[6:] = 1.0 - share, share
             passed = (own[:, None] - 0.5 * (lower + higher)) / width
-            found += sign * (passed * (force * np.maximum(1.0 - np.abs(part - 0.5), 0.0))).sum(axis=1)
-    return found
+            growth += sign * (passed * (force * np.maximum(1.0 - np.abs(part - 0.5), 0.0))).sum(axis=1)
+    return growth
 
 
 def strip_borders(pair: GearPair, path: ContactPath) -> Array:

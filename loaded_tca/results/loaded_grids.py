@@ -65,8 +65,8 @@ def _unloaded_contacts(pair: GearPair, angles: Array, *, alone: bool) -> tuple[l
         path = trace_contact(pair, angles)
         return [{0: path[n]} for n in range(len(path))], 1
     mesh = trace_teeth(pair, angles)
-    found = [{one.pair: one.contact for one in tooth_pairs_at(mesh, n)} for n in range(len(mesh))]
-    return found, max(farthest_apart(mesh), 1)
+    contacts = [{one.pair: one.contact for one in tooth_pairs_at(mesh, n)} for n in range(len(mesh))]
+    return contacts, max(farthest_apart(mesh), 1)
 
 
 def _separations(pair: GearPair, contacts: Sequence[ContactPoint], maps: Sequence[PressureMap]) -> list[Separation]:
@@ -83,12 +83,12 @@ def _separations(pair: GearPair, contacts: Sequence[ContactPoint], maps: Sequenc
             boxes=[Box.of(one) for one in cut_maps],
         )
     )
-    found = []
+    separations = []
     for one, bend, cut in zip(maps, bends, ends, strict=True):
         whole = np.ones(one.gap.shape)
         place = one.x, one.y, one.spacing, one.origin, one.axes, bend.along_axes(one.axes)
         made = next(sampled) if cut else Separation(one.gap, *place, whole, one.gap, one.force_line)
         if not isinstance(made, Separation):
             raise made
-        found.append(replace(made, force_line=one.force_line))
-    return found
+        separations.append(replace(made, force_line=one.force_line))
+    return separations

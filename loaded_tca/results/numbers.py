@@ -86,8 +86,8 @@ class CycleNumbers:
     @property
     def warnings(self) -> tuple[str, ...] | None:
         """Sentences of the accuracy warnings of the analysis; None if the file of the result does not have them."""
-        told = self.dataset.attrs.get("warnings")
-        return None if told is None else tuple(str(told).splitlines())
+        sentences = self.dataset.attrs.get("warnings")
+        return None if sentences is None else tuple(str(sentences).splitlines())
 
     @cached_property
     def gear_pair(self) -> GearPair:

@@ -77,11 +77,13 @@ def root_stress_arrays(
     maps : Maps
     """
     with one_blas_thread():  # the matrices are small: threads waiting for each other cost more
-        found = [root_stress_of_gear(pair, gear, model, numbers, known, maps) for gear, model in enumerate(models)]
-    arrays = {name: np.stack([one[name] for one in found], axis=-1) for name in ROOT_QUANTITIES if name in found[0]}
+        by_gear = [root_stress_of_gear(pair, gear, model, numbers, known, maps) for gear, model in enumerate(models)]
+    arrays = {name: np.stack([one[name] for one in by_gear], axis=-1) for name in ROOT_QUANTITIES if name in by_gear[0]}
     for name in ("root_tension_place", "root_compression_place"):
         arrays[name] = np.moveaxis(arrays[name], -1, -2)
-    return arrays | {f"{gear}_{name}": one[name] for gear, one in zip(GEARS, found, strict=True) for name in ON_FILLETS}
+    return arrays | {
+        f"{gear}_{name}": one[name] for gear, one in zip(GEARS, by_gear, strict=True) for name in ON_FILLETS
+    }
 
 
 def root_stress_of_gear(
@@ -227,20 +229,20 @@ def root_figures(result: CycleNumbers, torque: int) -> dict[str, float]:
     torque : int
         Index of the torque.
     """
-    found: dict[str, float] = {}
+    figures: dict[str, float] = {}
     nominal = [float(result.torque[torque]) * per_torque for per_torque in result.scene.nominal_root_stress]
     ratio, factor = result.scene.tooth_height_over_width, float(result.face_load_factor[torque])
     of_roots = math.nan if math.isnan(ratio + factor) else face_load_factor(max(1.0, factor), ratio)
     gears = result.gear_pair.pinion, result.gear_pair.wheel
     for gear, name in enumerate(GEARS):
-        found[f"{name}_rim_thickness_factor_iso_6336"] = math.nan if math.isnan(ratio) else rim_factor(gears[gear])
-        found |= _extreme(result, torque, gear, "root_tension") | _extreme(result, torque, gear, "root_compression")
-        found[f"{name}_root_stress_ratio"] = float(result.root_stress_ratio[torque, gear])
-        found[f"{name}_nominal_root_stress_iso_6336_MPa"] = nominal[gear]
+        figures[f"{name}_rim_thickness_factor_iso_6336"] = math.nan if math.isnan(ratio) else rim_factor(gears[gear])
+        figures |= _extreme(result, torque, gear, "root_tension") | _extreme(result, torque, gear, "root_compression")
+        figures[f"{name}_root_stress_ratio"] = float(result.root_stress_ratio[torque, gear])
+        figures[f"{name}_nominal_root_stress_iso_6336_MPa"] = nominal[gear]
         factors = zip(FACTORS, result.scene.root_factors[gear], strict=True)
-        found |= {f"{name}_{what}_factor_iso_6336": value for what, value in factors}
-        found[f"{name}_root_stress_iso_6336_MPa"] = nominal[gear] * of_roots
-    return found | {"root_face_load_factor_iso_6336": of_roots}
+        figures |= {f"{name}_{what}_factor_iso_6336": value for what, value in factors}
+        figures[f"{name}_root_stress_iso_6336_MPa"] = nominal[gear] * of_roots
+    return figures | {"root_face_load_factor_iso_6336": of_roots}
 
 
 def rim_factor(gear: Gear) -> float:

@@ -110,19 +110,19 @@ class Sensitivities:
 
     def _by_pair(self, values: Array) -> Array:
         """Numbers (keys, grids) as (torque, position, pair, key)."""
-        found = np.full((*self.result.load_share.shape, len(self.keys)), np.nan)
-        found[*self._grids] = values.T
-        return found
+        by_pair = np.full((*self.result.load_share.shape, len(self.keys)), np.nan)
+        by_pair[*self._grids] = values.T
+        return by_pair
 
     def _of_each_pair(self, slopes: Array) -> Array:
         """Changes (keys, grids) of a number of each grid whose derivatives by its forces are ``slopes`` (n,)."""
         state, grid = self.tangents.state, self.tangents.grid
-        found, place = np.zeros((len(self.keys), state.size)), np.arange(state.size) - np.searchsorted(state, state)
+        changes, place = np.zeros((len(self.keys), state.size)), np.arange(state.size) - np.searchsorted(state, state)
         for number in range(place.max() + 1):
             own = place == number
             change = self.tangents.functional_change(np.where(own[grid], slopes, 0.0), self.growth.gaps, self.torques)
-            found[:, own] = change[:, state[own]]
-        return found
+            changes[:, own] = change[:, state[own]]
+        return changes
 
     @cached_property
     def transmission_error(self) -> Array:
@@ -131,13 +131,13 @@ class Sensitivities:
         That by the torque is one over ``MeshCycle.mesh_stiffness``, as an angle, which holds the places at which forces
         bend the teeth: that is 1e-4 of it.
         """
-        found = np.full((*self.result.transmission_error.shape, len(self.keys)), np.nan)
+        slopes = np.full((*self.result.transmission_error.shape, len(self.keys)), np.nan)
         change = self.tangents.rotation_change(self.growth.gaps, self.torques)
-        found[*self.places] = -self.result.gear_pair.driving * change.T
+        slopes[*self.places] = -self.result.gear_pair.driving * change.T
         if self.growth.kinks.any():
             length = MICROMETRES * self.result.gear_pair.base_radii[1]
-            warn_of_edges(self.keys, found, self.transmission_error_kinks, length, stacklevel=3)
-        return found
+            warn_of_edges(self.keys, slopes, self.transmission_error_kinks, length, stacklevel=3)
+        return slopes
 
     @cached_property
     def transmission_error_kinks(self) -> Array:
@@ -151,9 +151,9 @@ class Sensitivities:
         result, (torque, position, _) = self.result, self._grids
         unloaded = np.array([path.transmission_error for path in result.paths])[self.pairs, position]
         closed = np.abs(result.transmission_error[torque, position] - unloaded) * result.load_share[*self._grids]
-        found = np.zeros((*result.transmission_error.shape, len(self.keys)))
-        np.add.at(found, (torque, position), (self.growth.kinks * closed).T)
-        return found
+        kinks = np.zeros((*result.transmission_error.shape, len(self.keys)))
+        np.add.at(kinks, (torque, position), (self.growth.kinks * closed).T)
+        return kinks
 
     @cached_property
     def load_share(self) -> Array:
@@ -161,10 +161,10 @@ class Sensitivities:
         state = self.tangents.state
         torque, share = self.result.torque[self.places[0]][state], self.result.load_share[*self._grids]
         own = self._of_each_pair(self.tangents.pinion_levers) + self.growth.lever_torques
-        found = self._by_pair((own - share * self._raised) / torque)
+        slopes = self._by_pair((own - share * self._raised) / torque)
         shared = ~np.isnan(self.result.load_share) & np.isfinite(self.transmission_error).any(axis=-1, keepdims=True)
-        found[shared & np.isnan(found).all(axis=-1)] = 0.0
-        return found
+        slopes[shared & np.isnan(slopes).all(axis=-1)] = 0.0
+        return slopes
 
     @cached_property
     def on_cut_slices(self) -> Mask:
@@ -194,9 +194,9 @@ class Sensitivities:
 
     def _where(self, marks: Iterable[bool] | Mask) -> Mask:
         """Marks of the grids as (torque, position, pair)."""
-        found = np.zeros(self.result.load_share.shape, dtype=bool)
-        found[*self._grids] = list(marks)
-        return found
+        marked = np.zeros(self.result.load_share.shape, dtype=bool)
+        marked[*self._grids] = list(marks)
+        return marked
 
     @cached_property
     def line_load(self) -> Array:
@@ -218,13 +218,13 @@ class Sensitivities:
         warn_of_contacts(self.result, kinds.PEAK_SLOPES.sentence(), self._of_changes(self.at_corners), stacklevel=3)
         pair, grids, peaks = self.result.gear_pair, self.tangents.grids, self._slice_peaks
         slopes = peak_pressure_slopes(pair, [(one.contact, one.separation, one.pressure) for one in grids], peaks)
-        found = self._of_each_pair(self.tangents.gathered(slopes))
+        by_pair = self._of_each_pair(self.tangents.gathered(slopes))
         rough = {i: peak for i, peak in enumerate(peaks) if peak is not None}
         if rough:
             at, tops = [*rough], [*rough.values()]
             grown = curvature_growth(pair, [grids[i] for i in at], tops, self.changes, self.growth.of_grids(at))
-            found[:, at] += grown * [0.5 * peak.pressure if peak.slopes.any() else 0.0 for peak in tops]
-        return self._by_pair(found)
+            by_pair[:, at] += grown * [0.5 * peak.pressure if peak.slopes.any() else 0.0 for peak in tops]
+        return self._by_pair(by_pair)
 
     @cached_property
     def _slice_peaks(self) -> list[SlicePeak | None]:
@@ -259,9 +259,9 @@ class Sensitivities:
         whole = np.bincount(self.tangents.state, parts**exponent)[self.tangents.state]
         weights = (parts / whole ** (1.0 / exponent)) ** (exponent - 1.0)
         row = self.tangents.gathered(slopes) * weights[self.tangents.grid]
-        found = np.full((*self.result.transmission_error.shape, len(self.keys)), np.nan)
-        found[*self.places] = self.tangents.functional_change(row, self.growth.gaps, self.torques).T
-        return found
+        changes = np.full((*self.result.transmission_error.shape, len(self.keys)), np.nan)
+        changes[*self.places] = self.tangents.functional_change(row, self.growth.gaps, self.torques).T
+        return changes
 
     @cached_property
     def face_load_factor(self) -> Array:
@@ -270,13 +270,13 @@ class Sensitivities:
         Where another strip of the face carries nearly as much, an AccuracyWarning tells what its derivatives are.
         """
         result = self.result
-        found = self._of_strips([None] * len(result.torque))
+        by_torque = self._of_strips([None] * len(result.torque))
         rivals = [rival_strip(result.gear_pair, result.path, rows) for rows in result.maps]
         if any(rivals):
             others = self._of_strips([None if rival is None else rival[0] for rival in rivals])
             lacking = [rival[1] for rival in rivals if rival is not None]
-            warn_of_strips(self.keys, found, others - found, lacking, stacklevel=3)
-        return found
+            warn_of_strips(self.keys, by_torque, others - by_torque, lacking, stacklevel=3)
+        return by_torque
 
     def _of_strips(self, strips: Sequence[int | None]) -> Array:
         """Derivatives (torque, key) of the factor of one strip of the face under each torque; None: the largest."""
@@ -304,7 +304,7 @@ class Sensitivities:
     def _of_root_stress(self, name: str) -> Array:
         """Of an extreme of the root stress, (torque, position, gear, key)."""
         places = getattr(self.result, f"{name}_place")
-        found = np.full((*places.shape[:-1], len(self.keys)), np.nan)
+        changes = np.full((*places.shape[:-1], len(self.keys)), np.nan)
         with one_blas_thread():
             for gear in range(places.shape[-2]):
                 rows, moved_lines = root_slopes(
@@ -316,8 +316,8 @@ class Sensitivities:
                     self.growth.motions,
                 )
                 change = self.tangents.functional_change(self.tangents.gathered(rows), self.growth.gaps, self.torques)
-                found[(*self.places, gear)] = (change + moved_lines).T
-        return found
+                changes[(*self.places, gear)] = (change + moved_lines).T
+        return changes
 
     @cached_property
     def weight_maps(self) -> tuple[tuple[tuple[Array | None, ...], ...], ...]:
@@ -326,15 +326,15 @@ class Sensitivities:
         Rotation of the wheel [rad] by one millimetre removed at a cell alone; removed at all cells it is 1/l2, and the
         transmission error falls by as much. The weights are in the ratio of dp/dT.
         """
-        found: dict[tuple[int, ...], Array] = {}
+        maps: dict[tuple[int, ...], Array] = {}
         row = self.tangents.weights / self.tangents.spread(self.tangents.stiffness)
         for place, grid, own in zip(
             self._grids.T.tolist(), self.tangents.grids, np.split(row, self.tangents.ends[:-1]), strict=True
         ):
-            found[tuple(place)] = np.zeros(grid.active.shape)
-            found[tuple(place)][grid.active] = own
+            maps[tuple(place)] = np.zeros(grid.active.shape)
+            maps[tuple(place)][grid.active] = own
         torques, positions, pairs = (range(length) for length in self.result.load_share.shape)
-        return tuple(tuple(tuple(found.get((t, n, k)) for k in pairs) for n in positions) for t in torques)
+        return tuple(tuple(tuple(maps.get((t, n, k)) for k in pairs) for n in positions) for t in torques)
 
     def spread(self, deviations: Mapping[str, float]) -> xarray.Dataset:
         """Standard deviations of the figures, to first order, for keys that scatter independently.
@@ -392,23 +392,23 @@ class Sensitivities:
         That of the highest position less that of the lowest one.
         """
         errors, slopes = self.result.transmission_error, self.transmission_error
-        found = np.full((len(errors), len(self.keys)), np.nan)
+        changes = np.full((len(errors), len(self.keys)), np.nan)
         for t, error in enumerate(errors):
             if np.isfinite(error).sum() > 1:
-                found[t] = slopes[t, np.nanargmax(error)] - slopes[t, np.nanargmin(error)]
-        return found
+                changes[t] = slopes[t, np.nanargmax(error)] - slopes[t, np.nanargmin(error)]
+        return changes
 
     def harmonics(self, count: int) -> Array:
         """Derivatives of the amplitudes of ``MeshCycle.harmonics``, (torque, order, key) [rad per unit], or NaN."""
         amplitudes = self.result.harmonics(count)
-        found = np.full((*amplitudes.shape, len(self.keys)), np.nan)
+        changes = np.full((*amplitudes.shape, len(self.keys)), np.nan)
         for t, error in enumerate(self.result.transmission_error):
             wave = harmonic_coefficients(error, count)
             for k in range(len(self.keys)):
                 slope = harmonic_coefficients(self.transmission_error[t, :, k], count)
                 known = np.isfinite(amplitudes[t]) & np.isfinite(slope) & (amplitudes[t] > 0.0)
-                found[t, known, k] = (wave[known].conj() * slope[known]).real / amplitudes[t, known]
-        return found
+                changes[t, known, k] = (wave[known].conj() * slope[known]).real / amplitudes[t, known]
+        return changes
 
 
 def sensitivities(result: CycleNumbers, keys: Sequence[str]) -> Sensitivities:
@@ -434,10 +434,10 @@ def sensitivities(result: CycleNumbers, keys: Sequence[str]) -> Sensitivities:
         if loaded.bending is not None:
             tangents = tangents.with_lines(bending_by_shift(tangents.grids, tangents.state, loaded.bending))
         columns = np.array([pairs.index(grid.number) for grid in tangents.grids])
-        found = gap_growth(result, tangents, loaded.bending, (*places[:, tangents.state], columns), changes)
+        growth = gap_growth(result, tangents, loaded.bending, (*places[:, tangents.state], columns), changes)
     by_key = dict(zip(named, changes, strict=True))
     every = tuple(by_key.get(key) for key in keys)
-    made = Sensitivities(tuple(keys), result, tangents, places, columns, found.at_keys(at, len(keys)), every)
+    made = Sensitivities(tuple(keys), result, tangents, places, columns, growth.at_keys(at, len(keys)), every)
     if any(not change.holds_lines for change in changes):
         warn_of_contacts(result, kinds.RELIEF_START_BESIDE.sentence(), made.across_relief_starts, stacklevel=4)
     return made

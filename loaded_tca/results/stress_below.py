@@ -202,10 +202,10 @@ class StressBelow:
         peak = float(self.pressure_map.pressure[self.highest_pressure])
         lines = [self.result.scene.title or "Stresses below the surface", *self.where]
         for quantity, name in NAMES.items():
-            found = self.largest(quantity)
-            relative = f"{found.value / peak:.3f} of the pressure at {found.depth / self.half_width:.2f} b"
-            lines.append(f"{name:<34}{found.value:>8.4g} MPa at {found.depth:.4g} mm: {relative}")
-            lines.append(f"  on the pinion at {frame.place(found.radius, found.axial)}")
+            largest = self.largest(quantity)
+            relative = f"{largest.value / peak:.3f} of the pressure at {largest.depth / self.half_width:.2f} b"
+            lines.append(f"{name:<34}{largest.value:>8.4g} MPa at {largest.depth:.4g} mm: {relative}")
+            lines.append(f"  on the pinion at {frame.place(largest.radius, largest.axial)}")
         if (hertz := self.hertz_shear) is not None:
             relative = f"{hertz.value / hertz.pressure:.3f} of p0 at {hertz.depth / hertz.half_width:.2f} b"
             own = f"p0 {hertz.pressure:.4g} MPa, b {hertz.half_width:.4g} mm"

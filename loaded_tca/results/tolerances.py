@@ -55,13 +55,13 @@ def default_tolerances(scene: Scene, keys: Iterable[str] | None = None) -> dict[
 
 def _varied(scene: Scene) -> list[str]:
     """Modifications that the gears have, mounting errors and the torque."""
-    found = []
+    keys = []
     for gear in ("pinion", "wheel"):
         for name, value in contents(getattr(scene, gear).modifications).items():
             if isinstance(value, Real) and value and name.rpartition("_")[2] in USUAL:
-                found.append(f"{gear}.modifications.{name}")
-    found += [f"mounting.{name}" for name in contents(scene.mounting) if name != TWICE]
-    return [*found, TORQUE]
+                keys.append(f"{gear}.modifications.{name}")
+    keys += [f"mounting.{name}" for name in contents(scene.mounting) if name != TWICE]
+    return [*keys, TORQUE]
 
 
 def _usual(scene: Scene, key: str) -> float:
@@ -72,12 +72,12 @@ def _usual(scene: Scene, key: str) -> float:
     return USUAL.get(name.rpartition("_")[2], 1.0) * (OF_RELIEF_ENDS if of_relief_end else 1.0)
 
 
-def key_figure_slopes(found: Sensitivities) -> dict[str, Array]:
+def key_figure_slopes(sensitivities: Sensitivities) -> dict[str, Array]:
     """Return derivatives of key figures to the keys, by the names of ``MeshCycle.key_figures``.
 
     Parameters
     ----------
-    found : Sensitivities
+    sensitivities : Sensitivities
 
     Returns
     -------
@@ -88,7 +88,7 @@ def key_figure_slopes(found: Sensitivities) -> dict[str, Array]:
     """
     with_slopes = {name: figure.slope for name, figure in FIGURES.items() if figure.slope is not None}
     return {
-        name: slope.of(found)
+        name: slope.of(sensitivities)
         for name, slope in sorted(with_slopes.items(), key=lambda entry: entry[1].place)
-        if found.result.has_root_stress or not FIGURES[name].is_of_roots
+        if sensitivities.result.has_root_stress or not FIGURES[name].is_of_roots
     }

@@ -55,7 +55,7 @@ def warn_of_accuracy(
         Twist of both gear bodies about their bores at the base circle, where teeth bend.
     """
     places: dict[str, list[str]] = {}
-    solved, told = 0, []
+    solved, sentences = 0, []
     limit = LARGE_ERROR * (1.0 + ROUNDING)
     large = {place: peak.error for place, peak in at_rounded_edges.items() if peak.error > limit}
     worst = max(large.values(), default=0.0)
@@ -64,7 +64,7 @@ def warn_of_accuracy(
     for t, (torque, rows) in enumerate(zip(carried.torque.tolist(), carried.contacts, strict=True)):
         loads = [loaded.solution.load for row in rows for loaded in row if loaded is not None]
         if torque > 0.0 and not any(loads):
-            told.append(kinds.NO_TORQUE.sentence(torque=1e-3 * torque))
+            sentences.append(kinds.NO_TORQUE.sentence(torque=1e-3 * torque))
         for n, (angle, row) in enumerate(zip(carried.path.pinion_angle.tolist(), rows, strict=True)):
             for k, (number, loaded) in enumerate(zip(carried.pairs.tolist(), row, strict=True)):
                 if loaded is not None:
@@ -73,16 +73,16 @@ def warn_of_accuracy(
                     at_rounding = [mesh_error] if (t, n, k) in large else []
                     for reason in [*at_rounding, *_reasons(pair, grid, loaded)]:
                         places.setdefault(reason, []).append(place)
-    told += [_at_places(reason, at, solved) for reason, at in places.items()]
+    sentences += [_at_places(reason, at, solved) for reason, at in places.items()]
     turned = np.where(carried.rotation > 0.0, carried.rotation, math.inf)
     twist = body_torsion * carried.torque[:, None] / pair.base_radii[0] / (turned * pair.base_radii[1])
     if (share := float(twist.max())) > MOST_TORSION:
         bores = " and ".join(f"{bore:.4g}" for bore in pair.rigid_bores)
-        told.append(kinds.BODY_TWIST.sentence(bores=bores, share=min(share, 1.0)))
+        sentences.append(kinds.BODY_TWIST.sentence(bores=bores, share=min(share, 1.0)))
     deflection = float(np.nanmax(carried.rotation, initial=0.0)) * pair.base_radii[1]
     if load_sharing and deflection > REACH * pair.module:
-        told.append(kinds.DEFLECTION.sentence(deflection=deflection, reach=REACH))
-    for sentence in told:
+        sentences.append(kinds.DEFLECTION.sentence(deflection=deflection, reach=REACH))
+    for sentence in sentences:
         give_accuracy_warning(sentence, stacklevel=3)
 
 
@@ -135,22 +135,22 @@ def without_place(sentence: str) -> str:
 
 def _reasons(pair: GearPair, grid: GridChoice, loaded: LoadedContact) -> list[str]:
     solution = loaded.solution
-    found = []
+    reasons = []
     if loaded.at_edge and not loaded.at_arc:
-        found.append((kinds.EDGE if grid.free_edges else kinds.EDGE_NOT_FREE).sentence())
+        reasons.append((kinds.EDGE if grid.free_edges else kinds.EDGE_NOT_FREE).sentence())
     if loaded.at_relief_start:
-        found.append(kinds.RELIEF_START.sentence())
+        reasons.append(kinds.RELIEF_START.sentence())
     # a grid is not refined for this estimate where a contact is rough, nor where the curvature of its gap jumps
     refined = loaded.is_rough or solution.error_estimate.second_order <= grid.accuracy
     allowed = max(LARGE_ERROR, grid.accuracy) if refined else grid.accuracy
     if grid.cells is None and loaded.peak_error > allowed:
-        found.append(kinds.PEAK_ERROR.sentence(allowed=allowed))
+        reasons.append(kinds.PEAK_ERROR.sentence(allowed=allowed))
     if loaded.peak_change > LARGE_ERROR:
-        found.append(kinds.PEAK_MOVES.sentence(limit=LARGE_ERROR))
+        reasons.append(kinds.PEAK_MOVES.sentence(limit=LARGE_ERROR))
     if solution.reaches_border:
-        found.append(kinds.BOX.sentence())
+        reasons.append(kinds.BOX.sentence())
     if solution.load > 0.0 and solution.cells_across[0] < 8:
-        found.append(kinds.FEW_CELLS.sentence())
+        reasons.append(kinds.FEW_CELLS.sentence())
     if 0.5 * loaded.extent[0] > THICKEST_CONTACT * pair.module:
-        found.append(kinds.WIDE.sentence())
-    return found
+        reasons.append(kinds.WIDE.sentence())
+    return reasons

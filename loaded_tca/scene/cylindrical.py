@@ -273,8 +273,8 @@ class CylindricalScene(BlankScene):
                 raise GeometryError(f"{place}: {problem}") from None
             pinion, wheel = (clearance + error for clearance in mesh.tip_clearances)
             room = Room(mesh.backlash_at(distance), (0.0, 0.0), (pinion, wheel))
-            told = interferences(room, module, place, nominal=nominal)
-            return [*told, kinds.FILLET.sentence(what=f"{problem} ({place})")]  # an undercut
+            sentences = interferences(room, module, place, nominal=nominal)
+            return [*sentences, kinds.FILLET.sentence(what=f"{problem} ({place})")]  # an undercut
         return interferences(mounted.room, module, place, nominal=nominal)
 
 

@@ -301,10 +301,10 @@ def nearest(word: str, words: Iterable[str]) -> str | None:
     """
     by_lower = {candidate.lower(): candidate for candidate in words}
     wanted = word[:60].lower()
-    found = difflib.get_close_matches(wanted, by_lower, n=1)
-    if not found and len(wanted) > 3:
-        found = [candidate for candidate in by_lower if wanted in candidate]
-    return by_lower[found[0]] if found else None
+    alike = difflib.get_close_matches(wanted, by_lower, n=1)
+    if not alike and len(wanted) > 3:
+        alike = [candidate for candidate in by_lower if wanted in candidate]
+    return by_lower[alike[0]] if alike else None
 
 
 def did_you_mean(word: str | None) -> str:

@@ -323,10 +323,10 @@ def _problems_without_type(table: Mapping[str, Any], pair: Any, kind: Any, refus
     """Every problem of a scene of no known type: the others are those as the type that knows the most keys."""
     if not isinstance(pair, Mapping):
         return check(next(iter(FAMILIES.values())), table)[1]
-    told = f"missing; allowed {Choice(tuple(FAMILIES)).allowed}" if kind is None else refusal
+    complaint = f"missing; allowed {Choice(tuple(FAMILIES)).allowed}" if kind is None else refusal
     trials = [check(scenes, {**table, "pair": {**pair, "type": name}})[1] for name, scenes in FAMILIES.items()]
     fewest = min(trials, key=lambda problems: (sum("unknown key" in problem for problem in problems), len(problems)))
-    return [f"pair.type: {told}", *fewest]
+    return [f"pair.type: {complaint}", *fewest]
 
 
 def _lines(section: Section, path: str) -> list[str]:

@@ -93,10 +93,10 @@ def literal_value(text: str) -> Any:
     [6, [20.0, 130.0], False, 'left', 'left']
     """
     try:
-        found = tomllib.loads(f"value = {text}")
+        table = tomllib.loads(f"value = {text}")
     except (ValueError, RecursionError):
         return text
-    return found["value"] if len(found) == 1 else text
+    return table["value"] if len(table) == 1 else text
 
 
 def _with_files_from(folder: Path | None, table: dict[str, Any], section: tuple[str, ...] = ()) -> dict[str, Any]:
@@ -104,25 +104,25 @@ def _with_files_from(folder: Path | None, table: dict[str, Any], section: tuple[
 
     Who opens the scene of somebody else lets it read nothing but what lies beside it.
     """
-    found: dict[str, Any] = {}
+    with_files: dict[str, Any] = {}
     problems: list[str] = []
     for name, value in table.items():
         key = (*section, name)
-        found[name] = value
+        with_files[name] = value
         if isinstance(value, dict) and len(key) < LEVELS_WITH_FILES:
             try:
-                found[name] = _with_files_from(folder, value, key)
+                with_files[name] = _with_files_from(folder, value, key)
             except InputError as error:
                 problems += error.problems
         elif name == "file" and isinstance(value, str):
             if folder is not None and _lies_in(folder, value):
-                found[name] = str(folder / value)
+                with_files[name] = str(folder / value)
             else:
                 allowed = "no file here" if folder is None else "a file in the folder of the scene, or below it"
                 problems.append(f"{'.'.join(map(shown_key, key))}: found {shown(value)}; allowed {allowed}")
     if problems:
         raise InputError(problems)
-    return found
+    return with_files
 
 
 def _lies_in(folder: Path, file: str) -> bool:
@@ -173,9 +173,9 @@ def describe_keys() -> str:
     families = list(dict.fromkeys(FAMILIES.values()))
     tables = [dict(_sections(scene, "")) for scene in families]
     shared = {  # sections described under another name, and the top, are the same in every family
-        path: found
-        for path, found in tables[0].items()
-        if all(path in table and (table[path] == found or path in SAME_AS or not path) for table in tables)
+        path: keys_of
+        for path, keys_of in tables[0].items()
+        if all(path in table and (table[path] == keys_of or path in SAME_AS or not path) for table in tables)
     }
     lines = list(_section_lines("", *shared.pop("")))
     for scene, table in zip(families, tables, strict=True):
@@ -183,8 +183,8 @@ def describe_keys() -> str:
         for path, (section, about) in table.items():
             if path and path not in shared:
                 lines += _section_lines(path, section, f"{about} ({kinds})")
-    for path, found in shared.items():
-        lines += _section_lines(path, *found)
+    for path, keys_of in shared.items():
+        lines += _section_lines(path, *keys_of)
     return "\n".join(lines).strip() + "\n"
 
 

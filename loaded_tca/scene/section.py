@@ -104,14 +104,14 @@ def values_of(section: Section) -> dict[str, Any]:
 
 
 def check(
-    section: type[Section], found: Mapping[str, Any], place: str = "", whole: type[Section] | None = None
+    section: type[Section], table: Mapping[str, Any], place: str = "", whole: type[Section] | None = None
 ) -> tuple[dict[str, Any], list[str]]:
     """Check a table against a section.
 
     Parameters
     ----------
     section : type of Section
-    found : mapping
+    table : mapping
         Names -> values; sections inside are mappings or made already. None counts as not given.
     place : str
         Prefix of the keys in messages, empty or ending in a dot.
@@ -128,9 +128,9 @@ def check(
     """
     values: dict[str, Any] = {}
     whole = whole or section
-    problems = list(_unknown(section, found, place, whole))
+    problems = list(_unknown(section, table, place, whole))
     for name, (_, entry) in entries(section).items():
-        given = found.get(name)
+        given = table.get(name)
         if isinstance(entry, Subsection):
             inner, inner_problems = _check_subsection(name, entry, given, place, whole)
             values |= inner
@@ -176,10 +176,10 @@ def made(section: type[SectionType], values: Mapping[str, Any]) -> SectionType:
 
 
 def _unknown(
-    section: type[Section], found: Mapping[str, Any], place: str, whole: type[Section] | None = None
+    section: type[Section], value: Mapping[str, Any], place: str, whole: type[Section] | None = None
 ) -> Iterator[str]:
     known = entries(section)
-    unknown = [name for name in found if name not in known]
+    unknown = [name for name in value if name not in known]
     homes = {name: place + home for name, home in _homes(section).items()} if unknown else {}
     elsewhere = _homes(whole) if unknown and whole is not None else {}
     for name in unknown[:MOST_UNKNOWN_KEYS]:

@@ -251,19 +251,19 @@ def _across(stencil: _Stencil, contact: int, opened: Array, to_grid: Array) -> A
 
 def _lines_through(stencil: _Stencil, contact: int) -> list[tuple[int, Distance]]:
     """Edges that hold a contact point, and relief starts it lies on: the gear of each, and the distance to it."""
-    one, found = stencil.contacts[contact], []
+    one, lines = stencil.contacts[contact], []
     limit = ON_LINE * stencil.pair.module
     for gear, points in enumerate(stencil.points):
         there = points.at((contact, slice(0, 1)))
         flank = (stencil.pair.pinion, stencil.pair.wheel)[gear].flank
         for number, jet in enumerate(flank.edges(there.rho, there.z)):
             if abs(float(np.ravel(jet.value)[0])) < limit:
-                found.append((gear, edge_distance(gear, number)))
+                lines.append((gear, edge_distance(gear, number)))
         if one.on_relief_start:
             for number, jet in enumerate(flank.relief_starts(there.rho, there.z)):
                 if abs(float(np.ravel(jet.value)[0])) < limit:
-                    found.append((gear, start_distance(gear, number)))
-    return found
+                    lines.append((gear, start_distance(gear, number)))
+    return lines
 
 
 def _turned_normals(stencil: _Stencil, gaps: Array, shifts: Array) -> Array:

@@ -56,7 +56,7 @@ def moved_below(pair: GearPair, change: PairChange, points: FlankPoints) -> Arra
 
 def grown(pair: GearPair, changes: Sequence[PairChange], pinion: FlankPoints, wheel: FlankPoints) -> Array:
     """Growth ds of the flanks of pinion and wheel along the normal (2, keys, ...) [mm per unit of the key]."""
-    found = np.zeros((2, len(changes), *pinion.rho.shape))
+    growth = np.zeros((2, len(changes), *pinion.rho.shape))
     for gear, (name, own, points) in enumerate((("pinion", pair.pinion, pinion), ("wheel", pair.wheel, wheel))):
         per_turn = 1.0 / points.steepness
         per_length = -own.flank.side * own.flank.gradient_norm(points.rho, points.z).value * per_turn
@@ -66,15 +66,15 @@ def grown(pair: GearPair, changes: Sequence[PairChange], pinion: FlankPoints, wh
             below, above = (getattr(side, name) for side in (change.below, change.above))
             edges = below.sharp.flank, above.sharp.flank  # the arcs of rounded edges are those of unmodified flanks
             if change.of_modifications and not isinstance(edges[1], SplineFlank):
-                found[gear, key] = removal_change(*edges, points.rho, points.z) * per_length
+                growth[gear, key] = removal_change(*edges, points.rho, points.z) * per_length
             else:
                 low, high = (one.flank.theta(points.rho, points.z).value for one in (below, above))
-                found[gear, key] = (high - low) * per_turn
-            found[gear, key] /= change.difference
+                growth[gear, key] = (high - low) * per_turn
+            growth[gear, key] /= change.difference
     for key, change in enumerate(changes):
         if change.of_mounting:
-            found[1, key] = (wheel.gradient * moved_below(pair, change, wheel)).sum(axis=-1) / wheel.steepness
-    return found
+            growth[1, key] = (wheel.gradient * moved_below(pair, change, wheel)).sum(axis=-1) / wheel.steepness
+    return growth
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,13 +132,13 @@ class Places:
         for key, change in enumerate(changes if gear == 1 else ()):
             if change.of_mounting:
                 moved[key] -= moved_below(pair, change, points)
-        found = _along(points, distance(pair, points), moved)
+        growths = _along(points, distance(pair, points), moved)
         name = ("pinion", "wheel")[gear]
         for key, change in enumerate(changes):
             if change.key.startswith(name) and not change.holds_edges:
                 low, high = (distance(side, points).value for side in (change.below, change.above))
-                found[key] += (high - low) / change.difference
-        return found
+                growths[key] += (high - low) / change.difference
+        return growths
 
     def slopes_of(self, pair: GearPair, gear: int, distance: Distance) -> Array:
         """Growth (n, k) of the same distance by each motion of the grids."""
@@ -234,10 +234,10 @@ def _along(points: FlankPoints, jet: Jet, moved: Array) -> Array:
 
 def grid_motions(x: Array, y: Array) -> Array:
     """Motions (n, 3, 2) of places (n,) of a grid along x and y, by its motion along either and its turn from x to y."""
-    found = np.zeros((x.size, MOTIONS, 2))
-    found[:, 0, 0] = found[:, 1, 1] = 1.0
-    found[:, 2, 0], found[:, 2, 1] = -y, x
-    return found
+    by_motion = np.zeros((x.size, MOTIONS, 2))
+    by_motion[:, 0, 0] = by_motion[:, 1, 1] = 1.0
+    by_motion[:, 2, 0], by_motion[:, 2, 1] = -y, x
+    return by_motion
 
 
 def following(border: BorderCells, contact: Indices, weights: Array, free: Array, scales: Array) -> Array:
@@ -255,12 +255,12 @@ def following(border: BorderCells, contact: Indices, weights: Array, free: Array
     scales : (contacts, 3) array [mm, mm, rad]
         Motions that are alike: by one cell.
     """
-    found = free.copy()
+    motions = free.copy()
     slopes = border.slopes * scales[contact]
     for own in np.unique(contact).tolist():
         rows = np.flatnonzero(contact == own)
         weighted = weights[rows, None] * slopes[rows]
         matrix = weighted.T @ slopes[rows] + OPEN * np.eye(MOTIONS)
         wanted = OPEN * free[:, own] / scales[own] - border.rates[:, rows] @ weighted
-        found[:, own] = np.linalg.solve(matrix, wanted.T).T * scales[own]
-    return found
+        motions[:, own] = np.linalg.solve(matrix, wanted.T).T * scales[own]
+    return motions

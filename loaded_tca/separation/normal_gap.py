@@ -164,15 +164,15 @@ class NormalGap:
     def flank_points(self, x: Array, y: Array) -> tuple[FlankPoints, FlankPoints]:
         """Points of the flanks of pinion and wheel on the normals at points that broadcast."""
         shape, rays = np.broadcast_shapes(x.shape, y.shape), self._rays(x, y)
-        found = []
+        both = []
         for ray, met in zip(rays, self._meetings(rays)[0], strict=True):
             point = np.stack([o + met.height * n for o, n in zip(ray.start, ray.normal, strict=True)], axis=-1)
             basis = cylindrical_basis(np.arctan2(point[..., 1], point[..., 0]))
             gradient = (_theta_less_flank(ray.flank, met.rho, met.z)[0][..., None, :] @ basis)[..., 0, :]
             steep = sum(gradient[..., part] * n for part, n in enumerate(ray.normal))
             parts = point.reshape(*shape, 3), met.rho.reshape(shape), met.z.reshape(shape)
-            found.append(FlankPoints(*parts, gradient.reshape(*shape, 3), np.asarray(steep).reshape(shape)))
-        return found[0], found[1]
+            both.append(FlankPoints(*parts, gradient.reshape(*shape, 3), np.asarray(steep).reshape(shape)))
+        return both[0], both[1]
 
     def curvature_across(self, x: Array, y: Array) -> Array:
         """Second derivative of the gap by x [1/mm] at points that broadcast: the relative curvature across.
@@ -220,10 +220,10 @@ class NormalGap:
         rest = tuple(part[on] for part in rest)
         height, step = np.where(mating.settled, mating.height, met.height)[rest], np.full(rest[0].shape, np.inf)
         while step.size:
-            found = self._meet(rays.single(rest, height))
-            height, before, step = height + found.height[:, 0], step, found.step[:, 0]
-            met.height[rest], met.rho[rest], met.z[rest] = height, found.rho[:, 0], found.z[:, 0]
-            missed[rest] = ~found.settled[:, 0]
+            reached = self._meet(rays.single(rest, height))
+            height, before, step = height + reached.height[:, 0], step, reached.step[:, 0]
+            met.height[rest], met.rho[rest], met.z[rest] = height, reached.rho[:, 0], reached.z[:, 0]
+            missed[rest] = ~reached.settled[:, 0]
             room = rays.flank.room(met.rho[rest], met.z[rest])
             on = missed[rest] & (room > -2.0 * step) & (step < 0.5 * before)
             rest, height, step = tuple(part[on] for part in rest), height[on], step[on]

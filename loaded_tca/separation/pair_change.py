@@ -89,15 +89,15 @@ def pair_changes(scene: Scene, keys: Sequence[str]) -> list[PairChange]:
         With every key that is unknown, is none of these or no number, or that the scene cannot vary.
 
     """
-    pair, found, problems = scene.pair(), [], []
+    pair, changes, problems = scene.pair(), [], []
     for key in keys:
         try:
-            found.append(_pair_change(scene, pair, key))
+            changes.append(_pair_change(scene, pair, key))
         except (InputError, GeometryError) as error:
             problems += [f"{key}: {problem}" for problem in getattr(error, "problems", (str(error),))]
     if problems:
         raise InputError(problems)
-    return found
+    return changes
 
 
 def _pair_change(scene: Scene, pair: GearPair, key: str) -> PairChange:
@@ -136,9 +136,9 @@ def value_at(scene: Scene, key: str) -> float:
     moves = sections == ["mounting"]
     shapes = len(sections) > 1 and sections[0] in ("pinion", "wheel") and sections[1] in SECTIONS
     if not (moves or shapes) or name.rpartition("_")[2] not in STEPS:
-        told = ", ".join(f"[pinion.{section}]" for section in SECTIONS)
+        places = ", ".join(f"[pinion.{section}]" for section in SECTIONS)
         raise InputError(
-            f"does not change the gap alone; allowed are lengths and angles of [mounting], {told}, and of the wheel"
+            f"does not change the gap alone; allowed are lengths and angles of [mounting], {places}, and of the wheel"
         )
     if isinstance(value, bool) or not isinstance(value, Real):
         raise InputError(f"found {value!r:.60}; allowed a key whose value is one number")

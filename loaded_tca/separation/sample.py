@@ -240,12 +240,12 @@ def sample_separation(
     >>> [round(k, 6) for k in separation.curvatures]
     [0.091526, 6.4e-05]
     """
-    (found,) = sample_separations(
+    (separation,) = sample_separations(
         pair, [contact], cells=[cells], loads=[load], boxes=[box], guesses=[guess], accuracy=accuracy
     )
-    if isinstance(found, Separation):
-        return found
-    raise found
+    if isinstance(separation, Separation):
+        return separation
+    raise separation
 
 
 def sample_separations(
@@ -269,7 +269,7 @@ def sample_separations(
     accuracy : float
         Of all contacts whose cells are None.
     """
-    found: dict[int, Separation | InputError | GeometryError] = {}
+    separations: dict[int, Separation | InputError | GeometryError] = {}
     shapes: dict[int, tuple[int, int]] = {}
     guesses = [None] * len(contacts) if guesses is None else guesses
     for index, (contact, shape, load, box, guess) in enumerate(
@@ -280,7 +280,7 @@ def sample_separations(
             lengths = box.half_lengths if isinstance(box, Box) else box
             _check(shape, load, accuracy, {"box": lengths, "guess": guess})
         except (InputError, GeometryError) as error:
-            found[index] = error
+            separations[index] = error
         else:
             across, along = shape if shape is not None else (cells_for_accuracy(accuracy),) * 2
             shapes[index] = int(across), int(along)
@@ -289,14 +289,14 @@ def sample_separations(
         if isinstance(box_or_error, Box):
             placed[index] = box_or_error
         else:
-            found[index] = box_or_error
+            separations[index] = box_or_error
     for shape in dict.fromkeys(shapes.values()):
         sized = [(index, box) for index, box in placed.items() if shapes[index] == shape]
         size = max(1, TOGETHER // math.prod(shape))
         for part in (dict(sized[first : first + size]) for first in range(0, len(sized), size)):
             gaps = _sampled(pair, [contacts[index] for index in part], [*part.values()], shape)
-            found.update(zip(part, gaps, strict=True))
-    return [found[index] for index in range(len(contacts))]
+            separations.update(zip(part, gaps, strict=True))
+    return [separations[index] for index in range(len(contacts))]
 
 
 def _placed(
@@ -313,11 +313,11 @@ def _placed(
     forces = [loads[index] or LOAD_OF_UNLOADED_BOX for index in to_size]
     starts, cells = [guesses[index] for index in to_size], [shapes[index] for index in to_size]
     sized = estimate_boxes(pair, [contacts[index] for index in to_size], forces, starts, cells) if to_size else []
-    found = dict(zip(to_size, sized, strict=True))
+    placed = dict(zip(to_size, sized, strict=True))
     for index in shapes:
         if (box := boxes[index]) is not None:
-            found[index] = box if isinstance(box, Box) else Box(box, principal[index].axes)
-    return [found[index] for index in shapes]
+            placed[index] = box if isinstance(box, Box) else Box(box, principal[index].axes)
+    return [placed[index] for index in shapes]
 
 
 def _sampled(

@@ -134,7 +134,7 @@ def optimise(
     else:
         tasks = [executor.submit(_searched, model.__reduce__(), wanted, given, point) for point in points]
         searches = [task.result() for task in tasks]
-    history = [trial for found in searches for trial in found]
+    history = [trial for search in searches for trial in search]
     best = min(
         history, key=lambda trial: (trial.excess > KEPT, trial.excess if trial.excess > KEPT else trial.objective)
     )
@@ -212,19 +212,21 @@ class _Search:
         return self._objective.of(self._evaluated(point).figure(self._objective.figure))[0]
 
     def _slope(self, point: Array) -> Array:
-        found, figure = self._evaluated(point), self._objective.figure
-        _, weights = self._objective.of(found.figure(figure))
-        return np.asarray(self._range * np.tensordot(weights, found.gradient(figure), 2))
+        evaluation, figure = self._evaluated(point), self._objective.figure
+        _, weights = self._objective.of(evaluation.figure(figure))
+        return np.asarray(self._range * np.tensordot(weights, evaluation.gradient(figure), 2))
 
     def _room(self, point: Array) -> Array:
         """What is left up to each limit, as a part of it: (limits times samples times torques,)."""
-        found = self._evaluated(point)
-        rooms = [1.0 - found.figure(one.figure, one.torques).ravel() / one.highest for one in self._limits]
+        evaluation = self._evaluated(point)
+        rooms = [1.0 - evaluation.figure(one.figure, one.torques).ravel() / one.highest for one in self._limits]
         return np.concatenate([np.zeros(0), *rooms])
 
     def _room_slopes(self, point: Array) -> Array:
-        found = self._evaluated(point)
-        rows = [-found.gradient(one.figure, one.torques).reshape(-1, point.size) / one.highest for one in self._limits]
+        evaluation = self._evaluated(point)
+        rows = [
+            -evaluation.gradient(one.figure, one.torques).reshape(-1, point.size) / one.highest for one in self._limits
+        ]
         return np.asarray(self._range * np.concatenate(rows))
 
     def _violation(self, point: Array) -> float:
@@ -250,7 +252,7 @@ def _searched(
 def _limits(model: DesignModel, limits: Limits) -> list[Limit]:
     """Checked limits; every problem at once."""
     problems: list[str] = []
-    found = []
+    checked = []
     require((isinstance(limits, Mapping), f"limits: {limits!r:.60}; allowed a mapping of figures to highest values"))
     for figure, given in limits.items():
         try:
@@ -265,30 +267,30 @@ def _limits(model: DesignModel, limits: Limits) -> list[Limit]:
             near = [True if torque is None else math.isclose(one, real(torque), rel_tol=1e-6) for one in model.torques]
             chosen = tuple(np.flatnonzero(near).tolist())
             if not chosen:
-                told = ", ".join(f"{one:g}" for one in model.torques)
-                problems.append(f"limits: {figure}: {torque!r:.40} N mm is no torque of the model; allowed {told}")
+                torques = ", ".join(f"{one:g}" for one in model.torques)
+                problems.append(f"limits: {figure}: {torque!r:.40} N mm is no torque of the model; allowed {torques}")
             elif not (is_finite(highest) and highest > 0.0):
                 problems.append(f"limits: {figure}: {highest!r:.60}; allowed a finite number above 0")
             else:
-                found.append(Limit(figure, chosen, float(highest)))
+                checked.append(Limit(figure, chosen, float(highest)))
     if problems:
         raise InputError(problems)
-    return found
+    return checked
 
 
 def _told_unmet(model: DesignModel, limits: Sequence[Limit], x: Array) -> list[str]:
     """The limits that the best design found exceeds, and by how much."""
-    found, told = model.evaluate(x), []
+    evaluation, sentences = model.evaluate(x), []
     place = ", ".join(f"{key} = {value:.4g}" for key, value in zip(model.keys, x.tolist(), strict=True))
     for one in limits:
-        largest = float(found.figure(one.figure, one.torques).max())
+        largest = float(evaluation.figure(one.figure, one.torques).max())
         if largest > (1.0 + KEPT) * one.highest:
             part = 100.0 * (largest / one.highest - 1.0)
-            told.append(
+            sentences.append(
                 f"limits: {one.figure}: no design found meets {one.highest:g}; at the best one it is {largest:.4g}, "
                 f"{part:.2g} % more ({place})"
             )
-    return told
+    return sentences
 
 
 def robustness(
@@ -324,38 +326,38 @@ def robustness(
     wanted = Objective(objective, k, percentile, figure)
     require((bool(model.scatter), "model: has no scatter to multiply; allowed a model with scatter"))
     values = [model.values(one) for one in designs.values()]
-    found = np.empty((len(designs), len(multiples)))
+    objectives = np.empty((len(designs), len(multiples)))
     for column, multiple in enumerate(multiples):
         scaled = model.with_scatter(multiple)
-        found[:, column] = [wanted.of(scaled.evaluate(x).figure(figure))[0] for x in values]
+        objectives[:, column] = [wanted.of(scaled.evaluate(x).figure(figure))[0] for x in values]
     coordinates = {"design": [*designs], "multiple": np.asarray(multiples, dtype=float)}
     measured = FIGURES[figure]
-    told = {"long_name": f"{wanted.told} of the {measured.text}", "units": measured.unit}
-    return xarray.Dataset({"objective": (("design", "multiple"), found, told)}, coordinates)
+    attributes = {"long_name": f"{wanted.told} of the {measured.text}", "units": measured.unit}
+    return xarray.Dataset({"objective": (("design", "multiple"), objectives, attributes)}, coordinates)
 
 
 def _analysed(scene: Scene) -> dict[str, Any]:
     """What is kept of the analysis of a scene, over its torques; in whatever process this is called."""
-    with one_thread(), noted_accuracy_warnings(given=False) as told:
+    with one_thread(), noted_accuracy_warnings(given=False) as warned:
         result = analyse(scene)
     errors = 1e3 * result.wheel_base_radius * result.transmission_error[:, :-1]
-    found = {
+    figures = {
         "transmission_error": result.transmission_error,
         "peak_pressure": np.fmax.reduce(result.peak_pressure, axis=2),
         "face_load_factor": result.face_load_factor,
         "transverse_load_factor": result.transverse_load_factor,
-        "warnings": [*dict.fromkeys(map(without_place, told))],
+        "warnings": [*dict.fromkeys(map(without_place, warned))],
     }
     for name, figure in FIGURES.items():
         if isinstance(figure, FigureOfErrors):
-            found[name] = np.array([figure.of(row, SMOOTHING)[0] for row in errors])
+            figures[name] = np.array([figure.of(row, SMOOTHING)[0] for row in errors])
     of_roots = [name for name, figure in FIGURES.items() if figure.is_of_roots]
     for gear, name in enumerate(of_roots if scene.analysis.root_stress else ()):
-        found[name] = np.array([root_tension_norm(row) for row in result.root_tension[:, :-1, gear]])
+        figures[name] = np.array([root_tension_norm(row) for row in result.root_tension[:, :-1, gear]])
     for name, at_edges in (("pressure_MPa", False), ("edge_pressure_norm_MPa", True)):
         positions = ([[one for one in row if one is not None] for row in rows[:-1]] for rows in result.maps)
-        found[name] = np.array([mean_pressure_norm(rows, at_edges=at_edges)[0] for rows in positions])
-    return found
+        figures[name] = np.array([mean_pressure_norm(rows, at_edges=at_edges)[0] for rows in positions])
+    return figures
 
 
 def _analysed_result(
@@ -372,10 +374,13 @@ def _analysed_result(
 
     designs = (model.start, x)
     scenes = [scene for design in designs for scene in model.scenes(design)]
-    found = [*(map if executor is None else executor.map)(_analysed, scenes)]
-    reasons = Counter(reason for one in found for reason in one.pop("warnings"))
+    analyses = [*(map if executor is None else executor.map)(_analysed, scenes)]
+    reasons = Counter(reason for one in analyses for reason in one.pop("warnings"))
     shape = len(designs), len(model.deviations)
-    arrays = {name: np.array([one[name] for one in found]).reshape(*shape, *found[0][name].shape) for name in found[0]}
+    arrays = {
+        name: np.array([one[name] for one in analyses]).reshape(*shape, *analyses[0][name].shape)
+        for name in analyses[0]
+    }
     held = [model.evaluate(design) for design in designs]
     arrays |= {f"held_{name}": np.array([one.figure(name) for one in held]) for name in model.figures}
     arrays["held_transmission_error"] = np.array([one.transmission_error for one in held])
@@ -395,7 +400,7 @@ def _analysed_result(
     }
     attributes = {"kind": KIND, "scene_toml": model.scene.to_toml()}
     attributes["warnings"] = "\n".join(
-        f"{reason} (in {count} of {len(found)} analyses)" for reason, count in reasons.items()
+        f"{reason} (in {count} of {len(analyses)} analyses)" for reason, count in reasons.items()
     )
     attributes |= {"objective": objective.told, "figure": objective.figure}
     attributes |= {"distributions": "\n".join(model.told_scatter), "seeds": "; ".join(model.told_seed + told_starts)}
@@ -422,5 +427,5 @@ def _require_confirmed(result: DesignResult, limits: Sequence[Limit]) -> None:
             if not largest <= (1.0 + LIMITS_CONFIRMED) * one.highest:
                 problems.append(f"{one.figure} is {largest:.4g} by the analysis, its limit {one.highest:g}")
     if problems:
-        told = "; ".join(problems)
-        raise ConvergenceError(f"design: not confirmed: {told}; try more cells of the model", last=result)
+        sentence = "; ".join(problems)
+        raise ConvergenceError(f"design: not confirmed: {sentence}; try more cells of the model", last=result)

@@ -68,10 +68,10 @@ def root_tension(gear: int, roots: Roots, held: HeldContacts, positions: Positio
     root, numbers = roots[gear], sorted({grid.number for position in positions for grid in position})
     rows = [{grid.number: _map_of(grid) for grid in position} for position in positions]
     maps = (tuple(tuple(row.get(number) for number in numbers) for row in rows),)
-    found = root_stress_of_gear(held.pair, gear, root, numbers, np.ones((1, len(rows)), dtype=bool), maps)
+    stresses = root_stress_of_gear(held.pair, gear, root, numbers, np.ones((1, len(rows)), dtype=bool), maps)
     tension, slopes = np.zeros(len(positions)), []
     for n, position in enumerate(positions):
-        place = found["root_tension_place"][0, n].tolist()
+        place = stresses["root_tension_place"][0, n].tolist()
         loads, per_force = stress_at_extreme(held.pair, gear, root, position, place)
         by_slice = [per_force(line) for line, _ in loads]
         tension[n] = sum(own @ forces for own, (_, forces) in zip(by_slice, loads, strict=True))
@@ -103,15 +103,15 @@ def mean_pressure_norm(positions: Sequence[Sequence[PressureMap]], *, at_edges: 
 
     Also returns its derivatives by the forces of the cells of all maps [1/mm^2].
     """
-    found = []
+    by_force = []
     for one in (one for position in positions for one in position):
         kept = np.where(one.beside_end == at_edges, one.pressure, 0.0)
-        found.append(pressure_norm(kept, np.ones(kept.shape), one.spacing))
-    largest = max((norm for norm, _ in found), default=0.0)
+        by_force.append(pressure_norm(kept, np.ones(kept.shape), one.spacing))
+    largest = max((norm for norm, _ in by_force), default=0.0)
     if largest == 0.0:
-        return 0.0, [slopes for _, slopes in found]
-    norm = largest * (sum((own / largest) ** EXPONENT for own, _ in found) / len(positions)) ** (1.0 / EXPONENT)
-    return norm, [slopes * (own / norm) ** (EXPONENT - 1.0) / len(positions) for own, slopes in found]
+        return 0.0, [slopes for _, slopes in by_force]
+    norm = largest * (sum((own / largest) ** EXPONENT for own, _ in by_force) / len(positions)) ** (1.0 / EXPONENT)
+    return norm, [slopes * (own / norm) ** (EXPONENT - 1.0) / len(positions) for own, slopes in by_force]
 
 
 def span(errors: Array, _: float) -> tuple[float, Array]:
@@ -336,10 +336,10 @@ class DesignResult:
 
     def __repr__(self) -> str:
         before, after = self.objective
-        told = self.dataset.attrs["warnings"].count("\n") + 1 if self.dataset.attrs["warnings"] else 0
+        warnings = self.dataset.attrs["warnings"].count("\n") + 1 if self.dataset.attrs["warnings"] else 0
         values = ", ".join(f"{key} = {value:.4g}" for key, value in self.optimum.items())
         figure = f"{self.dataset.attrs['objective']} of {self.dataset.attrs['figure']}"
-        warned = f", {told} accuracy warnings in dataset.attrs" if told else ""
+        warned = f", {warnings} accuracy warnings in dataset.attrs" if warnings else ""
         return f"DesignResult({figure}: {before:.4g} -> {after:.4g}, {values}{warned})"
 
     @property

@@ -167,10 +167,10 @@ class DesignModel:
                 *((key in x, f"{key}: missing") for key in self.keys),
             )
             x = [x[key] for key in self.keys]
-        found = np.asarray(x, dtype=float)
-        require((found.shape == self.start.shape, f"x: shape {found.shape}; allowed {self.start.shape}"))
-        require(*(_within(*one) for one in zip(self.variables.items(), found.tolist(), strict=True)))
-        return found
+        array = np.asarray(x, dtype=float)
+        require((array.shape == self.start.shape, f"x: shape {array.shape}; allowed {self.start.shape}"))
+        require(*(_within(*one) for one in zip(self.variables.items(), array.tolist(), strict=True)))
+        return array
 
     def scenes(self, x: Mapping[str, float] | ArrayLike) -> list[Scene]:
         """The scene of a design with each sample of the scatter, as the package analyses it under the torques."""
@@ -208,25 +208,25 @@ class DesignModel:
             lines_held=True,
         )
         states = list(np.ndindex(len(self.held), self.torques.size, self.positions))
-        found: dict[tuple[int, ...], tuple[float, SharedLoad]] = {}
+        solved: dict[tuple[int, ...], tuple[float, SharedLoad]] = {}
         while states:
             shaped = [ShapedContacts(*one) for one in zip(self.held, values + self.own_deviations, strict=True)]
             steps = [shaped[s].shared(n, float(self.torques[t]), grid) for s, t, n in states]
-            found |= zip(states, found_together(self.held[0].pair, steps), strict=True)
+            solved |= zip(states, found_together(self.held[0].pair, steps), strict=True)
             # once more those on grids that another state has outgrown meanwhile
-            states = [state for state, (_, one) in found.items() if not self.held[state[0]].holds(one)]
-        idle = {t for (_, t, _), (_, one) in found.items() if one.torque == 0.0}
+            states = [state for state, (_, one) in solved.items() if not self.held[state[0]].holds(one)]
+        idle = {t for (_, t, _), (_, one) in solved.items() if one.torque == 0.0}
         require(
             *((False, f"torques: {self.torques[t]:g} N mm loads no tooth pair; allowed more") for t in sorted(idle))
         )
-        return Evaluation(self, values, [*found.values()])
+        return Evaluation(self, values, [*solved.values()])
 
     @property
     def told_scatter(self) -> list[str]:
         """The scatter in words, a line for each key."""
         farther = "" if self.multiple == 1.0 else f", {self.multiple:g} times as far from its median"
-        told = (told_distribution(one) if hasattr(one, "ppf") else "given values" for one in self.scatter.values())
-        return [f"{key}: {words}{farther}" for key, words in zip(self.scatter, told, strict=True)]
+        spreads = (told_distribution(one) if hasattr(one, "ppf") else "given values" for one in self.scatter.values())
+        return [f"{key}: {words}{farther}" for key, words in zip(self.scatter, spreads, strict=True)]
 
     @property
     def told_seed(self) -> list[str]:
@@ -257,11 +257,11 @@ class DesignModel:
 
     def _at(self, deviation: Mapping[str, float], values: Mapping[str, float]) -> dict[str, float]:
         """Values of the keys that scatter, of one sample; those that shape flanks deviate from their values."""
-        found = {}
+        scattered = {}
         for key, by in deviation.items():
             shapes = not key.startswith("mounting.")
-            found[key] = by + (values.get(key, value_at(self.scene, key)) if shapes else 0.0)
-        return found
+            scattered[key] = by + (values.get(key, value_at(self.scene, key)) if shapes else 0.0)
+        return scattered
 
     def _sample(self, deviation: Mapping[str, float], own: Array) -> HeldContacts:
         scene = self.scene.with_changes(self._at(deviation, dict(zip(self.keys, self.start.tolist(), strict=True))))
@@ -313,7 +313,7 @@ class DesignModel:
                 "analysis.load_sharing: false; allowed true: in a design all tooth pairs share the load",
             ),
         )
-        problems += [told for holds, told in checks if not holds]
+        problems += [problem for holds, problem in checks if not holds]
         if problems:
             raise InputError(problems)
 

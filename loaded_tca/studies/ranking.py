@@ -43,8 +43,8 @@ def varied_keys(study: xarray.Dataset) -> list[str]:
 def main_figures(study: xarray.Dataset) -> list[str]:
     """Figures of ``MAIN_FIGURES`` that a study has; if it has none, as with figures of its own, its first ones."""
     known = [str(name) for name, values in study.data_vars.items() if values.dims == ("sample", "torque")]
-    told = [name for name in MAIN_FIGURES if name in known and np.isfinite(figure_values(study, name)).any()]
-    return told or known[: len(MAIN_FIGURES)]
+    figures_of = [name for name in MAIN_FIGURES if name in known and np.isfinite(figure_values(study, name)).any()]
+    return figures_of or known[: len(MAIN_FIGURES)]
 
 
 def figure_values(study: xarray.Dataset, name: str) -> Array:
@@ -119,12 +119,12 @@ def rank_combinations(study: xarray.Dataset, by: str | None = None) -> pandas.Da
     if not (keys and figures):
         return pandas.DataFrame(columns=["rank", "samples", *keys, *figures])
     groups = variants.groupby(keys, sort=False)
-    found = groups[figures].quantile(QUANTILE)
-    found.insert(0, "samples", groups["status"].agg(lambda status: int((status == "ok").sum())))
-    found = found.reset_index().sort_values(figures[0], kind="stable", ignore_index=True)
-    found.insert(0, "rank", pandas.array(found.index + 1, dtype="Int64"))
-    found.loc[found[figures[0]].isna(), "rank"] = pandas.NA
-    return found[["rank", "samples", *keys, *figures]]
+    ranked = groups[figures].quantile(QUANTILE)
+    ranked.insert(0, "samples", groups["status"].agg(lambda status: int((status == "ok").sum())))
+    ranked = ranked.reset_index().sort_values(figures[0], kind="stable", ignore_index=True)
+    ranked.insert(0, "rank", pandas.array(ranked.index + 1, dtype="Int64"))
+    ranked.loc[ranked[figures[0]].isna(), "rank"] = pandas.NA
+    return ranked[["rank", "samples", *keys, *figures]]
 
 
 def rank_variants(
@@ -259,8 +259,10 @@ def study_summary(study: xarray.Dataset) -> str:
     refused: pinion: pointed (1 variant)
     """
     status = Counter(study["status"].values.tolist())
-    told = ", ".join(f"{count} {word}" for word, count in sorted(status.items(), key=lambda one: (one[0] != "ok", one)))
-    return "\n".join([f"{study.sizes['sample']} variants: {told}", *_table(study), *_reasons(study)])
+    counts = ", ".join(
+        f"{count} {word}" for word, count in sorted(status.items(), key=lambda one: (one[0] != "ok", one))
+    )
+    return "\n".join([f"{study.sizes['sample']} variants: {counts}", *_table(study), *_reasons(study)])
 
 
 def _table(study: xarray.Dataset) -> Iterator[str]:

@@ -72,22 +72,22 @@ def parse_study(text: str, source: str = "study", folder: str | os.PathLike[str]
     loaded_tca.errors.InputError: scene: missing; allowed the name of a scene file
     factors.mounting.misalignment_um: found a table; allowed a list of values or { from, to, count }
     """
-    found = toml_table(text, source)
-    if "pair" in found:
+    table = toml_table(text, source)
+    if "pair" in table:
         raise InputError(f'{source}: not a study but a scene; a study names it as scene = "..."')
     problems = [
         f"{shown_key(word)}: unknown word{did_you_mean(nearest(word, WORDS)) or '; allowed ' + ', '.join(WORDS)}"
-        for word in found
+        for word in table
         if word not in WORDS
     ]
 
     given: dict[str, Any] = {}
     parts: list[tuple[dict[str, Any], str, Callable[..., Any], tuple[Any, ...]]] = [
-        (given, "scene", _scene, (found, Path(folder))),
-        (given, "table", _table, (found.get("table"), Path(folder))),
+        (given, "scene", _scene, (table, Path(folder))),
+        (given, "table", _table, (table.get("table"), Path(folder))),
     ]
     for word, read, words in (("factors", _values, SPAN), ("distributions", _distribution, {DISTRIBUTION})):
-        section = found.get(word, {})
+        section = table.get(word, {})
         if isinstance(section, dict):
             given[word] = {}
             parts += [(given[word], key, read, (f"{word}.{key}", value)) for key, value in _leaves(section, words)]
@@ -100,14 +100,14 @@ def parse_study(text: str, source: str = "study", folder: str | os.PathLike[str]
             place[name] = read(*arguments)
         except InputError as error:
             problems += error.problems
-    given |= {word: found[word] for word in ("samples", "seed") if word in found}
+    given |= {word: table[word] for word in ("samples", "seed") if word in table}
     if problems:
         raise InputError(problems)
     return Study(**given)
 
 
-def _scene(found: Mapping[str, Any], folder: Path) -> Scene:
-    name, changes = found.get("scene"), found.get("changes", {})
+def _scene(table: Mapping[str, Any], folder: Path) -> Scene:
+    name, changes = table.get("scene"), table.get("changes", {})
     if not isinstance(name, str):
         raise InputError(
             f"scene: {'missing' if name is None else f'found {shown(name)}'}; allowed the name of a scene file"
@@ -150,9 +150,9 @@ def _distribution(key: str, value: Any) -> Distribution:
             word for word in dir(stats) if isinstance(getattr(stats, word), stats.rv_continuous | stats.rv_discrete)
         ]
         hint = did_you_mean(nearest(name, names)) if isinstance(name, str) else ""
-        told = (shown(value) if name is None else shown(name)) + hint
+        value_given = (shown(value) if name is None else shown(name)) + hint
         raise InputError(
-            f'{key}: found {told}; allowed {{ {DISTRIBUTION} = "norm", scale = 5.0 }}, names of scipy.stats'
+            f'{key}: found {value_given}; allowed {{ {DISTRIBUTION} = "norm", scale = 5.0 }}, names of scipy.stats'
         )
     parameters = {word: number for word, number in value.items() if word != DISTRIBUTION}
     try:
@@ -163,8 +163,8 @@ def _distribution(key: str, value: Any) -> Distribution:
             "loc",
             *["scale"] * isinstance(known, stats.rv_continuous),
         ]
-        found = ", ".join(parameters) or "none"
-        raise InputError(f"{key}: {name} has the parameters {', '.join(takes)}; found {found}") from None
+        given = ", ".join(parameters) or "none"
+        raise InputError(f"{key}: {name} has the parameters {', '.join(takes)}; found {given}") from None
     return frozen
 
 

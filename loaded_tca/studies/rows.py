@@ -59,8 +59,8 @@ def problem_of_figures(figures: Any) -> str:
             return f"{name}: found {shown(values)}; allowed a list of decimal numbers"
     lengths = {len(values): name for name, values in figures.items() if len(values) > 1}
     if len(lengths) > 1:
-        told = " and ".join(f"{name} {length}" for length, name in lengths.items())
-        return f"different numbers of torques: {told}; allowed a number, or one for each torque"
+        lengths_of = " and ".join(f"{name} {length}" for length, name in lengths.items())
+        return f"different numbers of torques: {lengths_of}; allowed a number, or one for each torque"
     return ""
 
 
@@ -115,8 +115,8 @@ def row_of(line: bytes) -> Row:
     if not isinstance(row, dict) or set(row) != set(PARTS):
         raise ValueError(f"no row of a study; its parts are {', '.join(PARTS)}")
     for name, problem in PARTS.items():
-        if found := problem(row[name]):
-            raise ValueError(f"{name}: {found}")
+        if wrong := problem(row[name]):
+            raise ValueError(f"{name}: {wrong}")
     return row
 
 
@@ -187,10 +187,10 @@ class Rows:
     @property
     def damage(self) -> str:
         """A sentence that says which rows are damaged and why."""
-        told = [f"row {number}: {problem}" for number, problem in self.damaged.items()]
-        if len(told) > MOST_TOLD:
-            told[MOST_TOLD:] = [f"and {len(told) - MOST_TOLD} more"]
-        return f"{self.path}: rows that cannot be used, their variants are analysed again: {'; '.join(told)}"
+        sentences = [f"row {number}: {problem}" for number, problem in self.damaged.items()]
+        if len(sentences) > MOST_TOLD:
+            sentences[MOST_TOLD:] = [f"and {len(sentences) - MOST_TOLD} more"]
+        return f"{self.path}: rows that cannot be used, their variants are analysed again: {'; '.join(sentences)}"
 
     def append(self, rows: Sequence[Row]) -> None:
         """Write rows down; where there is no room for all, those that fit, and an InputError."""
@@ -264,24 +264,24 @@ def dataset_of(study: Study, rows: Iterable[Row], attributes: dict[str, Any]) ->
     texts: dict[str, list[str]] = {"status": [], "reason": [], "warnings": []}
     same: dict[str, str] = {}  # many variants say the same: one text in memory for all
     seconds = np.empty(count)
-    found: dict[str, Array] = {}
+    arrays: dict[str, Array] = {}
     torques = 1
     for sample, row in enumerate(rows):
-        told = row["status"], row["reason"], "\n".join(row["warnings"])
-        for column, text in zip(texts.values(), told, strict=True):
+        columns = row["status"], row["reason"], "\n".join(row["warnings"])
+        for column, text in zip(texts.values(), columns, strict=True):
             column.append(same.setdefault(text, text))
         seconds[sample] = row["seconds"]
         for name, values in row["figures"].items():
             if len(values) > torques:
                 torques = len(values)
-                found = {known: _widened(array, torques) for known, array in found.items()}
-            array = found.setdefault(name, np.full((count, torques), np.nan))
+                arrays = {known: _widened(array, torques) for known, array in arrays.items()}
+            array = arrays.setdefault(name, np.full((count, torques), np.nan))
             array[sample, : len(values)] = values
-    variables = {name: (("sample", "torque"), array) for name, array in found.items()}
+    variables = {name: (("sample", "torque"), array) for name, array in arrays.items()}
     own = {name: ("sample", np.array(column, dtype=object)) for name, column in texts.items()}
     spent = ("sample", seconds, {"units": "s", "long_name": "time of the analysis"})
     places = {"sample": ("sample", np.arange(count, dtype=np.int32))}
-    torque = 1e3 * found.get("pinion_torque_Nm", np.full((1, torques), np.nan))
+    torque = 1e3 * arrays.get("pinion_torque_Nm", np.full((1, torques), np.nan))
     known = torque[np.isfinite(torque).all(axis=1)]
     if len(known) and (known == known[0]).all():  # the same in all variants
         places["torque"] = ("torque", known[0])

@@ -191,8 +191,8 @@ def _by(executor: Executor, tasks: Iterator[Task]) -> Generator[list[Done]]:
                 error = CancelledError(GONE) if first.cancelled() else first.exception()
                 if isinstance(error, BrokenExecutor):  # it fails all of them, and stumbles over cancelled ones
                     under_way.clear()
-                told = f"{type(error).__name__}: {error}".splitlines()[0]
-                raise ExecutorError(f"the executor gave up: {told}") from error
+                reason = f"{type(error).__name__}: {error}".splitlines()[0]
+                raise ExecutorError(f"the executor gave up: {reason}") from error
     finally:
         for future in under_way:
             future.cancel()
@@ -211,24 +211,24 @@ def _submitted(executor: Executor, task: Task) -> Future[Done]:
 def _analysed(scene: Scene, changes: dict[str, Any], digest: str, figures: Figures, keep: bool) -> Done:
     """Analyse one variant, in whatever process and thread this is called."""
     begin = time.perf_counter()
-    status, reason, found, whole = "ok", "", {}, None
-    with one_thread(), noted_accuracy_warnings(given=False) as told:
+    status, reason, values_of, whole = "ok", "", {}, None
+    with one_thread(), noted_accuracy_warnings(given=False) as warned:
         try:
             variant = scene.with_changes(changes)
             if keep:
                 result = analyse(variant)
                 whole = bytes(result.to_netcdf())
             values = figures_of(result) if keep and figures is key_figures else figures(variant)
-            found = _checked({name: _over_torques(name, value) for name, value in values.items()})
+            values_of = _checked({name: _over_torques(name, value) for name, value in values.items()})
         except Exception as error:  # a variant that fails is a row; what it is of the program's fault, too
             status, reason = _status_of(error), _storable(str(error)) or type(error).__name__
     row = {
         "digest": digest,
         "status": status,
         "reason": reason,
-        "warnings": [*dict.fromkeys(map(_storable, told))],
+        "warnings": [*dict.fromkeys(map(_storable, warned))],
         "seconds": time.perf_counter() - begin,
-        "figures": found,
+        "figures": values_of,
     }
     return row, whole
 

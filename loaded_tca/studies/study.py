@@ -102,8 +102,8 @@ class Study:
         if not self.distributions and self.samples is not None:
             yield "samples: given without distributions, of which they are"
         elif self.distributions and not is_whole(self.samples, 1, MOST_VARIANTS):
-            found = "missing" if self.samples is None else f"found {shown(self.samples)}"
-            yield f"samples: {found}; allowed a whole number from 1 to {MOST_VARIANTS}, with distributions"
+            given = "missing" if self.samples is None else f"found {shown(self.samples)}"
+            yield f"samples: {given}; allowed a whole number from 1 to {MOST_VARIANTS}, with distributions"
 
     def _problems_of_keys(self) -> Iterator[str]:
         if not self.keys:
@@ -132,10 +132,10 @@ class Study:
         if not 0 <= variant < len(self):
             raise InputError(f"variant: {variant}; allowed 0 to {len(self) - 1}")
         row, *places, sample = (int(place) for place in np.unravel_index(variant, self._counts))
-        found = {key: column[row] for key, column in self.table.items()}
-        found |= {key: values[place] for (key, values), place in zip(self.factors.items(), places, strict=True)}
-        found |= dict(zip(self.distributions, self._points[sample].tolist(), strict=True))
-        return {key: _as_key_takes(self._kinds[key], value) for key, value in found.items()}
+        changed = {key: column[row] for key, column in self.table.items()}
+        changed |= {key: values[place] for (key, values), place in zip(self.factors.items(), places, strict=True)}
+        changed |= dict(zip(self.distributions, self._points[sample].tolist(), strict=True))
+        return {key: _as_key_takes(self._kinds[key], value) for key, value in changed.items()}
 
     def digests(self, figures: Callable[..., Any]) -> Callable[[int], str]:
         """Return a digest for each variant: of scene and changes, asked figures and version of the package.
@@ -167,11 +167,11 @@ class Study:
     @cached_property
     def _kinds(self) -> dict[str, Key]:
         """What the scene says of the keys, of those that it knows."""
-        found = {}
+        kinds = {}
         for key in self.keys:
             with suppress(InputError):
-                found[key] = key_at(type(self.scene), key)
-        return found
+                kinds[key] = key_at(type(self.scene), key)
+        return kinds
 
     @cached_property
     def _points(self) -> Array:

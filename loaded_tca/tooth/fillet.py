@@ -224,10 +224,10 @@ def _touching_radius(profile: Profile, root: Array, size: Array) -> Array:
 
     low, high = profile.radius[0], profile.radius[-1]
     low = low + EDGE_MARGIN * (high - low)
-    found = find_root(height_over_root, (low, high), args=(profile.coordinate, root, size))
-    if (~found.success & (found.f_bracket[1] < 0.0)).any():
+    solution = find_root(height_over_root, (low, high), args=(profile.coordinate, root, size))
+    if (~solution.success & (solution.f_bracket[1] < 0.0)).any():
         raise GeometryError("fillet_radius: the fillet reaches the tip of the tooth; reduce it")
-    return np.where(found.success, found.x, low)  # no change of sign: the arc stays above the root all along
+    return np.where(solution.success, solution.x, low)  # no change of sign: the arc stays above the root all along
 
 
 def _into_space(tangent: Array) -> Array:

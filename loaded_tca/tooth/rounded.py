@@ -102,5 +102,5 @@ def _limit_of_land(geometry: ToothGeometry, flank: Flank) -> list[tuple[float, s
     slope: Array = 0.5 * (slopes[0] + slopes[1])
     width = np.maximum(rho * angle, 0.0) / np.sqrt(1.0 + slope**2)
     worst = int((width / lengths).argmin())
-    told = f"with which the arcs of both flanks meet on the tip land, {width[worst]:.4g} mm wide"
-    return [(float(width[worst] / lengths[worst]), told)]
+    reason = f"with which the arcs of both flanks meet on the tip land, {width[worst]:.4g} mm wide"
+    return [(float(width[worst] / lengths[worst]), reason)]

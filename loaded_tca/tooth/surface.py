@@ -49,9 +49,9 @@ class TriangleMesh:
 
     def __post_init__(self) -> None:
         problems = [
-            f"{name}: shape {found.shape} is not (n, 3)"
-            for name, found in (("vertices", self.vertices), ("triangles", self.triangles))
-            if found.ndim != 2 or found.shape[1] != 3
+            f"{name}: shape {array.shape} is not (n, 3)"
+            for name, array in (("vertices", self.vertices), ("triangles", self.triangles))
+            if array.ndim != 2 or array.shape[1] != 3
         ]
         if not problems and not np.isfinite(self.vertices).all():
             problems.append("vertices: not all are finite")
@@ -129,9 +129,9 @@ def grid_triangles(index: NDArray[np.int_]) -> NDArray[np.int_]:
     """
     corners = index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]
     halves = [np.stack([corners[a], corners[b], corners[c]], axis=-1) for a, b, c in ((0, 1, 2), (0, 2, 3))]
-    found: NDArray[np.int_] = np.stack(halves, axis=-2).reshape(-1, 3)
-    same = (found == np.roll(found, 1, axis=1)).any(axis=1)
-    return found[~same]
+    triangles: NDArray[np.int_] = np.stack(halves, axis=-2).reshape(-1, 3)
+    same = (triangles == np.roll(triangles, 1, axis=1)).any(axis=1)
+    return triangles[~same]
 
 
 PATCHES = ("root land -", "fillet -", "flank -", "tip land", "flank +", "fillet +", "root land +")
@@ -208,8 +208,8 @@ class ToothSurface:
         if closed and copies < self.teeth:
             cuts = np.stack([foot[0], outline[0]]), np.stack([outline[-1], foot[-1]])
             parts += [(grid_triangles(index), CLOSING["cut"]) for index in cuts]
-        used, triangles = np.unique(np.concatenate([found for found, _ in parts]), return_inverse=True)
-        patch = np.concatenate([np.full(len(found), number) for found, number in parts])
+        used, triangles = np.unique(np.concatenate([of_part for of_part, _ in parts]), return_inverse=True)
+        patch = np.concatenate([np.full(len(of_part), number) for of_part, number in parts])
         return TriangleMesh(vertices[used], triangles.reshape(-1, 3), cell_data={"patch": patch})
 
     def _repeated(self, copies: int) -> tuple[Array, Indices, Indices]:
@@ -240,5 +240,5 @@ def _closing(tooth: Indices, foot: Indices) -> list[tuple[Indices, int]]:
     """Triangles of both ends of the face, in strips from side to side, and of the foot of one tooth."""
     half = (len(tooth) + 1) // 2
     across = np.concatenate([foot[None], np.stack([tooth[:half], tooth[::-1][:half]], axis=1)])
-    found = {"lower side": across[:, ::-1, 0], "upper side": across[:, :, -1], "foot": foot[::-1]}
-    return [(grid_triangles(index), CLOSING[name]) for name, index in found.items()]
+    triangles_at = {"lower side": across[:, ::-1, 0], "upper side": across[:, :, -1], "foot": foot[::-1]}
+    return [(grid_triangles(index), CLOSING[name]) for name, index in triangles_at.items()]

@@ -63,8 +63,8 @@ def relative_curvatures(pair: GearPair, contacts: Sequence[ContactPoint]) -> lis
     kept = [_KEPT.get(contact) for contact in contacts]
     missing = {c: None for c, known in zip(contacts, kept, strict=True) if known is None or known[0]() is not pair}
     if missing:
-        for contact, found in zip(missing, _curvatures(pair, [*missing]), strict=True):
-            _KEPT[contact] = ref(pair), found
+        for contact, curvatures in zip(missing, _curvatures(pair, [*missing]), strict=True):
+            _KEPT[contact] = ref(pair), curvatures
     return [_KEPT[contact][1] for contact in contacts]
 
 

@@ -75,16 +75,16 @@ def find_lines(field: EaseOff, phi1: Array, rho: Array, z: Array, multipliers: A
     ridge = _Ridge(
         field.restricted(rows), phi1[rows], np.stack([rho, z], axis=-1)[rows], along[rows], multipliers[rows]
     )
-    first, second, found = ridge.ends()
+    first, second, on_ridge = ridge.ends()
     limit = FLATNESS * field.pair.module
-    keep = found & (ridge.fall(first) <= limit) & (ridge.fall(second) <= limit)
-    if (found & ~keep).any():
+    keep = on_ridge & (ridge.fall(first) <= limit) & (ridge.fall(second) <= limit)
+    if (on_ridge & ~keep).any():
         first, second = (np.where(keep[:, None], end, ridge.flat_part(end)) for end in (first, second))
     points = np.stack([ridge.field.station(ridge.phi1, *end.T).point for end in (first, second)], axis=1)
     points = np.take_along_axis(points, np.argsort(points[..., 2:], axis=1), axis=1)
     x, y, z_middle = points.mean(axis=1).T
-    middle = ridge.nearest(np.stack([np.hypot(x, y), z_middle], axis=-1))[found]
-    return Lines(rows[keep], rows[found], middle[:, 0], middle[:, 1], points[keep])
+    middle = ridge.nearest(np.stack([np.hypot(x, y), z_middle], axis=-1))[on_ridge]
+    return Lines(rows[keep], rows[on_ridge], middle[:, 0], middle[:, 1], points[keep])
 
 
 def _soft_direction(field: EaseOff, phi1: Array, rho: Array, z: Array, multipliers: Array) -> tuple[Array, Array]:
@@ -129,8 +129,8 @@ class _Ridge:
         first = np.argmin(np.where(met, travel, np.inf), axis=1)
         second = np.argmax(np.where(met, travel, -np.inf), axis=1)
         length = travel[rows, second] - travel[rows, first]
-        found = (met.sum(axis=1) > 1) & (length > FEASIBLE * self.field.pair.pinion.flank.extent[1])
-        return crossings[rows, first], crossings[rows, second], found
+        on_ridge = (met.sum(axis=1) > 1) & (length > FEASIBLE * self.field.pair.pinion.flank.extent[1])
+        return crossings[rows, first], crossings[rows, second], on_ridge
 
     def flat_part(self, end: Array) -> Array:
         """The farthest point of the ridge towards an end, (m, 2), to which the ease-off falls by rounding only."""

@@ -237,8 +237,8 @@ def _lines(field: EaseOff, phi1: Array, rho: Array, z: Array, multipliers: Array
     for edges, there in ((EaseOff(field.pair.sharp, field.beyond), ~rounded), (field, rounded)):
         rows = np.flatnonzero(there)
         if rows.size:
-            found = find_lines(edges.restricted(rows), phi1[rows], rho[rows], z[rows], multipliers[rows])
-            parts.append(replace(found, rows=rows[found.rows], flat=rows[found.flat]))
+            lines = find_lines(edges.restricted(rows), phi1[rows], rho[rows], z[rows], multipliers[rows])
+            parts.append(replace(lines, rows=rows[lines.rows], flat=rows[lines.flat]))
     return Lines(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(Lines)))
 
 

@@ -364,15 +364,15 @@ def _propose(
     gradient = np.where(lost[:, None], 0.0, here.gradient)
     inverse, curvature = _positive(bend)
     step = inverse[..., 0] * gradient[..., :1] + inverse[..., 1] * gradient[..., 1:]
-    found = np.zeros_like(multipliers)
+    multipliers_found = np.zeros_like(multipliers)
     tolerance = ROOM * scale[0]
     room = here.edges + here.slopes[..., 0] * step[:, :1] + here.slopes[..., 1] * step[:, 1:]
     out = np.flatnonzero(room.min(axis=-1) < -tolerance)
     if out.size:
         problem = Quadratic(gradient[out], curvature[out], here.edges[out], here.slopes[out], bend[out])
-        step[out], found[out] = best_step(problem, tolerance)
+        step[out], multipliers_found[out] = best_step(problem, tolerance)
     length = np.linalg.norm(step, axis=-1, keepdims=True)
-    return step * np.minimum(1.0, LARGEST_STEP / np.maximum(length, 1e-300)), found
+    return step * np.minimum(1.0, LARGEST_STEP / np.maximum(length, 1e-300)), multipliers_found
 
 
 def _positive(matrix: Array) -> tuple[Array, Array]:

@@ -58,11 +58,11 @@ def arcs_at(pair: GearPair, points: Array) -> Mask:
 
 def lengths_past_tangents(pair: GearPair, *places: tuple[Array, ...]) -> Array:
     """The same (..., 8) [mm] of places (rho, z) [mm] of pinion and wheel, seen along the edges' surfaces."""
-    found: list[Array] = []
+    lengths: list[Array] = []
     for gear, (rho, z) in zip((pair.pinion, pair.wheel), places, strict=True):
         flank, none = gear.flank, [np.full(rho.shape, -np.inf)] * len(EDGE_NAMES)
-        found += flank.past_tangents(rho, z) if isinstance(flank, RoundedFlank) else none
-    return np.stack(found, axis=-1)
+        lengths += flank.past_tangents(rho, z) if isinstance(flank, RoundedFlank) else none
+    return np.stack(lengths, axis=-1)
 
 
 def on_arcs(field: EaseOff, phi1: Array, rho: Array, z: Array) -> Mask:
@@ -233,13 +233,13 @@ def inside_pinion(pair: GearPair, phi1: Array, value: Array, depth: float) -> St
         x, y, axial = np.tensordot(pair.wheel_axes.T, own, axes=1) + pair.wheel_origin[:, None, None]
         radius = np.hypot(x, y)
         ahead = angle[:, None] - pair.sense * (np.arctan2(y, x) - pair.pinion.flank.theta(radius, axial).value)
-        found = pair.driving * pair.base_radii[0] * (np.remainder(ahead + np.pi, 2.0 * np.pi) - np.pi)
-        found = np.where(pair.pinion.flank.inside(radius, axial), found, -np.inf)
-        rows, deepest = np.arange(len(angle)), found.argmax(axis=1)
-        return found[rows, deepest], radius[rows, deepest], axial[rows, deepest]
+        lead = pair.driving * pair.base_radii[0] * (np.remainder(ahead + np.pi, 2.0 * np.pi) - np.pi)
+        lead = np.where(pair.pinion.flank.inside(radius, axial), lead, -np.inf)
+        rows, deepest = np.arange(len(angle)), lead.argmax(axis=1)
+        return lead[rows, deepest], radius[rows, deepest], axial[rows, deepest]
 
-    found, radius, axial = _in_blocks(look, phi1, wheel_angle)
-    rows = np.flatnonzero(found > depth)
+    lead, radius, axial = _in_blocks(look, phi1, wheel_angle)
+    rows = np.flatnonzero(lead > depth)
     return rows, radius[rows], axial[rows]
 
 

@@ -92,18 +92,18 @@ def _first_touch(pair: GearPair, phi1: Array) -> FirstTouch:
     Rounding only takes material off: what touches first with sharp edges, and lies on no arc, still does.
     """
     scan = scan_pinion(pair.sharp, phi1)
-    found = _ascend(pair.sharp, phi1, *scan.hills())
+    climbs = _ascend(pair.sharp, phi1, *scan.hills())
     if pair.sharp is pair:
-        return _certified(pair, phi1, scan, found)[0]
-    touch = _best(phi1, found)
+        return _certified(pair, phi1, scan, climbs)[0]
+    touch = _best(phi1, climbs)
     rest = np.flatnonzero(~_touches_arc(pair, phi1, touch))
     if rest.size:  # where an arc is reached it is certified with the arcs, below
-        part, more = _certified(pair.sharp, phi1[rest], scan.only(rest), _renumbered(found, rest, len(phi1)))
-        touch, found = _merged(touch, rest, part), found + [one._replace(owner=rest[one.owner]) for one in more]
+        part, more = _certified(pair.sharp, phi1[rest], scan.only(rest), _renumbered(climbs, rest, len(phi1)))
+        touch, climbs = _merged(touch, rest, part), climbs + [one._replace(owner=rest[one.owner]) for one in more]
     rows = np.flatnonzero(_touches_arc(pair, phi1, touch))
     if not rows.size:
         return touch
-    starts = _onto_arcs(pair, phi1[rows], _renumbered(found, rows, len(phi1)))
+    starts = _onto_arcs(pair, phi1[rows], _renumbered(climbs, rows, len(phi1)))
     return _merged(touch, rows, _certified(pair, phi1[rows], scan_pinion(pair, phi1[rows]), starts)[0])
 
 
@@ -115,11 +115,11 @@ def _touches_arc(pair: GearPair, phi1: Array, touch: FirstTouch) -> Mask:
     return result
 
 
-def _renumbered(found: list[_Ascents], rows: Indices, count: int) -> list[_Ascents]:
+def _renumbered(climbs: list[_Ascents], rows: Indices, count: int) -> list[_Ascents]:
     """The ascents of some of ``count`` positions, which are numbered anew."""
     number = np.full(count, -1)
     number[rows] = np.arange(rows.size)
-    kept = [(ascents, np.flatnonzero(number[ascents.owner] >= 0)) for ascents in found]
+    kept = [(ascents, np.flatnonzero(number[ascents.owner] >= 0)) for ascents in climbs]
     return [_Ascents(number[one.owner[at]], one.beyond[at], one.peaks.only(at)) for one, at in kept]
 
 
@@ -131,13 +131,13 @@ def _merged(touch: FirstTouch, rows: Indices, part: FirstTouch) -> FirstTouch:
     return FirstTouch(**merged)
 
 
-def _onto_arcs(pair: GearPair, phi1: Array, found: list[_Ascents]) -> list[_Ascents]:
+def _onto_arcs(pair: GearPair, phi1: Array, climbs: list[_Ascents]) -> list[_Ascents]:
     """Ascents over flanks with rounded edges from those over sharp ones.
 
     Ends on no arc stay what they are. From those on arcs that are higher the arcs are climbed.
     """
     on_flank, ends = [], []
-    for ascents in found:
+    for ascents in climbs:
         at = np.flatnonzero(ascents.peaks.converged)
         owner, beyond, ended = ascents.owner[at], ascents.beyond[at], ascents.peaks.only(at)
         on = on_arcs(EaseOff(pair, beyond), phi1[owner], ended.rho, ended.z)
@@ -159,13 +159,13 @@ def _onto_arcs(pair: GearPair, phi1: Array, found: list[_Ascents]) -> list[_Asce
     return on_flank + _ascend(pair, phi1, *(np.concatenate(part) for part in zip(*starts, strict=True)))
 
 
-def _certified(pair: GearPair, phi1: Array, scan: Scan, found: list[_Ascents]) -> tuple[FirstTouch, list[_Ascents]]:
+def _certified(pair: GearPair, phi1: Array, scan: Scan, climbs: list[_Ascents]) -> tuple[FirstTouch, list[_Ascents]]:
     """The highest of the ascents and of more, from whatever the scan and the wheel's flank see above it."""
-    result, rows = _best(phi1, found), np.arange(len(phi1))
+    result, rows = _best(phi1, climbs), np.arange(len(phi1))
     close = _beside_corners(pair, phi1, result)
     if close[0].size:
-        found += _ascend(pair, phi1, *close)
-        result = _best(phi1, found)
+        climbs += _ascend(pair, phi1, *close)
+        result = _best(phi1, climbs)
     corners, corner_height = region_corners(pair, phi1, scan)
     for _ in range(ROUNDS):
         level = np.full(len(phi1), np.inf)
@@ -178,15 +178,15 @@ def _certified(pair: GearPair, phi1: Array, scan: Scan, found: list[_Ascents]) -
         )
         owner, rho, z = (np.concatenate(part) for part in zip(*parts, strict=True))
         if not owner.size:
-            return result, found
-        found += _ascend(pair, phi1, owner, rho, z)
-        result, rows = _best(phi1, found), np.unique(owner)
+            return result, climbs
+        climbs += _ascend(pair, phi1, owner, rho, z)
+        result, rows = _best(phi1, climbs), np.unique(owner)
     missed = np.concatenate([owner for owner, *_ in _missed(pair, phi1, scan, result, rows)])
     if missed.size:
         angle = phi1[missed.min()]
         message = f"unloaded contact: no ascent reached the height of the scan at pinion angle {angle:.6g} rad"
         raise ConvergenceError(message, result)
-    return result, found
+    return result, climbs
 
 
 def _missed(pair: GearPair, phi1: Array, scan: Scan, touch: FirstTouch, rows: Indices) -> tuple[Starts, Starts]:
@@ -252,16 +252,16 @@ def _ascend(pair: GearPair, phi1: Array, owner: Indices, rho: Array, z: Array) -
     """Climb from the starts, and on across every relief start that holds an ascent."""
     beyond = EaseOff(pair).sides(phi1[owner], rho, z)
     columns = np.flatnonzero(EaseOff(pair, beyond).edge_is_relief_start())
-    found, last = [], np.full(len(owner), -1)
+    climbs, last = [], np.full(len(owner), -1)
     for _ in range(len(columns) + 1):
         peaks = climb(EaseOff(pair, beyond), phi1[owner], rho, z)
-        found.append(_Ascents(owner, beyond, peaks))
+        climbs.append(_Ascents(owner, beyond, peaks))
         row, last = _crossings(peaks.multipliers[:, columns], last)
         if not row.size:
             break
         owner, beyond, rho, z = owner[row], beyond[row], peaks.rho[row], peaks.z[row]
         beyond[np.arange(len(row)), last] ^= True
-    return found
+    return climbs
 
 
 def _crossings(multipliers: Array, last: Array) -> tuple[Array, Array]:
@@ -271,12 +271,12 @@ def _crossings(multipliers: Array, last: Array) -> tuple[Array, Array]:
     return row, relief_start
 
 
-def _best(phi1: Array, found: list[_Ascents]) -> FirstTouch:
+def _best(phi1: Array, climbs: list[_Ascents]) -> FirstTouch:
     """The highest converged ascent of each position."""
-    owner = np.concatenate([ascents.owner for ascents in found])
+    owner = np.concatenate([ascents.owner for ascents in climbs])
 
     def every(name: str) -> Array:
-        return np.concatenate([getattr(ascents.peaks, name) for ascents in found])
+        return np.concatenate([getattr(ascents.peaks, name) for ascents in climbs])
 
     height = np.where(every("converged"), every("value"), -np.inf)
     best = np.full(len(phi1), -np.inf)
@@ -285,7 +285,7 @@ def _best(phi1: Array, found: list[_Ascents]) -> FirstTouch:
     rows, first = np.unique(owner[winners], return_index=True)
     winner = winners[first]
     parts = {name: spread(every(name)[winner], rows, len(phi1)) for name in ("rho", "z", "multipliers", "iterations")}
-    beyond = spread(np.concatenate([ascents.beyond for ascents in found])[winner], rows, len(phi1))
+    beyond = spread(np.concatenate([ascents.beyond for ascents in climbs])[winner], rows, len(phi1))
     return FirstTouch(**parts, value=best, beyond=beyond, in_contact=np.isfinite(best))
 
 

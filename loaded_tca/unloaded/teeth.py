@@ -319,8 +319,8 @@ def trace_teeth(pair: GearPair, pinion_angles: ArrayLike | None = None, teeth: I
             f"at pinion angle {phi1[apart][0]:.6g} rad"
         )
     near = np.flatnonzero(heights >= top - REACH * pair.module)
-    found = path[np.searchsorted(rows, near)]
-    parts = {entry.name: spread(getattr(found, entry.name), near, own.size) for entry in fields(ContactPath)}
+    traced = path[np.searchsorted(rows, near)]
+    parts = {entry.name: spread(getattr(traced, entry.name), near, own.size) for entry in fields(ContactPath)}
     parts["pinion_angle"] = own.ravel()
     teeth_apart = ContactPath(**parts)
     paths = tuple(teeth_apart[k * len(phi1) : (k + 1) * len(phi1)] for k in range(len(pairs)))

@@ -90,10 +90,10 @@ class ToothCycle:
     def heights(self, angle: Array, teeth: Indices) -> Array:
         """Heights (m, n) [mm] of the tooth pairs (m,) at pinion angles (n,); -inf out of reach."""
         own = angle - teeth[:, None] * self.pair.pitch
-        found = np.full(own.shape, -np.inf)
+        heights_of = np.full(own.shape, -np.inf)
         rows = (own >= self.own[0]) & (own <= self.own[-1])
-        found[rows] = first_touch(self.pair, own[rows]).value
-        return found
+        heights_of[rows] = first_touch(self.pair, own[rows]).value
+        return heights_of
 
     def sampled(self, index: Indices, teeth: Indices) -> Array:
         """The same heights at the pinion angles index * step, from the samples."""
@@ -131,8 +131,8 @@ class ToothCycle:
         sample = excess(self.sampled(index, teeth))
         rows = np.flatnonzero(np.diff(sample <= 0.0))
         rows = np.stack([rows, rows + 1])
-        found = find_roots(lambda own, _: excess(self.heights(own, teeth)), self.step * index[rows], sample[rows], EDGE)
-        return float((found[1::2] - found[::2]).sum()) / self.pair.pitch
+        roots = find_roots(lambda own, _: excess(self.heights(own, teeth)), self.step * index[rows], sample[rows], EDGE)
+        return float((roots[1::2] - roots[::2]).sum()) / self.pair.pitch
 
     def changes(self, low: float, high: float, teeth: Indices) -> tuple[Array, Indices]:
         """Pinion angles (n,) between two others at which the lead changes, and the pairs before and after (2, n)."""
@@ -151,10 +151,10 @@ class ToothCycle:
 
         every = np.arange(len(rows))
         values = np.stack([difference(side, every) for side in brackets])
-        found = find_roots(difference, brackets, values, CLOSE)
+        roots = find_roots(difference, brackets, values, CLOSE)
         tie = np.abs(values).max(axis=0) <= COINCIDE * self.pair.base_radii[1]
-        found[tie] = np.clip(0.5 * old_new.sum(axis=0) * self.pair.pitch, *brackets)[tie]
-        return found, old_new
+        roots[tie] = np.clip(0.5 * old_new.sum(axis=0) * self.pair.pitch, *brackets)[tie]
+        return roots, old_new
 
     @property
     def _far(self) -> float:

@@ -11,7 +11,6 @@ from numpy.testing import assert_allclose
 
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.flanks import FlankModifications
-from loaded_tca.loaded import loaded_contact
 from loaded_tca.loaded.load_sharing import ToothPair, share_load, tooth_pairs_at
 from loaded_tca.loaded.tooth_contact import GridChoice
 from loaded_tca.material import Material
@@ -144,9 +143,8 @@ def test_zero_from_which_gaps_count_moves_no_force(raised, monkeypatch):
             by = raised if contact is first.contact else 0.0
             yield replace(grid, gap=grid.gap + by, cut_gap=grid.cut_gap + by)
 
-    monkeypatch.setattr(
-        loaded_contact, "sample_separations", lambda *given, **options: list(sampled(*given, **options))
-    )
+    at_once = "loaded_tca.loaded.loaded_contact.sample_separations"
+    monkeypatch.setattr(at_once, lambda *given, **options: list(sampled(*given, **options)))
     forces = [share.force for share in share_load(pair, [moved, *others], TORQUE, GRID).shares]
     assert len(forces) == 2
     assert_allclose(forces, [share.force for share in shared(spur, 0.8 * CENTRE).shares], rtol=10.0 * COMPATIBLE)
