@@ -148,6 +148,20 @@ def memory_problem(shape: tuple[int, ...], available: float | None = None) -> st
     return f"{shape} cells need {needed / 2**30:.3g} GiB, the machine has {limit / 2**30:.3g} GiB"
 
 
+BYTES_PER_PAIR = 48
+"""Bytes at the peak of a solve for every pair of columns and cell along them: coefficients, their transform in both
+precisions and its inverses, and the same of the coarser grids. Measured: 32 to 39."""
+
+
+def columns_memory_problem(rows: int, columns: int, available: float | None = None) -> str | None:
+    """Return what to say if columns need more memory than the machine has."""
+    needed = float(BYTES_PER_PAIR) * (rows + 1.0) * float(columns) ** 2
+    limit = machine_memory() if available is None else available
+    if needed <= limit:
+        return None
+    return f"{columns} columns of {rows} cells need {needed / 2**30:.3g} GiB, the machine has {limit / 2**30:.3g} GiB"
+
+
 @functools.cache
 def machine_memory() -> float:
     """Return the physical memory [bytes], infinity where the system does not tell."""

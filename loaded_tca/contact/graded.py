@@ -33,10 +33,10 @@ from loaded_tca.contact import checks
 from loaded_tca.contact.convolution import ALL, Rows, Window, fast_length
 from loaded_tca.contact.descent import Descent, judge
 from loaded_tca.contact.edges import FreeEdge
-from loaded_tca.contact.graded_problem import GradedProblem, GradedSolution
-from loaded_tca.contact.grid import AT_BOUND, OUT_OF_REACH, Grids, Operator, each
+from loaded_tca.contact.grid import OUT_OF_REACH, Grids, Operator, each, with_cap
 from loaded_tca.contact.levels import coarsen, coarsening, merged, prolong
 from loaded_tca.contact.love import column_coefficients
+from loaded_tca.contact.problem import GradedProblem
 from loaded_tca.contact.solution import (
     COARSE_FACTOR,
     COARSE_TOLERANCE,
@@ -44,8 +44,8 @@ from loaded_tca.contact.solution import (
     MOST_ITERATIONS,
     RESERVE,
     ContactStatus,
+    GradedSolution,
     OnFailure,
-    not_converged,
 )
 from loaded_tca.threads import one_blas_thread
 
@@ -96,14 +96,9 @@ def solve_graded(
     start = None if initial_pressure is None else numbers("initial_pressure", initial_pressure)
     checks.raise_if(checks.check_run(tolerance, on_failure, start, problem.cells, 1))
     if problem.load == 0.0:
-        approach = problem.first_contact
-        pressure, status = np.zeros(problem.cells), ContactStatus.NO_LOAD
-        return GradedSolution(pressure, problem.gap - approach, approach, 0, 0, 0.0, status, problem)
+        return GradedSolution.without_load(problem, problem.first_contact)
     with one_blas_thread():
-        solution = _solved(problem, tolerance, start)
-    if solution.status is ContactStatus.NOT_CONVERGED and on_failure == "raise":
-        raise not_converged(solution, tolerance, "contact on graded columns")
-    return solution
+        return _solved(problem, tolerance, start).checked(tolerance, on_failure, "contact on graded columns")
 
 
 def guess(problem: GradedProblem) -> Array:
@@ -134,13 +129,13 @@ def _solved(problem: GradedProblem, tolerance: float, start: Array | None) -> Gr
         convolutions += int(descent.convolutions[0])
         repeats += 1
     in_MPa = pressure[0] / line
-    if problem.max_pressure is not None:  # what is at the cap but for rounding is exactly at it from here on
-        cap = problem.max_pressure
-        in_MPa = np.where((in_MPa > 0.0) & (in_MPa >= (1.0 - AT_BOUND) * cap), cap, in_MPa)
+    if problem.max_pressure is not None:
+        in_MPa = with_cap(in_MPa, problem.max_pressure)
     return GradedSolution(
         pressure=in_MPa,
         gap=displacement[0] + (problem.gap - problem.first_contact) - approach,
         approach=problem.first_contact + approach,
+        load=float(in_MPa.sum(axis=0) @ problem.cell_areas),
         iterations=iterations,
         convolutions=convolutions,
         residual=residual,

@@ -40,6 +40,11 @@ def each(values: Sequence[float] | Array) -> Array:
     return np.asarray(values, dtype=np.float64)[:, None, None]
 
 
+def with_cap(pressure: Array, cap: float | Array) -> Array:
+    """Pressure that is exactly at the cap where it is there but for rounding."""
+    return np.where((pressure > 0.0) & (pressure >= (1.0 - AT_BOUND) * cap), cap, pressure)
+
+
 def total_of(values: Array) -> Array:
     """Sum over the cells of every problem, (count, 1, 1)."""
     return np.add.reduce(values, axis=CELLS, keepdims=True)

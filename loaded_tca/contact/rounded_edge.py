@@ -13,7 +13,8 @@ from loaded_tca.arrays import Array, count_problems, numbers, real
 from loaded_tca.contact.columns import EVEN, FineZone, column_borders, pressed_width, slope_jump, top
 from loaded_tca.contact.edges import SHARPEST, FreeEdge, extra_displacement
 from loaded_tca.contact.graded import guess, solve_graded
-from loaded_tca.contact.graded_problem import GradedProblem, GradedSolution
+from loaded_tca.contact.problem import GradedProblem
+from loaded_tca.contact.solution import GradedSolution
 from loaded_tca.errors import require
 
 Gap = Callable[[Array, Array], Array]

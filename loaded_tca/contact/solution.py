@@ -1,7 +1,4 @@
-"""What the contact solver returns.
-
-When the iterations on even and graded grids stop, and what is said of those that do not converge.
-"""
+"""What the contact solver returns, and when its iterations stop."""
 
 from __future__ import annotations
 
@@ -9,14 +6,14 @@ import enum
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, Protocol
+from typing import Literal, Self
 
 import numpy as np
 
 from loaded_tca.arrays import Array, Mask
 from loaded_tca.contact import patch
 from loaded_tca.contact.levels import prolong
-from loaded_tca.contact.problem import ContactProblem, Spacing
+from loaded_tca.contact.problem import ContactProblem, GradedProblem, HalfSpaces, Spacing
 from loaded_tca.errors import ConvergenceError
 
 # Fewer cells than this across a contact leave errors above 1 % in its pressure.
@@ -31,6 +28,20 @@ LEAST_ERROR = 0.6
 # eighth of it is half of theirs if the error falls with the square of the cell.
 SECOND_ORDER = 1.0 / 3.0
 MOST_OF_CHANGE, MOST_OF_CHANGE_BESIDE, MOST_OF_CHANGE_BEFORE = 0.4, 0.5, 0.15
+
+
+MOST_ITERATIONS = 500
+"""On one grid. Rough surfaces need about a hundred, smooth ones less than ten."""
+MOST_CHECKS = 20
+"""On the whole grid; every one that fails widens the window or starts from an exact displacement."""
+COARSE_FACTOR, COARSE_TOLERANCE = 2.0, 1e-3
+"""A coarse grid is solved so much less closely than the next finer one, and no less closely than that: as closely costs
+as much as it brings, four times less closely (as its own error is larger) brings an iteration more on the finest grid
+of a smooth contact."""
+RESERVE = 0.8
+"""Of the tolerance, at which the iteration stops, so that the check in double precision finds it kept."""
+
+OnFailure = Literal["raise", "return"]
 
 
 class ContactStatus(enum.Enum):
@@ -106,8 +117,8 @@ class CoarserGrid:
 
 
 @dataclass(frozen=True, eq=False)
-class ContactSolution:
-    """Pressure and gap of two elastic half-spaces in contact.
+class Solution:
+    """Pressure and gap of two elastic half-spaces in contact, on whatever grid.
 
     Parameters
     ----------
@@ -125,10 +136,8 @@ class ContactSolution:
         Largest violation of the contact conditions on the whole grid, over the approach from first contact.
     status : ContactStatus
         How it ended.
-    problem : ContactProblem
+    problem : ContactProblem or GradedProblem
         What was solved.
-    coarser : CoarserGrid or None
-        The grid that ``error_estimate`` compares with, if there was one.
     """
 
     pressure: Array
@@ -139,15 +148,70 @@ class ContactSolution:
     convolutions: int
     residual: float
     status: ContactStatus
-    problem: ContactProblem
-    coarser: CoarserGrid | None = None
+    problem: HalfSpaces
+
+    @classmethod
+    def without_load(cls, problem: HalfSpaces, approach: float) -> Self:
+        """Zero pressure at an approach."""
+        return cls(
+            pressure=np.zeros(problem.cells),
+            gap=problem.gap - approach,
+            approach=approach,
+            load=0.0,
+            iterations=0,
+            convolutions=0,
+            residual=0.0,
+            status=ContactStatus.NO_LOAD,
+            problem=problem,
+        )
 
     def __repr__(self) -> str:
         cells = "x".join(str(n) for n in self.pressure.shape)
         return (
-            f"ContactSolution({cells} cells, load {self.load:.6g} N, approach {self.approach:.6g} mm, "
+            f"{type(self).__name__}({cells} cells, load {self.load:.6g} N, approach {self.approach:.6g} mm, "
             f"peak {self.pressure.max():.6g} MPa, {self.status.name.lower()}, residual {self.residual:.1e})"
         )
+
+    @property
+    def approach_under_load(self) -> float:
+        """Approach [mm] from first contact on."""
+        return self.approach - self.problem.first_contact
+
+    def checked(self, tolerance: float, on_failure: OnFailure, name: str = "contact") -> Self:
+        """The solution; ConvergenceError, which names the contact, if it is not converged and failure is to raise."""
+        if self.status is ContactStatus.NOT_CONVERGED and on_failure == "raise":
+            raise self.not_converged(tolerance, name)
+        return self
+
+    def not_converged(self, tolerance: float, name: str = "contact") -> ConvergenceError:
+        """Error that tells of a contact that is not solved to its tolerance."""
+        return ConvergenceError(
+            f"{name} not converged: residual {self.residual:.1e} > tolerance {tolerance:.1e} after "
+            f"{self.iterations} iterations; try a larger tolerance (in scenes: analysis.tolerance), or "
+            "on_failure='return' to look at it",
+            last=self,
+        )
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class GradedSolution(Solution):
+    """Pressure and gap on columns of unlike widths; iterations are those on the columns given."""
+
+    problem: GradedProblem
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ContactSolution(Solution):
+    """Pressure and gap of two elastic half-spaces in contact on an even grid.
+
+    Parameters
+    ----------
+    coarser : CoarserGrid or None
+        The grid that ``error_estimate`` compares with, if there was one.
+    """
+
+    problem: ContactProblem
+    coarser: CoarserGrid | None = None
 
     @cached_property
     def peak_pressure(self) -> float:
@@ -176,11 +240,6 @@ class ContactSolution:
     def cell_area(self) -> float:
         """Area of a cell [mm^2]."""
         return self.problem.cell_area
-
-    @property
-    def approach_under_load(self) -> float:
-        """Approach [mm] from first contact on."""
-        return self.approach - self.problem.first_contact
 
     @property
     def contact_area(self) -> float:
@@ -253,39 +312,3 @@ class ContactSolution:
             approach=coarser.approach_change,
             second_order=max(SECOND_ORDER * change, least),
         )
-
-
-MOST_ITERATIONS = 500
-"""On one grid. Rough surfaces need about a hundred, smooth ones less than ten."""
-MOST_CHECKS = 20
-"""On the whole grid; every one that fails widens the window or starts from an exact displacement."""
-COARSE_FACTOR, COARSE_TOLERANCE = 2.0, 1e-3
-"""A coarse grid is solved so much less closely than the next finer one, and no less closely than that: as closely costs
-as much as it brings, four times less closely (as its own error is larger) brings an iteration more on the finest grid
-of a smooth contact."""
-RESERVE = 0.8
-"""Of the tolerance, at which the iteration stops, so that the check in double precision finds it kept."""
-
-OnFailure = Literal["raise", "return"]
-
-
-class Iterated(Protocol):
-    """A solution that iterations came to."""
-
-    @property
-    def residual(self) -> float:
-        """Largest violation of the contact conditions over the approach from first contact."""
-
-    @property
-    def iterations(self) -> int:
-        """Iterations that it took."""
-
-
-def not_converged(solution: Iterated, tolerance: float, name: str = "contact") -> ConvergenceError:
-    """Error that tells of a contact that is not solved to its tolerance."""
-    return ConvergenceError(
-        f"{name} not converged: residual {solution.residual:.1e} > tolerance {tolerance:.1e} after "
-        f"{solution.iterations} iterations; try a larger tolerance (in scenes: analysis.tolerance), or "
-        "on_failure='return' to look at it",
-        last=solution,
-    )

@@ -29,7 +29,7 @@ from loaded_tca.arrays import Array, numbers
 from loaded_tca.contact import checks
 from loaded_tca.contact.descent import Descent, judge
 from loaded_tca.contact.edges import FreeEdge
-from loaded_tca.contact.grid import AT_BOUND, LARGEST_WHOLE, OUT_OF_REACH, Grids, each
+from loaded_tca.contact.grid import LARGEST_WHOLE, OUT_OF_REACH, Grids, each, with_cap
 from loaded_tca.contact.levels import coarsening, prolong, window_around
 from loaded_tca.contact.problem import ContactProblem, Spacing
 from loaded_tca.contact.solution import (
@@ -42,7 +42,6 @@ from loaded_tca.contact.solution import (
     ContactSolution,
     ContactStatus,
     OnFailure,
-    not_converged,
 )
 from loaded_tca.errors import ConvergenceError, InputError, give_accuracy_warning
 
@@ -234,10 +233,9 @@ def solve_problems(
         solutions |= zip(stack, _solve_stack(*chosen, threads), strict=True)
     for k, problem in enumerate(problems):
         if k not in solutions:
-            solutions[k] = _without_load(problem)
-        solution = solutions[k]
-        if solution.status is ContactStatus.NOT_CONVERGED and on_failure == "raise":
-            raise not_converged(solution, tolerances[k], f"contact {k}" if len(problems) > 1 else "contact")
+            approach = problem.first_contact if problem.approach is None else float(problem.approach)
+            solutions[k] = ContactSolution.without_load(problem, approach)
+        solutions[k].checked(tolerances[k], on_failure, f"contact {k}" if len(problems) > 1 else "contact")
     return [solutions[k] for k in range(len(problems))]
 
 
@@ -304,22 +302,6 @@ def _stacks(
 def _unit(problem: ContactProblem) -> float:
     """Pressure of a grid (p dx/E*) for 1 MPa [mm/MPa]."""
     return problem.spacing[0] / problem.contact_modulus
-
-
-def _without_load(problem: ContactProblem) -> ContactSolution:
-    """Zero pressure; the approach is the smallest gap, or as prescribed."""
-    approach = problem.first_contact if problem.approach is None else float(problem.approach)
-    return ContactSolution(
-        pressure=np.zeros(problem.gap.shape),
-        gap=problem.gap - approach,
-        approach=approach,
-        load=0.0,
-        iterations=0,
-        convolutions=0,
-        residual=0.0,
-        status=ContactStatus.NO_LOAD,
-        problem=problem,
-    )
 
 
 def _solve_stack(
@@ -401,8 +383,8 @@ def _solve_on_finest(
         ended = (residual <= tolerance[rows]) | (iterations[rows] >= MOST_ITERATIONS) | (check == MOST_CHECKS - 1)
         for k in np.flatnonzero(ended).tolist():
             problem, own = problems[rows[k]], pressure[k] / _unit(problems[rows[k]])
-            if problem.max_pressure is not None:  # what is at the cap but for rounding is exactly at it from here on
-                own = np.where((own > 0.0) & (own >= (1.0 - AT_BOUND) * problem.cap), problem.cap, own)
+            if problem.max_pressure is not None:
+                own = with_cap(own, problem.cap)
             before = coarser[rows[k]]
             change = math.nan if before is None else abs(1.0 - before[1] / float(approach[k]))
             solutions[rows[k]] = ContactSolution(

@@ -24,7 +24,7 @@ from loaded_tca.compliance.model import BendingModel
 from loaded_tca.contact import ContactProblem, solve_problem
 from loaded_tca.contact.levels import under_other_load
 from loaded_tca.contact.patch import values_at_ends, widths
-from loaded_tca.contact.solution import ContactSolution, ContactStatus, not_converged
+from loaded_tca.contact.solution import ContactSolution, ContactStatus
 from loaded_tca.contact.solver import solve_problems
 from loaded_tca.errors import LoadedTCAError
 from loaded_tca.loaded.free_edges import edge_compliances
@@ -136,7 +136,7 @@ def _answers(
         return dict(zip(chosen, edge_compliances(pair, separations), strict=True))
     solutions = solve_problems(*zip(*chosen.values(), strict=True), on_failure="return")
     return {
-        index: not_converged(solution, task.tolerance) if solution.status is ContactStatus.NOT_CONVERGED else solution
+        index: solution.not_converged(task.tolerance) if solution.status is ContactStatus.NOT_CONVERGED else solution
         for (index, task), solution in zip(chosen.items(), solutions, strict=True)
     }
 

@@ -5,10 +5,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.contact import ContactStatus, FreeEdge, GradedProblem, solve_contact, solve_graded
+from loaded_tca.contact.checks import BYTES_PER_PAIR, columns_memory_problem
 from loaded_tca.contact.columns import FineZone, column_borders
 from loaded_tca.contact.edges import extra_displacement
 from loaded_tca.contact.graded import GradedGrids
-from loaded_tca.contact.graded_problem import BYTES_PER_PAIR, memory_problem
 from loaded_tca.contact.love import column_coefficients, influence_coefficients
 from loaded_tca.errors import ConvergenceError, InputError
 from loaded_tca.reference import hertz, wedge
@@ -367,9 +367,9 @@ test_free_edges_that_cannot_be_are_refused = refusals(
 
 
 def test_too_large_a_problem_is_refused_before_it_is_made():
-    told = memory_problem(1000, 1000, available=1e9)
+    told = columns_memory_problem(1000, 1000, available=1e9)
     assert told == "1000 columns of 1000 cells need 44.7 GiB, the machine has 0.931 GiB"
-    assert memory_problem(64, 64, available=65 * 64**2 * BYTES_PER_PAIR) is None
+    assert columns_memory_problem(64, 64, available=65 * 64**2 * BYTES_PER_PAIR) is None
     with pytest.raises(InputError, match=r"^gap: 2000 columns of 1000000 cells need"):
         GradedProblem(np.broadcast_to(0.0, (1_000_000, 2000)), 1.0, np.arange(2001.0), E_STAR, 1.0)
 
