@@ -240,9 +240,10 @@ def plot(options: argparse.Namespace) -> None:
 
 def tooth(options: argparse.Namespace) -> None:
     """Write the complete teeth of a result, and a picture of them."""
-    from loaded_tca.output.surface_files import teeth_in_space, write_teeth
+    from loaded_tca.output.surface_files import write_teeth
     from loaded_tca.pairs import mating_teeth
     from loaded_tca.plots import draw_teeth, png_of
+    from loaded_tca.results.teeth import teeth_in_space
 
     result, directory, torque, position = result_of(options)
     teeth = mating_teeth(result.gear_pair, fillet_radius=options.fillet_radius)

@@ -2,7 +2,7 @@
 
 from loaded_tca.output.overview import describe_scene
 from loaded_tca.output.result_files import describe_results, write_report
-from loaded_tca.output.surface_files import teeth_in_space, write_stl, write_teeth, write_vtk
+from loaded_tca.output.surface_files import write_stl, write_teeth, write_vtk
 from loaded_tca.output.tables import (
     sensitivities_text,
     write_comparison,
@@ -10,6 +10,7 @@ from loaded_tca.output.tables import (
     write_sensitivities,
     write_subsurface,
 )
+from loaded_tca.results.teeth import teeth_in_space
 
 __all__ = [
     "describe_results",

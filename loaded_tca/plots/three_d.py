@@ -17,11 +17,11 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
 from loaded_tca.arrays import Array
 from loaded_tca.errors import InputError
-from loaded_tca.output.surface_files import TeethInSpace, teeth_in_space
 from loaded_tca.pairs import mating_teeth
 from loaded_tca.plots.flanks import highest_of_maps
 from loaded_tca.plots.style import ACCENT, COLOURS, load, place, set_title
 from loaded_tca.results.mesh_cycle import MeshCycle
+from loaded_tca.results.teeth import TeethInSpace, teeth_in_space
 from loaded_tca.tooth import PATCHES, Resolution, TriangleMesh
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ def draw_teeth(result: MeshCycle, shown: TeethInSpace) -> Figure:
     ----------
     result : MeshCycle
     shown : TeethInSpace
-        See :func:`loaded_tca.output.surface_files.teeth_in_space`.
+        See :func:`loaded_tca.results.teeth.teeth_in_space`.
 
     Returns
     -------

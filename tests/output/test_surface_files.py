@@ -5,8 +5,9 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca.errors import InputError
-from loaded_tca.output.surface_files import teeth_in_space, write_stl, write_teeth, write_vtk
+from loaded_tca.output.surface_files import write_stl, write_teeth, write_vtk
 from loaded_tca.pairs import mating_teeth
+from loaded_tca.results.teeth import teeth_in_space
 from loaded_tca.tooth import Resolution, TriangleMesh
 from tests.samples.results import result
 

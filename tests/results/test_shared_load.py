@@ -11,11 +11,11 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from loaded_tca import AccuracyWarning, InputError, analyse, load_result, read_scene
 from loaded_tca.output.result_files import positions_csv, summary_json
-from loaded_tca.output.surface_files import teeth_in_space
 from loaded_tca.pairs import mating_teeth
 from loaded_tca.plots import MORE_PICTURES, PICTURES, plot_all
 from loaded_tca.reference.weber_banaschek import ring_torsion
 from loaded_tca.results.files import read_dataset, write_dataset
+from loaded_tca.results.teeth import teeth_in_space
 from loaded_tca.unloaded.teeth import harmonic_coefficients
 from tests.samples.results import FLANKS_ALONE, ONE_PAIR, PER_PAIR, SCENES, assert_same
 

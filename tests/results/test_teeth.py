@@ -3,8 +3,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from loaded_tca.errors import GeometryError, InputError
-from loaded_tca.output.surface_files import teeth_in_space
 from loaded_tca.pairs import mating_teeth
+from loaded_tca.results.teeth import teeth_in_space
 from loaded_tca.tooth import Resolution
 from tests.samples.results import result, with_a_gap
 
