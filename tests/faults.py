@@ -307,8 +307,8 @@ FAULTS = (
     Fault(
         "free edges: slices beside a tip give way half as much",
         "loaded/free_edges.py",
-        "found[place] += mean * near.factor",
-        "found[place] += 0.5 * mean * near.factor",
+        "compliances[place] += mean * near.factor",
+        "compliances[place] += 0.5 * mean * near.factor",
         f"{FREE_EDGES}::test_tip_that_is_free_takes_up_the_energy_of_its_slices",
     ),
     *(
@@ -351,8 +351,8 @@ FAULTS = (
     Fault(
         "sensitivities: a contact that moves is not bent otherwise by other pairs",
         "loaded/force_lines.py",
-        "found[at, at] += by_place @ forces[j][loaded[j]]",
-        "found[at, at] += (i == j) * (by_place @ forces[j][loaded[j]])",
+        "by_shift[at, at] += by_place @ forces[j][loaded[j]]",
+        "by_shift[at, at] += (i == j) * (by_place @ forces[j][loaded[j]])",
         "loaded/test_force_lines.py::"
         "test_slices_bend_by_shifts_of_the_forces_under_their_own_load_and_that_of_other_pairs",
     ),
@@ -561,8 +561,8 @@ FAULTS = (
             ("results/dynamics.py", "stiffness = 1e6 * result.face_width", "stiffness = 1e3 * result.face_width"),
             (
                 "results/figures.py",
-                "length(found) * found.peak_to_peak",
-                "found.peak_to_peak",
+                "length(slopes) * slopes.peak_to_peak",
+                "slopes.peak_to_peak",
             ),
         )
     ),

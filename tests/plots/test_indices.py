@@ -15,7 +15,7 @@ from tests.samples.results import result
 CALLED_WITH = {
     "result": lambda: [result("mesh_cycle_spur", positions=3, torques=(40.0, 130.0))],
     "results": lambda: [[result("mesh_cycle_spur", positions=3, torques=(40.0, 130.0))] * 2],
-    "found": lambda: [test_first_order.found()],
+    "sensitivities": lambda: [test_first_order.found()],
     "design": lambda: [test_design.design()],
 }
 OWN = {

@@ -21,7 +21,6 @@ from loaded_tca.plots import (
     plot_pressure_envelope,
     sharing,
 )
-from loaded_tca.unloaded import contact_span
 from tests.samples.pictures import told
 from tests.samples.results import changed, changed_scene, result, with_a_gap
 
@@ -91,7 +90,7 @@ def test_side_on_which_nothing_touches_has_no_mark(monkeypatch):
     def nothing_touches(*_, **__):
         raise GeometryError("no common flank")
 
-    monkeypatch.setattr(contact_span, "trace_contact", nothing_touches)
+    monkeypatch.setattr("loaded_tca.unloaded.path.trace_contact", nothing_touches)
     assert set(marks(plot_path_pressure(shared(torques=(40.0,))))) == {"C"}
 
 
