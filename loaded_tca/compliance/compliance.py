@@ -141,6 +141,14 @@ class ToothCompliance:
         there, here = self.lines(*at), self.lines(*under)
         return self.pinion.between(there[0], here[0]) + self.wheel.between(there[1], here[1])
 
+    def deflection(self, at: tuple[int, ContactGrid], under: tuple[int, ContactGrid], forces: Array) -> Array:
+        """Deflection (m,) [mm] of the slices of one contact's grid under forces (n,) [N] on those of another's.
+
+        The product of :meth:`between` with the forces, without the matrix.
+        """
+        there, here = self.lines(*at), self.lines(*under)
+        return self.pinion.deflection(there[0], here[0], forces) + self.wheel.deflection(there[1], here[1], forces)
+
     def lines(self, number: int, grid: ContactGrid) -> tuple[FlankLine, FlankLine]:
         """Places of the forces of a grid's slices on the flanks of pinion and wheel; kept as long as the grid is.
 

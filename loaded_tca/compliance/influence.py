@@ -94,6 +94,17 @@ class GearCompliance:
         InputError
             If the two are further apart than the teeth of the model.
         """
+        return self._displaced(self._away(at, under), self._places(at), self._places(under))
+
+    def deflection(self, at: FlankLine, under: FlankLine, forces: Array) -> Array:
+        """Displacements (m,) [mm] under forces (n,) [N] at the others: the product of :meth:`between` with them."""
+        away, there, here = self._away(at, under), self._places(at), self._places(under)
+        spread = here.across.T @ (forces[:, None] * here.along)
+        moved = (self._mutual[self.neighbours + away] @ spread.ravel()).reshape(spread.shape)
+        return np.asarray(((there.across @ moved) * there.along).sum(axis=1))
+
+    def _away(self, at: FlankLine, under: FlankLine) -> int:
+        """Pitches from the tooth of one line to that of another."""
         teeth = self.frame.gear.form.teeth
         away = (at.tooth - under.tooth + teeth // 2) % teeth - teeth // 2
         if abs(away) > self.neighbours:
@@ -101,7 +112,7 @@ class GearCompliance:
                 f"tooth: two loaded teeth are {abs(away)} pitches apart, the model has {self.neighbours} neighbours of "
                 "a loaded tooth; ask for more neighbours"
             )
-        return self._displaced(away, self._places(at), self._places(under))
+        return away
 
     def _places(self, line: FlankLine) -> _Places:
         """Places of a line among those of the table; kept as long as the line is."""

@@ -11,6 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol, Self
 
+import numpy as np
+
 from loaded_tca.arrays import Array
 from loaded_tca.compliance.compliance import ContactGrid, tooth_compliance, way_out_told
 from loaded_tca.pairs.gear_pair import GearPair
@@ -42,6 +44,14 @@ class BendingModel(Protocol):
         Its transpose is that of ``between(under, at)``.
         """
 
+    def deflection(self, at: tuple[int, ContactGrid], under: tuple[int, ContactGrid], forces: Array) -> Array:
+        """Deflection (m,) [mm] of the slices of one contact under forces (n,) [N] on those of another.
+
+        The product of ``between`` with the forces; a model that has it without the matrix is asked for no matrix.
+        """
+        matrix = self.between(at, under) if at[0] < under[0] else self.between(under, at).T
+        return np.asarray(matrix @ forces)
+
 
 class BendingPart(BendingModel, Protocol):
     """A bending model whose gears can stand elsewhere."""
@@ -51,7 +61,7 @@ class BendingPart(BendingModel, Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class SumOfParts:
+class SumOfParts(BendingModel):
     """Deflections of several parts under the same forces, added up.
 
     Attributes
@@ -74,6 +84,10 @@ class SumOfParts:
     def between(self, at: tuple[int, ContactGrid], under: tuple[int, ContactGrid]) -> Array:
         """Deflection of every slice of one contact under a unit force on each slice of another [mm/N]."""
         return _sum([part.between(at, under) for part in self.parts])
+
+    def deflection(self, at: tuple[int, ContactGrid], under: tuple[int, ContactGrid], forces: Array) -> Array:
+        """Deflection (m,) [mm] of the slices of one contact under forces (n,) [N] on those of another."""
+        return _sum([part.deflection(at, under, forces) for part in self.parts])
 
     def mounted(self, pair: GearPair) -> SumOfParts:
         """The same parts in a pair whose wheel stands elsewhere."""

@@ -136,13 +136,16 @@ def held(
     return contacts_held
 
 
-class _HeldBending:
+class _HeldBending(BendingModel):
     """A bending model that keeps what it has told of a grid, known by the array of its slices."""
 
     def __init__(self, model: BendingModel) -> None:
         self._model = model
-        self.neighbours = model.neighbours
         self._known: dict[tuple[int, ...], tuple[tuple[Array, ...], Array]] = {}
+
+    @property
+    def neighbours(self) -> int:
+        return self._model.neighbours
 
     def within(self, number: int, grid: ContactGrid, under: ContactGrid | None = None) -> Array:
         there = grid if under is None else under

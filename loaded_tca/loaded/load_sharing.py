@@ -30,7 +30,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, partial
+from functools import partial
 from itertools import combinations
 
 import numpy as np
@@ -235,7 +235,6 @@ class _Balance:
     ) -> None:
         self.pair, self.tooth_pairs, self.torque, self.grid = pair, tuple(tooth_pairs), torque, grid
         self.bending, self.lines_held = bending, grid.lines_held
-        self.between = None if bending is None else cache(bending.between)  # for grids that stay the same
         self.separations = np.array([tooth_pair.initial_separation for tooth_pair in tooth_pairs])
         self.first_gaps = np.zeros(len(tooth_pairs))  # [mm], where the grid of a pair touches first: it grows, is cut
         contacts = [tooth_pair.contact for tooth_pair in tooth_pairs]
@@ -301,7 +300,7 @@ class _Balance:
         compliance = np.diag([own @ bending.within(*line) @ own for line, own in zip(lines, shares, strict=True)])
         for (i, one), (j, other) in combinations(enumerate(lines), 2):
             if self._coupled(i, j):
-                compliance[i, j] = compliance[j, i] = shares[i] @ bending.between(one, other) @ shares[j]
+                compliance[i, j] = compliance[j, i] = shares[i] @ bending.deflection(one, other, shares[j])
         return compliance
 
     def _solve(self, index: int, forces: Array) -> Steps[None]:
@@ -378,13 +377,13 @@ class _Balance:
 
         The force of another pair is spread over its slices as in its last solution.
         """
-        if self.between is None:
+        if self.bending is None:
             return None
         displaced = np.zeros(len(separation.y))
         for n, other in self._loaded():
             if n != index and forces[n] > 0.0:
-                between = self._between((index, separation), (n, other.separation))
-                displaced += between @ (forces[n] * other.slice_shares)
+                force = forces[n] * other.slice_shares
+                displaced += self._deflection((index, separation), (n, other.separation), force)
         return displaced
 
     def _coupled(self, index: int, other: int) -> bool:
@@ -392,29 +391,28 @@ class _Balance:
         apart = abs(self.tooth_pairs[index].pair - self.tooth_pairs[other].pair)
         return self.bending is not None and apart <= self.bending.neighbours
 
-    def _between(self, at: tuple[int, Separation], under: tuple[int, Separation]) -> Array:
-        """Deflection (m, n) [mm/N] of the slices of a pair's grid under those of another; one way is the other's."""
-        assert self.between is not None
-        if at[0] > under[0]:
-            return self._between(under, at).T
-        return self.between(*((self.tooth_pairs[index].pair, separation) for index, separation in (at, under)))
+    def _deflection(self, at: tuple[int, Separation], under: tuple[int, Separation], forces: Array) -> Array:
+        """Deflection (m,) [mm] of the slices of a pair's grid under forces (n,) [N] on those of another."""
+        assert self.bending is not None
+        here, there = ((self.tooth_pairs[index].pair, separation) for index, separation in (at, under))
+        return self.bending.deflection(here, there, forces)
 
     def _corrected(self) -> Array:
         """Compliance (k, k) [mm/N], that of the pairs solved so far the mean over the forces on their slices."""
         compliance = self.compliance.copy()
-        if self.between is None:
+        if self.bending is None:
             return compliance
         for index, loaded in self._loaded():
             compliance[index, index] = loaded.own_tooth_deflection / loaded.solution.load
         for (index, one), (other, two) in combinations(self._loaded(), 2):
-            matrix = self._between((index, one.separation), (other, two.separation))
-            compliance[index, other] = compliance[other, index] = one.slice_shares @ matrix @ two.slice_shares
+            displaced = self._deflection((index, one.separation), (other, two.separation), two.slice_shares)
+            compliance[index, other] = compliance[other, index] = one.slice_shares @ displaced
         loaded_pairs = dict(self._loaded())
         for index, separation in enumerate(self.first_grids):
             if index in loaded_pairs:
                 continue
             bent = {
-                other: self._between((index, separation), (other, two.separation)) @ two.slice_shares
+                other: self._deflection((index, separation), (other, two.separation), two.slice_shares)
                 for other, two in loaded_pairs.items()
                 if self._coupled(index, other)
             }

@@ -124,6 +124,14 @@ def test_between_counts_teeth_around_the_gear():
     assert_allclose(around, near, rtol=ROUNDING)
 
 
+@pytest.mark.parametrize("tooth", [0, 1, -1])
+def test_deflection_is_the_product_of_the_compliance_with_the_forces(tooth, rng):
+    gear = model()
+    at, under = line(gear, 0.3), line(gear, 0.6, tooth=tooth)
+    forces = rng.random(under.rho.size)
+    assert_allclose(gear.deflection(at, under, forces), gear.between(at, under) @ forces, rtol=ROUNDING)
+
+
 def test_teeth_too_far_apart_are_refused():
     gear = model()
     with pytest.raises(InputError, match="2 pitches apart, the model has 1"):

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from loaded_tca.compliance.model import BendingModel
 from loaded_tca.errors import ConvergenceError
 from loaded_tca.flanks import FlankModifications
 from loaded_tca.loaded.load_sharing import ToothPair, share_load, tooth_pairs_at
@@ -238,7 +239,7 @@ def test_pairs_at_their_cap_share_the_torque(cap, bending):
         assert solution.residual <= 1e-6
 
 
-class Springs:
+class Springs(BendingModel):
     """Every pair deflects by some amount more, and a little by the load of the others."""
 
     neighbours = 2
@@ -330,7 +331,7 @@ def test_pair_two_pitches_away_is_kept_apart_by_what_all_pairs_share():
     assert bending.numbers.count(far.pair) == 1  # of the first compliance; it was never solved
 
 
-class Restless:
+class Restless(BendingModel):
     """Teeth that are softer or stiffer every time they are asked."""
 
     neighbours = 2

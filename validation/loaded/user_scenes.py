@@ -1,0 +1,227 @@
+"""Twenty scenes as users write them, by the defaults of ``[analysis]`` alone: the time told before, and the time taken.
+
+Every scene is one of ``examples/scenes`` or of this folder, its ``[analysis]`` left out, with the keys that stand
+here. Each is analysed in a process of its own on one thread, with the models of teeth and roots neither kept nor found
+kept; the processor time is that of ``loaded_tca.analyse`` alone, the time told that of ``loaded-tca check``.
+
+Run from the root of the repository: ``python -m validation.loaded.user_scenes``; it writes
+``docs/studies/how_long.md``.
+"""
+
+from __future__ import annotations
+
+import cProfile
+import json
+import math
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from loaded_tca import analyse, parse_scene
+from loaded_tca.analysis import expected_effort
+from validation.page import ROOT, SCENES, Page, machine, table, write_page
+
+HERE = Path(__file__).parent
+GOAL, GOAL_WITH_ROOTS = 12.0, 20.0
+"""Processor time [s] that no scene should take, without and with root stress and no models kept."""
+
+
+@dataclass(frozen=True)
+class UserScene:
+    """A scene of a file without its ``[analysis]``, with other values of some keys.
+
+    Attributes
+    ----------
+    what : str
+    file : str
+        Without its ending.
+    changes : mapping
+    """
+
+    what: str
+    file: str
+    changes: Mapping[str, object] = field(default_factory=dict)
+
+    @property
+    def path(self) -> Path:
+        """Where the file is."""
+        own = HERE / f"{self.file}.toml"
+        return own if own.exists() else SCENES / f"{self.file}.toml"
+
+
+PINION, WHEEL = "pinion.modifications.", "wheel.modifications."
+LINEAR = {f"{gear}tip_relief_form": "linear" for gear in (PINION, WHEEL)}
+SPUR_RELIEFS = {
+    **{f"{gear}tip_relief_um": 15.0 for gear in (PINION, WHEEL)},
+    f"{PINION}tip_relief_start_mm": 105.0,
+    f"{WHEEL}tip_relief_start_mm": 173.5,
+}
+HELICAL_RELIEFS = {**SPUR_RELIEFS, f"{PINION}tip_relief_start_mm": 108.5, f"{WHEEL}tip_relief_start_mm": 179.5}
+TORQUE, WIDTHS = "load.pinion_torque_Nm", ("pinion.face_width_mm", "wheel.face_width_mm")
+ROOTS = {"analysis.root_stress": True}
+
+USER_SCENES = (
+    UserScene("electric drive: short reliefs, misaligned", "ev_stage"),
+    UserScene("the same under a tenth of the torque", "ev_stage", {TORQUE: 25.0}),
+    UserScene("helical, as the example", "helical"),
+    UserScene(
+        "helical, linear reliefs, misaligned by 20 um",
+        "helical",
+        {**HELICAL_RELIEFS, **LINEAR, "mounting.misalignment_um": 20.0},
+    ),
+    UserScene("helical, a tenth of the torque", "helical", {TORQUE: 13.0}),
+    UserScene("helical, ten times the torque", "helical", {TORQUE: 1300.0}),
+    UserScene("helical, face of 80 mm", "helical", dict.fromkeys(WIDTHS, 80.0)),
+    UserScene("helical, face of 6 mm", "helical", dict.fromkeys(WIDTHS, 6.0)),
+    UserScene("helical, twist of 10 um", "helical", {f"{PINION}twist_um": 10.0}),
+    UserScene(
+        "helical, end relief alone",
+        "helical",
+        {f"{PINION}lead_crowning_um": 0.0, f"{PINION}end_relief_um": 15.0, f"{PINION}end_relief_length_mm": 4.0},
+    ),
+    UserScene("helical, logarithmic crowning", "helical", {f"{PINION}lead_crowning_form": "logarithmic"}),
+    UserScene(
+        "helical, tips and face ends rounded",
+        "helical",
+        {f"{gear}.{edge}_rounding_mm": 0.2 for gear in ("pinion", "wheel") for edge in ("tip", "side")},
+    ),
+    UserScene("helical, pressure capped at 1500 MPa", "helical", {TORQUE: 500.0, "material.max_pressure_MPa": 1500.0}),
+    UserScene("helical, three torques", "helical", {"analysis.torques_Nm": (60.0, 130.0, 260.0)}),
+    UserScene("spur, linear reliefs", "spur", {**SPUR_RELIEFS, **LINEAR}),
+    UserScene("spur, parabolic reliefs", "spur", SPUR_RELIEFS),
+    UserScene("straight bevel", "straight_bevel"),
+    UserScene("spiral bevel", "spiral_bevel"),
+    UserScene("face-milled, matched", "face_milled_19x62_matched"),
+    UserScene("helical, measured wheel flank", "measured_flank"),
+    UserScene("helical, root stress", "helical", ROOTS),
+    UserScene("spiral bevel, root stress", "spiral_bevel", ROOTS),
+)
+
+
+PARTS = {
+    "unloaded contact": "trace_teeth",
+    "gaps": "sample_separations",
+    "solver": "solve_problems",
+    "models of teeth": "tooth_compliance",
+    "models of roots": "root_stress_model",
+    "rounded edges": "pressures_at_rounded_edges",
+    "free edges": "edge_compliances",
+    "warnings": "warn_of_accuracy",
+    "collecting": "mesh_cycle",
+}
+"""Functions whose time, with what they call, is told."""
+
+
+@dataclass(frozen=True)
+class Taken:
+    """What an analysis took.
+
+    Attributes
+    ----------
+    told, seconds : float [s]
+        Told before; processor time.
+    largest : (int, int)
+        Cells of the largest grid.
+    contacts : int
+        Loaded contacts.
+    parts : mapping of str to float
+        Of the processor time, with what they call.
+    """
+
+    told: float
+    seconds: float
+    largest: tuple[int, int]
+    contacts: int
+    parts: Mapping[str, float]
+
+
+def measure(scene: UserScene) -> Taken:
+    """Analyse a scene in two processes of its own: one for the time, the other for where it goes."""
+    taken, parts = (_run(scene, profiled=profiled) for profiled in (False, True))
+    return Taken(
+        told=taken["told"],
+        seconds=taken["seconds"],
+        largest=(taken["largest"][0], taken["largest"][1]),
+        contacts=taken["contacts"],
+        parts=parts["parts"],
+    )
+
+
+def _run(scene: UserScene, *, profiled: bool) -> dict[str, Any]:
+    environment = os.environ | {"OMP_NUM_THREADS": "1", "LOADED_TCA_CACHE": "off"}
+    given = json.dumps([str(scene.path), dict(scene.changes), profiled])
+    command = [sys.executable, "-W", "ignore", "-c", "from validation.loaded.user_scenes import alone; alone()", given]
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise RuntimeError(f"{scene.what}: {done.stderr.strip().splitlines()[-1]}")
+    return dict(json.loads(done.stdout))
+
+
+def alone() -> None:
+    """Analyse the scene that the command line of this process holds; print what it took as JSON."""
+    path, changes, profiled = json.loads(sys.argv[1])
+    text = Path(path).read_text(encoding="utf-8").split("\n[analysis]")[0]
+    scene = parse_scene(text, folder=Path(path).parent).with_changes(changes)
+    profile, start = cProfile.Profile(), time.process_time()
+    result = profile.runcall(analyse, scene) if profiled else analyse(scene)
+    seconds = time.process_time() - start
+    maps = [one for torque in result.maps for position in torque for one in position if one is not None]
+    taken = {
+        "told": expected_effort(scene).seconds,
+        "seconds": seconds,
+        "largest": max((one.pressure.shape for one in maps), key=math.prod),
+        "contacts": len(maps),
+        "parts": _parts(profile) if profiled else {},
+    }
+    print(json.dumps(taken))
+
+
+def _parts(profile: cProfile.Profile) -> dict[str, float]:
+    """Parts of the time that the functions of ``PARTS`` take, those above a fiftieth, the largest first."""
+    profile.create_stats()
+    stats = profile.stats  # type: ignore[attr-defined]
+    total = sum(entry[2] for entry in stats.values())
+    parts = {name: sum(e[3] for key, e in stats.items() if key[2] == what) / total for name, what in PARTS.items()}
+    return dict(sorted(((n, part) for n, part in parts.items() if part > 0.02), key=lambda one: -one[1]))
+
+
+def page() -> Page:
+    """Table of all scenes."""
+    lines = []
+    for scene in USER_SCENES:
+        taken = measure(scene)
+        share = ", ".join(f"{name} {100.0 * part:.0f} %" for name, part in taken.parts.items())
+        lines.append(
+            f"{scene.what} | {taken.told:.1f} | {taken.seconds:.1f} | {taken.told / taken.seconds:.2f} | "
+            f"{taken.contacts} | {taken.largest[0]} x {taken.largest[1]} | {share}"
+        )
+        print(lines[-1], file=sys.stderr)
+    head = "scene | told s | taken s | told over taken | contacts | largest grid | where the time goes"
+    return Page("how_long", TEXT.format(table=table(head, lines), machine=machine()))
+
+
+TEXT = """# How long does it take?
+
+Scenes as users write them, by the defaults of `[analysis]` alone: 21 positions, accuracy 1e-3, teeth that bend, load
+shared, free edges. *Told* is what `loaded-tca check` and the analysis itself say before it starts, *taken* the
+processor time on one thread, in a process of its own and without models of teeth or roots kept from an earlier
+analysis (with them some two to four seconds less, with root stress some eight). Written by
+`python -m validation.loaded.user_scenes`.
+
+{table}
+
+{machine}
+
+What makes an analysis long is the number of cells: an accuracy of 1e-2 takes a third to a tenth of the cells of 1e-3.
+Contacts that end at sharp edges, start on reliefs or lie askew on their grid need the most; `analysis.cells` sets all
+grids at once, and the time told is right then within a factor of two.
+"""
+
+
+if __name__ == "__main__":
+    write_page(__doc__, page)
