@@ -47,6 +47,7 @@ CASES = (
     "loaded.root_stress",
     "loaded.root_stress_cycle",
     "loaded.root_stress_space",
+    "loaded.root_stress_precision",
     "loaded.root_face_load",
     "loaded.numbers_to_copy",
     "calculix.mesh_cycle",

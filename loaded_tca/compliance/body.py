@@ -24,6 +24,7 @@ from loaded_tca.compliance.dissection import Factorisation, factorise
 from loaded_tca.compliance.finite_elements import Discretisation, discretise, node_offsets
 from loaded_tca.compliance.geometry import BodyNodes, body_nodes, cuts_at_bore, rim_growth
 from loaded_tca.compliance.layout import MeshDensity, RingLayout
+from loaded_tca.errors import GeometryError
 from loaded_tca.flanks.base import Flank, outward_normal
 from loaded_tca.material import Material
 from loaded_tca.pairs.gear import Gear
@@ -33,6 +34,8 @@ from loaded_tca.tooth.build import Resolution, build_tooth
 
 FIRST_CHORD = 0.25
 """First guess of the distance from a flank to the middle of the tooth, over the height of the flank."""
+TOGETHER = 512
+"""Elements whose forces are found at a time."""
 CORE = 2
 """Layers of a solid gear below the diameter of its journals."""
 
@@ -233,23 +236,69 @@ def _among_nodes(number: Indices, row: Array, layer: Array) -> SurfacePlaces:
     return SurfacePlaces(number[nodes[0], nodes[1]], shares)
 
 
-def gear_body(nodes: BodyNodes, material: Material) -> tuple[Discretisation, Factorisation]:
-    """Mesh of a body held at its bore or journals, and the factor of its stiffness."""
+def gear_body(nodes: BodyNodes, material: Material, largest_error: float = 0.0) -> tuple[Discretisation, Factorisation]:
+    """Mesh of a body held at its bore or journals, and the factor of its stiffness.
+
+    Parameters
+    ----------
+    nodes : BodyNodes
+    material : Material
+    largest_error : float
+        Relative error of the displacements under which the factor may be of single precision, which takes half of the
+        time; zero: of double precision.
+    """
     lowest, spans, blocks = nodes.layout.bricks
     mesh = discretise(nodes.points, lowest, nodes.layout.turns, spans)
-    return mesh, factorised(mesh, material, nodes.layout.held(mesh.number), blocks)[0]
+    held = nodes.layout.held(mesh.number)
+    if largest_error > 0.0:
+        try:
+            factor, matrices = factorised(mesh, material, held, blocks, single=True)
+        except GeometryError:  # of a soft body by rounding alone; double precision tells
+            pass
+        else:
+            if error_of_displacements(mesh, factor, matrices) <= largest_error:
+                return mesh, factor
+    return mesh, factorised(mesh, material, held, blocks)[0]
+
+
+def error_of_displacements(mesh: Discretisation, factor: Factorisation, matrices: Array) -> float:
+    """Relative error of the displacements by a factor: the change by one step of refinement, in double precision.
+
+    Under unit loads along all axes on the outermost node.
+
+    Parameters
+    ----------
+    mesh : Discretisation
+    factor : Factorisation
+        Of its stiffness.
+    matrices : (q, k d, k d) array
+        Stiffness of the elements' kinds in double precision.
+    """
+    d, node = mesh.dimension, int(np.hypot(mesh.points[:, 0], mesh.points[:, 1]).argmax())
+    loads = np.zeros((mesh.points.size, d))
+    loads[d * node + np.arange(d), np.arange(d)] = 1.0
+    displacements = factor.solve(loads).astype(float)
+    dofs, carried = mesh.dofs, np.zeros(loads.shape)
+    for first in range(0, len(dofs), TOGETHER):
+        some = slice(first, first + TOGETHER)
+        np.add.at(carried, dofs[some], matrices[mesh.kinds[some]] @ displacements[dofs[some]])
+    change = factor.solve(loads - carried)
+    return float((np.abs(change).max(axis=0) / np.abs(displacements).max(axis=0)).max())
 
 
 def factorised(
-    mesh: Discretisation, material: Material, held: Indices, blocks: Indices | None = None
+    mesh: Discretisation, material: Material, held: Indices, blocks: Indices | None = None, *, single: bool = False
 ) -> tuple[Factorisation, Array]:
-    """Factor of the stiffness of a mesh with nodes ``held`` (-1: none), and the matrices of its elements' kinds."""
+    """Factor of the stiffness of a mesh with nodes ``held`` (-1: none), and the matrices of its elements' kinds.
+
+    ``single``: the factor is of single precision.
+    """
     free = np.ones((len(mesh.points), mesh.dimension), dtype=bool)
     free[held[held >= 0]] = False
     matrices, places = mesh.stiffness(material), mesh.lowest // 2
     places[:, 2:] -= places[:, 2:] % 2  # no cut through an element that is twice as thick
-    factor = factorise(matrices, mesh.dofs, places, free.ravel(), kinds=mesh.kinds, blocks=blocks)
-    return factor, matrices
+    used = matrices.astype(np.float32) if single else matrices
+    return factorise(used, mesh.dofs, places, free.ravel(), kinds=mesh.kinds, blocks=blocks), matrices
 
 
 CELLS = 12

@@ -63,9 +63,14 @@ class Factorisation:
     fronts: tuple[_Front, ...]
     size: int
 
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """Precision of the fronts."""
+        return self.fronts[-1].factor.dtype
+
     def solve(self, loads: Array) -> Array:
         """Displacements (size, m) under loads (size, m); zero where they are prescribed."""
-        displacements = np.zeros_like(loads)
+        displacements = np.zeros(loads.shape, self.dtype)
         free = np.zeros(self.size, dtype=bool)
         for front in self.fronts:
             free[front.inside] = True
@@ -89,7 +94,7 @@ class Factorisation:
             block = loads[first : first + step]
             below = self._reached(block)
             down = [front.renumbered(place) for front in self.fronts if below[front.inside].any()]
-            values = block[:, active].T.toarray()
+            values = block[:, active].T.toarray().astype(self.dtype, copy=False)
             _substitute(down, up, values)
             result[:, first : first + step] = readings[:, active] @ values
         return result
@@ -130,7 +135,7 @@ def factorise(
     Parameters
     ----------
     matrices : (q, k, k) array
-        Symmetric, positive semidefinite.
+        Symmetric, positive semidefinite; the fronts are of their precision.
     dofs : (n, k) int array
         Unknowns of each element.
     places : (n, d) int array
@@ -154,7 +159,7 @@ def factorise(
     places = np.column_stack([np.zeros(n, dtype=int) if blocks is None else blocks, places])
     plan = _Plan(kinds, np.where(free[dofs], dofs, size), places, np.bincount(dofs.ravel(), minlength=size))
     unknowns, last = plan.add(np.arange(n))
-    needed, limit = plan.bytes + matrices.nbytes, machine_memory()
+    needed, limit = plan.bytes + 8.0 * matrices.size, machine_memory()  # of single precision: it may be made again
     problem = f"{size} unknowns need {needed / 2**30:.3g} GiB, the machine has {limit / 2**30:.3g} GiB"
     require((needed <= limit, f"mesh of the gear body: {problem}; take fewer elements"))
     with one_blas_thread():
@@ -295,7 +300,7 @@ def _assembled(dofs: Indices, matrices: Array, order: Indices) -> Array:
     """Dense sum of element matrices in the order of the unknowns ``order``; numbers beyond them are held."""
     place = np.empty(len(order) + 1, dtype=int)
     place[np.append(order, len(order))] = np.arange(len(order) + 1)
-    total = np.zeros((len(order) + 1, len(order) + 1))
+    total = np.zeros((len(order) + 1, len(order) + 1), matrices.dtype)
     for rows, matrix in zip(place[dofs], matrices, strict=True):
         total[rows[:, None], rows] += matrix
     return total[:-1, :-1]
@@ -327,7 +332,8 @@ def _drop(left: dict[int, Any], uses: list[int], step: _Step) -> None:
 def _eliminated(matrix: Array, count: int) -> tuple[Array, Array, Array]:
     """Factor of the first ``count`` unknowns, their coupling with the others, and what is left for these."""
     if not count:
-        return np.empty((0, 0)), np.empty((len(matrix), 0)), np.pad(matrix, (0, 1))
+        nothing = np.empty((len(matrix), 0), matrix.dtype)
+        return nothing[:0], nothing, np.pad(matrix, (0, 1))
     try:
         factor = cholesky(matrix[:count, :count], lower=True, check_finite=False)
     except np.linalg.LinAlgError:
@@ -335,6 +341,6 @@ def _eliminated(matrix: Array, count: int) -> tuple[Array, Array, Array]:
     if factor is None or factor.diagonal().min() ** 2 <= LEAST_PIVOT * matrix.diagonal()[:count].max():
         raise GeometryError("the gear body is not held, or its mesh is damaged: no positive stiffness")
     coupling = solve_triangular(factor, matrix[:count, count:], lower=True, check_finite=False).T
-    rest = np.zeros((len(matrix) - count + 1,) * 2)
+    rest = np.zeros((len(matrix) - count + 1,) * 2, matrix.dtype)
     np.subtract(matrix[count:, count:], coupling @ coupling.T, out=rest[:-1, :-1])
     return factor, coupling, rest

@@ -63,6 +63,10 @@ HEIGHTS_BESIDE, LENGTHS_BESIDE = 5, 1.0
 LEAST_ANGLE, TOP = math.radians(15.0), 0.125
 """Tangent angle and part of the fillet, as elements follow it, from which on stress is told: above either, a force low
 on the flank has local stress, not bending."""
+SINGLE_ERROR, HARDLY_COMPRESSIBLE = 5e-3, 2.5
+"""Relative error of displacements up to which fronts are of single precision, and so many times 1 - 2 nu of it where
+that is less: most of the error is a rotation of the whole tooth, and stress is within 2e-4 of its largest value
+(``validation.loaded.root_stress_precision``)."""
 STATIONS, PER_LAYER = 91, 4
 """Places along a fillet and in each layer of elements along the face, between which nothing is interpolated any more:
 the largest of them is within 0.05 % of the maximum."""
@@ -349,15 +353,19 @@ def _part_of_range(height: Array) -> Array:
     return (np.log(OFFSET + np.maximum(height, LOWEST)) - low) / (high - low)
 
 
-def root_influence(frame: ToothFrame) -> RootInfluence:
+def root_influence(frame: ToothFrame, *, single: bool = True) -> RootInfluence:
     """Load a gear body by unit forces all over its flanks in contact.
 
     Parameters
     ----------
     frame : ToothFrame
         With thin layers below the surface.
+    single : bool
+        Whether fronts may be of single precision where the body lets them.
     """
-    mesh, factor = gear_body(frame.nodes, frame.gear.material)
+    material = frame.gear.material
+    allowed = SINGLE_ERROR * min(1.0, HARDLY_COMPRESSIBLE * (1.0 - 2.0 * material.poisson_ratio))
+    mesh, factor = gear_body(frame.nodes, material, allowed if single else 0.0)
     near, size = frame.nodes.layout.neighbours, len(mesh.points)
     *count, own = _loaded_places(frame, False)
     *count_beside, other = _loaded_places(frame, True)

@@ -5,6 +5,7 @@ from scipy.sparse import coo_array, csr_array
 from scipy.sparse.linalg import spsolve
 
 from loaded_tca.compliance import dissection
+from loaded_tca.compliance.body import error_of_displacements
 from loaded_tca.compliance.dissection import factorise
 from loaded_tca.compliance.finite_elements import discretise
 from loaded_tca.errors import GeometryError, InputError
@@ -89,6 +90,25 @@ def test_flexibility_is_read_from_the_solution(rng):
     found = factor.flexibility(csr_array(loads), csr_array(readings))
     assert_allclose(found, expected, atol=ROUNDING * np.abs(expected).max())
     assert_allclose(factor.flexibility(csr_array(readings), csr_array(loads)), found.T, rtol=1e-6)
+
+
+@pytest.mark.parametrize("columns", [12, 48])
+def test_error_of_single_precision_is_told_by_a_step_of_refinement(columns):
+    """Within a factor of three, as it changes from load to load; double precision has none."""
+    mesh = ring(columns)
+    matrices, free = mesh.stiffness(Material()), free_unknowns(mesh)
+    single, double = (
+        factorise(used, mesh.dofs, mesh.lowest // 2, free) for used in (matrices.astype(np.float32), matrices)
+    )
+    loads = np.zeros((len(free), 2))
+    node = int(np.hypot(*mesh.points.T).argmax())
+    loads[2 * node + np.arange(2), np.arange(2)] = 1.0
+    exact = double.solve(loads)
+    error = (np.abs(single.solve(loads) - exact).max(axis=0) / np.abs(exact).max(axis=0)).max()
+    assert single.dtype == np.float32
+    assert 1e-8 < error < 1e-3
+    assert error / 3.0 < error_of_displacements(mesh, single, matrices) < 3.0 * error
+    assert error_of_displacements(mesh, double, matrices) < 1e-6 * error
 
 
 def test_a_body_that_is_not_held_is_refused():

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from loaded_tca.compliance import FlankLine, MeshDensity, root_stress_model
 from loaded_tca.compliance import flexibility as kept
 from loaded_tca.compliance import root_stress as module
-from loaded_tca.compliance.body import ToothFrame, gear_nodes
+from loaded_tca.compliance.body import ToothFrame, gear_body, gear_nodes
 from loaded_tca.compliance.flexibility import key_of
 from loaded_tca.compliance.root_stress import (
     DENSITY,
@@ -29,7 +29,7 @@ from loaded_tca.material import Material
 from loaded_tca.pairs.bevel import bevel_pair
 from loaded_tca.pairs.cylindrical import cylindrical_pair
 from loaded_tca.scene import read_scene
-from tests.samples.bodies import pinion, spur_mesh
+from tests.samples.bodies import COARSE, pinion, spur_mesh
 from validation.loaded.root_stress import told_memory
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
@@ -37,6 +37,8 @@ LAYERS = 8
 SMALL = replace(DENSITY, lengthwise=LAYERS, thin_ends=True)
 TINY = MeshDensity(2, 2, 1, 2, 3, 6, 1, 2.0, 0.02, True)
 ROUNDING = 1e-9
+SINGLE = 3e-4
+"""Of the largest stress: what fronts of single precision may change (``validation.loaded.root_stress_precision``)."""
 HPSTC = 37.97813365
 """Radius of the highest point of single contact of the pinion 25 of 25/37, m 3 [mm]."""
 PLANE = 0.8535
@@ -146,7 +148,7 @@ def test_stress_is_read_alike_at_both_ends():
 
 def test_stress_of_a_spur_gear_is_the_same_from_either_end():
     stress = model().stress(0, [line(part=0.3, middle=5.0)])
-    assert_allclose(mirrored(stress), model().stress(0, [line(part=0.3, middle=-5.0)]), atol=1e-6 * stress.max())
+    assert_allclose(mirrored(stress), model().stress(0, [line(part=0.3, middle=-5.0)]), atol=SINGLE * stress.max())
     assert stress[0].max(axis=0).argmax() > 0.6 * stress.shape[2]  # where the load is
 
 
@@ -154,7 +156,7 @@ def test_stress_of_the_other_side_is_the_mirror_image():
     """Teeth come in the other order."""
     for tooth in (0, 1):
         one, other = model().stress(tooth, [line()]), model(-1).stress(-tooth, [line()])
-        assert_allclose(one, other, atol=1e-6 * np.abs(one).max())
+        assert_allclose(one, other, atol=2.0 * SINGLE * np.abs(one).max())  # of each
 
 
 def test_places_lie_on_the_fillets_from_15_degrees_to_the_middle_of_the_space():
@@ -179,10 +181,10 @@ def test_largest_stress_lies_between_no_two_places():
 
 def test_influence_does_not_depend_on_how_many_forces_are_solved_at_a_time(monkeypatch):
     frame = ToothFrame(pinion(), gear_nodes(pinion(), TINY))
-    whole = root_influence(frame)
+    whole = root_influence(frame, single=False)
     monkeypatch.setattr("loaded_tca.compliance.dissection.BYTES_OF_LOADS", 1.0)
     for name in ("stress", "stress_beside"):
-        found = getattr(root_influence(frame), name)
+        found = getattr(root_influence(frame, single=False), name)
         assert_allclose(found, getattr(whole, name), atol=ROUNDING * np.abs(found).max())
 
 
@@ -288,7 +290,7 @@ def taken(frame):  # by a process of its own, whose peak begins with what it hol
     reading, writing = os.pipe()
     if os.fork() == 0:
         before = peak_memory()
-        root_influence(frame)
+        root_influence(frame, single=False)
         os.write(writing, str(peak_memory() - before).encode())
         os._exit(0)
     os.close(writing)
@@ -325,3 +327,10 @@ def test_memory_that_is_told_is_below_1_gib_for_7_modules_and_2_gib_for_20():
     for width, most in ((20.0, 0.8), (60.0, 1.8)):
         gear = cylindrical_pair(spur_mesh(width, 0.35)).pinion
         assert 0.3 * most < told_memory(gear, stress_density(gear)) < most
+
+
+@pytest.mark.parametrize(("largest_error", "precision"), [(1.0, np.float32), (1e-12, np.float64), (0.0, np.float64)])
+def test_body_is_made_again_in_double_precision_where_single_is_not_enough(largest_error, precision):
+    gear = pinion()
+    _, factor = gear_body(gear_nodes(gear, COARSE), gear.material, largest_error)
+    assert factor.dtype == precision

@@ -15,8 +15,8 @@ from tests.samples.results import assert_same
 from tests.samples.root_stress import analysed, models, result, scene
 
 ROUNDING = 1e-9
-MESH = 1e-5
-"""Meshes of mirrored teeth are mirror images but for the rounding of their nodes."""
+SINGLE = 3e-4
+"""Of the largest stress: what fronts of single precision may change (``validation.loaded.root_stress_precision``)."""
 SHARED = 5e-4
 """Forces of several pairs, where the shares of these are iterated another way round."""
 TOP = 1e-3
@@ -166,7 +166,9 @@ def test_one_pair_that_carries_all_gives_more_stress_than_the_same_with_another(
 def test_symmetric_pair_has_symmetric_stress_along_its_face():
     for one in result().root_stress:
         for stress in (one.largest, one.smallest, one.at_tension):
-            assert_allclose(stress, stress[..., ::-1], atol=1e-4 * np.abs(stress).max())  # solver and mesh
+            assert_allclose(
+                stress, stress[..., ::-1], atol=(1e-4 + SINGLE) * np.abs(stress).max()
+            )  # solver and mesh, precision
 
 
 def test_misaligned_pair_has_its_tension_where_its_load_is():
@@ -179,7 +181,7 @@ def test_misaligned_pair_has_its_tension_where_its_load_is():
 def test_other_sense_of_rotation_is_the_mirror_image():
     one, other = result(), result(**{"pair.sense": "negative"})
     for name in ("root_tension", "root_compression", "root_tension_angle", "root_stress_ratio"):
-        assert_allclose(getattr(other, name), getattr(one, name), rtol=MESH)
+        assert_allclose(getattr(other, name), getattr(one, name), rtol=SINGLE)
     assert_array_equal(other.root_tension_place[..., 0], -one.root_tension_place[..., 0])
 
 
