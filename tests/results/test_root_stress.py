@@ -180,8 +180,9 @@ def test_misaligned_pair_has_its_tension_where_its_load_is():
 
 def test_other_sense_of_rotation_is_the_mirror_image():
     one, other = result(), result(**{"pair.sense": "negative"})
-    for name in ("root_tension", "root_compression", "root_tension_angle", "root_stress_ratio"):
+    for name in ("root_tension", "root_compression", "root_tension_angle"):
         assert_allclose(getattr(other, name), getattr(one, name), rtol=SINGLE)
+    assert_allclose(other.root_stress_ratio, one.root_stress_ratio, atol=SINGLE)  # over the largest
     assert_array_equal(other.root_tension_place[..., 0], -one.root_tension_place[..., 0])
 
 
